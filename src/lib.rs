@@ -1,0 +1,7 @@
+//! Asperity: force-displacement laws for elastic-plastic spheres sheared along a rigid plane.
+//!
+//! The rooms, from the kernels up; each knows only those named before it:
+//! `analytical` (closed forms), `case` (the case file), `mesh`, `material`, `element`, `contact`, `compute` (one trait, CPU and
+//! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `law`, `study`, `cli`. ARCHITECTURE.md follows one case through them.
+
+pub mod real;
