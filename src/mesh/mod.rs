@@ -3,6 +3,8 @@
 //! Lengths are in sphere radii. The pole is the origin, the rigid plane is z = 0, the centre of the sphere is (0, 0, 1), the symmetry
 //! plane is y = 0 and the body fills y >= 0, 0 <= z <= 1.
 
+pub mod pattern;
+
 /// Sparse interpolation from a coarse level's nodes to a fine level's nodes, in rows of (coarse node, weight); the weights of a row sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prolongation {

@@ -1,0 +1,179 @@
+//! Evaluation of a batch of cases: internal forces, tangents, contact, commit. One trait, a CPU and a GPU behind it.
+//!
+//! The batch is the leading dimension everywhere: a call carries one request for each case that still iterates, and one dispatch serves them
+//! all. A single case is a batch of one. What a case gets never depends on the other cases of the batch.
+//!
+//! A backend holds the committed state of every case (elastic strains, hardening variables, displacement); trial states are never
+//! stored: each evaluation is a pure function of the committed state and the trial displacement.
+
+pub mod cpu;
+pub mod gather;
+pub mod handle;
+
+use std::sync::Arc;
+
+use crate::contact::coulomb::{Friction, Rows};
+use crate::material::{Material, PointState};
+use crate::mesh::Mesh;
+
+/// One case of a batch, scaled: lengths by R, stresses by E.
+#[derive(Clone, Debug)]
+pub struct CaseModel {
+    /// The mesh; all cases of a batch share its connectivity, not its node positions.
+    pub mesh: Arc<Mesh>,
+    /// Elasticity and hardening.
+    pub material: Material<f64>,
+    /// Friction between sphere and plane.
+    pub friction: Friction<f64>,
+}
+
+/// Why a trial displacement could not be evaluated; the solver answers by backtracking.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outcome {
+    /// Evaluated.
+    #[default]
+    Valid,
+    /// J <= 0, or not a number, at a quadrature point of this element.
+    Inverted {
+        /// Element index.
+        element: usize,
+        /// Quadrature point.
+        point: usize,
+    },
+}
+
+/// Asks for the internal nodal forces of one case.
+#[derive(Debug)]
+pub struct ForceRequest<'a> {
+    /// Case index in the batch.
+    pub case: usize,
+    /// Trial displacement, three a node.
+    pub displacement: &'a [f64],
+    /// Receives dW/du, three a node.
+    pub force: &'a mut [f64],
+    /// Receives how it went.
+    pub outcome: Outcome,
+}
+
+/// Asks for the tangent of one case: blocks d f_i / d u_j in the order of [`crate::mesh::pattern::BlockPattern`].
+#[derive(Debug)]
+pub struct TangentRequest<'a> {
+    /// Case index in the batch.
+    pub case: usize,
+    /// Trial displacement, three a node.
+    pub displacement: &'a [f64],
+    /// Receives the blocks, row-major.
+    pub blocks: &'a mut [[f64; 9]],
+    /// Receives how it went.
+    pub outcome: Outcome,
+}
+
+/// Asks for the contact conditions of one case.
+#[derive(Debug)]
+pub struct ContactRequest<'a> {
+    /// Case index in the batch.
+    pub case: usize,
+    /// Trial displacement, three a node.
+    pub displacement: &'a [f64],
+    /// Internal forces there, three a node.
+    pub force: &'a [f64],
+    /// Receives the rows of each of the mesh's contact nodes.
+    pub rows: &'a mut [Rows<f64>],
+}
+
+/// Asks to make a trial displacement the committed state of one case.
+#[derive(Debug)]
+pub struct CommitRequest<'a> {
+    /// Case index in the batch.
+    pub case: usize,
+    /// Converged displacement, three a node.
+    pub displacement: &'a [f64],
+    /// Receives the energies of the new committed state.
+    pub energies: Energies,
+    /// Receives how it went; an invalid state is not committed.
+    pub outcome: Outcome,
+}
+
+/// Energies of a committed state, of the meshed half.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Stored elastic energy.
+    pub elastic: f64,
+    /// Plastic work done so far.
+    pub plastic: f64,
+}
+
+/// The committed state of a case, for output and checkpoints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseState {
+    /// Displacement, three a node.
+    pub displacement: Vec<f64>,
+    /// State of each element's eight quadrature points.
+    pub points: Vec<[PointState<f64>; 8]>,
+    /// Plastic work of each element.
+    pub plastic_work: Vec<f64>,
+}
+
+/// What a committed state shows, for output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseFields {
+    /// Cauchy stress [xx, yy, zz, xy, yz, zx] of each element (volume mean of its points), scaled by E.
+    pub stress: Vec<[f64; 6]>,
+    /// Equivalent plastic strain of each element: mean over its points.
+    pub alpha: Vec<f64>,
+    /// Largest equivalent plastic strain of any quadrature point.
+    pub max_alpha: f64,
+}
+
+/// Where and in which precision a backend computes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Description {
+    /// For people: "CPU (2 threads)", an adapter's name.
+    pub device: String,
+    /// Precision of the residual: "f64" or "f32".
+    pub precision: &'static str,
+}
+
+/// An evaluation that failed for a reason that no smaller step cures.
+#[derive(Debug, thiserror::Error)]
+pub enum ComputeError {
+    /// An element of the undeformed mesh is inverted.
+    #[error("element {element} of the mesh is inverted at quadrature point {point}; choose another [mesh] elements_per_contact_radius")]
+    InvertedMesh {
+        /// Element index.
+        element: usize,
+        /// Quadrature point.
+        point: usize,
+    },
+    /// The cases of a batch do not share one connectivity.
+    #[error("case {case} of the batch has another mesh connectivity than the first; run it in a batch of its own")]
+    Connectivity {
+        /// Case index.
+        case: usize,
+    },
+    /// The device failed.
+    #[error("the compute device failed: {0}")]
+    Device(String),
+}
+
+/// A batch of cases on some device.
+pub trait Compute: Send {
+    /// Where this is computed.
+    fn description(&self) -> Description;
+    /// The cases of the batch.
+    fn models(&self) -> &[CaseModel];
+    /// Internal forces.
+    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError>;
+    /// Tangents.
+    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError>;
+    /// Contact conditions.
+    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError>;
+    /// Commits converged displacements.
+    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError>;
+    /// Stresses and strains of a committed state.
+    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError>;
+    /// A copy of a committed state.
+    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError>;
+    /// Replaces a committed state.
+    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError>;
+}

@@ -1,0 +1,381 @@
+//! Eight-node hexahedron with mean dilatation: internal force, symmetric tangent, energies and state update.
+//!
+//! The stored energy of an element of reference volume V is `sum_q W_dev(b_e-bar) V_q + V U(Theta)` with the mean dilatation
+//! `Theta = v/V` (Nagtegaal, Parks & Rice 1974; Simo, Taylor & Pister 1985; Simo & Hughes 1998, section 9.? "three-field"
+//! formulation with constant pressure and dilatation). The deviatoric Kirchhoff stress is the material's, point by point; the pressure
+//! `p = U'(Theta)` is one number an element, which is what keeps the element from locking when plastic flow is isochoric.
+//!
+//! Everything is computed from displacement gradients: `f - I = dH F_n^-1` with `dH` the gradient of the increment, so that small strains
+//! keep their digits (see `material::j2`).
+
+use super::lanes::Lanes;
+use crate::material::j2::{Response, deviatoric_tangent, return_mapping};
+use crate::material::{Material, PointState, pressure};
+use crate::real::Real;
+
+/// Nodes of an element.
+pub const NODES: usize = 8;
+/// Quadrature points of an element (2 x 2 x 2 Gauss).
+pub const QUADRATURE_POINTS: usize = 8;
+/// Blocks of the upper triangle of an element tangent: pairs (a, b) with a <= b.
+pub const PAIRS: usize = 36;
+
+/// Local coordinates of the nodes in VTK order; the quadrature points are these over sqrt(3), in the same order.
+pub const CORNERS: [[f64; 3]; NODES] = [
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
+
+/// Three displacements (or forces) for each node of an element.
+pub type Nodal<R> = [[R; 3]; NODES];
+
+/// What an element needs of its reference shape: computed once, in f64, then rounded.
+#[derive(Clone, Debug)]
+pub struct Geometry<R> {
+    /// Reference gradients dN_a/dX_j at the quadrature points, `[a][j]`.
+    pub gradient: [[Lanes<R>; 3]; NODES],
+    /// Reference volume of each quadrature point.
+    pub volume: Lanes<R>,
+    /// Sum of the volumes.
+    pub total_volume: R,
+}
+
+/// Committed state of an element's quadrature points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State<R> {
+    /// Elastic strain and hardening variable of each point.
+    pub points: [PointState<R>; QUADRATURE_POINTS],
+    /// Plastic work done so far in the element, an energy.
+    pub plastic_work: R,
+}
+
+/// Why an element could not be evaluated at a trial displacement. The solver backtracks; it is no error of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Invalid {
+    /// The Jacobian of the deformation is not positive (or not a number) at this quadrature point.
+    Inverted(usize),
+    /// The material refused the deformation at this quadrature point.
+    Material(usize),
+}
+
+/// Symmetric pair of tensor indices to the index in [xx, yy, zz, xy, yz, zx].
+pub const VOIGT: [[usize; 3]; 3] = [[0, 3, 5], [3, 1, 4], [5, 4, 2]];
+
+/// Derivatives dN_a/dxi at local coordinates.
+fn shape_derivatives(xi: [f64; 3]) -> [[f64; 3]; NODES] {
+    CORNERS.map(|c| {
+        let [p, q, r] = std::array::from_fn(|i| 1.0 + c[i] * xi[i]);
+        [0.125 * c[0] * q * r, 0.125 * c[1] * p * r, 0.125 * c[2] * p * q]
+    })
+}
+
+impl<R: Real> Geometry<R> {
+    /// Gradients and volumes of the element with these nodes, or the quadrature point at which its shape is inverted.
+    pub fn new(nodes: &[[f64; 3]; NODES]) -> Result<Self, Invalid> {
+        let mut gradient = [[Lanes::ZERO; 3]; NODES];
+        let mut volume = Lanes::ZERO;
+        let mut total = 0.0;
+        // Positions relative to the first node: the gradients of a small element far from the origin keep their digits.
+        let local = nodes.map(|x| [x[0] - nodes[0][0], x[1] - nodes[0][1], x[2] - nodes[0][2]]);
+        for q in 0..QUADRATURE_POINTS {
+            let xi = CORNERS[q].map(|c| c / 3.0_f64.sqrt());
+            let derivative = shape_derivatives(xi);
+            let mut jacobian = [[0.0; 3]; 3];
+            for (d, x) in derivative.iter().zip(&local) {
+                for i in 0..3 {
+                    for j in 0..3 {
+                        jacobian[i][j] += x[i] * d[j];
+                    }
+                }
+            }
+            let (inverse, det) = invert(&jacobian.map(|r| r.map(|v| Lanes([v; 8]))));
+            let det = det.0[0];
+            if !(det > 0.0) {
+                return Err(Invalid::Inverted(q));
+            }
+            for a in 0..NODES {
+                for j in 0..3 {
+                    let g: f64 = (0..3).map(|k| derivative[a][k] * inverse[k][j].0[0]).sum();
+                    gradient[a][j].0[q] = R::of(g);
+                }
+            }
+            volume.0[q] = R::of(det);
+            total += det;
+        }
+        Ok(Self { gradient, volume, total_volume: R::of(total) })
+    }
+}
+
+type Tensor<R> = [[Lanes<R>; 3]; 3];
+
+/// Inverse and determinant by cofactors.
+#[inline(always)]
+fn invert<R: Real>(m: &Tensor<R>) -> (Tensor<R>, Lanes<R>) {
+    let c = |i: usize, j: usize, k: usize, l: usize| m[i][j] * m[k][l] - m[i][l] * m[k][j];
+    let c00 = c(1, 1, 2, 2);
+    let c01 = -c(1, 0, 2, 2);
+    let c02 = c(1, 0, 2, 1);
+    let det = m[0][0] * c00 + m[0][1] * c01 + m[0][2] * c02;
+    let s = det.reciprocal();
+    let inverse = [
+        [c00 * s, -c(0, 1, 2, 2) * s, c(0, 1, 1, 2) * s],
+        [c01 * s, c(0, 0, 2, 2) * s, -c(0, 0, 1, 2) * s],
+        [c02 * s, -c(0, 0, 2, 1) * s, c(0, 0, 1, 1) * s],
+    ];
+    (inverse, det)
+}
+
+/// det(I + h) - 1, expanded so that small h keep their digits.
+#[inline(always)]
+fn jacobian_minus_one<R: Real>(h: &Tensor<R>) -> Lanes<R> {
+    let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
+    let det = h[0][0] * (h[1][1] * h[2][2] - h[1][2] * h[2][1]) - h[0][1] * (h[1][0] * h[2][2] - h[1][2] * h[2][0])
+        + h[0][2] * (h[1][0] * h[2][1] - h[1][1] * h[2][0]);
+    (h[0][0] + h[1][1] + h[2][2]) + (minor(0, 1) + minor(1, 2) + minor(0, 2)) + det
+}
+
+/// Gradient of nodal values with respect to the reference position, `[i][j] = d u_i / d X_j`.
+#[inline(always)]
+fn displacement_gradient<R: Real>(geometry: &Geometry<R>, u: &Nodal<R>) -> Tensor<R> {
+    let mut h = [[Lanes::ZERO; 3]; 3];
+    for a in 0..NODES {
+        for i in 0..3 {
+            for j in 0..3 {
+                h[i][j] = h[i][j].plus_scaled(u[a][i], geometry.gradient[a][j]);
+            }
+        }
+    }
+    h
+}
+
+#[inline(always)]
+fn identity_plus<R: Real>(h: &Tensor<R>) -> Tensor<R> {
+    let mut f = *h;
+    for (i, row) in f.iter_mut().enumerate() {
+        row[i] = row[i] + Lanes::splat(R::ONE);
+    }
+    f
+}
+
+/// The deformation of an element at a trial displacement.
+struct Kinematics<R> {
+    /// f - I of each point, f = F F_n^-1.
+    relative: Tensor<R>,
+    /// Gradients dN_a/dx_j in the trial configuration.
+    gradient: [[Lanes<R>; 3]; NODES],
+    /// det F - 1.
+    j_minus_1: Lanes<R>,
+    /// Theta - 1, the mean dilatation.
+    theta_minus_1: R,
+}
+
+#[inline(always)]
+fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: &Nodal<R>) -> Result<Kinematics<R>, Invalid> {
+    let h_n = displacement_gradient(geometry, committed);
+    let dh = displacement_gradient(geometry, increment);
+    let (f_n_inverse, _) = invert(&identity_plus(&h_n));
+    let mut relative = [[Lanes::ZERO; 3]; 3];
+    let mut h = h_n;
+    for i in 0..3 {
+        for j in 0..3 {
+            relative[i][j] = dh[i][0] * f_n_inverse[0][j] + dh[i][1] * f_n_inverse[1][j] + dh[i][2] * f_n_inverse[2][j];
+            h[i][j] += dh[i][j];
+        }
+    }
+    let j_minus_1 = jacobian_minus_one(&h);
+    for q in 0..QUADRATURE_POINTS {
+        // The negated comparison catches NaN as well.
+        if !(j_minus_1.0[q] > -R::ONE) {
+            return Err(Invalid::Inverted(q));
+        }
+    }
+    let (f_inverse, _) = invert(&identity_plus(&h));
+    let mut gradient = geometry.gradient;
+    for a in 0..NODES {
+        let g = geometry.gradient[a];
+        for j in 0..3 {
+            gradient[a][j] = g[0] * f_inverse[0][j] + g[1] * f_inverse[1][j] + g[2] * f_inverse[2][j];
+        }
+    }
+    let theta_minus_1 = (j_minus_1 * geometry.volume).sum() / geometry.total_volume;
+    Ok(Kinematics { relative, gradient, j_minus_1, theta_minus_1 })
+}
+
+#[inline(always)]
+fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, state: &State<R>, q: usize) -> Result<Response<R>, Invalid> {
+    let relative = std::array::from_fn(|i| std::array::from_fn(|j| k.relative[i][j].0[q]));
+    return_mapping(material, &relative, &state.points[q]).map_err(|_| Invalid::Material(q))
+}
+
+/// f_a = sum_q V_q tau_q . grad N_a with the Kirchhoff stress [xx, yy, zz, xy, yz, zx] already weighted by the volumes.
+#[inline(always)]
+fn divergence<R: Real>(gradient: &[[Lanes<R>; 3]; NODES], weighted: &[Lanes<R>; 6]) -> Nodal<R> {
+    std::array::from_fn(|a| {
+        std::array::from_fn(|i| {
+            let g = &gradient[a];
+            (weighted[VOIGT[i][0]] * g[0]).plus(weighted[VOIGT[i][1]], g[1]).plus(weighted[VOIGT[i][2]], g[2]).sum()
+        })
+    })
+}
+
+/// Internal force of the element on its nodes, dW/du, at the displacement `committed + increment`.
+///
+/// `committed` is the displacement at which `state` was committed. Force unit: stress times area of the scaled problem.
+pub fn internal_force<R: Real>(
+    geometry: &Geometry<R>,
+    material: &Material<R>,
+    state: &State<R>,
+    committed: &Nodal<R>,
+    increment: &Nodal<R>,
+) -> Result<Nodal<R>, Invalid> {
+    let k = kinematics(geometry, committed, increment)?;
+    let mut stress = [Lanes::ZERO; 6];
+    for q in 0..QUADRATURE_POINTS {
+        let response = respond(material, &k, state, q)?;
+        for c in 0..6 {
+            stress[c].0[q] = response.stress[c];
+        }
+    }
+    let (p, _) = pressure(&material.elasticity, k.theta_minus_1);
+    let p_j = Lanes::from_fn(|q| p * (R::ONE + k.j_minus_1.0[q]));
+    for (c, s) in stress.iter_mut().enumerate() {
+        if c < 3 {
+            *s += p_j;
+        }
+        *s = *s * geometry.volume;
+    }
+    Ok(divergence(&k.gradient, &stress))
+}
+
+/// The upper triangle of an element tangent: block `pair(a, b)` is d f_a / d u_b, row-major, for a <= b.
+pub type Tangent<R> = [[R; 9]; PAIRS];
+
+/// Position of the pair (a, b), a <= b, in a [`Tangent`].
+#[inline(always)]
+pub const fn pair(a: usize, b: usize) -> usize {
+    a * (2 * NODES - a + 1) / 2 + (b - a)
+}
+
+/// Symmetric consistent tangent of [`internal_force`] (the deviatoric moduli are the symmetrised ones of Simo & Hughes, box 9.2).
+pub fn tangent<R: Real>(
+    geometry: &Geometry<R>,
+    material: &Material<R>,
+    state: &State<R>,
+    committed: &Nodal<R>,
+    increment: &Nodal<R>,
+    out: &mut Tangent<R>,
+) -> Result<(), Invalid> {
+    let k = kinematics(geometry, committed, increment)?;
+    let (p, dp) = pressure(&material.elasticity, k.theta_minus_1);
+    let mut stress = [Lanes::ZERO; 6];
+    let mut moduli = [[Lanes::ZERO; 6]; 6];
+    for q in 0..QUADRATURE_POINTS {
+        let response = respond(material, &k, state, q)?;
+        let c = deviatoric_tangent(&response);
+        let v = geometry.volume.0[q];
+        let p_j = p * (R::ONE + k.j_minus_1.0[q]);
+        for i in 0..6 {
+            stress[i].0[q] = v * (response.stress[i] + if i < 3 { p_j } else { R::ZERO });
+            for j in 0..6 {
+                moduli[i][j].0[q] = v * c[i][j];
+            }
+        }
+        // d(p J grad N) at fixed p: p J (1 (x) 1 - 2 I_sym), with p J I among the stresses of the geometric term.
+        for i in 0..3 {
+            for j in 0..3 {
+                let m = if i == j { -R::ONE } else { R::ONE };
+                moduli[i][j].0[q] += v * p_j * m;
+            }
+            moduli[i + 3][i + 3].0[q] += -(v * p_j);
+        }
+    }
+    let g = &k.gradient;
+    // Volume change: h_a = sum_q V J grad N_a, the derivative of the current volume.
+    let v_j = Lanes::from_fn(|q| geometry.volume.0[q] * (R::ONE + k.j_minus_1.0[q]));
+    let h: Nodal<R> = std::array::from_fn(|a| std::array::from_fn(|i| (v_j * g[a][i]).sum()));
+    let bulk = dp / geometry.total_volume;
+    for b in 0..NODES {
+        // D = c : grad N_b, [Voigt row][j]; and t = tau grad N_b for the geometric term.
+        let mut d = [[Lanes::ZERO; 3]; 6];
+        for (row, m) in d.iter_mut().zip(&moduli) {
+            for j in 0..3 {
+                row[j] = (m[VOIGT[j][0]] * g[b][0]).plus(m[VOIGT[j][1]], g[b][1]).plus(m[VOIGT[j][2]], g[b][2]);
+            }
+        }
+        let t: [Lanes<R>; 3] = std::array::from_fn(|i| {
+            (stress[VOIGT[i][0]] * g[b][0]).plus(stress[VOIGT[i][1]], g[b][1]).plus(stress[VOIGT[i][2]], g[b][2])
+        });
+        for a in 0..=b {
+            let block = &mut out[pair(a, b)];
+            let geometric = (t[0] * g[a][0]).plus(t[1], g[a][1]).plus(t[2], g[a][2]);
+            for i in 0..3 {
+                for j in 0..3 {
+                    let mut s = (d[VOIGT[i][0]][j] * g[a][0]).plus(d[VOIGT[i][1]][j], g[a][1]).plus(d[VOIGT[i][2]][j], g[a][2]);
+                    if i == j {
+                        s += geometric;
+                    }
+                    block[3 * i + j] = s.sum() + bulk * h[a][i] * h[b][j];
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The state at the end of a step that went from `committed` by `increment`.
+pub fn update<R: Real>(
+    geometry: &Geometry<R>,
+    material: &Material<R>,
+    state: &State<R>,
+    committed: &Nodal<R>,
+    increment: &Nodal<R>,
+) -> Result<State<R>, Invalid> {
+    let k = kinematics(geometry, committed, increment)?;
+    let mut next = *state;
+    for q in 0..QUADRATURE_POINTS {
+        let response = respond(material, &k, state, q)?;
+        next.points[q] = response.state;
+        next.plastic_work += response.plastic_work * geometry.volume.0[q];
+    }
+    Ok(next)
+}
+
+/// What an element shows of itself at a committed state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fields<R> {
+    /// Cauchy stress [xx, yy, zz, xy, yz, zx] at each quadrature point, scaled by E.
+    pub stress: [[R; 6]; QUADRATURE_POINTS],
+    /// Elastic energy of the element.
+    pub elastic_energy: R,
+}
+
+/// Cauchy stress and elastic energy of a committed state at its displacement.
+pub fn fields<R: Real>(
+    geometry: &Geometry<R>,
+    material: &Material<R>,
+    state: &State<R>,
+    committed: &Nodal<R>,
+) -> Result<Fields<R>, Invalid> {
+    let k = kinematics(geometry, committed, &[[R::ZERO; 3]; NODES])?;
+    let (p, _) = pressure(&material.elasticity, k.theta_minus_1);
+    let mut out = Fields::default();
+    let third = R::ONE / R::of(3.0);
+    for q in 0..QUADRATURE_POINTS {
+        let be = &state.points[q].be;
+        let mean = third * (be[0] + be[1] + be[2]);
+        let j = R::ONE + k.j_minus_1.0[q];
+        for c in 0..6 {
+            let s = material.elasticity.shear * (be[c] - if c < 3 { mean } else { R::ZERO });
+            out.stress[q][c] = s / j + if c < 3 { p } else { R::ZERO };
+        }
+        out.elastic_energy += crate::material::elastic_energy_deviatoric(&material.elasticity, &state.points[q]) * geometry.volume.0[q];
+    }
+    out.elastic_energy += crate::material::elastic_energy_volumetric(&material.elasticity, k.theta_minus_1) * geometry.total_volume;
+    Ok(out)
+}

@@ -1,0 +1,459 @@
+//! Takes the steps of a path: predicts, solves, bisects what fails, measures and records what is accepted.
+
+use std::sync::Arc;
+
+use super::SimulationError;
+use super::footprint::footprint;
+use super::path::{Resolution, ShearSteps, Start, Target, indentation_targets};
+use super::problem::Problem;
+use super::record::{ContactPoint, StepRecord};
+use crate::case::{Hold, Segment, ShearTarget};
+use crate::compute::handle::{CaseHandle, Evaluate};
+use crate::compute::{CaseFields, Compute, ComputeError, Energies, Outcome};
+use crate::contact::coulomb::{Friction, Status};
+use crate::mesh::Mesh;
+use crate::solver::newton::{Newton, StepReport};
+use crate::solver::{Control, StepFailure};
+
+/// Watches a run.
+pub trait Observer {
+    /// A step was accepted.
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    /// Something that the user should know and the summary should keep.
+    fn note(&mut self, text: &str);
+    /// Asks the run to end after the present step.
+    fn stop_requested(&self) -> bool {
+        false
+    }
+}
+
+/// An accepted step, for output.
+pub struct StepView<'a> {
+    /// Its row in the history.
+    pub record: StepRecord,
+    /// How Newton went.
+    pub report: &'a StepReport,
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// Displacement, three a node.
+    pub displacement: &'a [f64],
+    /// Every point that can touch.
+    pub points: &'a [ContactPoint],
+    /// The step ends its segment.
+    pub ends_segment: bool,
+    backend: &'a mut dyn Compute,
+    case: usize,
+}
+
+impl StepView<'_> {
+    /// Stresses and strains of the step.
+    pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
+        self.backend.fields(self.case)
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// The whole path was followed.
+    Done,
+    /// A step did not converge, however short.
+    NotConverged(String),
+    /// The contact outgrew the finely meshed zone.
+    Outgrown(String),
+    /// The observer asked to stop.
+    Interrupted,
+}
+
+/// The committed state of the drive, scaled.
+#[derive(Clone, Debug, Default)]
+struct Committed {
+    u: Vec<f64>,
+    /// Displacement one accepted step before, for extrapolation.
+    u_before: Vec<f64>,
+    /// Normalised length of the last step in the present segment, 0 if there is none.
+    last_increment: f64,
+    force: Vec<f64>,
+    points: Vec<ContactPoint>,
+    record: StepRecord,
+    h_max: f64,
+    /// Direction of the last shear.
+    direction: f64,
+}
+
+/// Follows a path.
+pub struct Drive<'a> {
+    problem: &'a Problem,
+    mesh: Arc<Mesh>,
+    backend: &'a mut dyn Compute,
+    case: usize,
+    newton: Newton,
+    state: Committed,
+    /// Normal force that the present segment holds, of the meshed half.
+    held_force: Option<f64>,
+    full_slip: Option<bool>,
+}
+
+/// Full slip: the sticking points carry no more than this share of the normal force.
+const STICK_SHARE: f64 = 2e-3;
+/// F_T has stopped rising when it grows by less than this share over a step.
+const PLATEAU: f64 = 1e-3;
+
+impl<'a> Drive<'a> {
+    /// Prepares to follow the problem's path on a backend whose case `case` is the problem's model in its virgin state.
+    pub fn new(problem: &'a Problem, backend: &'a mut dyn Compute, case: usize, newton: Newton) -> Self {
+        let mesh = problem.model.mesh.clone();
+        let n = 3 * mesh.nodes.len();
+        let state = Committed { u: vec![0.0; n], u_before: vec![0.0; n], force: vec![0.0; n], ..Committed::default() };
+        Self { problem, mesh, backend, case, newton, state, held_force: None, full_slip: None }
+    }
+
+    /// Whether the last shear to full slip reached it; `None` if there was none.
+    pub fn full_slip(&self) -> Option<bool> {
+        self.full_slip
+    }
+
+    /// Follows the whole path.
+    pub fn run(&mut self, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        self.state.points = self.contact_points();
+        self.report(observer, &StepReport::default(), false)?;
+        for (index, segment) in self.problem.case.path.iter().enumerate() {
+            self.state.record.segment = index;
+            self.state.last_increment = 0.0;
+            let ending = match segment {
+                Segment::Indentation { indentation } => self.indentation(*indentation, observer)?,
+                Segment::Release => self.release(observer)?,
+                Segment::Shear { shear, hold } => self.shear(*shear, *hold, observer)?,
+            };
+            if ending != Ending::Done {
+                return Ok(ending);
+            }
+        }
+        Ok(Ending::Done)
+    }
+
+    fn start(&self) -> Start {
+        let r = &self.state.record;
+        Start {
+            h: r.h,
+            h_max: self.state.h_max,
+            delta_t: r.delta_t,
+            f_n: r.f_n,
+            a: r.a,
+            friction: match self.problem.model.friction {
+                Friction::Coulomb(mu) => mu,
+                Friction::Stick => f64::INFINITY,
+            },
+            nu: self.problem.case.material.poissons_ratio,
+            reversed: false,
+        }
+    }
+
+    fn resolution(&self) -> Resolution {
+        self.problem.resolution
+    }
+
+    fn indentation(&mut self, h: f64, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        let targets = indentation_targets(&self.start(), h, &self.resolution());
+        let last = targets.len();
+        for (i, target) in targets.iter().enumerate() {
+            let ending = self.advance(target, i + 1 == last, observer)?;
+            if ending != Ending::Done {
+                return Ok(ending);
+            }
+        }
+        Ok(Ending::Done)
+    }
+
+    /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that the residual indentation is sharp.
+    fn release(&mut self, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        let start = self.start();
+        let step = start.recovery() / 12.0;
+        if self.state.record.contact_points == 0 || step <= 0.0 {
+            observer.note("release: nothing touches, so there is nothing to release");
+            return Ok(Ending::Done);
+        }
+        while self.state.record.contact_points > 0 {
+            let f = (self.state.record.f_n / start.f_n).clamp(0.0, 1.0);
+            let h = self.state.record.h - step * (0.2 + 0.8 * f.sqrt());
+            let target = Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
+            let ending = self.advance(&target, false, observer)?;
+            if ending != Ending::Done {
+                return Ok(ending);
+            }
+        }
+        Ok(Ending::Done)
+    }
+
+    fn shear(&mut self, shear: ShearTarget, hold: Hold, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        let mut start = self.start();
+        if start.f_n <= 0.0 {
+            observer.note("shear: nothing touches, so the sphere moves freely");
+        }
+        let direction = match shear {
+            ShearTarget::Displacement(d) => (d - start.delta_t).signum(),
+            // Full slip goes on in the direction of the last shear, forward if there was none.
+            ShearTarget::FullSlip if self.state.direction != 0.0 => self.state.direction,
+            ShearTarget::FullSlip => 1.0,
+        };
+        start.reversed = self.state.direction * direction < 0.0;
+        self.state.direction = direction;
+        let length = match shear {
+            ShearTarget::Displacement(d) => (d - start.delta_t).abs(),
+            ShearTarget::FullSlip => f64::INFINITY,
+        };
+        let steps = ShearSteps::new(&start, length, &self.resolution());
+        let bound = steps.bound(start.a);
+        self.held_force = (hold == Hold::NormalForce).then_some(0.5 * start.f_n);
+        let mut i = 1;
+        loop {
+            let distance = steps.distance(i);
+            let ends = length.is_finite() && distance >= length * (1.0 - 1e-9);
+            let target = Target {
+                h: self.state.record.h,
+                delta_t: match shear {
+                    ShearTarget::Displacement(d) if ends => d,
+                    _ => start.delta_t + direction * distance,
+                },
+                hold_force: self.held_force.is_some(),
+                extrapolate: i > 1,
+            };
+            let before = self.state.record;
+            let ending = self.advance(&target, ends, observer)?;
+            if ending != Ending::Done {
+                self.held_force = None;
+                return Ok(ending);
+            }
+            if ends {
+                break;
+            }
+            if length.is_infinite() {
+                if self.slips_fully() && (self.state.record.f_t - before.f_t) * direction <= PLATEAU * before.f_t.abs() {
+                    self.full_slip = Some(true);
+                    break;
+                }
+                if distance >= bound {
+                    self.full_slip = Some(false);
+                    observer.note(&format!(
+                        "shear: full slip was not reached within delta_T = {distance:.4} R; {} of {} contact points slip",
+                        self.state.record.slipping_points, self.state.record.contact_points
+                    ));
+                    break;
+                }
+            }
+            i += 1;
+        }
+        self.held_force = None;
+        Ok(Ending::Done)
+    }
+
+    /// Every point slips, but for points at the edge that carry next to nothing.
+    fn slips_fully(&self) -> bool {
+        let closed = self.state.points.iter().filter(|p| p.status != Status::Open);
+        let (mut stick, mut all) = (0.0, 0.0);
+        for p in closed {
+            all += p.force[2];
+            if p.status == Status::Stick {
+                stick += p.force[2];
+            }
+        }
+        stick <= STICK_SHARE * all
+    }
+
+    /// Reaches `target` from the committed state in one step, or in as many as bisection needs.
+    fn advance(&mut self, target: &Target, ends_segment: bool, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        let mut waiting = vec![*target];
+        let (mut wasted, mut cutbacks) = (0, 0);
+        while let Some(next) = waiting.last().copied() {
+            if observer.stop_requested() {
+                return Ok(Ending::Interrupted);
+            }
+            match self.attempt(&next)? {
+                Ok(report) => {
+                    waiting.pop();
+                    self.accept(&next, &report, wasted, cutbacks, observer, ends_segment && waiting.is_empty())?;
+                    (wasted, cutbacks) = (0, 0);
+                    if let Some(reason) = self.outgrown() {
+                        return Ok(Ending::Outgrown(reason));
+                    }
+                }
+                Err(failure) => {
+                    let r = &self.state.record;
+                    log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
+                    cutbacks += 1;
+                    wasted += match &failure {
+                        StepFailure::Iterations { iterations, .. } => *iterations,
+                        _ => 1,
+                    };
+                    if waiting.len() > self.problem.max_cutbacks {
+                        return Ok(Ending::NotConverged(format!(
+                            "step {} of segment {} (from h = {:.6} R, delta_T = {:.6} R to h = {:.6} R, delta_T = {:.6} R): {failure}; \
+                             the step was bisected {} times. A finer mesh ([mesh] elements_per_contact_radius) or more steps ([solver] press_steps, \
+                             shear_steps) may help",
+                            r.step + 1,
+                            r.segment,
+                            r.h,
+                            r.delta_t,
+                            next.h,
+                            next.delta_t,
+                            self.problem.max_cutbacks,
+                        )));
+                    }
+                    waiting.push(Target {
+                        h: 0.5 * (r.h + next.h),
+                        delta_t: 0.5 * (r.delta_t + next.delta_t),
+                        ..next
+                    });
+                }
+            }
+        }
+        Ok(Ending::Done)
+    }
+
+    /// One Newton solve towards a target; commits nothing.
+    fn attempt(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+        let control = Control {
+            h: target.h,
+            delta_t: target.delta_t,
+            normal_force: if target.hold_force { self.held_force } else { None },
+        };
+        let increment = target.delta_t - self.state.record.delta_t;
+        let guess: Option<Vec<f64>> = (target.extrapolate && self.state.last_increment != 0.0).then(|| {
+            let ratio = increment / self.state.last_increment;
+            self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect()
+        });
+        let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
+        Ok(self.newton.solve(&mut handle, &self.state.u, self.state.record.h, guess.as_deref(), &control)?)
+    }
+
+    /// Commits the accepted trial and records it.
+    fn accept(
+        &mut self,
+        target: &Target,
+        report: &StepReport,
+        wasted: usize,
+        cutbacks: usize,
+        observer: &mut dyn Observer,
+        ends_segment: bool,
+    ) -> Result<(), SimulationError> {
+        let before = self.state.record;
+        let accepted = self.newton.accepted();
+        let (energies, outcome) = CaseHandle { backend: &mut *self.backend, case: self.case }.commit(&accepted.u)?;
+        if let Outcome::Inverted { element, point } = outcome {
+            return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
+        }
+        let force = accepted.contact_force(&self.mesh);
+        let (h, contact_points, slipping_points) = {
+            let (closed, slipping) = self.newton.contact_counts();
+            (accepted.h, closed, slipping)
+        };
+        let friction_work = self.friction_work(&accepted.u, &accepted.force);
+        self.state.u_before.copy_from_slice(&self.state.u);
+        self.state.u.copy_from_slice(&accepted.u);
+        self.state.force.copy_from_slice(&accepted.force);
+        self.state.last_increment = target.delta_t - before.delta_t;
+        self.state.h_max = self.state.h_max.max(h);
+        self.state.points = self.contact_points();
+        let size = footprint(&self.state.points, self.problem.spacing);
+        let (f_n, f_t) = (2.0 * force[2], -2.0 * force[0]);
+        self.state.record = StepRecord {
+            step: before.step + 1,
+            segment: before.segment,
+            h,
+            delta_t: target.delta_t,
+            f_n,
+            f_t,
+            a: size.radius,
+            stick_radius: size.stick_radius,
+            newton_iterations: report.iterations.len() + wasted,
+            cutbacks,
+            a_moment: size.radius_moment,
+            krylov_iterations: report.krylov(),
+            merit: report.merit,
+            work_external: before.work_external
+                + 0.5 * (before.f_n + f_n) * (h - before.h)
+                + 0.5 * (before.f_t + f_t) * (target.delta_t - before.delta_t),
+            energy_elastic: 2.0 * energies.elastic,
+            work_plastic: 2.0 * energies.plastic,
+            work_friction: before.work_friction + 2.0 * friction_work,
+            contact_points,
+            slipping_points,
+            max_alpha: 0.0,
+        };
+        self.state.record.max_alpha = energies.max_alpha;
+        self.report(observer, report, ends_segment)
+    }
+
+    fn report(&mut self, observer: &mut dyn Observer, report: &StepReport, ends_segment: bool) -> Result<(), SimulationError> {
+        let mut view = StepView {
+            record: self.state.record,
+            report,
+            mesh: &self.mesh,
+            displacement: &self.state.u,
+            points: &self.state.points,
+            ends_segment,
+            backend: &mut *self.backend,
+            case: self.case,
+        };
+        observer.step(&mut view).map_err(SimulationError::Observer)
+    }
+
+    /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over the points of the meshed half.
+    fn friction_work(&self, u: &[f64], force: &[f64]) -> f64 {
+        let mut work = 0.0;
+        for (point, &node) in self.state.points.iter().zip(&self.mesh.contact_nodes) {
+            let base = 3 * node as usize;
+            for i in 0..2 {
+                work -= 0.5 * (point.force[i] + force[base + i]) * (u[base + i] - self.state.u[base + i]);
+            }
+        }
+        work
+    }
+
+    /// The contact points of the committed state.
+    fn contact_points(&self) -> Vec<ContactPoint> {
+        let rows = &self.newton.accepted().rows;
+        self.mesh
+            .contact_nodes
+            .iter()
+            .enumerate()
+            .map(|(i, &node)| {
+                let (base, x) = (3 * node as usize, self.mesh.nodes[node as usize]);
+                let status = rows[i].status;
+                let force = if status == Status::Open {
+                    [0.0; 3]
+                } else {
+                    [self.state.force[base], self.state.force[base + 1], self.state.force[base + 2]]
+                };
+                ContactPoint {
+                    node: node as usize,
+                    reference: x,
+                    position: [x[0] + self.state.u[base], x[1] + self.state.u[base + 1], x[2] + self.state.u[base + 2]],
+                    force,
+                    area: self.mesh.contact_area[i],
+                    status,
+                }
+            })
+            .collect()
+    }
+
+    /// The contact has come within an element of the edge of the fine zone.
+    fn outgrown(&self) -> Option<String> {
+        let limit = self.mesh.fine_radius - self.problem.spacing;
+        let reach = self
+            .state
+            .points
+            .iter()
+            .filter(|p| p.status != Status::Open)
+            .map(|p| p.reference[0].hypot(p.reference[1]))
+            .fold(0.0, f64::max);
+        (reach > limit).then(|| {
+            format!(
+                "the contact reaches {reach:.4} R at h = {:.5} R, delta_T = {:.5} R, and the finely meshed zone ends at {:.4} R; set [mesh] contact_radius to a \
+                 larger value than the predicted {:.4} R, or raise fine_zone",
+                self.state.record.h, self.state.record.delta_t, self.mesh.fine_radius, self.problem.predicted_contact_radius
+            )
+        })
+    }
+}
+

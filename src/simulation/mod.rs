@@ -1,0 +1,34 @@
+//! One case from its first touch to the end of its path.
+//!
+//! `problem` turns a case file into a scaled model, `path` cuts segments into steps, `drive` takes the steps (bisecting those that fail),
+//! `footprint` measures the contact, `record` holds what is remembered of each step.
+
+pub mod drive;
+pub mod footprint;
+pub mod path;
+pub mod problem;
+pub mod record;
+
+#[cfg(test)]
+mod tests;
+
+use crate::compute::ComputeError;
+use crate::mesh::MeshError;
+use crate::solver::SolverError;
+
+/// A failure that ends a run without a result, as opposed to a step that did not converge (see [`drive::Ending`]).
+#[derive(Debug, thiserror::Error)]
+pub enum SimulationError {
+    /// The mesh cannot be made.
+    #[error("the mesh cannot be made: {0}")]
+    Mesh(#[from] MeshError),
+    /// The solver or the device.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// The device.
+    #[error(transparent)]
+    Compute(#[from] ComputeError),
+    /// Whoever watches the run could not go on: results cannot be written, say.
+    #[error("{0}")]
+    Observer(Box<dyn std::error::Error + Send + Sync>),
+}

@@ -1,0 +1,155 @@
+//! The increments of a path: where each step of a segment should end.
+
+use crate::case::{Hold, Segment, ShearTarget};
+
+/// Where a step should end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Indentation, or the first guess of it when the normal force is held.
+    pub h: f64,
+    /// Tangential displacement.
+    pub delta_t: f64,
+    /// Normal force is held at what it was when the segment began.
+    pub hold_force: bool,
+    /// Extrapolating the last two steps is a good first guess.
+    pub extrapolate: bool,
+}
+
+/// What the increments of a segment are made from: the state at its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// Indentation.
+    pub h: f64,
+    /// Largest indentation so far.
+    pub h_max: f64,
+    /// Tangential displacement.
+    pub delta_t: f64,
+    /// Normal force, whole sphere.
+    pub f_n: f64,
+    /// Contact radius.
+    pub a: f64,
+    /// Coefficient of friction; infinite for full stick.
+    pub friction: f64,
+    /// Poisson's ratio.
+    pub nu: f64,
+    /// The last shear went the other way.
+    pub reversed: bool,
+}
+
+/// How finely a path is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Steps of a press from first touch to its end: the contact front moves by less than an element a step.
+    pub press_steps: usize,
+    /// Steps of the first, growing part of a shear.
+    pub shear_steps: usize,
+}
+
+/// Increments of a shear grow as i^1.3: its resolution is needed at the start, where sticking points begin to slip.
+const SHEAR_GROWTH: f64 = 1.3;
+/// The growing increments end at this many elastic slip displacements (full slip was seen at 3.3 of them in fully plastic contacts).
+const SHEAR_RANGE: f64 = 4.5;
+/// Friction beyond which the yield stress in shear, not friction, limits the traction: k/p = 0.577/2.8, with a margin.
+const FRICTION_LIMIT: f64 = 0.3;
+/// Steps of an unloading over its estimated elastic recovery.
+const RELEASE_STEPS: f64 = 12.0;
+/// Most steps that a shear segment of given length is cut into.
+const MAX_SHEAR_STEPS: f64 = 120.0;
+
+impl Start {
+    /// Elastic modulus E/(1 - nu^2), scaled.
+    fn plane_modulus(&self) -> f64 {
+        1.0 / (1.0 - self.nu * self.nu)
+    }
+
+    /// Cattaneo's slip displacement, 3 mu F_N (2 - nu)/(16 G a), as the scale of a shear.
+    pub fn slip_displacement(&self) -> f64 {
+        let g = 0.5 / (1.0 + self.nu);
+        let mu = self.friction.min(FRICTION_LIMIT);
+        let scale = 3.0 * mu * self.f_n * (2.0 - self.nu) / (16.0 * g * self.a.max(1e-12));
+        // Without friction nothing happens in a shear, but the steps still need a length.
+        let floor = 0.01 * self.a.max(1e-6);
+        let scale = if scale > 1e-3 * floor { scale } else { floor };
+        if self.reversed { 2.0 * scale } else { scale }
+    }
+
+    /// Elastic recovery of an unloading, F_N/(2 E* a) times 3/2 (Hertz: h = 3F/(4E*a)).
+    pub fn recovery(&self) -> f64 {
+        0.75 * self.f_n / (self.plane_modulus() * self.a.max(1e-12))
+    }
+}
+
+/// Targets of an indentation segment from `start` to indentation `h`.
+pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Vec<Target> {
+    let target = |h| Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
+    let mut targets = Vec::new();
+    let mut from = start.h;
+    if h < from || from < start.h_max {
+        // Elastic: unloading, or loading again up to where it was.
+        let to = if h > from { h.min(start.h_max) } else { h };
+        let recovery = start.recovery();
+        let length = (to - from).abs();
+        // Beyond 1.5 recoveries nothing touches any more: one step does for the rest.
+        let elastic = if recovery > 0.0 { length.min(1.5 * recovery) } else { 0.0 };
+        let n = if recovery > 0.0 { (RELEASE_STEPS * elastic / recovery).ceil().max(1.0) as usize } else { 0 };
+        let sign = (to - from).signum();
+        targets.extend((1..=n).map(|i| target(from + sign * elastic * i as f64 / n as f64)));
+        if length > elastic {
+            targets.push(target(to));
+        } else if let Some(last) = targets.last_mut() {
+            last.h = to;
+        }
+        from = to;
+    }
+    if h > from {
+        // a grows as sqrt(h): equal steps of the contact radius.
+        let (r0, r1) = (from.sqrt(), h.sqrt());
+        let n = (resolution.press_steps as f64 * (r1 - r0) / r1).ceil().max(1.0) as usize;
+        targets.extend((1..=n).map(|i| {
+            let r = r0 + (r1 - r0) * i as f64 / n as f64;
+            target(if i == n { h } else { r * r })
+        }));
+    }
+    targets
+}
+
+/// Tangential displacements of a shear segment: growing increments, then equal ones. `next(i)` is the end of step i, counted from 1, as a
+/// distance from the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShearSteps {
+    range: f64,
+    count: usize,
+    total: f64,
+    later: f64,
+}
+
+impl ShearSteps {
+    /// Steps for a segment of given length (infinite for `"full-slip"`).
+    pub fn new(start: &Start, length: f64, resolution: &Resolution) -> Self {
+        let count = resolution.shear_steps.max(1);
+        let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
+        let total: f64 = (1..=count).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
+        let last = range * (count as f64).powf(SHEAR_GROWTH) / total;
+        let later = if length.is_finite() { last.max((length - range) / MAX_SHEAR_STEPS) } else { last };
+        Self { range, count, total, later }
+    }
+
+    /// Distance from the start of the segment at the end of step `i >= 1`.
+    pub fn distance(&self, i: usize) -> f64 {
+        let growing: f64 = (1..=i.min(self.count)).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
+        self.range * growing / self.total + self.later * i.saturating_sub(self.count) as f64
+    }
+
+    /// A shear to full slip is given up beyond this distance.
+    pub fn bound(&self, a: f64) -> f64 {
+        (3.0 * self.range).max(0.25 * a)
+    }
+}
+
+/// Whether the segment holds the normal force, and its end if it has one.
+pub fn shear_target(segment: &Segment) -> Option<(ShearTarget, bool)> {
+    match segment {
+        Segment::Shear { shear, hold } => Some((*shear, *hold == Hold::NormalForce)),
+        _ => None,
+    }
+}

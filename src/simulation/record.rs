@@ -1,0 +1,63 @@
+//! What is remembered of every accepted step, scaled: lengths by R, forces by E R^2, of the whole sphere.
+
+/// One row of the history.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepRecord {
+    /// Counts accepted steps; 0 is the undeformed state.
+    pub step: usize,
+    /// Index of the path's segment.
+    pub segment: usize,
+    /// Indentation h.
+    pub h: f64,
+    /// Tangential displacement delta_T.
+    pub delta_t: f64,
+    /// Normal force F_N, positive in compression.
+    pub f_n: f64,
+    /// Tangential force F_T that the plate exerts in the direction of delta_T.
+    pub f_t: f64,
+    /// Contact radius from the gap outside the contact.
+    pub a: f64,
+    /// Radius of a disc with the area of the sticking points.
+    pub stick_radius: f64,
+    /// Newton iterations, those of cut-back attempts included.
+    pub newton_iterations: usize,
+    /// Attempts that failed and were bisected on the way to this step.
+    pub cutbacks: usize,
+    /// Contact radius from the moments of the pressure.
+    pub a_moment: f64,
+    /// Krylov iterations.
+    pub krylov_iterations: usize,
+    /// Final merit over the sum of the normal contact forces.
+    pub merit: f64,
+    /// Work of the plate since the start (trapezoidal rule).
+    pub work_external: f64,
+    /// Stored elastic energy.
+    pub energy_elastic: f64,
+    /// Plastic work.
+    pub work_plastic: f64,
+    /// Work dissipated by friction (trapezoidal rule).
+    pub work_friction: f64,
+    /// Closed contact points of the meshed half.
+    pub contact_points: usize,
+    /// Of them, those that slip.
+    pub slipping_points: usize,
+    /// Largest equivalent plastic strain of any quadrature point.
+    pub max_alpha: f64,
+}
+
+/// A contact point of a committed state, scaled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// Node index.
+    pub node: usize,
+    /// Reference position.
+    pub reference: [f64; 3],
+    /// Current position.
+    pub position: [f64; 3],
+    /// Force of the plane on the point, of the meshed half.
+    pub force: [f64; 3],
+    /// Tributary reference area on the meshed half.
+    pub area: f64,
+    /// Open, sticking or slipping.
+    pub status: crate::contact::coulomb::Status,
+}

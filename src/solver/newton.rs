@@ -1,0 +1,291 @@
+//! One step: semismooth Newton with a backtracking line search on the contact merit, inexact linear solves.
+
+use super::system::{Boundary, Trial, apply_contact, plate_functional, right_hand_side};
+use super::{Control, Iteration, Settings, SolverError, StepFailure};
+use crate::compute::Outcome;
+use crate::compute::handle::Evaluate;
+use crate::contact::coulomb::Status;
+use crate::linalg::LinearSolver;
+use crate::linalg::bsr::BlockMatrix;
+use crate::mesh::Mesh;
+
+/// Step lengths of the line search, longest first.
+const STEP_LENGTHS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
+/// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2.
+const FORCING_GAMMA: f64 = 0.9;
+/// Loosest linear tolerance.
+const FORCING_MAX: f64 = 0.1;
+/// From this iteration on the line search compares with the last iterate alone; before, with the largest merit so far, because the first
+/// changes of contact status raise the merit on the way down.
+const MONOTONE_FROM: usize = 5;
+
+/// The Newton iteration of one case with everything it keeps between steps.
+pub struct Newton {
+    boundary: Boundary,
+    matrix: BlockMatrix<f64>,
+    linear: LinearSolver,
+    settings: Settings,
+    current: Trial,
+    candidate: Trial,
+    best: Trial,
+    fixed: Vec<bool>,
+    rhs: Vec<f64>,
+    delta: Vec<f64>,
+    functional: Vec<f64>,
+    unit_rhs: Vec<f64>,
+    unit_response: Vec<f64>,
+}
+
+/// A converged step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Its Newton iterations.
+    pub iterations: Vec<Iteration>,
+    /// Final merit over the force scale.
+    pub merit: f64,
+    /// Times the linear solver fell back to the direct one.
+    pub fallbacks: usize,
+}
+
+impl StepReport {
+    /// Krylov iterations of the step.
+    pub fn krylov(&self) -> usize {
+        self.iterations.iter().map(|i| i.krylov).sum()
+    }
+}
+
+impl Newton {
+    /// Prepares the iteration on a mesh.
+    pub fn new(mesh: &Mesh, matrix: BlockMatrix<f64>, linear: LinearSolver, settings: Settings) -> Self {
+        let n = 3 * mesh.nodes.len();
+        Self {
+            boundary: Boundary::new(mesh),
+            matrix,
+            linear,
+            settings,
+            current: Trial::new(mesh),
+            candidate: Trial::new(mesh),
+            best: Trial::new(mesh),
+            fixed: vec![false; n],
+            rhs: vec![0.0; n],
+            delta: vec![0.0; n],
+            functional: vec![0.0; n],
+            unit_rhs: vec![0.0; n],
+            unit_response: vec![0.0; n],
+        }
+    }
+
+    /// The last accepted trial.
+    pub fn accepted(&self) -> &Trial {
+        &self.current
+    }
+
+    /// Number of unknown displacements that are not prescribed.
+    pub fn free_unknowns(&self) -> usize {
+        self.boundary.prescribed.iter().filter(|p| !**p).count()
+    }
+
+    /// Finds equilibrium under `control` from the committed displacement `start`, trying `guess` first if there is one.
+    ///
+    /// On success the solution is in [`Newton::accepted`]; nothing is committed. A failure leaves the committed state as it was.
+    pub fn solve(
+        &mut self,
+        case: &mut dyn Evaluate,
+        start: &[f64],
+        start_h: f64,
+        guess: Option<&[f64]>,
+        control: &Control,
+    ) -> Result<Result<StepReport, StepFailure>, SolverError> {
+        let mesh = case.model().mesh.clone();
+        self.begin(case, start, start_h, guess, control)?;
+        let mut report = StepReport::default();
+        let mut previous = f64::INFINITY;
+        let mut highest = 0.0_f64;
+        for iteration in 0..=self.settings.max_iterations {
+            let scale = self.current.force_scale;
+            // The plate moves with the first linear solve; until then the merit knows of what is missing.
+            if self.current.merit <= self.settings.tolerance * scale && self.plate_is_placed(control) {
+                report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
+                return Ok(Ok(report));
+            }
+            if iteration == self.settings.max_iterations {
+                break;
+            }
+            let eta = self.forcing(previous);
+            let (krylov, fallback, delta_h) = match self.linearise(case, &mesh, control, eta)? {
+                Ok(done) => done,
+                Err(failure) => return Ok(Err(failure)),
+            };
+            report.fallbacks += usize::from(fallback);
+            highest = highest.max(self.current.merit);
+            // The first iteration moves the plate: its merit is not comparable with what was before.
+            let reference = match iteration {
+                0 => f64::INFINITY,
+                i if i < MONOTONE_FROM => highest,
+                _ => self.current.merit,
+            };
+            previous = self.current.merit;
+            let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
+                Ok(found) => found,
+                Err(Outcome::Inverted { element, point }) => return Ok(Err(StepFailure::Inverted { element, point })),
+                Err(Outcome::Valid) => return Ok(Err(self.exhausted(&mesh, iteration + 1))),
+            };
+            if iteration == 0 {
+                highest = 0.0;
+                previous = f64::INFINITY;
+            }
+            let merit = previous.min(f64::MAX) / scale.max(f64::MIN_POSITIVE);
+            report.iterations.push(Iteration { merit: merit.min(1e300), step_length, krylov, changed });
+            log::debug!(
+                "  iteration {:2}: merit {:.2e} -> {:.2e}, step {step_length}, krylov {krylov} (eta {eta:.1e}), {changed} changed",
+                iteration + 1,
+                if scale > 0.0 { previous / scale } else { 0.0 },
+                self.current.merit / self.current.force_scale.max(f64::MIN_POSITIVE),
+            );
+        }
+        Ok(Err(self.exhausted(&mesh, self.settings.max_iterations)))
+    }
+
+    /// Sets the first iterate: the guess if it can be evaluated, the start otherwise.
+    fn begin(
+        &mut self,
+        case: &mut dyn Evaluate,
+        start: &[f64],
+        start_h: f64,
+        guess: Option<&[f64]>,
+        control: &Control,
+    ) -> Result<(), SolverError> {
+        self.current.h = if control.normal_force.is_some() { start_h } else { control.h };
+        if let Some(guess) = guess {
+            self.current.u.copy_from_slice(guess);
+            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
+            if self.current.evaluate(case, &self.boundary, control)? == Outcome::Valid {
+                return Ok(());
+            }
+        }
+        self.current.u.copy_from_slice(start);
+        // The committed state can always be evaluated; the plate's increment enters through the linear system.
+        self.current.evaluate(case, &self.boundary, control)?;
+        Ok(())
+    }
+
+    fn plate_is_placed(&self, control: &Control) -> bool {
+        self.boundary.plate.iter().all(|&n| {
+            let base = 3 * n as usize;
+            let u = &self.current.u[base..base + 3];
+            (u[0] - control.delta_t).abs() <= 1e-14 && (u[2] + self.current.h).abs() <= 1e-14
+        })
+    }
+
+    fn forcing(&self, previous: f64) -> f64 {
+        let merit = self.current.merit;
+        if merit == 0.0 {
+            return FORCING_MAX;
+        }
+        let floor = 0.3 * self.settings.tolerance * self.current.force_scale / merit;
+        let ratio = merit / previous;
+        (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, FORCING_MAX)
+    }
+
+    /// Forms and solves the linear system: the correction is in `self.delta`; returns Krylov iterations, fallback and the change of h.
+    fn linearise(
+        &mut self,
+        case: &mut dyn Evaluate,
+        mesh: &Mesh,
+        control: &Control,
+        eta: f64,
+    ) -> Result<Result<(usize, bool, f64), StepFailure>, SolverError> {
+        if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut self.matrix.blocks)? {
+            return Ok(Err(StepFailure::Inverted { element, point }));
+        }
+        if control.normal_force.is_some() {
+            plate_functional(&self.matrix, &self.boundary.plate, &mut self.functional);
+        }
+        apply_contact(&mut self.matrix, mesh, &self.boundary, &self.current.rows, &mut self.fixed);
+        right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
+        self.linear.update(&self.matrix, &self.fixed)?;
+        let solved = match self.linear.solve(&self.matrix, &self.rhs, eta, &mut self.delta) {
+            Ok(report) => report,
+            Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
+        };
+        let (mut krylov, mut fallback) = (solved.iterations, solved.fallback);
+        let mut delta_h = 0.0;
+        if let Some(target) = control.normal_force {
+            // Bordered system: the response to a unit indentation, then h from the force equation.
+            self.unit_rhs.fill(0.0);
+            for &n in &self.boundary.plate {
+                self.unit_rhs[3 * n as usize + 2] = -1.0;
+            }
+            match self.linear.solve(&self.matrix, &self.unit_rhs, (0.1 * eta).max(1e-12), &mut self.unit_response) {
+                Ok(report) => {
+                    krylov += report.iterations;
+                    fallback |= report.fallback;
+                }
+                Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
+            }
+            let along = |x: &[f64]| self.functional.iter().zip(x).map(|(w, x)| w * x).sum::<f64>();
+            let (by_delta, by_unit) = (along(&self.delta), along(&self.unit_response));
+            delta_h = (target - self.current.plate_force + by_delta) / -by_unit;
+            if !delta_h.is_finite() {
+                return Ok(Err(StepFailure::Linear("no contact carries the normal force that is to be held".into())));
+            }
+            for (d, b) in self.delta.iter_mut().zip(&self.unit_response) {
+                *d += delta_h * b;
+            }
+        }
+        Ok(Ok((krylov, fallback, delta_h)))
+    }
+
+    /// Backtracks along `self.delta` until the merit falls below `reference`; otherwise takes the best there was. `Err` if no length is valid.
+    fn line_search(
+        &mut self,
+        case: &mut dyn Evaluate,
+        control: &Control,
+        reference: f64,
+        delta_h: f64,
+    ) -> Result<Result<(f64, usize), Outcome>, SolverError> {
+        let mut best: Option<f64> = None;
+        let mut invalid = Outcome::Valid;
+        for s in STEP_LENGTHS {
+            for ((u, u0), d) in self.candidate.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
+                *u = u0 + s * d;
+            }
+            self.candidate.h = self.current.h + s * delta_h;
+            if s == 1.0 {
+                // Rounding must not leave the plate a hair from where it belongs.
+                self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, control.delta_t);
+            }
+            let outcome = self.candidate.evaluate(case, &self.boundary, control)?;
+            if outcome != Outcome::Valid {
+                invalid = outcome;
+                continue;
+            }
+            if best.is_none() || self.candidate.merit < self.best.merit {
+                best = Some(s);
+                std::mem::swap(&mut self.candidate, &mut self.best);
+            }
+            if self.best.merit <= (1.0 - 1e-4 * s) * reference {
+                break;
+            }
+        }
+        let Some(s) = best else { return Ok(Err(invalid)) };
+        let changed = self.best.rows.iter().zip(&self.current.rows).filter(|(a, b)| a.status != b.status).count();
+        std::mem::swap(&mut self.current, &mut self.best);
+        Ok(Ok((s, changed)))
+    }
+
+    fn exhausted(&self, mesh: &Mesh, iterations: usize) -> StepFailure {
+        StepFailure::Iterations {
+            iterations,
+            merit: self.current.merit / self.current.force_scale.max(f64::MIN_POSITIVE),
+            worst: self.current.worst(mesh, &self.boundary),
+        }
+    }
+
+    /// Counts of closed and of slipping contact points at the accepted trial.
+    pub fn contact_counts(&self) -> (usize, usize) {
+        let count = |s: Status| self.current.rows.iter().filter(|r| r.status == s).count();
+        let slipping = count(Status::Slip);
+        (count(Status::Stick) + slipping, slipping)
+    }
+}
