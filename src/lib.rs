@@ -5,5 +5,13 @@
 //! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `law`, `study`, `cli`. ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
+pub mod case;
+pub mod compute;
+pub mod contact;
+pub mod element;
+pub mod linalg;
+pub mod material;
 pub mod mesh;
 pub mod real;
+pub mod simulation;
+pub mod solver;

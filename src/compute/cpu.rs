@@ -54,7 +54,7 @@ impl<R: Real> Cpu<R> {
                 models,
                 cases: Vec::new(),
                 plan: GatherPlan {
-                    pattern: crate::mesh::pattern::BlockPattern::from_elements(0, &[]),
+                    pattern: crate::mesh::pattern::Pattern::from_elements(0, &[]),
                     offset: Vec::new(),
                 },
                 element_force: Vec::new(),
@@ -238,6 +238,7 @@ impl<R: Real> Compute for Cpu<R> {
                     *state = next;
                     energies.elastic += elastic.to_f64();
                     energies.plastic += next.plastic_work.to_f64();
+                    energies.max_alpha = next.points.iter().fold(energies.max_alpha, |m, p| m.max(p.alpha.to_f64()));
                 }
                 case.committed.copy_from_slice(request.displacement);
                 request.energies = energies;

@@ -1,13 +1,13 @@
 //! Plans by which element contributions are gathered into nodes and blocks: every sum has one writer and a fixed order.
 
 use crate::mesh::Mesh;
-use crate::mesh::pattern::BlockPattern;
+use crate::mesh::pattern::Pattern;
 
 /// Where the blocks of every element around a node go in that node's block row.
 #[derive(Clone, Debug)]
 pub struct GatherPlan {
     /// The pattern of the matrices.
-    pub pattern: BlockPattern,
+    pub pattern: Pattern,
     /// For each entry of the mesh's node-to-element lists, the offset within the row of the column of each local node.
     pub offset: Vec<[u16; 8]>,
 }
@@ -15,7 +15,7 @@ pub struct GatherPlan {
 impl GatherPlan {
     /// The plan of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        let pattern = BlockPattern::from_elements(mesh.nodes.len(), &mesh.elements);
+        let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         let mut offset = Vec::with_capacity(mesh.node_elements.entry.len());
         for node in 0..mesh.nodes.len() {
             let row = &pattern.column[pattern.row(node)];

@@ -55,7 +55,7 @@ pub struct ForceRequest<'a> {
     pub outcome: Outcome,
 }
 
-/// Asks for the tangent of one case: blocks d f_i / d u_j in the order of [`crate::mesh::pattern::BlockPattern`].
+/// Asks for the tangent of one case: blocks d f_i / d u_j in the order of [`crate::mesh::pattern::Pattern`].
 #[derive(Debug)]
 pub struct TangentRequest<'a> {
     /// Case index in the batch.
@@ -101,6 +101,8 @@ pub struct Energies {
     pub elastic: f64,
     /// Plastic work done so far.
     pub plastic: f64,
+    /// Largest equivalent plastic strain of any quadrature point, no energy but measured with them.
+    pub max_alpha: f64,
 }
 
 /// The committed state of a case, for output and checkpoints.

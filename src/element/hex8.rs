@@ -1,8 +1,8 @@
 //! Eight-node hexahedron with mean dilatation: internal force, symmetric tangent, energies and state update.
 //!
 //! The stored energy of an element of reference volume V is `sum_q W_dev(b_e-bar) V_q + V U(Theta)` with the mean dilatation
-//! `Theta = v/V` (Nagtegaal, Parks & Rice 1974; Simo, Taylor & Pister 1985; Simo & Hughes 1998, section 9.? "three-field"
-//! formulation with constant pressure and dilatation). The deviatoric Kirchhoff stress is the material's, point by point; the pressure
+//! `Theta = v/V` (Nagtegaal, Parks & Rice 1974; Simo, Taylor & Pister 1985; the three-field
+//! formulation with constant pressure and dilatation of Simo & Hughes 1998, chapter 9). The deviatoric Kirchhoff stress is the material's, point by point; the pressure
 //! `p = U'(Theta)` is one number an element, which is what keeps the element from locking when plastic flow is isochoric.
 //!
 //! Everything is computed from displacement gradients: `f - I = dH F_n^-1` with `dH` the gradient of the increment, so that small strains
@@ -374,7 +374,7 @@ pub fn fields<R: Real>(
             let s = material.elasticity.shear * (be[c] - if c < 3 { mean } else { R::ZERO });
             out.stress[q][c] = s / j + if c < 3 { p } else { R::ZERO };
         }
-        out.elastic_energy += crate::material::elastic_energy_deviatoric(&material.elasticity, &state.points[q]) * geometry.volume.0[q];
+        out.elastic_energy += crate::material::elastic_energy_deviatoric(&material.elasticity, &state.points[q].be) * geometry.volume.0[q];
     }
     out.elastic_energy += crate::material::elastic_energy_volumetric(&material.elasticity, k.theta_minus_1) * geometry.total_volume;
     Ok(out)

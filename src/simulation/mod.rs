@@ -22,6 +22,9 @@ pub enum SimulationError {
     /// The mesh cannot be made.
     #[error("the mesh cannot be made: {0}")]
     Mesh(#[from] MeshError),
+    /// The hardening law's numbers make no law.
+    #[error("the material is not usable: {0}")]
+    Hardening(#[from] crate::material::hardening::HardeningError),
     /// The solver or the device.
     #[error(transparent)]
     Solver(#[from] SolverError),

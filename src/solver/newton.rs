@@ -204,7 +204,8 @@ impl Newton {
         apply_contact(&mut self.matrix, mesh, &self.boundary, &self.current.rows, &mut self.fixed);
         right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
         self.linear.update(&self.matrix, &self.fixed)?;
-        let solved = match self.linear.solve(&self.matrix, &self.rhs, eta, &mut self.delta) {
+        self.delta.fill(0.0);
+        let solved = match self.linear.solve(&self.rhs, eta, &mut self.delta) {
             Ok(report) => report,
             Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
         };
@@ -216,7 +217,8 @@ impl Newton {
             for &n in &self.boundary.plate {
                 self.unit_rhs[3 * n as usize + 2] = -1.0;
             }
-            match self.linear.solve(&self.matrix, &self.unit_rhs, (0.1 * eta).max(1e-12), &mut self.unit_response) {
+            self.unit_response.fill(0.0);
+            match self.linear.solve(&self.unit_rhs, (0.1 * eta).max(1e-12), &mut self.unit_response) {
                 Ok(report) => {
                     krylov += report.iterations;
                     fallback |= report.fallback;

@@ -165,8 +165,8 @@ pub fn chunked_sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
 pub fn plate_functional(matrix: &BlockMatrix<f64>, plate: &[u32], w: &mut [f64]) {
     w.fill(0.0);
     for &n in plate {
-        for k in matrix.row_start[n as usize] as usize..matrix.row_start[n as usize + 1] as usize {
-            let base = 3 * matrix.column[k] as usize;
+        for k in matrix.pattern.row(n as usize) {
+            let base = 3 * matrix.pattern.column[k] as usize;
             for j in 0..3 {
                 w[base + j] += matrix.blocks[k][6 + j];
             }
@@ -187,9 +187,8 @@ pub fn apply_contact(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, boundary: &Boun
         if rows.status != Status::Slip {
             continue;
         }
-        let (start, end) = (matrix.row_start[n] as usize, matrix.row_start[n + 1] as usize);
-        let diagonal = matrix.diagonal[n] as usize;
-        for k in start..end {
+        let diagonal = matrix.pattern.diagonal[n] as usize;
+        for k in matrix.pattern.row(n) {
             let old = matrix.blocks[k];
             let new = &mut matrix.blocks[k];
             for i in 0..3 {

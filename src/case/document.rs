@@ -1,0 +1,186 @@
+//! A TOML document in which every value remembers where it was written, so that `--set` can replace values and an error can still
+//! name the line.
+//!
+//! `serde` loses the places of values behind tagged enums and merged documents; so the schema is read from this tree by hand
+//! (`read.rs`).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{CaseError, Place};
+
+/// A value and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Where it was written: the line of its key, of its table's header, or the `--set` argument.
+    pub place: Place,
+    /// The value.
+    pub value: Value,
+}
+
+/// A TOML value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A string.
+    String(String),
+    /// An integer.
+    Integer(i64),
+    /// A float.
+    Float(f64),
+    /// A boolean.
+    Boolean(bool),
+    /// A date or time: no key takes one, it is kept for the message.
+    Datetime(String),
+    /// An array.
+    Array(Vec<Entry>),
+    /// A table, its keys in alphabetical order.
+    Table(BTreeMap<String, Entry>),
+}
+
+impl Value {
+    /// The value as a message names it: `the string "stick"`, `the number 0.3`, `a table`.
+    pub fn describe(&self) -> String {
+        match self {
+            Value::String(text) => format!("the string {text:?}"),
+            Value::Integer(number) => format!("the number {number}"),
+            Value::Float(number) => format!("the number {number:?}"),
+            Value::Boolean(truth) => format!("the boolean {truth}"),
+            Value::Datetime(date) => format!("the date {date}"),
+            Value::Array(_) => "an array".to_owned(),
+            Value::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// A parsed file, before its keys are given a meaning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document {
+    /// The top-level table; its place is the file's first line.
+    pub root: Entry,
+}
+
+impl Document {
+    /// Parses TOML; `file` is the name that errors give.
+    pub fn parse(text: &str, file: &str) -> Result<Self, CaseError> {
+        let lines = Lines { file: file.into(), text };
+        let table = DeTable::parse(text).map_err(|error| CaseError::Syntax {
+            place: lines.place(error.span().map_or(0, |span| span.start)),
+            what: one_line(error.message()),
+        })?;
+        Ok(Self { root: Entry { place: lines.place(0), value: table_value(table.get_ref(), &|at| lines.place(at))? } })
+    }
+
+    /// Applies one `--set` argument, `key=value`: see [`Document::set`]. The value is TOML; what is not valid TOML is a string.
+    pub fn set_argument(&mut self, argument: &str) -> Result<(), CaseError> {
+        let refuse = |what: String| CaseError::Set { argument: argument.to_owned(), what };
+        let (key, text) = argument.split_once('=').ok_or_else(|| refuse("has no `=`".to_owned()))?;
+        let (key, text) = (key.trim(), text.trim());
+        let place = Place::Set(key.into());
+        let value = match DeValue::parse(text) {
+            Ok(parsed) => value(parsed.get_ref(), &|_| place.clone())?,
+            Err(_) if text.is_empty() => return Err(refuse("has no value".to_owned())),
+            Err(error) if text.starts_with(['[', '{', '"', '\'']) => {
+                return Err(refuse(format!("the value is not valid TOML: {}", one_line(error.message()))));
+            }
+            Err(_) => Value::String(text.to_owned()),
+        };
+        self.set(key, Entry { place, value }).map_err(refuse)
+    }
+
+    /// Puts `entry` at a dotted key; digits index an array, and the index after the last appends. Tables on the way are made if
+    /// they are not there. The error says what stands in the way.
+    pub fn set(&mut self, key: &str, entry: Entry) -> Result<(), String> {
+        let mut at = &mut self.root;
+        let mut walked = String::new();
+        for part in key.split('.') {
+            if part.is_empty() {
+                return Err("the key has an empty part".to_owned());
+            }
+            let made = || Entry { place: entry.place.clone(), value: Value::Table(BTreeMap::new()) };
+            // A path without segments yet is an array all the same.
+            if matches!(&at.value, Value::Table(table) if table.is_empty()) && part == "0" && !walked.is_empty() {
+                at.value = Value::Array(Vec::new());
+            }
+            at = match &mut at.value {
+                Value::Table(table) => table.entry(part.to_owned()).or_insert_with(made),
+                Value::Array(items) => {
+                    let count = items.len();
+                    let index = part.parse::<usize>().ok().filter(|index| *index <= count);
+                    let index = index.ok_or_else(|| {
+                        format!("`{walked}` has {count} items, so `{part}` is not one of them (0 to {count}, {count} appends)")
+                    })?;
+                    if index == count {
+                        items.push(made());
+                    }
+                    &mut items[index]
+                }
+                other => return Err(format!("`{walked}` is {}, it has no key `{part}`", other.describe())),
+            };
+            if !walked.is_empty() {
+                walked.push('.');
+            }
+            walked.push_str(part);
+        }
+        *at = entry;
+        Ok(())
+    }
+
+    /// The table under a top-level key as a document of its own, such as the `base` case of a study.
+    pub fn table(&self, key: &str) -> Option<Document> {
+        match &self.root.value {
+            Value::Table(table) => {
+                table.get(key).filter(|entry| matches!(entry.value, Value::Table(_))).map(|entry| Document { root: entry.clone() })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Turns byte offsets into line numbers.
+struct Lines<'t> {
+    file: Arc<str>,
+    text: &'t str,
+}
+
+impl Lines<'_> {
+    fn place(&self, offset: usize) -> Place {
+        let before = &self.text.as_bytes()[..offset.min(self.text.len())];
+        Place::Line { file: self.file.clone(), line: 1 + before.iter().filter(|byte| **byte == b'\n').count() }
+    }
+}
+
+fn table_value(table: &DeTable<'_>, place: &dyn Fn(usize) -> Place) -> Result<Value, CaseError> {
+    let entry = |(key, item): (&Spanned<std::borrow::Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+        let value = value(item.get_ref(), place)?;
+        Ok((key.get_ref().to_string(), Entry { place: place(key.span().start), value }))
+    };
+    table.iter().map(entry).collect::<Result<_, _>>().map(Value::Table)
+}
+
+fn value(parsed: &DeValue<'_>, place: &dyn Fn(usize) -> Place) -> Result<Value, CaseError> {
+    Ok(match parsed {
+        DeValue::String(text) => Value::String(text.to_string()),
+        // An integer beyond 64 bits is still a number.
+        DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+            Ok(integer) => Value::Integer(integer),
+            Err(_) => Value::Float(number.as_str().parse().unwrap_or(f64::INFINITY)),
+        },
+        DeValue::Float(number) => Value::Float(number.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(truth) => Value::Boolean(*truth),
+        DeValue::Datetime(date) => Value::Datetime(date.to_string()),
+        DeValue::Array(items) => Value::Array(
+            items
+                .iter()
+                .map(|item| Ok(Entry { place: place(item.span().start), value: value(item.get_ref(), place)? }))
+                .collect::<Result<_, CaseError>>()?,
+        ),
+        DeValue::Table(table) => table_value(table, place)?,
+    })
+}
+
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}

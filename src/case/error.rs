@@ -1,0 +1,106 @@
+//! What can be wrong with a case file, and where.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// Where a value was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of a file.
+    Line {
+        /// The file as the user named it.
+        file: Arc<str>,
+        /// Line number, from 1.
+        line: usize,
+    },
+    /// A `--set key=value` argument; the key.
+    Set(Arc<str>),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line { file, line } => write!(f, "{file}:{line}"),
+            Place::Set(key) => write!(f, "--set {key}"),
+        }
+    }
+}
+
+/// A case that cannot be run, with the place, the key and what would be allowed.
+#[derive(Debug, thiserror::Error)]
+pub enum CaseError {
+    /// The file cannot be read.
+    #[error("{file}: cannot be read: {source}. give the path of a readable case file")]
+    Unreadable {
+        /// The file as the user named it.
+        file: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The text is not TOML.
+    #[error("{place}: not valid TOML: {what}")]
+    Syntax {
+        /// Where the parser stopped.
+        place: Place,
+        /// What it found.
+        what: String,
+    },
+    /// A key that no case has.
+    #[error("{place}: {key}: unknown key{}. allowed: {allowed}", did_you_mean(.nearest))]
+    UnknownKey {
+        /// Where the key stands.
+        place: Place,
+        /// The dotted key.
+        key: String,
+        /// The known key that it resembles, if there is one.
+        nearest: Option<String>,
+        /// The keys known here.
+        allowed: String,
+    },
+    /// A key without which there is no case.
+    #[error("{place}: {key}: missing. allowed: {allowed}")]
+    Missing {
+        /// The table that lacks the key.
+        place: Place,
+        /// The dotted key.
+        key: String,
+        /// What its value may be.
+        allowed: String,
+    },
+    /// A value of another type than the key takes.
+    #[error("{place}: {key}: is {found}, which is the wrong type. allowed: {allowed}")]
+    WrongType {
+        /// Where the value stands.
+        place: Place,
+        /// The dotted key.
+        key: String,
+        /// What was found there.
+        found: String,
+        /// What the value may be.
+        allowed: String,
+    },
+    /// A value out of range, or one that does not go with the rest of the case.
+    #[error("{place}: {key}: {what}. allowed: {allowed}")]
+    NotAllowed {
+        /// Where the value stands.
+        place: Place,
+        /// The dotted key.
+        key: String,
+        /// What is wrong with it.
+        what: String,
+        /// What the value may be.
+        allowed: String,
+    },
+    /// A `--set` argument that cannot be applied.
+    #[error("--set {argument}: {what}. allowed: KEY=VALUE with a dotted key, as in contact.friction=0.1 or path.0.indentation=0.01")]
+    Set {
+        /// The argument.
+        argument: String,
+        /// What is wrong with it.
+        what: String,
+    },
+}
+
+fn did_you_mean(nearest: &Option<String>) -> String {
+    nearest.as_ref().map(|key| format!(", did you mean `{key}`?")).unwrap_or_default()
+}

@@ -1,0 +1,169 @@
+//! The case file: what one simulation is told, its defaults and its checks.
+//!
+//! A [`Case`] is read from TOML with [`Case::load`], which refuses anything that could not be
+//! simulated and names the file, the line and the key. It is in the user's units until [`Case::scaled`] divides lengths by the sphere's radius and stresses by Young's modulus.
+
+mod document;
+mod error;
+mod estimate;
+mod hardening;
+mod path;
+mod read;
+mod reader;
+mod scale;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub use document::{Document, Entry, Value};
+pub use error::{CaseError, Place};
+pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
+pub use hardening::Hardening;
+pub use path::{Hold, Segment, ShearTarget};
+pub use reader::{Field, Reader};
+
+use serde::Serialize;
+
+/// One simulation: a sphere, its material, its friction, and the path it is taken along. Any one consistent system of units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Case {
+    /// The body.
+    pub sphere: Sphere,
+    /// What it is made of.
+    pub material: Material,
+    /// How it meets the plane.
+    pub contact: Contact,
+    /// How it is meshed.
+    pub mesh: Mesh,
+    /// How the equations are solved.
+    pub solver: Solver,
+    /// What is written.
+    pub output: Output,
+    /// The segments, in order; the first one presses.
+    pub path: Vec<Segment>,
+}
+
+/// The body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sphere {
+    /// Radius R > 0, the unit of length of the path.
+    pub radius: f64,
+}
+
+/// An isotropic elastic-plastic material.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Material {
+    /// Young's modulus E > 0, in units of stress.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio nu in (-1, 0.5).
+    pub poissons_ratio: f64,
+    /// The yield stress as a function of the equivalent plastic strain.
+    pub hardening: Hardening,
+}
+
+/// The interface between sphere and plane.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contact {
+    /// Friction.
+    pub friction: Friction,
+}
+
+/// Friction between sphere and plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Friction {
+    /// Coulomb's coefficient mu >= 0: tangential traction at most mu times the pressure, at every point.
+    Coefficient(f64),
+    /// A point in contact never slips.
+    Stick,
+}
+
+/// The mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mesh {
+    /// Elements along the contact radius, 4 to 32.
+    pub elements_per_contact_radius: usize,
+    /// Radius of the finely meshed zone over the contact radius, 1.1 to 3.
+    pub fine_zone: f64,
+    /// Contact radius to mesh for, in the units of the sphere's radius, in place of the predicted one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_radius: Option<f64>,
+}
+
+/// The solution of the equations.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Solver {
+    /// The solver of the linear systems.
+    pub linear: Linear,
+    /// Contact merit at which a step is accepted, relative to the sum of normal forces; in (1e-12, 1e-2].
+    pub tolerance: f64,
+    /// Steps of a press or release segment; by default as many as the mesh asks for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub press_steps: Option<usize>,
+    /// Steps of a shear segment; by default as many as the mesh asks for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shear_steps: Option<usize>,
+    /// Newton iterations of a step before it is cut in half.
+    pub max_iterations: usize,
+    /// How often a step may be cut in half.
+    pub max_cutbacks: usize,
+    /// Memory that the mesh and the linear systems may take, in GiB.
+    pub max_memory_gib: f64,
+}
+
+/// The solver of the linear systems.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Linear {
+    /// Multigrid-preconditioned FGMRES.
+    Multigrid,
+    /// A sparse direct factorisation: the reference, slower.
+    Direct,
+}
+
+/// What is written besides history and summary.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Output {
+    /// When to write the fields.
+    pub fields: Fields,
+    /// Whether to draw plots.
+    pub plots: bool,
+}
+
+/// The steps after which fields are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fields {
+    /// Never.
+    None,
+    /// At the end of each segment.
+    Segments,
+    /// After every step.
+    All,
+}
+
+impl Default for Mesh {
+    fn default() -> Self {
+        Self { elements_per_contact_radius: 16, fine_zone: 1.3, contact_radius: None }
+    }
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            linear: Linear::Multigrid,
+            tolerance: 3e-4,
+            press_steps: None,
+            shear_steps: None,
+            max_iterations: 25,
+            max_cutbacks: 8,
+            max_memory_gib: 8.0,
+        }
+    }
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { fields: Fields::Segments, plots: true }
+    }
+}

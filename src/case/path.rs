@@ -1,0 +1,150 @@
+//! The path: segments of pressing, shearing and releasing.
+
+use super::Friction;
+use super::error::CaseError;
+use super::reader::{Field, Reader};
+
+/// One segment of the path. Targets are totals from the undeformed sphere, not increments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Segment {
+    /// Move the plate to the indentation h; one smaller than the current unloads to it.
+    Indentation {
+        /// Target h >= 0, a length.
+        indentation: f64,
+    },
+    /// Move the plate along the plane to delta_T.
+    Shear {
+        /// Where to.
+        shear: ShearTarget,
+        /// What is constant meanwhile.
+        hold: Hold,
+    },
+    /// Unload until contact is lost.
+    Release,
+}
+
+/// Where a shear segment ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShearTarget {
+    /// At this delta_T, a length, of either sign.
+    Displacement(f64),
+    /// When every point in contact slips.
+    FullSlip,
+}
+
+/// What a shear segment keeps constant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hold {
+    /// The indentation h.
+    #[default]
+    Indentation,
+    /// The normal force F_N.
+    NormalForce,
+}
+
+/// Largest indentation over the radius: beyond it the equator is no longer far from the contact.
+pub(super) const MAX_INDENTATION: f64 = 0.3;
+/// Largest tangential displacement over the radius.
+const MAX_SHEAR: f64 = 0.5;
+
+const PATH: &str = "at least one [[path]] segment, the first with an indentation > 0";
+
+/// Reads all of `[[path]]`, in the order in which it is followed.
+pub(super) fn read(root: &Reader<'_>, radius: f64, friction: Friction) -> Result<Vec<Segment>, CaseError> {
+    let field = root.require("path", PATH)?;
+    let items = field.array(PATH)?;
+    if items.is_empty() {
+        return Err(field.refuse("is empty", PATH));
+    }
+    let mut state = State::default();
+    items.iter().map(|item| read_segment(&item.table()?, &mut state, radius, friction)).collect()
+}
+
+/// What is known of the state when a segment begins; `None` where only the simulation can know.
+struct State {
+    in_contact: bool,
+    indentation: Option<f64>,
+    shear: Option<ShearTarget>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self { in_contact: false, indentation: Some(0.0), shear: Some(ShearTarget::Displacement(0.0)) }
+    }
+}
+
+fn read_segment(table: &Reader<'_>, state: &mut State, radius: f64, friction: Friction) -> Result<Segment, CaseError> {
+    const ONE: &str = "one of indentation, shear (with hold, if wanted) and release = true, in each [[path]]";
+    table.only(&["indentation", "shear", "hold", "release"])?;
+    let (indentation, shear, release) = (table.get("indentation"), table.get("shear"), table.get("release"));
+    if let (Some(hold), None) = (table.get("hold"), &shear) {
+        return Err(hold.refuse("stands without shear", "hold beside shear in the same [[path]]"));
+    }
+    match (indentation, shear, release) {
+        (Some(field), None, None) => read_indentation(&field, state, radius),
+        (None, Some(field), None) => {
+            let hold = match table.get("hold") {
+                Some(hold) => hold.choice(&[("indentation", Hold::Indentation), ("normal-force", Hold::NormalForce)])?,
+                None => Hold::default(),
+            };
+            let shear = read_shear(&field, state, radius, friction)?;
+            if hold == Hold::NormalForce {
+                state.indentation = None;
+            }
+            Ok(Segment::Shear { shear, hold })
+        }
+        (None, None, Some(field)) => {
+            if !field.boolean()? {
+                return Err(field.refuse("is false", ONE));
+            }
+            if !state.in_contact {
+                return Err(field.refuse("releases what is not in contact", "release after a segment that presses"));
+            }
+            *state = State { in_contact: false, indentation: None, shear: state.shear };
+            Ok(Segment::Release)
+        }
+        (None, None, None) => Err(table.refuse("has neither indentation nor shear nor release", ONE)),
+        (Some(_), Some(field), _) => Err(field.refuse("stands beside indentation", ONE)),
+        (_, _, Some(field)) => Err(field.refuse("stands beside another target", ONE)),
+    }
+}
+
+fn read_indentation(field: &Field<'_>, state: &mut State, radius: f64) -> Result<Segment, CaseError> {
+    // Compared as ratios, so that a case and its copy in other units are accepted alike.
+    let below = |h: f64| h / radius < MAX_INDENTATION;
+    let largest = format!("< {MAX_INDENTATION} radius = {:?}", MAX_INDENTATION * radius);
+    let indentation = if !state.in_contact {
+        field.number(&format!("a length > 0 and {largest}, to come into contact"), |h| h / radius > 0.0 && below(h))?
+    } else {
+        field.number(&format!("a length >= 0 and {largest}"), |h| h >= 0.0 && below(h))?
+    };
+    if state.indentation == Some(indentation) {
+        return Err(field.refuse(&format!("is {indentation:?}, where the segment begins"), "an indentation other than the current one"));
+    }
+    let shear = state.shear.filter(|shear| matches!(shear, ShearTarget::Displacement(_)));
+    *state = State { in_contact: indentation > 0.0, indentation: Some(indentation), shear };
+    Ok(Segment::Indentation { indentation })
+}
+
+fn read_shear(field: &Field<'_>, state: &mut State, radius: f64, friction: Friction) -> Result<ShearTarget, CaseError> {
+    if !state.in_contact {
+        return Err(field.refuse("shears what is not in contact", "shear after a segment with an indentation > 0"));
+    }
+    let shear = if field.text().is_some() {
+        let shear = field.choice(&[("full-slip", ShearTarget::FullSlip)])?;
+        if friction == Friction::Stick {
+            let allowed = "a displacement, or a number for contact.friction";
+            return Err(field.refuse("is \"full-slip\", which friction = \"stick\" never reaches", allowed));
+        }
+        shear
+    } else {
+        let largest = MAX_SHEAR * radius;
+        let allowed = format!("a length between {:?} and {largest:?} (0.5 radius), or \"full-slip\"", -largest);
+        ShearTarget::Displacement(field.number(&allowed, |shear| (shear / radius).abs() < MAX_SHEAR)?)
+    };
+    if state.shear == Some(shear) {
+        return Err(field.refuse("is where the segment begins", "a target other than the current one"));
+    }
+    state.shear = Some(shear);
+    Ok(shear)
+}

@@ -1,0 +1,135 @@
+//! From TOML to a checked [`Case`].
+
+use std::path::Path;
+
+use super::document::Document;
+use super::error::CaseError;
+use super::reader::Reader;
+use super::{Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Output, Solver, Sphere, estimate, path};
+
+impl Case {
+    /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the result.
+    pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
+        let name = file.display().to_string();
+        let text = std::fs::read_to_string(file).map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
+        Self::parse(&text, &name, settings)
+    }
+
+    /// [`Case::load`] for a text in memory; `file` is the name that errors give.
+    pub fn parse(text: &str, file: &str, settings: &[String]) -> Result<Self, CaseError> {
+        let mut document = Document::parse(text, file)?;
+        for argument in settings {
+            document.set_argument(argument)?;
+        }
+        Self::from_document(&document)
+    }
+
+    /// Gives the keys of a document their meaning and checks them.
+    pub fn from_document(document: &Document) -> Result<Self, CaseError> {
+        let root = Reader::new(document)?;
+        root.only(&["sphere", "material", "contact", "mesh", "solver", "output", "path"])?;
+        let sphere = read_sphere(&root.require_table("sphere", "a table with radius")?)?;
+        let material = read_material(&root.require_table("material", "a table with youngs_modulus, poissons_ratio, hardening")?)?;
+        let contact = read_contact(&root.require_table("contact", "a table with friction")?)?;
+        let case = Case {
+            mesh: read_mesh(&root.table("mesh")?, sphere.radius)?,
+            solver: read_solver(&root.table("solver")?)?,
+            output: read_output(&root.table("output")?)?,
+            path: path::read(&root, sphere.radius, contact.friction)?,
+            sphere,
+            material,
+            contact,
+        };
+        estimate::check_memory(&case, &root)?;
+        Ok(case)
+    }
+}
+
+fn read_sphere(table: &Reader<'_>) -> Result<Sphere, CaseError> {
+    table.only(&["radius"])?;
+    Ok(Sphere { radius: table.require("radius", "a length > 0")?.number("a length > 0", |radius| radius > 0.0)? })
+}
+
+fn read_material(table: &Reader<'_>) -> Result<Material, CaseError> {
+    table.only(&["youngs_modulus", "poissons_ratio", "hardening"])?;
+    let (stress, ratio) = ("a stress > 0", "a number > -1 and < 0.5");
+    let youngs_modulus = table.require("youngs_modulus", stress)?.number(stress, |e| e > 0.0)?;
+    let poissons_ratio = table.require("poissons_ratio", ratio)?.number(ratio, |nu| nu > -1.0 && nu < 0.5)?;
+    let hardening = Hardening::read(&table.require_table("hardening", "a table with law")?, youngs_modulus)?;
+    Ok(Material { youngs_modulus, poissons_ratio, hardening })
+}
+
+fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
+    table.only(&["friction"])?;
+    let allowed = "a number >= 0, or \"stick\"";
+    let field = table.require("friction", allowed)?;
+    let friction = match field.text() {
+        Some("stick") => Friction::Stick,
+        Some(other) => return Err(field.refuse(&format!("is {other:?}"), allowed)),
+        None => Friction::Coefficient(field.number(allowed, |mu| mu >= 0.0)?),
+    };
+    Ok(Contact { friction })
+}
+
+fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
+    table.only(&["elements_per_contact_radius", "fine_zone", "contact_radius"])?;
+    let mut mesh = Mesh::default();
+    if let Some(field) = table.get("elements_per_contact_radius") {
+        mesh.elements_per_contact_radius = field.count(4..=32)?;
+    }
+    if let Some(field) = table.get("fine_zone") {
+        mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| (1.1..=3.0).contains(&ratio))?;
+    }
+    if let Some(field) = table.get("contact_radius") {
+        let allowed = format!("a length > 0 and < radius = {radius:?}");
+        mesh.contact_radius = Some(field.number(&allowed, |a| a / radius > 0.0 && a / radius < 1.0)?);
+    }
+    Ok(mesh)
+}
+
+fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
+    table.only(&[
+        "linear",
+        "tolerance",
+        "press_steps",
+        "shear_steps",
+        "max_iterations",
+        "max_cutbacks",
+        "max_memory_gib",
+    ])?;
+    let mut solver = Solver::default();
+    if let Some(field) = table.get("linear") {
+        solver.linear = field.choice(&[("multigrid", Linear::Multigrid), ("direct", Linear::Direct)])?;
+    }
+    if let Some(field) = table.get("tolerance") {
+        solver.tolerance = field.number("a number > 1e-12 and <= 1e-2", |tolerance| tolerance > 1e-12 && tolerance <= 1e-2)?;
+    }
+    if let Some(field) = table.get("press_steps") {
+        solver.press_steps = Some(field.count(1..=100_000)?);
+    }
+    if let Some(field) = table.get("shear_steps") {
+        solver.shear_steps = Some(field.count(1..=100_000)?);
+    }
+    if let Some(field) = table.get("max_iterations") {
+        solver.max_iterations = field.count(1..=1000)?;
+    }
+    if let Some(field) = table.get("max_cutbacks") {
+        solver.max_cutbacks = field.count(0..=30)?;
+    }
+    if let Some(field) = table.get("max_memory_gib") {
+        solver.max_memory_gib = field.number("a number > 0, in GiB", |gib| gib > 0.0)?;
+    }
+    Ok(solver)
+}
+
+fn read_output(table: &Reader<'_>) -> Result<Output, CaseError> {
+    table.only(&["fields", "plots"])?;
+    let mut output = Output::default();
+    if let Some(field) = table.get("fields") {
+        output.fields = field.choice(&[("none", Fields::None), ("segments", Fields::Segments), ("all", Fields::All)])?;
+    }
+    if let Some(field) = table.get("plots") {
+        output.plots = field.boolean()?;
+    }
+    Ok(output)
+}

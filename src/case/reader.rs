@@ -1,0 +1,178 @@
+//! Reads typed values out of a [`Document`](super::Document); every refusal names place, key and what is allowed.
+
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+use super::document::{Document, Entry, Value};
+use super::error::{CaseError, Place};
+
+/// One table of the document.
+pub struct Reader<'d> {
+    place: &'d Place,
+    key: String,
+    table: Option<&'d BTreeMap<String, Entry>>,
+}
+
+impl<'d> Reader<'d> {
+    /// The top-level table.
+    pub fn new(document: &'d Document) -> Result<Self, CaseError> {
+        Field { key: String::new(), entry: &document.root }.table()
+    }
+
+    /// Refuses the first key, in the order of lines, that is not one of `known`; call it before reading, so that a misspelt key is
+    /// reported as such and not as a missing one.
+    pub fn only(&self, known: &[&str]) -> Result<(), CaseError> {
+        let unknown = self.table.into_iter().flatten().filter(|(name, _)| !known.contains(&name.as_str()));
+        let line = |place: &Place| match place {
+            Place::Line { line, .. } => *line,
+            Place::Set(_) => usize::MAX,
+        };
+        match unknown.min_by_key(|(_, entry)| line(&entry.place)) {
+            None => Ok(()),
+            Some((name, entry)) => Err(CaseError::UnknownKey {
+                place: entry.place.clone(),
+                key: self.dotted(name),
+                nearest: nearest(name, known),
+                allowed: known.join(", "),
+            }),
+        }
+    }
+
+    /// The value of a key, if it is there.
+    pub fn get(&self, name: &str) -> Option<Field<'d>> {
+        self.table?.get(name).map(|entry| Field { key: self.dotted(name), entry })
+    }
+
+    /// The value of a key that must be there; `allowed` says what it may be.
+    pub fn require(&self, name: &str, allowed: &str) -> Result<Field<'d>, CaseError> {
+        self.get(name).ok_or_else(|| self.missing(name, allowed))
+    }
+
+    /// The error of a key that must be there and is not.
+    pub fn missing(&self, name: &str, allowed: &str) -> CaseError {
+        CaseError::Missing { place: self.place.clone(), key: self.dotted(name), allowed: allowed.to_owned() }
+    }
+
+    /// A sub-table; one that is not there reads as an empty one.
+    pub fn table(&self, name: &str) -> Result<Reader<'d>, CaseError> {
+        match self.get(name) {
+            Some(field) => field.table(),
+            None => Ok(Reader { place: self.place, key: self.dotted(name), table: None }),
+        }
+    }
+
+    /// A sub-table that must be there.
+    pub fn require_table(&self, name: &str, allowed: &str) -> Result<Reader<'d>, CaseError> {
+        self.require(name, allowed)?.table()
+    }
+
+    /// A refusal of the table as a whole.
+    pub fn refuse(&self, what: &str, allowed: &str) -> CaseError {
+        CaseError::NotAllowed {
+            place: self.place.clone(),
+            key: self.key.clone(),
+            what: what.to_owned(),
+            allowed: allowed.to_owned(),
+        }
+    }
+
+    fn dotted(&self, name: &str) -> String {
+        if self.key.is_empty() { name.to_owned() } else { format!("{}.{name}", self.key) }
+    }
+}
+
+/// One value of the document.
+pub struct Field<'d> {
+    key: String,
+    entry: &'d Entry,
+}
+
+impl<'d> Field<'d> {
+    /// A finite number for which `accept` holds.
+    pub fn number(&self, allowed: &str, accept: impl Fn(f64) -> bool) -> Result<f64, CaseError> {
+        let number = match self.entry.value {
+            Value::Integer(number) => number as f64,
+            Value::Float(number) => number,
+            _ => return Err(self.wrong_type(allowed)),
+        };
+        if number.is_finite() && accept(number) { Ok(number) } else { Err(self.refuse(&format!("is {number:?}"), allowed)) }
+    }
+
+    /// A whole number within a range.
+    pub fn count(&self, range: RangeInclusive<usize>) -> Result<usize, CaseError> {
+        let allowed = format!("a whole number from {} to {}", range.start(), range.end());
+        let Value::Integer(number) = self.entry.value else {
+            return Err(self.wrong_type(&allowed));
+        };
+        let count = usize::try_from(number).ok().filter(|count| range.contains(count));
+        count.ok_or_else(|| self.refuse(&format!("is {number}"), &allowed))
+    }
+
+    /// `true` or `false`.
+    pub fn boolean(&self) -> Result<bool, CaseError> {
+        match self.entry.value {
+            Value::Boolean(truth) => Ok(truth),
+            _ => Err(self.wrong_type("true or false")),
+        }
+    }
+
+    /// One of some words.
+    pub fn choice<T: Copy>(&self, options: &[(&str, T)]) -> Result<T, CaseError> {
+        let words = options.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ");
+        let Value::String(text) = &self.entry.value else {
+            return Err(self.wrong_type(&words));
+        };
+        let chosen = options.iter().find(|(word, _)| word == text);
+        chosen.map(|(_, option)| *option).ok_or_else(|| self.refuse(&format!("is {text:?}"), &words))
+    }
+
+    /// The text, if the value is a string.
+    pub fn text(&self) -> Option<&'d str> {
+        match &self.entry.value {
+            Value::String(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The items of an array, `allowed` for other types.
+    pub fn array(&self, allowed: &str) -> Result<Vec<Field<'d>>, CaseError> {
+        let Value::Array(items) = &self.entry.value else {
+            return Err(self.wrong_type(allowed));
+        };
+        Ok(items.iter().enumerate().map(|(index, entry)| Field { key: format!("{}.{index}", self.key), entry }).collect())
+    }
+
+    /// The value as a table.
+    pub fn table(&self) -> Result<Reader<'d>, CaseError> {
+        match &self.entry.value {
+            Value::Table(table) => Ok(Reader { place: &self.entry.place, key: self.key.clone(), table: Some(table) }),
+            _ => Err(self.wrong_type("a table")),
+        }
+    }
+
+    /// A refusal of this value: `what` is wrong, and what is `allowed`.
+    pub fn refuse(&self, what: &str, allowed: &str) -> CaseError {
+        CaseError::NotAllowed {
+            place: self.entry.place.clone(),
+            key: self.key.clone(),
+            what: what.to_owned(),
+            allowed: allowed.to_owned(),
+        }
+    }
+
+    fn wrong_type(&self, allowed: &str) -> CaseError {
+        CaseError::WrongType {
+            place: self.entry.place.clone(),
+            key: self.key.clone(),
+            found: self.entry.value.describe(),
+            allowed: allowed.to_owned(),
+        }
+    }
+}
+
+/// The known key most like `name`, unless they have little in common.
+fn nearest(name: &str, known: &[&str]) -> Option<String> {
+    let likeness = |key: &&str| strsim::jaro_winkler(&name.to_lowercase(), key);
+    let best = known.iter().copied().max_by(|left, right| likeness(left).total_cmp(&likeness(right)))?;
+    (likeness(&best) > 0.75).then(|| best.to_owned())
+}

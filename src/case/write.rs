@@ -1,0 +1,55 @@
+//! The resolved case as TOML, every default written out; it reads back as the same case.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::{Case, Friction, Hold, Segment, ShearTarget};
+
+impl Case {
+    /// The case as TOML.
+    pub fn to_toml(&self) -> String {
+        // Every key is a string and no value is null, so there is nothing that TOML could not hold.
+        toml::to_string(self).unwrap_or_else(|error| format!("# {error}\n"))
+    }
+}
+
+impl Serialize for Friction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Friction::Coefficient(mu) => serializer.serialize_f64(*mu),
+            Friction::Stick => serializer.serialize_str("stick"),
+        }
+    }
+}
+
+impl Serialize for Segment {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        match self {
+            Segment::Indentation { indentation } => map.serialize_entry("indentation", indentation)?,
+            Segment::Shear { shear, hold } => {
+                map.serialize_entry("shear", shear)?;
+                map.serialize_entry("hold", hold)?;
+            }
+            Segment::Release => map.serialize_entry("release", &true)?,
+        }
+        map.end()
+    }
+}
+
+impl Serialize for ShearTarget {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            ShearTarget::Displacement(delta) => serializer.serialize_f64(*delta),
+            ShearTarget::FullSlip => serializer.serialize_str("full-slip"),
+        }
+    }
+}
+
+impl Serialize for Hold {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(match self {
+            Hold::Indentation => "indentation",
+            Hold::NormalForce => "normal-force",
+        })
+    }
+}

@@ -1,0 +1,44 @@
+//! One file a theme; what they share is here.
+
+mod tangent;
+
+use super::{Elasticity, Hardening, Material, PointState};
+use crate::real::Real;
+
+/// 3 x 3, rows first.
+pub type Matrix = [[f64; 3]; 3];
+
+pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+pub fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|k| a[i][0] * b[0][k] + a[i][1] * b[1][k] + a[i][2] * b[2][k]))
+}
+
+pub fn transpose(a: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|k| a[k][i]))
+}
+
+/// Every law, at parameters of the order E = 1.
+pub fn laws<R: Real>() -> Vec<(&'static str, Hardening<R>)> {
+    vec![
+        ("elastic", Hardening::Elastic),
+        ("ideal", Hardening::ideal(2e-3).unwrap()),
+        ("linear", Hardening::linear(2e-3, 0.05).unwrap()),
+        ("power 0.3", Hardening::power(2e-3, 5e-3, 0.3).unwrap()),
+        ("power 0.1", Hardening::power(2e-3, 5e-3, 0.1).unwrap()),
+        ("power 1.5", Hardening::power(2e-3, 5e-3, 1.5).unwrap()),
+        ("hollomon 3", Hardening::hollomon(0.02, 3.0, 1.0).unwrap()),
+        ("hollomon 10", Hardening::hollomon(5e-3, 10.0, 1.0).unwrap()),
+        ("voce", Hardening::voce(2e-3, 5e-3, 20.0).unwrap()),
+        ("table", Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]]).unwrap()),
+    ]
+}
+
+pub fn material<R: Real>(hardening: Hardening<R>) -> Material<R> {
+    Material { elasticity: Elasticity::new(1.0, 0.3), hardening }
+}
+
+/// d = f - I pushed through the mapping, in f64; panics (in a test) where the mapping reports an error.
+pub fn respond(material: &Material<f64>, d: &Matrix, state: &PointState<f64>) -> super::Response<f64> {
+    super::return_mapping(material, d, state).unwrap()
+}

@@ -1,0 +1,120 @@
+//! From a case file to a scaled model: lengths by R, stresses by E.
+
+use std::sync::Arc;
+
+use super::SimulationError;
+use super::path::Resolution;
+use crate::analytical::predicted_contact_radius;
+use crate::case::{self, Case, Segment};
+use crate::compute::CaseModel;
+use crate::contact::coulomb::Friction;
+use crate::linalg::{LinearSolver, SolverKind, bsr::BlockMatrix};
+use crate::material::hardening::{Hardening, HardeningError};
+use crate::material::{Elasticity, Material};
+use crate::mesh::pattern::Pattern;
+use crate::mesh::sphere::{SphereSpec, sphere_mesh};
+use crate::solver::newton::Newton;
+use crate::solver::{Settings, SolverError};
+
+/// A case ready to be simulated.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The case, scaled.
+    pub case: Case,
+    /// Mesh, material and friction, scaled.
+    pub model: CaseModel,
+    /// Step numbers.
+    pub resolution: Resolution,
+    /// Newton settings.
+    pub settings: Settings,
+    /// Bisections of one step before the run is given up.
+    pub max_cutbacks: usize,
+    /// Typical distance of contact points.
+    pub spacing: f64,
+    /// Contact radius for which the mesh was made.
+    pub predicted_contact_radius: f64,
+}
+
+/// Steps of a press for each element along the contact radius: the front moves by 0.8 elements a step.
+const PRESS_STEPS_PER_ELEMENT: f64 = 1.25;
+/// Growing steps of a shear.
+const SHEAR_STEPS: usize = 15;
+/// Smallest contact radius that is meshed for: below it the sphere is a half-space anyway.
+const SMALLEST_CONTACT: f64 = 0.005;
+
+/// The material's hardening law from the case file's.
+pub fn hardening(law: &case::Hardening, youngs_modulus: f64) -> Result<Hardening<f64>, HardeningError> {
+    match law {
+        case::Hardening::Elastic => Ok(Hardening::Elastic),
+        case::Hardening::Ideal { yield_stress } => Hardening::ideal(*yield_stress),
+        case::Hardening::Linear { yield_stress, modulus } => Hardening::linear(*yield_stress, *modulus),
+        case::Hardening::Power { yield_stress, coefficient, exponent } => Hardening::power(*yield_stress, *coefficient, *exponent),
+        case::Hardening::Hollomon { coefficient, exponent } => Hardening::hollomon(*coefficient, *exponent, youngs_modulus),
+        case::Hardening::Voce { yield_stress, saturation_stress, rate } => Hardening::voce(*yield_stress, *saturation_stress, *rate),
+        case::Hardening::Table { points } => Hardening::table(points),
+    }
+}
+
+/// Largest indentation of the path, scaled.
+fn largest_indentation(case: &Case) -> f64 {
+    case.path.iter().fold(0.0, |h, s| match s {
+        Segment::Indentation { indentation } => h.max(*indentation),
+        _ => h,
+    })
+}
+
+impl Problem {
+    /// Scales a case (in the user's units) and makes its mesh.
+    pub fn new(case: &Case) -> Result<Self, SimulationError> {
+        let case = case.scaled();
+        let nu = case.material.poissons_ratio;
+        let law = hardening(&case.material.hardening, 1.0)?;
+        let predicted = match case.mesh.contact_radius {
+            Some(a) => a,
+            None => predicted_contact_radius(
+                1.0,
+                nu,
+                |alpha| if matches!(law, Hardening::Elastic) { f64::INFINITY } else { law.flow_stress(alpha) },
+                largest_indentation(&case),
+            ),
+        };
+        let mesh = sphere_mesh(&SphereSpec {
+            contact_radius: predicted.max(SMALLEST_CONTACT),
+            elements_per_contact_radius: case.mesh.elements_per_contact_radius,
+            fine_zone: case.mesh.fine_zone,
+        })?;
+        let epr = case.mesh.elements_per_contact_radius;
+        let spacing = predicted.max(SMALLEST_CONTACT) / epr as f64;
+        Ok(Self {
+            resolution: Resolution {
+                press_steps: case.solver.press_steps.unwrap_or((PRESS_STEPS_PER_ELEMENT * epr as f64).ceil() as usize),
+                shear_steps: case.solver.shear_steps.unwrap_or(SHEAR_STEPS),
+            },
+            settings: Settings { tolerance: case.solver.tolerance, max_iterations: case.solver.max_iterations },
+            max_cutbacks: case.solver.max_cutbacks,
+            spacing,
+            predicted_contact_radius: predicted,
+            model: CaseModel {
+                mesh: Arc::new(mesh),
+                material: Material { elasticity: Elasticity::new(1.0, nu), hardening: law },
+                friction: match case.contact.friction {
+                    case::Friction::Coefficient(mu) => Friction::Coulomb(mu),
+                    case::Friction::Stick => Friction::Stick,
+                },
+            },
+            case,
+        })
+    }
+
+    /// The Newton iteration for this problem.
+    pub fn newton(&self) -> Result<Newton, SimulationError> {
+        let mesh = &self.model.mesh;
+        let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
+        let kind = match self.case.solver.linear {
+            case::Linear::Multigrid => SolverKind::Multigrid,
+            case::Linear::Direct => SolverKind::Direct,
+        };
+        let linear = LinearSolver::new(kind, &pattern, &mesh.hierarchy).map_err(SolverError::from)?;
+        Ok(Newton::new(mesh, BlockMatrix::zeros(pattern), linear, self.settings))
+    }
+}
