@@ -4,5 +4,6 @@
 //! `analytical` (closed forms), `case` (the case file), `mesh`, `material`, `element`, `contact`, `compute` (one trait, CPU and
 //! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `law`, `study`, `cli`. ARCHITECTURE.md follows one case through them.
 
+pub mod linalg;
 pub mod mesh;
 pub mod real;
