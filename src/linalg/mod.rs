@@ -1,0 +1,339 @@
+//! Linear systems with 3x3 blocks: geometric multigrid preconditioned FGMRES, and sparse LU as its fallback and reference.
+//!
+//! A system A x = b comes with a mask of fixed unknowns, whose rows are rows of the identity and whose values are those of b. They
+//! are eliminated first, so that they hold exactly; the rest is solved for what they leave over. Everything sums in a fixed order:
+//! the same input gives the same bits at any thread count.
+
+pub mod bsr;
+mod coarsest;
+pub mod direct;
+pub mod fgmres;
+mod fixed;
+mod galerkin;
+pub mod multigrid;
+mod smoother;
+#[cfg(test)]
+mod tests;
+mod vector;
+
+pub use bsr::{BlockMatrix, Pattern};
+pub use direct::DirectSolver;
+pub use multigrid::Hierarchy;
+pub use smoother::Smoother;
+
+use crate::mesh::Prolongation;
+use fgmres::{Fgmres, System};
+use fixed::Fixed;
+
+/// Iterations after which FGMRES starts over.
+const RESTART: usize = 60;
+/// Iterations after which FGMRES gives up.
+const MAX_ITERATIONS: usize = 120;
+
+/// What went wrong in a linear solve.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LinalgError {
+    /// A number in the input is infinite or NaN (or, in the matrix, beyond the range of f32).
+    #[error(
+        "{place} has a number that is not finite in the row of node {node}; the state it was formed from has diverged, take a smaller step"
+    )]
+    NotFinite {
+        /// Where the number is.
+        place: &'static str,
+        /// The node in whose row it is.
+        node: usize,
+    },
+    /// A vector, a mask or a matrix is of the wrong size.
+    #[error("{what} has {got} entries where the linear solver was made for {expected}; make a solver for this mesh")]
+    Size {
+        /// What is of the wrong size.
+        what: &'static str,
+        /// Its size.
+        got: usize,
+        /// The size it should have.
+        expected: usize,
+    },
+    /// The prolongations do not fit the mesh or each other.
+    #[error("the prolongation to coarse level {} does not fit the {rows} nodes of the level below; rebuild the mesh hierarchy", level + 1)]
+    Hierarchy {
+        /// Index of the prolongation, 0 the finest.
+        level: usize,
+        /// Number of nodes of the level it should interpolate to.
+        rows: usize,
+    },
+    /// The matrix is singular.
+    #[error("the matrix is singular (found at node {node}); check that every body is held and every contact row is set")]
+    Singular {
+        /// A node whose row took part.
+        node: usize,
+    },
+    /// The direct solver would need too much memory.
+    #[error(
+        "a direct solution of {unknowns} unknowns needs about {} MB, more than the {} MB allowed; use the multigrid solver or a coarser mesh",
+        need >> 20, limit >> 20
+    )]
+    TooLarge {
+        /// Number of unknowns.
+        unknowns: usize,
+        /// Estimated memory, bytes.
+        need: usize,
+        /// Allowed memory, bytes.
+        limit: usize,
+    },
+    /// The factorisation failed for want of memory or of index range.
+    #[error("the direct factorisation failed ({what}); use the multigrid solver or a coarser mesh")]
+    Factorisation {
+        /// What the factorisation reported.
+        what: String,
+    },
+    /// A solution was asked for before a successful update.
+    #[error("the linear solver has no matrix; call update before solve")]
+    NotUpdated,
+    /// FGMRES stalled and the direct fallback is not possible.
+    #[error(
+        "the linear solve stalled at a relative residual of {residual:.1e} after {iterations} iterations; take a smaller step"
+    )]
+    Stalled {
+        /// Iterations spent.
+        iterations: usize,
+        /// Relative residual reached.
+        residual: f64,
+    },
+}
+
+/// How a solution was obtained.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SolveReport {
+    /// FGMRES iterations; 0 for a direct solution.
+    pub iterations: usize,
+    /// |b - A x| / |b| over the free unknowns, where b has the fixed unknowns' part taken over; 0 where b is.
+    pub residual: f64,
+    /// The tolerance was met.
+    pub converged: bool,
+    /// FGMRES did not meet the tolerance.
+    pub stagnated: bool,
+    /// The solution comes from the direct solver because FGMRES did not meet the tolerance.
+    pub fallback: bool,
+}
+
+/// Which solver [`LinearSolver::new`] makes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SolverKind {
+    /// FGMRES preconditioned by multigrid; direct where the mesh has no hierarchy.
+    #[default]
+    Multigrid,
+    /// Sparse LU.
+    Direct,
+}
+
+/// A solver for a sequence of systems on one pattern.
+#[derive(Debug)]
+pub struct LinearSolver {
+    method: Method,
+    matrix: BlockMatrix<f64>,
+    fixed: Fixed,
+    updated: bool,
+    /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
+    reduced: Vec<f64>,
+    free: Vec<f64>,
+}
+
+#[derive(Debug)]
+enum Method {
+    Multigrid {
+        hierarchy: Box<Hierarchy>,
+        krylov: Box<Fgmres>,
+        /// Made at the first stall of a matrix; the flag says that it is factorised for the present one.
+        fallback: Option<Box<DirectSolver>>,
+        factorised: bool,
+    },
+    Direct(Box<DirectSolver>),
+}
+
+impl LinearSolver {
+    /// Plans a solver: everything that depends on the pattern alone. `prolongations` is the mesh's chain, finest first; if it is
+    /// empty the solver is direct.
+    ///
+    /// # Errors
+    /// [`LinalgError::Hierarchy`] if the chain does not fit the pattern.
+    pub fn new(kind: SolverKind, pattern: &Pattern, prolongations: &[Prolongation]) -> Result<Self, LinalgError> {
+        Self::with_smoother(kind, pattern, prolongations, Smoother::default())
+    }
+
+    /// As [`LinearSolver::new`], with a smoother of choice.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::new`].
+    pub fn with_smoother(
+        kind: SolverKind,
+        pattern: &Pattern,
+        prolongations: &[Prolongation],
+        smoother: Smoother,
+    ) -> Result<Self, LinalgError> {
+        let unknowns = 3 * pattern.rows();
+        let method = if kind == SolverKind::Direct || prolongations.is_empty() {
+            Method::Direct(Box::new(DirectSolver::new(pattern)))
+        } else {
+            Method::Multigrid {
+                hierarchy: Box::new(Hierarchy::new(pattern, prolongations, smoother)?),
+                krylov: Box::new(Fgmres::new(unknowns, RESTART)),
+                fallback: None,
+                factorised: false,
+            }
+        };
+        Ok(Self {
+            method,
+            matrix: BlockMatrix::zeros(pattern.clone()),
+            fixed: Fixed::default(),
+            updated: false,
+            reduced: vec![0.0; unknowns],
+            free: vec![0.0; unknowns],
+        })
+    }
+
+    /// What the solver is after all: [`SolverKind::Direct`] where there is no hierarchy.
+    pub fn kind(&self) -> SolverKind {
+        match self.method {
+            Method::Multigrid { .. } => SolverKind::Multigrid,
+            Method::Direct(_) => SolverKind::Direct,
+        }
+    }
+
+    /// Takes over a matrix and the mask of its fixed unknowns (one flag an unknown; their rows count as rows of the identity whatever
+    /// the matrix holds there). The matrix must lie on the pattern given to [`LinearSolver::new`].
+    ///
+    /// # Errors
+    /// [`LinalgError::Size`], [`LinalgError::NotFinite`]; from the direct solver also [`LinalgError::TooLarge`],
+    /// [`LinalgError::Singular`] and [`LinalgError::Factorisation`].
+    pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
+        self.updated = false;
+        let (unknowns, entries) = (self.matrix.unknowns(), self.matrix.blocks.len());
+        size("the mask of fixed unknowns", fixed.len(), unknowns)?;
+        size("the matrix", matrix.blocks.len(), entries)?;
+        size("the matrix's pattern", matrix.pattern.rows(), unknowns / 3)?;
+        self.matrix.blocks.copy_from_slice(&matrix.blocks);
+        self.fixed.set(fixed);
+        match &mut self.method {
+            Method::Multigrid { hierarchy, factorised, .. } => {
+                *factorised = false;
+                let (matrix, fixed) = (&self.matrix, &self.fixed);
+                in_pool(|| hierarchy.update(matrix, fixed))?;
+            }
+            Method::Direct(direct) => direct.update(&self.matrix, &self.fixed)?,
+        }
+        self.updated = true;
+        Ok(())
+    }
+
+    /// Solves A x = rhs to |rhs - A x| <= tolerance |rhs| over the free unknowns, the fixed ones' part taken over to the right-hand side.
+    /// `x` holds the initial guess (zeros are one) and receives the solution; at fixed unknowns it is set to `rhs` exactly. May be
+    /// called any number of times after one update.
+    ///
+    /// # Errors
+    /// [`LinalgError::NotUpdated`], [`LinalgError::Size`], [`LinalgError::NotFinite`]; [`LinalgError::Stalled`] if FGMRES does not get
+    /// there and the system is too large for, or has no, direct solution (`x` is then the best iterate).
+    pub fn solve(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64]) -> Result<SolveReport, LinalgError> {
+        if !self.updated {
+            return Err(LinalgError::NotUpdated);
+        }
+        size("the right-hand side", rhs.len(), self.matrix.unknowns())?;
+        size("the solution", x.len(), self.matrix.unknowns())?;
+        for (place, vector) in [("the right-hand side", rhs), ("the initial guess", &*x)] {
+            if let Some(at) = vector.iter().position(|v| !v.is_finite()) {
+                return Err(LinalgError::NotFinite { place, node: at / 3 });
+            }
+        }
+        in_pool(|| self.solve_free(rhs, tolerance, x))
+    }
+
+    fn solve_free(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64]) -> Result<SolveReport, LinalgError> {
+        let Self { method, matrix, fixed, reduced, free, .. } = self;
+        free.fill(0.0);
+        fixed.copy(rhs, free);
+        matrix.residual(free, rhs, reduced);
+        fixed.clear(reduced);
+        free.copy_from_slice(x);
+        fixed.clear(free);
+        let scale = vector::norm(reduced);
+        let report = match method {
+            Method::Direct(direct) => {
+                free.copy_from_slice(reduced);
+                direct.solve_in_place(free)?;
+                direct_report(matrix, fixed, reduced, free, scale)
+            }
+            Method::Multigrid { hierarchy, krylov, fallback, factorised } => {
+                let mut system = Preconditioned { matrix, fixed, hierarchy };
+                let got = krylov.solve(&mut system, reduced, free, tolerance, MAX_ITERATIONS);
+                let mut report = SolveReport {
+                    iterations: got.iterations,
+                    residual: got.residual,
+                    converged: got.converged,
+                    stagnated: !got.converged,
+                    fallback: false,
+                };
+                if !got.converged {
+                    let direct = fallback.get_or_insert_with(|| Box::new(DirectSolver::new(&matrix.pattern)));
+                    let mut factors = Ok(());
+                    if !*factorised {
+                        factors = direct.update(matrix, fixed);
+                        *factorised = factors.is_ok();
+                    }
+                    let mut solution = reduced.clone();
+                    if let Err(error) = factors.and_then(|()| direct.solve_in_place(&mut solution)) {
+                        log::debug!("no direct fallback: {error}");
+                        fixed.copy(rhs, free);
+                        x.copy_from_slice(free);
+                        return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
+                    }
+                    free.copy_from_slice(&solution);
+                    let direct = direct_report(matrix, fixed, reduced, free, scale);
+                    report = SolveReport { fallback: true, stagnated: true, iterations: got.iterations, ..direct };
+                }
+                report
+            }
+        };
+        fixed.copy(rhs, free);
+        x.copy_from_slice(free);
+        Ok(report)
+    }
+}
+
+/// The residual of a direct solution; anything below 1e-6 is what rounding leaves.
+fn direct_report(matrix: &BlockMatrix<f64>, fixed: &Fixed, b: &[f64], x: &[f64], scale: f64) -> SolveReport {
+    let mut r = vec![0.0; x.len()];
+    matrix.residual(x, b, &mut r);
+    fixed.clear(&mut r);
+    let residual = if scale > 0.0 { vector::norm(&r) / scale } else { 0.0 };
+    SolveReport { residual, converged: residual < 1e-6, ..SolveReport::default() }
+}
+
+fn size(what: &'static str, got: usize, expected: usize) -> Result<(), LinalgError> {
+    if got == expected { Ok(()) } else { Err(LinalgError::Size { what, got, expected }) }
+}
+
+/// Runs a job inside the thread pool, so that its many short parallel loops do not each have to enter it.
+fn in_pool<R: Send>(job: impl FnOnce() -> R + Send) -> R {
+    if rayon::current_num_threads() == 1 || rayon::current_thread_index().is_some() { job() } else { rayon::scope(|_| job()) }
+}
+
+struct Preconditioned<'a> {
+    matrix: &'a BlockMatrix<f64>,
+    fixed: &'a Fixed,
+    hierarchy: &'a mut Hierarchy,
+}
+
+impl System for Preconditioned<'_> {
+    fn apply(&self, z: &[f32], w: &mut [f64]) {
+        self.matrix.multiply(z, w);
+        self.fixed.clear(w);
+    }
+
+    fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
+        self.matrix.residual(x, b, r);
+        self.fixed.clear(r);
+    }
+
+    fn precondition(&mut self, v: &[f64], z: &mut [f32]) {
+        self.hierarchy.v_cycle(v, z);
+    }
+}
