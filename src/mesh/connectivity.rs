@@ -1,0 +1,89 @@
+//! Lists and areas derived from the elements.
+
+use super::NodeElements;
+
+/// Local nodes of the six faces of a VTK_HEXAHEDRON, counter-clockwise seen from outside:
+/// xi = -1, xi = 1, eta = -1, eta = 1, zeta = -1, zeta = 1.
+pub const FACES: [[usize; 4]; 6] = [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]];
+
+/// The elements around each of `node_count` nodes, in increasing order.
+pub fn node_elements(node_count: usize, elements: &[[u32; 8]]) -> NodeElements {
+    let mut start = vec![0u32; node_count + 1];
+    for &node in elements.iter().flatten() {
+        start[node as usize + 1] += 1;
+    }
+    for n in 0..node_count {
+        start[n + 1] += start[n];
+    }
+    let mut next = start.clone();
+    let mut entry = vec![0u32; 8 * elements.len()];
+    for (e, element) in elements.iter().enumerate() {
+        for (local, &node) in element.iter().enumerate() {
+            let slot = &mut next[node as usize];
+            entry[*slot as usize] = (8 * e + local) as u32;
+            *slot += 1;
+        }
+    }
+    NodeElements { start, entry }
+}
+
+/// Faces that belong to one element only, in the order of the elements, counter-clockwise seen from outside.
+pub fn boundary_faces(elements: &[[u32; 8]]) -> Vec<[u32; 4]> {
+    let mut faces: Vec<([u32; 4], usize)> = Vec::with_capacity(6 * elements.len());
+    for (e, element) in elements.iter().enumerate() {
+        for (f, local) in FACES.iter().enumerate() {
+            let mut key = local.map(|l| element[l]);
+            key.sort_unstable();
+            faces.push((key, 6 * e + f));
+        }
+    }
+    faces.sort_unstable();
+    let mut single: Vec<usize> = faces.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1).map(|same| same[0].1).collect();
+    single.sort_unstable();
+    single.into_iter().map(|id| FACES[id % 6].map(|l| elements[id / 6][l])).collect()
+}
+
+/// Area of a bilinear face, shared among its four nodes by their shape functions (2 x 2 Gauss points).
+pub fn face_areas(corners: [[f64; 3]; 4]) -> [f64; 4] {
+    const SIGN: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let g = 1.0 / 3f64.sqrt();
+    let mut share = [0.0; 4];
+    for point in SIGN {
+        let (xi, eta) = (g * point[0], g * point[1]);
+        let (mut t, mut s) = ([0.0; 3], [0.0; 3]);
+        for (corner, sign) in corners.iter().zip(SIGN) {
+            for k in 0..3 {
+                t[k] += 0.25 * sign[0] * (1.0 + sign[1] * eta) * corner[k];
+                s[k] += 0.25 * sign[1] * (1.0 + sign[0] * xi) * corner[k];
+            }
+        }
+        let n = [t[1] * s[2] - t[2] * s[1], t[2] * s[0] - t[0] * s[2], t[0] * s[1] - t[1] * s[0]];
+        let area = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        for (part, sign) in share.iter_mut().zip(SIGN) {
+            *part += 0.25 * (1.0 + sign[0] * xi) * (1.0 + sign[1] * eta) * area;
+        }
+    }
+    share
+}
+
+/// Tributary area and local element size at each of `contact_nodes`, from all surface `faces` around them.
+pub fn contact_measures(nodes: &[[f64; 3]], faces: &[[u32; 4]], contact_nodes: &[u32]) -> (Vec<f64>, Vec<f64>) {
+    let mut tributary = vec![0.0; nodes.len()];
+    let mut around = vec![(0.0, 0usize); nodes.len()];
+    for face in faces {
+        let share = face_areas(face.map(|n| nodes[n as usize]));
+        let total: f64 = share.iter().sum();
+        for (&node, part) in face.iter().zip(share) {
+            tributary[node as usize] += part;
+            around[node as usize].0 += total;
+            around[node as usize].1 += 1;
+        }
+    }
+    contact_nodes
+        .iter()
+        .map(|&n| {
+            let (area, count) = around[n as usize];
+            (tributary[n as usize], (area / count.max(1) as f64).sqrt())
+        })
+        .unzip()
+}

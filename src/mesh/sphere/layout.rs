@@ -1,0 +1,133 @@
+//! How many cells, and how their sizes grow.
+
+use super::SphereSpec;
+use super::butterfly::Butterfly;
+use super::geometry::SHELL_DEPTH;
+use crate::mesh::MeshError;
+
+/// Growth of the rings' spacing outside the fine zone that the count aims at.
+const RING_GROWTH: f64 = 1.28;
+/// Growth of the layers' thickness in the shell that the count aims at.
+const LAYER_GROWTH: f64 = 1.17;
+/// Largest distance from the axis to which the fine zone may reach.
+const LARGEST_FINE_RADIUS: f64 = 0.85;
+
+/// Counts and gradings of a sphere's mesh; lengths in the half ball of `geometry`.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// Half the cells across the centre block.
+    pub m: usize,
+    /// Cells along the index classes.
+    pub blocks: Butterfly,
+    /// Spacing of the rings in the fine zone: the contact radius over the elements per contact radius.
+    pub spacing: f64,
+    /// Mean radii of the rings, from the centre block's half-width (r = 0) to the equator, 2.
+    pub radii: Vec<f64>,
+    /// Rings up to the end of the fine zone.
+    pub fine_rings: usize,
+    /// Shares of a depth line at which the layers lie, 0 to 1.
+    pub depths: Vec<f64>,
+    /// Depth of the shell under the pole.
+    pub shell_depth: f64,
+    /// How square the centre block is: 1 straight sides, 0 a circle.
+    pub squareness: f64,
+    /// Rings over which the square turns into the fine zone's rings.
+    pub rounding_rings: usize,
+    /// Spacings over which the distances of one ring's nodes from the pole are spread.
+    pub spread: f64,
+    /// Rings outside the fine zone over which the spread fades away.
+    pub fading_rings: usize,
+    /// Distance from the axis, on the sphere, to which the fine zone reaches.
+    pub fine_radius: f64,
+}
+
+/// Distance from the pole in the stereographic projection of a point of the sphere's surface at the distance `rho` from the axis.
+pub fn stereographic(rho: f64) -> f64 {
+    2.0 * rho / (1.0 + (1.0 - rho * rho).sqrt())
+}
+
+/// Even number nearest to `x`, at least 2.
+fn nearest_even(x: f64) -> usize {
+    2 * ((0.5 * x).round().max(1.0) as usize)
+}
+
+/// Growth q at which `count` sizes 1, q, q^2, ... sum to `sum`.
+fn growth(count: usize, sum: f64) -> f64 {
+    let total = |q: f64| (0..count).rev().fold(0.0, |s, _| 1.0 + q * s);
+    let (mut low, mut high) = (0.0, 1.0 + sum);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if total(middle) < sum { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Number of sizes 1, q, q^2, ... for the growth `q` to sum to `sum`.
+fn sizes_for(sum: f64, q: f64) -> f64 {
+    (1.0 + (q - 1.0) * sum).ln() / q.ln()
+}
+
+impl Layout {
+    /// The layout for a description.
+    ///
+    /// # Errors
+    /// A value out of range.
+    pub fn new(spec: &SphereSpec) -> Result<Layout, MeshError> {
+        let &SphereSpec { contact_radius, elements_per_contact_radius: count, fine_zone } = spec;
+        if !(0.005..=0.65).contains(&contact_radius) {
+            return Err(MeshError::ContactRadius(contact_radius));
+        }
+        if !(4..=32).contains(&count) {
+            return Err(MeshError::ElementsPerContactRadius(count));
+        }
+        if !(1.1..=3.0).contains(&fine_zone) {
+            return Err(MeshError::FineZone(fine_zone));
+        }
+        let spacing = stereographic(contact_radius) / count as f64;
+        let fine_radius = (fine_zone * contact_radius).min(LARGEST_FINE_RADIUS);
+        let m = nearest_even(0.5 * count as f64);
+        let fine_rings = (stereographic(fine_radius) / spacing - 1e-9).ceil() as usize - m;
+        let fine_end = (m + fine_rings) as f64 * spacing;
+
+        let remaining = (2.0 - fine_end) / spacing;
+        let wanted = sizes_for(remaining, RING_GROWTH);
+        let nr = nearest_even(fine_rings as f64 + wanted).max(nearest_even(fine_rings as f64 + 2.0));
+        let outer = nr - fine_rings;
+        // The first ring outside has already grown once.
+        let q = growth(outer + 1, remaining + 1.0);
+        let mut radii: Vec<f64> = (0..=fine_rings).map(|r| (m + r) as f64 * spacing).collect();
+        let mut size = spacing;
+        for _ in 0..outer {
+            size *= q;
+            radii.push(radii[radii.len() - 1] + size);
+        }
+        radii[nr] = 2.0;
+
+        let shell_depth = SHELL_DEPTH * stereographic(contact_radius);
+        let layers = shell_depth / spacing;
+        let nd = nearest_even(sizes_for(layers, LAYER_GROWTH));
+        let q = growth(nd, layers);
+        let mut depths = vec![0.0];
+        let mut size = 1.0 / layers;
+        for d in 0..nd {
+            depths.push(depths[d] + size);
+            size *= q;
+        }
+        depths[nd] = 1.0;
+
+        Ok(Layout {
+            m,
+            blocks: Butterfly { nx: 2 * m, ny: m, nr, nd },
+            spacing,
+            radii,
+            fine_rings,
+            depths,
+            shell_depth,
+            squareness: 0.75,
+            rounding_rings: (m / 2).max(1),
+            spread: 1.0,
+            fading_rings: outer.div_ceil(2),
+            fine_radius,
+        })
+    }
+}

@@ -1,0 +1,78 @@
+//! The sphere's mesh: an O-grid of half the lower hemisphere, graded from the pole.
+
+mod butterfly;
+mod geometry;
+mod layout;
+#[cfg(test)]
+mod tests;
+
+use super::connectivity::{contact_measures, node_elements};
+use super::hierarchy::{Blocks, hierarchy};
+use super::{Mesh, MeshError};
+use geometry::Geometry;
+use layout::Layout;
+
+/// Contact is watched this many fine radii from the pole.
+const CONTACT_MARGIN: f64 = 1.3;
+
+/// Description of a sphere's mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphereSpec {
+    /// Predicted contact radius a/R, 0.005 to 0.65.
+    pub contact_radius: f64,
+    /// Elements from the pole to the contact radius, 4 to 32.
+    pub elements_per_contact_radius: usize,
+    /// Radius of the finely meshed surface in contact radii, 1.1 to 3; capped at 0.85 sphere radii.
+    pub fine_zone: f64,
+}
+
+/// The mesh of half the lower hemisphere.
+///
+/// # Errors
+/// A value of `spec` out of range.
+pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
+    Ok(mesh_of(&Layout::new(spec)?))
+}
+
+/// Number of elements that [`sphere_mesh`] will make, without making them.
+///
+/// # Errors
+/// A value of `spec` out of range.
+pub fn estimated_elements(spec: &SphereSpec) -> Result<usize, MeshError> {
+    Ok(Layout::new(spec)?.blocks.element_count())
+}
+
+/// The mesh of a layout.
+fn mesh_of(layout: &Layout) -> Mesh {
+    let blocks = layout.blocks;
+    let geometry = Geometry::new(layout);
+    let sites = blocks.sites();
+    let nodes: Vec<[f64; 3]> = sites.iter().map(|&site| geometry.position(site)).collect();
+    let elements = blocks.elements();
+
+    // Rings that can touch: the fine zone and a margin, but never the equator nor its neighbour.
+    let reach = layout.radii[layout.fine_rings] * CONTACT_MARGIN;
+    let rings = layout.radii.iter().filter(|&&r| r < reach).count().max(layout.fine_rings + 2).min(blocks.nr - 1);
+    let contact_faces = blocks.surface_faces(rings);
+    let mut contact_nodes: Vec<u32> = contact_faces.iter().flatten().copied().collect();
+    contact_nodes.sort_unstable();
+    contact_nodes.dedup();
+    let (contact_area, contact_size) = contact_measures(&nodes, &blocks.surface_faces(blocks.nr), &contact_nodes);
+
+    let on = |wanted: &dyn Fn(&[f64; 3]) -> bool| -> Vec<u32> {
+        (0u32..).zip(&nodes).filter(|(_, x)| wanted(x)).map(|(n, _)| n).collect()
+    };
+    Mesh {
+        node_elements: node_elements(nodes.len(), &elements),
+        plate_nodes: on(&|x| x[2] == 1.0),
+        symmetry_nodes: on(&|x| x[1] == 0.0),
+        nodes,
+        elements,
+        contact_nodes,
+        contact_faces,
+        contact_area,
+        contact_size,
+        hierarchy: hierarchy(blocks),
+        fine_radius: layout.fine_radius,
+    }
+}
