@@ -2,6 +2,43 @@
 //!
 //! Lengths are in sphere radii. The pole is the origin, the rigid plane is z = 0, the centre of the sphere is (0, 0, 1), the symmetry
 //! plane is y = 0 and the body fills y >= 0, 0 <= z <= 1.
+//!
+//! `sphere` builds the body, `brick` a box for tests. Both lay logical blocks of cells (`hierarchy`) whose indices give the numbering,
+//! the coordinates and the multigrid levels; `connectivity` derives lists and areas, `quality` measures elements.
+
+pub mod brick;
+pub mod connectivity;
+pub mod hierarchy;
+pub mod quality;
+pub mod sphere;
+
+pub use brick::brick;
+pub use sphere::{SphereSpec, estimated_elements, sphere_mesh};
+
+/// What is wrong with the description of a mesh, and what to do about it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// The predicted contact radius is outside the range for which the sphere's mesh is built.
+    #[error("contact radius a/R = {0} is outside 0.005 to 0.65: change the indentation, or the estimate of the contact radius")]
+    ContactRadius(f64),
+    /// The number of elements per contact radius is out of range.
+    #[error("elements_per_contact_radius = {0} is outside 4 to 32: 16 is a good start")]
+    ElementsPerContactRadius(usize),
+    /// The fine zone is out of range.
+    #[error("a fine zone of {0} contact radii is outside 1.1 to 3: 1.3 is a good start")]
+    FineZone(f64),
+    /// A brick without cells, without extent, or with more nodes than 32-bit numbers can count.
+    #[error(
+        "a brick of {cells:?} cells and lengths {lengths:?} cannot be meshed: each count must be at least 1, each length positive \
+         and finite, and the nodes fewer than 500 million"
+    )]
+    Brick {
+        /// Cells along x, y, z.
+        cells: [usize; 3],
+        /// Edge lengths along x, y, z.
+        lengths: [f64; 3],
+    },
+}
 
 pub mod pattern;
 
@@ -28,7 +65,7 @@ pub struct NodeElements {
 }
 
 /// A hex8 mesh with what the solver needs to know of it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     /// Reference positions of the nodes.
     pub nodes: Vec<[f64; 3]>,
@@ -40,9 +77,15 @@ pub struct Mesh {
     pub contact_nodes: Vec<u32>,
     /// Outer faces that can touch the plane, counter-clockwise seen from outside.
     pub contact_faces: Vec<[u32; 4]>,
-    /// Nodes that move as the rigid plate (the equator plane).
+    /// Reference area tributary to each contact node (the integral of its shape function over the surface); of the meshed half only,
+    /// so that a node on the symmetry plane has half of what the whole sphere would give it. In the order of `contact_nodes`.
+    pub contact_area: Vec<f64>,
+    /// Local element size at each contact node, the root of the mean area of the surface faces around it; in the order of
+    /// `contact_nodes`.
+    pub contact_size: Vec<f64>,
+    /// Nodes that move as the rigid plate (the equator plane), in increasing order.
     pub plate_nodes: Vec<u32>,
-    /// Nodes on the symmetry plane y = 0.
+    /// Nodes on the symmetry plane y = 0, in increasing order.
     pub symmetry_nodes: Vec<u32>,
     /// Interpolations, finest first; empty if the mesh has no hierarchy.
     pub hierarchy: Vec<Prolongation>,

@@ -141,34 +141,3 @@ fn the_contact_area_enters_smoothly() {
     let (rms, largest) = entry_ripple(&sphere_mesh(&spec(0.2087, 16, 1.3)).unwrap(), 0.2087);
     assert!(rms < 0.015 && largest < 0.07, "{rms} {largest}");
 }
-
-fn ripple_range(mesh: &Mesh, lo: f64, hi: f64) -> (f64,f64) {
-    let mut entries: Vec<(f64, f64)> = mesh.contact_nodes.iter().zip(&mesh.contact_area)
-        .map(|(&n, &area)| (mesh.nodes[n as usize][0].hypot(mesh.nodes[n as usize][1]), area)).collect();
-    entries.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut sum, mut largest) = (0.0, 0f64);
-    let samples=4000;
-    for k in 0..samples {
-        let rho = lo + (k as f64 + 0.5) / samples as f64 * (hi-lo);
-        let inside: f64 = entries.iter().take_while(|e| e.0 < rho).map(|e| e.1).sum();
-        let error = inside / (PI * rho * rho / (1.0 + (1.0 - rho * rho).sqrt())) - 1.0;
-        sum += error * error; largest = largest.max(error.abs());
-    }
-    (100.0*(sum / samples as f64).sqrt(), 100.0*largest)
-}
-#[test]
-fn explore() {
-    let a=0.2087;
-    for epr in [8,16,24] {
-    for sq in [1.0,0.75,0.6,0.5] { for rr in [0.25,0.5,1.0] { for spread in [0.0, 0.5, 1.0,1.5,2.0,3.0,-0.15,-0.3,-0.45,-0.6,-1.0] {
-        if rr!=0.5 && sq!=0.75 {continue}
-        let mut l = Layout::new(&spec(a, epr, 1.3)).unwrap();
-        l.squareness=sq; l.spread=spread; l.rounding_rings=((l.m as f64*rr) as usize).max(1);
-        let mesh = mesh_of(&l);
-        let (f, q, ok) = quality_of(&mesh, a);
-        let r = ripple_range(&mesh, 0.4*a, 1.3*a);
-        print!("epr {epr} sq {sq} rr {rr} spread {spread}: q {f:.3} {q:.3} {ok} | {:.2} {:.2} |", r.0,r.1);
-        for (lo,hi) in [(0.2,0.4),(0.4,0.6),(0.6,0.8),(0.8,1.0),(1.0,1.3)] { let r=ripple_range(&mesh,lo*a,hi*a); print!(" {:.2} {:.2} |",r.0,r.1); }
-        println!();
-    }}}}
-}
