@@ -16,6 +16,7 @@
 
 pub mod hardening;
 pub mod j2;
+pub mod point;
 
 pub use hardening::{Hardening, HardeningError};
 pub use j2::{Response, deviatoric_tangent, return_mapping};
