@@ -171,48 +171,69 @@ impl MaterialPoint {
     }
 }
 
-/// Uniaxial stress along x to the logarithmic strain `strain` (negative: compression) in `steps` equal steps; the sides are free.
-/// The first record is the undeformed point.
-///
-/// # Errors
-/// [`DriveError`] at the first step that has no answer.
-pub fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> Result<Vec<PointRecord>, DriveError> {
-    let mut point = MaterialPoint::new(material.clone());
-    let mut records = vec![point.start()];
-    for step in 1..=steps {
-        records.push(point.stretch(strain * (step as f64 / steps as f64))?);
-    }
-    Ok(records)
+/// What one step of a path asks of the point.
+#[derive(Clone, Copy, Debug)]
+enum Target {
+    /// The logarithmic strain along x, with free sides.
+    Stretch(f64),
+    /// F - I.
+    Deform(Gradient),
 }
 
-/// Simple shear F = I + gamma e_x (x) e_y to gamma = `strain` in `steps` equal steps. The first record is the undeformed point.
-///
-/// # Errors
-/// [`DriveError`] at the first step that has no answer.
-pub fn simple_shear(material: &Material<f64>, strain: f64, steps: usize) -> Result<Vec<PointRecord>, DriveError> {
+/// The records of a path, from the undeformed point on; the last item is the error of a step that has no answer.
+fn drive(
+    material: &Material<f64>,
+    targets: impl IntoIterator<Item = Target>,
+) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
     let mut point = MaterialPoint::new(material.clone());
-    let mut records = vec![point.start()];
-    for step in 1..=steps {
+    let mut failed = false;
+    let start = Ok(point.start());
+    let steps = targets.into_iter().map_while(move |target| {
+        if failed {
+            return None;
+        }
+        let record = match target {
+            Target::Stretch(axial) => point.stretch(axial),
+            Target::Deform(gradient) => point.advance(&gradient),
+        };
+        failed = record.is_err();
+        Some(record)
+    });
+    std::iter::once(start).chain(steps)
+}
+
+/// Uniaxial stress along x to the logarithmic strain `strain` (negative: compression) in `steps` equal steps; the sides are free.
+/// The first record is the undeformed point; after the error of a step the iterator ends.
+pub fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
+    drive(material, (1..=steps).map(move |step| Target::Stretch(strain * (step as f64 / steps as f64))))
+}
+
+/// Simple shear F = I + gamma e_x (x) e_y to gamma = `strain` in `steps` equal steps. The first record is the undeformed point;
+/// after the error of a step the iterator ends.
+pub fn simple_shear(
+    material: &Material<f64>,
+    strain: f64,
+    steps: usize,
+) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
+    let targets = (1..=steps).map(move |step| {
         let mut gradient = Gradient::default();
         gradient[0][1] = strain * (step as f64 / steps as f64);
-        records.push(point.advance(&gradient)?);
-    }
-    Ok(records)
+        Target::Deform(gradient)
+    });
+    drive(material, targets)
 }
 
-/// Through the deformation gradients F of `path`, one step each. The first record is the undeformed point.
-///
-/// # Errors
-/// [`DriveError`] at the first step that has no answer.
-pub fn along(material: &Material<f64>, path: &[Gradient]) -> Result<Vec<PointRecord>, DriveError> {
-    let mut point = MaterialPoint::new(material.clone());
-    let mut records = vec![point.start()];
-    for gradient in path {
-        let displacement: Gradient =
-            std::array::from_fn(|i| std::array::from_fn(|k| gradient[i][k] - if i == k { 1.0 } else { 0.0 }));
-        records.push(point.advance(&displacement)?);
-    }
-    Ok(records)
+/// Through the deformation gradients F of `path`, one step each. The first record is the undeformed point; after the error of a
+/// step the iterator ends.
+pub fn along(
+    material: &Material<f64>,
+    path: impl IntoIterator<Item = Gradient>,
+) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
+    let targets = path.into_iter().map(|gradient| {
+        let identity = |i: usize, k: usize| if i == k { 1.0 } else { 0.0 };
+        Target::Deform(std::array::from_fn(|i| std::array::from_fn(|k| gradient[i][k] - identity(i, k))))
+    });
+    drive(material, targets)
 }
 
 fn diagonal(axial: f64, lateral: f64) -> Gradient {

@@ -1,7 +1,11 @@
 //! Uniaxial stress to finite strain against the exact curve of every law, shear, and reversal.
 
 use super::*;
-use crate::material::point::{DriveError, MaterialPoint, along, simple_shear, uniaxial};
+use crate::material::point::{self, DriveError, MaterialPoint, PointRecord, along, simple_shear};
+
+fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> Result<Vec<PointRecord>, DriveError> {
+    point::uniaxial(material, strain, steps).collect()
+}
 
 /// a of b_e_bar = diag(a, a^-1/2, a^-1/2) in uniaxial stress: mu (a - a^-1/2) = sigma.
 fn elastic_stretch(material: &Material<f64>, stress: f64) -> f64 {
@@ -38,7 +42,7 @@ fn exact(material: &Material<f64>, alpha: f64) -> (f64, f64) {
     (0.5 * elastic_stretch(material, stress).ln() + plastic + jacobian.ln() / 3.0, stress)
 }
 
-fn kirchhoff(record: &crate::material::point::PointRecord) -> f64 {
+fn kirchhoff(record: &PointRecord) -> f64 {
     let f = &record.deformation_gradient;
     record.cauchy[0] * f[0][0] * f[1][1] * f[2][2]
 }
@@ -126,7 +130,7 @@ fn work_is_conserved() {
         let external: f64 = records
             .windows(2)
             .map(|pair| {
-                let strain = |r: &crate::material::point::PointRecord| r.deformation_gradient[0][0].ln();
+                let strain = |r: &PointRecord| r.deformation_gradient[0][0].ln();
                 0.5 * (kirchhoff(&pair[0]) + kirchhoff(&pair[1])) * (strain(&pair[1]) - strain(&pair[0]))
             })
             .sum();
@@ -146,7 +150,7 @@ fn work_is_conserved() {
 #[test]
 fn simple_shear_stays_on_the_yield_surface_and_counts_its_rotation() {
     let material = material(Hardening::ideal(2e-3).unwrap());
-    let records = simple_shear(&material, 1.0, 500).unwrap();
+    let records: Vec<PointRecord> = simple_shear(&material, 1.0, 500).map(Result::unwrap).collect();
     assert_eq!(records.len(), 501);
     let last = records.last().unwrap();
     assert!((last.von_mises - 2e-3).abs() < 1e-15);
@@ -155,8 +159,8 @@ fn simple_shear_stays_on_the_yield_surface_and_counts_its_rotation() {
     assert!((last.alpha * 3.0_f64.sqrt() - 1.0).abs() < 5e-3, "{}", last.alpha);
     assert!((last.cauchy[0] + last.cauchy[1] + last.cauchy[2]).abs() < 1e-15);
     // The same through a given path.
-    let path: Vec<Matrix> = records[1..].iter().map(|r| r.deformation_gradient).collect();
-    let again = along(&material, &path).unwrap();
+    let path = records[1..].iter().map(|r| r.deformation_gradient);
+    let again: Vec<PointRecord> = along(&material, path).map(Result::unwrap).collect();
     assert!((again[500].alpha - last.alpha).abs() < 1e-12 && again[500].step == 500);
 }
 
@@ -180,7 +184,14 @@ fn huge_steps_have_answers() {
 fn impossible_paths_name_the_step() {
     let material = material(Hardening::ideal(2e-3).unwrap());
     let mirrored = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    assert_eq!(along(&material, &[IDENTITY, mirrored]), Err(DriveError::Gradient { step: 2, determinant: -1.0 }));
-    let error = along(&material, &[[[f64::NAN; 3]; 3]]).unwrap_err();
+    let mut answers = along(&material, [IDENTITY, mirrored, IDENTITY]);
+    assert!(answers.next().unwrap().is_ok() && answers.next().unwrap().is_ok());
+    assert_eq!(answers.next(), Some(Err(DriveError::Gradient { step: 2, determinant: -1.0 })));
+    assert_eq!(answers.next(), None);
+    let error = along(&material, [[[f64::NAN; 3]; 3]]).last().unwrap().unwrap_err();
     assert!(error.to_string().starts_with("step 1"), "{error}");
+    // Strains without a finite stretch.
+    for strain in [f64::NAN, 800.0, -800.0] {
+        assert!(uniaxial(&material, strain, 1).is_err(), "{strain}");
+    }
 }
