@@ -1,8 +1,8 @@
 //! How large a case is, before it is meshed.
 
+use super::Case;
 use super::error::CaseError;
 use super::reader::Reader;
-use super::Case;
 
 /// Memory of an element with its share of the linear systems, in bytes: the 3x3 blocks in f64, their multigrid levels in f32,
 /// the Krylov basis and the state at the quadrature points.
@@ -31,16 +31,13 @@ pub(super) fn check_memory(case: &Case, root: &Reader<'_>) -> Result<(), CaseErr
     if needed <= available {
         return Ok(());
     }
-    let (mesh, solver) = (root.table("mesh")?, root.table("solver")?);
-    let what = format!(
-        "is {}, and a mesh of about {} elements takes about {needed:.2} GiB, more than solver.max_memory_gib = {available:?}",
-        case.mesh.elements_per_contact_radius,
-        estimated_elements(case)
-    );
-    let allowed = "fewer elements_per_contact_radius, a smaller fine_zone, or a larger solver.max_memory_gib";
-    Err(match (mesh.get("elements_per_contact_radius"), solver.get("max_memory_gib")) {
-        (Some(field), _) => field.refuse(&what, allowed),
-        (None, Some(field)) => field.refuse(&what, allowed),
-        (None, None) => mesh.refuse(&what, allowed),
+    let mesh = root.table("mesh")?;
+    let takes = format!("a mesh of about {} elements takes about {needed:.2} GiB", estimated_elements(case));
+    let allowed = "fewer mesh.elements_per_contact_radius, a smaller mesh.fine_zone, or a larger solver.max_memory_gib";
+    // Named is what the user gave: the limit, or else the keys that make the mesh large.
+    let blamed = [root.table("solver")?.get("max_memory_gib"), mesh.get("elements_per_contact_radius"), mesh.get("fine_zone")];
+    Err(match blamed.into_iter().flatten().next() {
+        Some(field) => field.refuse(&format!("{takes}, of {available:?} GiB that solver.max_memory_gib allows"), allowed),
+        None => root.refuse(&takes, allowed),
     })
 }

@@ -88,15 +88,7 @@ fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
 }
 
 fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
-    table.only(&[
-        "linear",
-        "tolerance",
-        "press_steps",
-        "shear_steps",
-        "max_iterations",
-        "max_cutbacks",
-        "max_memory_gib",
-    ])?;
+    table.only(&["linear", "tolerance", "press_steps", "shear_steps", "max_iterations", "max_cutbacks", "max_memory_gib"])?;
     let mut solver = Solver::default();
     if let Some(field) = table.get("linear") {
         solver.linear = field.choice(&[("multigrid", Linear::Multigrid), ("direct", Linear::Direct)])?;
