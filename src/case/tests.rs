@@ -190,13 +190,3 @@ fn the_path_may_return_to_where_it_was() {
         ideal(&[path]);
     }
 }
-
-#[test]
-fn the_estimate_follows_the_meshes_of_the_prototype() {
-    for (elements, measured) in [(8, 3264.0), (16, 13566.0)] {
-        let case = ideal(&[&format!("mesh.elements_per_contact_radius={elements}")]);
-        let estimated = estimated_elements(&case) as f64;
-        assert!((estimated / measured - 1.0).abs() < 0.05, "{estimated} against {measured}");
-    }
-    assert!(estimated_memory(&ideal(&[])) < 0.2);
-}
