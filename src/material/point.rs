@@ -31,7 +31,7 @@ pub enum DriveError {
     },
     /// No lateral stretch frees the sides of stress.
     #[error(
-        "step {step}: no lateral stretch makes the lateral stress vanish (left: {residual:e} of Young's modulus): take more steps"
+        "step {step}: no lateral stretch makes the lateral stress vanish (left: {residual:e} of Young's modulus): take more steps or a smaller strain"
     )]
     Lateral {
         /// The step, counted from 1.
@@ -130,14 +130,19 @@ impl MaterialPoint {
         let root = increasing_root(middle - reach, middle + reach, middle, |lateral| stress(lateral).unwrap_or((f64::NAN, 1.0)));
         let (value, derivative) = stress(root).map_err(|source| DriveError::Point { step, source })?;
         let root = if derivative > 0.0 { root - value / derivative } else { root };
-        let (value, _) = stress(root).map_err(|source| DriveError::Point { step, source })?;
+        let target = diagonal(axial.exp_m1(), (lateral_before + root).exp_m1());
+        let after =
+            return_mapping(&self.material, &relative(root), &self.state).map_err(|source| DriveError::Point { step, source })?;
         let elasticity = &self.material.elasticity;
+        // From F as it is kept: a lateral stretch so small that F - I does not hold it is refused here too.
+        let j = determinant_minus_one(&target);
+        let lateral_stress = after.stress[1] + (1.0 + j) * pressure(elasticity, j).0;
         let youngs_modulus = 9.0 * elasticity.bulk * elasticity.shear / (3.0 * elasticity.bulk + elasticity.shear);
-        let residual = value / youngs_modulus;
+        let residual = lateral_stress / youngs_modulus;
         if residual.is_nan() || residual.abs() > 1e-9 {
             return Err(DriveError::Lateral { step, residual });
         }
-        self.advance(&diagonal(axial.exp_m1(), (lateral_before + root).exp_m1()))
+        self.advance(&target)
     }
 
     /// The lateral Kirchhoff stress at ln J, and its derivative with respect to the logarithmic lateral strain.

@@ -82,13 +82,21 @@ fn ten_thousand_plastic_steps_keep_the_determinant_of_b_e() {
 fn yielding_ends_on_the_yield_surface() {
     for (name, hardening) in laws::<f64>().into_iter().skip(1) {
         let material = material(hardening);
-        let mut state = PointState::default();
+        let (mut state, mut work) = (PointState::default(), 0.0);
         for step in 0..20 {
             let response = respond(&material, &STEP, &state);
             assert!(response.yielding, "{name} {step}");
             let flow = material.hardening.flow_stress(response.state.alpha);
             let off = von_mises(&response.stress) / flow - 1.0;
             assert!(off.abs() < 1e-14, "{name} {step}: {off:e}");
+            // Plastic work: between the two flow stresses times the increment, and the sum of increments is the law's own.
+            let increment = response.state.alpha - state.alpha;
+            let least = material.hardening.flow_stress(state.alpha) * increment;
+            let slack = 1e-15 * material.hardening.plastic_work(response.state.alpha, flow);
+            assert!(response.plastic_work >= least - slack && response.plastic_work <= flow * increment + slack, "{name} {step}");
+            work += response.plastic_work;
+            let total = material.hardening.plastic_work(response.state.alpha, flow);
+            assert!((work / total - 1.0).abs() < 1e-14, "{name} {step}: {work:e} {total:e}");
             // The same deformation again, from the accepted state: nothing happens.
             let again = respond(&material, &[[0.0; 3]; 3], &response.state);
             assert!(!again.yielding && again.state.alpha == response.state.alpha, "{name} {step}");

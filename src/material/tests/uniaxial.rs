@@ -194,4 +194,8 @@ fn impossible_paths_name_the_step() {
     for strain in [f64::NAN, 800.0, -800.0] {
         assert!(uniaxial(&material, strain, 1).is_err(), "{strain}");
     }
+    // A lateral stretch that F - I no longer holds is refused, not answered.
+    for record in point::uniaxial(&material, 1000.0, 100).map_while(Result::ok) {
+        assert!(record.cauchy[1].abs() < 1e-9 && (record.von_mises / record.cauchy[0] - 1.0).abs() < 1e-5 || record.step == 0);
+    }
 }
