@@ -32,7 +32,7 @@ impl Case {
         let root = Reader::new(document)?;
         root.only(&["sphere", "material", "contact", "mesh", "solver", "output", "path"])?;
         let sphere = read_sphere(&root.require_table("sphere", "a table with radius")?)?;
-        let material = read_material(&root.require_table("material", "a table with youngs_modulus, poissons_ratio, hardening")?)?;
+        let material = read_material_of(&root)?;
         let contact = read_contact(&root.require_table("contact", "a table with friction")?)?;
         let case = Case {
             mesh: read_mesh(&root.table("mesh")?, sphere.radius)?,
@@ -46,6 +46,24 @@ impl Case {
         estimate::check_memory(&case, &root)?;
         Ok(case)
     }
+}
+
+impl Material {
+    /// Reads the `[material]` table of a TOML file, a whole case or a material alone, and applies the `--set` arguments; the other
+    /// tables are not looked at.
+    pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
+        let name = file.display().to_string();
+        let text = std::fs::read_to_string(file).map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
+        let mut document = Document::parse(&text, &name)?;
+        for argument in settings {
+            document.set_argument(argument)?;
+        }
+        read_material_of(&Reader::new(&document)?)
+    }
+}
+
+fn read_material_of(root: &Reader<'_>) -> Result<Material, CaseError> {
+    read_material(&root.require_table("material", "a table with youngs_modulus, poissons_ratio, hardening")?)
 }
 
 fn read_sphere(table: &Reader<'_>) -> Result<Sphere, CaseError> {

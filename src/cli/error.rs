@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::case::CaseError;
+use crate::material::HardeningError;
 
 /// The exit code of every [`CliError`].
 pub const BAD_INPUT: u8 = 2;
@@ -37,6 +38,20 @@ pub enum CliError {
         what: &'static str,
         /// What the system says.
         source: io::Error,
+    },
+    /// The hardening law of a case.
+    #[error("{}: {source}", .file.display())]
+    Hardening {
+        /// The case file.
+        file: PathBuf,
+        /// What the material says.
+        source: HardeningError,
+    },
+    /// The deformation of `asperity point`.
+    #[error("{what}")]
+    Deformation {
+        /// What is wrong, where, and what to do.
+        what: String,
     },
     /// The pool of threads.
     #[error("--threads {threads}: cannot start that many threads: {what}. give fewer")]

@@ -4,6 +4,7 @@ pub mod check;
 pub mod error;
 pub mod options;
 pub mod out;
+pub mod point;
 pub mod processor;
 pub mod run;
 pub mod verify;
@@ -31,6 +32,7 @@ enum Command {
     Run(run::RunArgs),
     Check(check::CheckArgs),
     Verify(verify::VerifyArgs),
+    Point(point::PointArgs),
 }
 
 impl Command {
@@ -39,6 +41,7 @@ impl Command {
             Command::Run(args) => run::run(args),
             Command::Check(args) => check::check(args),
             Command::Verify(args) => verify::verify(args),
+            Command::Point(args) => point::point(args),
         }
     }
 }
