@@ -6,6 +6,7 @@
 
 pub mod analytical;
 pub mod case;
+pub mod cli;
 pub mod compute;
 pub mod contact;
 pub mod element;

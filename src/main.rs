@@ -1,1 +1,5 @@
-fn main() {}
+//! The `asperity` program; everything is in the library.
+
+fn main() -> std::process::ExitCode {
+    asperity::cli::main()
+}

@@ -131,9 +131,10 @@ impl Document {
     /// The table under a top-level key as a document of its own, such as the `base` case of a study.
     pub fn table(&self, key: &str) -> Option<Document> {
         match &self.root.value {
-            Value::Table(table) => {
-                table.get(key).filter(|entry| matches!(entry.value, Value::Table(_))).map(|entry| Document { root: entry.clone() })
-            }
+            Value::Table(table) => table
+                .get(key)
+                .filter(|entry| matches!(entry.value, Value::Table(_)))
+                .map(|entry| Document { root: entry.clone() }),
             _ => None,
         }
     }

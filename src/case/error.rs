@@ -46,7 +46,7 @@ pub enum CaseError {
         what: String,
     },
     /// A key that no case has.
-    #[error("{place}: {key}: unknown key{}. allowed: {allowed}", did_you_mean(.nearest))]
+    #[error("{place}: {key}: unknown key{} allowed: {allowed}", did_you_mean(.nearest))]
     UnknownKey {
         /// Where the key stands.
         place: Place,
@@ -92,7 +92,9 @@ pub enum CaseError {
         allowed: String,
     },
     /// A `--set` argument that cannot be applied.
-    #[error("--set {argument}: {what}. allowed: KEY=VALUE with a dotted key, as in contact.friction=0.1 or path.0.indentation=0.01")]
+    #[error(
+        "--set {argument}: {what}. allowed: KEY=VALUE with a dotted key, as in contact.friction=0.1 or path.0.indentation=0.01"
+    )]
     Set {
         /// The argument.
         argument: String,
@@ -102,5 +104,5 @@ pub enum CaseError {
 }
 
 fn did_you_mean(nearest: &Option<String>) -> String {
-    nearest.as_ref().map(|key| format!(", did you mean `{key}`?")).unwrap_or_default()
+    nearest.as_ref().map_or(".".to_owned(), |key| format!(", did you mean `{key}`?"))
 }

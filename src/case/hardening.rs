@@ -64,8 +64,8 @@ const MAX_YIELD_STRAIN: f64 = 0.2;
 impl Hardening {
     /// The stress at first yield, a stress > 0; `None` for a law that never yields.
     ///
-    /// For Hollomon's law it is where sigma_0 eps^(1/m) meets E eps: sigma_Y = (sigma_0^m / E)^(1/(m-1)) (Olsson and Larsson 2016),
-    /// evaluated as sigma_0 (sigma_0/E)^(1/(m-1)), which does not overflow.
+    /// For Hollomon's law it is where sigma_0 eps^(1/m) meets E eps: sigma_Y = (sigma_0^m / E)^(1/(m-1)) (Olsson and Larsson
+    /// 2016), evaluated as sigma_0 (sigma_0/E)^(1/(m-1)), which does not overflow.
     pub fn yield_stress(&self, youngs_modulus: f64) -> Option<f64> {
         match self {
             Hardening::Elastic => None,
@@ -92,11 +92,9 @@ impl Hardening {
                 Hardening::Power { yield_stress: yield_stress / stress, coefficient: coefficient / stress, exponent }
             }
             Hardening::Hollomon { coefficient, exponent } => Hardening::Hollomon { coefficient: coefficient / stress, exponent },
-            Hardening::Voce { yield_stress, saturation_stress, rate } => Hardening::Voce {
-                yield_stress: yield_stress / stress,
-                saturation_stress: saturation_stress / stress,
-                rate,
-            },
+            Hardening::Voce { yield_stress, saturation_stress, rate } => {
+                Hardening::Voce { yield_stress: yield_stress / stress, saturation_stress: saturation_stress / stress, rate }
+            }
             Hardening::Table { ref points } => {
                 Hardening::Table { points: points.iter().map(|[alpha, value]| [*alpha, value / stress]).collect() }
             }
@@ -116,7 +114,8 @@ impl Hardening {
         ];
         let law = table.require("law", &laws.map(|(word, _)| format!("{word:?}")).join(", "))?.choice(&laws)?;
         table.only(law.keys())?;
-        let number = |name: &str, allowed: &str, accept: &dyn Fn(f64) -> bool| table.require(name, allowed)?.number(allowed, accept);
+        let number =
+            |name: &str, allowed: &str, accept: &dyn Fn(f64) -> bool| table.require(name, allowed)?.number(allowed, accept);
         let yield_stress = || number("yield_stress", &yield_range(youngs_modulus), &|stress| yields(stress, youngs_modulus));
         let no_softening = "a stress >= 0 (no softening)";
         Ok(match law {
@@ -136,7 +135,7 @@ impl Hardening {
                 let law = Hardening::Hollomon { coefficient, exponent };
                 let meets = law.yield_stress(youngs_modulus).unwrap_or(f64::NAN);
                 if !yields(meets, youngs_modulus) {
-                    let what = format!("is {coefficient:?} and puts the yield stress (sigma_0^m/E)^(1/(m-1)) at {meets:e}");
+                    let what = format!("is {coefficient:?} and puts the yield stress (sigma_0^m/E)^(1/(m-1)) at {meets:.4e}");
                     let allowed = format!("a coefficient that puts it at {}", yield_range(youngs_modulus));
                     return Err(table.require("coefficient", &allowed)?.refuse(&what, &allowed));
                 }
@@ -230,7 +229,10 @@ fn read_points(table: &Reader<'_>, youngs_modulus: f64) -> Result<Vec<[f64; 2]>,
     }
     let first = points[0][1];
     if !yields(first, youngs_modulus) {
-        return Err(table.get("yield_stress").unwrap_or(field).refuse(&format!("yields first at {first:?}"), &yield_range(youngs_modulus)));
+        return Err(table
+            .get("yield_stress")
+            .unwrap_or(field)
+            .refuse(&format!("yields first at {first:?}"), &yield_range(youngs_modulus)));
     }
     Ok(points)
 }

@@ -1,7 +1,8 @@
 //! The case file: what one simulation is told, its defaults and its checks.
 //!
 //! A [`Case`] is read from TOML with [`Case::load`], which refuses anything that could not be
-//! simulated and names the file, the line and the key. It is in the user's units until [`Case::scaled`] divides lengths by the sphere's radius and stresses by Young's modulus.
+//! simulated and names the file, the line and the key. It is in the user's units until
+//! [`Case::scaled`] divides lengths by the sphere's radius and stresses by Young's modulus.
 
 mod document;
 mod error;

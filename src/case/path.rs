@@ -119,7 +119,9 @@ fn read_indentation(field: &Field<'_>, state: &mut State, radius: f64) -> Result
         field.number(&format!("a length >= 0 and {largest}"), |h| h >= 0.0 && below(h))?
     };
     if state.indentation == Some(indentation) {
-        return Err(field.refuse(&format!("is {indentation:?}, where the segment begins"), "an indentation other than the current one"));
+        return Err(
+            field.refuse(&format!("is {indentation:?}, where the segment begins"), "an indentation other than the current one")
+        );
     }
     let shear = state.shear.filter(|shear| matches!(shear, ShearTarget::Displacement(_)));
     *state = State { in_contact: indentation > 0.0, indentation: Some(indentation), shear };

@@ -7,6 +7,9 @@ use super::error::CaseError;
 use super::reader::Reader;
 use super::{Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Output, Solver, Sphere, estimate, path};
 
+/// Smallest and largest a/R that the sphere is meshed for.
+const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
+
 impl Case {
     /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the result.
     pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
@@ -29,7 +32,7 @@ impl Case {
         let root = Reader::new(document)?;
         root.only(&["sphere", "material", "contact", "mesh", "solver", "output", "path"])?;
         let sphere = read_sphere(&root.require_table("sphere", "a table with radius")?)?;
-        let material = read_material(&root.require_table("material", "a table with youngs_modulus, poissons_ratio, hardening")?)?;
+        let material = read_material_of(&root)?;
         let contact = read_contact(&root.require_table("contact", "a table with friction")?)?;
         let case = Case {
             mesh: read_mesh(&root.table("mesh")?, sphere.radius)?,
@@ -43,6 +46,24 @@ impl Case {
         estimate::check_memory(&case, &root)?;
         Ok(case)
     }
+}
+
+impl Material {
+    /// Reads the `[material]` table of a TOML file, a whole case or a material alone, and applies the `--set` arguments; the other
+    /// tables are not looked at.
+    pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
+        let name = file.display().to_string();
+        let text = std::fs::read_to_string(file).map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
+        let mut document = Document::parse(&text, &name)?;
+        for argument in settings {
+            document.set_argument(argument)?;
+        }
+        read_material_of(&Reader::new(&document)?)
+    }
+}
+
+fn read_material_of(root: &Reader<'_>) -> Result<Material, CaseError> {
+    read_material(&root.require_table("material", "a table with youngs_modulus, poissons_ratio, hardening")?)
 }
 
 fn read_sphere(table: &Reader<'_>) -> Result<Sphere, CaseError> {
@@ -81,22 +102,15 @@ fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
         mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| (1.1..=3.0).contains(&ratio))?;
     }
     if let Some(field) = table.get("contact_radius") {
-        let allowed = format!("a length > 0 and < radius = {radius:?}");
-        mesh.contact_radius = Some(field.number(&allowed, |a| a / radius > 0.0 && a / radius < 1.0)?);
+        let (smallest, largest) = CONTACT_RADII;
+        let allowed = format!("a length from {smallest} to {largest} radius, {:?} to {:?}", smallest * radius, largest * radius);
+        mesh.contact_radius = Some(field.number(&allowed, |a| (smallest..=largest).contains(&(a / radius)))?);
     }
     Ok(mesh)
 }
 
 fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
-    table.only(&[
-        "linear",
-        "tolerance",
-        "press_steps",
-        "shear_steps",
-        "max_iterations",
-        "max_cutbacks",
-        "max_memory_gib",
-    ])?;
+    table.only(&["linear", "tolerance", "press_steps", "shear_steps", "max_iterations", "max_cutbacks", "max_memory_gib"])?;
     let mut solver = Solver::default();
     if let Some(field) = table.get("linear") {
         solver.linear = field.choice(&[("multigrid", Linear::Multigrid), ("direct", Linear::Direct)])?;

@@ -11,6 +11,10 @@
 //!
 //! Stresses are in one unit throughout (inside the program: scaled by E).
 
+// `!(x > 0)` is true for a NaN, which is what it is written for.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
+use crate::case;
 use crate::real::Real;
 
 /// Why a hardening law cannot be built.
@@ -63,7 +67,7 @@ pub enum Hardening<R> {
         yield_stress: R,
         /// K, stress.
         coefficient: R,
-        /// n.
+        /// 0 < n <= 1.
         exponent: R,
     },
     /// sigma = sigma_0 eps^(1/m), eps = alpha + sigma/E: a power law in the total logarithmic strain that starts where it meets
@@ -158,12 +162,16 @@ impl<R: Real> Hardening<R> {
         })
     }
 
-    /// sigma_Y + K alpha^n; sigma_Y > 0, K >= 0, n > 0.
+    /// sigma_Y + K alpha^n; sigma_Y > 0, K >= 0, 0 < n <= 1.
     pub fn power(yield_stress: f64, coefficient: f64, exponent: f64) -> Result<Self, HardeningError> {
+        if !(exponent > 0.0 && exponent <= 1.0) {
+            let remedy = "give n of sigma_Y + K alpha^n, above 0 and at most 1";
+            return Err(HardeningError::Parameter { law: "power", parameter: "exponent", value: exponent, remedy });
+        }
         Ok(Self::Power {
             yield_stress: R::of(positive("power", "yield_stress", yield_stress)?),
             coefficient: R::of(not_negative("power", "coefficient", coefficient)?),
-            exponent: R::of(positive("power", "exponent", exponent)?),
+            exponent: R::of(exponent),
         })
     }
 
@@ -234,6 +242,19 @@ impl<R: Real> Hardening<R> {
         Ok(Self::Table { points: rows })
     }
 
+    /// The law of a case file; `youngs_modulus` in the unit of its stresses.
+    pub fn from_case(law: &case::Hardening, youngs_modulus: f64) -> Result<Self, HardeningError> {
+        match *law {
+            case::Hardening::Elastic => Ok(Self::Elastic),
+            case::Hardening::Ideal { yield_stress } => Self::ideal(yield_stress),
+            case::Hardening::Linear { yield_stress, modulus } => Self::linear(yield_stress, modulus),
+            case::Hardening::Power { yield_stress, coefficient, exponent } => Self::power(yield_stress, coefficient, exponent),
+            case::Hardening::Hollomon { coefficient, exponent } => Self::hollomon(coefficient, exponent, youngs_modulus),
+            case::Hardening::Voce { yield_stress, saturation_stress, rate } => Self::voce(yield_stress, saturation_stress, rate),
+            case::Hardening::Table { ref points } => Self::table(points),
+        }
+    }
+
     /// sigma(alpha), stress; infinite for the elastic law.
     #[inline]
     pub fn flow_stress(&self, alpha: R) -> R {
@@ -280,12 +301,12 @@ impl<R: Real> Hardening<R> {
             Self::Power { yield_stress, exponent, .. } => {
                 (*yield_stress + (flow_stress - *yield_stress) / (R::ONE + *exponent)) * alpha
             }
-            // Integral of sigma d eps less sigma^2/2E, from the yield point on.
+            // The integral of sigma d eps less sigma^2/2E from the yield point on, m/(m + 1) [sigma eps] - [sigma^2]/2E, sorted
+            // so that no difference is taken but that of the stresses.
             Self::Hollomon { exponent, youngs_modulus, yield_stress, .. } => {
                 let share = *exponent / (*exponent + R::ONE);
-                let strain = alpha + flow_stress / *youngs_modulus;
-                let virgin = *yield_stress * *yield_stress / *youngs_modulus * (share - half);
-                (share * flow_stress * strain - half * flow_stress * flow_stress / *youngs_modulus - virgin).max(R::ZERO)
+                let rise = (flow_stress - *yield_stress) * (flow_stress + *yield_stress) / *youngs_modulus;
+                share * flow_stress * alpha + (share - half) * rise
             }
             Self::Voce { yield_stress, saturation_stress, rate } => {
                 *saturation_stress * alpha - (flow_stress - *yield_stress) / *rate
@@ -335,7 +356,7 @@ fn power<R: Real>(x: R, y: R) -> R {
 /// `function` returns the value and the derivative. Newton's error after a relative step e is about C e^2: the iteration stops
 /// at e = sqrt(epsilon)/16, which leaves C epsilon/256.
 #[inline]
-fn increasing_root<R: Real>(low: R, high: R, start: R, function: impl Fn(R) -> (R, R)) -> R {
+pub(super) fn increasing_root<R: Real>(low: R, high: R, start: R, function: impl Fn(R) -> (R, R)) -> R {
     let tolerance = R::EPSILON.sqrt() * R::of(0.0625);
     let (mut low, mut high, mut x) = (low, high, start);
     // Bisection alone would be done after 2 digits x 53 halvings; Newton's takes three to six.
@@ -364,7 +385,7 @@ fn increasing_root<R: Real>(low: R, high: R, start: R, function: impl Fn(R) -> (
     x
 }
 
-/// Unknown u = alpha^n for n <= 1, alpha for n > 1: the equation is then convex, and starts from above.
+/// Unknown u = alpha^n, in which the equation `K u + 3 mu_bar u^(1/n) = load` is convex and free of the infinite slope at 0.
 #[inline]
 fn power_step<R: Real>(
     yield_stress: R,
@@ -378,29 +399,20 @@ fn power_step<R: Real>(
     if coefficient <= R::ZERO {
         return PlasticStep { increment: (trial - flow_stress) / stiffness, flow_stress, slope: R::ZERO };
     }
-    // K u + 3 mu_bar alpha = load; each term alone bounds the unknown.
     let load = trial - yield_stress + stiffness * alpha;
-    let (u, alpha_new) = if exponent <= R::ONE {
-        let inverse = R::ONE / exponent;
-        let low = (flow_stress - yield_stress) / coefficient;
-        let high = (load / coefficient).min(power(load / stiffness, exponent)).max(low);
-        let u = increasing_root(low, high, high, |u| {
-            let strain = power(u, inverse);
-            (coefficient * u + stiffness * strain - load, coefficient + stiffness * inverse * strain / u)
-        });
-        (u, power(u, inverse))
-    } else {
-        let high = (load / stiffness).min(power(load / coefficient, R::ONE / exponent)).max(alpha);
-        let strain = increasing_root(alpha, high, high, |strain| {
-            let u = power(strain, exponent);
-            (coefficient * u + stiffness * strain - load, coefficient * exponent * u / strain + stiffness)
-        });
-        (power(strain, exponent), strain)
-    };
+    let inverse = R::ONE / exponent;
+    let low = (flow_stress - yield_stress) / coefficient;
+    // Each of the two terms alone bounds u from above.
+    let high = (load / coefficient).min(power(load / stiffness, exponent)).max(low);
+    let u = increasing_root(low, high, high, |u| {
+        let strain = power(u, inverse);
+        (coefficient * u + stiffness * strain - load, coefficient + stiffness * inverse * strain / u)
+    });
+    let strain = power(u, inverse);
     let stress = yield_stress + coefficient * u;
-    let slope = coefficient * exponent * u / alpha_new;
+    let slope = coefficient * exponent * u / strain;
     // Of the two ways to the increment the better conditioned one.
-    let increment = if slope <= stiffness { (trial - stress) / stiffness } else { alpha_new - alpha };
+    let increment = if slope <= stiffness { (trial - stress) / stiffness } else { strain - alpha };
     PlasticStep { increment: increment.max(R::ZERO), flow_stress: stress, slope }
 }
 

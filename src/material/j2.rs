@@ -9,8 +9,8 @@
 //! **The trace after plastic flow.** Box 9.1 keeps the trial trace, so that det b_e_bar drifts away from 1 with every plastic
 //! step. Here the trace is the root t of `det(dev b_e_bar + t I) = 1`: plastic flow is isochoric to rounding.
 
-// Index loops are how tensor formulas read.
-#![allow(clippy::needless_range_loop)]
+// Index loops are how tensor formulas read; `!(x > 0)` is true for a NaN, which is what it is written for.
+#![allow(clippy::needless_range_loop, clippy::neg_cmp_op_on_partial_ord)]
 
 use super::{Material, PointError, PointState};
 use crate::real::Real;
@@ -201,6 +201,9 @@ pub fn return_mapping<R: Real>(
     let step = hardening.plastic_strain_increment(state.alpha, flow_stress, von_mises, stiffness);
     let keep = step.flow_stress / von_mises;
     let alpha = state.alpha + step.increment;
+    if !alpha.is_finite() {
+        return Err(PointError::NotFinite);
+    }
     let deviator = deviator.map(|x| keep * x);
     let mean = isochoric_mean(&deviator, mean);
     response.stress = deviator.map(|x| mu * x);

@@ -16,6 +16,7 @@
 
 pub mod hardening;
 pub mod j2;
+pub mod point;
 
 pub use hardening::{Hardening, HardeningError};
 pub use j2::{Response, deviatoric_tangent, return_mapping};
@@ -80,6 +81,17 @@ impl Material<f64> {
             elasticity: Elasticity { bulk: R::of(self.elasticity.bulk), shear: R::of(self.elasticity.shear) },
             hardening: self.hardening.cast(),
         }
+    }
+}
+
+impl<R: Real> Material<R> {
+    /// The material of a case file, with stresses divided by Young's modulus: E = 1.
+    ///
+    /// # Errors
+    /// [`HardeningError`] for parameters that no law has; the checks of a case file that was read leave none.
+    pub fn from_case(material: &crate::case::Material) -> Result<Self, HardeningError> {
+        let hardening = Hardening::from_case(&material.hardening.scaled(material.youngs_modulus), 1.0)?;
+        Ok(Self { elasticity: Elasticity::new(1.0, material.poissons_ratio), hardening })
     }
 }
 

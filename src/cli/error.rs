@@ -1,0 +1,81 @@
+//! What can go wrong in front of the simulation.
+
+use std::io;
+use std::path::PathBuf;
+
+use crate::case::CaseError;
+use crate::material::HardeningError;
+
+/// The exit code of every [`CliError`].
+pub const BAD_INPUT: u8 = 2;
+
+/// An error that ends the program with exit code 2.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// The case file.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The directory of `--out` holds something else.
+    #[error("--out {}: holds {found:?}, and is not an Asperity result. give a new or an empty directory (nothing was changed)", .dir.display())]
+    NotAResult {
+        /// The directory.
+        dir: PathBuf,
+        /// A file found in it.
+        found: String,
+    },
+    /// The directory of `--out` is something else.
+    #[error("--out {}: is not a directory. give a new or an empty directory (nothing was changed)", .dir.display())]
+    NotADirectory {
+        /// The path.
+        dir: PathBuf,
+    },
+    /// The directory of `--out` cannot be made, read or written.
+    #[error("--out {}: cannot {what}: {source}. give a directory that you may write to", .dir.display())]
+    Out {
+        /// The directory.
+        dir: PathBuf,
+        /// What was tried.
+        what: &'static str,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The hardening law of a case.
+    #[error("{}: {source}", .file.display())]
+    Hardening {
+        /// The case file.
+        file: PathBuf,
+        /// What the material says.
+        source: HardeningError,
+    },
+    /// The deformation of `asperity point`.
+    #[error("{what}")]
+    Deformation {
+        /// What is wrong, where, and what to do.
+        what: String,
+    },
+    /// The pool of threads.
+    #[error("--threads {threads}: cannot start that many threads: {what}. give fewer")]
+    Threads {
+        /// The number asked for.
+        threads: usize,
+        /// What the pool says.
+        what: String,
+    },
+    /// Standard output cannot be written.
+    #[error("stdout: cannot be written: {source}. redirect it to a place with room")]
+    Stdout {
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The program was compiled for a newer processor.
+    #[error(
+        "this processor lacks {missing}, for which this program was compiled. build it on this machine with RUSTFLAGS=-Ctarget-cpu=native"
+    )]
+    Processor {
+        /// The missing instruction sets.
+        missing: String,
+    },
+    /// The simulation is not part of this build.
+    #[error("this build has no simulation. `asperity check` is what it can do with a case")]
+    NoSimulation,
+}

@@ -1,0 +1,93 @@
+//! The command line: one file a subcommand; parses, prints, exits.
+
+pub mod check;
+pub mod error;
+pub mod options;
+pub mod out;
+pub mod point;
+pub mod processor;
+pub mod run;
+pub mod verify;
+
+pub use error::CliError;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Simulates elastic-plastic spheres pressed onto a rigid plane and sheared along it.
+#[derive(Debug, Parser)]
+#[command(name = "asperity", version, propagate_version = true, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not converge (what was computed is kept), \
+                          75 interrupted and resumable.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::RunArgs),
+    Check(check::CheckArgs),
+    Verify(verify::VerifyArgs),
+    Point(point::PointArgs),
+}
+
+impl Command {
+    fn run(&self) -> Result<Outcome, CliError> {
+        match self {
+            Command::Run(args) => run::run(args),
+            Command::Check(args) => check::check(args),
+            Command::Verify(args) => verify::verify(args),
+            Command::Point(args) => point::point(args),
+        }
+    }
+}
+
+/// How a subcommand that had good input ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// All was done: exit code 0.
+    Done,
+    /// A step did not converge, what was computed is kept: exit code 3.
+    NotConverged,
+    /// Interrupted, and can be resumed: exit code 75 (EX_TEMPFAIL of sysexits.h).
+    Interrupted,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        ExitCode::from(match outcome {
+            Outcome::Done => 0,
+            Outcome::NotConverged => 3,
+            Outcome::Interrupted => 75,
+        })
+    }
+}
+
+/// The program: reads the arguments, runs the subcommand, reports an error on stderr. Bad input and usage end with exit code 2.
+pub fn main() -> ExitCode {
+    let outcome = processor::check().and_then(|()| match Cli::try_parse() {
+        Ok(cli) => cli.command.run().map(ExitCode::from),
+        Err(usage) => {
+            // Help and version come this way too, with exit code 0.
+            let _ = usage.print();
+            Ok(ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(error::BAD_INPUT)))
+        }
+    });
+    outcome.unwrap_or_else(|error| {
+        let _ = writeln!(std::io::stderr(), "error: {error}");
+        ExitCode::from(error::BAD_INPUT)
+    })
+}
+
+/// Writes to stdout; a reader that has gone away (`asperity check ... | head`) is not an error.
+pub fn print(text: &str) -> Result<(), CliError> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(source) if source.kind() != std::io::ErrorKind::BrokenPipe => Err(CliError::Stdout { source }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,83 @@
+//! The options that several subcommands share.
+
+use std::num::NonZeroUsize;
+
+use clap::{ArgAction, Args, ValueEnum};
+use log::LevelFilter;
+
+use super::CliError;
+
+/// Where the kernels run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Device {
+    /// A GPU if there is one worth it, else the CPU; never a software adapter.
+    #[default]
+    Auto,
+    /// The CPU.
+    Cpu,
+    /// A GPU, and an error if there is none.
+    Gpu,
+}
+
+/// The floating-point precision of the kernels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Precision {
+    /// f64 where the device has it.
+    #[default]
+    Auto,
+    /// Single precision.
+    F32,
+    /// Double precision.
+    F64,
+}
+
+/// Where and how precisely to compute.
+#[derive(Clone, Debug, Args)]
+pub struct DeviceArgs {
+    /// Where the kernels run.
+    #[arg(long, value_enum, default_value_t, value_name = "DEVICE")]
+    pub device: Device,
+    /// Floating-point precision of the kernels.
+    #[arg(long, value_enum, default_value_t, value_name = "PRECISION")]
+    pub precision: Precision,
+    /// Threads to use; by default all of the machine's.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// How much to say on stderr.
+#[derive(Clone, Debug, Args)]
+pub struct Verbosity {
+    /// No progress, only errors.
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more; twice for every Newton iteration.
+    #[arg(short, long, action = ArgAction::Count)]
+    pub verbose: u8,
+}
+
+impl DeviceArgs {
+    /// Starts the pool of threads; to be called once, before anything uses it.
+    pub fn start_threads(&self) -> Result<(), CliError> {
+        let Some(threads) = self.threads.map(NonZeroUsize::get) else { return Ok(()) };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build_global().map_err(|error| CliError::Threads { threads, what: error.to_string() })
+    }
+}
+
+impl Verbosity {
+    /// Starts the log on stderr: warnings, with `-v` information, with `-vv` every iteration.
+    pub fn start_log(&self) {
+        let level = match (self.quiet, self.verbose) {
+            (true, _) => LevelFilter::Error,
+            (false, 0) => LevelFilter::Warn,
+            (false, 1) => LevelFilter::Info,
+            (false, _) => LevelFilter::Debug,
+        };
+        // Graphics drivers and their layers talk about themselves: only their errors are of interest here.
+        let mut log = env_logger::Builder::new();
+        log.filter_level(LevelFilter::Error).filter_module("asperity", level).format_target(false).format_timestamp(None);
+        // A log that is already there (in tests) stays.
+        let _ = log.try_init();
+    }
+}

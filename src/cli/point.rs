@@ -1,0 +1,162 @@
+//! `asperity point`: one material point along a path of deformation, as CSV.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::{CliError, Outcome};
+use crate::case;
+use crate::material::Material;
+use crate::material::point::{DriveError, PointRecord, along, simple_shear, uniaxial};
+
+/// Strain that is reached unless `--strain` says otherwise.
+const STRAIN: f64 = 0.1;
+/// Steps unless `--steps` says otherwise.
+const STEPS: u32 = 100;
+
+/// The columns that [`point`] prints. Stresses and energies per reference volume are in the unit of Young's modulus.
+pub const COLUMNS: &str = "step,F11,F12,F13,F21,F22,F23,F31,F32,F33,sigma_xx,sigma_yy,sigma_zz,sigma_xy,sigma_yz,sigma_zx,\
+                           von_mises,alpha,plastic_work,elastic_energy";
+
+/// How the point is deformed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Mode {
+    /// Uniaxial stress along x with free sides; the strain is logarithmic, negative in compression.
+    Uniaxial,
+    /// Simple shear, F = I + strain e_x e_y.
+    Shear,
+    /// The deformation gradients of `--path`.
+    Path,
+}
+
+/// Drive one material point and print its stress, plastic strain and energies as CSV.
+#[derive(Clone, Debug, Args)]
+pub struct PointArgs {
+    /// A TOML file with a [material] table: a case file, or a material alone.
+    #[arg(value_name = "MATERIAL.toml")]
+    pub material: PathBuf,
+    /// How the point is deformed [default: uniaxial, or path with --path].
+    #[arg(long, value_enum, value_name = "MODE")]
+    pub mode: Option<Mode>,
+    /// Strain to reach [default: 0.1].
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub strain: Option<f64>,
+    /// Number of equal steps [default: 100].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub steps: Option<u32>,
+    /// CSV of deformation gradients from the undeformed point on, a step a row: F11,F12,F13,F21,F22,F23,F31,F32,F33. A row of
+    /// names may come first; lines that start with # are comments.
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["strain", "steps"], required_if_eq("mode", "path"))]
+    pub path: Option<PathBuf>,
+    /// Replace a value of the file, as in material.hardening.yield_stress=300; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// Reads the material, drives the point, and prints a row a step, the undeformed point first. A step without an answer ends it with
+/// [`Outcome::NotConverged`], after the rows before it.
+pub fn point(args: &PointArgs) -> Result<Outcome, CliError> {
+    let constants = case::Material::load(&args.material, &args.set)?;
+    let material =
+        Material::from_case(&constants).map_err(|source| CliError::Hardening { file: args.material.clone(), source })?;
+    let (strain, steps) = (args.strain.unwrap_or(STRAIN), args.steps.unwrap_or(STEPS) as usize);
+    if !strain.is_finite() {
+        return Err(CliError::Deformation { what: format!("--strain {strain}: is not finite. give a number, such as 0.1") });
+    }
+    let unit = constants.youngs_modulus;
+    match (args.mode, &args.path) {
+        (None | Some(Mode::Path), Some(file)) => print(along(&material, read_path(file)?), unit),
+        (Some(mode), Some(_)) => {
+            let what = format!("--path: cannot go with --mode {mode:?}. leave one of them out").to_lowercase();
+            Err(CliError::Deformation { what })
+        }
+        (Some(Mode::Path), None) => {
+            Err(CliError::Deformation { what: "--mode path: needs --path. give --path FILE.csv".to_owned() })
+        }
+        (None | Some(Mode::Uniaxial), None) => print(uniaxial(&material, strain, steps), unit),
+        (Some(Mode::Shear), None) => print(simple_shear(&material, strain, steps), unit),
+    }
+}
+
+/// The rows of a CSV file of deformation gradients.
+pub fn read_path(file: &Path) -> Result<Vec<[[f64; 3]; 3]>, CliError> {
+    let refuse =
+        |place: String, what: String| CliError::Deformation { what: format!("--path {}{place}: {what}", file.display()) };
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(file)
+        .map_err(|error| refuse(String::new(), format!("cannot be read: {error}. give a CSV file")))?;
+    let mut gradients = Vec::new();
+    for (index, row) in reader.records().enumerate() {
+        let row = row.map_err(|error| refuse(String::new(), format!("cannot be read: {error}. give a CSV file")))?;
+        let line = row.position().map_or(0, csv::Position::line);
+        let columns = "give 9 numbers, F11,F12,F13,F21,F22,F23,F31,F32,F33";
+        if row.len() != 9 {
+            return Err(refuse(format!(", line {line}"), format!("has {} columns. {columns}", row.len())));
+        }
+        // A first row without a single number is a row of names.
+        if index == 0 && row.iter().all(|cell| cell.parse::<f64>().is_err()) {
+            continue;
+        }
+        let mut gradient = [[0.0; 3]; 3];
+        for (i, cell) in row.iter().enumerate() {
+            gradient[i / 3][i % 3] = cell
+                .parse()
+                .ok()
+                .filter(|x: &f64| x.is_finite())
+                .ok_or_else(|| refuse(format!(", line {line}"), format!("column {} is {cell:?}. {columns}", i + 1)))?;
+        }
+        gradients.push(gradient);
+    }
+    if gradients.is_empty() {
+        return Err(refuse(String::new(), "has no rows. give one deformation gradient a row".to_owned()));
+    }
+    Ok(gradients)
+}
+
+/// Prints the records, stresses and energies times `unit`.
+fn print(records: impl Iterator<Item = Result<PointRecord, DriveError>>, unit: f64) -> Result<Outcome, CliError> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    match write(&mut out, records, unit) {
+        Ok(None) => Ok(Outcome::Done),
+        Ok(Some(error)) => {
+            let _ = writeln!(io::stderr(), "error: {error}");
+            Ok(Outcome::NotConverged)
+        }
+        // The reader has seen enough.
+        Err(source) if source.kind() == io::ErrorKind::BrokenPipe => Ok(Outcome::Done),
+        Err(source) => Err(CliError::Stdout { source }),
+    }
+}
+
+/// Writes the header and a row for each record; returns the error that ended the path, if any.
+fn write(
+    out: &mut impl Write,
+    records: impl Iterator<Item = Result<PointRecord, DriveError>>,
+    unit: f64,
+) -> io::Result<Option<DriveError>> {
+    writeln!(out, "{COLUMNS}")?;
+    for record in records {
+        let record = match record {
+            Ok(record) => record,
+            Err(error) => {
+                out.flush()?;
+                return Ok(Some(error));
+            }
+        };
+        write!(out, "{}", record.step)?;
+        for x in record.deformation_gradient.iter().flatten() {
+            write!(out, ",{x:?}")?;
+        }
+        for x in record.cauchy.into_iter().chain([record.von_mises]) {
+            write!(out, ",{:?}", x * unit)?;
+        }
+        writeln!(out, ",{:?},{:?},{:?}", record.alpha, record.plastic_work * unit, record.elastic_energy * unit)?;
+    }
+    out.flush()?;
+    Ok(None)
+}

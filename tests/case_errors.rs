@@ -1,0 +1,169 @@
+//! Every mistake in a case file ends with exit code 2 and one message that names file, line, key and what is allowed.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+
+fn asperity(arguments: &[&str]) -> Output {
+    Command::cargo_bin("asperity").expect("the program is built").args(arguments).output().expect("the program runs")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
+}
+
+/// File in `fixtures/cases/bad`, line, key, what is wrong, what is allowed (a part of each).
+#[rustfmt::skip]
+const MISTAKES: &[(&str, usize, &str, &str, &str)] = &[
+    ("duplicate-key", 7, "", "not valid TOML: duplicate key", ""),
+    ("friction-negative", 14, "contact.friction", "is -0.1", "a number >= 0, or \"stick\""),
+    ("friction-word", 14, "contact.friction", "is \"glue\"", "a number >= 0, or \"stick\""),
+    ("hollomon-coefficient", 11, "material.hardening.coefficient", "puts the yield stress", "< 0.2 E"),
+    ("hollomon-exponent", 12, "material.hardening.exponent", "is 1.0", "m > 1"),
+    ("indentation-negative", 20, "path.1.indentation", "is -0.01", "a length >= 0"),
+    ("indentation-too-deep", 17, "path.0.indentation", "is 0.3", "< 0.3 radius = 0.3"),
+    ("indentation-zero", 17, "path.0.indentation", "is 0.0", "a length > 0"),
+    ("infinite", 6, "material.youngs_modulus", "is inf", "a stress > 0"),
+    ("linear-softening", 12, "material.hardening.modulus", "is -10.0", "a stress >= 0 (no softening)"),
+    ("mesh-contact-radius", 17, "mesh.contact_radius", "is 1.0", "a length from 0.005 to 0.65 radius"),
+    ("mesh-elements", 17, "mesh.elements_per_contact_radius", "is 3", "a whole number from 4 to 32"),
+    ("mesh-fine-zone", 17, "mesh.fine_zone", "is 1.0", "a number from 1.1 to 3"),
+    ("mesh-memory", 17, "solver.max_memory_gib", "a mesh of about", "a larger solver.max_memory_gib"),
+    ("missing-key", 2, "sphere.radius", "missing", "a length > 0"),
+    ("missing-law", 9, "material.hardening.law", "missing", "\"elastic\", \"ideal\""),
+    ("missing-table", 1, "contact", "missing", "a table with friction"),
+    ("nan", 14, "contact.friction", "is NaN", "a number >= 0, or \"stick\""),
+    ("output-fields", 17, "output.fields", "is \"some\"", "\"none\", \"segments\", \"all\""),
+    ("output-plots", 17, "output.plots", "is the string \"yes\", which is the wrong type", "true or false"),
+    ("overflow", 6, "material.youngs_modulus", "is inf", "a stress > 0"),
+    ("path-both", 18, "path.0.shear", "stands beside indentation", "one of indentation, shear"),
+    ("path-empty", 2, "path", "is empty", "at least one [[path]] segment"),
+    ("path-hold-alone", 18, "path.0.hold", "stands without shear", "hold beside shear"),
+    ("path-hold-word", 21, "path.1.hold", "is \"force\"", "\"indentation\", \"normal-force\""),
+    ("path-missing", 1, "path", "missing", "at least one [[path]] segment"),
+    ("path-neither", 19, "path.1", "has neither indentation nor shear nor release", "one of indentation, shear"),
+    ("path-release-false", 20, "path.1.release", "is false", "release = true"),
+    ("path-release-first", 17, "path.0.release", "releases what is not in contact", "release after a segment that presses"),
+    ("path-shear-after-release", 23, "path.2.shear", "shears what is not in contact", "shear after a segment with an indentation > 0"),
+    ("path-shear-first", 19, "path.0.shear", "shears what is not in contact", "shear after a segment with an indentation > 0"),
+    ("path-standstill", 20, "path.1.indentation", "is 0.02, where the segment begins", "other than the current one"),
+    ("poissons-ratio-high", 7, "material.poissons_ratio", "is 0.5", "a number > -1 and < 0.5"),
+    ("poissons-ratio-low", 7, "material.poissons_ratio", "is -1.0", "a number > -1 and < 0.5"),
+    ("power-coefficient", 12, "material.hardening.coefficient", "is -1.0", "a stress >= 0 (no softening)"),
+    ("power-exponent", 13, "material.hardening.exponent", "is 1.5", "n in (0, 1]"),
+    ("radius", 3, "sphere.radius", "is 0.0", "a length > 0"),
+    ("shear-too-far", 20, "path.1.shear", "is -0.5", "a length between -0.5 and 0.5"),
+    ("shear-word", 20, "path.1.shear", "is \"full-stick\"", "\"full-slip\""),
+    ("solver-cutbacks", 17, "solver.max_cutbacks", "is -1", "a whole number from 0 to 30"),
+    ("solver-linear", 17, "solver.linear", "is \"multgrid\"", "\"multigrid\", \"direct\""),
+    ("solver-steps", 17, "solver.press_steps", "is 0", "a whole number from 1 to 100000"),
+    ("solver-tolerance", 17, "solver.tolerance", "is 0.1", "a number > 1e-12 and <= 1e-2"),
+    ("stick-full-slip", 20, "path.1.shear", "never reaches", "a displacement, or a number for contact.friction"),
+    ("syntax", 10, "", "not valid TOML", ""),
+    ("table-empty", 11, "material.hardening.points", "has no points", "[[alpha, stress], ...]"),
+    ("table-no-start", 9, "material.hardening.yield_stress", "missing", "or a first point at alpha = 0"),
+    ("table-order", 14, "material.hardening.points.2.0", "is 0.1", "alpha > 0.1, strictly increasing"),
+    ("table-row", 13, "material.hardening.points.1", "has 3 numbers", "[[alpha, stress], ...]"),
+    ("table-softening", 13, "material.hardening.points.1.1", "is 390.0", "a stress >= 400.0 (no softening)"),
+    ("table-stress", 11, "material.hardening.points.0.1", "is 0.0", "a stress > 0"),
+    ("table-two-starts", 11, "material.hardening.yield_stress", "is 350.0", "the stress 400.0 of the point at alpha = 0"),
+    ("unknown-key", 11, "material.hardening.yield_stres", "did you mean `yield_stress`?", "law, yield_stress"),
+    ("unknown-key-in-path", 21, "path.1.holds", "did you mean `hold`?", "indentation, shear, hold, release"),
+    ("unknown-key-of-law", 12, "material.hardening.modulus", "unknown key", "law, yield_stress"),
+    ("unknown-law", 10, "material.hardening.law", "is \"swift\"", "\"elastic\", \"ideal\", \"linear\", \"power\", \"hollomon\", \"voce\", \"table\""),
+    ("unknown-table", 13, "contacts", "did you mean `contact`?", "sphere, material, contact"),
+    ("voce-rate", 13, "material.hardening.rate", "is 0.0", "a number > 0"),
+    ("voce-softening", 12, "material.hardening.saturation_stress", "is 300.0", "a stress >= yield_stress = 400.0"),
+    ("wrong-type-count", 17, "mesh.elements_per_contact_radius", "is the number 16.5, which is the wrong type", "a whole number from 4 to 32"),
+    ("wrong-type-number", 6, "material.youngs_modulus", "is the string \"200e3\", which is the wrong type", "a stress > 0"),
+    ("wrong-type-table", 2, "sphere", "is the number 1.0, which is the wrong type", "a table"),
+    ("yield-strain", 11, "material.hardening.yield_stress", "is 40000.0", "< 0.2 E = 40000.0"),
+    ("yield-stress", 11, "material.hardening.yield_stress", "is 0.0", "a stress > 0"),
+    ("youngs-modulus", 6, "material.youngs_modulus", "is -200000.0", "a stress > 0"),
+];
+
+#[test]
+fn each_mistake_is_named_with_its_place_and_remedy() {
+    for (name, line, key, what, allowed) in MISTAKES {
+        let file = format!("fixtures/cases/bad/{name}.toml");
+        let output = asperity(&["check", &file]);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{file}: {message}");
+        assert!(output.stdout.is_empty(), "{file}: a case was printed");
+        let place = if key.is_empty() { format!("error: {file}:{line}: ") } else { format!("error: {file}:{line}: {key}: ") };
+        assert!(message.starts_with(&place), "{file}: expected {place:?} in front of {message}");
+        let (wrong, remedy) = message.split_once(" allowed: ").unwrap_or((&message, ""));
+        assert!(wrong.contains(what), "{file}: expected {what:?} in {message}");
+        assert!(remedy.contains(allowed), "{file}: expected {allowed:?} after `allowed:` in {message}");
+        assert_eq!(message.trim_end().lines().count(), 1, "{file}: one line: {message}");
+    }
+}
+
+#[test]
+fn every_bad_fixture_is_tried() {
+    let listed: BTreeSet<String> = MISTAKES.iter().map(|mistake| format!("{}.toml", mistake.0)).collect();
+    let files = std::fs::read_dir("fixtures/cases/bad").expect("the fixtures");
+    let present = files.map(|file| file.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    assert_eq!(listed, present);
+}
+
+#[test]
+fn run_refuses_what_check_refuses_and_makes_no_directory() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let out = scratch.path().join("out");
+    let output = asperity(&["run", "fixtures/cases/bad/nan.toml", "--out", &out.to_string_lossy()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).starts_with("error: fixtures/cases/bad/nan.toml:"), "{}", stderr(&output));
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_value_from_the_command_line_is_named_as_such() {
+    for (argument, place, what) in [
+        ("contact.friction=-1", "--set contact.friction: contact.friction: ", "is -1.0. allowed: a number >= 0"),
+        ("contact.friction=glue", "--set contact.friction: contact.friction: ", "is \"glue\""),
+        ("path.0.indentation=0.4", "--set path.0.indentation: path.0.indentation: ", "is 0.4"),
+        ("mesh.elements=8", "--set mesh.elements: mesh.elements: ", "unknown key, did you mean `elements_per_contact_radius`?"),
+        ("path.2={shear=1.0}", "--set path.2: path.2.shear: ", "is 1.0"),
+        ("path.7.indentation=0.1", "--set path.7.indentation=0.1: ", "`path` has 2 items"),
+        ("sphere.radius.value=1", "--set sphere.radius.value=1: ", "`sphere.radius` is the number 1.0"),
+        ("sphere..radius=1", "--set sphere..radius=1: ", "the key has an empty part"),
+        ("sphere.radius", "--set sphere.radius: ", "has no `=`"),
+        ("sphere.radius=", "--set sphere.radius=: ", "has no value"),
+        ("path=[{indentation=0.1}", "--set path=[{indentation=0.1}: ", "the value is not valid TOML"),
+    ] {
+        let output = asperity(&["check", "fixtures/cases/ideal.toml", "--set", argument]);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{argument}: {message}");
+        assert!(message.starts_with(&format!("error: {place}")), "{argument}: expected {place:?} in front of {message}");
+        assert!(message.contains(what), "{argument}: expected {what:?} in {message}");
+    }
+}
+
+#[test]
+fn a_mistake_of_the_file_keeps_its_line_beside_a_set_value() {
+    let arguments = ["check", "fixtures/cases/bad/poissons-ratio-high.toml", "--set", "path.0.indentation=0.01"];
+    assert!(
+        stderr(&asperity(&arguments))
+            .starts_with("error: fixtures/cases/bad/poissons-ratio-high.toml:7: material.poissons_ratio: ")
+    );
+    // And the value from the command line mends the file.
+    let mended = ["check", "fixtures/cases/bad/poissons-ratio-high.toml", "--set", "material.poissons_ratio=0.25"];
+    let output = asperity(&mended);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("poissons_ratio = 0.25"));
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_named() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let binary = scratch.path().join("binary.toml");
+    std::fs::write(&binary, [0xff, 0xfe, 0x00]).expect("a file");
+    for file in [Path::new("no/such/case.toml"), scratch.path(), &binary] {
+        let output = asperity(&["check", &file.to_string_lossy()]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).starts_with(&format!("error: {}: cannot be read: ", file.display())), "{}", stderr(&output));
+    }
+}

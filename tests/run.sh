@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# All checks of the repository, the tests last, so that the output ends with cargo's own summary.
+# ASPERITY_REQUIRE_GPU=1 makes tests that find no adapter fail instead of being skipped.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+step="start"
+trap 'code=$?; [ "$code" -eq 0 ] || echo "tests/run.sh: failed at: $step" >&2' EXIT
+begin() {
+    step="$1"
+    echo "== $step"
+}
+
+# A Vulkan driver that runs on the CPU, for the GPU tests, and spirv-val. Only where apt-get is there and something is missing.
+install_packages() {
+    local package missing=()
+    command -v apt-get >/dev/null && command -v dpkg-query >/dev/null || return 0
+    for package in libvulkan1 mesa-vulkan-drivers spirv-tools; do
+        dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+    done
+    [ "${#missing[@]}" -gt 0 ] || return 0
+    local as_root=()
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! sudo -n true 2>/dev/null; then
+            echo "not installed and no right to install: ${missing[*]}" >&2
+            return 0
+        fi
+        as_root=(sudo -n)
+    fi
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}"
+}
+
+begin "packages"
+install_packages
+
+# Mesa wants a runtime directory of the user's own, and says so otherwise.
+if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
+    XDG_RUNTIME_DIR="${TMPDIR:-/tmp}/asperity-runtime-$(id -u)"
+    mkdir -p "$XDG_RUNTIME_DIR"
+    chmod 700 "$XDG_RUNTIME_DIR"
+    export XDG_RUNTIME_DIR
+fi
+
+begin "cargo fmt --check"
+cargo fmt --check
+
+begin "cargo clippy --all-targets"
+cargo clippy --all-targets -- -D warnings
+
+begin "cargo doc"
+RUSTDOCFLAGS="-Dwarnings" cargo doc --no-deps
+
+if compgen -G "benches/*.rs" >/dev/null; then
+    begin "benches, once each"
+    cargo bench --benches -- --test
+fi
+
+begin "cargo test"
+cargo test
