@@ -195,12 +195,12 @@ impl Blocks for Butterfly {
             (SIDE, 0) => {
                 // The perimeter runs along y, then x, then y again: each side follows the class it touches.
                 let (i, j) = self.on_perimeter(index);
-                let (along, to_s): (Between, Box<dyn Fn(usize) -> usize>) = if index <= self.ny {
-                    (y[j], Box::new(|j| j))
-                } else if index <= self.ny + self.nx {
-                    (x[i], Box::new(|i| coarse.ny + coarse.nx - i))
-                } else {
-                    (y[j], Box::new(|j| coarse.perimeter_cells() - j))
+                let on_top = (self.ny + 1..=self.ny + self.nx).contains(&index);
+                let along = if on_top { x[i] } else { y[j] };
+                let to_s = |k: usize| match index {
+                    _ if on_top => coarse.ny + coarse.nx - k,
+                    s if s <= self.ny => k,
+                    _ => coarse.perimeter_cells() - k,
                 };
                 Between { low: to_s(along.low), high: to_s(along.high), toward_high: along.toward_high }
             }

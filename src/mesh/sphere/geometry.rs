@@ -17,12 +17,12 @@ use std::f64::consts::FRAC_PI_4;
 /// Depth of the shell under the pole, in contact radii.
 pub const SHELL_DEPTH: f64 = 1.4;
 /// Half-width of the core's floor against that of the surface's centre block.
-const FLOOR_SPREAD: f64 = 1.25;
+const FLOOR_SPREAD: f64 = 1.0;
 /// Polar angle of the core's wall far from the pole.
-const WALL_ANGLE: f64 = 0.70;
+const WALL_ANGLE: f64 = 0.62;
 /// Inclination of the depth lines where they meet the core: at the rim of its floor, and far from the pole.
-const RIM_INCLINATION: f64 = 0.25;
-const WALL_INCLINATION: f64 = 0.80;
+const RIM_INCLINATION: f64 = 0.38;
+const WALL_INCLINATION: f64 = 1.15;
 
 /// Smooth step from 0 (x <= 0) to 1 (x >= 1).
 pub fn smooth_step(x: f64) -> f64 {
@@ -92,7 +92,7 @@ impl<'a> Geometry<'a> {
         let t = if big == 0 { 0.0 } else { small as f64 / big as f64 };
         let (angle, [across, up]) = match site.block {
             BOTTOM => self.bottom(big, t, c),
-            SIDE => self.side(t, b, c),
+            SIDE => self.side(t, b, c, swap),
             CORE => self.core(big, t, c),
             _ => (0.0, [0.0; 2]),
         };
@@ -117,15 +117,17 @@ impl<'a> Geometry<'a> {
         Polar { radius: share * (1.0 + self.squareness(share) * (1.0 / angle.cos() - 1.0)), angle }
     }
 
-    /// Ring `r` on the surface: radius and angle.
-    fn ring(&self, r: usize, t: f64) -> Polar {
+    /// Ring `r` on the surface: radius and angle; `swap` beyond the diagonal.
+    fn ring(&self, r: usize, t: f64, swap: bool) -> Polar {
         let l = self.layout;
         let turn = smooth_step(r as f64 / l.rounding_rings as f64);
         let square = t.atan();
         let angle = square + turn * (t * FRAC_PI_4 - square);
         let square_offset = l.squareness * (1.0 / square.cos() - 1.0);
         let fade = 1.0 - smooth_step((r as f64 - l.fine_rings as f64) / l.fading_rings as f64);
-        let spread = l.spread * t * l.spacing * fade;
+        // Even from the x axis to the y axis, so that the contact's edge meets every phase of the ring spacing equally often.
+        let quarter = if swap { 1.0 - 0.5 * t } else { 0.5 * t };
+        let spread = l.spread * quarter * l.spacing * fade;
         let radius = l.radii[r] + (1.0 - turn) * l.radii[r] * square_offset + turn * spread;
         Polar { radius: if r == l.blocks.nr { 2.0 } else { radius }, angle }
     }
@@ -174,11 +176,11 @@ impl<'a> Geometry<'a> {
     }
 
     /// A point of the shell's rings.
-    fn side(&self, t: f64, r: usize, d: usize) -> (f64, [f64; 2]) {
+    fn side(&self, t: f64, r: usize, d: usize, swap: bool) -> (f64, [f64; 2]) {
         if r == 0 {
             return self.bottom(self.layout.m, t, d);
         }
-        let surface = self.ring(r, t);
+        let surface = self.ring(r, t, swap);
         let end = self.core(self.layout.m, t, r);
         if r == self.layout.blocks.nr {
             return self.equator_line(surface, end, d);

@@ -5,7 +5,7 @@ use super::butterfly::Butterfly;
 use super::geometry::SHELL_DEPTH;
 use crate::mesh::MeshError;
 
-/// Growth of the rings' spacing outside the fine zone that the count aims at.
+/// Growth of the rings' spacing outside the fine zone that the count aims at, up to 16 elements per contact radius.
 const RING_GROWTH: f64 = 1.28;
 /// Growth of the layers' thickness in the shell that the count aims at.
 const LAYER_GROWTH: f64 = 1.17;
@@ -33,7 +33,8 @@ pub struct Layout {
     pub squareness: f64,
     /// Rings over which the square turns into the fine zone's rings.
     pub rounding_rings: usize,
-    /// Spacings over which the distances of one ring's nodes from the pole are spread.
+    /// Spacings over which the distances of one ring's nodes from the pole are spread, evenly from the x axis to the y axis: 1 makes
+    /// the nodes enter a growing contact one by one instead of ring by ring.
     pub spread: f64,
     /// Rings outside the fine zone over which the spread fades away.
     pub fading_rings: usize,
@@ -90,7 +91,8 @@ impl Layout {
         let fine_end = (m + fine_rings) as f64 * spacing;
 
         let remaining = (2.0 - fine_end) / spacing;
-        let wanted = sizes_for(remaining, RING_GROWTH);
+        // Finer meshes are finer outside too, though not in proportion: the far field matters little.
+        let wanted = sizes_for(remaining, RING_GROWTH.powf((16.0 / count as f64).sqrt().min(1.0)));
         let nr = nearest_even(fine_rings as f64 + wanted).max(nearest_even(fine_rings as f64 + 2.0));
         let outer = nr - fine_rings;
         // The first ring outside has already grown once.
@@ -123,7 +125,7 @@ impl Layout {
             fine_rings,
             depths,
             shell_depth,
-            squareness: 0.75,
+            squareness: 0.70,
             rounding_rings: (m / 2).max(1),
             spread: 1.0,
             fading_rings: outer.div_ceil(2),
