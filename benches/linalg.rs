@@ -3,7 +3,7 @@
 #![allow(missing_docs)]
 
 use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, Smoother, SolverKind};
-use asperity::mesh::Prolongation;
+use asperity::mesh::{Mesh, Prolongation};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 #[path = "../src/linalg/tests/problem.rs"]

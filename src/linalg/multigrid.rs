@@ -61,9 +61,9 @@ impl Hierarchy {
         Ok(Self { smoother, levels, dense, order, source, fixed })
     }
 
-    /// Number of levels, the finest included.
-    pub fn levels(&self) -> usize {
-        self.levels.len()
+    /// Nodes and blocks of each level, finest first.
+    pub fn sizes(&self) -> Vec<[usize; 2]> {
+        self.levels.iter().map(|level| [level.b.len(), level.smoothed.matrix.blocks.len()]).collect()
     }
 
     /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed` unknowns are eliminated: their rows and
