@@ -217,7 +217,7 @@ impl LinearSolver {
             Method::Multigrid { hierarchy, factorised, .. } => {
                 *factorised = false;
                 let (matrix, fixed) = (&self.matrix, &self.fixed);
-                in_pool(|| hierarchy.update(matrix, fixed))?;
+                in_pool(|| hierarchy.update_masked(matrix, fixed))?;
             }
             Method::Direct(direct) => direct.update(&self.matrix, &self.fixed)?,
         }

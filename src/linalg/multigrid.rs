@@ -2,7 +2,7 @@
 //!
 //! Rows are kept sorted by colour on every level (see [`Smoother::GaussSeidel`]); vectors that come and go are in the mesh's order.
 
-use super::LinalgError;
+use super::{LinalgError, size};
 use super::bsr::{BlockMatrix, Pattern, for_rows};
 use super::coarsest::Dense;
 use super::fixed::Fixed;
@@ -61,17 +61,26 @@ impl Hierarchy {
         Ok(Self { smoother, levels, dense, order, source, fixed })
     }
 
-    /// Number of levels, the finest included.
-    pub fn levels(&self) -> usize {
-        self.levels.len()
+    /// Nodes and blocks of each level, finest first.
+    pub fn sizes(&self) -> Vec<[usize; 2]> {
+        self.levels.iter().map(|level| [level.b.len(), level.smoothed.matrix.blocks.len()]).collect()
     }
 
     /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed` unknowns are eliminated: their rows and
     /// columns count as those of the identity, and contribute nothing to coarser levels.
     ///
     /// # Errors
-    /// [`LinalgError::NotFinite`] names the first node in whose row there is a number that is not finite in f32.
-    pub(super) fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &Fixed) -> Result<(), LinalgError> {
+    /// [`LinalgError::Size`]; [`LinalgError::NotFinite`] names a node in whose row there is a number that is not finite in f32.
+    pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
+        let unknowns = 3 * self.order.len();
+        size("the matrix's blocks", matrix.blocks.len(), self.source.len())?;
+        size("the mask of fixed unknowns", fixed.len(), unknowns)?;
+        let mut mask = Fixed::default();
+        mask.set(fixed);
+        self.update_masked(matrix, &mask)
+    }
+
+    pub(super) fn update_masked(&mut self, matrix: &BlockMatrix<f64>, fixed: &Fixed) -> Result<(), LinalgError> {
         for (bits, &node) in self.fixed.iter_mut().zip(&self.order) {
             *bits = fixed.node(node as usize);
         }

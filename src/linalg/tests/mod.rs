@@ -2,6 +2,7 @@
 
 mod problem;
 mod solve;
+mod timing;
 
-pub(super) use super::{BlockMatrix, LinalgError, LinearSolver, Pattern, Smoother, SolverKind};
-pub(super) use crate::mesh::Prolongation;
+pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, Smoother, SolverKind};
+pub(super) use crate::mesh::{Mesh, Prolongation};

@@ -1,6 +1,6 @@
 //! Small-strain elasticity on a graded brick: the test problems of this room, shared with its benchmark.
 
-use super::{BlockMatrix, Pattern, Prolongation};
+use super::{BlockMatrix, Mesh, Pattern, Prolongation};
 
 /// What is in contact at the patch z = 0, x^2 + y^2 < 0.04 (the brick is a unit cube).
 #[derive(Clone, Copy, PartialEq)]
@@ -68,31 +68,65 @@ impl Brick {
             at
         };
         let [xs, ys, zs] = [line(nx), line(ny), line(nz)];
-        let mut elements = Vec::new();
-        for k in 0..nz {
-            for j in 0..ny {
-                for i in 0..nx {
-                    elements.push([
-                        index(i, j, k),
-                        index(i + 1, j, k),
-                        index(i + 1, j + 1, k),
-                        index(i, j + 1, k),
-                        index(i, j, k + 1),
-                        index(i + 1, j, k + 1),
-                        index(i + 1, j + 1, k + 1),
-                        index(i, j + 1, k + 1),
-                    ]);
+        let (mut nodes, mut elements) = (Vec::new(), Vec::new());
+        for k in 0..=nz {
+            for j in 0..=ny {
+                for i in 0..=nx {
+                    nodes.push([xs[i], ys[j], zs[k]]);
+                    if i < nx && j < ny && k < nz {
+                        let face = |k| [index(i, j, k), index(i + 1, j, k), index(i + 1, j + 1, k), index(i, j + 1, k)];
+                        let [[a, b, c, d], [e, f, g, h]] = [face(k), face(k + 1)];
+                        elements.push([a, b, c, d, e, f, g, h]);
+                    }
                 }
             }
         }
-        let nodes = count[0] * count[1] * count[2];
-        let mut matrix = BlockMatrix::zeros(Pattern::from_elements(nodes, &elements));
-        for (e, element) in elements.iter().enumerate() {
-            let (i, j, k) = (e % nx, e / nx % ny, e / (nx * ny));
-            let h = [xs[i + 1] - xs[i], ys[j + 1] - ys[j], zs[k + 1] - zs[k]];
-            let center = [xs[i] + h[0] / 2.0, ys[j] + h[1] / 2.0, zs[k] + h[2] / 2.0];
-            let shear = if center.iter().map(|x| x * x).sum::<f64>() < 0.09 { self.soft } else { 1.0 };
-            let stiffness = brick_stiffness(h, shear, self.bulk, self.mean_dilatation);
+        let on = |axis: usize, at: usize| -> Vec<u32> {
+            let plane = move |node: &u32| [*node as usize % count[0], *node as usize / count[0] % count[1], *node as usize / (count[0] * count[1])][axis] == at;
+            (0..nodes.len() as u32).filter(plane).collect()
+        };
+        let (plate, symmetry, surface) = (on(2, nz), on(1, 0), on(2, 0));
+        Body { nodes: &nodes, elements: &elements, plate: &plate, symmetry: &symmetry, surface: &surface, soft_radius: 0.3 }
+            .problem(self, prolongations(count))
+    }
+
+    /// The same material and contact on the simulated body: half the lower half of a unit sphere.
+    pub fn on(&self, mesh: &Mesh) -> Problem {
+        Body {
+            nodes: &mesh.nodes,
+            elements: &mesh.elements,
+            plate: &mesh.plate_nodes,
+            symmetry: &mesh.symmetry_nodes,
+            surface: &mesh.contact_nodes,
+            soft_radius: 0.4,
+        }
+        .problem(self, mesh.hierarchy.clone())
+    }
+}
+
+/// A meshed body over the plane z = 0.
+struct Body<'a> {
+    nodes: &'a [[f64; 3]],
+    elements: &'a [[u32; 8]],
+    /// Displaced as a whole.
+    plate: &'a [u32],
+    /// Held in y.
+    symmetry: &'a [u32],
+    /// Candidates for contact.
+    surface: &'a [u32],
+    /// Reach of the softened region.
+    soft_radius: f64,
+}
+
+impl Body<'_> {
+    fn problem(&self, brick: &Brick, prolongations: Vec<Prolongation>) -> Problem {
+        let count = self.nodes.len();
+        let mut matrix = BlockMatrix::zeros(Pattern::from_elements(count, self.elements));
+        for element in self.elements {
+            let corners = element.map(|node| self.nodes[node as usize]);
+            let center: [f64; 3] = std::array::from_fn(|c| corners.iter().map(|x| x[c]).sum::<f64>() / 8.0);
+            let soft = center.iter().map(|x| x * x).sum::<f64>().sqrt() < self.soft_radius;
+            let stiffness = stiffness(&corners, if soft { brick.soft } else { 1.0 }, brick.bulk, brick.mean_dilatation);
             for a in 0..8 {
                 for b in 0..8 {
                     if let Some(block) = matrix.block_mut(element[a] as usize, element[b] as usize) {
@@ -103,42 +137,33 @@ impl Brick {
                 }
             }
         }
-        let mut fixed = vec![false; 3 * nodes];
-        let mut rhs = vec![0.0; 3 * nodes];
-        for k in 0..count[2] {
-            for j in 0..count[1] {
-                for i in 0..count[0] {
-                    let node = index(i, j, k) as usize;
-                    // A little load everywhere, without structure.
-                    for c in 0..3 {
-                        rhs[3 * node + c] = 1e-5 * (((3 * node + c) as f64 * 0.618_033_988_749_894_9).fract() - 0.5);
-                    }
-                    if k == nz {
-                        fixed[3 * node..3 * node + 3].fill(true);
-                        rhs[3 * node..3 * node + 3].copy_from_slice(&[0.001, 0.0, -0.002]);
-                    }
-                    if j == 0 {
-                        fixed[3 * node + 1] = true;
-                        rhs[3 * node + 1] = 0.0;
-                    }
-                    let radius = xs[i].hypot(ys[j]);
-                    if k == 0 && radius < 0.2 && self.patch != Patch::Open {
-                        fixed[3 * node + 2] = true;
-                        rhs[3 * node + 2] = 1e-4 * radius;
-                        let slips = self.patch == Patch::Slip || self.patch == Patch::Mixed && radius > 0.1;
-                        if slips {
-                            slip_rows(&mut matrix, node, radius);
-                        } else {
-                            fixed[3 * node..3 * node + 3].fill(true);
-                        }
-                    }
+        // A little load everywhere, without structure.
+        let mut rhs: Vec<f64> = (0..3 * count).map(|k| 1e-5 * ((k as f64 * 0.618_033_988_749_894_9).fract() - 0.5)).collect();
+        let mut fixed = vec![false; 3 * count];
+        let mut hold = |node: u32, component: usize, value: f64| {
+            fixed[3 * node as usize + component] = true;
+            rhs[3 * node as usize + component] = value;
+        };
+        for &node in self.plate {
+            [0.001, 0.0, -0.002].iter().enumerate().for_each(|(c, &value)| hold(node, c, value));
+        }
+        for &node in self.surface {
+            let [x, y, _] = self.nodes[node as usize];
+            let radius = x.hypot(y);
+            if radius < 0.2 && brick.patch != Patch::Open {
+                hold(node, 2, 1e-4 * radius);
+                if brick.patch == Patch::Slip || brick.patch == Patch::Mixed && radius > 0.1 {
+                    slip_rows(&mut matrix, node as usize, radius);
+                } else {
+                    (0..2).for_each(|c| hold(node, c, 0.0));
                 }
             }
         }
+        self.symmetry.iter().for_each(|&node| hold(node, 1, 0.0));
         for (unknown, _) in fixed.iter().enumerate().filter(|(_, fixed)| **fixed) {
             matrix.set_identity_row(unknown / 3, unknown % 3);
         }
-        Problem { matrix, fixed, rhs, prolongations: prolongations(count) }
+        Problem { matrix, fixed, rhs, prolongations }
     }
 }
 
@@ -163,9 +188,9 @@ fn slip_rows(matrix: &mut BlockMatrix<f64>, node: usize, radius: f64) {
     }
 }
 
-/// Stiffness of a box-shaped hex8 with edges `h`, 2x2x2 Gauss points.
-fn brick_stiffness(h: [f64; 3], shear: f64, bulk: f64, mean_dilatation: bool) -> [[f64; 24]; 24] {
-    const CORNER: [[f64; 3]; 8] = [
+/// Stiffness of a hex8, 2x2x2 Gauss points.
+fn stiffness(corners: &[[f64; 3]; 8], shear: f64, bulk: f64, mean_dilatation: bool) -> [[f64; 24]; 24] {
+    const SIGN: [[f64; 3]; 8] = [
         [-1.0, -1.0, -1.0],
         [1.0, -1.0, -1.0],
         [1.0, 1.0, -1.0],
@@ -175,28 +200,39 @@ fn brick_stiffness(h: [f64; 3], shear: f64, bulk: f64, mean_dilatation: bool) ->
         [1.0, 1.0, 1.0],
         [-1.0, 1.0, 1.0],
     ];
-    let weight = h[0] * h[1] * h[2] / 8.0;
-    let gradients: Vec<[[f64; 3]; 8]> = CORNER
-        .iter()
-        .map(|g| {
-            let g = g.map(|g| g / 3.0_f64.sqrt());
-            CORNER.map(|c| {
-                let f: [f64; 3] = std::array::from_fn(|d| 1.0 + c[d] * g[d]);
-                [c[0] * f[1] * f[2] / (4.0 * h[0]), c[1] * f[0] * f[2] / (4.0 * h[1]), c[2] * f[0] * f[1] / (4.0 * h[2])]
-            })
-        })
-        .collect();
-    let mean: [[f64; 3]; 8] =
-        std::array::from_fn(|a| std::array::from_fn(|c| gradients.iter().map(|g| g[a][c]).sum::<f64>() / 8.0));
+    let points: [(f64, [[f64; 3]; 8]); 8] = SIGN.map(|at| {
+        let at = at.map(|g| g / 3.0_f64.sqrt());
+        let local = SIGN.map(|s| {
+            let f: [f64; 3] = std::array::from_fn(|d| 1.0 + s[d] * at[d]);
+            [s[0] * f[1] * f[2] / 8.0, s[1] * f[0] * f[2] / 8.0, s[2] * f[0] * f[1] / 8.0]
+        });
+        let mut j = [[0.0; 3]; 3];
+        for (x, n) in corners.iter().zip(&local) {
+            for r in 0..3 {
+                for c in 0..3 {
+                    j[r][c] += x[r] * n[c];
+                }
+            }
+        }
+        let minor = |r: usize, c: usize| {
+            let (p, q, u, v) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+            j[p][u] * j[q][v] - j[p][v] * j[q][u]
+        };
+        let determinant = (0..3).map(|c| j[0][c] * minor(0, c)).sum::<f64>();
+        (determinant, local.map(|n| std::array::from_fn(|r| (0..3).map(|c| minor(r, c) * n[c]).sum::<f64>() / determinant)))
+    });
+    let volume: f64 = points.iter().map(|(w, _)| w).sum();
+    let mean: [[f64; 3]; 8] = std::array::from_fn(|a| std::array::from_fn(|c| points.iter().map(|(w, g)| w * g[a][c]).sum::<f64>() / volume));
     let mut k = [[0.0; 24]; 24];
-    for g in &gradients {
+    for (weight, g) in &points {
         let div = if mean_dilatation { &mean } else { g };
         for a in 0..8 {
             for b in 0..8 {
                 let dot: f64 = (0..3).map(|c| g[a][c] * g[b][c]).sum();
                 for r in 0..3 {
                     for c in 0..3 {
-                        let deviatoric = if r == c { dot } else { 0.0 } + g[a][c] * g[b][r] - 2.0 / 3.0 * g[a][r] * g[b][c];
+                        let laplacian = if r == c { dot } else { 0.0 };
+                        let deviatoric = laplacian + g[a][c] * g[b][r] - 2.0 / 3.0 * g[a][r] * g[b][c];
                         k[3 * a + r][3 * b + c] += weight * (shear * deviatoric + bulk * div[a][r] * div[b][c]);
                     }
                 }

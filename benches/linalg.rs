@@ -1,0 +1,46 @@
+//! The linear solver at the default size: product, update, V-cycle, whole solves. `cargo bench --bench linalg`.
+
+#![allow(missing_docs)]
+
+use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, Smoother, SolverKind};
+use asperity::mesh::{Mesh, Prolongation};
+use criterion::{Criterion, criterion_group, criterion_main};
+
+#[path = "../src/linalg/tests/problem.rs"]
+mod problem;
+
+fn linalg(criterion: &mut Criterion) {
+    let problem = problem::Brick::slipping(24).problem();
+    let n = problem.rhs.len();
+    let mut group = criterion.benchmark_group(format!("linalg {n} unknowns, {} threads", rayon::current_num_threads()));
+    group.sample_size(20);
+
+    let wide: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+    let narrow: Vec<f32> = wide.iter().map(|&x| x as f32).collect();
+    let single = BlockMatrix { pattern: problem.matrix.pattern.clone(), blocks: problem.matrix.blocks.iter().map(|b| b.map(|a| a as f32)).collect() };
+    let (mut y, mut y32) = (vec![0.0; n], vec![0.0f32; n]);
+    group.bench_function("product f64", |b| b.iter(|| problem.matrix.multiply(&wide, &mut y)));
+    group.bench_function("product f32", |b| b.iter(|| single.multiply(&narrow, &mut y32)));
+    group.bench_function("product f32 matrix, f64 sums", |b| b.iter(|| single.multiply(&narrow, &mut y)));
+
+    for smoother in [Smoother::GaussSeidel { sweeps: 1 }, Smoother::Chebyshev { degree: 3 }] {
+        let mut hierarchy = Hierarchy::new(&problem.matrix.pattern, &problem.prolongations, smoother).unwrap();
+        let mut solver =
+            LinearSolver::with_smoother(SolverKind::Multigrid, &problem.matrix.pattern, &problem.prolongations, smoother).unwrap();
+        group.bench_function(format!("update {smoother:?}"), |b| b.iter(|| solver.update(&problem.matrix, &problem.fixed).unwrap()));
+        hierarchy.update(&problem.matrix, &problem.fixed).unwrap();
+        group.bench_function(format!("V-cycle {smoother:?}"), |b| b.iter(|| hierarchy.v_cycle(&wide, &mut y32)));
+        for tolerance in [1e-2, 1e-3] {
+            group.bench_function(format!("solve to {tolerance} {smoother:?}"), |b| {
+                b.iter(|| {
+                    let mut x = vec![0.0; n];
+                    solver.solve(&problem.rhs, tolerance, &mut x).unwrap()
+                })
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, linalg);
+criterion_main!(benches);
