@@ -9,7 +9,7 @@ use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::{Hold, Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
-use crate::compute::{CaseFields, Compute, ComputeError, Energies, Outcome};
+use crate::compute::{CaseFields, Compute, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::mesh::Mesh;
 use crate::solver::newton::{Newton, StepReport};

@@ -9,8 +9,8 @@ use crate::case::{self, Case, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::linalg::{LinearSolver, SolverKind, bsr::BlockMatrix};
-use crate::material::hardening::{Hardening, HardeningError};
-use crate::material::{Elasticity, Material};
+use crate::material::Material;
+use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::solver::newton::Newton;
@@ -41,19 +41,8 @@ const PRESS_STEPS_PER_ELEMENT: f64 = 1.25;
 const SHEAR_STEPS: usize = 15;
 /// Smallest contact radius that is meshed for: below it the sphere is a half-space anyway.
 const SMALLEST_CONTACT: f64 = 0.005;
-
-/// The material's hardening law from the case file's.
-pub fn hardening(law: &case::Hardening, youngs_modulus: f64) -> Result<Hardening<f64>, HardeningError> {
-    match law {
-        case::Hardening::Elastic => Ok(Hardening::Elastic),
-        case::Hardening::Ideal { yield_stress } => Hardening::ideal(*yield_stress),
-        case::Hardening::Linear { yield_stress, modulus } => Hardening::linear(*yield_stress, *modulus),
-        case::Hardening::Power { yield_stress, coefficient, exponent } => Hardening::power(*yield_stress, *coefficient, *exponent),
-        case::Hardening::Hollomon { coefficient, exponent } => Hardening::hollomon(*coefficient, *exponent, youngs_modulus),
-        case::Hardening::Voce { yield_stress, saturation_stress, rate } => Hardening::voce(*yield_stress, *saturation_stress, *rate),
-        case::Hardening::Table { points } => Hardening::table(points),
-    }
-}
+/// Largest contact radius that the mesh can resolve on a half ball.
+const LARGEST_CONTACT: f64 = 0.65;
 
 /// Largest indentation of the path, scaled.
 fn largest_indentation(case: &Case) -> f64 {
@@ -68,7 +57,8 @@ impl Problem {
     pub fn new(case: &Case) -> Result<Self, SimulationError> {
         let case = case.scaled();
         let nu = case.material.poissons_ratio;
-        let law = hardening(&case.material.hardening, 1.0)?;
+        let material = Material::<f64>::from_case(&case.material)?;
+        let law = &material.hardening;
         let predicted = match case.mesh.contact_radius {
             Some(a) => a,
             None => predicted_contact_radius(
@@ -78,13 +68,14 @@ impl Problem {
                 largest_indentation(&case),
             ),
         };
+        let meshed = predicted.clamp(SMALLEST_CONTACT, LARGEST_CONTACT);
         let mesh = sphere_mesh(&SphereSpec {
-            contact_radius: predicted.max(SMALLEST_CONTACT),
+            contact_radius: meshed,
             elements_per_contact_radius: case.mesh.elements_per_contact_radius,
             fine_zone: case.mesh.fine_zone,
         })?;
         let epr = case.mesh.elements_per_contact_radius;
-        let spacing = predicted.max(SMALLEST_CONTACT) / epr as f64;
+        let spacing = meshed / epr as f64;
         Ok(Self {
             resolution: Resolution {
                 press_steps: case.solver.press_steps.unwrap_or((PRESS_STEPS_PER_ELEMENT * epr as f64).ceil() as usize),
@@ -93,10 +84,10 @@ impl Problem {
             settings: Settings { tolerance: case.solver.tolerance, max_iterations: case.solver.max_iterations },
             max_cutbacks: case.solver.max_cutbacks,
             spacing,
-            predicted_contact_radius: predicted,
+            predicted_contact_radius: meshed,
             model: CaseModel {
                 mesh: Arc::new(mesh),
-                material: Material { elasticity: Elasticity::new(1.0, nu), hardening: law },
+                material,
                 friction: match case.contact.friction {
                     case::Friction::Coefficient(mu) => Friction::Coulomb(mu),
                     case::Friction::Stick => Friction::Stick,
