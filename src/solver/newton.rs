@@ -15,6 +15,8 @@ const STEP_LENGTHS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
 const FORCING_GAMMA: f64 = 0.9;
 /// Loosest linear tolerance.
 const FORCING_MAX: f64 = 0.1;
+/// Linear tolerance of a step's first system.
+const FORCING_FIRST: f64 = 0.01;
 /// From this iteration on the line search compares with the last iterate alone; before, with the largest merit so far, because the first
 /// changes of contact status raise the merit on the way down.
 const MONOTONE_FROM: usize = 5;
@@ -124,6 +126,7 @@ impl Newton {
                 i if i < MONOTONE_FROM => highest,
                 _ => self.current.merit,
             };
+            let before = self.current.merit / scale.max(f64::MIN_POSITIVE);
             previous = self.current.merit;
             let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
                 Ok(found) => found,
@@ -134,12 +137,11 @@ impl Newton {
                 highest = 0.0;
                 previous = f64::INFINITY;
             }
-            let merit = previous.min(f64::MAX) / scale.max(f64::MIN_POSITIVE);
-            report.iterations.push(Iteration { merit: merit.min(1e300), step_length, krylov, changed });
+            report.iterations.push(Iteration { merit: before.min(f64::MAX), step_length, krylov, changed });
             log::debug!(
                 "  iteration {:2}: merit {:.2e} -> {:.2e}, step {step_length}, krylov {krylov} (eta {eta:.1e}), {changed} changed",
                 iteration + 1,
-                if scale > 0.0 { previous / scale } else { 0.0 },
+                before,
                 self.current.merit / self.current.force_scale.max(f64::MIN_POSITIVE),
             );
         }
@@ -166,6 +168,18 @@ impl Newton {
         self.current.u.copy_from_slice(start);
         // The committed state can always be evaluated; the plate's increment enters through the linear system.
         self.current.evaluate(case, &self.boundary, control)?;
+        if self.current.force_scale == 0.0 {
+            // Nothing touches: the body follows the plate as it is.
+            let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
+            let shift = [control.delta_t - start[plate], 0.0, -self.current.h - start[plate + 2]];
+            for (u, s) in self.current.u.chunks_exact_mut(3).zip(std::iter::repeat(shift)) {
+                for i in 0..3 {
+                    u[i] += s[i];
+                }
+            }
+            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
+            self.current.evaluate(case, &self.boundary, control)?;
+        }
         Ok(())
     }
 
@@ -181,6 +195,10 @@ impl Newton {
         let merit = self.current.merit;
         if merit == 0.0 {
             return FORCING_MAX;
+        }
+        if !previous.is_finite() {
+            // The first system carries the whole increment: its merit says nothing about the size of what is to be found.
+            return FORCING_FIRST;
         }
         let floor = 0.3 * self.settings.tolerance * self.current.force_scale / merit;
         let ratio = merit / previous;
