@@ -13,6 +13,7 @@ pub mod element;
 pub mod linalg;
 pub mod material;
 pub mod mesh;
+pub mod output;
 pub mod real;
 pub mod simulation;
 pub mod solver;

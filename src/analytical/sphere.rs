@@ -27,8 +27,7 @@ impl ElasticSphere {
         0.5 * self.youngs_modulus / (1.0 + self.poissons_ratio)
     }
 
-    /// Ratio of normal to tangential contact stiffness, kappa = (2 - nu) / (2 (1 - nu)) (Mindlin 1949): a tangential displacement is
-    /// kappa times the normal displacement that the same stiffness-free area would take.
+    /// Ratio of normal to tangential contact stiffness, kappa = (2 - nu) / (2 (1 - nu)) = 2 E* a / (8 G a/(2 - nu)) (Mindlin 1949).
     pub fn stiffness_ratio(&self) -> f64 {
         (2.0 - self.poissons_ratio) / (2.0 * (1.0 - self.poissons_ratio))
     }
@@ -50,6 +49,7 @@ mod tests {
         assert!((sphere.effective_modulus() - 219_780.219_78).abs() < 1e-4);
         assert!((sphere.shear_modulus() - 76_923.076_92).abs() < 1e-4);
         assert!((sphere.dundurs_beta() - 0.2857).abs() < 1e-4);
-        assert!((sphere.stiffness_ratio() - 1.7 / 1.4).abs() < 1e-15);
+        let normal_over_tangential = 2.0 * sphere.effective_modulus() / (8.0 * sphere.shear_modulus() / 1.7);
+        assert!((sphere.stiffness_ratio() / normal_over_tangential - 1.0).abs() < 1e-14);
     }
 }

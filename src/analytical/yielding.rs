@@ -1,7 +1,7 @@
 //! First yield under a Hertz pressure, by Mises' criterion on the axis, and the quantities derived from it.
 //!
 //! The stresses on the axis are exact (Huber 1904; Johnson 1985, eq. 3.45). The axis decides for nu in \[0, 0.5\]: at the edge of the
-//! contact Mises' stress is p_0 (1 - 2 nu)/sqrt(3), at most 0.58 p_0 against 0.76 p_0 on the axis at nu = 0.
+//! contact Mises' stress is p_0 (1 - 2 nu)/sqrt(3), at most 0.58 p_0 against 0.77 p_0 on the axis, both at nu = 0.
 
 use super::ElasticSphere;
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -1,0 +1,104 @@
+//! The one error of this room: which file, what went wrong, what to do.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A result file could not be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// A file or folder could not be created, written or renamed.
+    #[error("cannot write {}: {source}; {}", path.display(), writing_remedy(source))]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file could not be opened or read.
+    #[error("cannot read {}: {source}; {}", path.display(), reading_remedy(source))]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A file is not what its name promises.
+    #[error("{}, line {line}: {problem}; restore the file or run the case again into an empty folder", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: u64,
+        /// What is wrong there.
+        problem: String,
+    },
+    /// Data handed to a writer do not fit each other.
+    #[error("cannot write {}: {problem}; this is a fault of the program, please report it", path.display())]
+    Inconsistent {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What does not fit.
+        problem: String,
+    },
+}
+
+impl OutputError {
+    /// For `map_err` where `path` is being written.
+    pub(super) fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
+        move |source| Self::Write { path: path.to_path_buf(), source }
+    }
+
+    /// For `map_err` where `path` is being read.
+    pub(super) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
+        move |source| Self::Read { path: path.to_path_buf(), source }
+    }
+
+    /// The file concerned.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Write { path, .. }
+            | Self::Read { path, .. }
+            | Self::Malformed { path, .. }
+            | Self::Inconsistent { path, .. } => path,
+        }
+    }
+}
+
+fn writing_remedy(error: &io::Error) -> &'static str {
+    use io::ErrorKind as Kind;
+    match error.kind() {
+        Kind::StorageFull | Kind::QuotaExceeded => {
+            "free space there or choose another place with --out, then go on with --resume"
+        }
+        Kind::PermissionDenied | Kind::ReadOnlyFilesystem => "choose a folder that you may write to with --out",
+        Kind::AlreadyExists | Kind::NotADirectory | Kind::IsADirectory => {
+            "a file stands where a folder is needed, or the reverse: move it away or choose another --out"
+        }
+        _ => "check that the place exists and can be written, or choose another with --out",
+    }
+}
+
+fn reading_remedy(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::NotFound => "check the path: it should be in the folder that was given to --out",
+        io::ErrorKind::PermissionDenied => "ask for the right to read it",
+        _ => "check the file",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_the_file_and_the_remedy() {
+        let full = OutputError::writing(Path::new("out/history.csv"))(io::Error::from(io::ErrorKind::StorageFull));
+        let text = full.to_string();
+        assert!(text.contains("out/history.csv") && text.contains("free space"), "{text}");
+        let denied = OutputError::writing(Path::new("/summary.json"))(io::Error::from(io::ErrorKind::PermissionDenied));
+        assert!(denied.to_string().contains("--out"));
+        let missing = OutputError::reading(Path::new("x/history.csv"))(io::Error::from(io::ErrorKind::NotFound));
+        assert!(missing.to_string().contains("x/history.csv") && missing.to_string().contains("check the path"));
+        assert_eq!(missing.path(), Path::new("x/history.csv"));
+    }
+}

@@ -1,0 +1,257 @@
+//! `history.csv`: one row for every accepted step, in the user's units, appended as the run goes.
+
+use super::{OutputError, write_atomically};
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// One accepted step, in the user's units; forces, energies and work are those of the whole sphere.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepRecord {
+    /// Number of the step, from 1 on.
+    pub step: usize,
+    /// Segment of the path, counted from 0 as in `path.0.indentation`.
+    pub segment: usize,
+    /// Indentation h, positive towards the plane.
+    pub h: f64,
+    /// Tangential displacement delta_T of the plate.
+    #[serde(rename = "delta_T")]
+    pub delta_t: f64,
+    /// Normal force F_N, compression positive.
+    #[serde(rename = "F_N")]
+    pub f_n: f64,
+    /// Tangential force F_T, of the sign of the displacement that it resists.
+    #[serde(rename = "F_T")]
+    pub f_t: f64,
+    /// Contact radius a, where the gap extrapolates to zero.
+    pub a: f64,
+    /// Radius of the zone that sticks; zero when everything slips.
+    pub stick_radius: f64,
+    /// Newton iterations of the step, those of rejected attempts included.
+    pub newton_iterations: usize,
+    /// Times the increment was halved.
+    pub cutbacks: usize,
+    /// Contact radius by the second moment of the pressure, a check on `a`.
+    #[serde(default)]
+    pub a_moment: f64,
+    /// Iterations of the linear solver.
+    #[serde(default)]
+    pub krylov_iterations: usize,
+    /// Contact merit over F_N at which the step was accepted.
+    #[serde(default)]
+    pub merit: f64,
+    /// Work done by the plate since the start.
+    #[serde(default)]
+    pub work_external: f64,
+    /// Elastic energy stored.
+    #[serde(default)]
+    pub energy_elastic: f64,
+    /// Plastic work since the start.
+    #[serde(default)]
+    pub work_plastic: f64,
+    /// Work dissipated by friction since the start.
+    #[serde(default)]
+    pub work_friction: f64,
+    /// Nodes in contact.
+    #[serde(default)]
+    pub contact_points: usize,
+    /// Nodes that slip, of those in contact.
+    #[serde(default)]
+    pub slipping_points: usize,
+    /// Greatest equivalent plastic strain alpha.
+    #[serde(default)]
+    pub max_alpha: f64,
+}
+
+/// The columns that every history has, in this order; more may follow.
+const FIXED_COLUMNS: [&str; 10] =
+    ["step", "segment", "h", "delta_T", "F_N", "F_T", "a", "stick_radius", "newton_iterations", "cutbacks"];
+
+/// Appends rows to a `history.csv`; each is one write to the file, so that a killed job keeps whole rows.
+#[derive(Debug)]
+pub struct HistoryWriter {
+    path: PathBuf,
+    file: File,
+}
+
+impl HistoryWriter {
+    /// A new history with its header; one that stands there is replaced.
+    pub fn create(path: &Path) -> Result<Self, OutputError> {
+        Self::restart(path, &[])
+    }
+
+    /// Goes on after the step `last_step`, that of the checkpoint: later rows, and a row cut short, are dropped; they will be computed again.
+    /// Returns the rows kept as well.
+    pub fn resume(path: &Path, last_step: usize) -> Result<(Self, Vec<StepRecord>), OutputError> {
+        let mut kept = read_history(path)?;
+        kept.retain(|record| record.step <= last_step);
+        Ok((Self::restart(path, &kept)?, kept))
+    }
+
+    fn restart(path: &Path, rows: &[StepRecord]) -> Result<Self, OutputError> {
+        write_atomically(path, |out| {
+            out.write_all(header()?.as_bytes())?;
+            rows.iter().try_for_each(|row| out.write_all(&encode(row)?))
+        })?;
+        let file = OpenOptions::new().append(true).open(path).map_err(OutputError::writing(path))?;
+        Ok(Self { path: path.to_path_buf(), file })
+    }
+
+    /// Appends a row and hands it to the system.
+    pub fn append(&mut self, record: &StepRecord) -> Result<(), OutputError> {
+        let row = encode(record).map_err(OutputError::writing(&self.path))?;
+        self.file.write_all(&row).and_then(|()| self.file.flush()).map_err(OutputError::writing(&self.path))
+    }
+}
+
+/// One line with its end; the shortest digits that give the same number back.
+fn encode(row: &StepRecord) -> io::Result<Vec<u8>> {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.serialize(row).map_err(io::Error::other)?;
+    writer.into_inner().map_err(|error| io::Error::other(error.to_string()))
+}
+
+/// The line of column names, taken from the record itself.
+fn header() -> io::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.serialize(StepRecord::default()).map_err(io::Error::other)?;
+    let text = writer.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
+    let end = text.iter().position(|&byte| byte == b'\n').map_or(text.len(), |end| end + 1);
+    String::from_utf8(text[..end].to_vec()).map_err(io::Error::other)
+}
+
+/// Reads a `history.csv`. A last row without its line end, left by a killed job, is not counted; columns after the first ten may be missing or
+/// unknown. Errors name the line and the column.
+pub fn read_history(path: &Path) -> Result<Vec<StepRecord>, OutputError> {
+    let mut text = fs::read_to_string(path).map_err(OutputError::reading(path))?;
+    text.truncate(text.rfind('\n').map_or(0, |end| end + 1));
+    let malformed = |line: u64, problem: String| OutputError::Malformed { path: path.to_path_buf(), line, problem };
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let columns = reader.headers().map_err(|error| malformed(1, error.to_string()))?.clone();
+    if columns.iter().take(FIXED_COLUMNS.len()).ne(FIXED_COLUMNS) {
+        return Err(malformed(1, format!("the columns should start with {}", FIXED_COLUMNS.join(","))));
+    }
+    let mut rows = Vec::new();
+    for row in reader.deserialize() {
+        rows.push(row.map_err(|error| row_problem(&error, &columns)).map_err(|(line, problem)| malformed(line, problem))?);
+    }
+    Ok(rows)
+}
+
+/// Line and plain words for what the CSV reader says of a row.
+pub(super) fn row_problem(error: &csv::Error, columns: &csv::StringRecord) -> (u64, String) {
+    let line = error.position().map_or(0, csv::Position::line);
+    let problem = match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("{len} values where there are {expected_len} columns")
+        }
+        csv::ErrorKind::Deserialize { err, .. } => {
+            let column = err.field().and_then(|index| columns.get(index as usize)).unwrap_or("row");
+            format!("column {column}: {}", err.kind())
+        }
+        _ => error.to_string(),
+    };
+    (line, problem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(step: usize) -> StepRecord {
+        StepRecord {
+            step,
+            segment: usize::from(step > 2),
+            h: 0.02 * step as f64 / 3.0,
+            delta_t: -1e-17 * step as f64,
+            f_n: 148.812_345_678_901_2,
+            f_t: -std::f64::consts::PI,
+            a: 0.2087,
+            newton_iterations: 7,
+            max_alpha: 0.31,
+            merit: f64::MIN_POSITIVE,
+            ..StepRecord::default()
+        }
+    }
+
+    #[test]
+    fn first_columns_are_the_fixed_ones() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        HistoryWriter::create(&path).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,a_moment,"), "{text}");
+        assert!(text.ends_with(",max_alpha\n"));
+        assert!(read_history(&path).unwrap().is_empty());
+    }
+
+    #[test]
+    fn every_appended_row_is_on_the_disk_and_comes_back_to_the_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let mut writer = HistoryWriter::create(&path).unwrap();
+        for step in 1..=4 {
+            writer.append(&record(step)).unwrap();
+            // The writer is still open: what a killed job leaves.
+            let rows = read_history(&path).unwrap();
+            assert_eq!(rows.len(), step);
+            assert_eq!(rows[step - 1], record(step));
+        }
+    }
+
+    #[test]
+    fn resume_drops_later_and_torn_rows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let mut writer = HistoryWriter::create(&path).unwrap();
+        (1..=4).for_each(|step| writer.append(&record(step)).unwrap());
+        drop(writer);
+        OpenOptions::new().append(true).open(&path).unwrap().write_all(b"5,1,0.02,0.0").unwrap();
+        assert_eq!(read_history(&path).unwrap().len(), 4);
+        let (mut writer, kept) = HistoryWriter::resume(&path, 3).unwrap();
+        assert_eq!(kept, [record(1), record(2), record(3)]);
+        writer.append(&record(4)).unwrap();
+        assert_eq!(read_history(&path).unwrap(), (1..=4).map(record).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn the_ten_columns_suffice() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        fs::write(&path, format!("{},note\n1,0,0.01,0,70,0,0.14,0.14,5,0,hand-made\n", FIXED_COLUMNS.join(","))).unwrap();
+        assert_eq!(read_history(&path).unwrap()[0].f_n, 70.0);
+    }
+
+    #[test]
+    fn errors_name_line_and_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let mut writer = HistoryWriter::create(&path).unwrap();
+        writer.append(&record(1)).unwrap();
+        writer.append(&record(2)).unwrap();
+        let good = fs::read_to_string(&path).unwrap();
+        let fails = |text: String| {
+            fs::write(&path, text).unwrap();
+            read_history(&path).unwrap_err().to_string()
+        };
+        let error = fails(good.replace("148.8123456789012", "many"));
+        assert!(error.contains("line 2") && error.contains("column F_N"), "{error}");
+        let error = fails(good.clone() + "3,0,0.01\n");
+        assert!(error.contains("line 4") && error.contains("3 values where there are 20"), "{error}");
+        let error = fails(good.replace("delta_T", "shear"));
+        assert!(error.contains("line 1") && error.contains("delta_T"), "{error}");
+        let error = fails(String::new());
+        assert!(error.contains("line 1"), "{error}");
+        let error = read_history(&folder.path().join("none.csv")).unwrap_err().to_string();
+        assert!(error.contains("none.csv") && error.contains("check the path"), "{error}");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_an_error_with_a_remedy() {
+        let file = OpenOptions::new().append(true).open("/dev/full").unwrap();
+        let error = HistoryWriter { path: PathBuf::from("out/history.csv"), file }.append(&record(1)).unwrap_err().to_string();
+        assert!(error.contains("out/history.csv") && error.contains("free space"), "{error}");
+    }
+}

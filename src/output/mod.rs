@@ -1,0 +1,30 @@
+//! What a run leaves behind: `history.csv`, `summary.json`, `fields/*.vtu` with a `.pvd`, `contact/*.csv`, `plots/*.svg`, and its progress
+//! on the screen.
+//!
+//! The writers take plain records in the user's units; `units` makes them from the simulation's scaled ones. Every file but `history.csv` is written
+//! beside its place and moved there when it is whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job
+//! keeps what it computed.
+
+mod atomic;
+mod contact_csv;
+mod directory;
+mod error;
+mod fields;
+mod history;
+mod plots;
+mod progress;
+mod summary;
+mod units;
+mod vtu;
+
+pub use atomic::write_atomically;
+pub use contact_csv::{ContactPoint, ContactStatus, read_contact, write_contact};
+pub use directory::OutputDirectory;
+pub use error::OutputError;
+pub use fields::{mises, write_fields};
+pub use history::{HistoryWriter, StepRecord, read_history};
+pub use plots::{PlotInputs, plot_contact, plot_forces, plot_indentation, plot_ratio, write_plots};
+pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, progress};
+pub use summary::{FULL_SLIP_RATIO, NormalizedResults, SLIP_DISPLACEMENT_RATIO, Status, Summary, SummaryInputs};
+pub use units::Units;
+pub use vtu::{Collection, Field, Grid, Values, write_vtu};

@@ -1,0 +1,135 @@
+use super::super::ContactStatus;
+use super::*;
+use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
+use crate::analytical::olsson_larsson::OlssonLarsson;
+use std::fs;
+use std::path::Path;
+
+const INPUTS: PlotInputs = PlotInputs {
+    sphere: ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 },
+    hardening: Some(Hardening::Ideal { yield_stress: 400.0 }),
+    friction: Some(0.3),
+};
+
+/// Olsson & Larsson's pressing with a ripple, then a shear of Cattaneo-Mindlin's shape under a falling force.
+pub(super) fn history() -> Vec<StepRecord> {
+    let model = OlssonLarsson { sphere: INPUTS.sphere, hardening: INPUTS.hardening.unwrap() };
+    let elastic = CattaneoMindlin::at_indentation(INPUTS.sphere, 0.3, 0.02);
+    let mut rows: Vec<StepRecord> = (1..=20)
+        .map(|i| {
+            let h = 0.02 * f64::from(i) / 20.0;
+            let f_n = model.force(h) * (0.98 + 0.02 * f64::from(i % 3));
+            StepRecord { step: i as usize, h, f_n, a: model.contact_radius(h), ..StepRecord::default() }
+        })
+        .collect();
+    let pressed = rows[19].clone();
+    rows.extend((1..=14).map(|i| {
+        let x = 1.3 * (f64::from(i) / 14.0).powf(2.3);
+        let f_n = pressed.f_n * (1.0 - 0.3 * x.min(1.0));
+        let ratio = elastic.force(x * elastic.slip_displacement()) / elastic.normal_force;
+        StepRecord { step: 20 + i as usize, segment: 1, delta_t: 0.003 * x, f_n, f_t: ratio * f_n, ..pressed.clone() }
+    }));
+    rows
+}
+
+/// A half disc with a sticking core, a slipping ring and an open rim.
+pub(super) fn contact() -> Vec<ContactPoint> {
+    let mut points = Vec::new();
+    for ring in 0..24 {
+        let r = 0.0125 * f64::from(ring);
+        let around = 6 + 2 * ring;
+        for i in 0..=around {
+            let angle = std::f64::consts::PI * f64::from(i) / f64::from(around);
+            let (x, y) = (r * angle.cos(), r * angle.sin());
+            let status = match r {
+                ..0.12 => ContactStatus::Stick,
+                ..0.21 => ContactStatus::Slip,
+                _ => ContactStatus::Open,
+            };
+            points.push(ContactPoint {
+                point: points.len(),
+                reference_x: x,
+                reference_y: y,
+                current_x: x + 0.004,
+                current_y: y,
+                gap: (r - 0.21).max(0.0),
+                pressure: if r < 0.21 { 1200.0 - 3000.0 * r } else { 0.0 },
+                traction_x: 0.0,
+                traction_y: 0.0,
+                area: 0.0125 * 0.0125,
+                status,
+            });
+        }
+    }
+    points
+}
+
+fn parsed(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap();
+    let mut reader = quick_xml::Reader::from_str(&text);
+    while !matches!(reader.read_event().unwrap(), quick_xml::events::Event::Eof) {}
+    assert!(text.starts_with("<svg"), "{}", &text[..80]);
+    text
+}
+
+#[test]
+fn every_plot_is_sound_xml_with_its_labels() {
+    let folder = tempfile::tempdir().unwrap();
+    // For a look: ASPERITY_KEEP_PLOTS=FOLDER cargo test --lib output::plots
+    let root = std::env::var_os("ASPERITY_KEEP_PLOTS").map_or(folder.path().to_path_buf(), PathBuf::from);
+    let out = OutputDirectory::create(root).unwrap();
+    let written = write_plots(&out, &history(), Some(&contact()), &INPUTS).unwrap();
+    assert_eq!(written.len(), 4);
+    let indentation = parsed(&out.plot("indentation"));
+    for label in ["computed", "Hertz", "Olsson", "F_N"] {
+        assert!(indentation.contains(label), "{label}");
+    }
+    assert!(parsed(&out.plot("forces")).contains("F_T"));
+    assert!(parsed(&out.plot("ratio")).contains("μ = 0.3"));
+    let contact = parsed(&out.plot("contact"));
+    for label in ["stick (", "slip (", "open (", "pressure (mirrored)"] {
+        assert!(contact.contains(label), "{label}");
+    }
+}
+
+#[test]
+fn only_what_there_is_gets_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = OutputDirectory::create(folder.path()).unwrap();
+    assert!(write_plots(&out, &[], None, &INPUTS).unwrap().is_empty());
+    assert_eq!(write_plots(&out, &history()[..5], Some(&[]), &INPUTS).unwrap(), [out.plot("indentation")]);
+    assert!(!out.plot("forces").exists());
+}
+
+#[test]
+fn odd_histories_do_not_break_the_plots() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = OutputDirectory::create(folder.path()).unwrap();
+    let mut rows = history();
+    // To the left, with a lost contact, a number that is none and a last point in mid-air.
+    for row in &mut rows {
+        (row.delta_t, row.f_t) = (-row.delta_t, -row.f_t);
+    }
+    rows[25].f_n = 0.0;
+    rows[26].f_t = f64::NAN;
+    let elastic = PlotInputs { hardening: None, friction: None, ..INPUTS };
+    assert_eq!(write_plots(&out, &rows, None, &elastic).unwrap().len(), 3);
+    let mut open = contact();
+    for point in &mut open {
+        (point.status, point.pressure) = (ContactStatus::Open, 0.0);
+    }
+    plot_contact(&out.plot("contact"), &open).unwrap();
+    plot_contact(&out.plot("contact"), &open[..1]).unwrap();
+    parsed(&out.plot("contact"));
+    // All zero: nothing to scale by.
+    let flat = vec![StepRecord::default(), StepRecord { delta_t: 1.0, ..StepRecord::default() }];
+    write_plots(&out, &flat, None, &INPUTS).unwrap();
+}
+
+#[test]
+fn ticks_are_short() {
+    use super::style::tick;
+    let shown: Vec<String> =
+        [0.0, 0.1 + 0.2, -150.0, 0.0025, 1.25e-5, 2e7, 123_456.0, 0.30000000001].into_iter().map(tick).collect();
+    assert_eq!(shown, ["0", "0.3", "-150", "0.0025", "1.25e-5", "2e7", "123456", "0.3"]);
+}

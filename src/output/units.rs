@@ -1,0 +1,211 @@
+//! From the scaled results of the simulation (lengths by R, stresses by E, the meshed half) to the user's units and the whole sphere.
+
+use super::{ContactPoint, ContactStatus, StepRecord};
+use crate::analytical::ElasticSphere;
+use crate::analytical::olsson_larsson::Hardening;
+use crate::case::{self, Case};
+use crate::contact::coulomb::Status;
+use crate::simulation::record;
+
+use super::plots::PlotInputs;
+use super::summary::SummaryInputs;
+
+/// The two numbers by which everything is scaled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units {
+    /// Radius R, the unit of length.
+    pub radius: f64,
+    /// Young's modulus E, the unit of stress.
+    pub youngs_modulus: f64,
+}
+
+impl Units {
+    /// Those of a case in the user's units.
+    pub fn of(case: &Case) -> Self {
+        Self { radius: case.sphere.radius, youngs_modulus: case.material.youngs_modulus }
+    }
+
+    /// Unit of force, E R^2.
+    pub fn force(&self) -> f64 {
+        self.youngs_modulus * self.radius * self.radius
+    }
+
+    /// Unit of energy, E R^3.
+    pub fn energy(&self) -> f64 {
+        self.force() * self.radius
+    }
+}
+
+impl StepRecord {
+    /// A row in the user's units; the scaled one is of the whole sphere already.
+    pub fn in_units(scaled: &record::StepRecord, units: &Units) -> Self {
+        let (length, force, energy) = (units.radius, units.force(), units.energy());
+        Self {
+            step: scaled.step,
+            segment: scaled.segment,
+            h: scaled.h * length,
+            delta_t: scaled.delta_t * length,
+            f_n: scaled.f_n * force,
+            f_t: scaled.f_t * force,
+            a: scaled.a * length,
+            stick_radius: scaled.stick_radius * length,
+            newton_iterations: scaled.newton_iterations,
+            cutbacks: scaled.cutbacks,
+            a_moment: scaled.a_moment * length,
+            krylov_iterations: scaled.krylov_iterations,
+            merit: scaled.merit,
+            work_external: scaled.work_external * energy,
+            energy_elastic: scaled.energy_elastic * energy,
+            work_plastic: scaled.work_plastic * energy,
+            work_friction: scaled.work_friction * energy,
+            contact_points: scaled.contact_points,
+            slipping_points: scaled.slipping_points,
+            max_alpha: scaled.max_alpha,
+        }
+    }
+}
+
+impl ContactPoint {
+    /// A point in the user's units. Pressure and tractions are the point's force over its tributary reference area, exerted by the
+    /// plane on the sphere: the shear traction resists the motion. A point without area has none.
+    pub fn in_units(scaled: &record::ContactPoint, units: &Units) -> Self {
+        let length = units.radius;
+        let per_area = if scaled.area > 0.0 { units.youngs_modulus / scaled.area } else { 0.0 };
+        Self {
+            point: scaled.node,
+            reference_x: scaled.reference[0] * length,
+            reference_y: scaled.reference[1] * length,
+            current_x: scaled.position[0] * length,
+            current_y: scaled.position[1] * length,
+            gap: scaled.position[2] * length,
+            pressure: scaled.force[2] * per_area,
+            traction_x: scaled.force[0] * per_area,
+            traction_y: scaled.force[1] * per_area,
+            area: scaled.area * length * length,
+            status: scaled.status.into(),
+        }
+    }
+}
+
+impl From<Status> for ContactStatus {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Open => Self::Open,
+            Status::Stick => Self::Stick,
+            Status::Slip => Self::Slip,
+        }
+    }
+}
+
+fn coefficient(friction: case::Friction) -> Option<f64> {
+    match friction {
+        case::Friction::Coefficient(mu) => Some(mu),
+        case::Friction::Stick => None,
+    }
+}
+
+impl SummaryInputs {
+    /// Those of a case in the user's units.
+    pub fn of(case: &Case) -> Self {
+        Self {
+            radius: case.sphere.radius,
+            youngs_modulus: case.material.youngs_modulus,
+            friction: coefficient(case.contact.friction),
+        }
+    }
+}
+
+impl PlotInputs {
+    /// Those of a case in the user's units. Olsson & Larsson's laws cover ideal, power (k = K/sigma_Y, m = 1/n), linear (m = 1) and Hollomon.
+    pub fn of(case: &Case) -> Self {
+        let material = &case.material;
+        let three = |yield_stress: f64, coefficient: f64, exponent: f64| Hardening::ThreeParameter {
+            yield_stress,
+            coefficient: coefficient / yield_stress,
+            exponent,
+        };
+        let hardening = match material.hardening {
+            case::Hardening::Ideal { yield_stress } => Some(Hardening::Ideal { yield_stress }),
+            case::Hardening::Linear { yield_stress, modulus } => Some(three(yield_stress, modulus, 1.0)),
+            case::Hardening::Power { yield_stress, coefficient, exponent } => {
+                Some(three(yield_stress, coefficient, 1.0 / exponent))
+            }
+            case::Hardening::Hollomon { coefficient, exponent } => Some(Hardening::TwoParameter { coefficient, exponent }),
+            case::Hardening::Elastic | case::Hardening::Voce { .. } | case::Hardening::Table { .. } => None,
+        };
+        Self {
+            sphere: ElasticSphere {
+                radius: case.sphere.radius,
+                youngs_modulus: material.youngs_modulus,
+                poissons_ratio: material.poissons_ratio,
+            },
+            hardening,
+            friction: coefficient(case.contact.friction),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UNITS: Units = Units { radius: 2.0, youngs_modulus: 100.0 };
+
+    #[test]
+    fn every_quantity_has_its_own_unit() {
+        let scaled = record::StepRecord {
+            h: 1.0,
+            f_n: 1.0,
+            a: 1.0,
+            work_plastic: 1.0,
+            merit: 1.0,
+            max_alpha: 1.0,
+            contact_points: 3,
+            ..record::StepRecord::default()
+        };
+        let row = StepRecord::in_units(&scaled, &UNITS);
+        assert_eq!((row.h, row.f_n, row.a, row.work_plastic), (2.0, 400.0, 2.0, 800.0));
+        assert_eq!((row.merit, row.max_alpha, row.contact_points), (1.0, 1.0, 3));
+    }
+
+    #[test]
+    fn olsson_larsson_has_the_stress_of_the_case() {
+        let text = |law: &str| {
+            format!(
+                "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\n{law}\n\
+                 [contact]\nfriction = 0.3\n[[path]]\nindentation = 0.02\n"
+            )
+        };
+        for (law, expected) in [
+            ("law = \"ideal\"\nyield_stress = 400.0", Some(400.0)),
+            ("law = \"linear\"\nyield_stress = 400.0\nmodulus = 1000.0", Some(400.0 + 1000.0 * 0.05)),
+            ("law = \"power\"\nyield_stress = 400.0\ncoefficient = 300.0\nexponent = 0.5", Some(400.0 + 300.0 * 0.05f64.sqrt())),
+            ("law = \"voce\"\nyield_stress = 400.0\nsaturation_stress = 600.0\nrate = 10.0", None),
+        ] {
+            let inputs = PlotInputs::of(&Case::parse(&text(law), "case.toml", &[]).unwrap());
+            let stress = inputs.hardening.map(|law| law.stress_at_total_strain(200e3, 0.05 + expected.unwrap_or(0.0) / 200e3));
+            assert_eq!(stress.is_some(), expected.is_some(), "{law}");
+            if let (Some(stress), Some(expected)) = (stress, expected) {
+                assert!((stress / expected - 1.0).abs() < 1e-12, "{law}: {stress}");
+            }
+            assert_eq!(inputs.friction, Some(0.3));
+        }
+    }
+
+    #[test]
+    fn pressure_times_area_is_the_force() {
+        let scaled = record::ContactPoint {
+            node: 9,
+            reference: [0.1, 0.2, 0.01],
+            position: [0.11, 0.2, 0.0],
+            force: [-0.3, 0.0, 1.0],
+            area: 0.5,
+            status: Status::Slip,
+        };
+        let point = ContactPoint::in_units(&scaled, &UNITS);
+        assert_eq!(point.pressure * point.area, 400.0);
+        assert_eq!((point.traction_x, point.status, point.point), (-60.0, ContactStatus::Slip, 9));
+        assert_eq!((point.reference_x, point.current_x, point.gap), (0.2, 0.22, 0.0));
+        assert_eq!(ContactPoint::in_units(&record::ContactPoint { area: 0.0, ..scaled }, &UNITS).pressure, 0.0);
+    }
+}
