@@ -8,6 +8,7 @@
 
 pub mod cpu;
 pub mod gather;
+pub mod gpu;
 pub mod handle;
 
 use std::sync::Arc;

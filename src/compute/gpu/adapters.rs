@@ -1,0 +1,247 @@
+//! Which adapters there are, and which one is taken.
+
+use super::error::GpuError;
+use std::fmt;
+
+/// The environment variable that selects an adapter by a part of its name (case does not matter).
+pub const ADAPTER_VARIABLE: &str = "ASPERITY_ADAPTER";
+
+/// What the user asked for with `--device`, where a device may be used at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeviceRequest {
+    /// A real GPU if there is one, the CPU otherwise.
+    Auto,
+    /// A GPU; a software adapter if there is nothing else.
+    Gpu,
+}
+
+/// What sort of machine stands behind an adapter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum AdapterKind {
+    /// Its own memory.
+    Discrete,
+    /// Shares the CPU's memory.
+    Integrated,
+    /// A part of a GPU, through a hypervisor.
+    Virtual,
+    /// Unknown to the driver layer.
+    Other,
+    /// A driver that computes on the CPU: slower than the CPU backend, there for tests.
+    Software,
+}
+
+impl AdapterKind {
+    /// Whether this is hardware that a run gains from.
+    pub fn is_real(self) -> bool {
+        matches!(self, Self::Discrete | Self::Integrated | Self::Virtual)
+    }
+}
+
+impl From<wgpu::DeviceType> for AdapterKind {
+    fn from(kind: wgpu::DeviceType) -> Self {
+        match kind {
+            wgpu::DeviceType::DiscreteGpu => Self::Discrete,
+            wgpu::DeviceType::IntegratedGpu => Self::Integrated,
+            wgpu::DeviceType::VirtualGpu => Self::Virtual,
+            wgpu::DeviceType::Cpu => Self::Software,
+            wgpu::DeviceType::Other => Self::Other,
+        }
+    }
+}
+
+impl fmt::Display for AdapterKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Discrete => "discrete GPU",
+            Self::Integrated => "integrated GPU",
+            Self::Virtual => "virtual GPU",
+            Self::Other => "unknown device",
+            Self::Software => "software (CPU)",
+        })
+    }
+}
+
+/// One adapter as the driver describes it.
+#[derive(Clone, Debug)]
+pub struct Adapter {
+    /// Name, as `ASPERITY_ADAPTER` matches it.
+    pub name: String,
+    /// What sort of machine.
+    pub kind: AdapterKind,
+    /// Driver interface: vulkan, metal, dx12.
+    pub backend: String,
+    /// Driver and version.
+    pub driver: String,
+    /// f64 in shaders (SHADER_F64): Vulkan only.
+    pub double_precision: bool,
+    /// Times of dispatches can be read (TIMESTAMP_QUERY).
+    pub timestamps: bool,
+    /// Longest array a kernel sees, bytes.
+    pub max_binding: u64,
+    /// Longest array, bytes.
+    pub max_buffer: u64,
+    /// Arrays a kernel may see at once.
+    pub max_storage_buffers: u32,
+    /// Threads in a workgroup.
+    pub max_workgroup: u32,
+    /// Workgroups in one direction of a dispatch.
+    pub max_workgroups: u32,
+}
+
+impl Adapter {
+    /// Describes a wgpu adapter.
+    pub fn of(adapter: &wgpu::Adapter) -> Self {
+        let (info, features, limits) = (adapter.get_info(), adapter.features(), adapter.limits());
+        Self {
+            name: info.name,
+            kind: info.device_type.into(),
+            backend: info.backend.to_string(),
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            double_precision: features.contains(wgpu::Features::SHADER_F64),
+            timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+            max_binding: limits.max_storage_buffer_binding_size,
+            max_buffer: limits.max_buffer_size,
+            max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
+            max_workgroup: limits.max_compute_invocations_per_workgroup,
+            max_workgroups: limits.max_compute_workgroups_per_dimension,
+        }
+    }
+}
+
+/// What is taken, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Index into the adapters; none is the CPU backend.
+    pub adapter: Option<usize>,
+    /// The reason, for the log and for `asperity devices`.
+    pub reason: String,
+}
+
+/// The instance that every adapter comes from. Validation layers and debug labels are left out: this program has error scopes.
+pub(super) fn instance() -> wgpu::Instance {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    // Where the driver tells its memory budget (VK_EXT_memory_budget), refuse before the machine starts to swap.
+    descriptor.memory_budget_thresholds.for_resource_creation = Some(90);
+    wgpu::Instance::new(descriptor)
+}
+
+/// The adapters of an instance, in the driver's order.
+pub(super) fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
+}
+
+/// Every adapter of this machine, in the driver's order; empty without a driver.
+pub fn adapters() -> Vec<Adapter> {
+    enumerate(&instance()).iter().map(Adapter::of).collect()
+}
+
+/// The adapter named in the environment, if any.
+pub fn wanted_name() -> Option<String> {
+    std::env::var(ADAPTER_VARIABLE).ok().filter(|name| !name.trim().is_empty())
+}
+
+/// Chooses among `adapters`.
+///
+/// A name (from [`ADAPTER_VARIABLE`]) decides alone. Otherwise a real GPU is taken: discrete before integrated before virtual, with
+/// double precision before without. A software adapter is slower than the CPU backend: `Auto` takes the CPU instead, `Gpu` takes
+/// the software adapter if there is nothing else.
+///
+/// # Errors
+/// [`GpuError::NoSuchAdapter`] for a name that matches nothing, [`GpuError::NoAdapter`] for `Gpu` without any adapter.
+pub fn choose(adapters: &[Adapter], request: DeviceRequest, wanted: Option<&str>) -> Result<Choice, GpuError> {
+    let best = |accept: &dyn Fn(&Adapter) -> bool| {
+        (0..adapters.len())
+            .filter(|&i| accept(&adapters[i]))
+            .min_by_key(|&i| (adapters[i].kind, !adapters[i].double_precision, i))
+    };
+    if let Some(wanted) = wanted {
+        let needle = wanted.trim().to_lowercase();
+        let found = best(&|a| a.name.to_lowercase().contains(&needle)).ok_or_else(|| GpuError::NoSuchAdapter {
+            wanted: wanted.to_owned(),
+            present: match adapters {
+                [] => "none".to_owned(),
+                _ => adapters.iter().map(|a| a.name.as_str()).collect::<Vec<_>>().join(", "),
+            },
+        })?;
+        return Ok(Choice { adapter: Some(found), reason: format!("named by {ADAPTER_VARIABLE}={wanted}") });
+    }
+    if let Some(found) = best(&|a| a.kind.is_real()) {
+        let others = adapters.iter().filter(|a| a.kind.is_real()).count() > 1;
+        let reason = if others { "the best of the real GPUs" } else { "a real GPU" };
+        return Ok(Choice { adapter: Some(found), reason: reason.to_owned() });
+    }
+    match (request, best(&|_| true)) {
+        (DeviceRequest::Auto, None) => Ok(Choice { adapter: None, reason: "no adapter is present".to_owned() }),
+        (DeviceRequest::Auto, Some(_)) => Ok(Choice {
+            adapter: None,
+            reason: "only a software adapter is present, and it is slower than the CPU backend".to_owned(),
+        }),
+        (DeviceRequest::Gpu, None) => Err(GpuError::NoAdapter),
+        (DeviceRequest::Gpu, Some(found)) => {
+            Ok(Choice { adapter: Some(found), reason: "no real GPU is present: this is slower than --device cpu".to_owned() })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn adapter(name: &str, kind: AdapterKind, double_precision: bool) -> Adapter {
+        Adapter {
+            name: name.into(),
+            kind,
+            backend: "vulkan".into(),
+            driver: String::new(),
+            double_precision,
+            timestamps: true,
+            max_binding: 1 << 27,
+            max_buffer: 1 << 31,
+            max_storage_buffers: 16,
+            max_workgroup: 256,
+            max_workgroups: 65535,
+        }
+    }
+
+    fn taken(adapters: &[Adapter], request: DeviceRequest, name: Option<&str>) -> Option<usize> {
+        choose(adapters, request, name).unwrap().adapter
+    }
+
+    #[test]
+    fn a_software_adapter_is_never_taken_automatically() {
+        let software = [adapter("llvmpipe", AdapterKind::Software, true)];
+        assert_eq!(taken(&software, DeviceRequest::Auto, None), None);
+        assert_eq!(taken(&software, DeviceRequest::Gpu, None), Some(0));
+        assert_eq!(taken(&software, DeviceRequest::Auto, Some("LLVM")), Some(0));
+        let unknown = [adapter("mystery", AdapterKind::Other, true)];
+        assert_eq!(taken(&unknown, DeviceRequest::Auto, None), None);
+    }
+
+    #[test]
+    fn real_gpus_are_ranked() {
+        let all = [
+            adapter("llvmpipe", AdapterKind::Software, true),
+            adapter("Iris Xe", AdapterKind::Integrated, false),
+            adapter("RTX (DX12)", AdapterKind::Discrete, false),
+            adapter("RTX (Vulkan)", AdapterKind::Discrete, true),
+        ];
+        for request in [DeviceRequest::Auto, DeviceRequest::Gpu] {
+            assert_eq!(taken(&all, request, None), Some(3));
+            assert_eq!(taken(&all[..3], request, None), Some(2));
+            assert_eq!(taken(&all[..2], request, None), Some(1));
+            assert_eq!(taken(&all, request, Some("iris")), Some(1));
+        }
+    }
+
+    #[test]
+    fn nothing_there() {
+        assert_eq!(taken(&[], DeviceRequest::Auto, None), None);
+        assert_eq!(choose(&[], DeviceRequest::Gpu, None), Err(GpuError::NoAdapter));
+        let present = [adapter("A", AdapterKind::Discrete, true), adapter("B", AdapterKind::Software, true)];
+        let error = choose(&present, DeviceRequest::Auto, Some("C")).unwrap_err();
+        assert_eq!(error, GpuError::NoSuchAdapter { wanted: "C".into(), present: "A, B".into() });
+        assert!(error.to_string().contains("ASPERITY_ADAPTER=C"), "{error}");
+    }
+}

@@ -1,0 +1,375 @@
+//! Typed arrays on the device, within a memory budget; reading back is proved fresh.
+
+use super::adapters::AdapterKind;
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::shader_sources::Precision;
+use crate::real::Real;
+use bytemuck::{Pod, cast_slice};
+use std::marker::PhantomData;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The environment variable for the device memory budget, MiB.
+pub const MEMORY_VARIABLE: &str = "ASPERITY_GPU_MEMORY";
+const MIB: u64 = 1 << 20;
+/// Uploads go through pieces of this size, so that the driver's copy of what is on the way stays small.
+const UPLOAD_PIECE: usize = 32 << 20;
+/// Bytes behind the numbers in the staging buffer: the ticket, and padding to the alignment of mappings.
+const TICKET_BYTES: u64 = 16;
+
+/// A precision in which kernels run.
+pub trait DeviceReal: Real + Pod {
+    /// The prelude that goes with it.
+    const PRECISION: Precision;
+}
+
+impl DeviceReal for f32 {
+    const PRECISION: Precision = Precision::F32;
+}
+
+impl DeviceReal for f64 {
+    const PRECISION: Precision = Precision::F64;
+}
+
+/// Our own account of device memory. Drivers overcommit: a device may accept twice what it has and fail long after.
+#[derive(Debug)]
+pub struct MemoryBudget {
+    limit: u64,
+    used: AtomicU64,
+}
+
+impl MemoryBudget {
+    /// A budget of `limit` bytes.
+    pub fn new(limit: u64) -> Self {
+        Self { limit, used: AtomicU64::new(0) }
+    }
+
+    /// The budget from `ASPERITY_GPU_MEMORY` (MiB), else what devices of this kind have today at the least: wgpu cannot say how
+    /// much there is. 4 GiB for a GPU with its own memory, 2 GiB where memory is shared with the CPU.
+    pub fn for_adapter(kind: AdapterKind) -> Self {
+        let default = if matches!(kind, AdapterKind::Discrete | AdapterKind::Virtual) { 4096 } else { 2048 };
+        let mib: u64 = match std::env::var(MEMORY_VARIABLE) {
+            Err(_) => default,
+            Ok(text) => text.trim().parse().unwrap_or_else(|_| {
+                log::warn!("{MEMORY_VARIABLE}={text} is not a whole number of MiB; {default} is used");
+                default
+            }),
+        };
+        Self::new(mib.saturating_mul(MIB))
+    }
+
+    /// The budget, bytes.
+    pub fn limit(&self) -> u64 {
+        self.limit
+    }
+
+    /// What is taken, bytes.
+    pub fn used(&self) -> u64 {
+        self.used.load(Ordering::Relaxed)
+    }
+
+    /// Takes `bytes` for `what` until the reservation is dropped.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfBudget`].
+    pub fn reserve(self: &Arc<Self>, what: &str, bytes: u64) -> Result<Reservation, GpuError> {
+        let fits = |used: u64| used.checked_add(bytes).filter(|&sum| sum <= self.limit);
+        match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, fits) {
+            Ok(_) => Ok(Reservation { budget: Arc::clone(self), bytes }),
+            Err(used) => Err(GpuError::OutOfBudget {
+                what: what.to_owned(),
+                needed_mib: bytes as f64 / MIB as f64,
+                used_mib: used as f64 / MIB as f64,
+                budget_mib: self.limit as f64 / MIB as f64,
+            }),
+        }
+    }
+}
+
+/// A share of a [`MemoryBudget`], given back when dropped.
+#[derive(Debug)]
+pub struct Reservation {
+    budget: Arc<MemoryBudget>,
+    bytes: u64,
+}
+
+impl Drop for Reservation {
+    fn drop(&mut self) {
+        self.budget.used.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+/// The buffer that downloads are mapped from, with the running number of the last ticket.
+pub(super) struct Staging {
+    mapped: wgpu::Buffer,
+    ticket: wgpu::Buffer,
+    number: u64,
+    _reservation: Reservation,
+}
+
+/// `count` records from `first` on, small enough to be processed in one go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chunk {
+    /// First record.
+    pub first: usize,
+    /// Number of records.
+    pub count: usize,
+}
+
+/// Splits `records` into equal chunks whose widest array (`widest` bytes a record) is at most `binding` bytes and whose arrays
+/// together (`total` bytes a record) take at most `memory` bytes.
+///
+/// # Errors
+/// [`GpuError::TooLarge`] if a single record does not fit.
+pub fn chunks(what: &str, records: usize, widest: u64, total: u64, binding: u64, memory: u64) -> Result<Vec<Chunk>, GpuError> {
+    let too_large = |bytes, limit| GpuError::TooLarge { what: format!("{what}, one record"), bytes, limit };
+    if widest > binding {
+        return Err(too_large(widest, binding));
+    }
+    if total > memory {
+        return Err(too_large(total, memory));
+    }
+    let most = (binding / widest.max(1)).min(memory / total.max(1)).max(1);
+    let parts = (records as u64).div_ceil(most) as usize;
+    let mut first = 0;
+    Ok((0..parts)
+        .map(|i| {
+            // the first `records % parts` chunks are one longer
+            let count = records / parts + usize::from(i < records % parts);
+            first += count;
+            Chunk { first: first - count, count }
+        })
+        .collect())
+}
+
+/// An array of `T` on the device, readable and writable by kernels.
+#[derive(Debug)]
+pub struct StorageBuffer<T> {
+    pub(super) raw: wgpu::Buffer,
+    what: String,
+    len: usize,
+    _reservation: Reservation,
+    _type: PhantomData<T>,
+}
+
+impl<T> StorageBuffer<T> {
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether it has no elements.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The whole array, as a kernel's argument.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        self.raw.as_entire_binding()
+    }
+}
+
+impl GpuContext {
+    /// Splits `records` by this device's limits and what is left of the memory budget, as [`chunks`].
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] if a single record does not fit.
+    pub fn chunks(&self, what: &str, records: usize, widest: u64, total: u64) -> Result<Vec<Chunk>, GpuError> {
+        let binding = self.adapter().max_binding.min(self.adapter().max_buffer);
+        chunks(what, records, widest, total, binding, self.budget.limit().saturating_sub(self.budget.used()))
+    }
+
+    /// An array of `len` zeros. `what` names it in errors.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], [`GpuError::Rejected`], or the device's fault.
+    pub fn zeros<T: Pod>(&self, what: &str, len: usize) -> Result<StorageBuffer<T>, GpuError> {
+        self.allocate(what, len, wgpu::BufferUsages::STORAGE)
+    }
+
+    fn allocate<T: Pod>(&self, what: &str, len: usize, kind: wgpu::BufferUsages) -> Result<StorageBuffer<T>, GpuError> {
+        // an empty binding is invalid: 16 bytes stand for it
+        let bytes = ((len * size_of::<T>()) as u64).next_multiple_of(16).max(16);
+        let limit = self.adapter().max_binding.min(self.adapter().max_buffer);
+        if bytes > limit {
+            return Err(GpuError::TooLarge { what: what.to_owned(), bytes, limit });
+        }
+        let reservation = self.budget.reserve(what, bytes)?;
+        let usage = kind | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let raw = self.buffer(what, bytes, usage)?;
+        Ok(StorageBuffer { raw, what: what.to_owned(), len, _reservation: reservation, _type: PhantomData })
+    }
+
+    /// An array with these elements.
+    ///
+    /// # Errors
+    /// As [`GpuContext::zeros`].
+    pub fn array<T: Pod>(&self, what: &str, data: &[T]) -> Result<StorageBuffer<T>, GpuError> {
+        let buffer = self.zeros(what, data.len())?;
+        self.upload(&buffer, data)?;
+        Ok(buffer)
+    }
+
+    /// A small block of parameters that every thread of a kernel reads (`var<uniform>`), zero at first; `T` is laid out as WGSL lays
+    /// the struct out.
+    ///
+    /// # Errors
+    /// As [`GpuContext::zeros`].
+    pub fn block<T: Pod>(&self, what: &str) -> Result<StorageBuffer<T>, GpuError> {
+        self.allocate(what, 1, wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// Overwrites the array.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`], or the device's fault.
+    pub fn upload<T: Pod>(&self, buffer: &StorageBuffer<T>, data: &[T]) -> Result<(), GpuError> {
+        if data.len() != buffer.len {
+            return Err(GpuError::Length { what: buffer.what.clone(), expected: buffer.len, given: data.len() });
+        }
+        self.upload_at(buffer, 0, data)
+    }
+
+    /// Overwrites the elements from `offset` on. Elements of less than four bytes are not supported by wgpu.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] if the data reaches beyond the end, or the device's fault.
+    pub fn upload_at<T: Pod>(&self, buffer: &StorageBuffer<T>, offset: usize, data: &[T]) -> Result<(), GpuError> {
+        if offset.checked_add(data.len()).is_none_or(|end| end > buffer.len) {
+            return Err(GpuError::Length { what: buffer.what.clone(), expected: buffer.len, given: offset + data.len() });
+        }
+        let bytes: &[u8] = cast_slice(data);
+        let start = offset * size_of::<T>();
+        self.scoped(&buffer.what, || {
+            for (i, piece) in bytes.chunks(UPLOAD_PIECE).enumerate() {
+                self.queue.write_buffer(&buffer.raw, (start + i * UPLOAD_PIECE) as u64, piece);
+                if bytes.len() > UPLOAD_PIECE {
+                    self.queue.submit([]);
+                }
+            }
+        })
+    }
+
+    /// Reads the whole array back, after everything submitted before.
+    ///
+    /// # Errors
+    /// [`GpuError::Stale`], [`GpuError::Lost`], [`GpuError::Timeout`]: then no numbers come back at all.
+    pub fn download<T: Pod>(&self, buffer: &StorageBuffer<T>) -> Result<Vec<T>, GpuError> {
+        let mut out = vec![T::zeroed(); buffer.len];
+        self.download_at(buffer, 0, &mut out)?;
+        Ok(out)
+    }
+
+    /// Reads the elements from `offset` on into `out`, after everything submitted before.
+    ///
+    /// The staging buffer is filled together with a ticket, a number that was never used before. Only if the ticket has arrived did
+    /// this submission run, and only then are the numbers those that the kernels left.
+    ///
+    /// # Errors
+    /// As [`GpuContext::download`]; [`GpuError::Length`] if `out` reaches beyond the end.
+    pub fn download_at<T: Pod>(&self, buffer: &StorageBuffer<T>, offset: usize, out: &mut [T]) -> Result<(), GpuError> {
+        if offset.checked_add(out.len()).is_none_or(|end| end > buffer.len) {
+            return Err(GpuError::Length { what: buffer.what.clone(), expected: buffer.len, given: offset + out.len() });
+        }
+        let what = buffer.what.as_str();
+        let bytes = size_of_val(out) as u64;
+        let mut slot = self.staging();
+        let staging = self.staging_for(&mut slot, bytes)?;
+        staging.number += 1;
+        let ticket = staging.number;
+        let ticket_at = bytes.next_multiple_of(16);
+        let submission = self.scoped(what, || {
+            self.queue.write_buffer(&staging.ticket, 0, &ticket.to_le_bytes());
+            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(what) });
+            if bytes > 0 {
+                encoder.copy_buffer_to_buffer(&buffer.raw, (offset * size_of::<T>()) as u64, &staging.mapped, 0, bytes);
+            }
+            encoder.copy_buffer_to_buffer(&staging.ticket, 0, &staging.mapped, ticket_at, 8);
+            self.queue.submit([encoder.finish()])
+        })?;
+        let slice = staging.mapped.slice(..ticket_at + TICKET_BYTES);
+        let outcome = Arc::new(std::sync::OnceLock::new());
+        let report = Arc::clone(&outcome);
+        slice.map_async(wgpu::MapMode::Read, move |result| {
+            // set once by construction: a second value is dropped
+            let _ = report.set(result.is_ok());
+        });
+        let waited = self.wait(what, submission);
+        if waited.is_err() || outcome.get() != Some(&true) {
+            *slot = None; // its mapping is in an unknown state
+            waited?;
+            return Err(self.fault(GpuError::Lost { reason: format!("{what} cannot be mapped") }));
+        }
+        let fresh = slice.get_mapped_range().is_ok_and(|view| {
+            let (numbers, tail) = view.split_at(ticket_at as usize);
+            bytemuck::cast_slice_mut(out).copy_from_slice(&numbers[..bytes as usize]);
+            tail[..8] == ticket.to_le_bytes()
+        });
+        staging.mapped.unmap();
+        if !fresh {
+            out.fill(T::zeroed());
+            return Err(self.fault(GpuError::Stale { what: what.to_owned() }));
+        }
+        Ok(())
+    }
+
+    fn buffer(&self, what: &str, size: u64, usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, GpuError> {
+        let descriptor = wgpu::BufferDescriptor { label: Some(what), size, usage, mapped_at_creation: false };
+        self.scoped(what, || self.device.create_buffer(&descriptor))
+    }
+
+    /// The staging buffer, made anew if it is shorter than `bytes` and the ticket.
+    fn staging_for<'a>(&self, slot: &'a mut Option<Staging>, bytes: u64) -> Result<&'a mut Staging, GpuError> {
+        let needed = bytes.next_multiple_of(16) + TICKET_BYTES;
+        let number = slot.as_ref().map_or(0, |s| s.number);
+        if slot.as_ref().is_none_or(|s| s.mapped.size() < needed) {
+            *slot = None;
+            let reservation = self.budget.reserve("staging", needed)?;
+            let mapped = self.buffer("staging", needed, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST)?;
+            let ticket = self.buffer("ticket", TICKET_BYTES, wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST)?;
+            *slot = Some(Staging { mapped, ticket, number, _reservation: reservation });
+        }
+        slot.as_mut().ok_or_else(|| GpuError::Lost { reason: "no staging buffer".to_owned() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunks_cover_every_record_once_and_fit() {
+        for (records, widest, total, binding, memory) in
+            [(1, 8, 16, 8, 16), (10, 3, 9, 10, 1000), (1000, 7, 30, 1 << 20, 3000), (64, 1 << 20, 5 << 20, 128 << 20, 2 << 30)]
+        {
+            let parts = chunks("state", records, widest, total, binding, memory).unwrap();
+            let mut next = 0;
+            for c in &parts {
+                assert_eq!(c.first, next);
+                assert!(c.count > 0 && c.count as u64 * widest <= binding && c.count as u64 * total <= memory);
+                next += c.count;
+            }
+            assert_eq!(next, records);
+            let (most, least) = (parts.iter().map(|c| c.count).max(), parts.iter().map(|c| c.count).min());
+            assert!(most.unwrap() - least.unwrap() <= 1);
+        }
+        assert_eq!(chunks("state", 0, 1, 1, 1, 1), Ok(vec![]));
+        assert!(matches!(chunks("state", 3, 9, 9, 8, 100), Err(GpuError::TooLarge { bytes: 9, limit: 8, .. })));
+        assert!(matches!(chunks("state", 3, 9, 19, 9, 18), Err(GpuError::TooLarge { bytes: 19, limit: 18, .. })));
+    }
+
+    #[test]
+    fn a_reservation_is_given_back() {
+        let budget = Arc::new(MemoryBudget::new(10 * MIB));
+        let first = budget.reserve("a", 6 * MIB).unwrap();
+        let error = budget.reserve("tangents", 5 * MIB).unwrap_err();
+        let expected = GpuError::OutOfBudget { what: "tangents".into(), needed_mib: 5.0, used_mib: 6.0, budget_mib: 10.0 };
+        assert_eq!(error, expected);
+        assert!(error.to_string().contains("tangents needs 5 MiB of device memory, 6 of 10 MiB are taken"), "{error}");
+        drop(first);
+        let _second = budget.reserve("b", 10 * MIB).unwrap();
+        assert_eq!(budget.used(), 10 * MIB);
+        assert!(budget.reserve("c", u64::MAX).is_err());
+    }
+}

@@ -1,0 +1,181 @@
+//! Opening a device, and watching over it.
+
+use super::adapters::{self, Adapter, AdapterKind, Choice, DeviceRequest};
+use super::buffers::{MemoryBudget, Staging};
+use super::error::GpuError;
+use super::health::DeviceHealth;
+use super::pipelines::PipelineCache;
+use super::shader_sources::Precision;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Longest time that one submission may take before the device is given up, seconds. Software adapters compile for a quarter of a
+/// minute at a kernel's first dispatch.
+const PATIENCE_S: u64 = 300;
+
+/// An open device with its queue, its compiled kernels and its memory budget.
+///
+/// May be shared between threads. Results are identical bits for identical input: kernels gather in fixed order and use no atomics.
+pub struct GpuContext {
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    pub(super) health: Arc<DeviceHealth>,
+    pub(super) budget: Arc<MemoryBudget>,
+    pub(super) pipelines: PipelineCache,
+    pub(super) staging: Mutex<Option<Staging>>,
+    pub(super) checked: bool,
+    adapter: Adapter,
+}
+
+impl GpuContext {
+    /// Opens the device that `request` and the environment (`ASPERITY_ADAPTER`) ask for; none means: use the CPU.
+    ///
+    /// # Errors
+    /// As [`adapters::choose`]; [`GpuError::NoDevice`] if the driver opens none.
+    pub fn open(request: DeviceRequest) -> Result<Option<Self>, GpuError> {
+        Self::open_named(request, adapters::wanted_name().as_deref())
+    }
+
+    /// Opens the device that `request` and `wanted`, a part of an adapter's name, ask for; none means: use the CPU.
+    ///
+    /// # Errors
+    /// As [`GpuContext::open`].
+    pub fn open_named(request: DeviceRequest, wanted: Option<&str>) -> Result<Option<Self>, GpuError> {
+        let found = adapters::enumerate(&adapters::instance());
+        let described: Vec<Adapter> = found.iter().map(Adapter::of).collect();
+        let Choice { adapter, reason } = adapters::choose(&described, request, wanted)?;
+        let Some(chosen) = adapter else {
+            log::info!("device: the CPU ({reason})");
+            return Ok(None);
+        };
+        let description = described[chosen].clone();
+        let notice = format!("device: {} ({}), {reason}", description.name, description.kind);
+        if description.kind == AdapterKind::Software {
+            log::warn!("{notice}")
+        } else {
+            log::info!("{notice}")
+        }
+        Self::open_adapter(&found[chosen], description).map(Some)
+    }
+
+    fn open_adapter(adapter: &wgpu::Adapter, description: Adapter) -> Result<Self, GpuError> {
+        let wanted = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("asperity"),
+            required_features: adapter.features() & wanted,
+            // The defaults allow 8 storage buffers a kernel and 128 MiB a binding, whatever the device can do.
+            required_limits: adapter.limits(),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| GpuError::NoDevice { adapter: description.name.clone(), reason: e.to_string() })?;
+        let health = Arc::new(DeviceHealth::default());
+        let on_error = Arc::clone(&health);
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| on_error.fail(GpuError::Lost { reason: e.to_string() })));
+        let on_loss = Arc::clone(&health);
+        device.set_device_lost_callback(move |reason, message| {
+            on_loss.fail(GpuError::Lost { reason: format!("device lost ({reason:?}) {message}").trim().to_owned() });
+        });
+        let budget = Arc::new(MemoryBudget::for_adapter(description.kind));
+        let (pipelines, staging, checked) = (PipelineCache::default(), Mutex::new(None), cfg!(debug_assertions));
+        Ok(Self { device, queue, health, budget, pipelines, staging, checked, adapter: description })
+    }
+
+    /// The same with kernels compiled with or without bounds checks; the default is with in debug builds, without in release builds,
+    /// where they cost a factor of 3.5 to 5 in kernels with private arrays.
+    pub fn with_checks(mut self, checked: bool) -> Self {
+        self.checked = checked;
+        self.pipelines = PipelineCache::default();
+        self
+    }
+
+    /// The same with a memory budget of `bytes` instead of that of the environment; before any array is made.
+    pub fn with_budget(mut self, bytes: u64) -> Self {
+        self.budget = Arc::new(MemoryBudget::new(bytes));
+        self
+    }
+
+    /// The adapter behind this device.
+    pub fn adapter(&self) -> &Adapter {
+        &self.adapter
+    }
+
+    /// The memory budget: what is taken of how much.
+    pub fn budget(&self) -> &MemoryBudget {
+        &self.budget
+    }
+
+    /// The device's state of health.
+    ///
+    /// # Errors
+    /// The first fault since it was opened.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.health.check()
+    }
+
+    /// Whether kernels in `precision` run here.
+    ///
+    /// # Errors
+    /// [`GpuError::NoDoublePrecision`].
+    pub fn supports(&self, precision: Precision) -> Result<(), GpuError> {
+        if precision == Precision::F64 && !self.adapter.double_precision {
+            return Err(GpuError::NoDoublePrecision { adapter: self.adapter.name.clone() });
+        }
+        Ok(())
+    }
+
+    /// Gives the device up, as a driver reset would: everything after it must fail. For tests of the error paths.
+    pub fn destroy(&self) {
+        self.device.destroy();
+    }
+
+    /// Runs `make`, which creates `what`, and turns every error that wgpu raises meanwhile on this thread into a result.
+    pub(super) fn scoped<R>(&self, what: &str, make: impl FnOnce() -> R) -> Result<R, GpuError> {
+        self.check()?;
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let made = make();
+        // Every scope has to be popped, innermost first, whichever one holds the error.
+        let errors = [pollster::block_on(validation.pop()), pollster::block_on(memory.pop()), pollster::block_on(internal.pop())];
+        match errors.into_iter().flatten().next() {
+            None => Ok(made),
+            Some(e) => Err(GpuError::Rejected { what: what.to_owned(), message: e.to_string().trim().to_owned() }),
+        }
+    }
+
+    /// Waits for a submission and checks that the device survived it.
+    pub(super) fn wait(&self, what: &str, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+        let poll = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(Duration::from_secs(PATIENCE_S)) };
+        let waited = self.device.poll(poll);
+        self.check()?;
+        match waited {
+            Ok(_) => Ok(()),
+            Err(wgpu::PollError::Timeout) => Err(self.fault(GpuError::Timeout { what: what.to_owned(), seconds: PATIENCE_S })),
+            Err(e) => Err(self.fault(GpuError::Lost { reason: e.to_string() })),
+        }
+    }
+
+    /// Gives the device up for `fault`, and returns it.
+    pub(super) fn fault(&self, fault: GpuError) -> GpuError {
+        self.health.fail(fault.clone());
+        fault
+    }
+
+    pub(super) fn staging(&self) -> std::sync::MutexGuard<'_, Option<Staging>> {
+        self.staging.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for GpuContext {
+    fn drop(&mut self) {
+        // Closing a device is not a loss: keep the callback from reporting one.
+        self.device.set_device_lost_callback(|_, _| ());
+    }
+}
+
+impl std::fmt::Debug for GpuContext {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GpuContext").field("adapter", &self.adapter).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,242 @@
+//! Material points on the device: the parameters of many materials, and the return mapping at every point of every case.
+
+use super::buffers::{DeviceReal, StorageBuffer};
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::pipelines::Bound;
+use super::shader_sources::RETURN_MAPPING;
+use crate::material::{Hardening, Material};
+use crate::real::Real;
+
+/// Parameters of a material in `material_parameters`.
+pub const PARAMETERS: usize = 9;
+/// Components of f - I, row by row.
+pub const RELATIVE: usize = 9;
+/// Components of the committed state: b_e_bar - I (xx, yy, zz, xy, yz, zx), alpha.
+pub const STATE: usize = 7;
+/// Components of an answer: deviatoric stress (6), b_e_bar - I (6), alpha, mu_bar, norm, normal (6), beta_1, beta_3, beta_4,
+/// delta_gamma, plastic work, U', U'', U, W.
+pub const ANSWER: usize = 30;
+/// Components of the tangent: c_ab at 6 a + b.
+pub const TANGENT: usize = 36;
+
+/// What became of a point; the numbers are those of `shaders/material/material.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointStatus {
+    /// Elastic.
+    Elastic,
+    /// Plastic strain grew.
+    Yielding,
+    /// det f is not above 0: no answer.
+    Inverted,
+    /// A NaN, or an overflow: no answer.
+    NotFinite,
+}
+
+impl PointStatus {
+    /// From the device's number. A number that the kernel does not write (a point that it never reached) is no answer either.
+    pub fn of(number: u32) -> Self {
+        match number {
+            0 => Self::Elastic,
+            1 => Self::Yielding,
+            2 => Self::Inverted,
+            _ => Self::NotFinite,
+        }
+    }
+}
+
+/// Materials as kernels read them: `material_parameters` (parameter p of case c at `p * cases + c`) and `hardening_table` (alpha,
+/// sigma, plastic work of the points of all tables).
+pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
+    let cases = materials.len();
+    let mut parameters = vec![R::ZERO; PARAMETERS * cases];
+    let mut table = Vec::new();
+    for (case, material) in materials.iter().enumerate() {
+        let zero = R::ZERO;
+        let mut points = 0;
+        let first = table.len() / 3;
+        let (law, yield_stress, coefficient, exponent, youngs_modulus) = match &material.hardening {
+            Hardening::Elastic => (0, zero, zero, zero, zero),
+            Hardening::Ideal { yield_stress } => (1, *yield_stress, zero, zero, zero),
+            Hardening::Linear { yield_stress, modulus } => (2, *yield_stress, *modulus, zero, zero),
+            Hardening::Power { yield_stress, coefficient, exponent } => (3, *yield_stress, *coefficient, *exponent, zero),
+            Hardening::Hollomon { coefficient, exponent, youngs_modulus, yield_stress } => {
+                (4, *yield_stress, *coefficient, *exponent, *youngs_modulus)
+            }
+            Hardening::Voce { yield_stress, saturation_stress, rate } => (5, *yield_stress, *saturation_stress, *rate, zero),
+            Hardening::Table { points: rows } => {
+                points = rows.len();
+                table.extend(rows.iter().flatten());
+                (6, rows.first().map_or(zero, |row| row[1]), zero, zero, zero)
+            }
+        };
+        let whole = |n: usize| R::of(n as f64);
+        let elasticity = &material.elasticity;
+        let row: [R; PARAMETERS] = [
+            elasticity.bulk,
+            elasticity.shear,
+            whole(law),
+            yield_stress,
+            coefficient,
+            exponent,
+            youngs_modulus,
+            whole(first),
+            whole(points),
+        ];
+        for (p, value) in row.into_iter().enumerate() {
+            parameters[p * cases + case] = value;
+        }
+    }
+    (parameters, table)
+}
+
+/// The block that `return_mapping.wgsl` calls Dimensions.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Dimensions {
+    cases: u32,
+    in_dispatch: u32,
+    points: u32,
+    reserved: u32,
+}
+
+/// The answers of all points, arrays [case][component][point].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answers<R> {
+    /// [`ANSWER`] components; meaningless where the status is no answer.
+    pub answer: Vec<R>,
+    /// [`TANGENT`] components; likewise.
+    pub tangent: Vec<R>,
+    /// [case][point].
+    pub status: Vec<PointStatus>,
+}
+
+/// The return mapping for a batch of materials with the same number of points each, its arrays resident on the device.
+#[derive(Debug)]
+pub struct ReturnMapping<R> {
+    cases: usize,
+    points: usize,
+    relative: StorageBuffer<R>,
+    committed: StorageBuffer<R>,
+    answer: StorageBuffer<R>,
+    tangent: StorageBuffer<R>,
+    status: StorageBuffer<u32>,
+    active: StorageBuffer<u32>,
+    dimensions: StorageBuffer<Dimensions>,
+    bound: Bound,
+}
+
+impl<R: DeviceReal> ReturnMapping<R> {
+    /// Compiles the kernel and reserves the arrays for `materials.len()` cases of `points` points.
+    ///
+    /// # Errors
+    /// [`GpuError::NoDoublePrecision`], [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], or the device's fault.
+    pub fn new(context: &GpuContext, materials: &[Material<R>], points: usize) -> Result<Self, GpuError> {
+        let pipeline = context.pipeline(&RETURN_MAPPING, R::PRECISION)?;
+        let cases = materials.len();
+        let (parameters, table) = flatten(materials);
+        let parameters = context.array("material parameters", &parameters)?;
+        let table = context.array("hardening table", &table)?;
+        let zeros = |what: &str, components: usize| context.zeros(what, cases * components * points);
+        let relative = zeros("relative displacement gradient", RELATIVE)?;
+        let committed = zeros("committed state", STATE)?;
+        let answer = zeros("material answers", ANSWER)?;
+        let tangent = zeros("material tangents", TANGENT)?;
+        let status = context.zeros("point status", cases * points)?;
+        let active = context.zeros("active cases", cases)?;
+        let dimensions = context.block("dimensions")?;
+        let arguments = vec![
+            dimensions.binding(),
+            parameters.binding(),
+            table.binding(),
+            active.binding(),
+            relative.binding(),
+            committed.binding(),
+            answer.binding(),
+            tangent.binding(),
+            status.binding(),
+        ];
+        let bound = context.bind(&pipeline, arguments)?;
+        Ok(Self { cases, points, relative, committed, answer, tangent, status, active, dimensions, bound })
+    }
+
+    /// Maps every point of the `active` cases; the answers of the others are those of the last run.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`], or the device's fault.
+    pub fn run(&self, context: &GpuContext, active: &[u32], relative: &[R], committed: &[R]) -> Result<Answers<R>, GpuError> {
+        if active.len() > self.cases || active.iter().any(|&case| case as usize >= self.cases) {
+            let what = "the list of active cases".to_owned();
+            return Err(GpuError::Length { what, expected: self.cases, given: active.len() });
+        }
+        let [cases, in_dispatch, points] = [self.cases, active.len(), self.points].map(|n| n as u32);
+        context.upload(&self.dimensions, &[Dimensions { cases, in_dispatch, points, reserved: 0 }])?;
+        context.upload_at(&self.active, 0, active)?;
+        context.upload(&self.relative, relative)?;
+        context.upload(&self.committed, committed)?;
+        let mut list = context.record();
+        list.dispatch(&self.bound, self.points, active.len())?;
+        list.submit()?;
+        let status = context.download(&self.status)?.into_iter().map(PointStatus::of).collect();
+        Ok(Answers { answer: context.download(&self.answer)?, tangent: context.download(&self.tangent)?, status })
+    }
+}
+
+/// [`ReturnMapping`] for any number of cases, in as many chunks as the device's limits and memory ask for.
+///
+/// `relative` and `committed` are [case][component][point].
+///
+/// # Errors
+/// As [`ReturnMapping::new`] and [`ReturnMapping::run`].
+pub fn return_mapping<R: DeviceReal>(
+    context: &GpuContext,
+    materials: &[Material<R>],
+    points: usize,
+    relative: &[R],
+    committed: &[R],
+) -> Result<Answers<R>, GpuError> {
+    let bytes = |components: usize| (components * points * size_of::<R>()) as u64;
+    // twice the tangents: what is read back goes through a staging buffer of the same size
+    let total = bytes(RELATIVE + STATE + ANSWER + 2 * TANGENT + PARAMETERS) + 4 * points as u64;
+    let mut all = Answers { answer: Vec::new(), tangent: Vec::new(), status: Vec::new() };
+    for chunk in context.chunks("material points", materials.len(), bytes(TANGENT), total)? {
+        let cases = chunk.first..chunk.first + chunk.count;
+        let part = |data: &[R], components: usize| -> Result<Vec<R>, GpuError> {
+            let range = cases.start * components * points..cases.end * components * points;
+            let given = data.len();
+            let expected = materials.len() * components * points;
+            data.get(range).map(<[R]>::to_vec).ok_or_else(|| GpuError::Length {
+                what: "material points".to_owned(),
+                expected,
+                given,
+            })
+        };
+        let kernel = ReturnMapping::new(context, &materials[cases.clone()], points)?;
+        let active: Vec<u32> = (0..chunk.count as u32).collect();
+        let answers = kernel.run(context, &active, &part(relative, RELATIVE)?, &part(committed, STATE)?)?;
+        all.answer.extend(answers.answer);
+        all.tangent.extend(answers.tangent);
+        all.status.extend(answers.status);
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::Elasticity;
+
+    #[test]
+    fn parameters_are_laid_out_by_parameter_and_tables_follow_each_other() {
+        let elasticity = Elasticity { bulk: 5.0, shear: 7.0 };
+        let table = |points: &[[f64; 2]]| Hardening::<f64>::table(points).unwrap();
+        let laws = [table(&[[0.0, 1.0], [1.0, 3.0]]), Hardening::voce(2.0, 4.0, 6.0).unwrap(), table(&[[0.0, 8.0]])];
+        let materials = laws.map(|hardening| Material { elasticity, hardening });
+        let (parameters, points) = flatten(&materials);
+        let column = |case: usize| (0..PARAMETERS).map(|p| parameters[p * 3 + case]).collect::<Vec<_>>();
+        assert_eq!(column(0), [5.0, 7.0, 6.0, 1.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
+        assert_eq!(column(1), [5.0, 7.0, 5.0, 2.0, 4.0, 6.0, 0.0, 2.0, 0.0]);
+        assert_eq!(column(2), [5.0, 7.0, 6.0, 8.0, 0.0, 0.0, 0.0, 2.0, 1.0]);
+        assert_eq!(points, [0.0, 1.0, 0.0, 1.0, 3.0, 2.0, 0.0, 8.0, 0.0]);
+    }
+}

@@ -1,0 +1,24 @@
+//! The device layer: from "is there a GPU" to "run this kernel on these arrays", with every failure an error.
+//!
+//! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory budget, [`shader_sources`] lists
+//! the WGSL of every kernel, [`pipelines`] compiles and dispatches it, [`lint`] proves things about it that no compiler checks.
+//!
+//! A device fails quietly: a lost one ignores what is submitted and leaves old numbers in its buffers. [`health::DeviceHealth`]
+//! and the tickets of [`buffers`] turn that into an error; nothing is read back without both having been asked.
+
+pub mod adapters;
+pub mod buffers;
+pub mod context;
+pub mod error;
+pub mod health;
+pub mod lint;
+pub mod material;
+pub mod pipelines;
+pub mod report;
+pub mod shader_sources;
+
+pub use adapters::{Adapter, AdapterKind, Choice, DeviceRequest};
+pub use buffers::{Chunk, DeviceReal, StorageBuffer};
+pub use context::GpuContext;
+pub use error::GpuError;
+pub use shader_sources::{Kernel, Precision};

@@ -1,0 +1,181 @@
+//! Compiling kernels once, and running them.
+
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::lint;
+use super::shader_sources::{Assembled, Binding, Kernel, Precision};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+/// A compiled kernel.
+#[derive(Debug)]
+pub struct Pipeline {
+    raw: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    kernel: &'static Kernel,
+}
+
+/// A kernel with its arguments, ready to run; made once and run often.
+#[derive(Debug)]
+pub struct Bound {
+    pipeline: Arc<Pipeline>,
+    group: wgpu::BindGroup,
+}
+
+/// Compiled kernels by name and precision.
+#[derive(Debug, Default)]
+pub(super) struct PipelineCache {
+    compiled: Mutex<BTreeMap<(&'static str, Precision), Arc<Pipeline>>>,
+}
+
+/// Kernels to be run one after the other, each seeing what those before it wrote.
+pub struct Recorder<'a> {
+    context: &'a GpuContext,
+    encoder: wgpu::CommandEncoder,
+    dispatches: usize,
+}
+
+impl GpuContext {
+    /// The kernel compiled in one precision; compiled at the first call, from memory afterwards.
+    ///
+    /// # Errors
+    /// [`GpuError::NoDoublePrecision`], [`GpuError::Shader`], [`GpuError::Rejected`], or the device's fault.
+    pub fn pipeline(&self, kernel: &'static Kernel, precision: Precision) -> Result<Arc<Pipeline>, GpuError> {
+        self.supports(precision)?;
+        // Held while compiling: a second thread that wants the same kernel waits for it and does not compile it again.
+        let mut compiled = self.pipelines.compiled.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = compiled.get(&(kernel.name, precision)) {
+            return Ok(Arc::clone(pipeline));
+        }
+        let start = Instant::now();
+        let source = kernel.assemble(precision);
+        let pipeline =
+            Arc::new(self.compile(kernel, &source).inspect_err(|e| log::error!("{} in {precision}: {e}", kernel.name))?);
+        log::debug!("compiled {} in {precision}: {:.3} s before the driver's share", kernel.name, start.elapsed().as_secs_f64());
+        compiled.insert((kernel.name, precision), Arc::clone(&pipeline));
+        Ok(pipeline)
+    }
+
+    fn compile(&self, kernel: &'static Kernel, source: &Assembled) -> Result<Pipeline, GpuError> {
+        let module = self.module(kernel.name, source)?;
+        let entries: Vec<wgpu::BindGroupLayoutEntry> = (0u32..).zip(kernel.bindings).map(layout_entry).collect();
+        let label = Some(kernel.name);
+        self.scoped(kernel.name, || {
+            let layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+            let pipeline_layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            });
+            let raw = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label,
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(kernel.name),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            Pipeline { raw, layout, kernel }
+        })
+    }
+
+    /// Bounds checks or not, as [`GpuContext::with_checks`] says.
+    fn module(&self, name: &str, source: &Assembled) -> Result<wgpu::ShaderModule, GpuError> {
+        let descriptor =
+            wgpu::ShaderModuleDescriptor { label: Some(name), source: wgpu::ShaderSource::Wgsl(source.text.as_str().into()) };
+        let made = self.scoped(name, || {
+            if self.checked {
+                self.device.create_shader_module(descriptor)
+            } else {
+                // SAFETY: the source is compiled into this program. Its kernels return at once beyond the dimensions in their
+                // uniform block, whose drivers size every bound array by those dimensions, and all their loops have fixed counts
+                // or run along lists built by this program; debug builds run the same kernels with the checks on.
+                #[allow(unsafe_code)]
+                unsafe {
+                    self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
+                }
+            }
+        });
+        made.map_err(|error| match (lint::validate(source), error) {
+            // naga's own words with the place in the file, where it is the source that is wrong
+            (Err(located), GpuError::Rejected { .. }) => located,
+            (_, error) => error,
+        })
+    }
+
+    /// Binds arguments to a kernel, in the order of [`Kernel::bindings`].
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] for a wrong number of arguments, [`GpuError::Rejected`], or the device's fault.
+    pub fn bind(&self, pipeline: &Arc<Pipeline>, arguments: Vec<wgpu::BindingResource<'_>>) -> Result<Bound, GpuError> {
+        let kernel = pipeline.kernel;
+        if arguments.len() != kernel.bindings.len() {
+            let what = format!("the argument list of {}", kernel.name);
+            return Err(GpuError::Length { what, expected: kernel.bindings.len(), given: arguments.len() });
+        }
+        let entries: Vec<wgpu::BindGroupEntry<'_>> =
+            (0u32..).zip(arguments).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: Some(kernel.name), layout: &pipeline.layout, entries: &entries };
+        let group = self.scoped(kernel.name, || self.device.create_bind_group(&descriptor))?;
+        Ok(Bound { pipeline: Arc::clone(pipeline), group })
+    }
+
+    /// Starts a list of kernels to be run in one submission.
+    pub fn record(&self) -> Recorder<'_> {
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("kernels") };
+        Recorder { context: self, encoder: self.device.create_command_encoder(&descriptor), dispatches: 0 }
+    }
+}
+
+impl Recorder<'_> {
+    /// Appends one kernel: `threads` along x (rounded up to whole workgroups) for each of `cases` along y.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] beyond the device's number of workgroups.
+    pub fn dispatch(&mut self, bound: &Bound, threads: usize, cases: usize) -> Result<(), GpuError> {
+        let kernel = bound.pipeline.kernel;
+        let groups = threads.div_ceil(kernel.workgroup as usize);
+        let limit = self.context.adapter().max_workgroups;
+        if groups.max(cases) > limit as usize {
+            let what = format!("the number of workgroups of {} (in place of bytes)", kernel.name);
+            return Err(GpuError::TooLarge { what, bytes: groups.max(cases) as u64, limit: limit.into() });
+        }
+        if groups == 0 || cases == 0 {
+            return Ok(());
+        }
+        let mut pass =
+            self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(kernel.name), timestamp_writes: None });
+        pass.set_pipeline(&bound.pipeline.raw);
+        pass.set_bind_group(0, &bound.group, &[]);
+        pass.dispatch_workgroups(groups as u32, cases as u32, 1);
+        self.dispatches += 1;
+        Ok(())
+    }
+
+    /// Sends the list off. Errors of the kernels themselves show at the next download.
+    ///
+    /// # Errors
+    /// [`GpuError::Rejected`], or the device's fault.
+    pub fn submit(self) -> Result<(), GpuError> {
+        if self.dispatches == 0 {
+            return self.context.check();
+        }
+        self.context.scoped("a list of kernels", || self.context.queue.submit([self.encoder.finish()]))?;
+        Ok(())
+    }
+}
+
+fn layout_entry((binding, kind): (u32, &Binding)) -> wgpu::BindGroupLayoutEntry {
+    let ty = match kind {
+        Binding::Uniform => wgpu::BufferBindingType::Uniform,
+        Binding::Read => wgpu::BufferBindingType::Storage { read_only: true },
+        Binding::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}

@@ -1,0 +1,185 @@
+//! The WGSL of every kernel: which files, in which order, with which arguments.
+
+use std::fmt;
+
+/// The precision in which a kernel is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Precision {
+    /// Single.
+    F32,
+    /// Double: needs SHADER_F64.
+    F64,
+}
+
+impl Precision {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::F32, Self::F64];
+
+    fn prelude(self) -> Source {
+        match self {
+            Self::F32 => PRELUDE_F32,
+            Self::F64 => PRELUDE_F64,
+        }
+    }
+}
+
+impl fmt::Display for Precision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        })
+    }
+}
+
+/// One WGSL file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Path from the repository root.
+    pub path: &'static str,
+    /// Contents.
+    pub text: &'static str,
+}
+
+macro_rules! source {
+    ($path:literal) => {
+        Source { path: concat!("shaders/", $path), text: include_str!(concat!("../../../shaders/", $path)) }
+    };
+}
+
+const PRELUDE_F32: Source = source!("prelude_f32.wgsl");
+const PRELUDE_F64: Source = source!("prelude_f64.wgsl");
+/// Elementary functions.
+pub const MATH: Source = source!("math.wgsl");
+/// Vectors, matrices and symmetric tensors.
+pub const TENSOR: Source = source!("tensor.wgsl");
+
+/// Flow stress, slope, plastic work and the scalar return of every hardening law.
+pub const HARDENING: Source = source!("material/hardening.wgsl");
+/// The elastic half of the material, and its parameters by case.
+pub const MATERIAL: Source = source!("material/material.wgsl");
+/// Return mapping and tangent at a point.
+pub const J2: Source = source!("material/j2.wgsl");
+const RETURN_MAPPING_POINTS: Source = source!("material/return_mapping.wgsl");
+
+/// How a kernel sees an argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binding {
+    /// `var<uniform>`.
+    Uniform,
+    /// `var<storage, read>`.
+    Read,
+    /// `var<storage, read_write>`.
+    ReadWrite,
+}
+
+/// A kernel: one entry point and what it needs.
+#[derive(Debug)]
+pub struct Kernel {
+    /// Name, unique; also the name of the entry point.
+    pub name: &'static str,
+    /// Its files after the prelude, in order.
+    pub sources: &'static [Source],
+    /// Its arguments: `@group(0) @binding(i)` is the i-th.
+    pub bindings: &'static [Binding],
+    /// Threads in a workgroup (all along x).
+    pub workgroup: u32,
+}
+
+/// Every kernel of the program.
+pub static KERNELS: &[&Kernel] = &[&RETURN_MAPPING];
+
+/// The return mapping at every point of every active case; driven by [`super::material`].
+pub static RETURN_MAPPING: Kernel = Kernel {
+    name: "return_mapping_points",
+    sources: &[MATH, TENSOR, HARDENING, MATERIAL, J2, RETURN_MAPPING_POINTS],
+    bindings: &[
+        Binding::Uniform,
+        Binding::Read,
+        Binding::Read,
+        Binding::Read,
+        Binding::Read,
+        Binding::Read,
+        Binding::ReadWrite,
+        Binding::ReadWrite,
+        Binding::ReadWrite,
+    ],
+    workgroup: 64,
+};
+
+impl Kernel {
+    /// The whole source in one precision.
+    pub fn assemble(&self, precision: Precision) -> Assembled {
+        let mut parts = vec![precision.prelude()];
+        parts.extend_from_slice(self.sources);
+        Assembled::new(precision, &parts)
+    }
+}
+
+/// Concatenated sources that know where each line came from.
+#[derive(Clone, Debug)]
+pub struct Assembled {
+    /// The WGSL.
+    pub text: String,
+    /// The precision it was assembled for.
+    pub precision: Precision,
+    /// First byte and path of each part; the first part is the prelude.
+    parts: Vec<(usize, &'static str)>,
+}
+
+impl Assembled {
+    /// Concatenates `parts`, of which the first is the prelude.
+    pub fn new(precision: Precision, parts: &[Source]) -> Self {
+        let mut text = String::new();
+        let mut starts = Vec::with_capacity(parts.len());
+        for part in parts {
+            starts.push((text.len(), part.path));
+            text.push_str(part.text);
+            text.push('\n');
+        }
+        Self { text, precision, parts: starts }
+    }
+
+    /// `file:line` of a byte.
+    pub fn place(&self, byte: usize) -> String {
+        let byte = byte.min(self.text.len());
+        let (start, path) = self.parts.iter().rev().find(|(start, _)| *start <= byte).copied().unwrap_or((0, "shaders"));
+        let line = self.text.as_bytes()[start..byte].iter().filter(|&&b| b == b'\n').count() + 1;
+        format!("{path}:{line}")
+    }
+
+    /// Whether a byte belongs to the prelude, where the precision may be named.
+    pub fn in_prelude(&self, byte: usize) -> bool {
+        self.parts.get(1).is_none_or(|(start, _)| byte < *start)
+    }
+
+    /// First byte after the prelude.
+    pub fn shared_start(&self) -> usize {
+        self.parts.get(1).map_or(self.text.len(), |(start, _)| *start)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_file_and_line() {
+        let a = Source { path: "a.wgsl", text: "one\ntwo\n" };
+        let b = Source { path: "b.wgsl", text: "three\nfour" };
+        let assembled = Assembled::new(Precision::F32, &[a, b]);
+        assert_eq!(assembled.text, "one\ntwo\n\nthree\nfour\n");
+        let place = |word: &str| assembled.place(assembled.text.find(word).unwrap());
+        assert_eq!(["one", "two", "three", "four"].map(place), ["a.wgsl:1", "a.wgsl:2", "b.wgsl:1", "b.wgsl:2"]);
+        assert!(assembled.in_prelude(5) && !assembled.in_prelude(9));
+        assert_eq!(assembled.shared_start(), 9);
+    }
+
+    #[test]
+    fn kernel_names_are_unique() {
+        let mut names: Vec<_> = KERNELS.iter().map(|k| k.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), KERNELS.len());
+    }
+}

@@ -1,0 +1,34 @@
+//! One body for every backend: CPU f64, CPU f32, GPU f64, GPU f32.
+//!
+//! The reference is the CPU in f64, fed with what the backend under test was fed with after rounding. Each backend has to stay
+//! within its bound of the reference *and* to obey the equations by itself, so that a fault shared with the reference shows too.
+
+#[path = "conformance/material.rs"]
+mod material;
+
+mod device;
+
+/// Instantiates a body, `fn body<R, B: Backend<R>>(backend: &B)`, for the four backends.
+macro_rules! for_every_backend {
+    ($($body:ident),+ $(,)?) => {
+        mod cpu_f64 {
+            $(#[test] fn $body() { super::$body::<f64, _>(&super::Cpu, &super::Bounds::F64); })+
+        }
+        mod cpu_f32 {
+            $(#[test] fn $body() { super::$body::<f32, _>(&super::Cpu, &super::Bounds::F32); })+
+        }
+        mod gpu_f64 {
+            $(#[test] fn $body() {
+                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F64) else { return };
+                super::$body::<f64, _>(&super::Gpu(context), &super::Bounds::F64);
+            })+
+        }
+        mod gpu_f32 {
+            $(#[test] fn $body() {
+                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F32) else { return };
+                super::$body::<f32, _>(&super::Gpu(context), &super::Bounds::F32);
+            })+
+        }
+    };
+}
+pub(crate) use for_every_backend;

@@ -1,0 +1,244 @@
+//! The device layer on a device: round trips, limits, and above all that nothing stale is ever handed on.
+
+mod device;
+
+use asperity::compute::gpu::material::{self, Answers};
+use asperity::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
+use asperity::compute::gpu::{DeviceRequest, GpuContext, GpuError};
+use asperity::material::{Elasticity, Hardening, Material};
+use device::device;
+use std::process::Command;
+
+static DOUBLE: Kernel = Kernel {
+    name: "double",
+    sources: &[Source {
+        path: "tests/device_layer.rs",
+        text: "
+@group(0) @binding(0) var<storage, read_write> values: array<real>;
+@compute @workgroup_size(64)
+fn double(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < arrayLength(&values) {
+        values[id.x] = 2.0 * values[id.x];
+    }
+}
+",
+    }],
+    bindings: &[Binding::ReadWrite],
+    workgroup: 64,
+};
+
+fn double(context: &GpuContext, start: &[f32], times: usize) -> Result<Vec<f32>, GpuError> {
+    let values = context.array("values", start)?;
+    let bound = context.bind(&context.pipeline(&DOUBLE, Precision::F32)?, vec![values.binding()])?;
+    let mut list = context.record();
+    for _ in 0..times {
+        list.dispatch(&bound, start.len(), 1)?;
+    }
+    list.submit()?;
+    context.download(&values)
+}
+
+#[test]
+fn kernels_of_a_list_run_in_order_and_come_back() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    for n in [1, 2, 63, 64, 65, 1000, 100_003] {
+        let start: Vec<f32> = (0..n).map(|i| i as f32).collect();
+        let expected: Vec<f32> = start.iter().map(|x| 32.0 * x).collect();
+        assert_eq!(double(&context, &start, 5).unwrap(), expected);
+    }
+}
+
+#[test]
+fn parts_of_arrays_and_empty_ones() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let values = context.array("values", &[1u32, 2, 3, 4, 5, 6, 7]).unwrap();
+    context.upload_at(&values, 2, &[30, 40]).unwrap();
+    let mut part = [0u32; 3];
+    context.download_at(&values, 3, &mut part).unwrap();
+    assert_eq!(part, [40, 5, 6]);
+    assert_eq!(context.download(&values).unwrap(), [1, 2, 30, 40, 5, 6, 7]);
+    assert!(matches!(context.upload_at(&values, 6, &[1, 2]), Err(GpuError::Length { expected: 7, given: 8, .. })));
+    assert!(matches!(context.download_at(&values, 5, &mut part), Err(GpuError::Length { .. })));
+    let empty = context.zeros::<f32>("nothing", 0).unwrap();
+    assert!(empty.is_empty());
+    assert_eq!(context.download(&empty).unwrap(), []);
+    // larger than one piece of an upload
+    let long: Vec<u32> = (0..20_000_000).collect();
+    let buffer = context.array("long", &long).unwrap();
+    assert!(context.download(&buffer).unwrap() == long);
+}
+
+/// After a loss submissions do nothing and buffers keep old numbers: no call may pretend otherwise.
+#[test]
+fn a_lost_device_hands_out_nothing() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let values = context.array("values", &[1.0f32; 100]).unwrap();
+    let pipeline = context.pipeline(&DOUBLE, Precision::F32).unwrap();
+    let bound = context.bind(&pipeline, vec![values.binding()]).unwrap();
+    assert_eq!(context.download(&values).unwrap(), [1.0; 100]);
+    let mut list = context.record();
+    list.dispatch(&bound, 100, 1).unwrap();
+    context.destroy();
+    let submitted = list.submit();
+    let downloaded = context.download(&values);
+    assert!(downloaded.is_err(), "submitted {submitted:?}, downloaded {downloaded:?}");
+    assert!(context.check().is_err() && context.upload(&values, &[2.0; 100]).is_err());
+    assert!(context.zeros::<f32>("more", 10).is_err() && double(&context, &[1.0], 1).is_err());
+}
+
+#[test]
+fn what_does_not_fit_is_refused_before_it_is_tried() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let limit = context.adapter().max_binding.min(context.adapter().max_buffer);
+    let error = context.zeros::<f32>("everything", limit as usize / 4 + 4).unwrap_err();
+    assert!(matches!(error, GpuError::TooLarge { .. }), "{error}");
+    let (used, total) = (context.budget().used(), context.budget().limit());
+    assert_eq!(used, 0);
+    let piece = limit.min(64 << 20);
+    let mut held = Vec::new();
+    let refused = loop {
+        match context.zeros::<f32>("a piece", piece as usize / 4) {
+            Ok(buffer) => held.push(buffer),
+            Err(error) => break error,
+        }
+        assert!(held.len() as u64 <= total / piece);
+    };
+    assert!(matches!(refused, GpuError::OutOfBudget { .. }), "{refused}");
+    assert_eq!(held.len() as u64, total / piece);
+    drop(held);
+    assert_eq!(context.budget().used(), 0);
+    context.check().unwrap();
+}
+
+#[test]
+fn a_fault_of_the_program_is_an_error_with_its_place() {
+    static BROKEN: Kernel = Kernel {
+        name: "broken",
+        sources: &[Source {
+            path: "shaders/broken.wgsl",
+            text: "@compute @workgroup_size(1)\nfn broken() {\n    let a: real = 1u;\n}\n",
+        }],
+        bindings: &[],
+        workgroup: 1,
+    };
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let error = context.pipeline(&BROKEN, Precision::F32).unwrap_err();
+    assert!(matches!(&error, GpuError::Shader { place, .. } if place == "shaders/broken.wgsl:3"), "{error}");
+    // a wrong number of arguments, an argument of the wrong kind
+    let pipeline = context.pipeline(&DOUBLE, Precision::F32).unwrap();
+    assert!(matches!(context.bind(&pipeline, vec![]), Err(GpuError::Length { expected: 1, given: 0, .. })));
+    let block = context.block::<[f32; 4]>("block").unwrap();
+    assert!(matches!(context.bind(&pipeline, vec![block.binding()]), Err(GpuError::Rejected { .. })));
+    // none of this harms the device
+    assert_eq!(double(&context, &[3.0], 1).unwrap(), [6.0]);
+}
+
+#[test]
+fn chunks_give_the_same_bits_as_one_piece() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let context = context.with_budget(4 << 20);
+    let material = |yield_stress: f64| Material::<f32> {
+        elasticity: Elasticity::new(1.0, 0.3),
+        hardening: Hardening::linear(yield_stress, 0.1).unwrap(),
+    };
+    let points = 1000;
+    let materials: Vec<_> = (1..=40).map(|i| material(1e-3 * f64::from(i))).collect();
+    let value = |i: usize| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2;
+    let relative: Vec<f32> = (0..materials.len() * material::RELATIVE * points).map(value).collect();
+    let committed = vec![0.0f32; materials.len() * material::STATE * points];
+    // 20 MB in all, in 4 MiB
+    assert!(material::ReturnMapping::new(&context, &materials, points).is_err());
+    let chunked = material::return_mapping(&context, &materials, points, &relative, &committed).unwrap();
+    for case in [0, 17, 39] {
+        let part = |data: &[f32], components: usize| data[case * components * points..][..components * points].to_vec();
+        let (relative, committed) = (part(&relative, material::RELATIVE), part(&committed, material::STATE));
+        let alone = material::return_mapping(&context, &materials[case..=case], points, &relative, &committed).unwrap();
+        let expected = Answers {
+            answer: part(&chunked.answer, material::ANSWER),
+            tangent: part(&chunked.tangent, material::TANGENT),
+            status: chunked.status[case * points..][..points].to_vec(),
+        };
+        assert!(alone == expected, "case {case}");
+    }
+}
+
+/// Release builds compile without bounds checks.
+#[test]
+fn bounds_checks_do_not_change_a_bit() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let laws =
+        [Hardening::power(1e-3, 0.1, 0.3), Hardening::hollomon(0.01, 5.0, 1.0), Hardening::table(&[[0.0, 1e-3], [0.01, 2e-3]])];
+    let materials = laws.map(|law| Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: law.unwrap() });
+    let points = 100;
+    let relative: Vec<f32> = (0..3 * material::RELATIVE * points).map(|i| ((i * 7919) % 1009) as f32 * 2e-5 - 1e-2).collect();
+    let committed = vec![0.0f32; 3 * material::STATE * points];
+    let map = |context: &GpuContext| material::return_mapping(context, &materials, points, &relative, &committed).unwrap();
+    let context = context.with_checks(true);
+    let checked = map(&context);
+    let trusted = map(&context.with_checks(false));
+    assert!(checked == trusted);
+}
+
+#[test]
+fn only_the_active_cases_are_touched() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let material = Material::<f32> { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(1e-3).unwrap() };
+    let kernel = material::ReturnMapping::new(&context, &vec![material; 3], 2).unwrap();
+    let committed = [0.0f32; 3 * 2 * material::STATE];
+    let relative = |size: f32| (0..3 * 2 * material::RELATIVE).map(|i| size * (i % 7) as f32).collect::<Vec<_>>();
+    let first = kernel.run(&context, &[0, 1, 2], &relative(1e-4), &committed).unwrap();
+    let second = kernel.run(&context, &[2, 0], &relative(2e-4), &committed).unwrap();
+    let case = |a: &Answers<f32>, c: usize| a.answer[c * 2 * material::ANSWER..][..2 * material::ANSWER].to_vec();
+    assert_eq!(case(&first, 1), case(&second, 1));
+    assert!(case(&first, 0) != case(&second, 0) && case(&first, 2) != case(&second, 2));
+    assert!(matches!(kernel.run(&context, &[3], &relative(0.0), &committed), Err(GpuError::Length { .. })));
+}
+
+/// Runs one of the tests below in a process with another environment.
+fn in_process(test: &str, environment: &[(&str, &str)]) {
+    let mut child = Command::new(std::env::current_exe().unwrap());
+    child.args(["--exact", test, "--nocapture"]).env("ASPERITY_CHILD", "1").envs(environment.iter().copied());
+    let output = child.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && text.contains("child: done"), "{text}");
+}
+
+fn is_child() -> bool {
+    std::env::var_os("ASPERITY_CHILD").is_some()
+}
+
+/// `VK_DRIVER_FILES` is how the Vulkan loader is told that there is no driver.
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_driver_the_cpu_is_chosen_and_gpu_is_one_clear_error() {
+    if !is_child() {
+        let name = "without_a_driver_the_cpu_is_chosen_and_gpu_is_one_clear_error";
+        let nothing = [("VK_DRIVER_FILES", "/dev/null"), ("VK_ICD_FILENAMES", "/dev/null"), ("ASPERITY_ADAPTER", "")];
+        return in_process(name, &nothing);
+    }
+    assert!(GpuContext::open(DeviceRequest::Auto).unwrap().is_none());
+    let error = GpuContext::open(DeviceRequest::Gpu).unwrap_err();
+    assert_eq!(error, GpuError::NoAdapter);
+    assert!(
+        asperity::compute::gpu::report::report(&asperity::compute::gpu::adapters::adapters(), None).contains("No GPU adapter")
+    );
+    println!("child: done");
+}
+
+#[test]
+fn an_adapter_is_taken_by_name_or_not_at_all() {
+    if is_child() {
+        let wanted = std::env::var("ASPERITY_ADAPTER").unwrap();
+        match GpuContext::open(DeviceRequest::Auto) {
+            Ok(Some(context)) => assert!(context.adapter().name.contains(&wanted)),
+            Ok(None) => panic!("a named adapter is not optional"),
+            Err(e) => assert!(matches!(e, GpuError::NoSuchAdapter { .. }) && wanted == "no such adapter", "{e}"),
+        }
+        println!("child: done");
+        return;
+    }
+    let name = "an_adapter_is_taken_by_name_or_not_at_all";
+    in_process(name, &[("ASPERITY_ADAPTER", "no such adapter")]);
+    let Some(context) = device(name, Precision::F32) else { return };
+    in_process(name, &[("ASPERITY_ADAPTER", &context.adapter().name)]);
+}
