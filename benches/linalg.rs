@@ -17,7 +17,10 @@ fn linalg(criterion: &mut Criterion) {
 
     let wide: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
     let narrow: Vec<f32> = wide.iter().map(|&x| x as f32).collect();
-    let single = BlockMatrix { pattern: problem.matrix.pattern.clone(), blocks: problem.matrix.blocks.iter().map(|b| b.map(|a| a as f32)).collect() };
+    let single = BlockMatrix {
+        pattern: problem.matrix.pattern.clone(),
+        blocks: problem.matrix.blocks.iter().map(|b| b.map(|a| a as f32)).collect(),
+    };
     let (mut y, mut y32) = (vec![0.0; n], vec![0.0f32; n]);
     group.bench_function("product f64", |b| b.iter(|| problem.matrix.multiply(&wide, &mut y)));
     group.bench_function("product f32", |b| b.iter(|| single.multiply(&narrow, &mut y32)));
@@ -26,8 +29,11 @@ fn linalg(criterion: &mut Criterion) {
     for smoother in [Smoother::GaussSeidel { sweeps: 1 }, Smoother::Chebyshev { degree: 3 }] {
         let mut hierarchy = Hierarchy::new(&problem.matrix.pattern, &problem.prolongations, smoother).unwrap();
         let mut solver =
-            LinearSolver::with_smoother(SolverKind::Multigrid, &problem.matrix.pattern, &problem.prolongations, smoother).unwrap();
-        group.bench_function(format!("update {smoother:?}"), |b| b.iter(|| solver.update(&problem.matrix, &problem.fixed).unwrap()));
+            LinearSolver::with_smoother(SolverKind::Multigrid, &problem.matrix.pattern, &problem.prolongations, smoother)
+                .unwrap();
+        group.bench_function(format!("update {smoother:?}"), |b| {
+            b.iter(|| solver.update(&problem.matrix, &problem.fixed).unwrap())
+        });
         hierarchy.update(&problem.matrix, &problem.fixed).unwrap();
         group.bench_function(format!("V-cycle {smoother:?}"), |b| b.iter(|| hierarchy.v_cycle(&wide, &mut y32)));
         for tolerance in [1e-2, 1e-3] {

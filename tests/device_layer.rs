@@ -61,7 +61,7 @@ fn parts_of_arrays_and_empty_ones() {
     assert!(matches!(context.download_at(&values, 5, &mut part), Err(GpuError::Length { .. })));
     let empty = context.zeros::<f32>("nothing", 0).unwrap();
     assert!(empty.is_empty());
-    assert_eq!(context.download(&empty).unwrap(), []);
+    assert!(context.download(&empty).unwrap().is_empty());
     // larger than one piece of an upload
     let long: Vec<u32> = (0..20_000_000).collect();
     let buffer = context.array("long", &long).unwrap();

@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand; parses, prints, exits.
 
 pub mod check;
+pub mod devices;
 pub mod error;
 pub mod options;
 pub mod out;
@@ -32,6 +33,7 @@ enum Command {
     Run(run::RunArgs),
     Check(check::CheckArgs),
     Verify(verify::VerifyArgs),
+    Devices(devices::DevicesArgs),
     Point(point::PointArgs),
 }
 
@@ -41,6 +43,7 @@ impl Command {
             Command::Run(args) => run::run(args),
             Command::Check(args) => check::check(args),
             Command::Verify(args) => verify::verify(args),
+            Command::Devices(args) => devices::devices(args),
             Command::Point(args) => point::point(args),
         }
     }

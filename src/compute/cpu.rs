@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use super::gather::GatherPlan;
 use super::{
-    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest, Outcome,
-    TangentRequest,
+    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
+    Outcome, TangentRequest,
 };
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
@@ -53,10 +53,7 @@ impl<R: Real> Cpu<R> {
             return Ok(Self {
                 models,
                 cases: Vec::new(),
-                plan: GatherPlan {
-                    pattern: crate::mesh::pattern::Pattern::from_elements(0, &[]),
-                    offset: Vec::new(),
-                },
+                plan: GatherPlan { pattern: crate::mesh::pattern::Pattern::from_elements(0, &[]), offset: Vec::new() },
                 element_force: Vec::new(),
                 element_tangent: Vec::new(),
             });
@@ -128,23 +125,33 @@ impl<R: Real> Case<R> {
     }
 
     /// Evaluates `f` on every element into `out`; the first invalid element by index is reported.
-    fn each_element<T: Send>(&self, displacement: &[f64], out: &mut [T], f: impl Fn(&Self, usize, &Nodal<R>, &Nodal<R>, &mut T) -> Result<(), Invalid> + Sync) -> Outcome {
+    fn each_element<T: Send>(
+        &self,
+        displacement: &[f64],
+        out: &mut [T],
+        f: impl Fn(&Self, usize, &Nodal<R>, &Nodal<R>, &mut T) -> Result<(), Invalid> + Sync,
+    ) -> Outcome {
         out.par_chunks_mut(CHUNK)
             .enumerate()
             .map(|(chunk, out)| {
                 for (i, out) in out.iter_mut().enumerate() {
                     let element = chunk * CHUNK + i;
                     let (committed, increment) = self.nodal(element, displacement);
-                    if let Err(Invalid::Inverted(point) | Invalid::Material(point)) = f(self, element, &committed, &increment, out) {
+                    if let Err(Invalid::Inverted(point) | Invalid::Material(point)) =
+                        f(self, element, &committed, &increment, out)
+                    {
                         return Some((element, point));
                     }
                 }
                 None
             })
-            .reduce(|| None, |a, b| match (a, b) {
-                (Some(x), Some(y)) => Some(x.min(y)),
-                (x, y) => x.or(y),
-            })
+            .reduce(
+                || None,
+                |a, b| match (a, b) {
+                    (Some(x), Some(y)) => Some(x.min(y)),
+                    (x, y) => x.or(y),
+                },
+            )
             .map_or(Outcome::Valid, |(element, point)| Outcome::Inverted { element, point })
     }
 }
@@ -162,10 +169,11 @@ impl<R: Real> Compute for Cpu<R> {
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
-            request.outcome = case.each_element(request.displacement, &mut self.element_force, |case, e, committed, increment, out| {
-                *out = hex8::internal_force(&case.geometry[e], &case.material, &case.state[e], committed, increment)?;
-                Ok(())
-            });
+            request.outcome =
+                case.each_element(request.displacement, &mut self.element_force, |case, e, committed, increment, out| {
+                    *out = hex8::internal_force(&case.geometry[e], &case.material, &case.state[e], committed, increment)?;
+                    Ok(())
+                });
             let (lists, element_force) = (&case.mesh.node_elements, &self.element_force);
             request.force.par_chunks_mut(3 * CHUNK).enumerate().for_each(|(chunk, out)| {
                 for (i, out) in out.chunks_exact_mut(3).enumerate() {
@@ -189,9 +197,10 @@ impl<R: Real> Compute for Cpu<R> {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
-            request.outcome = case.each_element(request.displacement, &mut self.element_tangent, |case, e, committed, increment, out| {
-                hex8::tangent(&case.geometry[e], &case.material, &case.state[e], committed, increment, out)
-            });
+            request.outcome =
+                case.each_element(request.displacement, &mut self.element_tangent, |case, e, committed, increment, out| {
+                    hex8::tangent(&case.geometry[e], &case.material, &case.state[e], committed, increment, out)
+                });
             gather_tangent(&self.plan, &case.mesh, &self.element_tangent, request.blocks);
         }
         Ok(())
@@ -278,7 +287,11 @@ impl<R: Real> Compute for Cpu<R> {
         let case = &self.cases[case];
         Ok(CaseState {
             displacement: case.committed.clone(),
-            points: case.state.iter().map(|s| s.points.map(|p| PointState { be: p.be.map(R::to_f64), alpha: p.alpha.to_f64() })).collect(),
+            points: case
+                .state
+                .iter()
+                .map(|s| s.points.map(|p| PointState { be: p.be.map(R::to_f64), alpha: p.alpha.to_f64() }))
+                .collect(),
             plastic_work: case.state.iter().map(|s| s.plastic_work.to_f64()).collect(),
         })
     }

@@ -47,7 +47,8 @@ impl Evaluate for CaseHandle<'_> {
     }
 
     fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError> {
-        let mut request = [CommitRequest { case: self.case, displacement, energies: Energies::default(), outcome: Outcome::Valid }];
+        let mut request =
+            [CommitRequest { case: self.case, displacement, energies: Energies::default(), outcome: Outcome::Valid }];
         self.backend.commit(&mut request)?;
         Ok((request[0].energies, request[0].outcome))
     }

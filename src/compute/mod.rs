@@ -141,7 +141,9 @@ pub struct Description {
 #[derive(Debug, thiserror::Error)]
 pub enum ComputeError {
     /// An element of the undeformed mesh is inverted.
-    #[error("element {element} of the mesh is inverted at quadrature point {point}; choose another [mesh] elements_per_contact_radius")]
+    #[error(
+        "element {element} of the mesh is inverted at quadrature point {point}; choose another [mesh] elements_per_contact_radius"
+    )]
     InvertedMesh {
         /// Element index.
         element: usize,

@@ -374,8 +374,10 @@ pub fn fields<R: Real>(
             let s = material.elasticity.shear * (be[c] - if c < 3 { mean } else { R::ZERO });
             out.stress[q][c] = s / j + if c < 3 { p } else { R::ZERO };
         }
-        out.elastic_energy += crate::material::elastic_energy_deviatoric(&material.elasticity, &state.points[q].be) * geometry.volume.0[q];
+        out.elastic_energy +=
+            crate::material::elastic_energy_deviatoric(&material.elasticity, &state.points[q].be) * geometry.volume.0[q];
     }
-    out.elastic_energy += crate::material::elastic_energy_volumetric(&material.elasticity, k.theta_minus_1) * geometry.total_volume;
+    out.elastic_energy +=
+        crate::material::elastic_energy_volumetric(&material.elasticity, k.theta_minus_1) * geometry.total_volume;
     Ok(out)
 }

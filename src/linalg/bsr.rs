@@ -2,8 +2,8 @@
 //!
 //! Vectors are flat, three components a node: `[x_0, y_0, z_0, x_1, ...]`.
 
-use std::ops::Range;
 use rayon::prelude::*;
+use std::ops::Range;
 
 use crate::real::Real;
 

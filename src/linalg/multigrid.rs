@@ -2,12 +2,12 @@
 //!
 //! Rows are kept sorted by colour on every level (see [`Smoother::GaussSeidel`]); vectors that come and go are in the mesh's order.
 
-use super::{LinalgError, size};
 use super::bsr::{BlockMatrix, Pattern, for_rows};
 use super::coarsest::Dense;
 use super::fixed::Fixed;
 use super::galerkin::{Transfer, for_row_blocks};
 use super::smoother::{Smoothed, Smoother, color_order};
+use super::{LinalgError, size};
 use crate::mesh::Prolongation;
 
 /// Coarsest levels up to this many unknowns are solved by dense LU, larger ones by smoothing.

@@ -299,11 +299,7 @@ impl<'a> Drive<'a> {
                             self.problem.max_cutbacks,
                         )));
                     }
-                    waiting.push(Target {
-                        h: 0.5 * (r.h + next.h),
-                        delta_t: 0.5 * (r.delta_t + next.delta_t),
-                        ..next
-                    });
+                    waiting.push(Target { h: 0.5 * (r.h + next.h), delta_t: 0.5 * (r.delta_t + next.delta_t), ..next });
                 }
             }
         }
@@ -456,4 +452,3 @@ impl<'a> Drive<'a> {
         })
     }
 }
-

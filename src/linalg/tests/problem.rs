@@ -82,7 +82,10 @@ impl Brick {
             }
         }
         let on = |axis: usize, at: usize| -> Vec<u32> {
-            let plane = move |node: &u32| [*node as usize % count[0], *node as usize / count[0] % count[1], *node as usize / (count[0] * count[1])][axis] == at;
+            let plane = move |node: &u32| {
+                [*node as usize % count[0], *node as usize / count[0] % count[1], *node as usize / (count[0] * count[1])][axis]
+                    == at
+            };
             (0..nodes.len() as u32).filter(plane).collect()
         };
         let (plate, symmetry, surface) = (on(2, nz), on(1, 0), on(2, 0));
@@ -222,7 +225,8 @@ fn stiffness(corners: &[[f64; 3]; 8], shear: f64, bulk: f64, mean_dilatation: bo
         (determinant, local.map(|n| std::array::from_fn(|r| (0..3).map(|c| minor(r, c) * n[c]).sum::<f64>() / determinant)))
     });
     let volume: f64 = points.iter().map(|(w, _)| w).sum();
-    let mean: [[f64; 3]; 8] = std::array::from_fn(|a| std::array::from_fn(|c| points.iter().map(|(w, g)| w * g[a][c]).sum::<f64>() / volume));
+    let mean: [[f64; 3]; 8] =
+        std::array::from_fn(|a| std::array::from_fn(|c| points.iter().map(|(w, g)| w * g[a][c]).sum::<f64>() / volume));
     let mut k = [[0.0; 24]; 24];
     for (weight, g) in &points {
         let div = if mean_dilatation { &mean } else { g };

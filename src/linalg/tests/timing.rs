@@ -30,7 +30,8 @@ fn kernels() {
     let narrow: Vec<f32> = wide.iter().map(|&x| x as f32).collect();
     let pattern = problem.matrix.pattern.clone();
     println!("{n} unknowns, {} blocks", pattern.entries());
-    let single = BlockMatrix { pattern: pattern.clone(), blocks: problem.matrix.blocks.iter().map(|b| b.map(|a| a as f32)).collect() };
+    let single =
+        BlockMatrix { pattern: pattern.clone(), blocks: problem.matrix.blocks.iter().map(|b| b.map(|a| a as f32)).collect() };
     let (mut y, mut y32) = (vec![0.0; n], vec![0.0f32; n]);
     println!("product f64      {:.2} ms", 1e3 * least(60, || problem.matrix.multiply(&wide, &mut y)));
     println!("product f64*f32  {:.2} ms", 1e3 * least(60, || problem.matrix.multiply(&narrow, &mut y)));
@@ -49,7 +50,11 @@ fn kernels() {
         for tolerance in [1e-2, 1e-3] {
             let mut iterations = 0;
             let time = least(5, || iterations = solver.solve(&problem.rhs, tolerance, &mut vec![0.0; n]).unwrap().iterations);
-            println!("  solve to {tolerance:.0e} {:.1} ms, {iterations} iterations, {:.2} ms each", 1e3 * time, 1e3 * time / iterations as f64);
+            println!(
+                "  solve to {tolerance:.0e} {:.1} ms, {iterations} iterations, {:.2} ms each",
+                1e3 * time,
+                1e3 * time / iterations as f64
+            );
         }
     }
 }
