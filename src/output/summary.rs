@@ -21,9 +21,22 @@ pub enum Status {
     Done,
     /// A step failed; what was computed is kept.
     NotConverged,
-    /// Stopped from outside; can be resumed.
+    /// The contact came to the edge of the finely meshed zone; what was computed is kept.
+    ContactOutgrewMesh,
+    /// Stopped from outside, by a signal or because results could not be written; what was computed is kept.
     #[default]
     Interrupted,
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Status::Done => "done",
+            Status::NotConverged => "not converged",
+            Status::ContactOutgrewMesh => "the contact outgrew the mesh",
+            Status::Interrupted => "interrupted",
+        })
+    }
 }
 
 /// What [`Summary::from_history`] has to know beside the history, in the same units.
@@ -99,6 +112,8 @@ pub struct Summary {
     pub cutbacks: usize,
     /// Iterations of the linear solver.
     pub krylov_iterations: usize,
+    /// Linear systems that multigrid left to the direct solver.
+    pub linear_fallbacks: usize,
     /// Greatest equivalent plastic strain at the end.
     pub max_alpha: Option<f64>,
     /// Time from start to end, seconds, that of earlier parts of a resumed run included.
