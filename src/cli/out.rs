@@ -27,10 +27,8 @@ pub fn prepare(dir: &Path, case: &Case) -> Result<(), CliError> {
     for entry in fs::read_dir(dir).map_err(failed("be read"))? {
         names.push(entry.map_err(failed("be read"))?.file_name().to_string_lossy().into_owned());
     }
-    if let Some(found) = names.iter().min() {
-        if !is_result(dir) {
-            return Err(CliError::NotAResult { dir: dir.to_owned(), found: found.clone() });
-        }
+    if let Some(found) = names.iter().min().filter(|_| !is_result(dir)) {
+        return Err(CliError::NotAResult { dir: dir.to_owned(), found: found.clone() });
     }
     let out = OutputDirectory::existing(dir);
     out.clear()?;
