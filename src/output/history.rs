@@ -123,7 +123,7 @@ mod tests {
         let path = folder.path().join("history.csv");
         HistoryWriter::create(&path).unwrap();
         let text = fs::read_to_string(&path).unwrap();
-        assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,a_moment,"), "{text}");
+        assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,a_gap,"), "{text}");
         assert!(text.ends_with(",max_alpha\n"));
         assert!(read_history(&path).unwrap().is_empty());
     }

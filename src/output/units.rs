@@ -47,7 +47,7 @@ impl StepRecord {
             f_t: self.f_t * force,
             a: self.a * length,
             stick_radius: self.stick_radius * length,
-            a_moment: self.a_moment * length,
+            a_gap: self.a_gap * length,
             work_external: self.work_external * energy,
             energy_elastic: self.energy_elastic * energy,
             work_plastic: self.work_plastic * energy,

@@ -20,7 +20,7 @@ pub struct StepRecord {
     /// Tangential force F_T that the plate exerts in the direction of delta_T.
     #[serde(rename = "F_T")]
     pub f_t: f64,
-    /// Contact radius from the gap outside the contact.
+    /// Contact radius a, from the pressure.
     pub a: f64,
     /// Radius of a disc with the area of the sticking points.
     pub stick_radius: f64,
@@ -28,9 +28,9 @@ pub struct StepRecord {
     pub newton_iterations: usize,
     /// Attempts that failed and were bisected on the way to this step.
     pub cutbacks: usize,
-    /// Contact radius from the moments of the pressure.
+    /// Contact radius from the gap outside the contact, a check on `a`.
     #[serde(default)]
-    pub a_moment: f64,
+    pub a_gap: f64,
     /// Krylov iterations.
     #[serde(default)]
     pub krylov_iterations: usize,
