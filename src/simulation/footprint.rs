@@ -66,7 +66,8 @@ pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
     Footprint {
         radius: radius_from_pressure(&polar, touching, spacing).unwrap_or(touching),
         radius_gap: radius_from_gap(&polar, touching, spacing).unwrap_or(touching),
-        stick_radius: disc(stick_area) * stretch,
+        // + 0: a sum over no points is -0.
+        stick_radius: disc(stick_area + 0.0) * stretch,
     }
 }
 
