@@ -21,6 +21,9 @@ const FORCING_FIRST: f64 = 0.01;
 /// changes of contact status raise the merit on the way down.
 const MONOTONE_FROM: usize = 5;
 
+/// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
+const ROUNDING: f64 = 1e-14;
+
 /// The Newton iteration of one case with everything it keeps between steps.
 pub struct Newton {
     boundary: Boundary,
@@ -104,10 +107,10 @@ impl Newton {
         let mut previous = f64::INFINITY;
         let mut highest = 0.0_f64;
         for iteration in 0..=self.settings.max_iterations {
-            let scale = self.current.force_scale;
+            let scale = self.current.scale();
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
-            if self.current.merit <= self.settings.tolerance * scale && self.plate_is_placed(control) {
-                report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
+            if self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
+                report.merit = self.current.merit / scale;
                 return Ok(Ok(report));
             }
             if iteration == self.settings.max_iterations {
@@ -126,7 +129,7 @@ impl Newton {
                 i if i < MONOTONE_FROM => highest,
                 _ => self.current.merit,
             };
-            let before = self.current.merit / scale.max(f64::MIN_POSITIVE);
+            let before = self.current.merit / scale;
             previous = self.current.merit;
             let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
                 Ok(found) => found,
@@ -142,7 +145,7 @@ impl Newton {
                 "  iteration {:2}: merit {:.2e} -> {:.2e}, step {step_length}, krylov {krylov} (eta {eta:.1e}), {changed} changed",
                 iteration + 1,
                 before,
-                self.current.merit / self.current.force_scale.max(f64::MIN_POSITIVE),
+                self.current.merit / self.current.scale(),
             );
         }
         Ok(Err(self.exhausted(&mesh, self.settings.max_iterations)))
@@ -200,7 +203,7 @@ impl Newton {
             // The first system carries the whole increment: its merit says nothing about the size of what is to be found.
             return FORCING_FIRST;
         }
-        let floor = 0.3 * self.settings.tolerance * self.current.force_scale / merit;
+        let floor = 0.3 * self.settings.tolerance * self.current.scale() / merit;
         let ratio = merit / previous;
         (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, FORCING_MAX)
     }
@@ -297,7 +300,7 @@ impl Newton {
     fn exhausted(&self, mesh: &Mesh, iterations: usize) -> StepFailure {
         StepFailure::Iterations {
             iterations,
-            merit: self.current.merit / self.current.force_scale.max(f64::MIN_POSITIVE),
+            merit: self.current.merit / self.current.scale(),
             worst: self.current.worst(mesh, &self.boundary),
         }
     }

@@ -42,6 +42,10 @@ impl Boundary {
     }
 }
 
+/// Force by which merits are scaled where nothing touches (a fully plastic contact of a = 0.03 R at sigma_Y = E/1000 carries it): the
+/// self-stress that a lost contact leaves has no normal force of its own.
+const UNLOADED_SCALE: f64 = 1e-5;
+
 /// Everything known at one trial displacement.
 #[derive(Clone, Debug)]
 pub struct Trial {
@@ -127,6 +131,11 @@ impl Trial {
         Ok(if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } })
     }
 
+    /// The force by which residuals are judged: [`Trial::force_scale`], or a small fixed one where nothing touches.
+    pub fn scale(&self) -> f64 {
+        if self.force_scale > 0.0 { self.force_scale } else { UNLOADED_SCALE }
+    }
+
     /// Normal force, tangential force and its y-component on the meshed half: the sums of the contact forces.
     pub fn contact_force(&self, mesh: &Mesh) -> [f64; 3] {
         let mut sum = [0.0; 3];
@@ -144,7 +153,7 @@ impl Trial {
     pub fn worst(&self, mesh: &Mesh, boundary: &Boundary) -> Worst {
         let mut worst = Worst::default();
         for (i, &r) in self.residual.iter().enumerate() {
-            let r = if boundary.prescribed[i] { r * boundary.weight } else { r } / self.force_scale.max(f64::MIN_POSITIVE);
+            let r = if boundary.prescribed[i] { r * boundary.weight } else { r } / self.scale();
             if r.abs() > worst.residual.abs() {
                 worst = Worst { node: i / 3, direction: i % 3, position: mesh.nodes[i / 3], residual: r };
             }
