@@ -75,7 +75,8 @@ fn answer(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Answer {
     assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Outcome::Valid);
     handle.contact(u, &force, &mut rows).unwrap();
     let row = |r: &Rows<f64>| {
-        let numbers = r.residual.iter().chain(r.force_rows.as_flattened()).chain(r.displacement_rows.as_flattened()).chain([&r.weight]);
+        let numbers =
+            r.residual.iter().chain(r.force_rows.as_flattened()).chain(r.displacement_rows.as_flattened()).chain([&r.weight]);
         (r.status as u32, bits(numbers))
     };
     Answer { force: bits(&force), blocks: bits(blocks.as_flattened()), rows: rows.iter().map(row).collect() }

@@ -148,7 +148,9 @@ fn the_residual_is_continuous_from_stick_to_slip() {
         let f_z = 0.7;
         let du = [0.03, -0.05];
         // On the cone: f_t = c du_t + mu f_z (cos, sin).
-        let edge = |factor: f64| point([C * du[0] + factor * MU * f_z * angle.cos(), C * du[1] + factor * MU * f_z * angle.sin(), f_z], 1e-3, du);
+        let edge = |factor: f64| {
+            point([C * du[0] + factor * MU * f_z * angle.cos(), C * du[1] + factor * MU * f_z * angle.sin(), f_z], 1e-3, du)
+        };
         let (inside, outside) = (rows(&edge(1.0 - 1e-9)), rows(&edge(1.0 + 1e-9)));
         assert_eq!((inside.status, outside.status), (Status::Stick, Status::Slip));
         assert!(distance(&inside.residual, &outside.residual) < 1e-8);
@@ -190,7 +192,13 @@ fn single_precision_says_the_same() {
         let wide = rows(&point(force, gap, slip));
         let narrow = contact_rows(
             Friction::Coulomb(MU as f32),
-            &Point { force: force.map(|x| x as f32), gap: gap as f32, slip: slip.map(|x| x as f32), weight: C as f32, on_symmetry_plane: false },
+            &Point {
+                force: force.map(|x| x as f32),
+                gap: gap as f32,
+                slip: slip.map(|x| x as f32),
+                weight: C as f32,
+                on_symmetry_plane: false,
+            },
         );
         assert_eq!((wide.status, wide.fixed), (narrow.status, narrow.fixed));
         for i in 0..3 {

@@ -1,8 +1,8 @@
 //! One file a theme; what they share is here.
 
 mod energy;
-mod invariance;
 mod invalid;
+mod invariance;
 mod locking;
 mod patch;
 mod precision;
@@ -79,9 +79,14 @@ pub fn force(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &N
 
 /// A plastic history: two steps of loading, committed. Returns the state and its displacement.
 pub fn loaded(g: &Geometry<f64>, m: &Material<f64>) -> (State<f64>, Nodal<f64>) {
-    let first = plus(&homogeneous(&irregular(), &[[0.004, 0.003, 0.0], [0.0, -0.006, 0.002], [0.001, 0.0, 0.003]]), &wild(3, 5e-4), 1.0);
+    let first =
+        plus(&homogeneous(&irregular(), &[[0.004, 0.003, 0.0], [0.0, -0.006, 0.002], [0.001, 0.0, 0.003]]), &wild(3, 5e-4), 1.0);
     let state = update(g, m, &State::default(), &ZERO, &first).unwrap();
-    let second = plus(&homogeneous(&irregular(), &[[0.006, -0.002, 0.001], [0.004, -0.005, 0.0], [0.0, 0.003, 0.001]]), &wild(4, 5e-4), 1.0);
+    let second = plus(
+        &homogeneous(&irregular(), &[[0.006, -0.002, 0.001], [0.004, -0.005, 0.0], [0.0, 0.003, 0.001]]),
+        &wild(4, 5e-4),
+        1.0,
+    );
     let state = update(g, m, &state, &first, &second).unwrap();
     assert!(state.points.iter().all(|p| p.alpha > 1e-3), "the history is not plastic at every point");
     (state, plus(&first, &second, 1.0))

@@ -19,8 +19,12 @@ impl Patch {
         let mesh = brick(3, 3, 3, [1.0, 1.0, 1.0]).unwrap();
         let inner: Vec<bool> = mesh.nodes.iter().map(|x| x.iter().all(|&v| v > 1e-9 && v < 1.0 - 1e-9)).collect();
         let mut noise = Noise::new(11);
-        let nodes: Vec<[f64; 3]> =
-            mesh.nodes.iter().zip(&inner).map(|(x, &inner)| x.map(|v| v + if inner { 0.1 * noise.next() } else { 0.0 })).collect();
+        let nodes: Vec<[f64; 3]> = mesh
+            .nodes
+            .iter()
+            .zip(&inner)
+            .map(|(x, &inner)| x.map(|v| v + if inner { 0.1 * noise.next() } else { 0.0 }))
+            .collect();
         let geometry = mesh.elements.iter().map(|e| Geometry::new(&e.map(|n| nodes[n as usize])).unwrap()).collect();
         assert_eq!(inner.iter().filter(|i| **i).count(), 8);
         let state = vec![State::default(); mesh.elements.len()];

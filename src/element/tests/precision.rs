@@ -21,7 +21,12 @@ fn forces_and_tangents_keep_their_digits_in_f32() {
                 if material.hardening == Hardening::Elastic { (State::default(), ZERO) } else { loaded(&g64, &material) };
             // The inputs are the rounded ones for both, so that the difference is that of the arithmetic.
             let (state32, committed32) = (cast_state::<f32>(&state), single(&committed));
-            let state64 = State { points: state32.points.map(|p| crate::material::PointState { be: p.be.map(f64::from), alpha: f64::from(p.alpha) }), plastic_work: 0.0 };
+            let state64 = State {
+                points: state32
+                    .points
+                    .map(|p| crate::material::PointState { be: p.be.map(f64::from), alpha: f64::from(p.alpha) }),
+                plastic_work: 0.0,
+            };
             let committed64 = double(&committed32);
             let increment32 = single(&wild(8, amplitude));
             let increment64 = double(&increment32);
@@ -33,7 +38,9 @@ fn forces_and_tangents_keep_their_digits_in_f32() {
             tangent(&g64, &material, &state64, &committed64, &increment64, &mut k64).unwrap();
             tangent(&g32, &m32, &state32, &committed32, &increment32, &mut k32).unwrap();
             let scale = k64.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-            let error = k64.iter().flatten().zip(k32.iter().flatten()).fold(0.0_f64, |m, (a, b)| m.max((a - f64::from(*b)).abs())) / scale;
+            let error =
+                k64.iter().flatten().zip(k32.iter().flatten()).fold(0.0_f64, |m, (a, b)| m.max((a - f64::from(*b)).abs()))
+                    / scale;
             // A point within rounding of yielding may take the other branch: none does here.
             assert!(error < 5e-6, "tangent at amplitude {amplitude}: {error:e}");
         }

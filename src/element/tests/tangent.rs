@@ -64,7 +64,13 @@ fn gradient(g: &Geometry<f64>, u: &Nodal<f64>, q: usize) -> Matrix {
 
 /// What the symmetrised moduli leave out of the exact tangent: sum_q V grad N_a . C . grad N_b with
 /// C = -mu_bar beta_4 (n (x) dev n^2 - dev n^2 (x) n) (Simo & Hughes 1998, box 9.2).
-fn left_out(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &Nodal<f64>, increment: &Nodal<f64>) -> (Full, usize) {
+fn left_out(
+    g: &Geometry<f64>,
+    m: &Material<f64>,
+    s: &State<f64>,
+    committed: &Nodal<f64>,
+    increment: &Nodal<f64>,
+) -> (Full, usize) {
     let mut k = [[0.0; 24]; 24];
     let mut yielding = 0;
     for q in 0..QUADRATURE_POINTS {
@@ -115,10 +121,16 @@ fn the_elastic_tangent_is_the_derivative_of_the_force() {
 #[test]
 fn the_plastic_tangent_lacks_the_antisymmetric_moduli_and_nothing_else() {
     let g = geometry();
-    for hardening in [Hardening::ideal(2e-3).unwrap(), Hardening::linear(2e-3, 0.05).unwrap(), Hardening::voce(2e-3, 5e-3, 20.0).unwrap()] {
+    for hardening in
+        [Hardening::ideal(2e-3).unwrap(), Hardening::linear(2e-3, 0.05).unwrap(), Hardening::voce(2e-3, 5e-3, 20.0).unwrap()]
+    {
         let m = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
         let (state, committed) = loaded(&g, &m);
-        let increment = plus(&homogeneous(&irregular(), &[[0.01, 0.0, 0.006], [0.0, -0.008, 0.0], [0.004, 0.002, -0.003]]), &wild(9, 1e-3), 1.0);
+        let increment = plus(
+            &homogeneous(&irregular(), &[[0.01, 0.0, 0.006], [0.0, -0.008, 0.0], [0.004, 0.002, -0.003]]),
+            &wild(9, 1e-3),
+            1.0,
+        );
         let (extra, yielding) = left_out(&g, &m, &state, &committed, &increment);
         assert_eq!(yielding, QUADRATURE_POINTS, "{:?}", m.hardening);
         let k = full(&g, &m, &state, &committed, &increment);
