@@ -445,9 +445,9 @@ impl<'a> Drive<'a> {
             .collect()
     }
 
-    /// The contact has come within an element of the edge of the fine zone.
+    /// The contact has come within half an element of the edge of the fine zone.
     fn outgrown(&self) -> Option<String> {
-        let limit = self.mesh.fine_radius - self.problem.spacing;
+        let limit = self.mesh.fine_radius - 0.5 * self.problem.spacing;
         let reach = self
             .state
             .points

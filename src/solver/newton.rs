@@ -21,6 +21,8 @@ const FORCING_FIRST: f64 = 0.01;
 /// changes of contact status raise the merit on the way down.
 const MONOTONE_FROM: usize = 5;
 
+/// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
+const ROUNDING: f64 = 1e-14;
 /// Share of the largest normal force so far that measures residuals when nothing touches.
 const LOST_SHARE: f64 = 1e-4;
 
@@ -120,7 +122,7 @@ impl Newton {
         for iteration in 0..=self.settings.max_iterations {
             let scale = self.scale();
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
-            if self.current.merit <= self.settings.tolerance * scale && self.plate_is_placed(control) {
+            if self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
                 self.last_scale = self.current.force_scale;
                 self.largest_scale = self.largest_scale.max(self.last_scale);
@@ -142,7 +144,7 @@ impl Newton {
                 i if i < MONOTONE_FROM => highest,
                 _ => self.current.merit,
             };
-            let before = self.current.merit / scale.max(f64::MIN_POSITIVE);
+            let before = self.current.merit / scale;
             previous = self.current.merit;
             let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
                 Ok(found) => found,
