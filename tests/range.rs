@@ -9,6 +9,7 @@ use asperity::compute::cpu::Cpu;
 use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
 use asperity::simulation::problem::Problem;
 use asperity::simulation::record::StepRecord;
+use rayon::prelude::*;
 
 const E: f64 = 200e3;
 
@@ -73,7 +74,7 @@ const CASES: &[(&str, f64, &str, f64, &str)] = &[
     ("ideal",     500.0, "1",         2e-2, "0.003"),
     ("ideal",     500.0, "\"stick\"", 2e-2, "0.003"),
     ("ideal",     500.0, "0.3",       1e-1, "full-slip"),
-    ("ideal",    5000.0, "0",         1e-2, "0.001"),
+    ("ideal",    5000.0, "0",         1e-3, "1e-4"),
     ("ideal",    5000.0, "0.1",       1e-4, "full-slip"),
     ("ideal",    5000.0, "0.1",       1e-2, "full-slip"),
     ("ideal",    5000.0, "0.5",       1e-2, "0.001"),
@@ -146,8 +147,9 @@ fn every_corner_of_the_range_is_followed_to_its_end() {
         "{:<9} {:>6} {:>8} {:>7} {:>10} {:>6} {:>7} {:>7} {:>7} {:>5} {:>10} {:>8} {:>8}",
         "law", "E/s_Y", "friction", "h/R", "shear", "steps", "newton", "krylov", "direct", "cuts", "F_N/ER^2", "F_T/F_N", "a/R"
     );
-    for case in CASES {
-        let (line, wrong) = follow(case);
+    // Side by side: what a case gives does not depend on the others.
+    let followed: Vec<(String, Option<String>)> = CASES.par_iter().map(follow).collect();
+    for (case, (line, wrong)) in CASES.iter().zip(followed) {
         println!("{line}");
         failures.extend(wrong.map(|wrong| format!("{case:?}: {wrong}")));
     }

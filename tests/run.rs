@@ -23,6 +23,8 @@ yield_stress = 400.0
 friction = 0.3
 [mesh]
 elements_per_contact_radius = 4
+[solver]
+press_steps = 5
 [[path]]
 indentation = 0.02
 "#;
@@ -295,14 +297,14 @@ fn without_friction_there_is_no_tangential_force() {
 
 #[test]
 fn full_stick_never_slips() {
-    let scratch = Scratch::new("[[path]]\nshear = 0.001\n");
+    let scratch = Scratch::new(SHEAR);
     let (history, summary) = scratch.done("out", &["--set", "contact.friction=\"stick\""]);
     let last = history[history.len() - 1];
     // Nothing slips and nothing is dissipated but for the residual at which a step is accepted.
     for row in &history {
         assert!(row.slipping_points == 0 && row.work_friction.abs() < 1e-5 * last.work_external, "{row:?}");
     }
-    assert!(last.f_t / last.f_n > 0.25, "{last:?}");
+    assert!(last.f_t / last.f_n > 0.32, "{last:?}");
     assert!(!summary.full_slip_reached && summary.f_n_slip.is_none() && summary.delta_t_slip.is_none());
 }
 
