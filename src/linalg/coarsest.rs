@@ -4,6 +4,7 @@ use faer::linalg::solvers::{PartialPivLu, SolveCore};
 use faer::{Conj, Mat, MatMut};
 
 use super::bsr::BlockMatrix;
+use super::kernel::Node;
 
 /// Dense LU in f64 of a small block matrix; unknowns without any stiffness are held at 0.
 #[derive(Clone, Debug, Default)]
@@ -34,15 +35,15 @@ impl Dense {
         self.work.resize(n, 0.0);
     }
 
-    pub fn solve(&mut self, b: &[[f32; 3]], x: &mut [[f32; 3]]) {
+    pub fn solve(&mut self, b: &[Node], x: &mut [Node]) {
         let Some(lu) = &self.factors else { return };
-        for (w, &b) in self.work.iter_mut().zip(b.as_flattened()) {
-            *w = f64::from(b);
+        for (w, b) in self.work.as_chunks_mut::<3>().0.iter_mut().zip(b) {
+            *w = [b[0], b[1], b[2]].map(f64::from);
         }
         let n = self.work.len();
         lu.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(&mut self.work, n, 1));
-        for (x, &w) in x.as_flattened_mut().iter_mut().zip(&self.work) {
-            *x = w as f32;
+        for (x, w) in x.iter_mut().zip(self.work.as_chunks::<3>().0) {
+            *x = [w[0] as f32, w[1] as f32, w[2] as f32, 0.0];
         }
     }
 }

@@ -5,13 +5,15 @@
 //! the same input gives the same bits at any thread count.
 
 pub mod bsr;
+mod chebyshev;
 mod coarsest;
 pub mod direct;
 pub mod fgmres;
 mod fixed;
 mod galerkin;
+mod kernel;
 pub mod multigrid;
-mod smoother;
+mod parallel;
 #[cfg(test)]
 mod tests;
 mod vector;
@@ -19,7 +21,6 @@ mod vector;
 pub use bsr::{BlockMatrix, Pattern};
 pub use direct::DirectSolver;
 pub use multigrid::Hierarchy;
-pub use smoother::Smoother;
 
 use crate::mesh::Prolongation;
 use fgmres::{Fgmres, System};
@@ -27,6 +28,8 @@ use fixed::Fixed;
 
 /// Iterations after which FGMRES starts over.
 const RESTART: usize = 60;
+/// Memory that the direct fallback may take unless told otherwise, bytes.
+const DEFAULT_FALLBACK_LIMIT: usize = 1 << 30;
 /// Iterations after which FGMRES gives up.
 const MAX_ITERATIONS: usize = 120;
 
@@ -133,6 +136,7 @@ pub struct LinearSolver {
     matrix: BlockMatrix<f64>,
     fixed: Fixed,
     updated: bool,
+    fallback_limit: usize,
     /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
     reduced: Vec<f64>,
     free: Vec<f64>,
@@ -142,7 +146,7 @@ pub struct LinearSolver {
 enum Method {
     Multigrid {
         hierarchy: Box<Hierarchy>,
-        krylov: Box<Fgmres>,
+        krylov: Box<Fgmres<f32>>,
         /// Made at the first stall of a matrix; the flag says that it is factorised for the present one.
         fallback: Option<Box<DirectSolver>>,
         factorised: bool,
@@ -157,25 +161,12 @@ impl LinearSolver {
     /// # Errors
     /// [`LinalgError::Hierarchy`] if the chain does not fit the pattern.
     pub fn new(kind: SolverKind, pattern: &Pattern, prolongations: &[Prolongation]) -> Result<Self, LinalgError> {
-        Self::with_smoother(kind, pattern, prolongations, Smoother::default())
-    }
-
-    /// As [`LinearSolver::new`], with a smoother of choice.
-    ///
-    /// # Errors
-    /// As [`LinearSolver::new`].
-    pub fn with_smoother(
-        kind: SolverKind,
-        pattern: &Pattern,
-        prolongations: &[Prolongation],
-        smoother: Smoother,
-    ) -> Result<Self, LinalgError> {
         let unknowns = 3 * pattern.rows();
         let method = if kind == SolverKind::Direct || prolongations.is_empty() {
             Method::Direct(Box::new(DirectSolver::new(pattern)))
         } else {
             Method::Multigrid {
-                hierarchy: Box::new(Hierarchy::new(pattern, prolongations, smoother)?),
+                hierarchy: Box::new(Hierarchy::new(pattern, prolongations)?),
                 krylov: Box::new(Fgmres::new(unknowns, RESTART)),
                 fallback: None,
                 factorised: false,
@@ -186,6 +177,7 @@ impl LinearSolver {
             matrix: BlockMatrix::zeros(pattern.clone()),
             fixed: Fixed::default(),
             updated: false,
+            fallback_limit: DEFAULT_FALLBACK_LIMIT,
             reduced: vec![0.0; unknowns],
             free: vec![0.0; unknowns],
         })
@@ -197,6 +189,11 @@ impl LinearSolver {
             Method::Multigrid { .. } => SolverKind::Multigrid,
             Method::Direct(_) => SolverKind::Direct,
         }
+    }
+
+    /// Sets the memory in bytes that a direct solution may take after FGMRES has stalled; 0 forbids it.
+    pub fn set_fallback_limit(&mut self, bytes: usize) {
+        self.fallback_limit = bytes;
     }
 
     /// Takes over a matrix and the mask of its fixed unknowns (one flag an unknown; their rows count as rows of the identity whatever
@@ -216,8 +213,7 @@ impl LinearSolver {
         match &mut self.method {
             Method::Multigrid { hierarchy, factorised, .. } => {
                 *factorised = false;
-                let (matrix, fixed) = (&self.matrix, &self.fixed);
-                in_pool(|| hierarchy.update_masked(matrix, fixed))?;
+                in_pool(|| hierarchy.update(matrix, fixed))?;
             }
             Method::Direct(direct) => direct.update(&self.matrix, &self.fixed)?,
         }
@@ -247,7 +243,7 @@ impl LinearSolver {
     }
 
     fn solve_free(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64]) -> Result<SolveReport, LinalgError> {
-        let Self { method, matrix, fixed, reduced, free, .. } = self;
+        let Self { method, matrix, fixed, reduced, free, fallback_limit, .. } = self;
         free.fill(0.0);
         fixed.copy(rhs, free);
         matrix.residual(free, rhs, reduced);
@@ -273,6 +269,7 @@ impl LinearSolver {
                 };
                 if !got.converged {
                     let direct = fallback.get_or_insert_with(|| Box::new(DirectSolver::new(&matrix.pattern)));
+                    direct.memory_limit = *fallback_limit;
                     let mut factors = Ok(());
                     if !*factorised {
                         factors = direct.update(matrix, fixed);
@@ -322,8 +319,20 @@ struct Preconditioned<'a> {
     hierarchy: &'a mut Hierarchy,
 }
 
-impl System for Preconditioned<'_> {
-    fn apply(&self, z: &[f32], w: &mut [f64]) {
+impl System<f32> for Preconditioned<'_> {
+    fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
+        self.hierarchy.v_cycle_and_product(v, z, w);
+    }
+
+    fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
+        self.matrix.residual(x, b, r);
+        self.fixed.clear(r);
+    }
+}
+
+impl System<f64> for Preconditioned<'_> {
+    fn step(&mut self, v: &[f64], z: &mut [f32], w: &mut [f64]) {
+        self.hierarchy.v_cycle(v, z);
         self.matrix.multiply(z, w);
         self.fixed.clear(w);
     }
@@ -331,9 +340,5 @@ impl System for Preconditioned<'_> {
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
         self.matrix.residual(x, b, r);
         self.fixed.clear(r);
-    }
-
-    fn precondition(&mut self, v: &[f64], z: &mut [f32]) {
-        self.hierarchy.v_cycle(v, z);
     }
 }

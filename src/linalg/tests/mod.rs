@@ -4,5 +4,5 @@ mod problem;
 mod solve;
 mod timing;
 
-pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, Smoother, SolverKind};
+pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, SolverKind};
 pub(super) use crate::mesh::{Mesh, Prolongation};
