@@ -83,7 +83,11 @@ impl<T: Real> Fgmres<T> {
             return report;
         }
         loop {
-            system.residual(b, x, &mut self.residual);
+            if report.iterations == 0 && x.iter().all(|x| *x == 0.0) {
+                self.residual.copy_from_slice(b);
+            } else {
+                system.residual(b, x, &mut self.residual);
+            }
             let r_norm = norm(&self.residual);
             let before = report.residual;
             report.residual = r_norm / b_norm;

@@ -21,12 +21,6 @@ impl Fixed {
         self.bits[node]
     }
 
-    /// Whether an unknown is fixed.
-    #[inline(always)]
-    pub fn is_fixed(&self, unknown: usize) -> bool {
-        self.bits[unknown / 3] >> (unknown % 3) & 1 != 0
-    }
-
     /// Sets the fixed entries of a vector to zero.
     pub fn clear(&self, x: &mut [f64]) {
         for (x, &bits) in x.as_chunks_mut::<3>().0.iter_mut().zip(&self.bits).filter(|(_, bits)| **bits != 0) {

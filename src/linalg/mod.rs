@@ -8,6 +8,7 @@ pub mod bsr;
 mod chebyshev;
 mod coarsest;
 pub mod direct;
+mod dissection;
 pub mod fgmres;
 mod fixed;
 mod galerkin;
@@ -29,7 +30,7 @@ use fixed::Fixed;
 /// Iterations after which FGMRES starts over.
 const RESTART: usize = 60;
 /// Memory that the direct fallback may take unless told otherwise, bytes.
-const DEFAULT_FALLBACK_LIMIT: usize = 1 << 30;
+const DEFAULT_FALLBACK_LIMIT: usize = 2 << 30;
 /// Iterations after which FGMRES gives up.
 const MAX_ITERATIONS: usize = 120;
 
@@ -246,17 +247,16 @@ impl LinearSolver {
         let Self { method, matrix, fixed, reduced, free, fallback_limit, .. } = self;
         free.fill(0.0);
         fixed.copy(rhs, free);
-        matrix.residual(free, rhs, reduced);
+        if free.iter().any(|x| *x != 0.0) {
+            matrix.residual(free, rhs, reduced);
+        } else {
+            reduced.copy_from_slice(rhs);
+        }
         fixed.clear(reduced);
         free.copy_from_slice(x);
         fixed.clear(free);
-        let scale = vector::norm(reduced);
         let report = match method {
-            Method::Direct(direct) => {
-                free.copy_from_slice(reduced);
-                direct.solve_in_place(free)?;
-                direct_report(matrix, fixed, reduced, free, scale)
-            }
+            Method::Direct(direct) => direct.solve(matrix, fixed, reduced, free)?,
             Method::Multigrid { hierarchy, krylov, fallback, factorised } => {
                 let mut system = Preconditioned { matrix, fixed, hierarchy };
                 let got = krylov.solve(&mut system, reduced, free, tolerance, MAX_ITERATIONS);
@@ -275,16 +275,19 @@ impl LinearSolver {
                         factors = direct.update(matrix, fixed);
                         *factorised = factors.is_ok();
                     }
-                    let mut solution = reduced.clone();
-                    if let Err(error) = factors.and_then(|()| direct.solve_in_place(&mut solution)) {
-                        log::debug!("no direct fallback: {error}");
-                        fixed.copy(rhs, free);
-                        x.copy_from_slice(free);
-                        return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
+                    let mut solution = vec![0.0; free.len()];
+                    match factors.and_then(|()| direct.solve(matrix, fixed, reduced, &mut solution)) {
+                        Ok(direct) => {
+                            free.copy_from_slice(&solution);
+                            report = SolveReport { fallback: true, stagnated: true, iterations: got.iterations, ..direct };
+                        }
+                        Err(error) => {
+                            log::debug!("no direct fallback: {error}");
+                            fixed.copy(rhs, free);
+                            x.copy_from_slice(free);
+                            return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
+                        }
                     }
-                    free.copy_from_slice(&solution);
-                    let direct = direct_report(matrix, fixed, reduced, free, scale);
-                    report = SolveReport { fallback: true, stagnated: true, iterations: got.iterations, ..direct };
                 }
                 report
             }
@@ -293,15 +296,6 @@ impl LinearSolver {
         x.copy_from_slice(free);
         Ok(report)
     }
-}
-
-/// The residual of a direct solution; anything below 1e-6 is what rounding leaves.
-fn direct_report(matrix: &BlockMatrix<f64>, fixed: &Fixed, b: &[f64], x: &[f64], scale: f64) -> SolveReport {
-    let mut r = vec![0.0; x.len()];
-    matrix.residual(x, b, &mut r);
-    fixed.clear(&mut r);
-    let residual = if scale > 0.0 { vector::norm(&r) / scale } else { 0.0 };
-    SolveReport { residual, converged: residual < 1e-6, ..SolveReport::default() }
 }
 
 fn size(what: &'static str, got: usize, expected: usize) -> Result<(), LinalgError> {
@@ -322,19 +316,6 @@ struct Preconditioned<'a> {
 impl System<f32> for Preconditioned<'_> {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         self.hierarchy.v_cycle_and_product(v, z, w);
-    }
-
-    fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
-        self.matrix.residual(x, b, r);
-        self.fixed.clear(r);
-    }
-}
-
-impl System<f64> for Preconditioned<'_> {
-    fn step(&mut self, v: &[f64], z: &mut [f32], w: &mut [f64]) {
-        self.hierarchy.v_cycle(v, z);
-        self.matrix.multiply(z, w);
-        self.fixed.clear(w);
     }
 
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {

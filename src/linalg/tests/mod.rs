@@ -1,6 +1,8 @@
 //! Tests of the room: the solvers against each other on elasticity problems.
 
+mod krylov;
 mod problem;
+mod products;
 mod solve;
 mod timing;
 

@@ -58,3 +58,27 @@ fn kernels() {
         }
     }
 }
+
+#[test]
+#[ignore = "prints times"]
+fn direct() {
+    for per_radius in [8, 12, 16] {
+        let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: per_radius, fine_zone: 1.5 };
+        let problem = Brick::slipping(1).on(&sphere_mesh(&spec).unwrap());
+        let start = cpu_seconds();
+        let memory = super::super::DirectSolver::new(&problem.matrix.pattern).memory();
+        let order = cpu_seconds() - start;
+        let mut solver = LinearSolver::new(SolverKind::Direct, &problem.matrix.pattern, &[]).unwrap();
+        let start = cpu_seconds();
+        solver.update(&problem.matrix, &problem.fixed).unwrap();
+        let update = cpu_seconds() - start - order;
+        let start = cpu_seconds();
+        let report = solver.solve(&problem.rhs, 1e-10, &mut vec![0.0; problem.rhs.len()]).unwrap();
+        println!(
+            "{} unknowns: {} MB, order {order:.2} s, factors {update:.2} s, solve {:.3} s {report:?}",
+            problem.rhs.len(),
+            memory >> 20,
+            cpu_seconds() - start
+        );
+    }
+}
