@@ -7,6 +7,8 @@ use asperity::mesh::sphere::{SphereSpec, sphere_mesh};
 use asperity::mesh::{Mesh, Prolongation};
 use criterion::{Criterion, criterion_group, criterion_main};
 
+// The tests use more of it.
+#[allow(dead_code)]
 #[path = "../src/linalg/tests/problem.rs"]
 mod problem;
 

@@ -127,7 +127,7 @@ impl DirectSolver {
             matrix.residual(&best, b, &mut r);
             fixed.clear(&mut r);
             let residual = norm(&r) / scale;
-            if !(residual < report.residual) {
+            if residual >= report.residual || residual.is_nan() {
                 break;
             }
             x.copy_from_slice(&best);
