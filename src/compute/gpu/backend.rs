@@ -1,5 +1,7 @@
 //! A batch of cases on a device, everything in one precision.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::batch::{Batch, CONTACT_ANSWER, CONTACT_TRIAL, Dispatch};
@@ -34,7 +36,7 @@ impl<R: DeviceReal> Gpu<R> {
     /// # Errors
     /// [`ComputeError::Connectivity`], [`ComputeError::InvertedMesh`], [`ComputeError::Device`]: memory, limits, no double precision,
     /// or the device's fault.
-    pub fn new(context: GpuContext, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
+    pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
         let name = format!("{} ({})", context.adapter().name, context.adapter().kind);
         let Some(first) = models.first() else {
             return Ok(Self { models, committed: Vec::new(), batch: None, name });
@@ -51,7 +53,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// The device; none for an empty batch.
-    pub fn context(&self) -> Option<&GpuContext> {
+    pub fn context(&self) -> Option<&Arc<GpuContext>> {
         self.batch.as_ref().map(Batch::context)
     }
 
@@ -181,8 +183,11 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                 batch.keep(&dispatch, slot, &self.models[request.case], request.displacement)?;
                 let elements = batch.sizes().elements;
                 let component = |c: usize| energies[(3 * slot + c) * elements..][..elements].iter().map(|e| e.to_f64());
-                request.energies =
-                    Energies { elastic: component(0).sum(), plastic: component(1).sum(), max_alpha: component(2).fold(0.0, f64::max) };
+                request.energies = Energies {
+                    elastic: component(0).sum(),
+                    plastic: component(1).sum(),
+                    max_alpha: component(2).fold(0.0, f64::max),
+                };
                 self.committed[request.case].copy_from_slice(request.displacement);
             }
         }

@@ -3,6 +3,8 @@
 //! One dispatch serves all cases of a call that share a group of [`Resident`] arrays; each has a slot of the scratch arrays. What a
 //! slot gets does not depend on the others. Where scratch memory is short, a call takes several dispatches.
 
+use std::sync::Arc;
+
 use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
@@ -106,7 +108,7 @@ struct Kernels {
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
 pub struct Batch<R> {
-    context: GpuContext,
+    context: Arc<GpuContext>,
     connectivity: Connectivity,
     /// Where each block of the pattern comes from.
     pub(super) plan: BlockPlan,
@@ -130,7 +132,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; what the device says, above all [`GpuError::OutOfBudget`] and [`GpuError::TooLarge`].
-    pub fn new(context: GpuContext, models: &[CaseModel]) -> Result<Self, ComputeError> {
+    pub fn new(context: Arc<GpuContext>, models: &[CaseModel]) -> Result<Self, ComputeError> {
         let mesh = models[0].mesh.clone();
         let plan = BlockPlan::new(&mesh, &GatherPlan::new(&mesh));
         let connectivity = Connectivity::new(&context, &mesh, &plan)?;
@@ -154,7 +156,7 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// The device.
-    pub fn context(&self) -> &GpuContext {
+    pub fn context(&self) -> &Arc<GpuContext> {
         &self.context
     }
 
@@ -307,14 +309,7 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn restore(
-        &self,
-        case: usize,
-        model: &CaseModel,
-        displacement: &[f64],
-        state: &[R],
-        work: &[R],
-    ) -> Result<(), GpuError> {
+    pub fn restore(&self, case: usize, model: &CaseModel, displacement: &[f64], state: &[R], work: &[R]) -> Result<(), GpuError> {
         let (resident, index) = self.resident(case)?;
         self.context.upload_at(&resident.state, index * STATE * self.sizes().points(), state)?;
         self.context.upload_at(&resident.plastic_work, index * self.sizes().elements, work)?;
@@ -364,9 +359,8 @@ impl Kernels {
             s.contact_answer.binding(),
             s.contact_status.binding(),
         ];
-        let at = |kernel, outputs: &[wgpu::BindingResource<'_>]| {
-            bind(kernel, &[&shape, &element, &material, &at_points, outputs])
-        };
+        let at =
+            |kernel, outputs: &[wgpu::BindingResource<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
         Ok(Self {
             jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &[s.jacobian.binding()]])?,
             internal_force: at(&HEX8_INTERNAL_FORCE, &[s.stress.binding()])?,

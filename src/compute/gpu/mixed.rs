@@ -2,6 +2,8 @@
 //!
 //! The residual decides what a converged step is, the tangent only how fast it is found: the answer does not depend on the device.
 
+use std::sync::Arc;
+
 use super::backend::Gpu;
 use super::context::GpuContext;
 use crate::compute::cpu::Cpu;
@@ -21,12 +23,12 @@ impl Mixed {
     ///
     /// # Errors
     /// As [`Gpu::new`].
-    pub fn new(context: GpuContext, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
+    pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
         Ok(Self { residual: Cpu::new(models.clone())?, tangent: Gpu::new(context, models)? })
     }
 
     /// The device; none for an empty batch.
-    pub fn context(&self) -> Option<&GpuContext> {
+    pub fn context(&self) -> Option<&Arc<GpuContext>> {
         self.tangent.context()
     }
 }
@@ -34,7 +36,10 @@ impl Mixed {
 impl Compute for Mixed {
     fn description(&self) -> Description {
         let (cpu, gpu) = (self.residual.description(), self.tangent.description());
-        Description { device: format!("{}, tangents in f32; residuals on the {}", gpu.device, cpu.device), precision: cpu.precision }
+        Description {
+            device: format!("{}, tangents in f32; residuals on the {}", gpu.device, cpu.device),
+            precision: cpu.precision,
+        }
     }
 
     fn models(&self) -> &[CaseModel] {

@@ -25,10 +25,10 @@ pub mod report;
 pub mod resident;
 pub mod shader_sources;
 
-pub use backend::Gpu;
-pub use mixed::Mixed;
 pub use adapters::{Adapter, AdapterKind, Choice, DeviceRequest};
+pub use backend::Gpu;
 pub use buffers::{Chunk, DeviceReal, StorageBuffer};
 pub use context::GpuContext;
 pub use error::GpuError;
+pub use mixed::Mixed;
 pub use shader_sources::{Kernel, Precision};
