@@ -13,6 +13,8 @@ mod contact;
 mod element;
 #[path = "conformance/material.rs"]
 mod material;
+#[path = "conformance/press.rs"]
+mod press;
 
 mod device;
 

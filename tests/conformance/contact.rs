@@ -58,13 +58,20 @@ fn rows_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     requests.push(requests[2].clone());
     let (rows, expected) = (contacts(ours.as_mut(), &requests), contacts(reference.as_mut(), &requests));
     assert!(rows[2] == *rows.last().unwrap());
-    let mut counts = [0; 3];
+    let (mut counts, mut ties) = ([0; 3], 0);
     for (case, (rows, expected)) in rows.iter().zip(&expected).enumerate() {
         for (i, (a, b)) in rows.iter().zip(expected).enumerate() {
             let place = format!("{}, case {case}, point {i}: {a:?}, not {b:?}", R::NAME);
-            assert_eq!((a.status, a.fixed), (b.status, b.fixed), "{place}");
             let node = models[0].mesh.contact_nodes[i] as usize;
-            let force = &requests[case].2[3 * node..3 * node + 3];
+            let (case_index, u, force) = &requests[case];
+            let force = &force[3 * node..3 * node + 3];
+            // only a point that neither presses nor gapes may fall to either side
+            let xi_n = force[2] - b.weight * (models[*case_index].mesh.nodes[node][2] + u[3 * node + 2]);
+            if a.status != b.status && xi_n.abs() <= bounds.0 * b.weight * 1e-3 {
+                ties += 1;
+                continue;
+            }
+            assert_eq!((a.status, a.fixed), (b.status, b.fixed), "{place}");
             let scale = force.iter().fold(b.weight * 1e-3, |m, f| m.max(f.abs()));
             for k in 0..3 {
                 assert!((a.residual[k] - b.residual[k]).abs() <= bounds.0 * scale, "{place}");
@@ -77,7 +84,7 @@ fn rows_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
             counts[a.status as usize] += 1;
         }
     }
-    assert!(counts.iter().all(|&n| n > 20), "{counts:?}: the test tests nothing");
+    assert!(counts.iter().all(|&n| n > 20) && ties < 10, "{counts:?}, {ties} ties: the test tests nothing");
 }
 
 /// A force that is not a number must not pass for a point at rest.
