@@ -102,19 +102,20 @@ fn gaps(ours: &[StepRecord], reference: &[StepRecord]) -> Gaps {
     COLUMNS.iter().enumerate().map(|(c, name)| ((*name).to_owned(), gap(c))).collect()
 }
 
-/// Holds a backend's gaps to those in the fixture; ASPERITY_MEASURE=1 prints what to write there.
+/// How far beyond a measured gap another driver may be: it rounds otherwise, by as much.
+const SLACK: f64 = 3.0;
+
+/// Holds a backend's gaps to those in the fixture, and these to what they must not exceed; prints what to write there.
 fn hold(name: &str, ours: &[StepRecord], reference: &[StepRecord], most: f64) {
     let measured = gaps(ours, reference);
     println!("\"{name}\": {}", serde_json::to_string(&measured).unwrap());
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/precision.json")).unwrap();
     let fixture: BTreeMap<String, Gaps> = serde_json::from_str(&text).unwrap();
     for column in COLUMNS {
-        let (ours, allowed) = (measured[column], fixture[name][column]);
-        assert!(
-            allowed <= most || column == "newton_iterations" || column == "stick_radius",
-            "{column}: {allowed:e} is too wide"
-        );
-        assert!(ours <= allowed, "{name}, {column}: {ours:e}, and {allowed:e} was measured");
+        let (ours, expected) = (measured[column], fixture[name][column]);
+        // a count may differ by one: a merit next to the tolerance
+        let most = if column == "newton_iterations" { 0.2 } else { most };
+        assert!(ours <= (SLACK * expected).clamp(1e-12, most), "{name}, {column}: {ours:e}, and {expected:e} was measured");
     }
 }
 
