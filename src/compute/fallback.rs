@@ -56,7 +56,7 @@ impl Fallback {
             "{} failed after {} accepted steps ({reason}); the CPU went on from there in f64, and no accepted step was lost",
             self.name, self.commits
         );
-        log::warn!("{note}");
+        log::info!("{note}");
         self.notes.push(note);
         self.cpu = Some(cpu);
         Ok(())

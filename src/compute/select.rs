@@ -76,7 +76,7 @@ pub fn select_on(
     match reason {
         ComputeError::Device(reason) if device != DeviceWish::Gpu => {
             let note = format!("the GPU could not be used ({reason}); the CPU was taken instead");
-            log::warn!("{note}");
+            log::info!("{note}");
             Ok(Selected { backend: cpu(precision, models)?, notes: vec![note] })
         }
         error => Err(error),
@@ -105,6 +105,6 @@ fn gpu(
         "{} has no double precision in shaders: it computes the tangents in f32, the CPU the residuals in f64",
         context.adapter().name
     );
-    log::warn!("{note}");
+    log::info!("{note}");
     Ok((Box::new(Mixed::new(context, models)?), vec![note]))
 }

@@ -52,7 +52,7 @@ impl GpuContext {
         let start = Instant::now();
         let source = kernel.assemble(precision);
         let pipeline =
-            Arc::new(self.compile(kernel, &source).inspect_err(|e| log::error!("{} in {precision}: {e}", kernel.name))?);
+            Arc::new(self.compile(kernel, &source).inspect_err(|e| log::debug!("{} in {precision}: {e}", kernel.name))?);
         log::debug!("compiled {} in {precision}: {:.3} s before the driver's share", kernel.name, start.elapsed().as_secs_f64());
         compiled.insert((kernel.name, precision), Arc::clone(&pipeline));
         Ok(pipeline)
