@@ -54,7 +54,8 @@ fn columns(r: &StepRecord) -> [f64; COLUMNS.len()] {
 /// A power law, four elements a contact radius, five steps of pressing and six of shearing, the last of them back.
 fn problem() -> Problem {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/cases/power.toml");
-    let set = ["mesh.elements_per_contact_radius=4", "solver.shear_steps=4", "path.1.shear=0.002"].map(String::from);
+    let set = ["mesh.elements_per_contact_radius=4", "solver.press_steps=5", "solver.shear_steps=4", "path.1.shear=0.002"]
+        .map(String::from);
     let mut case = Case::load(&file, &set).unwrap();
     let back = Case::load(&file, &["path.1.shear=0.001".to_owned()]).unwrap().path[1];
     case.path.push(back);
@@ -111,7 +112,8 @@ fn gaps(ours: &[StepRecord], reference: &[StepRecord]) -> Gaps {
     COLUMNS.iter().enumerate().map(|(c, name)| ((*name).to_owned(), gap(c))).collect()
 }
 
-/// How far beyond a measured gap another driver may be: it rounds otherwise, by as much.
+/// How far beyond a measured gap another driver may be: it rounds otherwise, by as much. A hundredth of what is promised is asked of
+/// nobody.
 const SLACK: f64 = 3.0;
 
 /// Holds a backend's gaps to those in the fixture, and these to what they must not exceed; prints what to write there.
@@ -124,7 +126,7 @@ fn hold(name: &str, ours: &[StepRecord], reference: &[StepRecord], most: f64) {
         let (ours, expected) = (measured[column], fixture[name][column]);
         // a count may differ by one: a merit next to the tolerance
         let most = if column == "newton_iterations" { 0.2 } else { most };
-        assert!(ours <= (SLACK * expected).clamp(1e-12, most), "{name}, {column}: {ours:e}, and {expected:e} was measured");
+        assert!(ours <= (SLACK * expected).clamp(1e-2 * most, most), "{name}, {column}: {ours:e}, and {expected:e} was measured");
     }
 }
 
