@@ -24,7 +24,7 @@ friction = 0.3
 [mesh]
 elements_per_contact_radius = 4
 [solver]
-press_steps = 2
+press_steps = 5
 [output]
 fields = "none"
 plots = false
