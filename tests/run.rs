@@ -31,6 +31,9 @@ indentation = 0.02
 const SHEAR: &str = "[[path]]\nshear = 0.002\n";
 const FULL_SLIP: &str = "[[path]]\nshear = \"full-slip\"\n";
 
+/// Whatever devices the machine has: what is tested here is the reference.
+const CPU: [&str; 2] = ["--device", "cpu"];
+
 /// A case in a scratch directory of its own.
 struct Scratch {
     dir: TempDir,
@@ -49,7 +52,7 @@ impl Scratch {
 
     fn command(&self, name: &str, options: &[&str]) -> Command {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
-        command.arg("run").arg(self.dir.path().join("case.toml")).arg("--out").arg(self.out(name)).args(options);
+        command.arg("run").arg(self.dir.path().join("case.toml")).arg("--out").arg(self.out(name)).args(CPU).args(options);
         command
     }
 
@@ -161,6 +164,7 @@ fn leaves_every_file_of_the_contract() {
     let again = Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
         .arg("run")
         .args([&dir.join("case.toml"), Path::new("--out"), &scratch.out("again")])
+        .args(CPU)
         .arg("-q")
         .output()
         .expect("the program runs");
@@ -339,8 +343,8 @@ fn a_release_ends_without_force_and_leaves_an_indentation() {
 #[test]
 fn single_precision_gives_the_same_answer() {
     let scratch = Scratch::new(SHEAR);
-    let (double, _) = scratch.done("f64", &["--device", "cpu", "--precision", "f64"]);
-    let (single, summary) = scratch.done("f32", &["--device", "cpu", "--precision", "f32"]);
+    let (double, _) = scratch.done("f64", &["--precision", "f64"]);
+    let (single, summary) = scratch.done("f32", &["--precision", "f32"]);
     assert_eq!(summary.precision, "f32");
     assert_eq!(double.len(), single.len());
     for (a, b) in double.iter().zip(&single) {
@@ -447,6 +451,7 @@ fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
         .arg(assert_cmd::cargo::cargo_bin!("asperity"))
         .arg("run")
         .args([&scratch.out("case.toml"), Path::new("--out"), &scratch.out("out")])
+        .args(CPU)
         .output()
         .expect("bash runs");
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
