@@ -44,7 +44,7 @@ fn done(dir: &Path, options: &[&str], environment: &[(&str, &str)]) -> (Summary,
     let output = run(dir, options, environment);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{options:?}: {said}");
-    let summary = Summary::read(&OutputDirectory::existing(&dir.join("out")).summary()).unwrap();
+    let summary = Summary::read(&OutputDirectory::existing(dir.join("out")).summary()).unwrap();
     assert_eq!(summary.status, Status::Done);
     (summary, said)
 }
