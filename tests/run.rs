@@ -211,7 +211,7 @@ fn two_runs_are_equal_to_the_bit_on_any_number_of_threads() {
     let (_, first) = scratch.done("a", &["--threads", "1"]);
     let (_, second) = scratch.done("b", &["--threads", "2"]);
     let bytes = |name: &str, file: &str| fs::read(scratch.out(name).join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
-    for file in ["history.csv", "case.toml", "contact/step_0005.csv", "fields/step_0005.vtu", "plots/forces.svg"] {
+    for file in ["history.csv", "case.toml", "contact/step_0010.csv", "fields/step_0010.vtu", "plots/forces.svg"] {
         assert!(bytes("a", file) == bytes("b", file), "{file} differs");
     }
     assert_eq!((first.device.as_str(), second.device.as_str()), ("CPU (1 thread)", "CPU (2 threads)"));
@@ -308,6 +308,7 @@ fn full_stick_never_slips() {
     for row in &history {
         assert!(row.slipping_points == 0 && row.work_friction.abs() < 1e-5 * last.work_external, "{row:?}");
     }
+    // More than the coefficient of the other cases: only the yield stress in shear limits it.
     assert!(last.f_t / last.f_n > 0.32, "{last:?}");
     assert!(!summary.full_slip_reached && summary.f_n_slip.is_none() && summary.delta_t_slip.is_none());
 }
@@ -315,12 +316,12 @@ fn full_stick_never_slips() {
 #[test]
 fn a_held_normal_force_is_held() {
     let scratch = Scratch::new("[[path]]\nshear = 0.0015\nhold = \"normal-force\"\n");
-    let (history, summary) = scratch.done("out", &["--set", "mesh.fine_zone=1.8"]);
+    let (history, summary) = scratch.done("out", &["--set", "mesh.fine_zone=1.8", "--set", "solver.tolerance=1e-6"]);
     let held = summary.f_n0.expect("F_N0");
     let shear: Vec<&StepRecord> = history.iter().filter(|row| row.segment == 1).collect();
     assert!(shear.len() > 5);
     for row in &shear {
-        assert!((row.f_n / held - 1.0).abs() < 3e-4, "{row:?} instead of F_N = {held}");
+        assert!((row.f_n / held - 1.0).abs() < 1e-5, "{row:?} instead of F_N = {held}");
     }
     // The sheared contact yields, so the sphere sinks in.
     assert!(shear[shear.len() - 1].h > 0.0201, "{:?}", shear[shear.len() - 1]);
@@ -457,12 +458,12 @@ fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let message = stderr(&output);
     assert!(
-        message.contains("error: the run broke off after 5 steps: cannot write ") && message.contains("step_0005.vtu"),
+        message.contains("error: the run broke off after 10 steps: cannot write ") && message.contains("step_0010.vtu"),
         "{message}"
     );
     assert_eq!(message.lines().filter(|line| line.starts_with("error")).count(), 1, "{message}");
     let (history, summary) = results(&scratch.out("out"));
     assert_eq!((history.len(), summary.status), (5, Status::Interrupted));
-    assert!(summary.messages[0].contains("step_0005.vtu"), "{:?}", summary.messages);
+    assert!(summary.messages[0].contains("step_0010.vtu"), "{:?}", summary.messages);
     assert!(names(&scratch.out("out").join("fields")).is_empty());
 }

@@ -112,9 +112,18 @@ pub enum CliError {
         /// The directory of `--out`.
         dir: PathBuf,
     },
-    /// The simulation is not part of this build.
-    #[error("this build has no simulation. `asperity check` is what it can do with a case")]
-    NoSimulation,
+    /// A check of `verify` could not be set up, or the device failed.
+    #[error("the checks broke off: {source}")]
+    Verify {
+        /// What went wrong.
+        source: crate::verify::VerifyError,
+    },
+    /// The rows of `verify` cannot be put as JSON.
+    #[error("the rows cannot be written as JSON: {source}")]
+    Rows {
+        /// What went wrong.
+        source: serde_json::Error,
+    },
 }
 
 impl CliError {
