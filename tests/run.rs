@@ -211,7 +211,7 @@ fn two_runs_are_equal_to_the_bit_on_any_number_of_threads() {
     let (_, first) = scratch.done("a", &["--threads", "1"]);
     let (_, second) = scratch.done("b", &["--threads", "2"]);
     let bytes = |name: &str, file: &str| fs::read(scratch.out(name).join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
-    for file in ["history.csv", "case.toml", "contact/step_0010.csv", "fields/step_0010.vtu", "plots/forces.svg"] {
+    for file in ["history.csv", "case.toml", "contact/step_0005.csv", "fields/step_0005.vtu", "plots/forces.svg"] {
         assert!(bytes("a", file) == bytes("b", file), "{file} differs");
     }
     assert_eq!((first.device.as_str(), second.device.as_str()), ("CPU (1 thread)", "CPU (2 threads)"));
@@ -458,12 +458,12 @@ fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let message = stderr(&output);
     assert!(
-        message.contains("error: the run broke off after 10 steps: cannot write ") && message.contains("step_0010.vtu"),
+        message.contains("error: the run broke off after 5 steps: cannot write ") && message.contains("step_0005.vtu"),
         "{message}"
     );
     assert_eq!(message.lines().filter(|line| line.starts_with("error")).count(), 1, "{message}");
     let (history, summary) = results(&scratch.out("out"));
     assert_eq!((history.len(), summary.status), (5, Status::Interrupted));
-    assert!(summary.messages[0].contains("step_0010.vtu"), "{:?}", summary.messages);
+    assert!(summary.messages[0].contains("step_0005.vtu"), "{:?}", summary.messages);
     assert!(names(&scratch.out("out").join("fields")).is_empty());
 }
