@@ -17,3 +17,4 @@ pub mod output;
 pub mod real;
 pub mod simulation;
 pub mod solver;
+pub mod verify;

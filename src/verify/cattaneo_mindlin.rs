@@ -1,0 +1,143 @@
+//! Elastic shear at constant normal force against Cattaneo and Mindlin, and its reversal against Mindlin and Deresiewicz.
+//!
+//! Against a rigid plane the closed forms are exact only at nu = 0.5 (Dundurs' beta = 0): the judged case has nu = 0.49; the departure at
+//! nu = 0.3 is reported. The displacement is prescribed at the equator, whose share, proportional to a/R, is made small: a/R = 0.01.
+
+use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
+use super::{Check, VerifyError};
+use crate::analytical::ElasticSphere;
+use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
+use crate::case::{Case, Hardening, Segment};
+
+/// Indentation: a/R = 0.01.
+const H: f64 = 1e-4 * RADIUS;
+/// Coulomb's coefficient.
+const MU: f64 = 0.3;
+/// Length of the first shear segment over d_s, short enough for the initial stiffness.
+const FIRST: f64 = 0.04;
+/// Where F_T is compared on first loading, over d_s.
+const LOADING: [f64; 3] = [0.25, 0.5, 0.75];
+/// Where F_T is compared on the way back from the last of them, over d_s.
+const REVERSAL: [f64; 4] = [0.375, 0.0, -0.375, -0.75];
+/// Sliding.
+const SLIDING: f64 = -1.2;
+
+/// The contact by the closed forms, with the computed force and radius: what is compared is the shear, not the pressing.
+fn exact(nu: f64, history: &History) -> CattaneoMindlin {
+    let sphere = ElasticSphere { radius: RADIUS, youngs_modulus: YOUNGS_MODULUS, poissons_ratio: nu };
+    let pressed = history.end(0);
+    let mut exact = CattaneoMindlin::at_indentation(sphere, MU, H);
+    (exact.contact_radius, exact.normal_force) = (pressed.a, pressed.f_n);
+    exact
+}
+
+fn case(nu: f64, elements: usize, displacements: impl Iterator<Item = f64>) -> Case {
+    let sphere_data = ElasticSphere { radius: RADIUS, youngs_modulus: YOUNGS_MODULUS, poissons_ratio: nu };
+    let slip = CattaneoMindlin::at_indentation(sphere_data, MU, H).slip_displacement();
+    let path: Vec<Segment> = std::iter::once(press(H)).chain(displacements.map(|x| shear(x * slip))).collect();
+    let mut case = sphere(nu, Hardening::Elastic, MU, elements, path);
+    case.mesh.contact_radius = Some((RADIUS * H).sqrt());
+    case.solver.press_steps = Some(8);
+    case.solver.shear_steps = Some(3);
+    // F_T of the first step is a thousandth of F_N.
+    case.solver.tolerance = 1e-6;
+    case
+}
+
+/// Runs the checks.
+pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
+    let elements = runner.elements(8);
+    let path = || std::iter::once(FIRST).chain(LOADING);
+    let history = runner.follow(&case(0.49, elements, path().chain(REVERSAL).chain([SLIDING])))?;
+    let exact_49 = exact(0.49, &history);
+    let mut checks = loading(&history, &exact_49);
+    checks.extend(reversal(&history, &exact_49));
+
+    let history = runner.follow(&case(0.3, elements, path().chain([1.2])))?;
+    let exact_30 = exact(0.3, &history);
+    let limit = MU * exact_30.normal_force;
+    let mut report = |what: String, ours: f64, reference: f64, scale: f64| {
+        let because = "beta = 0.286: the closed form neglects that shear and pressure act on each other";
+        checks.push(Check::relative("nu = 0.3", what, ours, reference, 0.0, because).by(scale).information());
+    };
+    for (segment, x) in (2..).zip(LOADING.iter().chain(&[1.2])) {
+        let row = history.end(segment);
+        report(format!("F_T/(mu F_N) at {x} d_s"), row.f_t / limit, exact_30.force(row.delta_t) / limit, 1.0);
+    }
+    report("F_N at the end over F_N before".to_owned(), history.last().f_n / exact_30.normal_force, 1.0, 1.0);
+    Ok(checks)
+}
+
+fn loading(history: &History, exact: &CattaneoMindlin) -> Vec<Check> {
+    const FORCE: &str = "beta = 0.02, the equator's share 0.5 a/R = 0.5 % of d_s, slip across the shear direction (Johnson 1985, section 7.2) 1 %, the mesh 1 %";
+    let limit = MU * exact.normal_force;
+    let mut checks = vec![Check::relative(
+        "cattaneo-mindlin",
+        "k_T0",
+        initial_stiffness(history),
+        exact.initial_stiffness(),
+        0.04,
+        FORCE,
+    )];
+    for (segment, x) in (2..).zip(LOADING) {
+        let row = history.end(segment);
+        let what = format!("F_T/(mu F_N) at {x} d_s");
+        checks.push(
+            Check::relative("cattaneo-mindlin", what, row.f_t / limit, exact.force(row.delta_t) / limit, 0.04, FORCE).by(1.0),
+        );
+    }
+    for (segment, x) in (2..).zip(LOADING) {
+        let row = history.end(segment);
+        let (ours, reference) = (row.stick_radius / row.a, exact.stick_radius(row.f_t) / exact.contact_radius);
+        checks.push(
+            Check::relative(
+                "cattaneo-mindlin",
+                format!("c/a at {x} d_s"),
+                ours,
+                reference,
+                0.0625,
+                "the stick zone is counted in whole points: half an element is a/16",
+            )
+            .by(1.0),
+        );
+    }
+    let worst = (1..).zip(std::iter::once(FIRST).chain(LOADING)).fold(0.0f64, |worst, (segment, _)| {
+        let change = history.end(segment).f_n / exact.normal_force - 1.0;
+        if change.abs() > worst.abs() { change } else { worst }
+    });
+    checks.push(
+        Check::relative(
+            "cattaneo-mindlin",
+            "largest change of F_N",
+            worst,
+            0.0,
+            0.01,
+            "shear moves F_N by mu beta = 0.6 % at the most",
+        )
+        .by(1.0),
+    );
+    checks
+}
+
+/// Stiffness at the start: the secants of the first two steps, extrapolated to no displacement.
+fn initial_stiffness(history: &History) -> f64 {
+    let secants: Vec<(f64, f64)> = history.segment(1).map(|row| (row.delta_t, row.f_t / row.delta_t)).collect();
+    match secants[..] {
+        [(d0, k0), (d1, k1), ..] => k0 - d0 * (k1 - k0) / (d1 - d0),
+        _ => f64::NAN,
+    }
+}
+
+fn reversal(history: &History, exact: &CattaneoMindlin) -> Vec<Check> {
+    let limit = MU * exact.normal_force;
+    let turning = history.end(1 + LOADING.len()).delta_t;
+    (2 + LOADING.len()..)
+        .zip(REVERSAL.iter().chain(&[SLIDING]))
+        .map(|(segment, x)| {
+            let row = history.end(segment);
+            let (ours, reference) = (row.f_t / limit, exact.reversed_force(turning, row.delta_t) / limit);
+            let because = "as on first loading, of the loop's whole height 2 mu F_N";
+            Check::relative("mindlin-deresiewicz", format!("F_T/(mu F_N) back at {x} d_s"), ours, reference, 0.04, because).by(1.0)
+        })
+        .collect()
+}

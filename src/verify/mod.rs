@@ -1,0 +1,87 @@
+//! Closed-form checks of the whole program: what `asperity verify` runs.
+//!
+//! Stands beside `study`: above `simulation`, whose cases it runs, and below `cli`, which prints what it finds.
+//! `runner` follows a case, `check` is a row of the table, `table` prints; each other file is a family of checks.
+
+pub mod check;
+pub mod runner;
+pub mod table;
+
+mod cattaneo_mindlin;
+mod hertz;
+mod invariance;
+mod models;
+mod plastic;
+mod unloading;
+
+use std::time::{Duration, Instant};
+
+pub use check::{Check, Reference, Scale, Verdict};
+pub use runner::{BackendFactory, Level, Runner};
+
+use crate::compute::ComputeError;
+use crate::simulation::SimulationError;
+
+/// Why a family of checks has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum VerifyError {
+    /// A case could not be set up, or the device failed.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The device failed.
+    #[error(transparent)]
+    Compute(#[from] ComputeError),
+    /// A path could not be followed to its end.
+    #[error("{0}")]
+    Stopped(String),
+}
+
+/// A group of checks that share their cases.
+#[derive(Clone, Copy, Debug)]
+pub struct Family {
+    /// Its name, for `--only`.
+    pub name: &'static str,
+    run: fn(&mut Runner<'_>) -> Result<Vec<Check>, VerifyError>,
+}
+
+/// All families, in the order in which they run.
+pub const FAMILIES: [Family; 7] = [
+    Family { name: "hertz", run: hertz::checks },
+    Family { name: "cattaneo-mindlin", run: cattaneo_mindlin::checks },
+    Family { name: "models", run: models::checks },
+    Family { name: "plastic", run: plastic::checks },
+    Family { name: "energy", run: plastic::step_convergence },
+    Family { name: "unloading", run: unloading::checks },
+    Family { name: "invariance", run: invariance::checks },
+];
+
+/// Rows of one family and how long they took.
+#[derive(Clone, Debug)]
+pub struct FamilyReport {
+    /// The family's name.
+    pub name: &'static str,
+    /// Its rows.
+    pub checks: Vec<Check>,
+    /// Wall time.
+    pub took: Duration,
+}
+
+impl Family {
+    /// Runs the family. A path that cannot be followed is a failed row, not an error: the other families still run.
+    ///
+    /// # Errors
+    /// A case cannot be set up, or the device fails.
+    pub fn run(&self, runner: &mut Runner<'_>) -> Result<FamilyReport, VerifyError> {
+        let start = Instant::now();
+        let checks = match (self.run)(runner) {
+            Err(VerifyError::Stopped(reason)) => vec![stopped(self.name, &reason)],
+            other => other?,
+        };
+        Ok(FamilyReport { name: self.name, checks, took: start.elapsed() })
+    }
+}
+
+/// The row of a family whose path ended early.
+fn stopped(name: &'static str, reason: &str) -> Check {
+    Check::relative(name, reason, f64::NAN, 0.0, 0.0, "every path of the checks can be followed to its end")
+}

@@ -1,0 +1,152 @@
+//! Follows one case of the checks and keeps what the checks ask for.
+
+use super::VerifyError;
+use crate::case::{Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere};
+use crate::compute::{CaseModel, Compute, ComputeError};
+use crate::simulation::drive::{Drive, Ending, Observer, StepView};
+use crate::simulation::problem::Problem;
+use crate::simulation::record::StepRecord;
+
+/// Makes the backend on which a case is computed.
+pub type BackendFactory<'a> = dyn FnMut(Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> + 'a;
+
+/// How finely the cases are meshed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Level {
+    /// Meshes with which all checks take about a minute.
+    #[default]
+    Quick,
+    /// The mesh that a case has by default, or the check's own where that is finer.
+    Fine,
+}
+
+/// Radius and Young's modulus of the checks' sphere: lengths in radii, stresses in MPa.
+pub const RADIUS: f64 = 1.0;
+/// See [`RADIUS`].
+pub const YOUNGS_MODULUS: f64 = 200e3;
+
+/// Runs cases, one after the other; each uses all threads.
+pub struct Runner<'a> {
+    backend: &'a mut BackendFactory<'a>,
+    /// How finely the cases are meshed.
+    pub level: Level,
+}
+
+impl<'a> Runner<'a> {
+    /// A runner whose cases are computed by what `backend` makes.
+    pub fn new(backend: &'a mut BackendFactory<'a>, level: Level) -> Self {
+        Self { backend, level }
+    }
+
+    /// Elements along the contact radius: `quick`, or at the fine level at least as many as a case has by default.
+    pub fn elements(&self, quick: usize) -> usize {
+        match self.level {
+            Level::Quick => quick,
+            Level::Fine => quick.max(Mesh::default().elements_per_contact_radius),
+        }
+    }
+
+    /// Follows the whole path of a case.
+    ///
+    /// # Errors
+    /// The case cannot be set up or the device fails, or the path cannot be followed to its end.
+    pub fn follow(&mut self, case: &Case) -> Result<History, VerifyError> {
+        let problem = Problem::new(case)?;
+        let mut backend = (self.backend)(vec![problem.model.clone()])?;
+        let newton = problem.newton()?;
+        let mut keeper = Keeper { length: case.sphere.radius, stress: case.material.youngs_modulus, rows: Vec::new() };
+        match Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut keeper)? {
+            Ending::Done => Ok(History { rows: keeper.rows }),
+            Ending::NotConverged(reason) | Ending::Outgrown(reason) => Err(VerifyError::Stopped(reason)),
+            Ending::Interrupted => Err(VerifyError::Stopped("interrupted".to_owned())),
+        }
+    }
+}
+
+/// The accepted steps of a case, in the case's units; forces and energies of the whole sphere.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    /// All rows, the undeformed state first.
+    pub rows: Vec<StepRecord>,
+}
+
+impl History {
+    /// The rows of one segment of the path, in order.
+    pub fn segment(&self, segment: usize) -> impl Iterator<Item = &StepRecord> {
+        self.rows.iter().filter(move |row| row.segment == segment && row.step > 0)
+    }
+
+    /// The last row of a segment; all zero if it has none.
+    pub fn end(&self, segment: usize) -> StepRecord {
+        self.segment(segment).last().copied().unwrap_or_default()
+    }
+
+    /// The last row.
+    pub fn last(&self) -> StepRecord {
+        self.rows.last().copied().unwrap_or_default()
+    }
+}
+
+struct Keeper {
+    length: f64,
+    stress: f64,
+    rows: Vec<StepRecord>,
+}
+
+impl Observer for Keeper {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.rows.push(in_units(&view.record, self.length, self.stress));
+        Ok(())
+    }
+
+    fn note(&mut self, text: &str) {
+        log::info!("{text}");
+    }
+}
+
+/// A scaled record in units of `length` and `stress`.
+fn in_units(scaled: &StepRecord, length: f64, stress: f64) -> StepRecord {
+    let (force, energy) = (stress * length * length, stress * length.powi(3));
+    StepRecord {
+        h: scaled.h * length,
+        delta_t: scaled.delta_t * length,
+        a: scaled.a * length,
+        a_moment: scaled.a_moment * length,
+        stick_radius: scaled.stick_radius * length,
+        f_n: scaled.f_n * force,
+        f_t: scaled.f_t * force,
+        work_external: scaled.work_external * energy,
+        energy_elastic: scaled.energy_elastic * energy,
+        work_plastic: scaled.work_plastic * energy,
+        work_friction: scaled.work_friction * energy,
+        ..*scaled
+    }
+}
+
+/// A case on the checks' sphere, with default numerics; nothing is written.
+pub fn sphere(poissons_ratio: f64, hardening: Hardening, friction: f64, elements: usize, path: Vec<Segment>) -> Case {
+    Case {
+        sphere: Sphere { radius: RADIUS },
+        material: Material { youngs_modulus: YOUNGS_MODULUS, poissons_ratio, hardening },
+        contact: Contact { friction: Friction::Coefficient(friction) },
+        mesh: Mesh { elements_per_contact_radius: elements, ..Mesh::default() },
+        solver: Solver::default(),
+        output: Output { fields: Fields::None, plots: false },
+        path,
+    }
+}
+
+/// A segment that presses, or unloads, to `h`.
+pub fn press(h: f64) -> Segment {
+    Segment::Indentation { indentation: h }
+}
+
+/// A segment that shears to `d` at constant h.
+pub fn shear(d: f64) -> Segment {
+    Segment::Shear { shear: ShearTarget::Displacement(d), hold: Hold::Indentation }
+}
+
+/// A segment that shears to full slip at constant h.
+pub fn full_slip() -> Segment {
+    Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation }
+}
