@@ -363,7 +363,7 @@ impl<'a> Drive<'a> {
             stick_radius: size.stick_radius,
             newton_iterations: report.iterations.len() + wasted,
             cutbacks,
-            a_moment: size.radius_moment,
+            a_moment: size.radius_gap,
             krylov_iterations: report.krylov(),
             merit: report.merit,
             work_external: before.work_external
