@@ -1,26 +1,10 @@
 //! The VTU and PVD files, opened by the programs that users open them with.
-//!
-//! Needs a Python with meshio and numpy (pyvista is used where it is there): `ASPERITY_PYTHON`, else `target/python/bin/python`, else `python3`.
-//! To make one: `python3 -m venv target/python && target/python/bin/pip install meshio numpy pyvista`. Without one the test is
-//! skipped, aloud; with `ASPERITY_REQUIRE_PYTHON=1` that is a failure.
+
+mod python;
 
 use asperity::output::{Collection, Field, Grid, Values, write_vtu};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-
-/// A Python that can import meshio, or why there is none.
-fn python() -> Result<PathBuf, String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut candidates: Vec<PathBuf> = std::env::var_os("ASPERITY_PYTHON").map(PathBuf::from).into_iter().collect();
-    candidates.extend([root.join("target/python/bin/python"), PathBuf::from("python3")]);
-    let works = |python: &PathBuf| {
-        Command::new(python).args(["-c", "import meshio, numpy"]).output().is_ok_and(|output| output.status.success())
-    };
-    candidates.into_iter().find(works).ok_or_else(|| {
-        "no Python with meshio: python3 -m venv target/python && target/python/bin/pip install meshio numpy pyvista".to_owned()
-    })
-}
 
 fn json(fields: &[Field]) -> serde_json::Value {
     let value = |field: &Field| match &field.values {
@@ -32,15 +16,7 @@ fn json(fields: &[Field]) -> serde_json::Value {
 
 #[test]
 fn meshio_and_pyvista_read_what_was_written() {
-    let python = match python() {
-        Ok(python) => python,
-        Err(reason) => {
-            assert!(std::env::var_os("ASPERITY_REQUIRE_PYTHON").is_none_or(|value| value != "1"), "{reason}");
-            // Past the test harness, which would swallow it.
-            writeln!(std::io::stderr(), "SKIPPED meshio_and_pyvista_read_what_was_written: {reason}").unwrap();
-            return;
-        }
-    };
+    let Some(python) = python::python("meshio_and_pyvista_read_what_was_written") else { return };
     // Two hexahedra in a row, with numbers that a decimal detour would spoil.
     let mut points = Vec::new();
     for x in 0..3 {

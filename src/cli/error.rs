@@ -5,11 +5,15 @@ use std::path::PathBuf;
 
 use crate::case::CaseError;
 use crate::material::HardeningError;
+use crate::output::OutputError;
+use crate::simulation::SimulationError;
 
-/// The exit code of every [`CliError`].
+/// Bad input or usage: nothing was computed.
 pub const BAD_INPUT: u8 = 2;
+/// What was computed is kept, but it is not all.
+pub const NOT_CONVERGED: u8 = 3;
 
-/// An error that ends the program with exit code 2.
+/// An error that ends the program, with [`BAD_INPUT`] unless a run had begun.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
     /// The case file.
@@ -75,7 +79,47 @@ pub enum CliError {
         /// The missing instruction sets.
         missing: String,
     },
+    /// A GPU was asked for.
+    #[error("--device gpu: this build computes on the CPU only. leave --device out, or give --device cpu")]
+    NoGpu,
+    /// The signals cannot be caught.
+    #[error("cannot listen for SIGINT and SIGTERM: {source}. this system allows no signal handlers, which a run needs")]
+    Signals {
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The case cannot be made into a simulation.
+    #[error("{}: {source}", .file.display())]
+    Problem {
+        /// The case file.
+        file: PathBuf,
+        /// What the simulation says.
+        source: SimulationError,
+    },
+    /// Results cannot be begun.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A run broke off: results cannot be written, or the device failed.
+    #[error("the run broke off after {steps} steps: {what}. what was computed until then is kept in {}", .dir.display())]
+    BrokeOff {
+        /// Steps that are kept.
+        steps: usize,
+        /// What went wrong and what to do.
+        what: String,
+        /// The directory of `--out`.
+        dir: PathBuf,
+    },
     /// The simulation is not part of this build.
     #[error("this build has no simulation. `asperity check` is what it can do with a case")]
     NoSimulation,
+}
+
+impl CliError {
+    /// The exit code of the program.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            CliError::BrokeOff { .. } => NOT_CONVERGED,
+            _ => BAD_INPUT,
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand; parses, prints, exits.
 
+pub mod backend;
 pub mod check;
 pub mod devices;
 pub mod error;
@@ -8,6 +9,7 @@ pub mod out;
 pub mod point;
 pub mod processor;
 pub mod run;
+pub mod signals;
 pub mod verify;
 
 pub use error::CliError;
@@ -26,7 +28,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not converge (what was computed is kept), \
-                          75 interrupted and resumable.";
+                          75 interrupted (likewise).";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -54,9 +56,9 @@ impl Command {
 pub enum Outcome {
     /// All was done: exit code 0.
     Done,
-    /// A step did not converge, what was computed is kept: exit code 3.
+    /// A step did not converge or the contact outgrew the mesh, what was computed is kept: exit code 3.
     NotConverged,
-    /// Interrupted, and can be resumed: exit code 75 (EX_TEMPFAIL of sysexits.h).
+    /// Interrupted, what was computed is kept: exit code 75 (EX_TEMPFAIL of sysexits.h).
     Interrupted,
 }
 
@@ -64,13 +66,13 @@ impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> Self {
         ExitCode::from(match outcome {
             Outcome::Done => 0,
-            Outcome::NotConverged => 3,
+            Outcome::NotConverged => error::NOT_CONVERGED,
             Outcome::Interrupted => 75,
         })
     }
 }
 
-/// The program: reads the arguments, runs the subcommand, reports an error on stderr. Bad input and usage end with exit code 2.
+/// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with its exit code.
 pub fn main() -> ExitCode {
     let outcome = processor::check().and_then(|()| match Cli::try_parse() {
         Ok(cli) => cli.command.run().map(ExitCode::from),
@@ -82,7 +84,7 @@ pub fn main() -> ExitCode {
     });
     outcome.unwrap_or_else(|error| {
         let _ = writeln!(std::io::stderr(), "error: {error}");
-        ExitCode::from(error::BAD_INPUT)
+        ExitCode::from(error.exit_code())
     })
 }
 

@@ -6,17 +6,15 @@ use std::path::Path;
 
 use super::CliError;
 use crate::case::Case;
+use crate::output::OutputDirectory;
 
 /// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a result that may be replaced.
 pub const MARKER: &str = "# The resolved case of an asperity run. Running into this directory again replaces its results.";
 
-/// Files of an earlier result that would be mistaken for the new one's before it has written its own.
-const REPLACED: [&str; 2] = ["history.csv", "summary.json"];
-
 /// Prepares `dir` for the results of `case` and writes the resolved case to `case.toml` there.
 ///
-/// A directory that does not exist is made, an empty one is used. In one that holds an earlier result, its `history.csv`
-/// and `summary.json` are removed and everything else stays until it is overwritten. Anything else is refused, untouched.
+/// A directory that does not exist is made, an empty one is used. In one that holds an earlier result, what that
+/// run wrote is removed and everything else stays. Anything else is refused, untouched.
 pub fn prepare(dir: &Path, case: &Case) -> Result<(), CliError> {
     let failed = |what: &'static str| move |source: io::Error| CliError::Out { dir: dir.to_owned(), what, source };
     match fs::metadata(dir) {
@@ -29,15 +27,12 @@ pub fn prepare(dir: &Path, case: &Case) -> Result<(), CliError> {
     for entry in fs::read_dir(dir).map_err(failed("be read"))? {
         names.push(entry.map_err(failed("be read"))?.file_name().to_string_lossy().into_owned());
     }
-    if let Some(found) = names.iter().min() {
-        if !is_result(dir) {
-            return Err(CliError::NotAResult { dir: dir.to_owned(), found: found.clone() });
-        }
-        for name in REPLACED.iter().filter(|name| names.iter().any(|found| found == *name)) {
-            fs::remove_file(dir.join(name)).map_err(failed("replace its earlier result"))?;
-        }
+    if let Some(found) = names.iter().min().filter(|_| !is_result(dir)) {
+        return Err(CliError::NotAResult { dir: dir.to_owned(), found: found.clone() });
     }
-    fs::write(dir.join("case.toml"), format!("{MARKER}\n{}", case.to_toml())).map_err(failed("be written"))
+    let out = OutputDirectory::existing(dir);
+    out.clear()?;
+    Ok(out.write_case(&format!("{MARKER}\n{}", case.to_toml()))?)
 }
 
 /// Whether `dir` holds a result: its `case.toml` begins with [`MARKER`].

@@ -11,6 +11,9 @@ pub mod gather;
 pub mod gpu;
 pub mod handle;
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::Arc;
 
 use crate::contact::coulomb::{Friction, Rows};

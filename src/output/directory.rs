@@ -85,10 +85,51 @@ impl OutputDirectory {
         Ok(steps)
     }
 
+    /// Removes what an earlier run left here, so that nothing of it is taken for the next one's: files by the names in this page, and drafts
+    /// of killed runs. Everything else, `case.toml` among it, stays.
+    pub fn clear(&self) -> Result<(), OutputError> {
+        for folder in ["", "fields", "contact", "plots"] {
+            let path = if folder.is_empty() { self.root.clone() } else { self.root.join(folder) };
+            if !path.is_dir() {
+                continue;
+            }
+            for entry in fs::read_dir(&path).map_err(OutputError::reading(&path))? {
+                let name = entry.map_err(OutputError::reading(&path))?.file_name();
+                let file = path.join(&name);
+                if name.to_str().is_some_and(|name| ours(folder, name)) && file.is_file() {
+                    fs::remove_file(&file).map_err(OutputError::writing(&file))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Writes `case.toml`.
     pub fn write_case(&self, toml: &str) -> Result<(), OutputError> {
         write_atomically(&self.case(), |out| out.write_all(toml.as_bytes()))
     }
+}
+
+/// Whether a run gives this name to a file in this folder.
+fn ours(folder: &str, name: &str) -> bool {
+    let step = |suffix: &str| {
+        let number = name.strip_prefix("step_").and_then(|name| name.strip_suffix(suffix));
+        number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    // `write_atomically` calls its drafts .NAME.PID.tmp.
+    let draft = || {
+        let final_name = name.strip_prefix('.').and_then(|name| name.strip_suffix(".tmp")).and_then(|name| name.rsplit_once('.'));
+        final_name
+            .is_some_and(|(name, id)| id.bytes().all(|byte| byte.is_ascii_digit()) && (name == "case.toml" || ours(folder, name)))
+    };
+    let named = match folder {
+        "" => matches!(name, "history.csv" | "summary.json" | "checkpoint"),
+        "fields" => name == "case.pvd" || step(".vtu"),
+        "contact" => step(".csv"),
+        "plots" => matches!(name, "indentation.svg" | "forces.svg" | "ratio.svg" | "contact.svg"),
+        _ => false,
+    };
+    named || draft()
 }
 
 #[cfg(test)]
@@ -109,5 +150,37 @@ mod tests {
         assert_eq!(out.contact_steps().unwrap(), [3, 20]);
         out.write_case("[sphere]\nradius = 1.0\n").unwrap();
         assert_eq!(fs::read_to_string(out.case()).unwrap(), "[sphere]\nradius = 1.0\n");
+    }
+
+    #[test]
+    fn clearing_removes_by_name_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDirectory::create(folder.path()).unwrap();
+        let gone = [
+            "history.csv",
+            "summary.json",
+            ".summary.json.417.tmp",
+            ".case.toml.417.tmp",
+            "fields/step_0020.vtu",
+            "fields/case.pvd",
+            "fields/.step_0021.vtu.417.tmp",
+            "contact/step_12345.csv",
+            "plots/forces.svg",
+        ];
+        let kept = [
+            "case.toml",
+            "notes.txt",
+            ".hidden.tmp",
+            "fields/view.pvsm",
+            "fields/step_x.vtu",
+            "contact/step_1.csv",
+            "plots/mine.svg",
+        ];
+        for name in gone.iter().chain(&kept) {
+            write_atomically(&folder.path().join(name), |_| Ok(())).unwrap();
+        }
+        out.clear().unwrap();
+        assert!(gone.iter().all(|name| !folder.path().join(name).exists()));
+        assert!(kept.iter().all(|name| folder.path().join(name).exists()));
     }
 }

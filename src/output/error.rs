@@ -67,9 +67,7 @@ impl OutputError {
 fn writing_remedy(error: &io::Error) -> &'static str {
     use io::ErrorKind as Kind;
     match error.kind() {
-        Kind::StorageFull | Kind::QuotaExceeded => {
-            "free space there or choose another place with --out, then go on with --resume"
-        }
+        Kind::StorageFull | Kind::QuotaExceeded => "free space there or choose another place with --out, and run again",
         Kind::PermissionDenied | Kind::ReadOnlyFilesystem => "choose a folder that you may write to with --out",
         Kind::AlreadyExists | Kind::NotADirectory | Kind::IsADirectory => {
             "a file stands where a folder is needed, or the reverse: move it away or choose another --out"

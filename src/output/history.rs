@@ -1,68 +1,10 @@
 //! `history.csv`: one row for every accepted step, in the user's units, appended as the run goes.
 
 use super::{OutputError, write_atomically};
-use serde::{Deserialize, Serialize};
+use crate::simulation::record::StepRecord;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-
-/// One accepted step, in the user's units; forces, energies and work are those of the whole sphere.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct StepRecord {
-    /// Number of the step, from 1 on.
-    pub step: usize,
-    /// Segment of the path, counted from 0 as in `path.0.indentation`.
-    pub segment: usize,
-    /// Indentation h, positive towards the plane.
-    pub h: f64,
-    /// Tangential displacement delta_T of the plate.
-    #[serde(rename = "delta_T")]
-    pub delta_t: f64,
-    /// Normal force F_N, compression positive.
-    #[serde(rename = "F_N")]
-    pub f_n: f64,
-    /// Tangential force F_T, of the sign of the displacement that it resists.
-    #[serde(rename = "F_T")]
-    pub f_t: f64,
-    /// Contact radius a, where the gap extrapolates to zero.
-    pub a: f64,
-    /// Radius of the zone that sticks; zero when everything slips.
-    pub stick_radius: f64,
-    /// Newton iterations of the step, those of rejected attempts included.
-    pub newton_iterations: usize,
-    /// Times the increment was halved.
-    pub cutbacks: usize,
-    /// Contact radius by the second moment of the pressure, a check on `a`.
-    #[serde(default)]
-    pub a_moment: f64,
-    /// Iterations of the linear solver.
-    #[serde(default)]
-    pub krylov_iterations: usize,
-    /// Contact merit over F_N at which the step was accepted.
-    #[serde(default)]
-    pub merit: f64,
-    /// Work done by the plate since the start.
-    #[serde(default)]
-    pub work_external: f64,
-    /// Elastic energy stored.
-    #[serde(default)]
-    pub energy_elastic: f64,
-    /// Plastic work since the start.
-    #[serde(default)]
-    pub work_plastic: f64,
-    /// Work dissipated by friction since the start.
-    #[serde(default)]
-    pub work_friction: f64,
-    /// Nodes in contact.
-    #[serde(default)]
-    pub contact_points: usize,
-    /// Nodes that slip, of those in contact.
-    #[serde(default)]
-    pub slipping_points: usize,
-    /// Greatest equivalent plastic strain alpha.
-    #[serde(default)]
-    pub max_alpha: f64,
-}
 
 /// The columns that every history has, in this order; more may follow.
 const FIXED_COLUMNS: [&str; 10] =
@@ -181,7 +123,7 @@ mod tests {
         let path = folder.path().join("history.csv");
         HistoryWriter::create(&path).unwrap();
         let text = fs::read_to_string(&path).unwrap();
-        assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,a_moment,"), "{text}");
+        assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,a_gap,"), "{text}");
         assert!(text.ends_with(",max_alpha\n"));
         assert!(read_history(&path).unwrap().is_empty());
     }

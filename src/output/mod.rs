@@ -6,25 +6,33 @@
 //! keeps what it computed.
 
 mod atomic;
+mod clock;
 mod contact_csv;
 mod directory;
 mod error;
 mod fields;
 mod history;
+mod path_share;
 mod plots;
 mod progress;
+mod report;
+mod results;
 mod summary;
 mod units;
 mod vtu;
 
+pub use crate::simulation::record::StepRecord;
 pub use atomic::write_atomically;
+pub use clock::Clock;
 pub use contact_csv::{ContactPoint, ContactStatus, read_contact, write_contact};
 pub use directory::OutputDirectory;
 pub use error::OutputError;
 pub use fields::{mises, write_fields};
-pub use history::{HistoryWriter, StepRecord, read_history};
+pub use history::{HistoryWriter, read_history};
+pub use path_share::PathShare;
 pub use plots::{PlotInputs, plot_contact, plot_forces, plot_indentation, plot_ratio, write_plots};
 pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, progress};
+pub use results::{ResultWriter, Setting};
 pub use summary::{FULL_SLIP_RATIO, NormalizedResults, SLIP_DISPLACEMENT_RATIO, Status, Summary, SummaryInputs};
 pub use units::Units;
 pub use vtu::{Collection, Field, Grid, Values, write_vtu};

@@ -21,9 +21,22 @@ pub enum Status {
     Done,
     /// A step failed; what was computed is kept.
     NotConverged,
-    /// Stopped from outside; can be resumed.
+    /// The contact came to the edge of the finely meshed zone; what was computed is kept.
+    ContactOutgrewMesh,
+    /// Stopped from outside, by a signal or because results could not be written; what was computed is kept.
     #[default]
     Interrupted,
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Status::Done => "done",
+            Status::NotConverged => "not converged",
+            Status::ContactOutgrewMesh => "the contact outgrew the mesh",
+            Status::Interrupted => "interrupted",
+        })
+    }
 }
 
 /// What [`Summary::from_history`] has to know beside the history, in the same units.
@@ -99,6 +112,8 @@ pub struct Summary {
     pub cutbacks: usize,
     /// Iterations of the linear solver.
     pub krylov_iterations: usize,
+    /// Linear systems that multigrid left to the direct solver.
+    pub linear_fallbacks: usize,
     /// Greatest equivalent plastic strain at the end.
     pub max_alpha: Option<f64>,
     /// Time from start to end, seconds, that of earlier parts of a resumed run included.
@@ -356,7 +371,7 @@ mod tests {
                 delta_t: -x * contact().slip_displacement(),
                 f_n: contact().normal_force,
                 f_t: 1e3,
-                ..rows[23].clone()
+                ..rows[23]
             });
         }
         let summary = Summary::from_history(&rows, &INPUTS);
@@ -369,12 +384,12 @@ mod tests {
         let rows = synthetic(1.0, 1.4, 0.0);
         let stick = Summary::from_history(&rows, &SummaryInputs { friction: None, ..INPUTS });
         assert!(stick.k_t0.is_some() && stick.delta_t_slip.is_none() && !stick.full_slip_reached);
-        let smooth: Vec<StepRecord> = rows.iter().map(|row| StepRecord { f_t: 0.0, ..row.clone() }).collect();
+        let smooth: Vec<StepRecord> = rows.iter().map(|row| StepRecord { f_t: 0.0, ..*row }).collect();
         let smooth = Summary::from_history(&smooth, &SummaryInputs { friction: Some(0.0), ..INPUTS });
         assert_eq!((smooth.delta_t_slip, smooth.k_t0, smooth.f_t_max), (Some(0.0), Some(0.0), Some(0.0)));
         // Pressed and released: the numbers are those of the greatest load.
         let mut released = rows[..4].to_vec();
-        released.push(StepRecord { step: 5, segment: 1, h: 5e-4, f_n: 1.0, ..rows[3].clone() });
+        released.push(StepRecord { step: 5, segment: 1, h: 5e-4, f_n: 1.0, ..rows[3] });
         let press = Summary::from_history(&released, &INPUTS);
         assert_eq!((press.f_n0, press.h0), (Some(rows[3].f_n), Some(1e-3)));
         assert_eq!((press.f_t_max, press.k_t0, press.mu_at_slip), (None, None, None));

@@ -37,30 +37,23 @@ impl Units {
 }
 
 impl StepRecord {
-    /// A row in the user's units; the scaled one is of the whole sphere already.
-    pub fn in_units(scaled: &record::StepRecord, units: &Units) -> Self {
+    /// The row in the user's units; the scaled one is of the whole sphere already.
+    pub fn in_units(&self, units: &Units) -> Self {
         let (length, force, energy) = (units.radius, units.force(), units.energy());
         Self {
-            step: scaled.step,
-            segment: scaled.segment,
-            h: scaled.h * length,
-            delta_t: scaled.delta_t * length,
-            f_n: scaled.f_n * force,
-            f_t: scaled.f_t * force,
-            a: scaled.a * length,
-            stick_radius: scaled.stick_radius * length,
-            newton_iterations: scaled.newton_iterations,
-            cutbacks: scaled.cutbacks,
-            a_moment: scaled.a_moment * length,
-            krylov_iterations: scaled.krylov_iterations,
-            merit: scaled.merit,
-            work_external: scaled.work_external * energy,
-            energy_elastic: scaled.energy_elastic * energy,
-            work_plastic: scaled.work_plastic * energy,
-            work_friction: scaled.work_friction * energy,
-            contact_points: scaled.contact_points,
-            slipping_points: scaled.slipping_points,
-            max_alpha: scaled.max_alpha,
+            h: self.h * length,
+            delta_t: self.delta_t * length,
+            f_n: self.f_n * force,
+            f_t: self.f_t * force,
+            a: self.a * length,
+            stick_radius: self.stick_radius * length,
+            a_gap: self.a_gap * length,
+            work_external: self.work_external * energy,
+            energy_elastic: self.energy_elastic * energy,
+            work_plastic: self.work_plastic * energy,
+            work_friction: self.work_friction * energy,
+            // Counts, indices and ratios have no unit.
+            ..*self
         }
     }
 }
@@ -153,7 +146,7 @@ mod tests {
 
     #[test]
     fn every_quantity_has_its_own_unit() {
-        let scaled = record::StepRecord {
+        let scaled = StepRecord {
             h: 1.0,
             f_n: 1.0,
             a: 1.0,
@@ -161,9 +154,9 @@ mod tests {
             merit: 1.0,
             max_alpha: 1.0,
             contact_points: 3,
-            ..record::StepRecord::default()
+            ..StepRecord::default()
         };
-        let row = StepRecord::in_units(&scaled, &UNITS);
+        let row = scaled.in_units(&UNITS);
         assert_eq!((row.h, row.f_n, row.a, row.work_plastic), (2.0, 400.0, 2.0, 800.0));
         assert_eq!((row.merit, row.max_alpha, row.contact_points), (1.0, 1.0, 3));
     }

@@ -17,8 +17,10 @@ use crate::solver::{Control, StepFailure};
 
 /// Watches a run.
 pub trait Observer {
-    /// A step was accepted.
+    /// A step was accepted. The undeformed state comes first, as step 0.
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    /// A segment of the path has ended, or the run ends within it; `view` shows its last accepted step.
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
     /// Something that the user should know and the summary should keep.
     fn note(&mut self, text: &str);
     /// Asks the run to end after the present step.
@@ -39,8 +41,6 @@ pub struct StepView<'a> {
     pub displacement: &'a [f64],
     /// Every point that can touch.
     pub points: &'a [ContactPoint],
-    /// The step ends its segment.
-    pub ends_segment: bool,
     backend: &'a mut dyn Compute,
     case: usize,
 }
@@ -92,6 +92,8 @@ pub struct Drive<'a> {
     /// Normal force that the present segment holds, of the meshed half.
     held_force: Option<f64>,
     full_slip: Option<bool>,
+    /// How Newton went in the last accepted step.
+    last_report: StepReport,
 }
 
 /// Full slip: the sticking points carry no more than this share of the normal force.
@@ -105,7 +107,17 @@ impl<'a> Drive<'a> {
         let mesh = problem.model.mesh.clone();
         let n = 3 * mesh.nodes.len();
         let state = Committed { u: vec![0.0; n], u_before: vec![0.0; n], force: vec![0.0; n], ..Committed::default() };
-        Self { problem, mesh, backend, case, newton, state, held_force: None, full_slip: None }
+        Self {
+            problem,
+            mesh,
+            backend,
+            case,
+            newton,
+            state,
+            held_force: None,
+            full_slip: None,
+            last_report: StepReport::default(),
+        }
     }
 
     /// Whether the last shear to full slip reached it; `None` if there was none.
@@ -116,7 +128,7 @@ impl<'a> Drive<'a> {
     /// Follows the whole path.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         self.state.points = self.contact_points();
-        self.report(observer, &StepReport::default(), false)?;
+        observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
         for (index, segment) in self.problem.case.path.iter().enumerate() {
             self.state.record.segment = index;
             self.state.last_increment = 0.0;
@@ -125,6 +137,7 @@ impl<'a> Drive<'a> {
                 Segment::Release => self.release(observer)?,
                 Segment::Shear { shear, hold } => self.shear(*shear, *hold, observer)?,
             };
+            observer.segment_end(&mut self.view()).map_err(SimulationError::Observer)?;
             if ending != Ending::Done {
                 return Ok(ending);
             }
@@ -155,9 +168,8 @@ impl<'a> Drive<'a> {
 
     fn indentation(&mut self, h: f64, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         let targets = indentation_targets(&self.start(), h, &self.resolution());
-        let last = targets.len();
-        for (i, target) in targets.iter().enumerate() {
-            let ending = self.advance(target, i + 1 == last, observer)?;
+        for target in &targets {
+            let ending = self.advance(target, observer)?;
             if ending != Ending::Done {
                 return Ok(ending);
             }
@@ -177,7 +189,7 @@ impl<'a> Drive<'a> {
             let f = (self.state.record.f_n / start.f_n).clamp(0.0, 1.0);
             let h = self.state.record.h - step * (0.2 + 0.8 * f.sqrt());
             let target = Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
-            let ending = self.advance(&target, false, observer)?;
+            let ending = self.advance(&target, observer)?;
             if ending != Ending::Done {
                 return Ok(ending);
             }
@@ -219,7 +231,7 @@ impl<'a> Drive<'a> {
                 extrapolate: i > 1,
             };
             let before = self.state.record;
-            let ending = self.advance(&target, ends, observer)?;
+            let ending = self.advance(&target, observer)?;
             if ending != Ending::Done {
                 self.held_force = None;
                 return Ok(ending);
@@ -261,7 +273,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Reaches `target` from the committed state in one step, or in as many as bisection needs.
-    fn advance(&mut self, target: &Target, ends_segment: bool, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+    fn advance(&mut self, target: &Target, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         let mut waiting = vec![*target];
         let (mut wasted, mut cutbacks) = (0, 0);
         while let Some(next) = waiting.last().copied() {
@@ -271,7 +283,7 @@ impl<'a> Drive<'a> {
             match self.attempt(&next)? {
                 Ok(report) => {
                     waiting.pop();
-                    self.accept(&next, &report, wasted, cutbacks, observer, ends_segment && waiting.is_empty())?;
+                    self.accept(&next, report, wasted, cutbacks, observer)?;
                     (wasted, cutbacks) = (0, 0);
                     if let Some(reason) = self.outgrown() {
                         return Ok(Ending::Outgrown(reason));
@@ -326,11 +338,10 @@ impl<'a> Drive<'a> {
     fn accept(
         &mut self,
         target: &Target,
-        report: &StepReport,
+        report: StepReport,
         wasted: usize,
         cutbacks: usize,
         observer: &mut dyn Observer,
-        ends_segment: bool,
     ) -> Result<(), SimulationError> {
         let before = self.state.record;
         let accepted = self.newton.accepted();
@@ -351,7 +362,8 @@ impl<'a> Drive<'a> {
         self.state.h_max = self.state.h_max.max(h);
         self.state.points = self.contact_points();
         let size = footprint(&self.state.points, self.problem.spacing);
-        let (f_n, f_t) = (2.0 * force[2], -2.0 * force[0]);
+        // 0 - x, not -x: no force is 0, not -0.
+        let (f_n, f_t) = (2.0 * force[2], 0.0 - 2.0 * force[0]);
         self.state.record = StepRecord {
             step: before.step + 1,
             segment: before.segment,
@@ -363,7 +375,7 @@ impl<'a> Drive<'a> {
             stick_radius: size.stick_radius,
             newton_iterations: report.iterations.len() + wasted,
             cutbacks,
-            a_moment: size.radius_gap,
+            a_gap: size.radius_gap,
             krylov_iterations: report.krylov(),
             merit: report.merit,
             work_external: before.work_external
@@ -377,21 +389,21 @@ impl<'a> Drive<'a> {
             max_alpha: 0.0,
         };
         self.state.record.max_alpha = energies.max_alpha;
-        self.report(observer, report, ends_segment)
+        self.last_report = report;
+        observer.step(&mut self.view()).map_err(SimulationError::Observer)
     }
 
-    fn report(&mut self, observer: &mut dyn Observer, report: &StepReport, ends_segment: bool) -> Result<(), SimulationError> {
-        let mut view = StepView {
+    /// The last accepted step.
+    fn view(&mut self) -> StepView<'_> {
+        StepView {
             record: self.state.record,
-            report,
+            report: &self.last_report,
             mesh: &self.mesh,
             displacement: &self.state.u,
             points: &self.state.points,
-            ends_segment,
             backend: &mut *self.backend,
             case: self.case,
-        };
-        observer.step(&mut view).map_err(SimulationError::Observer)
+        }
     }
 
     /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over the points of the meshed half.
@@ -433,9 +445,9 @@ impl<'a> Drive<'a> {
             .collect()
     }
 
-    /// The contact has come within an element of the edge of the fine zone.
+    /// The contact has come within half an element of the edge of the fine zone.
     fn outgrown(&self) -> Option<String> {
-        let limit = self.mesh.fine_radius - self.problem.spacing;
+        let limit = self.mesh.fine_radius - 0.5 * self.problem.spacing;
         let reach = self
             .state
             .points

@@ -66,7 +66,8 @@ pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
     Footprint {
         radius: radius_from_pressure(&polar, touching, spacing).unwrap_or(touching),
         radius_gap: radius_from_gap(&polar, touching, spacing).unwrap_or(touching),
-        stick_radius: disc(stick_area) * stretch,
+        // + 0: a sum over no points is -0.
+        stick_radius: disc(stick_area + 0.0) * stretch,
     }
 }
 
@@ -97,14 +98,14 @@ fn radius_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option
     let ring = points.iter().filter(|p| p.closed && (from..inside).contains(&p.r));
     let (slope, at_zero) = line(ring.map(|p| (p.area, p.r * p.r, (p.force / p.area).powi(2))))?;
     let squared = |r: f64| (at_zero + slope * r * r).max(0.0);
-    let lacking: f64 =
-        points.iter().filter(|p| p.closed && p.r >= inside).map(|p| squared(p.r).sqrt() * p.area - p.force).sum();
+    let lacking: f64 = points.iter().filter(|p| p.closed && p.r >= inside).map(|p| squared(p.r).sqrt() * p.area - p.force).sum();
     // Half of the disc is meshed: the profile carries integral pi r p dr. With s = r^2 that is pi/2 integral sqrt(c + m s) ds.
     let carried = |r: f64| {
         let (lo, hi) = (r * r, touching * touching);
         let n = 64;
         let step = (hi - lo) / f64::from(n);
-        (0..n).map(|i| squared((lo + (f64::from(i) + 0.5) * step).sqrt()).sqrt() * step).sum::<f64>() * std::f64::consts::FRAC_PI_2
+        (0..n).map(|i| squared((lo + (f64::from(i) + 0.5) * step).sqrt()).sqrt() * step).sum::<f64>()
+            * std::f64::consts::FRAC_PI_2
     };
     // Where the profile itself ends before the touching radius, the contact does too.
     let end = if slope < 0.0 { (-at_zero / slope).max(0.0).sqrt().min(touching) } else { touching };
@@ -127,8 +128,7 @@ fn radius_from_gap(points: &[Polar], touching: f64, spacing: f64) -> Option<f64>
     for i in 0..=10 {
         let q = 1.0 + 0.05 * f64::from(i);
         let Some((slope, at_zero)) = line(band().map(|p| (p.area, p.r - touching, p.gap.powf(1.0 / q)))) else { continue };
-        let error: f64 =
-            band().map(|p| p.area * ((slope * (p.r - touching) + at_zero).max(0.0).powf(q) - p.gap).powi(2)).sum();
+        let error: f64 = band().map(|p| p.area * ((slope * (p.r - touching) + at_zero).max(0.0).powf(q) - p.gap).powi(2)).sum();
         let radius = touching - at_zero / slope;
         if slope > 0.0 && (radius - touching).abs() < spacing && best.is_none_or(|(least, _)| error < least) {
             best = Some((error, radius));

@@ -35,8 +35,9 @@ pub struct Problem {
     pub predicted_contact_radius: f64,
 }
 
-/// Steps of a press for each element along the contact radius: the front moves by 0.8 elements a step.
-const PRESS_STEPS_PER_ELEMENT: f64 = 1.25;
+/// Steps of a press for each element along the contact radius: the front moves by 0.4 elements a step. The load-step error is of first order;
+/// at 16 elements it is 2.8 % of F_N at 20 steps, 1.4 % at 40, 0.7 % at 80.
+const PRESS_STEPS_PER_ELEMENT: f64 = 2.5;
 /// Growing steps of a shear.
 const SHEAR_STEPS: usize = 15;
 /// Smallest contact radius that is meshed for: below it the sphere is a half-space anyway.

@@ -1,7 +1,9 @@
 //! What is remembered of every accepted step, scaled: lengths by R, forces by E R^2, of the whole sphere.
 
-/// One row of the history.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+use serde::{Deserialize, Serialize};
+
+/// One row of the history, of the whole sphere; scaled in the simulation, in the user's units in `history.csv`, whose columns it names.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Counts accepted steps; 0 is the undeformed state.
     pub step: usize,
@@ -10,12 +12,15 @@ pub struct StepRecord {
     /// Indentation h.
     pub h: f64,
     /// Tangential displacement delta_T.
+    #[serde(rename = "delta_T")]
     pub delta_t: f64,
     /// Normal force F_N, positive in compression.
+    #[serde(rename = "F_N")]
     pub f_n: f64,
     /// Tangential force F_T that the plate exerts in the direction of delta_T.
+    #[serde(rename = "F_T")]
     pub f_t: f64,
-    /// Contact radius from the gap outside the contact.
+    /// Contact radius a, from the pressure.
     pub a: f64,
     /// Radius of a disc with the area of the sticking points.
     pub stick_radius: f64,
@@ -23,25 +28,35 @@ pub struct StepRecord {
     pub newton_iterations: usize,
     /// Attempts that failed and were bisected on the way to this step.
     pub cutbacks: usize,
-    /// Contact radius from the moments of the pressure.
-    pub a_moment: f64,
+    /// Contact radius from the gap outside the contact, a check on `a`.
+    #[serde(default)]
+    pub a_gap: f64,
     /// Krylov iterations.
+    #[serde(default)]
     pub krylov_iterations: usize,
     /// Final merit over the sum of the normal contact forces.
+    #[serde(default)]
     pub merit: f64,
     /// Work of the plate since the start (trapezoidal rule).
+    #[serde(default)]
     pub work_external: f64,
     /// Stored elastic energy.
+    #[serde(default)]
     pub energy_elastic: f64,
     /// Plastic work.
+    #[serde(default)]
     pub work_plastic: f64,
     /// Work dissipated by friction (trapezoidal rule).
+    #[serde(default)]
     pub work_friction: f64,
     /// Closed contact points of the meshed half.
+    #[serde(default)]
     pub contact_points: usize,
     /// Of them, those that slip.
+    #[serde(default)]
     pub slipping_points: usize,
     /// Largest equivalent plastic strain of any quadrature point.
+    #[serde(default)]
     pub max_alpha: f64,
 }
 

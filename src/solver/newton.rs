@@ -21,12 +21,20 @@ const FORCING_FIRST: f64 = 0.01;
 /// changes of contact status raise the merit on the way down.
 const MONOTONE_FROM: usize = 5;
 
+/// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
+const ROUNDING: f64 = 1e-14;
+/// Share of the largest normal force so far that measures residuals when nothing touches.
+const LOST_SHARE: f64 = 1e-4;
+
 /// The Newton iteration of one case with everything it keeps between steps.
 pub struct Newton {
     boundary: Boundary,
     matrix: BlockMatrix<f64>,
     linear: LinearSolver,
     settings: Settings,
+    /// Force scale of the last accepted step, and the largest of any.
+    last_scale: f64,
+    largest_scale: f64,
     current: Trial,
     candidate: Trial,
     best: Trial,
@@ -65,6 +73,8 @@ impl Newton {
             matrix,
             linear,
             settings,
+            last_scale: 0.0,
+            largest_scale: 0.0,
             current: Trial::new(mesh),
             candidate: Trial::new(mesh),
             best: Trial::new(mesh),
@@ -80,6 +90,12 @@ impl Newton {
     /// The last accepted trial.
     pub fn accepted(&self) -> &Trial {
         &self.current
+    }
+
+    /// What merits are measured by: the sum of the normal contact forces, but where contact is being lost or is lost not less than what it was at
+    /// the step's start, nor than a small share of what it ever was. Without contact there is no force to compare with.
+    fn scale(&self) -> f64 {
+        self.current.force_scale.max(self.last_scale).max(LOST_SHARE * self.largest_scale)
     }
 
     /// Number of unknown displacements that are not prescribed.
@@ -104,10 +120,12 @@ impl Newton {
         let mut previous = f64::INFINITY;
         let mut highest = 0.0_f64;
         for iteration in 0..=self.settings.max_iterations {
-            let scale = self.current.force_scale;
+            let scale = self.scale();
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
-            if self.current.merit <= self.settings.tolerance * scale && self.plate_is_placed(control) {
+            if self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
+                self.last_scale = self.current.force_scale;
+                self.largest_scale = self.largest_scale.max(self.last_scale);
                 return Ok(Ok(report));
             }
             if iteration == self.settings.max_iterations {
@@ -126,7 +144,7 @@ impl Newton {
                 i if i < MONOTONE_FROM => highest,
                 _ => self.current.merit,
             };
-            let before = self.current.merit / scale.max(f64::MIN_POSITIVE);
+            let before = self.current.merit / scale;
             previous = self.current.merit;
             let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
                 Ok(found) => found,
@@ -142,7 +160,7 @@ impl Newton {
                 "  iteration {:2}: merit {:.2e} -> {:.2e}, step {step_length}, krylov {krylov} (eta {eta:.1e}), {changed} changed",
                 iteration + 1,
                 before,
-                self.current.merit / self.current.force_scale.max(f64::MIN_POSITIVE),
+                self.current.merit / self.scale().max(f64::MIN_POSITIVE),
             );
         }
         Ok(Err(self.exhausted(&mesh, self.settings.max_iterations)))
@@ -200,7 +218,7 @@ impl Newton {
             // The first system carries the whole increment: its merit says nothing about the size of what is to be found.
             return FORCING_FIRST;
         }
-        let floor = 0.3 * self.settings.tolerance * self.current.force_scale / merit;
+        let floor = 0.3 * self.settings.tolerance * self.scale() / merit;
         let ratio = merit / previous;
         (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, FORCING_MAX)
     }
@@ -297,8 +315,8 @@ impl Newton {
     fn exhausted(&self, mesh: &Mesh, iterations: usize) -> StepFailure {
         StepFailure::Iterations {
             iterations,
-            merit: self.current.merit / self.current.force_scale.max(f64::MIN_POSITIVE),
-            worst: self.current.worst(mesh, &self.boundary),
+            merit: self.current.merit / self.scale().max(f64::MIN_POSITIVE),
+            worst: self.current.worst(mesh, &self.boundary, self.scale()),
         }
     }
 

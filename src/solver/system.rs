@@ -140,11 +140,11 @@ impl Trial {
         sum
     }
 
-    /// The unknown with the largest residual.
-    pub fn worst(&self, mesh: &Mesh, boundary: &Boundary) -> Worst {
+    /// The unknown with the largest residual, over the force `scale`.
+    pub fn worst(&self, mesh: &Mesh, boundary: &Boundary, scale: f64) -> Worst {
         let mut worst = Worst::default();
         for (i, &r) in self.residual.iter().enumerate() {
-            let r = if boundary.prescribed[i] { r * boundary.weight } else { r } / self.force_scale.max(f64::MIN_POSITIVE);
+            let r = if boundary.prescribed[i] { r * boundary.weight } else { r } / scale.max(f64::MIN_POSITIVE);
             if r.abs() > worst.residual.abs() {
                 worst = Worst { node: i / 3, direction: i % 3, position: mesh.nodes[i / 3], residual: r };
             }

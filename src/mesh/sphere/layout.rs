@@ -6,9 +6,9 @@ use super::geometry::SHELL_DEPTH;
 use crate::mesh::MeshError;
 
 /// Growth of the rings' spacing outside the fine zone that the count aims at, up to 16 elements per contact radius.
-const RING_GROWTH: f64 = 1.28;
+const RING_GROWTH: f64 = 1.22;
 /// Growth of the layers' thickness in the shell that the count aims at.
-const LAYER_GROWTH: f64 = 1.17;
+const LAYER_GROWTH: f64 = 1.14;
 /// Largest distance from the axis to which the fine zone may reach.
 const LARGEST_FINE_RADIUS: f64 = 0.85;
 

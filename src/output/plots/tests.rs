@@ -22,12 +22,12 @@ pub(super) fn history() -> Vec<StepRecord> {
             StepRecord { step: i as usize, h, f_n, a: model.contact_radius(h), ..StepRecord::default() }
         })
         .collect();
-    let pressed = rows[19].clone();
+    let pressed = rows[19];
     rows.extend((1..=14).map(|i| {
         let x = 1.3 * (f64::from(i) / 14.0).powf(2.3);
         let f_n = pressed.f_n * (1.0 - 0.3 * x.min(1.0));
         let ratio = elastic.force(x * elastic.slip_displacement()) / elastic.normal_force;
-        StepRecord { step: 20 + i as usize, segment: 1, delta_t: 0.003 * x, f_n, f_t: ratio * f_n, ..pressed.clone() }
+        StepRecord { step: 20 + i as usize, segment: 1, delta_t: 0.003 * x, f_n, f_t: ratio * f_n, ..pressed }
     }));
     rows
 }

@@ -1,0 +1,104 @@
+//! What share of its path a run has behind it: for a bar, not for science.
+
+use super::StepRecord;
+use crate::case::{Segment, ShearTarget};
+
+/// Follows a path, in the units of the records that it is shown.
+#[derive(Clone, Debug)]
+pub struct PathShare {
+    path: Vec<Segment>,
+    /// The last record of the segment before, and the segment that is followed.
+    start: StepRecord,
+    segment: usize,
+    last: StepRecord,
+    /// Steps of the present segment.
+    steps: usize,
+    share: f64,
+}
+
+/// Shear increments grow as i^1.3, so that the step number grows as this power of the distance.
+const SHEAR_POWER: f64 = 1.0 / 2.3;
+/// A shear to full slip is half-way after this many steps; where it ends is not known before.
+const FULL_SLIP_HALF: f64 = 12.0;
+
+impl PathShare {
+    /// At the start of a path.
+    pub fn new(path: &[Segment]) -> Self {
+        let start = StepRecord::default();
+        Self { path: path.to_vec(), start, segment: 0, last: start, steps: 0, share: 0.0 }
+    }
+
+    /// Number of segments.
+    pub fn segments(&self) -> usize {
+        self.path.len()
+    }
+
+    /// The share after an accepted step, 0 to 1; never falls.
+    pub fn after(&mut self, record: &StepRecord) -> f64 {
+        if record.segment != self.segment {
+            (self.segment, self.start, self.steps) = (record.segment, self.last, 0);
+        }
+        self.steps += 1;
+        self.last = *record;
+        let within = self.path.get(self.segment).map_or(0.0, |segment| self.within(segment, record));
+        let within = if within.is_finite() { within.clamp(0.0, 1.0) } else { 0.0 };
+        self.share = self.share.max((self.segment as f64 + within) / self.path.len().max(1) as f64);
+        self.share
+    }
+
+    fn within(&self, segment: &Segment, record: &StepRecord) -> f64 {
+        let part = |from: f64, now: f64, to: f64| if from == to { 1.0 } else { (now - from) / (to - from) };
+        match *segment {
+            // Steps are equal in the contact radius, which grows as the root of h.
+            Segment::Indentation { indentation } => part(self.start.h.sqrt(), record.h.sqrt(), indentation.sqrt()),
+            Segment::Release => part(self.start.f_n, record.f_n, 0.0),
+            Segment::Shear { shear: ShearTarget::Displacement(target), .. } => {
+                part(self.start.delta_t, record.delta_t, target).max(0.0).powf(SHEAR_POWER)
+            }
+            Segment::Shear { shear: ShearTarget::FullSlip, .. } => {
+                let steps = self.steps as f64;
+                steps / (steps + FULL_SLIP_HALF)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Hold;
+
+    #[test]
+    fn rises_from_0_to_1_over_every_kind_of_segment() {
+        let shear = |shear| Segment::Shear { shear, hold: Hold::Indentation };
+        let path = [
+            Segment::Indentation { indentation: 0.04 },
+            shear(ShearTarget::FullSlip),
+            shear(ShearTarget::Displacement(-1.0)),
+            Segment::Indentation { indentation: 0.03 },
+            Segment::Release,
+        ];
+        let record = |segment, h, delta_t, f_n| StepRecord { segment, h, delta_t, f_n, ..StepRecord::default() };
+        let mut share = PathShare::new(&path);
+        assert_eq!(share.segments(), 5);
+        let mut last = 0.0;
+        for (record, expected) in [
+            (record(0, 0.01, 0.0, 5.0), Some(0.1)),
+            (record(0, 0.04, 0.0, 10.0), Some(0.2)),
+            (record(1, 0.04, 0.1, 10.0), None),
+            (record(1, 0.04, 0.5, 10.0), None),
+            (record(2, 0.04, 0.2, 10.0), None),
+            (record(2, 0.04, -1.0, 10.0), Some(0.6)),
+            (record(3, 0.03, -1.0, 4.0), Some(0.8)),
+            (record(4, 0.02, -1.0, 2.0), Some(0.9)),
+            (record(4, 0.01, -1.0, 0.0), Some(1.0)),
+        ] {
+            let now = share.after(&record);
+            assert!(now >= last && now <= 1.0, "{now} after {last}");
+            if let Some(expected) = expected {
+                assert!((now - expected).abs() < 1e-12, "{now} instead of {expected}");
+            }
+            last = now;
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! A summary for people, at the end of a run.
+
+use std::fmt::Write;
+
+use super::Summary;
+
+impl Summary {
+    /// Some lines: what came out, in the user's units, and what it took.
+    pub fn report(&self) -> String {
+        let mut text = String::new();
+        let mut line = |name: &str, value: Option<f64>, what: &str| {
+            if let Some(value) = value {
+                // Writing to a String cannot fail.
+                let _ = writeln!(text, "{name:<13} {:<13} {what}", significant(value));
+            }
+        };
+        let sheared = self.f_t_max.is_some();
+        line(
+            "F_N0",
+            self.f_n0,
+            if sheared { "normal force before the shear" } else { "normal force at the greatest indentation" },
+        );
+        line("a0", self.a0, "contact radius there");
+        line("h0", self.h0, "indentation there");
+        line("F_N_slip", self.f_n_slip, "normal force at full slip");
+        line("F_T_max", self.f_t_max, "greatest tangential force");
+        line("delta_T_slip", self.delta_t_slip, "displacement at which F_T/F_N is 0.99 of the friction coefficient");
+        line("k_T0", self.k_t0, "initial tangential stiffness");
+        let cutbacks = if self.cutbacks > 0 { format!(", {} cut-backs", self.cutbacks) } else { String::new() };
+        let _ = writeln!(
+            text,
+            "{}: {} steps, {} Newton iterations{cutbacks}, {} elements, {} unknowns, {:.1} s on {} in {}",
+            self.status,
+            self.steps,
+            self.newton_iterations,
+            self.elements,
+            self.unknowns,
+            self.wall_s,
+            self.device,
+            self.precision
+        );
+        text
+    }
+}
+
+/// Six significant digits, without an exponent where that is readable.
+fn significant(value: f64) -> String {
+    let digits = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    if (-4..6).contains(&digits) { format!("{value:.*}", (5 - digits).max(0) as usize) } else { format!("{value:.5e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::Status;
+
+    #[test]
+    fn numbers_are_readable() {
+        for (value, expected) in
+            [(148.812_345, "148.812"), (0.208_7, "0.208700"), (1.5e-9, "1.50000e-9"), (123_456.7, "123457"), (0.0, "0.00000")]
+        {
+            assert_eq!(significant(value), expected);
+        }
+    }
+
+    #[test]
+    fn what_is_not_there_is_not_told() {
+        let mut summary =
+            Summary { f_n0: Some(72.6), status: Status::Done, device: "CPU (1 thread)".into(), ..Summary::default() };
+        summary.precision = "f64".into();
+        let text = summary.report();
+        assert!(text.starts_with("F_N0          72.6000       normal force at the greatest indentation\n"), "{text}");
+        assert!(
+            text.ends_with("done: 0 steps, 0 Newton iterations, 0 elements, 0 unknowns, 0.0 s on CPU (1 thread) in f64\n"),
+            "{text}"
+        );
+        assert!(!text.contains("F_T_max") && !text.contains("cut-backs"));
+        summary.f_t_max = Some(31.0);
+        summary.cutbacks = 2;
+        let text = summary.report();
+        assert!(text.contains("before the shear") && text.contains("F_T_max") && text.contains("2 cut-backs"), "{text}");
+    }
+}

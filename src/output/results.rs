@@ -1,0 +1,193 @@
+//! Watches a run and writes all that it leaves behind, as it goes.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::clock::Clock;
+use super::path_share::PathShare;
+use super::{
+    Collection, ContactPoint, ContactStatus, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
+    StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
+};
+use crate::case::{Case, Fields};
+use crate::simulation::drive::{Observer, StepView};
+
+/// What the summary has to know beside the history.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Device that runs the kernels.
+    pub device: String,
+    /// Their precision, f32 or f64.
+    pub precision: String,
+    /// Elements of the mesh.
+    pub elements: usize,
+    /// Displacements that are not prescribed.
+    pub unknowns: usize,
+}
+
+type Failed = Box<dyn std::error::Error + Send + Sync>;
+
+/// Writes `history.csv` row by row, fields and contact tables of the steps that are to be saved, and at the end plots and summary.
+pub struct ResultWriter {
+    out: OutputDirectory,
+    units: Units,
+    fields: Fields,
+    plots: Option<PlotInputs>,
+    inputs: SummaryInputs,
+    setting: Setting,
+    clock: Clock,
+    progress: Box<dyn Progress>,
+    stop: Arc<AtomicBool>,
+    share: PathShare,
+    history: HistoryWriter,
+    rows: Vec<StepRecord>,
+    collection: Collection,
+    saved: Option<usize>,
+    /// Contact at the end of the last segment that ended in contact, for the plot.
+    shown: Vec<ContactPoint>,
+    fallbacks: usize,
+    messages: Vec<String>,
+}
+
+impl ResultWriter {
+    /// Begins the results of a case (in the user's units) in a directory that is there; `stop` is asked after every step.
+    pub fn create(
+        case: &Case,
+        dir: &Path,
+        setting: Setting,
+        clock: Clock,
+        progress: Box<dyn Progress>,
+        stop: Arc<AtomicBool>,
+    ) -> Result<Self, OutputError> {
+        let out = OutputDirectory::existing(dir);
+        Ok(Self {
+            units: Units::of(case),
+            fields: case.output.fields,
+            plots: case.output.plots.then(|| PlotInputs::of(case)),
+            inputs: SummaryInputs::of(case),
+            setting,
+            clock,
+            progress,
+            stop,
+            share: PathShare::new(&case.path),
+            history: HistoryWriter::create(&out.history())?,
+            rows: Vec::new(),
+            collection: Collection::new(&out.collection()),
+            saved: None,
+            shown: Vec::new(),
+            fallbacks: 0,
+            messages: Vec::new(),
+            out,
+        })
+    }
+
+    /// Steps written so far.
+    pub fn steps(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Draws the plots and writes the summary of a run that ended as `status` for the reason `message`. The summary is written even if a plot
+    /// fails, whose error is then returned.
+    pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
+        self.progress.finish(&format!("{status}: {} steps", self.rows.len()));
+        self.messages.extend(message.map(str::to_owned));
+        let plots = match &self.plots {
+            Some(inputs) => write_plots(&self.out, &self.rows, Some(&self.shown), inputs).map(drop),
+            None => Ok(()),
+        };
+        if let Err(error) = &plots {
+            self.messages.push(error.to_string());
+        }
+        let summary = Summary {
+            status,
+            elements: self.setting.elements,
+            unknowns: self.setting.unknowns,
+            device: self.setting.device,
+            precision: self.setting.precision,
+            linear_fallbacks: self.fallbacks,
+            wall_s: self.clock.wall_seconds(),
+            cpu_s: self.clock.cpu_seconds(),
+            messages: self.messages,
+            ..Summary::from_history(&self.rows, &self.inputs)
+        };
+        summary.write(&self.out.summary())?;
+        plots.map(|()| summary)
+    }
+
+    fn contact(&self, view: &StepView<'_>) -> Vec<ContactPoint> {
+        view.points.iter().map(|point| ContactPoint::in_units(point, &self.units)).collect()
+    }
+
+    /// Writes fields and contact table of a step, once.
+    fn save(&mut self, view: &mut StepView<'_>, contact: &[ContactPoint]) -> Result<(), Failed> {
+        let step = view.record.step;
+        if self.saved == Some(step) {
+            return Ok(());
+        }
+        let fields = view.fields()?;
+        let path = self.out.fields(step);
+        write_contact(&self.out.contact(step), contact)?;
+        write_fields(&path, view.mesh, view.displacement, &fields, contact, &self.units)?;
+        self.collection.push(step as f64, &path)?;
+        self.saved = Some(step);
+        Ok(())
+    }
+
+    fn detail(&self, row: &StepRecord) -> String {
+        let mut text = format!("h {:.4e}  F_N {:.4e}", row.h, row.f_n);
+        if row.delta_t != 0.0 {
+            text += &format!("  delta_T {:.4e}  F_T {:.4e}", row.delta_t, row.f_t);
+        }
+        text + &format!("  {} iterations", row.newton_iterations)
+    }
+}
+
+impl Observer for ResultWriter {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        if view.record.step == 0 {
+            // The undeformed state is no step that was computed.
+            return Ok(());
+        }
+        let row = view.record.in_units(&self.units);
+        self.history.append(&row)?;
+        self.rows.push(row);
+        self.fallbacks += view.report.fallbacks;
+        if self.fields == Fields::All {
+            let contact = self.contact(view);
+            self.save(view, &contact)?;
+        }
+        let position = Position {
+            step: row.step,
+            segment: row.segment,
+            segments: self.share.segments(),
+            fraction: self.share.after(&row),
+            detail: self.detail(&row),
+        };
+        self.progress.step(&position);
+        Ok(())
+    }
+
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        if view.record.step == 0 {
+            return Ok(());
+        }
+        let contact = self.contact(view);
+        if self.fields != Fields::None {
+            self.save(view, &contact)?;
+        }
+        if contact.iter().any(|point| point.status != ContactStatus::Open) {
+            self.shown = contact;
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, text: &str) {
+        self.messages.push(format!("note: {text}"));
+        self.progress.message(&format!("note: {text}"));
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}

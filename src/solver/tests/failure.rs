@@ -1,0 +1,87 @@
+//! Steps that cannot be made say where they stood, and leave no trace.
+
+use super::*;
+use crate::mesh::brick;
+
+fn plastic() -> Material<f64> {
+    Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::linear(2e-3, 0.02).unwrap() }
+}
+
+fn rig(max_iterations: usize) -> Rig {
+    let mesh = brick(4, 3, 3, [1.0, 0.8, 0.6]).unwrap();
+    Rig::new(mesh, plastic(), Friction::Coulomb(0.3), Settings { tolerance: 1e-10, max_iterations })
+}
+
+fn control(h: f64, delta_t: f64) -> Control {
+    Control { h, delta_t, normal_force: None }
+}
+
+#[test]
+fn a_plate_pushed_through_the_plane_is_reported() {
+    for h in [0.6, 0.7, 3.0, 1e6] {
+        let failure = rig(12).attempt(&control(h, 0.0)).expect_err("the brick has no height left");
+        match &failure {
+            StepFailure::Inverted { element, point } => assert!(*element < 36 && *point < 8),
+            StepFailure::Iterations { iterations, merit, worst } => {
+                assert!(*iterations >= 1 && *merit > 1e-10, "{failure}");
+                assert!(worst.node < 80 && worst.direction < 3 && worst.residual != 0.0, "{failure}");
+            }
+            StepFailure::Linear(_) => {}
+        }
+        assert!(!failure.to_string().is_empty());
+    }
+}
+
+#[test]
+fn the_last_residual_and_its_place_are_in_the_report() {
+    let mut rig = rig(2);
+    let failure = rig.attempt(&control(0.02, 0.02)).expect_err("two iterations are too few");
+    let StepFailure::Iterations { iterations, merit, worst } = &failure else { panic!("{failure}") };
+    assert_eq!(*iterations, 2);
+    let trial = rig.newton.accepted();
+    assert!((merit - trial.merit / trial.force_scale).abs() < 1e-15 && *merit > 1e-10);
+    assert_eq!(worst.position, rig.mesh.nodes[worst.node]);
+    let largest = trial.residual.iter().fold(0.0_f64, |m, x| m.max(x.abs())) / trial.force_scale;
+    assert!((worst.residual.abs() - largest).abs() <= 1e-15, "{worst} {largest}");
+    let text = failure.to_string();
+    assert!(text.contains("2 iterations") && text.contains(&format!("node {}", worst.node)), "{text}");
+}
+
+#[test]
+fn a_guess_that_is_meaningless_is_left_out() {
+    let mut rig = rig(30);
+    rig.to(0.002, 0.0);
+    let clean = rig.attempt(&control(0.003, 0.0)).unwrap();
+    let expected: Vec<u64> = rig.newton.accepted().u.iter().map(|x| x.to_bits()).collect();
+    let mut guess = rig.u.clone();
+    guess[100] += 50.0;
+    let mut handle = CaseHandle { backend: &mut rig.backend, case: 0 };
+    let report = rig.newton.solve(&mut handle, &rig.u, rig.h, Some(&guess), &control(0.003, 0.0)).unwrap().unwrap();
+    assert_eq!(report, clean);
+    assert_eq!(rig.newton.accepted().u.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), expected);
+}
+
+#[test]
+fn a_failed_step_redone_gives_the_same_bits() {
+    let path = [(0.002, 0.0), (0.004, 0.0), (0.004, 0.001), (0.004, 0.004), (0.004, 0.002), (0.001, 0.002)];
+    let mut clean = rig(30);
+    let mut disturbed = rig(30);
+    for (i, (h, delta_t)) in path.into_iter().enumerate() {
+        let expected = clean.to(h, delta_t);
+        // A hopeless step, a good one that is not committed, then the one that is.
+        assert!(disturbed.attempt(&control(0.65, 0.0)).is_err());
+        disturbed.attempt(&control(h + 1e-3, delta_t - 1e-3)).ok();
+        let got = disturbed.to(h, delta_t);
+        assert_eq!(got, expected, "step {i}");
+        assert!(disturbed.state_bits() == clean.state_bits(), "step {i}");
+    }
+    assert!(clean.energies.plastic > 0.0);
+}
+
+#[test]
+fn a_normal_force_that_nothing_carries_is_a_failure() {
+    let mut rig = rig(10);
+    rig.to(-0.1, 0.0);
+    let failure = rig.attempt(&Control { h: -0.1, delta_t: 0.0, normal_force: Some(0.01) }).expect_err("nothing touches");
+    assert!(!failure.to_string().is_empty(), "{failure}");
+}

@@ -1,0 +1,155 @@
+//! Cases from one end of what may be asked for to the other: each is followed to the end of its path.
+//!
+//! Prints a table of iterations and cut-backs (`cargo test --test range -- --nocapture`).
+
+use std::error::Error;
+
+use asperity::case::Case;
+use asperity::compute::cpu::Cpu;
+use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::simulation::problem::Problem;
+use asperity::simulation::record::StepRecord;
+
+const E: f64 = 200e3;
+
+/// What is remembered of a run.
+#[derive(Default)]
+struct Watch {
+    rows: Vec<StepRecord>,
+    fallbacks: usize,
+    notes: Vec<String>,
+}
+
+impl Observer for Watch {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        self.rows.push(view.record);
+        self.fallbacks += view.report.fallbacks;
+        Ok(())
+    }
+
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        Ok(())
+    }
+
+    fn note(&mut self, text: &str) {
+        self.notes.push(text.to_owned());
+    }
+}
+
+/// Hardening as TOML for a yield strain sigma_Y/E.
+fn hardening(law: &str, yield_strain: f64) -> String {
+    let y = yield_strain * E;
+    match law {
+        "elastic" => "law = \"elastic\"".to_owned(),
+        "ideal" => format!("law = \"ideal\"\nyield_stress = {y}"),
+        "linear" => format!("law = \"linear\"\nyield_stress = {y}\nmodulus = {}", 0.02 * E),
+        "power" => format!("law = \"power\"\nyield_stress = {y}\ncoefficient = {y}\nexponent = 0.5"),
+        // m = 5 yields first at E (sigma_0/E)^(m/(m-1)).
+        "hollomon" => format!("law = \"hollomon\"\ncoefficient = {}\nexponent = 5.0", E * yield_strain.powf(0.8)),
+        "voce" => format!("law = \"voce\"\nyield_stress = {y}\nsaturation_stress = {}\nrate = 15.0", 1.5 * y),
+        "table" => format!("law = \"table\"\npoints = [[0.0, {y}], [0.05, {}], [0.3, {}]]", 1.3 * y, 1.6 * y),
+        _ => panic!("no law {law}"),
+    }
+}
+
+/// Law, E/sigma_Y, friction, h/R, the shear: a multiple of R or "full-slip".
+#[rustfmt::skip]
+const CASES: &[(&str, f64, &str, f64, &str)] = &[
+    ("elastic",   200.0, "0",         1e-4, "full-slip"),
+    ("elastic",   200.0, "0.1",       1e-3, "full-slip"),
+    ("elastic",   200.0, "0.5",       1e-3, "full-slip"),
+    ("elastic",   200.0, "1",         1e-3, "full-slip"),
+    ("elastic",   200.0, "\"stick\"", 1e-3, "1e-4"),
+    ("elastic",   200.0, "0.3",       3e-2, "full-slip"),
+    ("ideal",      20.0, "0.1",       1e-3, "full-slip"),
+    ("ideal",      20.0, "0.3",       3e-2, "full-slip"),
+    ("ideal",      20.0, "1",         1e-1, "0.02"),
+    ("ideal",     100.0, "0",         1e-2, "full-slip"),
+    ("ideal",     100.0, "0.5",       3e-2, "0.005"),
+    ("ideal",     500.0, "0",         1e-4, "1e-5"),
+    ("ideal",     500.0, "0.1",       1e-3, "full-slip"),
+    ("ideal",     500.0, "0.3",       2e-2, "full-slip"),
+    ("ideal",     500.0, "0.5",       2e-2, "0.003"),
+    ("ideal",     500.0, "1",         2e-2, "0.003"),
+    ("ideal",     500.0, "\"stick\"", 2e-2, "0.003"),
+    ("ideal",     500.0, "0.3",       1e-1, "full-slip"),
+    ("ideal",    5000.0, "0",         1e-2, "0.001"),
+    ("ideal",    5000.0, "0.1",       1e-4, "full-slip"),
+    ("ideal",    5000.0, "0.1",       1e-2, "full-slip"),
+    ("ideal",    5000.0, "0.5",       1e-2, "0.001"),
+    ("ideal",    5000.0, "\"stick\"", 1e-2, "0.001"),
+    ("linear",     50.0, "0.5",       2e-2, "full-slip"),
+    ("linear",   1000.0, "0.3",       1e-1, "full-slip"),
+    ("linear",   5000.0, "1",         2e-2, "0.002"),
+    ("power",     200.0, "0.1",       5e-2, "full-slip"),
+    ("power",    2000.0, "\"stick\"", 1e-3, "2e-4"),
+    ("hollomon",  500.0, "0.3",       1e-2, "full-slip"),
+    ("hollomon", 3000.0, "1",         2e-2, "0.002"),
+    ("voce",      500.0, "0.5",       1e-1, "0.01"),
+    ("voce",     5000.0, "0.1",       2e-2, "full-slip"),
+    ("table",     100.0, "0",         5e-2, "0.005"),
+    ("table",    1000.0, "0.3",       1e-2, "full-slip"),
+];
+
+/// One case: its line of the table, and what is wrong with it.
+fn follow(&(law, stiffness, friction, h, shear): &(&str, f64, &str, f64, &str)) -> (String, Option<String>) {
+    let shear_toml = if shear == "full-slip" { "\"full-slip\"" } else { shear };
+    let text = format!(
+        "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = {E}\npoissons_ratio = 0.3\n[material.hardening]\n{}\n[contact]\n\
+         friction = {friction}\n[mesh]\nelements_per_contact_radius = 4\nfine_zone = 1.8\n[[path]]\nindentation = {h:e}\n[[path]]\n\
+         shear = {shear_toml}\n",
+        hardening(law, 1.0 / stiffness)
+    );
+    let case = Case::parse(&text, "case.toml", &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let problem = Problem::new(&case).expect("a problem");
+    let newton = problem.newton().expect("a solver");
+    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
+    let mut watch = Watch::default();
+    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut watch).expect("no failure of the program");
+    let last = watch.rows.last().copied().unwrap_or_default();
+    let sum = |of: fn(&StepRecord) -> usize| watch.rows.iter().map(of).sum::<usize>();
+    let line = format!(
+        "{law:<9} {stiffness:>6} {friction:>8} {h:>7.0e} {shear:>10} {:>6} {:>7} {:>7} {:>7} {:>5} {:>10.3e} {:>8.4} {:>8.4} {}",
+        watch.rows.len() - 1,
+        sum(|row| row.newton_iterations),
+        sum(|row| row.krylov_iterations),
+        watch.fallbacks,
+        sum(|row| row.cutbacks),
+        last.f_n,
+        last.f_t / last.f_n,
+        last.a,
+        watch.notes.join("; "),
+    );
+    let reached = match shear.parse::<f64>() {
+        Ok(target) => last.delta_t == target,
+        Err(_) => watch.notes.is_empty(),
+    };
+    let mu = friction.parse().unwrap_or(f64::INFINITY);
+    let wrong = if ending != Ending::Done {
+        Some(format!("{ending:?}"))
+    } else if last.h != h || !reached {
+        Some(format!("the path ends at h = {}, delta_T = {}: {:?}", last.h, last.delta_t, watch.notes))
+    } else if watch.rows.iter().any(|row| row.f_t.abs() > mu * row.f_n * (1.0 + 1e-3) + 1e-3 * row.f_n) {
+        Some("more friction than there can be".to_owned())
+    } else if watch.rows.windows(2).any(|pair| pair[1].work_plastic < pair[0].work_plastic - 1e-9 * pair[1].work_external.abs()) {
+        Some("plastic work that is given back".to_owned())
+    } else {
+        None
+    };
+    (line, wrong)
+}
+
+#[test]
+fn every_corner_of_the_range_is_followed_to_its_end() {
+    let mut failures = Vec::new();
+    println!(
+        "{:<9} {:>6} {:>8} {:>7} {:>10} {:>6} {:>7} {:>7} {:>7} {:>5} {:>10} {:>8} {:>8}",
+        "law", "E/s_Y", "friction", "h/R", "shear", "steps", "newton", "krylov", "direct", "cuts", "F_N/ER^2", "F_T/F_N", "a/R"
+    );
+    for case in CASES {
+        let (line, wrong) = follow(case);
+        println!("{line}");
+        failures.extend(wrong.map(|wrong| format!("{case:?}: {wrong}")));
+    }
+    assert!(failures.is_empty(), "{} of {} cases:\n{}", failures.len(), CASES.len(), failures.join("\n"));
+}

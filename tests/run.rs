@@ -1,0 +1,462 @@
+//! `asperity run` on coarse meshes: what it writes, what it computes, and how it ends.
+
+mod python;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_contact, read_history};
+use tempfile::TempDir;
+
+/// Pressed and sheared, ideally plastic; everything below varies it by `--set`.
+const CASE: &str = r#"
+[sphere]
+radius = 1.0
+[material]
+youngs_modulus = 200e3
+poissons_ratio = 0.3
+[material.hardening]
+law = "ideal"
+yield_stress = 400.0
+[contact]
+friction = 0.3
+[mesh]
+elements_per_contact_radius = 4
+[[path]]
+indentation = 0.02
+"#;
+const SHEAR: &str = "[[path]]\nshear = 0.002\n";
+const FULL_SLIP: &str = "[[path]]\nshear = \"full-slip\"\n";
+
+/// A case in a scratch directory of its own.
+struct Scratch {
+    dir: TempDir,
+}
+
+impl Scratch {
+    fn new(segments: &str) -> Self {
+        let dir = tempfile::tempdir().expect("a scratch directory");
+        fs::write(dir.path().join("case.toml"), format!("{CASE}{segments}")).expect("the case");
+        Self { dir }
+    }
+
+    fn out(&self, name: &str) -> PathBuf {
+        self.dir.path().join(name)
+    }
+
+    fn command(&self, name: &str, options: &[&str]) -> Command {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
+        command.arg("run").arg(self.dir.path().join("case.toml")).arg("--out").arg(self.out(name)).args(options);
+        command
+    }
+
+    fn run(&self, name: &str, options: &[&str]) -> Output {
+        self.command(name, options).output().expect("the program runs")
+    }
+
+    /// Runs to the end and reads the results back.
+    fn done(&self, name: &str, options: &[&str]) -> (Vec<StepRecord>, Summary) {
+        let output = self.run(name, options);
+        assert_eq!(output.status.code(), Some(0), "{options:?}: {}", stderr(&output));
+        let (history, summary) = results(&self.out(name));
+        assert_eq!(summary.status, Status::Done);
+        (history, summary)
+    }
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("text is UTF-8")
+}
+
+fn results(dir: &Path) -> (Vec<StepRecord>, Summary) {
+    let out = OutputDirectory::existing(dir);
+    (read_history(&out.history()).expect("a history"), Summary::read(&out.summary()).expect("a summary"))
+}
+
+fn names(dir: &Path) -> Vec<String> {
+    let entries = fs::read_dir(dir).unwrap_or_else(|error| panic!("{}: {error}", dir.display()));
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Every number of a row with its column, in the order of the file.
+fn numbers(row: &StepRecord) -> Vec<(String, f64)> {
+    let serde_json::Value::Object(map) = serde_json::to_value(row).expect("a row") else { unreachable!("a struct is an object") };
+    map.into_iter().map(|(name, value)| (name, value.as_f64().expect("a number"))).collect()
+}
+
+/// The summary without what may differ between two runs of one case: times.
+fn timeless(summary: &Summary) -> Summary {
+    Summary { wall_s: 0.0, cpu_s: None, ..summary.clone() }
+}
+
+#[test]
+fn leaves_every_file_of_the_contract() {
+    let scratch = Scratch::new(FULL_SLIP);
+    let output = scratch.run("out", &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let dir = scratch.out("out");
+    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "plots", "summary.json"]);
+
+    let text = fs::read_to_string(dir.join("history.csv")).expect("a history");
+    assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,"), "{text}");
+    let (history, summary) = results(&dir);
+    let steps: Vec<usize> = history.iter().map(|row| row.step).collect();
+    assert_eq!(steps, (1..=history.len()).collect::<Vec<_>>());
+    let press = history.iter().filter(|row| row.segment == 0).count();
+    let ends = [press, history.len()].map(|step| format!("step_{step:04}"));
+    assert_eq!(names(&dir.join("contact")), ends.clone().map(|name| name + ".csv"));
+    assert_eq!(names(&dir.join("fields")), ["case.pvd".to_owned(), ends[0].clone() + ".vtu", ends[1].clone() + ".vtu"]);
+    assert_eq!(names(&dir.join("plots")), ["contact.svg", "forces.svg", "indentation.svg", "ratio.svg"]);
+
+    // Pressed to where it was told, then sheared to full slip at constant indentation.
+    assert_eq!(history[press - 1].h, 0.02);
+    assert!(history[press - 1..].iter().all(|row| row.h == 0.02));
+    let last = history[history.len() - 1];
+    assert!((last.f_t / last.f_n - 0.3).abs() < 1e-3, "{last:?}");
+    assert_eq!(last.stick_radius, 0.0);
+    // On this mesh the forces are within some per cent of the converged ones, 148.8 and 30 to 31.6.
+    assert!((summary.f_n0.expect("F_N0") / 148.8 - 1.0).abs() < 0.1, "{summary:?}");
+    assert!((summary.f_t_max.expect("F_T_max") / 30.8 - 1.0).abs() < 0.05, "{summary:?}");
+    assert!(summary.full_slip_reached && summary.delta_t_slip.is_some() && summary.k_t0.is_some());
+    assert_eq!(summary.steps, history.len());
+    assert_eq!(summary.newton_iterations, history.iter().map(|row| row.newton_iterations).sum::<usize>());
+    assert!(summary.elements > 400 && summary.unknowns > 1000 && summary.krylov_iterations > 0);
+    assert!(summary.wall_s > 0.0 && summary.device.starts_with("CPU"));
+    assert_eq!((summary.precision.as_str(), summary.messages.len()), ("f64", 0));
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(dir.join("summary.json")).expect("text")).expect("JSON");
+    assert_eq!(json["status"], "done");
+    for key in ["F_N0", "a0", "h0", "F_N_slip", "F_T_max", "delta_T_slip", "k_T0", "elements", "unknowns", "newton_iterations"] {
+        assert!(json[key].is_number(), "{key}: {}", json[key]);
+    }
+
+    // The contact table adds up to the forces of its step.
+    let points = read_contact(&dir.join("contact").join(ends[1].clone() + ".csv")).expect("a contact table");
+    let sum =
+        |of: fn(&asperity::output::ContactPoint) -> f64| 2.0 * points.iter().map(|point| of(point) * point.area).sum::<f64>();
+    assert!((sum(|point| point.pressure) / last.f_n - 1.0).abs() < 1e-12);
+    assert!((sum(|point| -point.traction_x) / last.f_t - 1.0).abs() < 1e-12);
+
+    // A person is told what came out, and where it is.
+    let told = stdout(&output);
+    for word in
+        ["F_N0 ", "a0 ", "F_N_slip ", "F_T_max ", "delta_T_slip ", "Newton iterations", " s on CPU", &dir.to_string_lossy()]
+    {
+        assert!(told.contains(word), "{word}: {told}");
+    }
+    // Not a terminal: plain lines.
+    assert!(stderr(&output).contains(" %  step 1  segment 1/2  ") && !stderr(&output).contains('\u{1b}'), "{}", stderr(&output));
+
+    // The resolved case runs to the same result.
+    let again = Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
+        .arg("run")
+        .args([&dir.join("case.toml"), Path::new("--out"), &scratch.out("again")])
+        .arg("-q")
+        .output()
+        .expect("the program runs");
+    assert_eq!((again.status.code(), again.stdout.len(), again.stderr.len()), (Some(0), 0, 0), "{}", stderr(&again));
+    assert_eq!(fs::read(scratch.out("again").join("history.csv")).expect("a history"), text.as_bytes());
+}
+
+#[test]
+fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
+    let scratch = Scratch::new("");
+    let set = ["--set", "solver.press_steps=3", "--set", "output.fields=\"all\""];
+    scratch.done("out", &set);
+    let dir = scratch.out("out");
+    assert_eq!(names(&dir.join("fields")), ["case.pvd", "step_0001.vtu", "step_0002.vtu", "step_0003.vtu"]);
+    assert_eq!(names(&dir.join("contact")).len(), 3);
+    fs::write(dir.join("notes.txt"), "mine").expect("a file");
+    scratch.done("out", &["--set", "solver.press_steps=2", "--set", "output.fields=\"none\"", "--set", "output.plots=false"]);
+    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "notes.txt", "plots", "summary.json"]);
+    for folder in ["fields", "contact", "plots"] {
+        assert!(names(&dir.join(folder)).is_empty(), "{folder}: {:?}", names(&dir.join(folder)));
+    }
+}
+
+#[test]
+fn fields_open_in_python_and_agree_with_the_history() {
+    let Some(python) = python::python("fields_open_in_python_and_agree_with_the_history") else { return };
+    let scratch = Scratch::new(SHEAR);
+    let (history, _) = scratch.done("out", &[]);
+    let out = OutputDirectory::existing(scratch.out("out"));
+    for step in out.contact_steps().expect("contact tables") {
+        let force = history[step - 1].f_n.to_string();
+        let output = Command::new(&python)
+            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts/check_fields.py"))
+            .args([out.fields(step), out.contact(step), force.into(), out.collection()])
+            .output()
+            .expect("Python runs");
+        assert!(output.status.success() && stdout(&output).contains("as written"), "{}{}", stdout(&output), stderr(&output));
+    }
+}
+
+#[test]
+fn two_runs_are_equal_to_the_bit_on_any_number_of_threads() {
+    let scratch = Scratch::new(SHEAR);
+    let (_, first) = scratch.done("a", &["--threads", "1"]);
+    let (_, second) = scratch.done("b", &["--threads", "2"]);
+    let bytes = |name: &str, file: &str| fs::read(scratch.out(name).join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+    for file in ["history.csv", "case.toml", "contact/step_0005.csv", "fields/step_0005.vtu", "plots/forces.svg"] {
+        assert!(bytes("a", file) == bytes("b", file), "{file} differs");
+    }
+    assert_eq!((first.device.as_str(), second.device.as_str()), ("CPU (1 thread)", "CPU (2 threads)"));
+    assert_eq!(timeless(&first), timeless(&Summary { device: first.device.clone(), ..second }));
+}
+
+#[test]
+fn other_units_give_the_same_normalised_curve() {
+    let scratch = Scratch::new(SHEAR);
+    let (radius, modulus) = (2.5e-3, 200e9);
+    let (reference, first) = scratch.done("mpa", &[]);
+    let (other, second) = scratch.done(
+        "pa",
+        &[
+            "--set",
+            "sphere.radius=2.5e-3",
+            "--set",
+            "material.youngs_modulus=200e9",
+            "--set",
+            "material.hardening.yield_stress=400e6",
+            "--set",
+            "path.0.indentation=5e-5",
+            "--set",
+            "path.1.shear=5e-6",
+        ],
+    );
+    assert_eq!(reference.len(), other.len());
+    let force = modulus * radius * radius / 200e3;
+    for (a, b) in reference.iter().zip(&other) {
+        for ((name, a), (_, b)) in numbers(a).into_iter().zip(numbers(b)) {
+            let unit = match name.as_str() {
+                "h" | "delta_T" | "a" | "stick_radius" | "a_gap" => radius,
+                "F_N" | "F_T" => force,
+                "work_external" | "energy_elastic" | "work_plastic" | "work_friction" => force * radius,
+                _ => 1.0,
+            };
+            // What is left of F_T while pressing is rounding of F_N.
+            let size = if name == "F_T" { 1.0 } else { a.abs() };
+            // How close to zero an accepted residual came is no result.
+            let counted = matches!(name.as_str(), "merit" | "krylov_iterations");
+            assert!(counted || (b / unit - a).abs() <= 1e-6 * size, "{name}: {a} and {} in other units", b / unit);
+        }
+    }
+    let (a, b) = (first.normalized, second.normalized);
+    for (a, b) in [(a.f_n0, b.f_n0), (a.a0, b.a0), (a.h0, b.h0), (a.f_t_max, b.f_t_max), (a.k_t0, b.k_t0)] {
+        let (a, b) = (a.expect("a number"), b.expect("a number"));
+        assert!((b / a - 1.0).abs() < 1e-6, "{a} and {b}");
+    }
+}
+
+#[test]
+fn a_shear_to_the_left_mirrors_one_to_the_right() {
+    let scratch = Scratch::new(SHEAR);
+    // At the default tolerance the two differ by as much as it allows, some 1e-5.
+    let (right, first) = scratch.done("right", &["--set", "solver.tolerance=1e-8"]);
+    let (left, second) = scratch.done("left", &["--set", "solver.tolerance=1e-8", "--set", "path.1.shear=-0.002"]);
+    assert_eq!(right.len(), left.len());
+    let largest = |name: &str| right.iter().flat_map(numbers).filter(|n| n.0 == name).map(|n| n.1.abs()).fold(0.0, f64::max);
+    for (a, b) in right.iter().zip(&left) {
+        for ((name, a), (_, b)) in numbers(a).into_iter().zip(numbers(b)) {
+            let mirrored = if matches!(name.as_str(), "delta_T" | "F_T") { -b } else { b };
+            let counted = matches!(name.as_str(), "merit" | "krylov_iterations" | "newton_iterations");
+            assert!(counted || (mirrored - a).abs() <= 1e-6 * largest(&name), "{name}: {a} to the right, {b} to the left");
+        }
+    }
+    // The summary's numbers are sizes.
+    for (a, b) in [(first.f_t_max, second.f_t_max), (first.k_t0, second.k_t0), (first.f_n0, second.f_n0)] {
+        assert!((a.expect("a number") / b.expect("a number") - 1.0).abs() < 1e-5, "{a:?} and {b:?}");
+    }
+}
+
+#[test]
+fn without_friction_there_is_no_tangential_force() {
+    let scratch = Scratch::new(SHEAR);
+    let (history, summary) = scratch.done("out", &["--set", "contact.friction=0.0", "--set", "solver.tolerance=1e-9"]);
+    let pressed = summary.f_n0.expect("F_N0");
+    // Zero but for the residual at which a step is accepted.
+    let work = history[history.len() - 1].work_external;
+    for row in &history {
+        assert!(row.f_t.abs() <= 1e-8 * pressed && row.work_friction.abs() <= 1e-8 * work, "{row:?}");
+    }
+    // Nothing resists: the sphere slides as it is.
+    let last = history[history.len() - 1];
+    assert!((last.f_n / pressed - 1.0).abs() < 0.02, "{last:?}");
+    assert_eq!(last.slipping_points, last.contact_points);
+}
+
+#[test]
+fn full_stick_never_slips() {
+    let scratch = Scratch::new("[[path]]\nshear = 0.001\n");
+    let (history, summary) = scratch.done("out", &["--set", "contact.friction=\"stick\""]);
+    let last = history[history.len() - 1];
+    // Nothing slips and nothing is dissipated but for the residual at which a step is accepted.
+    for row in &history {
+        assert!(row.slipping_points == 0 && row.work_friction.abs() < 1e-5 * last.work_external, "{row:?}");
+    }
+    assert!(last.f_t / last.f_n > 0.25, "{last:?}");
+    assert!(!summary.full_slip_reached && summary.f_n_slip.is_none() && summary.delta_t_slip.is_none());
+}
+
+#[test]
+fn a_held_normal_force_is_held() {
+    let scratch = Scratch::new("[[path]]\nshear = 0.0015\nhold = \"normal-force\"\n");
+    let (history, summary) = scratch.done("out", &["--set", "mesh.fine_zone=1.8"]);
+    let held = summary.f_n0.expect("F_N0");
+    let shear: Vec<&StepRecord> = history.iter().filter(|row| row.segment == 1).collect();
+    assert!(shear.len() > 5);
+    for row in &shear {
+        assert!((row.f_n / held - 1.0).abs() < 3e-4, "{row:?} instead of F_N = {held}");
+    }
+    // The sheared contact yields, so the sphere sinks in.
+    assert!(shear[shear.len() - 1].h > 0.0201, "{:?}", shear[shear.len() - 1]);
+}
+
+#[test]
+fn a_release_ends_without_force_and_leaves_an_indentation() {
+    let scratch = Scratch::new("[[path]]\nrelease = true\n");
+    let (history, summary) = scratch.done("out", &[]);
+    let last = history[history.len() - 1];
+    assert_eq!((last.f_n, last.f_t, last.contact_points, last.a), (0.0, 0.0, 0, 0.0));
+    assert!(last.h > 0.017 && last.h < 0.0199, "{last:?}");
+    let forces: Vec<f64> = history.iter().filter(|row| row.segment == 1).map(|row| row.f_n).collect();
+    assert!(forces.windows(2).all(|pair| pair[1] < pair[0]), "{forces:?}");
+    assert_eq!(summary.h0, Some(0.02));
+    // The map shows the last contact there was.
+    assert!(names(&scratch.out("out").join("plots")).contains(&"contact.svg".to_owned()));
+}
+
+#[test]
+fn single_precision_gives_the_same_answer() {
+    let scratch = Scratch::new(SHEAR);
+    let (double, _) = scratch.done("f64", &["--device", "cpu", "--precision", "f64"]);
+    let (single, summary) = scratch.done("f32", &["--device", "cpu", "--precision", "f32"]);
+    assert_eq!(summary.precision, "f32");
+    assert_eq!(double.len(), single.len());
+    for (a, b) in double.iter().zip(&single) {
+        assert!((b.f_n / a.f_n - 1.0).abs() < 1e-4 && (b.f_t - a.f_t).abs() < 1e-3, "{a:?} and {b:?}");
+    }
+}
+
+#[test]
+fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
+    let scratch = Scratch::new(SHEAR);
+    let output = scratch.run("out", &["--set", "solver.max_iterations=4", "--set", "solver.max_cutbacks=0", "-q"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let message = stderr(&output);
+    for word in ["error: no convergence: step ", " of segment 0", "merit ", "node ", "[solver] press_steps", "is kept in "] {
+        assert!(message.contains(word), "{word}: {message}");
+    }
+    assert_eq!(message.lines().count(), 1, "{message}");
+    let (history, summary) = results(&scratch.out("out"));
+    assert_eq!((summary.status, summary.steps), (Status::NotConverged, history.len()));
+    assert!(summary.messages[0].contains("no convergence: step "), "{:?}", summary.messages);
+    // Not one step: still a history with its columns, and a summary whose numbers do not exist.
+    let output = scratch.run("none", &["--set", "solver.max_iterations=1", "--set", "solver.max_cutbacks=0"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let (history, summary) = results(&scratch.out("none"));
+    assert!(history.is_empty() && summary.f_n0.is_none() && summary.steps == 0);
+    assert!(stdout(&output).contains("not converged: 0 steps"), "{}", stdout(&output));
+}
+
+#[test]
+fn a_contact_that_outgrows_the_mesh_ends_with_3_and_says_what_to_set() {
+    let scratch = Scratch::new("");
+    let output = scratch.run("out", &["--set", "mesh.contact_radius=0.12"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(stderr(&output).contains("set [mesh] contact_radius"), "{}", stderr(&output));
+    let (history, summary) = results(&scratch.out("out"));
+    assert_eq!(summary.status, Status::ContactOutgrewMesh);
+    assert!(!history.is_empty() && summary.messages.len() == 1);
+    let text = fs::read_to_string(scratch.out("out").join("summary.json")).expect("text");
+    assert!(text.contains("\"status\": \"contact-outgrew-mesh\""), "{text}");
+    // Where it stands is kept as at the end of a segment.
+    assert_eq!(names(&scratch.out("out").join("contact")), [format!("step_{:04}.csv", history.len())]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
+    use rustix::process::{Pid, Signal, kill_process};
+    use std::time::{Duration, Instant};
+
+    let scratch = Scratch::new("[[path]]\nshear = 0.01\n");
+    for (name, signal) in [("terminated", Signal::TERM), ("interrupted", Signal::INT)] {
+        let mut command = scratch.command(name, &["--set", "mesh.elements_per_contact_radius=8"]);
+        let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("a run");
+        let history = scratch.out(name).join("history.csv");
+        let started = Instant::now();
+        while read_history(&history).map_or(0, |rows| rows.len()) < 2 {
+            assert!(started.elapsed() < Duration::from_secs(60), "no step in a minute");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        kill_process(Pid::from_child(&child), signal).expect("a signal is sent");
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
+        let message = stderr(&output);
+        assert!(
+            message.contains("error: interrupted by a signal after step ") && message.contains("run the same command again"),
+            "{message}"
+        );
+        let (history, summary) = results(&scratch.out(name));
+        assert!(history.len() >= 2);
+        assert_eq!((summary.status, summary.steps), (Status::Interrupted, history.len()));
+        assert_eq!(names(&scratch.out(name).join("fields")), ["case.pvd".to_owned(), format!("step_{:04}.vtu", history.len())]);
+    }
+}
+
+#[test]
+fn bad_places_and_devices_end_with_2_and_touch_nothing() {
+    let scratch = Scratch::new(SHEAR);
+    let mine = scratch.out("mine");
+    fs::create_dir(&mine).expect("a directory");
+    fs::write(mine.join("notes.txt"), "mine").expect("a file");
+    for (out, options, expected) in [
+        ("mine", &[][..], "is not an Asperity result"),
+        ("mine/notes.txt", &[], "is not a directory"),
+        ("mine/notes.txt/below", &[], "cannot be"),
+        ("new", &["--device", "gpu"], "--device gpu: this build computes on the CPU only"),
+        ("new", &["--set", "contact.friction=-1"], "contact.friction"),
+    ] {
+        let output = scratch.run(out, options);
+        assert_eq!(output.status.code(), Some(2), "{out} {options:?}: {}", stderr(&output));
+        assert!(stderr(&output).starts_with("error: ") && stderr(&output).contains(expected), "{}", stderr(&output));
+        assert!(output.stdout.is_empty());
+    }
+    assert_eq!(names(&mine), ["notes.txt"]);
+    assert_eq!(fs::read_to_string(mine.join("notes.txt")).expect("still there"), "mine");
+    assert!(!scratch.out("new").exists());
+}
+
+/// A limit on the size of a file stands for a full disk: the system refuses the first write beyond it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
+    let scratch = Scratch::new(SHEAR);
+    let output = Command::new("bash")
+        .args(["-c", "trap '' XFSZ; ulimit -f 60; exec \"$@\"", "bash"])
+        .arg(assert_cmd::cargo::cargo_bin!("asperity"))
+        .arg("run")
+        .args([&scratch.out("case.toml"), Path::new("--out"), &scratch.out("out")])
+        .output()
+        .expect("bash runs");
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let message = stderr(&output);
+    assert!(
+        message.contains("error: the run broke off after 5 steps: cannot write ") && message.contains("step_0005.vtu"),
+        "{message}"
+    );
+    assert_eq!(message.lines().filter(|line| line.starts_with("error")).count(), 1, "{message}");
+    let (history, summary) = results(&scratch.out("out"));
+    assert_eq!((history.len(), summary.status), (5, Status::Interrupted));
+    assert!(summary.messages[0].contains("step_0005.vtu"), "{:?}", summary.messages);
+    assert!(names(&scratch.out("out").join("fields")).is_empty());
+}
