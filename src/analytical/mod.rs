@@ -30,7 +30,7 @@ pub use contact_size::predicted_contact_radius;
 pub use sphere::ElasticSphere;
 
 /// Root of an increasing function in `[low, high]` by bisection down to neighbouring numbers; an end if there is no sign change.
-fn bisect(mut low: f64, mut high: f64, increasing: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn bisect(mut low: f64, mut high: f64, increasing: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {

@@ -10,6 +10,8 @@ pub enum Reference {
     Value(f64),
     /// Anywhere from the first number to the second; an infinite end is open.
     Range(#[serde(serialize_with = "finite")] f64, #[serde(serialize_with = "finite")] f64),
+    /// Nothing: the number is reported for itself.
+    Nothing,
 }
 
 /// JSON has no infinity: an open end is null.
@@ -101,8 +103,13 @@ impl Check {
         Self { check, what: what.into(), ours, reference, scale, tolerance: Some(tolerance), because }
     }
 
+    /// A number that is reported for itself.
+    pub fn information(check: &'static str, what: impl Into<String>, ours: f64, because: &'static str) -> Self {
+        Self { check, what: what.into(), ours, reference: Reference::Nothing, scale: Scale::By(1.0), tolerance: None, because }
+    }
+
     /// The same row without a verdict.
-    pub fn information(self) -> Self {
+    pub fn without_verdict(self) -> Self {
         Self { tolerance: None, ..self }
     }
 
@@ -114,6 +121,7 @@ impl Check {
             Reference::Range(_, high) if self.ours > high => (self.ours - high, high),
             Reference::Range(..) if self.ours.is_nan() => (f64::NAN, 1.0),
             Reference::Range(..) => return 0.0,
+            Reference::Nothing => return f64::NAN,
         };
         match self.scale {
             Scale::Relative => difference / end.abs(),
@@ -169,6 +177,7 @@ mod tests {
 
     #[test]
     fn information_is_not_judged() {
-        assert_eq!(value(7.0, 100.0).information().verdict(), Verdict::Information);
+        assert_eq!(value(7.0, 100.0).without_verdict().verdict(), Verdict::Information);
+        assert_eq!(Check::information("test", "x", 7.0, "").verdict(), Verdict::Information);
     }
 }

@@ -4,15 +4,17 @@
 //! `runner` follows a case, `check` is a row of the table, `table` prints; each other file is a family of checks.
 
 pub mod check;
+pub mod equator;
 pub mod runner;
 pub mod table;
 
 mod cattaneo_mindlin;
 mod hertz;
 mod invariance;
+mod jaeger_ciavarella;
 mod models;
 mod plastic;
-mod unloading;
+
 
 use std::time::{Duration, Instant};
 
@@ -51,7 +53,7 @@ pub const FAMILIES: [Family; 7] = [
     Family { name: "models", run: models::checks },
     Family { name: "plastic", run: plastic::checks },
     Family { name: "energy", run: plastic::step_convergence },
-    Family { name: "unloading", run: unloading::checks },
+    Family { name: "jaeger-ciavarella", run: jaeger_ciavarella::checks },
     Family { name: "invariance", run: invariance::checks },
 ];
 

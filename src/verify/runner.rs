@@ -1,8 +1,10 @@
 //! Follows one case of the checks and keeps what the checks ask for.
 
 use super::VerifyError;
+use super::equator::Equator;
 use crate::case::{Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere};
 use crate::compute::{CaseModel, Compute, ComputeError};
+use crate::output::Units;
 use crate::simulation::drive::{Drive, Ending, Observer, StepView};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::StepRecord;
@@ -30,12 +32,13 @@ pub struct Runner<'a> {
     backend: &'a mut BackendFactory<'a>,
     /// How finely the cases are meshed.
     pub level: Level,
+    equator: Vec<(f64, Equator)>,
 }
 
 impl<'a> Runner<'a> {
     /// A runner whose cases are computed by what `backend` makes.
     pub fn new(backend: &'a mut BackendFactory<'a>, level: Level) -> Self {
-        Self { backend, level }
+        Self { backend, level, equator: Vec::new() }
     }
 
     /// Elements along the contact radius: `quick`, or at the fine level at least as many as a case has by default.
@@ -46,6 +49,19 @@ impl<'a> Runner<'a> {
         }
     }
 
+    /// The body's compliances at one Poisson's ratio, measured when they are first asked for.
+    ///
+    /// # Errors
+    /// As those of [`Runner::follow`].
+    pub fn equator(&mut self, nu: f64) -> Result<Equator, VerifyError> {
+        if let Some((_, known)) = self.equator.iter().find(|(at, _)| *at == nu) {
+            return Ok(*known);
+        }
+        let measured = Equator::measure(self, nu)?;
+        self.equator.push((nu, measured));
+        Ok(measured)
+    }
+
     /// Follows the whole path of a case.
     ///
     /// # Errors
@@ -54,7 +70,7 @@ impl<'a> Runner<'a> {
         let problem = Problem::new(case)?;
         let mut backend = (self.backend)(vec![problem.model.clone()])?;
         let newton = problem.newton()?;
-        let mut keeper = Keeper { length: case.sphere.radius, stress: case.material.youngs_modulus, rows: Vec::new() };
+        let mut keeper = Keeper { units: Units::of(case), rows: Vec::new() };
         match Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut keeper)? {
             Ending::Done => Ok(History { rows: keeper.rows }),
             Ending::NotConverged(reason) | Ending::Outgrown(reason) => Err(VerifyError::Stopped(reason)),
@@ -88,38 +104,22 @@ impl History {
 }
 
 struct Keeper {
-    length: f64,
-    stress: f64,
+    units: Units,
     rows: Vec<StepRecord>,
 }
 
 impl Observer for Keeper {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.rows.push(in_units(&view.record, self.length, self.stress));
+        self.rows.push(view.record.in_units(&self.units));
+        Ok(())
+    }
+
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
         Ok(())
     }
 
     fn note(&mut self, text: &str) {
         log::info!("{text}");
-    }
-}
-
-/// A scaled record in units of `length` and `stress`.
-fn in_units(scaled: &StepRecord, length: f64, stress: f64) -> StepRecord {
-    let (force, energy) = (stress * length * length, stress * length.powi(3));
-    StepRecord {
-        h: scaled.h * length,
-        delta_t: scaled.delta_t * length,
-        a: scaled.a * length,
-        a_moment: scaled.a_moment * length,
-        stick_radius: scaled.stick_radius * length,
-        f_n: scaled.f_n * force,
-        f_t: scaled.f_t * force,
-        work_external: scaled.work_external * energy,
-        energy_elastic: scaled.energy_elastic * energy,
-        work_plastic: scaled.work_plastic * energy,
-        work_friction: scaled.work_friction * energy,
-        ..*scaled
     }
 }
 

@@ -18,6 +18,7 @@ fn reference(reference: &Reference) -> String {
         Reference::Value(value) => number(value),
         Reference::Range(low, f64::INFINITY) => format!(">= {}", number(low)),
         Reference::Range(f64::NEG_INFINITY, high) => format!("<= {}", number(high)),
+        Reference::Nothing => "-".to_owned(),
         Reference::Range(low, high) => format!("{} to {}", number(low), number(high)),
     }
 }
@@ -25,6 +26,7 @@ fn reference(reference: &Reference) -> String {
 /// A share as a percentage, or as a power of ten where it is tiny.
 fn share(x: f64) -> String {
     match x.abs() {
+        size if size.is_nan() => "-".to_owned(),
         size if size > 0.0 && size < 5e-5 => format!("{x:+.1e}"),
         _ => format!("{:+.2} %", 100.0 * x),
     }
