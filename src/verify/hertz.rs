@@ -20,7 +20,7 @@ const AROUND_YIELD: [f64; 6] = [0.94, 0.98, 1.02, 1.06, 1.10, 1.14];
 
 /// A frictionless sphere meshed for a contact of radius `a`.
 fn case(hardening: Hardening, runner: &Runner<'_>, a: f64, indentations: &[f64]) -> Case {
-    let mut case = sphere(NU, hardening, 0.0, runner.elements(12), indentations.iter().map(|h| press(*h)).collect());
+    let mut case = sphere(NU, hardening, 0.0, runner.elements(8), indentations.iter().map(|h| press(*h)).collect());
     case.mesh.contact_radius = Some(a);
     // Elastic contact without friction has no memory, so that long steps cost nothing but iterations.
     case.solver.press_steps = Some(4);

@@ -141,9 +141,9 @@ pub fn press(h: f64) -> Segment {
     Segment::Indentation { indentation: h }
 }
 
-/// A segment that shears to `d` at constant h.
-pub fn shear(d: f64) -> Segment {
-    Segment::Shear { shear: ShearTarget::Displacement(d), hold: Hold::Indentation }
+/// A segment that shears to `d`.
+pub fn shear(d: f64, hold: Hold) -> Segment {
+    Segment::Shear { shear: ShearTarget::Displacement(d), hold }
 }
 
 /// A segment that shears to full slip at constant h.
