@@ -43,7 +43,9 @@ fn main() -> Result<(), Failed> {
     };
     let default = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/cases/ideal.toml").to_owned();
     let file = arguments.iter().find(|a| a.ends_with(".toml")).unwrap_or(&default);
-    println!("| elements per radius | elements | unknowns | F_N(h0) | a0 | F_N slip | max F_T | F_T/F_N | delta_T slip | steps | Newton | Krylov | CPU s |");
+    println!(
+        "| elements per radius | elements | unknowns | F_N(h0) | a0 | F_N slip | max F_T | F_T/F_N | delta_T slip | steps | Newton | Krylov | CPU s |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for mesh in meshes {
         let clock = Clock::start();

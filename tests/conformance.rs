@@ -3,8 +3,18 @@
 //! The reference is the CPU in f64, fed with what the backend under test was fed with after rounding. Each backend has to stay
 //! within its bound of the reference *and* to obey the equations by itself, so that a fault shared with the reference shows too.
 
+#[path = "conformance/assembly.rs"]
+mod assembly;
+#[path = "conformance/batch.rs"]
+mod batch;
+#[path = "conformance/contact.rs"]
+mod contact;
+#[path = "conformance/element.rs"]
+mod element;
 #[path = "conformance/material.rs"]
 mod material;
+#[path = "conformance/press.rs"]
+mod press;
 
 mod device;
 

@@ -423,7 +423,6 @@ fn bad_places_and_devices_end_with_2_and_touch_nothing() {
         ("mine", &[][..], "is not an Asperity result"),
         ("mine/notes.txt", &[], "is not a directory"),
         ("mine/notes.txt/below", &[], "cannot be"),
-        ("new", &["--device", "gpu"], "--device gpu: this build computes on the CPU only"),
         ("new", &["--set", "contact.friction=-1"], "contact.friction"),
     ] {
         let output = scratch.run(out, options);

@@ -27,7 +27,7 @@ struct PlasticStep {
 }
 
 // alpha, sigma and the plastic work up to there, point after point, of all tables.
-@group(0) @binding(2) var<storage, read> hardening_table: array<real>;
+@group(0) @binding(8) var<storage, read> hardening_table: array<real>;
 
 // sigma(alpha); REAL_MAX for the elastic law.
 fn flow_stress(h: Hardening, alpha: real) -> real {

@@ -23,7 +23,7 @@ struct Material {
 }
 
 // Parameter p of case c at p * cases + c, in the order of load_material; whole numbers are stored as reals.
-@group(0) @binding(1) var<storage, read> material_parameters: array<real>;
+@group(0) @binding(7) var<storage, read> material_parameters: array<real>;
 
 fn load_material(case_index: u32, cases: u32) -> Material {
     var p: array<real, 9>;

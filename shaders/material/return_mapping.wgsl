@@ -8,12 +8,12 @@ struct Dimensions {
 }
 
 @group(0) @binding(0) var<uniform> dimensions: Dimensions;
-@group(0) @binding(3) var<storage, read> active_cases: array<u32>;
-@group(0) @binding(4) var<storage, read> relative_gradient: array<real>;    // 9: f - I, row by row
-@group(0) @binding(5) var<storage, read> committed: array<real>;            // 7: b_e_bar - I, alpha
-@group(0) @binding(6) var<storage, read_write> answer: array<real>;         // 30, as Answer in src/compute/gpu/material.rs
-@group(0) @binding(7) var<storage, read_write> tangent: array<real>;        // 36: c_ab at 6 a + b
-@group(0) @binding(8) var<storage, read_write> point_status: array<u32>;
+@group(0) @binding(1) var<storage, read> active_cases: array<u32>;
+@group(0) @binding(2) var<storage, read> relative_gradient: array<real>;    // 9: f - I, row by row
+@group(0) @binding(3) var<storage, read> committed: array<real>;            // 7: b_e_bar - I, alpha
+@group(0) @binding(4) var<storage, read_write> answer: array<real>;         // 30, as Answer in src/compute/gpu/material.rs
+@group(0) @binding(5) var<storage, read_write> tangent: array<real>;        // 36: c_ab at 6 a + b
+@group(0) @binding(6) var<storage, read_write> point_status: array<u32>;
 
 // Index of component 0 of a point in an array of `components`; the next component is `points` further.
 fn first_component(case_index: u32, components: u32, point: u32) -> u32 {

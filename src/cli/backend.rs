@@ -1,23 +1,23 @@
-//! Where a case is computed: the one place that turns `--device` and `--precision` into a backend.
+//! Where a case is computed: turns `--device` and `--precision` into a backend.
 
-use super::CliError;
 use super::options::{Device, DeviceArgs, Precision};
-use crate::compute::cpu::Cpu;
-use crate::compute::{CaseModel, Compute, ComputeError};
+use crate::compute::select::{DeviceWish, PrecisionWish, Selected, select};
+use crate::compute::{CaseModel, ComputeError};
 
-/// The backend for a batch of cases in their virgin state.
+/// The backend for a batch of cases in their virgin state, with what the user should know of how it was chosen.
 ///
-/// `auto` is the CPU, and `auto` there is f64, the reference. Errors: a device that this build does not have, a mesh that the backend refuses.
-pub fn choose_backend(args: &DeviceArgs, models: Vec<CaseModel>) -> Result<Result<Box<dyn Compute>, ComputeError>, CliError> {
-    match args.device {
-        Device::Gpu => Err(CliError::NoGpu),
-        Device::Auto | Device::Cpu => Ok(match args.precision {
-            Precision::Auto | Precision::F64 => Cpu::<f64>::new(models).map(boxed),
-            Precision::F32 => Cpu::<f32>::new(models).map(boxed),
-        }),
-    }
-}
-
-fn boxed(backend: impl Compute + 'static) -> Box<dyn Compute> {
-    Box::new(backend)
+/// # Errors
+/// As [`select`].
+pub fn choose_backend(args: &DeviceArgs, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+    let device = match args.device {
+        Device::Auto => DeviceWish::Auto,
+        Device::Cpu => DeviceWish::Cpu,
+        Device::Gpu => DeviceWish::Gpu,
+    };
+    let precision = match args.precision {
+        Precision::Auto => PrecisionWish::Auto,
+        Precision::F32 => PrecisionWish::F32,
+        Precision::F64 => PrecisionWish::F64,
+    };
+    select(device, precision, models)
 }

@@ -79,9 +79,12 @@ pub enum CliError {
         /// The missing instruction sets.
         missing: String,
     },
-    /// A GPU was asked for.
-    #[error("--device gpu: this build computes on the CPU only. leave --device out, or give --device cpu")]
-    NoGpu,
+    /// A GPU was asked for and cannot be used.
+    #[error("--device gpu: {what}")]
+    Device {
+        /// What is wrong and what to do.
+        what: String,
+    },
     /// The signals cannot be caught.
     #[error("cannot listen for SIGINT and SIGTERM: {source}. this system allows no signal handlers, which a run needs")]
     Signals {

@@ -10,9 +10,10 @@ use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, out};
 use crate::case::Case;
+use crate::compute::ComputeError;
 use crate::output::{Clock, ResultWriter, Setting, Status, progress};
 use crate::simulation::SimulationError;
-use crate::simulation::drive::{Drive, Ending};
+use crate::simulation::drive::{Drive, Ending, Observer};
 use crate::simulation::problem::Problem;
 
 /// Simulate one case.
@@ -43,21 +44,25 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let case = Case::load(&args.case, &args.set)?;
     let bad_case = |source: SimulationError| CliError::Problem { file: args.case.clone(), source };
     let problem = Problem::new(&case).map_err(bad_case)?;
-    let backend = choose_backend(&args.device, vec![problem.model.clone()])?;
-    let mut backend = backend.map_err(|error| bad_case(error.into()))?;
+    let selected = choose_backend(&args.device, vec![problem.model.clone()]).map_err(|error| match error {
+        ComputeError::Device(what) => CliError::Device { what },
+        error => bad_case(error.into()),
+    })?;
+    let mut backend = selected.backend;
     let newton = problem.newton().map_err(bad_case)?;
     let stop = stop_flag()?;
     out::prepare(&args.out, &case)?;
 
-    let description = backend.description();
     let setting = Setting {
-        device: description.device,
-        precision: description.precision.to_owned(),
+        computed_on: backend.description(),
         elements: problem.model.mesh.elements.len(),
         unknowns: newton.free_unknowns(),
     };
     let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress(args.verbosity.quiet), stop)?;
+    selected.notes.iter().for_each(|note| results.note(note));
     let followed = Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut results);
+    // Not where it began, if the device failed on the way.
+    results.computed_on(backend.description());
     conclude(followed, results, args)
 }
 

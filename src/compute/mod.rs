@@ -7,9 +7,11 @@
 //! stored: each evaluation is a pure function of the committed state and the trial displacement.
 
 pub mod cpu;
+pub mod fallback;
 pub mod gather;
 pub mod gpu;
 pub mod handle;
+pub mod select;
 
 #[cfg(test)]
 mod tests;
@@ -184,4 +186,8 @@ pub trait Compute: Send {
     fn state(&mut self, case: usize) -> Result<CaseState, ComputeError>;
     /// Replaces a committed state.
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError>;
+    /// What the user should know and has not been told yet, in whole sentences: a device that failed, say.
+    fn take_notes(&mut self) -> Vec<String> {
+        Vec::new()
+    }
 }

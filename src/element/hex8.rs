@@ -158,7 +158,7 @@ fn displacement_gradient<R: Real>(geometry: &Geometry<R>, u: &Nodal<R>) -> Tenso
 fn identity_plus<R: Real>(h: &Tensor<R>) -> Tensor<R> {
     let mut f = *h;
     for (i, row) in f.iter_mut().enumerate() {
-        row[i] = row[i] + Lanes::splat(R::ONE);
+        row[i] += Lanes::splat(R::ONE);
     }
     f
 }

@@ -2,13 +2,8 @@
 //!
 //! Vectors are flat, three components a node: `[x_0, y_0, z_0, x_1, ...]`.
 
-use rayon::prelude::*;
-use std::ops::Range;
-
+use super::parallel::each;
 use crate::real::Real;
-
-/// Rows a task of a parallel product works on. Rows are independent of each other, so results do not depend on it.
-const ROWS_PER_TASK: usize = 512;
 
 pub use crate::mesh::pattern::Pattern;
 
@@ -64,7 +59,7 @@ impl<T: Real> BlockMatrix<T> {
         T: Widen<V>,
     {
         let x = x.as_chunks::<3>().0;
-        for_rows(&mut y.as_chunks_mut::<3>().0[..self.rows()], |i, y| *y = self.part_times(self.pattern.row(i), x));
+        each(&mut y.as_chunks_mut::<3>().0[..self.rows()], |i, y| *y = self.row_times(i, x));
     }
 
     /// r = b - A x, as [`BlockMatrix::multiply`].
@@ -73,31 +68,23 @@ impl<T: Real> BlockMatrix<T> {
         T: Widen<V>,
     {
         let (x, b) = (x.as_chunks::<3>().0, b.as_chunks::<3>().0);
-        for_rows(&mut r.as_chunks_mut::<3>().0[..self.rows()], |i, r| {
-            let y = self.part_times(self.pattern.row(i), x);
+        each(&mut r.as_chunks_mut::<3>().0[..self.rows()], |i, r| {
+            let y = self.row_times(i, x);
             *r = [b[i][0] - y[0], b[i][1] - y[1], b[i][2] - y[2]];
         });
     }
 
-    /// The entries at positions `range` (all of one row) times x.
+    /// Row `i` of A times x.
     #[inline(always)]
-    pub(super) fn part_times<X: Widen<V>, V: Real>(&self, range: Range<usize>, x: &[[X; 3]]) -> [V; 3]
+    pub(super) fn row_times<X: Widen<V>, V: Real>(&self, i: usize, x: &[[X; 3]]) -> [V; 3]
     where
         T: Widen<V>,
     {
-        self.part_times_from(range, 0, x)
-    }
-
-    /// As [`BlockMatrix::part_times`], for a part of x that begins at node `first`.
-    #[inline(always)]
-    pub(super) fn part_times_from<X: Widen<V>, V: Real>(&self, range: Range<usize>, first: usize, x: &[[X; 3]]) -> [V; 3]
-    where
-        T: Widen<V>,
-    {
+        let range = self.pattern.row(i);
         // Nine lanes, one for each place of a block: they vectorise as the block lies in memory, and are added up once a row.
         let mut lanes = [V::ZERO; 9];
         for (a, &j) in self.blocks[range.clone()].iter().zip(&self.pattern.column[range]) {
-            let x = x[j as usize - first].map(Widen::widen);
+            let x = x[j as usize].map(Widen::widen);
             for m in 0..9 {
                 lanes[m] += a[m].widen() * x[m % 3];
             }
@@ -124,19 +111,3 @@ macro_rules! widen {
 widen!(f32, f32);
 widen!(f32, f64);
 widen!(f64, f64);
-
-/// Calls `row(i, &mut y[i])` for every i, in parallel where the vector is long enough to pay for it. `row` must depend on nothing that
-/// other rows write, which the borrow checker sees to.
-pub(super) fn for_rows<Y: Send>(y: &mut [Y], row: impl Fn(usize, &mut Y) + Sync) {
-    if y.len() <= 2 * ROWS_PER_TASK || rayon::current_num_threads() == 1 {
-        for (i, y) in y.iter_mut().enumerate() {
-            row(i, y);
-        }
-    } else {
-        y.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(|(task, y)| {
-            for (i, y) in y.iter_mut().enumerate() {
-                row(task * ROWS_PER_TASK + i, y);
-            }
-        });
-    }
-}

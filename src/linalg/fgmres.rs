@@ -1,18 +1,19 @@
 //! Flexible GMRES with restarts (Saad, SIAM J. Sci. Comput. 14, 1993, Algorithm 2.2): right preconditioning by anything, here a
 //! multigrid cycle in f32.
+//!
+//! The basis may be f32 or f64. In f32 each restart is a step of iterative refinement: residuals and solution stay in f64.
 
 use rayon::prelude::*;
 
-use super::vector::{CHUNK, chunk_dot, norm};
+use super::vector::{CHUNK, chunk_dot, norm, parallel};
+use crate::real::Real;
 
-/// What FGMRES needs to know of a linear system A x = b.
-pub trait System {
-    /// w = A z. `z` is what [`System::precondition`] returned.
-    fn apply(&self, z: &[f32], w: &mut [f64]);
+/// What FGMRES needs to know of a linear system A x = b, its basis in precision `T`.
+pub trait System<T> {
+    /// z, about A^-1 v, and w = A z. The approximation may differ from call to call. `v` has unit norm.
+    fn step(&mut self, v: &[T], z: &mut [f32], w: &mut [T]);
     /// r = b - A x, to full accuracy.
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]);
-    /// z, about A^-1 v. May differ from call to call. `v` has unit norm.
-    fn precondition(&mut self, v: &[f64], z: &mut [f32]);
 }
 
 /// How an iteration ended.
@@ -30,10 +31,11 @@ pub struct FgmresReport {
 
 /// The workspace of FGMRES, kept between solves: nothing is allocated in an iteration.
 #[derive(Clone, Debug)]
-pub struct Fgmres {
+pub struct Fgmres<T> {
     restart: usize,
+    residual: Vec<f64>,
     /// Orthonormal basis, `restart + 1` vectors one after another.
-    basis: Vec<f64>,
+    basis: Vec<T>,
     /// Preconditioned basis, `restart` vectors.
     preconditioned: Vec<f32>,
     /// Upper triangle left of the Hessenberg matrix by Givens rotations: column j starts at j (j + 1) / 2.
@@ -45,14 +47,15 @@ pub struct Fgmres {
     partial: Vec<f64>,
 }
 
-impl Fgmres {
+impl<T: Real> Fgmres<T> {
     /// A workspace for systems of `unknowns` unknowns and restarts after `restart` (at least 1) iterations. Basis vectors are only
     /// allocated once they are reached.
     pub fn new(unknowns: usize, restart: usize) -> Self {
         let restart = restart.max(1);
         Self {
             restart,
-            basis: vec![0.0; unknowns],
+            residual: vec![0.0; unknowns],
+            basis: Vec::new(),
             preconditioned: Vec::new(),
             triangle: vec![0.0; restart * (restart + 1) / 2],
             rotations: vec![[0.0; 2]; restart],
@@ -66,7 +69,7 @@ impl Fgmres {
     /// stops and says stagnated.
     pub fn solve(
         &mut self,
-        system: &mut impl System,
+        system: &mut impl System<T>,
         b: &[f64],
         x: &mut [f64],
         tolerance: f64,
@@ -80,8 +83,12 @@ impl Fgmres {
             return report;
         }
         loop {
-            system.residual(b, x, &mut self.basis[..n]);
-            let r_norm = norm(&self.basis[..n]);
+            if report.iterations == 0 && x.iter().all(|x| *x == 0.0) {
+                self.residual.copy_from_slice(b);
+            } else {
+                system.residual(b, x, &mut self.residual);
+            }
+            let r_norm = norm(&self.residual);
             let before = report.residual;
             report.residual = r_norm / b_norm;
             report.converged = report.residual <= tolerance;
@@ -91,10 +98,12 @@ impl Fgmres {
             if report.converged || report.stagnated || report.iterations >= max_iterations {
                 return report;
             }
-            scale(&mut self.basis[..n], 1.0 / r_norm);
+            self.basis.resize(self.basis.len().max(n), T::ZERO);
+            self.basis.iter_mut().zip(&self.residual).for_each(|(v, r)| *v = T::of(r / r_norm));
             self.target[0] = r_norm;
-            // Aim a little lower than asked, so that rounding in the recurrence does not cost a restart.
-            let goal = 0.98 * tolerance * b_norm;
+            // Aim a little lower than asked, so that rounding in the recurrence does not cost a restart; but not below what the
+            // basis can resolve.
+            let goal = (0.98 * tolerance * b_norm).max(100.0 * T::EPSILON.to_f64() * r_norm);
             let cycle = self.restart.min(max_iterations - report.iterations);
             let steps = self.cycle(system, n, goal, cycle);
             report.iterations += steps;
@@ -108,15 +117,14 @@ impl Fgmres {
     }
 
     /// Arnoldi steps until the residual estimate meets `goal` or `steps` are done; returns how many are usable.
-    fn cycle(&mut self, system: &mut impl System, n: usize, goal: f64, steps: usize) -> usize {
+    fn cycle(&mut self, system: &mut impl System<T>, n: usize, goal: f64, steps: usize) -> usize {
         for j in 0..steps {
-            self.basis.resize(self.basis.len().max((j + 2) * n), 0.0);
+            self.basis.resize(self.basis.len().max((j + 2) * n), T::ZERO);
             self.preconditioned.resize(self.preconditioned.len().max((j + 1) * n), 0.0);
             let (basis, rest) = self.basis.split_at_mut((j + 1) * n);
             let w = &mut rest[..n];
             let z = &mut self.preconditioned[j * n..(j + 1) * n];
-            system.precondition(&basis[j * n..], z);
-            system.apply(z, w);
+            system.step(&basis[j * n..], z, w);
             let h = &mut self.column[..j + 2];
             let norm_before = norm(w);
             if !norm_before.is_finite() {
@@ -128,7 +136,7 @@ impl Fgmres {
             if h[j + 1] < 0.1 * norm_before {
                 h[j + 1] = orthogonalise(basis, w, h, &mut self.partial);
             }
-            let independent = h[j + 1] > 1e-14 * norm_before;
+            let independent = h[j + 1] > 10.0 * T::EPSILON.to_f64() * norm_before;
             if independent {
                 scale(w, 1.0 / h[j + 1]);
             } else {
@@ -165,17 +173,13 @@ impl Fgmres {
     }
 }
 
-fn parallel(n: usize) -> bool {
-    n > 4 * CHUNK && rayon::current_num_threads() > 1
-}
-
 /// One pass of classical Gram-Schmidt: takes w's components along the basis out of w, adds them to `h`, returns the norm left.
-fn orthogonalise(basis: &[f64], w: &mut [f64], h: &mut [f64], partial: &mut [f64]) -> f64 {
+fn orthogonalise<T: Real>(basis: &[T], w: &mut [T], h: &mut [f64], partial: &mut [f64]) -> f64 {
     let n = w.len();
     let vectors = basis.len() / n;
     let (chunks, parallel) = (n.div_ceil(CHUNK), parallel(n));
     let partial = &mut partial[..chunks * vectors];
-    let dots = |chunk: usize, w: &[f64], dots: &mut [f64]| {
+    let dots = |chunk: usize, w: &[T], dots: &mut [f64]| {
         for (v, dot) in basis.chunks_exact(n).zip(dots) {
             *dot = chunk_dot(&v[chunk * CHUNK..][..w.len()], w);
         }
@@ -192,10 +196,11 @@ fn orthogonalise(basis: &[f64], w: &mut [f64], h: &mut [f64], partial: &mut [f64
             *c += p;
         }
     }
-    let subtract = |chunk: usize, w: &mut [f64], square: &mut f64| {
+    let subtract = |chunk: usize, w: &mut [T], square: &mut f64| {
         for (v, &c) in basis.chunks_exact(n).zip(coefficients.iter()) {
-            for (w, v) in w.iter_mut().zip(&v[chunk * CHUNK..]) {
-                *w -= c * v;
+            let c = T::of(-c);
+            for (w, &v) in w.iter_mut().zip(&v[chunk * CHUNK..]) {
+                *w += c * v;
             }
         }
         *square = chunk_dot(w, w);
@@ -229,7 +234,8 @@ fn add_combination(x: &mut [f64], vectors: &[f32], c: &[f64]) {
     }
 }
 
-fn scale(x: &mut [f64], factor: f64) {
+fn scale<T: Real>(x: &mut [T], factor: f64) {
+    let factor = T::of(factor);
     for x in x {
         *x *= factor;
     }

@@ -1,5 +1,7 @@
 //! The exact elimination of fixed unknowns: Dirichlet and contact unknowns whose matrix rows are rows of the identity.
 
+use super::kernel::Node;
+
 /// Which unknowns are fixed, three bits a node.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Fixed {
@@ -19,22 +21,17 @@ impl Fixed {
         self.bits[node]
     }
 
-    /// Whether an unknown is fixed.
-    #[inline(always)]
-    pub fn is_fixed(&self, unknown: usize) -> bool {
-        self.bits[unknown / 3] >> (unknown % 3) & 1 != 0
-    }
-
     /// Sets the fixed entries of a vector to zero.
     pub fn clear(&self, x: &mut [f64]) {
-        for (x, &bits) in x.as_chunks_mut::<3>().0.iter_mut().zip(&self.bits) {
-            if bits != 0 {
-                for (c, x) in x.iter_mut().enumerate() {
-                    if bits >> c & 1 != 0 {
-                        *x = 0.0;
-                    }
-                }
-            }
+        for (x, &bits) in x.as_chunks_mut::<3>().0.iter_mut().zip(&self.bits).filter(|(_, bits)| **bits != 0) {
+            (0..3).filter(|c| bits >> c & 1 != 0).for_each(|c| x[c] = 0.0);
+        }
+    }
+
+    /// As [`Fixed::clear`], for padded nodes.
+    pub fn clear_nodes(&self, x: &mut [Node]) {
+        for (x, &bits) in x.iter_mut().zip(&self.bits).filter(|(_, bits)| **bits != 0) {
+            (0..3).filter(|c| bits >> c & 1 != 0).for_each(|c| x[c] = 0.0);
         }
     }
 

@@ -1,12 +1,12 @@
 //! Transfers between the levels of a hierarchy, and the coarse matrices P^T A P formed through a plan made once.
 
-use rayon::prelude::*;
+use wide::f32x4;
 
-use super::bsr::{BlockMatrix, Pattern, for_rows};
+use super::bsr::{BlockMatrix, Pattern};
+use super::kernel::Node;
+use super::multigrid::mask;
+use super::parallel::{each, each_row};
 use crate::mesh::Prolongation;
-
-/// Block rows a task of a parallel update works on.
-const ROWS_PER_TASK: usize = 256;
 
 /// A scalar sparse matrix by rows, acting on each of the three components alike.
 #[derive(Clone, Debug)]
@@ -28,14 +28,8 @@ impl Weights {
     }
 
     #[inline(always)]
-    fn row_times(&self, i: usize, x: &[[f32; 3]]) -> [f32; 3] {
-        let mut sum = [0.0; 3];
-        for (j, w) in self.row(i) {
-            for c in 0..3 {
-                sum[c] += w * x[j][c];
-            }
-        }
-        sum
+    fn row_times(&self, i: usize, x: &[Node]) -> f32x4 {
+        self.row(i).fold(f32x4::ZERO, |sum, (j, w)| f32x4::splat(w).mul_add(f32x4::new(x[j]), sum))
     }
 
     fn transposed(&self, columns: usize) -> Self {
@@ -93,44 +87,22 @@ fn distinct(rows: usize, collect: impl Fn(usize, &mut Vec<u32>)) -> Vec<Vec<u32>
 }
 
 impl Transfer {
-    /// `fine` is the fine level's pattern and `fine_order` the node behind each of its rows. Returns the transfer, the coarse pattern
-    /// and the coarse order, chosen by `order` from the coarse pattern in the mesh's numbering.
-    pub fn new(
-        fine: &Pattern,
-        fine_order: &[u32],
-        prolongation: &Prolongation,
-        order: impl Fn(&Pattern) -> Vec<u32>,
-    ) -> (Self, Pattern, Vec<u32>) {
+    /// Plans the transfer from a level with the pattern `fine`, which the prolongation fits; returns the coarse pattern as well.
+    pub fn new(fine: &Pattern, prolongation: &Prolongation) -> (Self, Pattern) {
         let (fine_rows, coarse_rows) = (fine.rows(), prolongation.coarse_nodes);
-        let mut p = Weights { start: vec![0], column: Vec::new(), weight: Vec::new() };
-        for &node in fine_order {
-            let range = prolongation.row_start[node as usize] as usize..prolongation.row_start[node as usize + 1] as usize;
-            p.column.extend_from_slice(&prolongation.column[range.clone()]);
-            p.weight.extend(prolongation.weight[range].iter().map(|&w| w as f32));
-            p.start.push(p.column.len() as u32);
-        }
-        let product_rows = |p: &Weights| {
-            distinct(fine_rows, |i, all| {
-                for at in fine.row(i) {
-                    all.extend(p.row(fine.column[at] as usize).map(|(j, _)| j as u32));
-                }
-            })
+        let p = Weights {
+            start: prolongation.row_start.clone(),
+            column: prolongation.column.clone(),
+            weight: prolongation.weight.iter().map(|&w| w as f32).collect(),
         };
-        let coarse_rows_of = |r: &Weights, product: &[Vec<u32>]| {
-            distinct(coarse_rows, |i, all| r.row(i).for_each(|(k, _)| all.extend_from_slice(&product[k])))
-        };
-        let natural = Pattern::from_rows(coarse_rows_of(&p.transposed(coarse_rows), &product_rows(&p)).into_iter());
-        let coarse_order = order(&natural);
-        let mut rank = vec![0u32; coarse_rows];
-        for (i, &node) in coarse_order.iter().enumerate() {
-            rank[node as usize] = i as u32;
-        }
-        for j in &mut p.column {
-            *j = rank[*j as usize];
-        }
         let r = p.transposed(coarse_rows);
-        let product_columns = product_rows(&p);
-        let coarse = Pattern::from_rows(coarse_rows_of(&r, &product_columns).into_iter());
+        let product_columns = distinct(fine_rows, |i, all| {
+            for at in fine.row(i) {
+                all.extend(p.row(fine.column[at] as usize).map(|(j, _)| j as u32));
+            }
+        });
+        let coarse = distinct(coarse_rows, |i, all| r.row(i).for_each(|(k, _)| all.extend_from_slice(&product_columns[k])));
+        let coarse = Pattern::from_rows(coarse.into_iter());
 
         let place = |row: &[u32], j: usize| row.binary_search(&(j as u32)).unwrap_or(0) as u16;
         let (mut fine_start, mut fine_place, mut product_start) = (vec![0u32], Vec::new(), vec![0u32]);
@@ -152,33 +124,29 @@ impl Transfer {
         let product = vec![[0.0; 9]; product_start[fine_rows] as usize];
         let transfer =
             Self { prolongation: p, restriction: r, product_start, product, fine_start, fine_place, coarse_start, coarse_place };
-        (transfer, coarse, coarse_order)
+        (transfer, coarse)
     }
 
-    /// coarse = P^T fine P. `diagonal_of` may replace a row's diagonal block (to leave out the identity of fixed unknowns).
-    pub fn update(
-        &mut self,
-        fine: &BlockMatrix<f32>,
-        diagonal_of: impl Fn(usize) -> Option<[f32; 9]> + Sync,
-        coarse: &mut BlockMatrix<f32>,
-    ) {
+    /// coarse = P^T fine P, leaving out the identity rows of fixed unknowns: those whose bits `identity` sets for a node.
+    pub fn update(&mut self, fine: &BlockMatrix<f32>, identity: impl Fn(usize) -> u8 + Sync, coarse: &mut BlockMatrix<f32>) {
         let (p, r) = (&self.prolongation, &self.restriction);
-        for_row_blocks(&mut self.product, &self.product_start, |i, sum| {
+        each_row(&mut self.product, &self.product_start, |i, sum| {
+            sum.as_flattened_mut().fill(0.0);
             let mut places = self.fine_place[self.fine_start[i] as usize..].iter();
-            let replaced = diagonal_of(i);
+            let bits = identity(i);
+            let mut diagonal = fine.blocks[fine.pattern.diagonal[i] as usize];
+            mask(&mut diagonal, bits, bits);
             for at in fine.pattern.row(i) {
                 let j = fine.pattern.column[at] as usize;
-                let a = match &replaced {
-                    Some(diagonal) if i == j => diagonal,
-                    _ => &fine.blocks[at],
-                };
+                let a = if i == j { &diagonal } else { &fine.blocks[at] };
                 for ((_, w), &place) in p.row(j).zip(&mut places) {
                     add_scaled(&mut sum[place as usize], w, a);
                 }
             }
         });
         let (product, product_start) = (&self.product, &self.product_start);
-        for_row_blocks(&mut coarse.blocks, &coarse.pattern.row_start, |i, sum| {
+        each_row(&mut coarse.blocks, &coarse.pattern.row_start, |i, sum| {
+            sum.as_flattened_mut().fill(0.0);
             let mut places = self.coarse_place[self.coarse_start[i] as usize..].iter();
             for (k, w) in r.row(i) {
                 for (a, &place) in product[product_start[k] as usize..product_start[k + 1] as usize].iter().zip(&mut places) {
@@ -189,18 +157,13 @@ impl Transfer {
     }
 
     /// coarse = P^T fine.
-    pub fn restrict(&self, fine: &[[f32; 3]], coarse: &mut [[f32; 3]]) {
-        for_rows(coarse, |i, y| *y = self.restriction.row_times(i, fine));
+    pub fn restrict(&self, fine: &[Node], coarse: &mut [Node]) {
+        each(coarse, |i, y| *y = self.restriction.row_times(i, fine).to_array());
     }
 
     /// fine += P coarse.
-    pub fn prolong_add(&self, coarse: &[[f32; 3]], fine: &mut [[f32; 3]]) {
-        for_rows(fine, |i, y| {
-            let sum = self.prolongation.row_times(i, coarse);
-            for c in 0..3 {
-                y[c] += sum[c];
-            }
-        });
+    pub fn prolong_add(&self, coarse: &[Node], fine: &mut [Node]) {
+        each(fine, |i, y| *y = (f32x4::new(*y) + self.prolongation.row_times(i, coarse)).to_array());
     }
 }
 
@@ -209,28 +172,4 @@ fn add_scaled(sum: &mut [f32; 9], w: f32, a: &[f32; 9]) {
     for m in 0..9 {
         sum[m] += w * a[m];
     }
-}
-
-/// Zeroes the blocks of every row and hands them to `row(i, blocks)`, in parallel where it pays.
-pub(super) fn for_row_blocks(blocks: &mut [[f32; 9]], start: &[u32], row: impl Fn(usize, &mut [[f32; 9]]) + Sync) {
-    let rows = start.len() - 1;
-    let run = |range: std::ops::Range<usize>, blocks: &mut [[f32; 9]]| {
-        blocks.as_flattened_mut().fill(0.0);
-        let base = start[range.start];
-        for i in range {
-            row(i, &mut blocks[(start[i] - base) as usize..(start[i + 1] - base) as usize]);
-        }
-    };
-    if rows <= 2 * ROWS_PER_TASK || rayon::current_num_threads() == 1 {
-        return run(0..rows, blocks);
-    }
-    let mut rest = blocks;
-    let mut tasks = Vec::with_capacity(rows / ROWS_PER_TASK + 1);
-    for first in (0..rows).step_by(ROWS_PER_TASK) {
-        let last = rows.min(first + ROWS_PER_TASK);
-        let (mine, others) = rest.split_at_mut((start[last] - start[first]) as usize);
-        tasks.push((first..last, mine));
-        rest = others;
-    }
-    tasks.into_par_iter().for_each(|(range, blocks)| run(range, blocks));
 }

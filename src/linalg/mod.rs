@@ -5,13 +5,16 @@
 //! the same input gives the same bits at any thread count.
 
 pub mod bsr;
+mod chebyshev;
 mod coarsest;
 pub mod direct;
+mod dissection;
 pub mod fgmres;
 mod fixed;
 mod galerkin;
+mod kernel;
 pub mod multigrid;
-mod smoother;
+mod parallel;
 #[cfg(test)]
 mod tests;
 mod vector;
@@ -19,7 +22,6 @@ mod vector;
 pub use bsr::{BlockMatrix, Pattern};
 pub use direct::DirectSolver;
 pub use multigrid::Hierarchy;
-pub use smoother::Smoother;
 
 use crate::mesh::Prolongation;
 use fgmres::{Fgmres, System};
@@ -27,6 +29,8 @@ use fixed::Fixed;
 
 /// Iterations after which FGMRES starts over.
 const RESTART: usize = 60;
+/// Memory that the direct fallback may take unless told otherwise, bytes.
+const DEFAULT_FALLBACK_LIMIT: usize = 2 << 30;
 /// Iterations after which FGMRES gives up.
 const MAX_ITERATIONS: usize = 120;
 
@@ -133,6 +137,7 @@ pub struct LinearSolver {
     matrix: BlockMatrix<f64>,
     fixed: Fixed,
     updated: bool,
+    fallback_limit: usize,
     /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
     reduced: Vec<f64>,
     free: Vec<f64>,
@@ -142,7 +147,7 @@ pub struct LinearSolver {
 enum Method {
     Multigrid {
         hierarchy: Box<Hierarchy>,
-        krylov: Box<Fgmres>,
+        krylov: Box<Fgmres<f32>>,
         /// Made at the first stall of a matrix; the flag says that it is factorised for the present one.
         fallback: Option<Box<DirectSolver>>,
         factorised: bool,
@@ -157,25 +162,12 @@ impl LinearSolver {
     /// # Errors
     /// [`LinalgError::Hierarchy`] if the chain does not fit the pattern.
     pub fn new(kind: SolverKind, pattern: &Pattern, prolongations: &[Prolongation]) -> Result<Self, LinalgError> {
-        Self::with_smoother(kind, pattern, prolongations, Smoother::default())
-    }
-
-    /// As [`LinearSolver::new`], with a smoother of choice.
-    ///
-    /// # Errors
-    /// As [`LinearSolver::new`].
-    pub fn with_smoother(
-        kind: SolverKind,
-        pattern: &Pattern,
-        prolongations: &[Prolongation],
-        smoother: Smoother,
-    ) -> Result<Self, LinalgError> {
         let unknowns = 3 * pattern.rows();
         let method = if kind == SolverKind::Direct || prolongations.is_empty() {
             Method::Direct(Box::new(DirectSolver::new(pattern)))
         } else {
             Method::Multigrid {
-                hierarchy: Box::new(Hierarchy::new(pattern, prolongations, smoother)?),
+                hierarchy: Box::new(Hierarchy::new(pattern, prolongations)?),
                 krylov: Box::new(Fgmres::new(unknowns, RESTART)),
                 fallback: None,
                 factorised: false,
@@ -186,6 +178,7 @@ impl LinearSolver {
             matrix: BlockMatrix::zeros(pattern.clone()),
             fixed: Fixed::default(),
             updated: false,
+            fallback_limit: DEFAULT_FALLBACK_LIMIT,
             reduced: vec![0.0; unknowns],
             free: vec![0.0; unknowns],
         })
@@ -197,6 +190,11 @@ impl LinearSolver {
             Method::Multigrid { .. } => SolverKind::Multigrid,
             Method::Direct(_) => SolverKind::Direct,
         }
+    }
+
+    /// Sets the memory in bytes that a direct solution may take after FGMRES has stalled; 0 forbids it.
+    pub fn set_fallback_limit(&mut self, bytes: usize) {
+        self.fallback_limit = bytes;
     }
 
     /// Takes over a matrix and the mask of its fixed unknowns (one flag an unknown; their rows count as rows of the identity whatever
@@ -216,8 +214,7 @@ impl LinearSolver {
         match &mut self.method {
             Method::Multigrid { hierarchy, factorised, .. } => {
                 *factorised = false;
-                let (matrix, fixed) = (&self.matrix, &self.fixed);
-                in_pool(|| hierarchy.update_masked(matrix, fixed))?;
+                in_pool(|| hierarchy.update(matrix, fixed))?;
             }
             Method::Direct(direct) => direct.update(&self.matrix, &self.fixed)?,
         }
@@ -247,20 +244,19 @@ impl LinearSolver {
     }
 
     fn solve_free(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64]) -> Result<SolveReport, LinalgError> {
-        let Self { method, matrix, fixed, reduced, free, .. } = self;
+        let Self { method, matrix, fixed, reduced, free, fallback_limit, .. } = self;
         free.fill(0.0);
         fixed.copy(rhs, free);
-        matrix.residual(free, rhs, reduced);
+        if free.iter().any(|x| *x != 0.0) {
+            matrix.residual(free, rhs, reduced);
+        } else {
+            reduced.copy_from_slice(rhs);
+        }
         fixed.clear(reduced);
         free.copy_from_slice(x);
         fixed.clear(free);
-        let scale = vector::norm(reduced);
         let report = match method {
-            Method::Direct(direct) => {
-                free.copy_from_slice(reduced);
-                direct.solve_in_place(free)?;
-                direct_report(matrix, fixed, reduced, free, scale)
-            }
+            Method::Direct(direct) => direct.solve(matrix, fixed, reduced, free)?,
             Method::Multigrid { hierarchy, krylov, fallback, factorised } => {
                 let mut system = Preconditioned { matrix, fixed, hierarchy };
                 let got = krylov.solve(&mut system, reduced, free, tolerance, MAX_ITERATIONS);
@@ -273,21 +269,25 @@ impl LinearSolver {
                 };
                 if !got.converged {
                     let direct = fallback.get_or_insert_with(|| Box::new(DirectSolver::new(&matrix.pattern)));
+                    direct.memory_limit = *fallback_limit;
                     let mut factors = Ok(());
                     if !*factorised {
                         factors = direct.update(matrix, fixed);
                         *factorised = factors.is_ok();
                     }
-                    let mut solution = reduced.clone();
-                    if let Err(error) = factors.and_then(|()| direct.solve_in_place(&mut solution)) {
-                        log::debug!("no direct fallback: {error}");
-                        fixed.copy(rhs, free);
-                        x.copy_from_slice(free);
-                        return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
+                    let mut solution = vec![0.0; free.len()];
+                    match factors.and_then(|()| direct.solve(matrix, fixed, reduced, &mut solution)) {
+                        Ok(direct) => {
+                            free.copy_from_slice(&solution);
+                            report = SolveReport { fallback: true, stagnated: true, iterations: got.iterations, ..direct };
+                        }
+                        Err(error) => {
+                            log::debug!("no direct fallback: {error}");
+                            fixed.copy(rhs, free);
+                            x.copy_from_slice(free);
+                            return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
+                        }
                     }
-                    free.copy_from_slice(&solution);
-                    let direct = direct_report(matrix, fixed, reduced, free, scale);
-                    report = SolveReport { fallback: true, stagnated: true, iterations: got.iterations, ..direct };
                 }
                 report
             }
@@ -296,15 +296,6 @@ impl LinearSolver {
         x.copy_from_slice(free);
         Ok(report)
     }
-}
-
-/// The residual of a direct solution; anything below 1e-6 is what rounding leaves.
-fn direct_report(matrix: &BlockMatrix<f64>, fixed: &Fixed, b: &[f64], x: &[f64], scale: f64) -> SolveReport {
-    let mut r = vec![0.0; x.len()];
-    matrix.residual(x, b, &mut r);
-    fixed.clear(&mut r);
-    let residual = if scale > 0.0 { vector::norm(&r) / scale } else { 0.0 };
-    SolveReport { residual, converged: residual < 1e-6, ..SolveReport::default() }
 }
 
 fn size(what: &'static str, got: usize, expected: usize) -> Result<(), LinalgError> {
@@ -322,18 +313,13 @@ struct Preconditioned<'a> {
     hierarchy: &'a mut Hierarchy,
 }
 
-impl System for Preconditioned<'_> {
-    fn apply(&self, z: &[f32], w: &mut [f64]) {
-        self.matrix.multiply(z, w);
-        self.fixed.clear(w);
+impl System<f32> for Preconditioned<'_> {
+    fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
+        self.hierarchy.v_cycle_and_product(v, z, w);
     }
 
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
         self.matrix.residual(x, b, r);
         self.fixed.clear(r);
-    }
-
-    fn precondition(&mut self, v: &[f64], z: &mut [f32]) {
-        self.hierarchy.v_cycle(v, z);
     }
 }

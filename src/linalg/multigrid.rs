@@ -1,162 +1,166 @@
 //! The geometric multigrid hierarchy: Galerkin coarse matrices on prolongations that stay fixed for a whole run, a V-cycle in f32.
-//!
-//! Rows are kept sorted by colour on every level (see [`Smoother::GaussSeidel`]); vectors that come and go are in the mesh's order.
 
-use super::bsr::{BlockMatrix, Pattern, for_rows};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::bsr::{BlockMatrix, Pattern};
+use super::chebyshev::Smoother;
 use super::coarsest::Dense;
 use super::fixed::Fixed;
-use super::galerkin::{Transfer, for_row_blocks};
-use super::smoother::{Smoothed, Smoother, color_order};
+use super::galerkin::Transfer;
+use super::kernel::{Node, row_times};
+use super::parallel::{each, each_row};
 use super::{LinalgError, size};
 use crate::mesh::Prolongation;
+use crate::real::Real;
 
-/// Coarsest levels up to this many unknowns are solved by dense LU, larger ones by smoothing.
-const DENSE_UNKNOWNS: usize = 1200;
-/// Smoothing sweeps on a coarsest level too large for that.
-const COARSEST_SWEEPS: usize = 10;
+/// Degree of the smoothing polynomial on either side of the coarse correction.
+const DEGREE: usize = 3;
+/// Coarsest levels up to this many unknowns are solved by dense LU, larger ones by [`COARSEST_DEGREE`].
+const DENSE_UNKNOWNS: usize = 600;
+const COARSEST_DEGREE: usize = 10;
 
 #[derive(Clone, Debug)]
 struct Level {
-    smoothed: Smoothed,
+    smoother: Smoother,
     /// To the next coarser level; none on the coarsest.
     transfer: Option<Transfer>,
-    b: Vec<[f32; 3]>,
-    x: Vec<[f32; 3]>,
-    r: Vec<[f32; 3]>,
+    b: Vec<Node>,
+    x: Vec<Node>,
+    r: Vec<Node>,
 }
 
 /// A multigrid preconditioner for one sparsity pattern and one chain of prolongations.
 #[derive(Clone, Debug)]
 pub struct Hierarchy {
-    smoother: Smoother,
     levels: Vec<Level>,
     dense: Option<Dense>,
-    /// Node of each row of the finest level.
-    order: Vec<u32>,
-    /// Block of the matrix given to [`Hierarchy::update`] behind each entry of the finest level.
-    source: Vec<u32>,
-    /// Fixed components of each row's node.
-    fixed: Vec<u8>,
+    fixed: Fixed,
 }
 
 impl Hierarchy {
-    /// Plans a hierarchy: coarse patterns, orders, gather plans. `prolongations` is finest first and fits the pattern and itself.
+    /// Plans a hierarchy: coarse patterns and gather plans. `prolongations` is finest first and fits the pattern and itself.
     ///
     /// # Errors
     /// [`LinalgError::Hierarchy`] if it does not fit.
-    pub fn new(pattern: &Pattern, prolongations: &[Prolongation], smoother: Smoother) -> Result<Self, LinalgError> {
+    pub fn new(pattern: &Pattern, prolongations: &[Prolongation]) -> Result<Self, LinalgError> {
         check(pattern.rows(), prolongations)?;
-        let order = color_order(pattern);
-        let (mut fine, source) = permuted(pattern, &order);
         let mut levels = Vec::with_capacity(prolongations.len() + 1);
-        let mut fine_order = order.clone();
+        let mut fine = pattern.clone();
         for prolongation in prolongations {
-            let (transfer, coarse, coarse_order) = Transfer::new(&fine, &fine_order, prolongation, color_order);
-            levels.push(Level::new(std::mem::replace(&mut fine, coarse), Some(transfer)));
-            fine_order = coarse_order;
+            let (transfer, coarse) = Transfer::new(&fine, prolongation);
+            levels.push(Level::new(std::mem::replace(&mut fine, coarse), DEGREE, Some(transfer)));
         }
         let dense = (3 * fine.rows() <= DENSE_UNKNOWNS).then(Dense::default);
-        levels.push(Level::new(fine, None));
-        let fixed = vec![0; order.len()];
-        Ok(Self { smoother, levels, dense, order, source, fixed })
+        levels.push(Level::new(fine, COARSEST_DEGREE, None));
+        Ok(Self { levels, dense, fixed: Fixed::default() })
     }
 
     /// Nodes and blocks of each level, finest first.
     pub fn sizes(&self) -> Vec<[usize; 2]> {
-        self.levels.iter().map(|level| [level.b.len(), level.smoothed.matrix.blocks.len()]).collect()
+        self.levels.iter().map(|level| [level.b.len(), level.smoother.matrix.blocks.len()]).collect()
     }
 
-    /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed` unknowns are eliminated: their rows and
-    /// columns count as those of the identity, and contribute nothing to coarser levels.
+    /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed` unknowns (one flag an unknown) are
+    /// eliminated: their rows and columns count as those of the identity, and contribute nothing to coarser levels.
     ///
     /// # Errors
-    /// [`LinalgError::Size`]; [`LinalgError::NotFinite`] names a node in whose row there is a number that is not finite in f32.
+    /// [`LinalgError::Size`]; [`LinalgError::NotFinite`] names the first node in whose row there is a number that is not finite in f32.
     pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
-        let unknowns = 3 * self.order.len();
-        size("the matrix's blocks", matrix.blocks.len(), self.source.len())?;
-        size("the mask of fixed unknowns", fixed.len(), unknowns)?;
-        let mut mask = Fixed::default();
-        mask.set(fixed);
-        self.update_masked(matrix, &mask)
-    }
-
-    pub(super) fn update_masked(&mut self, matrix: &BlockMatrix<f64>, fixed: &Fixed) -> Result<(), LinalgError> {
-        for (bits, &node) in self.fixed.iter_mut().zip(&self.order) {
-            *bits = fixed.node(node as usize);
-        }
-        let (masks, source) = (&self.fixed, &self.source);
-        let finest = &mut self.levels[0].smoothed.matrix;
-        let pattern = &finest.pattern;
-        for_row_blocks(&mut finest.blocks, &pattern.row_start, |i, row| {
-            for (block, at) in row.iter_mut().zip(pattern.row(i)) {
-                *block = matrix.blocks[source[at] as usize].map(|a| a as f32);
-                let masks = (masks[i], masks[pattern.column[at] as usize]);
-                if masks != (0, 0) {
-                    mask_block(block, masks.0, masks.1);
-                    if at == pattern.diagonal[i] as usize {
-                        (0..3).filter(|c| masks.0 >> c & 1 != 0).for_each(|c| block[4 * c] = 1.0);
-                    }
-                }
-            }
-        });
-        // A finite number times 0 is 0, all others give NaN.
-        let bad = |row: &[[f32; 9]]| row.as_flattened().iter().map(|a| a * 0.0).sum::<f32>().is_nan();
-        if let Some(i) = (0..finest.rows()).find(|&i| bad(&finest.blocks[finest.pattern.row(i)])) {
-            return Err(LinalgError::NotFinite { place: "the matrix", node: self.order[i] as usize });
-        }
+        let finest = &self.levels[0].smoother.matrix;
+        size("the matrix", matrix.blocks.len(), finest.blocks.len())?;
+        size("the mask of fixed unknowns", fixed.len(), finest.unknowns())?;
+        self.fixed.set(fixed);
+        self.take(matrix)?;
         for l in 0..self.levels.len() {
             let (fine, coarse) = self.levels.split_at_mut(l + 1);
             let level = &mut fine[l];
-            let last = level.transfer.is_none();
-            if let (Some(transfer), Some(coarse)) = (&mut level.transfer, coarse.first_mut()) {
-                let matrix = &level.smoothed.matrix;
-                let diagonal = |i: usize| {
-                    let mask = if l == 0 { masks[i] } else { 0 };
-                    (mask != 0).then(|| {
-                        let mut block = matrix.blocks[matrix.pattern.diagonal[i] as usize];
-                        mask_block(&mut block, mask, mask);
-                        block
-                    })
-                };
-                transfer.update(matrix, diagonal, &mut coarse.smoothed.matrix);
-            }
-            match &mut self.dense {
-                Some(dense) if last => dense.update(&level.smoothed.matrix),
-                _ => level.smoothed.update(self.smoother),
+            let matrix = &level.smoother.matrix;
+            match (&mut level.transfer, coarse.first_mut(), &mut self.dense) {
+                (Some(transfer), Some(coarse), _) => {
+                    let identity = |i: usize| if l == 0 { self.fixed.node(i) } else { 0 };
+                    transfer.update(matrix, identity, &mut coarse.smoother.matrix);
+                    level.smoother.update();
+                }
+                (_, _, Some(dense)) => dense.update(matrix),
+                _ => level.smoother.update(),
             }
         }
         Ok(())
     }
 
-    /// z = one V-cycle's approximation of A^-1 v from zero, in the mesh's order. Zero at fixed unknowns if v is.
-    pub fn v_cycle(&mut self, v: &[f64], z: &mut [f32]) {
-        let v = v.as_chunks::<3>().0;
-        let order = &self.order;
-        for_rows(&mut self.levels[0].b, |i, b| *b = v[order[i] as usize].map(|v| v as f32));
-        self.cycle();
-        let z = z.as_chunks_mut::<3>().0;
-        for (&node, x) in self.order.iter().zip(&self.levels[0].x) {
-            z[node as usize] = *x;
+    /// Copies the matrix to the finest level, rows and columns of fixed unknowns replaced.
+    fn take(&mut self, matrix: &BlockMatrix<f64>) -> Result<(), LinalgError> {
+        let fixed = &self.fixed;
+        let BlockMatrix { pattern, blocks } = &mut self.levels[0].smoother.matrix;
+        let not_finite = AtomicUsize::new(usize::MAX);
+        each_row(blocks, &pattern.row_start, |i, row| {
+            let range = pattern.row(i);
+            let rows = fixed.node(i);
+            let columns = &pattern.column[range.clone()];
+            // A finite number times 0 is 0, all others give NaN.
+            let mut check = [0.0; 9];
+            for ((block, a), &j) in row.iter_mut().zip(&matrix.blocks[range.clone()]).zip(columns) {
+                *block = a.map(|a| a as f32);
+                if rows != 0 {
+                    mask(block, rows, 0);
+                }
+                for m in 0..9 {
+                    check[m] += block[m] * 0.0;
+                }
+                let columns = fixed.node(j as usize);
+                if columns != 0 {
+                    mask(block, 0, columns);
+                }
+            }
+            if rows != 0 {
+                let diagonal = &mut row[pattern.diagonal[i] as usize - range.start];
+                (0..3).filter(|c| rows >> c & 1 != 0).for_each(|c| diagonal[4 * c] = 1.0);
+            }
+            if check.iter().any(|x| x.is_nan()) {
+                not_finite.fetch_min(i, Ordering::Relaxed);
+            }
+        });
+        match not_finite.into_inner() {
+            usize::MAX => Ok(()),
+            node => Err(LinalgError::NotFinite { place: "the matrix", node }),
         }
     }
 
+    /// z = one V-cycle's approximation of A^-1 v from zero. `v` must be zero at fixed unknowns; so is `z`.
+    pub fn v_cycle<T: Real>(&mut self, v: &[T], z: &mut [f32]) {
+        let v = v.as_chunks::<3>().0;
+        each(&mut self.levels[0].b, |i, b| *b = [v[i][0].to_f64() as f32, v[i][1].to_f64() as f32, v[i][2].to_f64() as f32, 0.0]);
+        self.cycle();
+        let x = &self.levels[0].x;
+        each(z.as_chunks_mut::<3>().0, |i, z| *z = [x[i][0], x[i][1], x[i][2]]);
+    }
+
+    /// As [`Hierarchy::v_cycle`], and w = A z in f32.
+    pub(super) fn v_cycle_and_product(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
+        self.v_cycle(v, z);
+        let (matrix, x) = (&self.levels[0].smoother.matrix, &self.levels[0].x);
+        each(w.as_chunks_mut::<3>().0, |i, w| {
+            let y = row_times(matrix, i, x).to_array();
+            *w = [y[0], y[1], y[2]];
+        });
+    }
+
+    /// One V-cycle on the finest level's b; leaves its solution in x.
     fn cycle(&mut self) {
         let last = self.levels.len() - 1;
         for l in 0..last {
             let (fine, coarse) = self.levels.split_at_mut(l + 1);
-            let (level, coarse) = (&mut fine[l], &mut coarse[0]);
-            level.smoothed.smooth_from_zero(self.smoother, &level.b, &mut level.x, &mut level.r);
+            let level = &mut fine[l];
+            level.smoother.smooth_from_zero(&level.b, &mut level.x);
+            level.smoother.residual(&level.b, &level.x, &mut level.r);
             if let Some(transfer) = &level.transfer {
-                transfer.restrict(&level.r, &mut coarse.b);
+                transfer.restrict(&level.r, &mut coarse[0].b);
             }
         }
         let coarsest = &mut self.levels[last];
         match &mut self.dense {
             Some(dense) => dense.solve(&coarsest.b, &mut coarsest.x),
-            None => {
-                coarsest.smoothed.smooth_from_zero(self.smoother, &coarsest.b, &mut coarsest.x, &mut coarsest.r);
-                (0..COARSEST_SWEEPS).for_each(|_| coarsest.smoothed.smooth(self.smoother, &coarsest.b, &mut coarsest.x));
-            }
+            None => coarsest.smoother.smooth_from_zero(&coarsest.b, &mut coarsest.x),
         }
         for l in (0..last).rev() {
             let (fine, coarse) = self.levels.split_at_mut(l + 1);
@@ -165,46 +169,27 @@ impl Hierarchy {
                 transfer.prolong_add(&coarse[0].x, &mut level.x);
             }
             if l == 0 {
-                for (x, &mask) in level.x.iter_mut().zip(&self.fixed).filter(|(_, mask)| **mask != 0) {
-                    (0..3).filter(|c| mask >> c & 1 != 0).for_each(|c| x[c] = 0.0);
-                }
+                self.fixed.clear_nodes(&mut level.x);
             }
-            level.smoothed.smooth(self.smoother, &level.b, &mut level.x);
+            level.smoother.smooth(&level.b, &mut level.x);
         }
     }
 }
 
 impl Level {
-    fn new(pattern: Pattern, transfer: Option<Transfer>) -> Self {
-        let zero = vec![[0.0; 3]; pattern.rows()];
-        Self { smoothed: Smoothed::new(pattern), transfer, b: zero.clone(), x: zero.clone(), r: zero }
+    fn new(pattern: Pattern, degree: usize, transfer: Option<Transfer>) -> Self {
+        let zero = vec![[0.0; 4]; pattern.rows()];
+        Self { smoother: Smoother::new(pattern, degree), transfer, b: zero.clone(), x: zero.clone(), r: zero }
     }
 }
 
 /// Zeroes the rows and columns whose bits are set.
-fn mask_block(block: &mut [f32; 9], rows: u8, columns: u8) {
+pub(super) fn mask(block: &mut [f32; 9], rows: u8, columns: u8) {
     for (m, a) in block.iter_mut().enumerate() {
         if (rows >> (m / 3) | columns >> (m % 3)) & 1 != 0 {
             *a = 0.0;
         }
     }
-}
-
-/// The pattern with rows and columns in another order, and the entry of the old one behind each of the new one.
-fn permuted(pattern: &Pattern, order: &[u32]) -> (Pattern, Vec<u32>) {
-    let mut rank = vec![0u32; order.len()];
-    for (i, &node) in order.iter().enumerate() {
-        rank[node as usize] = i as u32;
-    }
-    let mut source = Vec::with_capacity(pattern.entries());
-    let rows = order.iter().map(|&node| {
-        let mut row: Vec<(u32, u32)> =
-            pattern.row(node as usize).map(|at| (rank[pattern.column[at] as usize], at as u32)).collect();
-        row.sort_unstable();
-        source.extend(row.iter().map(|&(_, at)| at));
-        row.into_iter().map(|(j, _)| j).collect()
-    });
-    (Pattern::from_rows(rows), source)
 }
 
 fn check(mut rows: usize, prolongations: &[Prolongation]) -> Result<(), LinalgError> {

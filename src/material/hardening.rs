@@ -12,7 +12,6 @@
 //! Stresses are in one unit throughout (inside the program: scaled by E).
 
 // `!(x > 0)` is true for a NaN, which is what it is written for.
-#![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use crate::case;
 use crate::real::Real;

@@ -11,15 +11,14 @@ use super::{
     StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
+use crate::compute::Description;
 use crate::simulation::drive::{Observer, StepView};
 
 /// What the summary has to know beside the history.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Device that runs the kernels.
-    pub device: String,
-    /// Their precision, f32 or f64.
-    pub precision: String,
+    /// Device that runs the kernels, and their precision.
+    pub computed_on: Description,
     /// Elements of the mesh.
     pub elements: usize,
     /// Displacements that are not prescribed.
@@ -82,6 +81,11 @@ impl ResultWriter {
         })
     }
 
+    /// Says anew where the run is computed: a device may have failed on the way.
+    pub fn computed_on(&mut self, description: Description) {
+        self.setting.computed_on = description;
+    }
+
     /// Steps written so far.
     pub fn steps(&self) -> usize {
         self.rows.len()
@@ -103,8 +107,8 @@ impl ResultWriter {
             status,
             elements: self.setting.elements,
             unknowns: self.setting.unknowns,
-            device: self.setting.device,
-            precision: self.setting.precision,
+            device: self.setting.computed_on.device,
+            precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.fallbacks,
             wall_s: self.clock.wall_seconds(),
             cpu_s: self.clock.cpu_seconds(),

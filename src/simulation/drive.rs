@@ -390,6 +390,7 @@ impl<'a> Drive<'a> {
         };
         self.state.record.max_alpha = energies.max_alpha;
         self.last_report = report;
+        self.backend.take_notes().iter().for_each(|note| observer.note(note));
         observer.step(&mut self.view()).map_err(SimulationError::Observer)
     }
 

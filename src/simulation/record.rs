@@ -28,7 +28,8 @@ pub struct StepRecord {
     pub newton_iterations: usize,
     /// Attempts that failed and were bisected on the way to this step.
     pub cutbacks: usize,
-    /// Contact radius from the gap outside the contact, a check on `a`.
+    /// Contact radius from the gap outside the contact, a check on `a`: the radius at which a node just touches, up to half an element
+    /// larger than `a` where the pressure ends abruptly.
     #[serde(default)]
     pub a_gap: f64,
     /// Krylov iterations.

@@ -138,9 +138,10 @@ impl Newton {
             };
             report.fallbacks += usize::from(fallback);
             highest = highest.max(self.current.merit);
-            // The first iteration moves the plate: its merit is not comparable with what was before.
+            // An iteration that moves the plate has no merit before it to be compared with.
+            let moves_plate = iteration == 0 && !self.plate_is_placed(control);
             let reference = match iteration {
-                0 => f64::INFINITY,
+                0 if moves_plate => f64::INFINITY,
                 i if i < MONOTONE_FROM => highest,
                 _ => self.current.merit,
             };
@@ -151,7 +152,7 @@ impl Newton {
                 Err(Outcome::Inverted { element, point }) => return Ok(Err(StepFailure::Inverted { element, point })),
                 Err(Outcome::Valid) => return Ok(Err(self.exhausted(&mesh, iteration + 1))),
             };
-            if iteration == 0 {
+            if moves_plate {
                 highest = 0.0;
                 previous = f64::INFINITY;
             }
@@ -196,7 +197,9 @@ impl Newton {
                 }
             }
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
-            self.current.evaluate(case, &self.boundary, control)?;
+            // A shift leaves the forces as they are. Evaluated anew they would be those of an unloaded body, nothing but rounding, and
+            // which points stick would hang on it: the step would go another way on every device.
+            self.current.assess(case, &self.boundary, control)?;
         }
         Ok(())
     }

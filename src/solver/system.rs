@@ -90,6 +90,11 @@ impl Trial {
             self.merit = f64::INFINITY;
             return Ok(outcome);
         }
+        self.assess(case, boundary, control)
+    }
+
+    /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces there.
+    pub fn assess(&mut self, case: &mut dyn Evaluate, boundary: &Boundary, control: &Control) -> Result<Outcome, ComputeError> {
         case.contact(&self.u, &self.force, &mut self.rows)?;
         let mesh = case.model().mesh.clone();
         self.residual.copy_from_slice(&self.force);

@@ -164,6 +164,11 @@ impl<T> StorageBuffer<T> {
         self.len == 0
     }
 
+    /// Its name in errors.
+    pub fn what(&self) -> &str {
+        &self.what
+    }
+
     /// The whole array, as a kernel's argument.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         self.raw.as_entire_binding()
@@ -178,6 +183,22 @@ impl GpuContext {
     pub fn chunks(&self, what: &str, records: usize, widest: u64, total: u64) -> Result<Vec<Chunk>, GpuError> {
         let binding = self.adapter().max_binding.min(self.adapter().max_buffer);
         chunks(what, records, widest, total, binding, self.budget.limit().saturating_sub(self.budget.used()))
+    }
+
+    /// Splits `records` by what one binding of this device holds, where each has `widest` bytes.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] if a single record does not fit.
+    pub fn chunks_of_bindings(&self, what: &str, records: usize, widest: u64) -> Result<Vec<Chunk>, GpuError> {
+        chunks(what, records, widest, 0, self.adapter().max_binding.min(self.adapter().max_buffer), u64::MAX)
+    }
+
+    /// Whether `bytes` are left of the memory budget.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfBudget`].
+    pub fn has_room(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
+        self.budget.reserve(what, bytes).map(drop)
     }
 
     /// An array of `len` zeros. `what` names it in errors.

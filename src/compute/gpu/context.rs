@@ -95,6 +95,12 @@ impl GpuContext {
         self
     }
 
+    /// The same without double precision, as most interfaces but Vulkan are. For tests of what is done then.
+    pub fn without_double_precision(mut self) -> Self {
+        self.adapter.double_precision = false;
+        self
+    }
+
     /// The adapter behind this device.
     pub fn adapter(&self) -> &Adapter {
         &self.adapter
@@ -140,7 +146,12 @@ impl GpuContext {
         let errors = [pollster::block_on(validation.pop()), pollster::block_on(memory.pop()), pollster::block_on(internal.pop())];
         match errors.into_iter().flatten().next() {
             None => Ok(made),
-            Some(e) => Err(GpuError::Rejected { what: what.to_owned(), message: e.to_string().trim().to_owned() }),
+            Some(e) => {
+                // A lost device refuses everything; it says that it is lost when it is polled.
+                let _ = self.device.poll(wgpu::PollType::Poll);
+                self.check()?;
+                Err(GpuError::Rejected { what: what.to_owned(), message: e.to_string().trim().to_owned() })
+            }
         }
     }
 

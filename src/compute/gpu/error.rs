@@ -110,3 +110,9 @@ pub enum GpuError {
         seconds: u64,
     },
 }
+
+impl From<GpuError> for crate::compute::ComputeError {
+    fn from(error: GpuError) -> Self {
+        Self::Device(error.to_string())
+    }
+}

@@ -17,7 +17,7 @@ impl DeviceHealth {
     pub fn fail(&self, fault: GpuError) {
         let mut slot = self.fault.lock().unwrap_or_else(PoisonError::into_inner);
         if slot.is_none() {
-            log::error!("{fault}");
+            log::debug!("{fault}");
             *slot = Some(fault);
         }
     }

@@ -147,14 +147,14 @@ impl<R: DeviceReal> ReturnMapping<R> {
         let dimensions = context.block("dimensions")?;
         let arguments = vec![
             dimensions.binding(),
-            parameters.binding(),
-            table.binding(),
             active.binding(),
             relative.binding(),
             committed.binding(),
             answer.binding(),
             tangent.binding(),
             status.binding(),
+            parameters.binding(),
+            table.binding(),
         ];
         let bound = context.bind(&pipeline, arguments)?;
         Ok(Self { cases, points, relative, committed, answer, tangent, status, active, dimensions, bound })

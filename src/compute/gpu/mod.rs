@@ -3,22 +3,32 @@
 //! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory budget, [`shader_sources`] lists
 //! the WGSL of every kernel, [`pipelines`] compiles and dispatches it, [`lint`] proves things about it that no compiler checks.
 //!
+//! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the device; [`backend`] is the
+//! [`Compute`](super::Compute) of it in one precision, [`mixed`] that of a device without double precision.
+//!
 //! A device fails quietly: a lost one ignores what is submitted and leaves old numbers in its buffers. [`health::DeviceHealth`]
 //! and the tickets of [`buffers`] turn that into an error; nothing is read back without both having been asked.
 
 pub mod adapters;
+pub mod backend;
+pub mod batch;
+pub mod block_plan;
 pub mod buffers;
 pub mod context;
 pub mod error;
 pub mod health;
 pub mod lint;
 pub mod material;
+pub mod mixed;
 pub mod pipelines;
 pub mod report;
+pub mod resident;
 pub mod shader_sources;
 
 pub use adapters::{Adapter, AdapterKind, Choice, DeviceRequest};
+pub use backend::Gpu;
 pub use buffers::{Chunk, DeviceReal, StorageBuffer};
 pub use context::GpuContext;
 pub use error::GpuError;
+pub use mixed::Mixed;
 pub use shader_sources::{Kernel, Precision};

@@ -1,5 +1,6 @@
 //! Compiling kernels once, and running them.
 
+use super::buffers::StorageBuffer;
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::lint;
@@ -51,7 +52,7 @@ impl GpuContext {
         let start = Instant::now();
         let source = kernel.assemble(precision);
         let pipeline =
-            Arc::new(self.compile(kernel, &source).inspect_err(|e| log::error!("{} in {precision}: {e}", kernel.name))?);
+            Arc::new(self.compile(kernel, &source).inspect_err(|e| log::debug!("{} in {precision}: {e}", kernel.name))?);
         log::debug!("compiled {} in {precision}: {:.3} s before the driver's share", kernel.name, start.elapsed().as_secs_f64());
         compiled.insert((kernel.name, precision), Arc::clone(&pipeline));
         Ok(pipeline)
@@ -149,6 +150,29 @@ impl Recorder<'_> {
         pass.set_pipeline(&bound.pipeline.raw);
         pass.set_bind_group(0, &bound.group, &[]);
         pass.dispatch_workgroups(groups as u32, cases as u32, 1);
+        self.dispatches += 1;
+        Ok(())
+    }
+
+    /// Appends a copy of `count` elements from one array to another, after the kernels before it.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] beyond the end of either.
+    pub fn copy<T>(
+        &mut self,
+        from: &StorageBuffer<T>,
+        first: usize,
+        to: &StorageBuffer<T>,
+        to_first: usize,
+        count: usize,
+    ) -> Result<(), GpuError> {
+        for (buffer, first) in [(from, first), (to, to_first)] {
+            if first.checked_add(count).is_none_or(|end| end > buffer.len()) {
+                return Err(GpuError::Length { what: buffer.what().to_owned(), expected: buffer.len(), given: first + count });
+            }
+        }
+        let size = size_of::<T>() as u64;
+        self.encoder.copy_buffer_to_buffer(&from.raw, first as u64 * size, &to.raw, to_first as u64 * size, count as u64 * size);
         self.dispatches += 1;
         Ok(())
     }

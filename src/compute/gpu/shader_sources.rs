@@ -62,6 +62,17 @@ pub const MATERIAL: Source = source!("material/material.wgsl");
 pub const J2: Source = source!("material/j2.wgsl");
 const RETURN_MAPPING_POINTS: Source = source!("material/return_mapping.wgsl");
 
+/// The shape of a batch.
+pub const BATCH: Source = source!("batch.wgsl");
+/// Geometry and kinematics of the element.
+pub const HEX8: Source = source!("element/hex8.wgsl");
+/// A quadrature point at a trial displacement.
+pub const POINT: Source = source!("element/point.wgsl");
+/// Gap and slip.
+pub const PLANE: Source = source!("contact/plane.wgsl");
+/// The contact conditions of a point.
+pub const COULOMB: Source = source!("contact/coulomb.wgsl");
+
 /// How a kernel sees an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Binding {
@@ -87,7 +98,19 @@ pub struct Kernel {
 }
 
 /// Every kernel of the program.
-pub static KERNELS: &[&Kernel] = &[&RETURN_MAPPING];
+pub static KERNELS: &[&Kernel] = &[
+    &RETURN_MAPPING,
+    &HEX8_JACOBIAN,
+    &HEX8_INTERNAL_FORCE,
+    &HEX8_MODULI,
+    &HEX8_UPDATE,
+    &HEX8_ENERGIES,
+    &GATHER_NODE_FORCE,
+    &GATHER_TANGENT_BLOCKS,
+    &CONTACT_POINTS,
+];
+
+use Binding::{Read, ReadWrite, Uniform};
 
 /// The return mapping at every point of every active case; driven by [`super::material`].
 pub static RETURN_MAPPING: Kernel = Kernel {
@@ -98,12 +121,76 @@ pub static RETURN_MAPPING: Kernel = Kernel {
         Binding::Read,
         Binding::Read,
         Binding::Read,
+        Binding::ReadWrite,
+        Binding::ReadWrite,
+        Binding::ReadWrite,
         Binding::Read,
         Binding::Read,
-        Binding::ReadWrite,
-        Binding::ReadWrite,
-        Binding::ReadWrite,
     ],
+    workgroup: 64,
+};
+
+/// det F - 1 of every quadrature point; this and the following are driven by [`super::batch`].
+pub static HEX8_JACOBIAN: Kernel = Kernel {
+    name: "hex8_jacobian",
+    sources: &[BATCH, HEX8, source!("element/jacobian.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite],
+    workgroup: 64,
+};
+
+/// The weighted stress of every quadrature point.
+pub static HEX8_INTERNAL_FORCE: Kernel = Kernel {
+    name: "hex8_internal_force",
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, POINT, source!("element/internal_force.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
+    workgroup: 64,
+};
+
+/// The weighted moduli of every quadrature point.
+pub static HEX8_MODULI: Kernel = Kernel {
+    name: "hex8_moduli",
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, POINT, source!("element/tangent.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
+    workgroup: 64,
+};
+
+/// The state of every quadrature point at the end of a step.
+pub static HEX8_UPDATE: Kernel = Kernel {
+    name: "hex8_update",
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, POINT, source!("element/update.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite],
+    workgroup: 64,
+};
+
+/// The energies of every element at the end of a step.
+pub static HEX8_ENERGIES: Kernel = Kernel {
+    name: "hex8_energies",
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, source!("element/energies.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
+    workgroup: 64,
+};
+
+/// Stresses into nodal forces.
+pub static GATHER_NODE_FORCE: Kernel = Kernel {
+    name: "gather_node_force",
+    sources: &[BATCH, HEX8, source!("gather/node_force.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
+    workgroup: 64,
+};
+
+/// Moduli into the tangent's upper block triangle.
+pub static GATHER_TANGENT_BLOCKS: Kernel = Kernel {
+    name: "gather_tangent_blocks",
+    sources: &[BATCH, TENSOR, HEX8, source!("gather/tangent_blocks.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
+    workgroup: 64,
+};
+
+/// The contact conditions of every point.
+pub static CONTACT_POINTS: Kernel = Kernel {
+    name: "contact_points",
+    sources: &[BATCH, PLANE, COULOMB, source!("contact/contact_points.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
 

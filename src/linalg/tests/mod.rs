@@ -1,8 +1,10 @@
 //! Tests of the room: the solvers against each other on elasticity problems.
 
+mod krylov;
 mod problem;
+mod products;
 mod solve;
 mod timing;
 
-pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, Smoother, SolverKind};
+pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, SolverKind};
 pub(super) use crate::mesh::{Mesh, Prolongation};

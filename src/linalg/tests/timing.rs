@@ -39,13 +39,13 @@ fn kernels() {
     println!("product f32>f64  {:.2} ms", 1e3 * least(60, || single.multiply(&narrow, &mut y)));
     let mut copy = problem.matrix.clone();
     println!("copy             {:.2} ms", 1e3 * least(10, || copy.blocks.copy_from_slice(&problem.matrix.blocks)));
-    for smoother in [Smoother::GaussSeidel { sweeps: 1 }, Smoother::Chebyshev { degree: 3 }] {
+    {
         let start = cpu_seconds();
-        let mut hierarchy = Hierarchy::new(&pattern, &problem.prolongations, smoother).unwrap();
-        println!("{smoother:?}: set-up {:.1} ms, levels {:?}", 1e3 * (cpu_seconds() - start), hierarchy.sizes());
+        let mut hierarchy = Hierarchy::new(&pattern, &problem.prolongations).unwrap();
+        println!("set-up {:.1} ms, levels {:?}", 1e3 * (cpu_seconds() - start), hierarchy.sizes());
         println!("  update         {:.2} ms", 1e3 * least(10, || hierarchy.update(&problem.matrix, &problem.fixed).unwrap()));
         println!("  V-cycle        {:.2} ms", 1e3 * least(30, || hierarchy.v_cycle(&wide, &mut y32)));
-        let mut solver = LinearSolver::with_smoother(SolverKind::Multigrid, &pattern, &problem.prolongations, smoother).unwrap();
+        let mut solver = LinearSolver::new(SolverKind::Multigrid, &pattern, &problem.prolongations).unwrap();
         solver.update(&problem.matrix, &problem.fixed).unwrap();
         for tolerance in [1e-2, 1e-3] {
             let mut iterations = 0;
@@ -56,5 +56,29 @@ fn kernels() {
                 1e3 * time / iterations as f64
             );
         }
+    }
+}
+
+#[test]
+#[ignore = "prints times"]
+fn direct() {
+    for per_radius in [8, 12, 16] {
+        let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: per_radius, fine_zone: 1.5 };
+        let problem = Brick::slipping(1).on(&sphere_mesh(&spec).unwrap());
+        let start = cpu_seconds();
+        let memory = super::super::DirectSolver::new(&problem.matrix.pattern).memory();
+        let order = cpu_seconds() - start;
+        let mut solver = LinearSolver::new(SolverKind::Direct, &problem.matrix.pattern, &[]).unwrap();
+        let start = cpu_seconds();
+        solver.update(&problem.matrix, &problem.fixed).unwrap();
+        let update = cpu_seconds() - start - order;
+        let start = cpu_seconds();
+        let report = solver.solve(&problem.rhs, 1e-10, &mut vec![0.0; problem.rhs.len()]).unwrap();
+        println!(
+            "{} unknowns: {} MB, order {order:.2} s, factors {update:.2} s, solve {:.3} s {report:?}",
+            problem.rhs.len(),
+            memory >> 20,
+            cpu_seconds() - start
+        );
     }
 }

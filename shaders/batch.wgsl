@@ -1,0 +1,16 @@
+// The shape of a batch: what every kernel of it knows. A dispatch runs along x over the items of a case and along y over its
+// slots, the cases that were asked for; what stays on the device is indexed by case, what a dispatch makes by slot.
+struct Dimensions {
+    cases: u32,             // in the resident arrays
+    in_dispatch: u32,       // slots in use
+    nodes: u32,
+    elements: u32,
+    contact_points: u32,
+    blocks: u32,            // upper block triangle of the tangent
+    reserved_0: u32,
+    reserved_1: u32,
+}
+
+@group(0) @binding(0) var<uniform> dimensions: Dimensions;
+// For each slot: its case, and that case's geometry.
+@group(0) @binding(1) var<storage, read> active_cases: array<vec2<u32>>;

@@ -1,0 +1,47 @@
+// The contact conditions of every point that can touch: a thread a point.
+
+@group(0) @binding(2) var<storage, read> weight: array<real>;           // [geometry][point]: c of Alart and Curnier
+@group(0) @binding(3) var<storage, read> on_symmetry_plane: array<u32>; // [point]
+@group(0) @binding(4) var<storage, read> friction: array<real>;         // [case]
+@group(0) @binding(5) var<storage, read> gap_at_start: array<real>;     // [case][point]
+@group(0) @binding(6) var<storage, read> trial: array<real>;            // [slot][force, increment][point]
+@group(0) @binding(7) var<storage, read_write> answer: array<real>;     // [slot][residual, force rows, displacement rows][point]
+@group(0) @binding(8) var<storage, read_write> answer_status: array<u32>;   // [slot][point]: status + 4, 8, 16 for fixed x, y, z
+
+@compute @workgroup_size(64)
+fn contact_points(@builtin(global_invocation_id) id: vec3<u32>) {
+    let points = dimensions.contact_points;
+    if id.x >= points || id.y >= dimensions.in_dispatch {
+        return;
+    }
+    let slot = id.y;
+    let case_index = active_cases[slot].x;
+    let t = 6u * slot * points + id.x;
+    let increment = vec3<real>(trial[t + 3u * points], trial[t + 4u * points], trial[t + 5u * points]);
+    let point = ContactPoint(
+        vec3<real>(trial[t], trial[t + points], trial[t + 2u * points]),
+        gap(gap_at_start[case_index * points + id.x], increment.z),
+        slip(increment),
+        weight[active_cases[slot].y * points + id.x],
+        on_symmetry_plane[id.x] != 0u,
+    );
+    let rows = contact_rows(friction[case_index], point);
+    var at = 21u * slot * points + id.x;
+    at = store(at, rows.residual);
+    at = store(at, rows.force_rows[0]);
+    at = store(at, rows.force_rows[1]);
+    at = store(at, rows.force_rows[2]);
+    at = store(at, rows.displacement_rows[0]);
+    at = store(at, rows.displacement_rows[1]);
+    at = store(at, rows.displacement_rows[2]);
+    let fixed = select(vec3<u32>(), vec3<u32>(4u, 8u, 16u), rows.fixed);
+    answer_status[slot * points + id.x] = rows.status + fixed.x + fixed.y + fixed.z;
+}
+
+fn store(at: u32, v: vec3<real>) -> u32 {
+    let points = dimensions.contact_points;
+    answer[at] = v.x;
+    answer[at + points] = v.y;
+    answer[at + 2u * points] = v.z;
+    return at + 3u * points;
+}

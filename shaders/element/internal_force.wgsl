@@ -1,0 +1,28 @@
+// The stress of every quadrature point, ready to be gathered into nodal forces: V tau F^-T, so that the force on node a is its
+// product with the reference gradient of N_a, summed over the points around the node.
+
+@group(0) @binding(12) var<storage, read_write> stress: array<real>;    // [slot][3 k + i][point]: component (i, k)
+
+@compute @workgroup_size(64)
+fn hex8_internal_force(@builtin(global_invocation_id) id: vec3<u32>) {
+    if is_outside(id, point_count()) {
+        return;
+    }
+    let at = point_place(id);
+    let material = load_material(at.case_index, dimensions.cases);
+    let a = evaluate_point(at, material);
+    if !a.valid {
+        return;
+    }
+    let p = pressure(material.elasticity, a.k.theta_minus_1).x;
+    let tau = sym_scale(point_volume(at.geometry, at.point), kirchhoff_stress(a, p));
+    let piola = sym_matrix(tau) * transpose(a.k.f_inverse);
+    let points = point_count();
+    let first = 9u * at.slot * points + at.point;
+    for (var k = 0u; k < 3u; k++) {
+        let column = first + 3u * k * points;
+        stress[column] = piola[k].x;
+        stress[column + points] = piola[k].y;
+        stress[column + 2u * points] = piola[k].z;
+    }
+}

@@ -1,0 +1,234 @@
+//! A batch of cases on a device, everything in one precision.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::batch::{Batch, CONTACT_ANSWER, CONTACT_TRIAL, Dispatch};
+use super::buffers::DeviceReal;
+use super::context::GpuContext;
+use super::error::GpuError;
+use crate::compute::cpu::Cpu;
+use crate::compute::{
+    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
+    Outcome, TangentRequest,
+};
+use crate::contact::coulomb::{Rows, Status};
+use crate::contact::plane::slip;
+use crate::element::hex8::QUADRATURE_POINTS;
+use crate::material::PointState;
+
+/// Evaluates a batch on a device in precision `R`: residuals, tangents, contact and state.
+///
+/// Committed states live on the device. Trial displacements go there as increments from the committed displacement, formed in f64
+/// and rounded once, so that f32 loses no digits of a small step.
+pub struct Gpu<R> {
+    models: Vec<CaseModel>,
+    /// Committed displacements, in f64.
+    committed: Vec<Vec<f64>>,
+    batch: Option<Batch<R>>,
+    name: String,
+}
+
+impl<R: DeviceReal> Gpu<R> {
+    /// Takes a batch of cases in their undeformed, virgin state to a device.
+    ///
+    /// # Errors
+    /// [`ComputeError::Connectivity`], [`ComputeError::InvertedMesh`], [`ComputeError::Device`]: memory, limits, no double precision,
+    /// or the device's fault.
+    pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
+        let name = format!("{} ({})", context.adapter().name, context.adapter().kind);
+        let Some(first) = models.first() else {
+            return Ok(Self { models, committed: Vec::new(), batch: None, name });
+        };
+        for (case, model) in models.iter().enumerate() {
+            if model.mesh.elements != first.mesh.elements || model.mesh.contact_nodes != first.mesh.contact_nodes {
+                return Err(ComputeError::Connectivity { case });
+            }
+        }
+        context.supports(R::PRECISION)?;
+        let batch = Batch::new(context, &models)?;
+        let committed = models.iter().map(|m| vec![0.0; 3 * m.mesh.nodes.len()]).collect();
+        Ok(Self { models, committed, batch: Some(batch), name })
+    }
+
+    /// The device; none for an empty batch.
+    pub fn context(&self) -> Option<&Arc<GpuContext>> {
+        self.batch.as_ref().map(Batch::context)
+    }
+
+    fn batch(&self) -> Result<&Batch<R>, GpuError> {
+        let empty = || GpuError::Length { what: "the cases of the batch".into(), expected: 0, given: 1 };
+        self.batch.as_ref().ok_or_else(empty)
+    }
+
+    /// The dispatches for requests of these cases; none for no requests.
+    fn schedule(&self, cases: impl Iterator<Item = usize>) -> Vec<Dispatch> {
+        self.batch.as_ref().map_or_else(Vec::new, |b| b.schedule(&cases.collect::<Vec<_>>()))
+    }
+
+    /// Increments of a dispatch, `[slot][3 node + i]`: formed in f64, rounded once.
+    fn increments<'a>(&self, dispatch: &Dispatch, request: impl Fn(usize) -> (usize, &'a [f64])) -> Vec<R> {
+        let mut out = Vec::new();
+        for &i in &dispatch.requests {
+            let (case, displacement) = request(i);
+            out.extend(displacement.iter().zip(&self.committed[case]).map(|(u, c)| R::of(u - c)));
+        }
+        out
+    }
+}
+
+impl<R: DeviceReal> Compute for Gpu<R> {
+    fn description(&self) -> Description {
+        Description { device: self.name.clone(), precision: R::NAME }
+    }
+
+    fn models(&self) -> &[CaseModel] {
+        &self.models
+    }
+
+    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
+        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let (outcomes, force) = self.batch()?.internal_force(&dispatch, &increments)?;
+            for (slot, &i) in dispatch.requests.iter().enumerate() {
+                let request = &mut requests[i];
+                request.outcome = outcomes[slot];
+                let n = request.force.len();
+                request.force.iter_mut().zip(&force[slot * n..]).for_each(|(out, f)| *out = f.to_f64());
+            }
+        }
+        Ok(())
+    }
+
+    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
+        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let batch = self.batch()?;
+            let (outcomes, upper) = batch.tangent(&dispatch, &increments)?;
+            let count = batch.sizes().blocks;
+            for (slot, &i) in dispatch.requests.iter().enumerate() {
+                let request = &mut requests[i];
+                request.outcome = outcomes[slot];
+                if request.outcome != Outcome::Valid {
+                    continue;
+                }
+                let upper = &upper[slot * 9 * count..][..9 * count];
+                request.blocks.par_iter_mut().zip(&batch.plan.source).with_min_len(4096).for_each(|(out, &source)| {
+                    let (block, transposed) = (source as usize / 2, source % 2 == 1);
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            let component = if transposed { 3 * j + i } else { 3 * i + j };
+                            out[3 * i + j] = upper[component * count + block].to_f64();
+                        }
+                    }
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
+        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
+            let batch = self.batch()?;
+            let points = batch.sizes().contact_points;
+            let mut trial = vec![R::ZERO; dispatch.requests.len() * CONTACT_TRIAL * points];
+            for (trial, &i) in trial.chunks_exact_mut(CONTACT_TRIAL * points).zip(&dispatch.requests) {
+                let ContactRequest { case, displacement, force, .. } = &requests[i];
+                for (k, &node) in self.models[*case].mesh.contact_nodes.iter().enumerate() {
+                    let base = 3 * node as usize;
+                    let (u, start) = (&displacement[base..base + 3], &self.committed[*case][base..base + 3]);
+                    let [x, y] = slip([u[0], u[1]], [start[0], start[1]]);
+                    let numbers = [force[base], force[base + 1], force[base + 2], x, y, u[2] - start[2]];
+                    numbers.into_iter().enumerate().for_each(|(c, value)| trial[c * points + k] = R::of(value));
+                }
+            }
+            let (answer, status) = batch.contact(&dispatch, &trial)?;
+            for (slot, &i) in dispatch.requests.iter().enumerate() {
+                let request = &mut requests[i];
+                let sizes = &self.models[request.case].mesh.contact_size;
+                let component = |c: usize, k: usize| answer[(slot * CONTACT_ANSWER + c) * points + k].to_f64();
+                for (k, rows) in request.rows.iter_mut().enumerate() {
+                    let code = status[slot * points + k];
+                    let row = |first: usize| std::array::from_fn(|j| component(first + j, k));
+                    *rows = Rows {
+                        status: match code % 4 {
+                            0 => Status::Open,
+                            1 => Status::Stick,
+                            _ => Status::Slip,
+                        },
+                        residual: row(0),
+                        force_rows: [row(3), row(6), row(9)],
+                        displacement_rows: [row(12), row(15), row(18)],
+                        fixed: [code & 4 != 0, code & 8 != 0, code & 16 != 0],
+                        weight: R::of(crate::compute::cpu::CONTACT_WEIGHT * sizes[k]).to_f64(),
+                    };
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
+        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let (outcomes, energies) = self.batch()?.update(&dispatch, &increments)?;
+            for (slot, &i) in dispatch.requests.iter().enumerate() {
+                let request = &mut requests[i];
+                request.outcome = outcomes[slot];
+                if request.outcome != Outcome::Valid {
+                    continue;
+                }
+                let batch = self.batch()?;
+                batch.keep(&dispatch, slot, &self.models[request.case], request.displacement)?;
+                let elements = batch.sizes().elements;
+                let component = |c: usize| energies[(3 * slot + c) * elements..][..elements].iter().map(|e| e.to_f64());
+                request.energies = Energies {
+                    elastic: component(0).sum(),
+                    plastic: component(1).sum(),
+                    max_alpha: component(2).fold(0.0, f64::max),
+                };
+                self.committed[request.case].copy_from_slice(request.displacement);
+            }
+        }
+        Ok(())
+    }
+
+    /// Computed on the CPU, in the same precision, from the state on the device: it is output, and wanted once a step at most.
+    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
+        let state = self.state(case)?;
+        let mut twin = Cpu::<R>::new(vec![self.models[case].clone()])?;
+        twin.restore(0, &state)?;
+        twin.fields(0)
+    }
+
+    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
+        let batch = self.batch()?;
+        let (state, work) = batch.state(case)?;
+        let count = batch.sizes().points();
+        let point = |p: usize| {
+            let component = |c: usize| state[c * count + p].to_f64();
+            PointState { be: std::array::from_fn(component), alpha: component(6) }
+        };
+        Ok(CaseState {
+            displacement: self.committed[case].clone(),
+            points: (0..batch.sizes().elements).map(|e| std::array::from_fn(|q| point(QUADRATURE_POINTS * e + q))).collect(),
+            plastic_work: work.iter().map(|w| w.to_f64()).collect(),
+        })
+    }
+
+    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
+        let batch = self.batch()?;
+        let count = batch.sizes().points();
+        let mut rows = vec![R::ZERO; super::resident::STATE * count];
+        for (p, point) in state.points.iter().flatten().enumerate() {
+            for (c, &value) in point.be.iter().chain([&point.alpha]).enumerate() {
+                rows[c * count + p] = R::of(value);
+            }
+        }
+        let work: Vec<R> = state.plastic_work.iter().map(|&w| R::of(w)).collect();
+        batch.restore(case, &self.models[case], &state.displacement, &rows, &work)?;
+        self.committed[case].clone_from(&state.displacement);
+        Ok(())
+    }
+}

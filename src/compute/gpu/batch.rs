@@ -1,0 +1,375 @@
+//! The kernels of a batch: uploads, dispatches and downloads, in one precision.
+//!
+//! One dispatch serves all cases of a call that share a group of [`Resident`] arrays; each has a slot of the scratch arrays. What a
+//! slot gets does not depend on the others. Where scratch memory is short, a call takes several dispatches.
+
+use std::sync::Arc;
+
+use super::block_plan::BlockPlan;
+use super::buffers::{DeviceReal, StorageBuffer};
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::pipelines::Bound;
+use super::resident::{Connectivity, Resident, STATE, Sizes};
+use super::shader_sources::{
+    CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_MODULI,
+    HEX8_UPDATE, Kernel,
+};
+use crate::compute::cpu::CONTACT_WEIGHT;
+use crate::compute::gather::GatherPlan;
+use crate::compute::{CaseModel, ComputeError, Outcome};
+
+/// Components of `moduli`.
+const MODULI: usize = 31;
+/// Numbers that go to a contact point: force, increment.
+pub const CONTACT_TRIAL: usize = 6;
+/// Numbers that come from it: residual, force rows, displacement rows.
+pub const CONTACT_ANSWER: usize = 21;
+
+/// The block that `batch.wgsl` calls Dimensions.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Dimensions {
+    cases: u32,
+    in_dispatch: u32,
+    nodes: u32,
+    elements: u32,
+    contact_points: u32,
+    blocks: u32,
+    reserved: [u32; 2],
+}
+
+/// What dispatches make, slot by slot.
+#[derive(Debug)]
+struct Scratch<R> {
+    dimensions: StorageBuffer<Dimensions>,
+    active: StorageBuffer<[u32; 2]>,
+    increment: StorageBuffer<R>,
+    jacobian: StorageBuffer<R>,
+    first_invalid: StorageBuffer<u32>,
+    stress: StorageBuffer<R>,
+    force: StorageBuffer<R>,
+    moduli: StorageBuffer<R>,
+    blocks: StorageBuffer<R>,
+    next_state: StorageBuffer<R>,
+    point_work: StorageBuffer<R>,
+    energies: StorageBuffer<R>,
+    contact_trial: StorageBuffer<R>,
+    contact_answer: StorageBuffer<R>,
+    contact_status: StorageBuffer<u32>,
+}
+
+impl<R: DeviceReal> Scratch<R> {
+    fn new(context: &GpuContext, sizes: Sizes, slots: usize) -> Result<Self, GpuError> {
+        let points = sizes.points();
+        let zeros = |what: &str, per_slot: usize| context.zeros(what, slots * per_slot);
+        Ok(Self {
+            dimensions: context.block("dimensions")?,
+            active: context.zeros("active cases", slots)?,
+            first_invalid: context.zeros("status", slots)?,
+            increment: zeros("increments", 3 * sizes.nodes)?,
+            jacobian: zeros("Jacobians", points)?,
+            stress: zeros("stresses", 9 * points)?,
+            force: zeros("internal forces", 3 * sizes.nodes)?,
+            moduli: zeros("moduli", MODULI * points)?,
+            blocks: zeros("tangent blocks", 9 * sizes.blocks)?,
+            next_state: zeros("new states", STATE * points)?,
+            point_work: zeros("energies of points", 2 * points)?,
+            energies: zeros("energies of elements", 3 * sizes.elements)?,
+            contact_trial: zeros("contact points", CONTACT_TRIAL * sizes.contact_points)?,
+            contact_answer: zeros("contact rows", CONTACT_ANSWER * sizes.contact_points)?,
+            contact_status: context.zeros("contact status", slots * sizes.contact_points)?,
+        })
+    }
+
+    /// Bytes of a slot with its share of the staging buffer: the widest array, and all together.
+    fn bytes(sizes: Sizes) -> (u64, u64) {
+        let points = sizes.points();
+        let widest = (MODULI * points).max(9 * sizes.blocks);
+        let all = (1 + 9 + MODULI + STATE + 2) * points + 6 * sizes.nodes + 2 * 9 * sizes.blocks + 3 * sizes.elements;
+        let contact = (CONTACT_TRIAL + CONTACT_ANSWER + 1) * sizes.contact_points;
+        ((widest * size_of::<R>()) as u64, ((all + contact + 16) * size_of::<R>()) as u64)
+    }
+}
+
+/// The kernels bound to a group of cases.
+#[derive(Debug)]
+struct Kernels {
+    jacobian: Bound,
+    internal_force: Bound,
+    node_force: Bound,
+    moduli: Bound,
+    tangent_blocks: Bound,
+    update: Bound,
+    energies: Bound,
+    contact: Bound,
+}
+
+/// The arrays and kernels of a batch.
+#[derive(Debug)]
+pub struct Batch<R> {
+    context: Arc<GpuContext>,
+    connectivity: Connectivity,
+    /// Where each block of the pattern comes from.
+    pub(super) plan: BlockPlan,
+    groups: Vec<(Resident<R>, Kernels)>,
+    scratch: Scratch<R>,
+    slots: usize,
+}
+
+/// Some of a call's requests, served by one dispatch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dispatch {
+    group: usize,
+    /// Indices of the requests, in the order of their slots.
+    pub requests: Vec<usize>,
+    /// Their cases.
+    cases: Vec<usize>,
+}
+
+impl<R: DeviceReal> Batch<R> {
+    /// Sends a batch of cases of one connectivity (there is at least one) and compiles its kernels.
+    ///
+    /// # Errors
+    /// [`ComputeError::InvertedMesh`]; what the device says, above all [`GpuError::OutOfBudget`] and [`GpuError::TooLarge`].
+    pub fn new(context: Arc<GpuContext>, models: &[CaseModel]) -> Result<Self, ComputeError> {
+        let mesh = models[0].mesh.clone();
+        let plan = BlockPlan::new(&mesh, &GatherPlan::new(&mesh));
+        let connectivity = Connectivity::new(&context, &mesh, &plan)?;
+        let sizes = connectivity.sizes;
+        let (widest, _) = sizes.resident_bytes::<R>();
+        let chunks = context.chunks_of_bindings("the geometry of a case", models.len(), widest)?;
+        let residents = chunks
+            .iter()
+            .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count], CONTACT_WEIGHT))
+            .collect::<Result<Vec<_>, _>>()?;
+        let (widest, all) = Scratch::<R>::bytes(sizes);
+        context.has_room("an evaluation of one case", all)?;
+        let most = chunks.iter().map(|c| c.count).max().unwrap_or(1);
+        let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
+        let scratch = Scratch::new(&context, sizes, slots)?;
+        let groups = residents
+            .into_iter()
+            .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
+            .collect::<Result<_, GpuError>>()?;
+        Ok(Self { context, connectivity, plan, groups, scratch, slots })
+    }
+
+    /// The device.
+    pub fn context(&self) -> &Arc<GpuContext> {
+        &self.context
+    }
+
+    /// Sizes of a case.
+    pub fn sizes(&self) -> Sizes {
+        self.connectivity.sizes
+    }
+
+    /// Splits a call's requests, given their cases, into dispatches.
+    pub fn schedule(&self, cases: &[usize]) -> Vec<Dispatch> {
+        let mut out = Vec::new();
+        for (group, (resident, _)) in self.groups.iter().enumerate() {
+            let range = resident.first..resident.first + resident.count;
+            let requests: Vec<usize> = (0..cases.len()).filter(|&i| range.contains(&cases[i])).collect();
+            out.extend(requests.chunks(self.slots).map(|requests| Dispatch {
+                group,
+                requests: requests.to_vec(),
+                cases: requests.iter().map(|&i| cases[i] - range.start).collect(),
+            }));
+        }
+        out
+    }
+
+    fn begin(&self, dispatch: &Dispatch) -> Result<(), GpuError> {
+        let (context, scratch, sizes) = (&self.context, &self.scratch, self.sizes());
+        let resident = &self.groups[dispatch.group].0;
+        let slots: Vec<[u32; 2]> = dispatch.cases.iter().map(|&c| [c as u32, resident.geometry_of[c]]).collect();
+        let [cases, in_dispatch, nodes, elements, contact_points, blocks] =
+            [resident.count, slots.len(), sizes.nodes, sizes.elements, sizes.contact_points, sizes.blocks].map(|n| n as u32);
+        let dimensions = Dimensions { cases, in_dispatch, nodes, elements, contact_points, blocks, reserved: [0; 2] };
+        context.upload(&scratch.dimensions, &[dimensions])?;
+        context.upload_at(&scratch.active, 0, &slots)
+    }
+
+    fn begin_element(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(), GpuError> {
+        self.begin(dispatch)?;
+        self.context.upload_at(&self.scratch.increment, 0, increments)?;
+        self.context.upload_at(&self.scratch.first_invalid, 0, &vec![u32::MAX; dispatch.cases.len()])
+    }
+
+    /// How each slot went.
+    fn outcomes(&self, dispatch: &Dispatch) -> Result<Vec<Outcome>, GpuError> {
+        let mut first = vec![0u32; dispatch.cases.len()];
+        self.context.download_at(&self.scratch.first_invalid, 0, &mut first)?;
+        let outcome = |code: u32| match code {
+            u32::MAX => Outcome::Valid,
+            code => Outcome::Inverted { element: code as usize / 16, point: code as usize % 8 },
+        };
+        Ok(first.into_iter().map(outcome).collect())
+    }
+
+    /// Internal forces `[slot][3 node + i]` at increments `[slot][3 node + i]`.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn internal_force(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+        self.begin_element(dispatch, increments)?;
+        let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
+        let mut list = self.context.record();
+        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
+        list.dispatch(&kernels.internal_force, sizes.points(), slots)?;
+        list.dispatch(&kernels.node_force, sizes.nodes, slots)?;
+        list.submit()?;
+        let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
+        self.context.download_at(&self.scratch.force, 0, &mut force)?;
+        Ok((self.outcomes(dispatch)?, force))
+    }
+
+    /// Upper blocks of the tangents, `[slot][3 i + j][block]`.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+        self.begin_element(dispatch, increments)?;
+        let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
+        let mut list = self.context.record();
+        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
+        list.dispatch(&kernels.moduli, sizes.points(), slots)?;
+        list.dispatch(&kernels.tangent_blocks, sizes.blocks, slots)?;
+        list.submit()?;
+        let mut blocks = vec![R::ZERO; slots * 9 * sizes.blocks];
+        self.context.download_at(&self.scratch.blocks, 0, &mut blocks)?;
+        Ok((self.outcomes(dispatch)?, blocks))
+    }
+
+    /// Contact rows `[slot][component][point]` and their status, from forces and increments `[slot][component][point]`.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn contact(&self, dispatch: &Dispatch, trial: &[R]) -> Result<(Vec<R>, Vec<u32>), GpuError> {
+        self.begin(dispatch)?;
+        self.context.upload_at(&self.scratch.contact_trial, 0, trial)?;
+        let (points, slots) = (self.sizes().contact_points, dispatch.cases.len());
+        let mut list = self.context.record();
+        list.dispatch(&self.groups[dispatch.group].1.contact, points, slots)?;
+        list.submit()?;
+        let mut answer = vec![R::ZERO; slots * CONTACT_ANSWER * points];
+        self.context.download_at(&self.scratch.contact_answer, 0, &mut answer)?;
+        let mut status = vec![0; slots * points];
+        self.context.download_at(&self.scratch.contact_status, 0, &mut status)?;
+        Ok((answer, status))
+    }
+
+    /// The states at increments, kept in scratch until [`Batch::keep`], and their energies `[slot][elastic, plastic, alpha][element]`.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn update(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+        self.begin_element(dispatch, increments)?;
+        let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
+        let mut list = self.context.record();
+        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
+        list.dispatch(&kernels.update, sizes.points(), slots)?;
+        list.dispatch(&kernels.energies, sizes.elements, slots)?;
+        list.submit()?;
+        let mut energies = vec![R::ZERO; slots * 3 * sizes.elements];
+        self.context.download_at(&self.scratch.energies, 0, &mut energies)?;
+        Ok((self.outcomes(dispatch)?, energies))
+    }
+
+    /// Makes the state in `slot` of the last [`Batch::update`] the committed one of its case, at `displacement`.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn keep(&self, dispatch: &Dispatch, slot: usize, model: &CaseModel, displacement: &[f64]) -> Result<(), GpuError> {
+        let (scratch, sizes, case) = (&self.scratch, self.sizes(), dispatch.cases[slot]);
+        let resident = &self.groups[dispatch.group].0;
+        let (state, elements) = (STATE * sizes.points(), sizes.elements);
+        let mut list = self.context.record();
+        list.copy(&scratch.next_state, slot * state, &resident.state, case * state, state)?;
+        list.copy(&scratch.energies, (3 * slot + 1) * elements, &resident.plastic_work, case * elements, elements)?;
+        list.submit()?;
+        resident.set_displacement(&self.context, sizes, case, &model.mesh, displacement)
+    }
+
+    /// Committed state `[component][point]` and plastic work `[element]` of a case.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn state(&self, case: usize) -> Result<(Vec<R>, Vec<R>), GpuError> {
+        let (resident, index) = self.resident(case)?;
+        let mut state = vec![R::ZERO; STATE * self.sizes().points()];
+        let mut work = vec![R::ZERO; self.sizes().elements];
+        self.context.download_at(&resident.state, index * state.len(), &mut state)?;
+        self.context.download_at(&resident.plastic_work, index * work.len(), &mut work)?;
+        Ok((state, work))
+    }
+
+    /// Replaces the committed state of a case.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn restore(&self, case: usize, model: &CaseModel, displacement: &[f64], state: &[R], work: &[R]) -> Result<(), GpuError> {
+        let (resident, index) = self.resident(case)?;
+        self.context.upload_at(&resident.state, index * STATE * self.sizes().points(), state)?;
+        self.context.upload_at(&resident.plastic_work, index * self.sizes().elements, work)?;
+        resident.set_displacement(&self.context, self.sizes(), index, &model.mesh, displacement)
+    }
+
+    fn resident(&self, case: usize) -> Result<(&Resident<R>, usize), GpuError> {
+        let holds = |r: &Resident<R>| (r.first..r.first + r.count).contains(&case);
+        let found = self.groups.iter().map(|(r, _)| r).find(|r| holds(r));
+        let expected = self.groups.iter().map(|(r, _)| r.count).sum();
+        let missing = || GpuError::Length { what: "the cases of the batch".into(), expected, given: case + 1 };
+        found.map(|r| (r, case - r.first)).ok_or_else(missing)
+    }
+}
+
+impl Kernels {
+    fn new<R: DeviceReal>(c: &GpuContext, mesh: &Connectivity, r: &Resident<R>, s: &Scratch<R>) -> Result<Self, GpuError> {
+        let shape = [s.dimensions.binding(), s.active.binding()];
+        let element = [
+            mesh.element_nodes.binding(),
+            r.gradient.binding(),
+            r.volume.binding(),
+            r.committed.binding(),
+            s.increment.binding(),
+        ];
+        let material = [r.parameters.binding(), r.table.binding()];
+        let at_points = [r.state.binding(), s.jacobian.binding(), s.first_invalid.binding()];
+        let bind = |kernel: &'static Kernel, parts: &[&[wgpu::BindingResource<'_>]]| {
+            let pipeline = c.pipeline(kernel, R::PRECISION)?;
+            c.bind(&pipeline, parts.concat())
+        };
+        let gather = [mesh.node_start.binding(), mesh.node_entry.binding(), s.stress.binding(), s.force.binding()];
+        let blocks = [mesh.block_start.binding(), mesh.block_entry.binding(), s.moduli.binding(), s.blocks.binding()];
+        let energies = [
+            s.jacobian.binding(),
+            s.next_state.binding(),
+            s.point_work.binding(),
+            r.plastic_work.binding(),
+            s.energies.binding(),
+        ];
+        let contact = [
+            r.weight.binding(),
+            mesh.on_symmetry_plane.binding(),
+            r.friction.binding(),
+            r.gap.binding(),
+            s.contact_trial.binding(),
+            s.contact_answer.binding(),
+            s.contact_status.binding(),
+        ];
+        let at =
+            |kernel, outputs: &[wgpu::BindingResource<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
+        Ok(Self {
+            jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &[s.jacobian.binding()]])?,
+            internal_force: at(&HEX8_INTERNAL_FORCE, &[s.stress.binding()])?,
+            node_force: bind(&GATHER_NODE_FORCE, &[&shape, &element, &gather])?,
+            moduli: at(&HEX8_MODULI, &[s.moduli.binding()])?,
+            tangent_blocks: bind(&GATHER_TANGENT_BLOCKS, &[&shape, &element, &blocks])?,
+            update: at(&HEX8_UPDATE, &[s.next_state.binding(), s.point_work.binding()])?,
+            energies: bind(&HEX8_ENERGIES, &[&shape, &element, &material, &energies])?,
+            contact: bind(&CONTACT_POINTS, &[&shape, &contact])?,
+        })
+    }
+}

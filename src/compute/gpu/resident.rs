@@ -1,0 +1,226 @@
+//! What stays on the device: the geometry, parameters and committed state of a group of cases.
+
+use std::sync::Arc;
+
+use super::block_plan::BlockPlan;
+use super::buffers::{DeviceReal, StorageBuffer};
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::material::flatten;
+use crate::compute::{CaseModel, ComputeError};
+use crate::contact::coulomb::Friction;
+use crate::element::hex8::{Geometry, Invalid, NODES, QUADRATURE_POINTS};
+use crate::material::Material;
+use crate::mesh::Mesh;
+
+/// Components of a point's committed state.
+pub const STATE: usize = super::material::STATE;
+/// Components of a point's reference gradients.
+pub const GRADIENT: usize = 3 * NODES;
+/// The coefficient of friction that stands for full stick in `coulomb.wgsl`.
+const FULL_STICK: f64 = -1.0;
+
+/// Sizes that all cases of a batch share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// Nodes.
+    pub nodes: usize,
+    /// Elements.
+    pub elements: usize,
+    /// Points that can touch.
+    pub contact_points: usize,
+    /// Blocks of the tangent's upper triangle.
+    pub blocks: usize,
+}
+
+impl Sizes {
+    /// Quadrature points of a case.
+    pub fn points(&self) -> usize {
+        QUADRATURE_POINTS * self.elements
+    }
+
+    /// Bytes a case keeps on the device, with its own geometry: the widest array, and all together.
+    pub fn resident_bytes<R>(&self) -> (u64, u64) {
+        let widest = GRADIENT * self.points();
+        let all = widest + (1 + STATE) * self.points() + self.elements + 3 * self.nodes + 2 * self.contact_points + 32;
+        ((widest * size_of::<R>()) as u64, (all * size_of::<R>()) as u64)
+    }
+}
+
+/// The lists of a connectivity, on the device.
+#[derive(Debug)]
+pub struct Connectivity {
+    /// Sizes of a case.
+    pub sizes: Sizes,
+    /// Nodes of each element.
+    pub element_nodes: StorageBuffer<u32>,
+    /// Starts of the nodes' lists of elements.
+    pub node_start: StorageBuffer<u32>,
+    /// The lists.
+    pub node_entry: StorageBuffer<u32>,
+    /// Starts of the blocks' lists of element blocks.
+    pub block_start: StorageBuffer<u32>,
+    /// The lists.
+    pub block_entry: StorageBuffer<u32>,
+    /// Whether each contact point lies on the symmetry plane.
+    pub on_symmetry_plane: StorageBuffer<u32>,
+}
+
+impl Connectivity {
+    /// Sends a mesh's lists.
+    ///
+    /// # Errors
+    /// As [`GpuContext::array`].
+    pub fn new(context: &GpuContext, mesh: &Mesh, plan: &BlockPlan) -> Result<Self, GpuError> {
+        let nodes: Vec<u32> = mesh.elements.iter().flatten().copied().collect();
+        let mut on_plane = vec![0u32; mesh.nodes.len()];
+        mesh.symmetry_nodes.iter().for_each(|&n| on_plane[n as usize] = 1);
+        let on_plane: Vec<u32> = mesh.contact_nodes.iter().map(|&n| on_plane[n as usize]).collect();
+        Ok(Self {
+            sizes: Sizes {
+                nodes: mesh.nodes.len(),
+                elements: mesh.elements.len(),
+                contact_points: mesh.contact_nodes.len(),
+                blocks: plan.blocks(),
+            },
+            element_nodes: context.array("element nodes", &nodes)?,
+            node_start: context.array("elements around nodes: starts", &mesh.node_elements.start)?,
+            node_entry: context.array("elements around nodes", &mesh.node_elements.entry)?,
+            block_start: context.array("blocks of the tangent: starts", &plan.start)?,
+            block_entry: context.array("blocks of the tangent", &plan.entry)?,
+            on_symmetry_plane: context.array("contact points on the symmetry plane", &on_plane)?,
+        })
+    }
+}
+
+/// A group of cases whose arrays the device binds together: all of a batch, or as many as one binding holds.
+#[derive(Debug)]
+pub struct Resident<R> {
+    /// First case of the batch.
+    pub first: usize,
+    /// Number of cases.
+    pub count: usize,
+    /// Index of each case's geometry among those of the group.
+    pub geometry_of: Vec<u32>,
+    pub(super) gradient: StorageBuffer<R>,
+    pub(super) volume: StorageBuffer<R>,
+    pub(super) committed: StorageBuffer<R>,
+    pub(super) parameters: StorageBuffer<R>,
+    pub(super) table: StorageBuffer<R>,
+    pub(super) state: StorageBuffer<R>,
+    pub(super) plastic_work: StorageBuffer<R>,
+    pub(super) weight: StorageBuffer<R>,
+    pub(super) friction: StorageBuffer<R>,
+    pub(super) gap: StorageBuffer<R>,
+}
+
+impl<R: DeviceReal> Resident<R> {
+    /// Sends `models`, the cases from `first` on, in their virgin state; `weights` are the contact weights of each case.
+    ///
+    /// # Errors
+    /// [`ComputeError::InvertedMesh`]; what [`GpuContext::array`] says.
+    pub fn new(
+        context: &GpuContext,
+        sizes: Sizes,
+        first: usize,
+        models: &[CaseModel],
+        contact_weight: f64,
+    ) -> Result<Self, ComputeError> {
+        let count = models.len();
+        let mut meshes: Vec<&Arc<Mesh>> = Vec::new();
+        let geometry_of: Vec<u32> = models
+            .iter()
+            .map(|model| {
+                let known = meshes.iter().position(|m| Arc::ptr_eq(m, &model.mesh));
+                known.unwrap_or_else(|| {
+                    meshes.push(&model.mesh);
+                    meshes.len() - 1
+                }) as u32
+            })
+            .collect();
+        let points = sizes.points();
+        let gradient = context.zeros("reference gradients", meshes.len() * GRADIENT * points)?;
+        let volume = context.zeros("reference volumes", meshes.len() * points)?;
+        let weight = context.zeros("contact weights", meshes.len() * sizes.contact_points)?;
+        for (index, mesh) in meshes.iter().enumerate() {
+            let (gradients, volumes) = flatten_geometry::<R>(mesh)?;
+            context.upload_at(&gradient, index * GRADIENT * points, &gradients)?;
+            context.upload_at(&volume, index * points, &volumes)?;
+            let weights: Vec<R> = mesh.contact_size.iter().map(|&h| R::of(contact_weight * h)).collect();
+            context.upload_at(&weight, index * sizes.contact_points, &weights)?;
+        }
+        let materials: Vec<Material<R>> = models.iter().map(|m| m.material.cast()).collect();
+        let (parameters, table) = flatten(&materials);
+        let friction: Vec<R> = models
+            .iter()
+            .map(|m| match m.friction {
+                Friction::Coulomb(mu) => R::of(mu),
+                Friction::Stick => R::of(FULL_STICK),
+            })
+            .collect();
+        let resident = Self {
+            first,
+            count,
+            geometry_of,
+            gradient,
+            volume,
+            weight,
+            committed: context.zeros("committed displacements", count * 3 * sizes.nodes)?,
+            parameters: context.array("material parameters", &parameters)?,
+            table: context.array("hardening tables", &table)?,
+            state: context.zeros("committed states", count * STATE * points)?,
+            plastic_work: context.zeros("plastic work", count * sizes.elements)?,
+            friction: context.array("coefficients of friction", &friction)?,
+            gap: context.zeros("gaps at the start of the step", count * sizes.contact_points)?,
+        };
+        let still = vec![0.0; 3 * sizes.nodes];
+        for (index, model) in models.iter().enumerate() {
+            resident.set_displacement(context, sizes, index, &model.mesh, &still)?;
+        }
+        Ok(resident)
+    }
+
+    /// Sends the committed displacement of the group's case `index`, rounded once, and the gaps that it leaves, formed in f64.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn set_displacement(
+        &self,
+        context: &GpuContext,
+        sizes: Sizes,
+        index: usize,
+        mesh: &Mesh,
+        displacement: &[f64],
+    ) -> Result<(), GpuError> {
+        let rounded: Vec<R> = displacement.iter().map(|&u| R::of(u)).collect();
+        context.upload_at(&self.committed, index * 3 * sizes.nodes, &rounded)?;
+        let gaps: Vec<R> = mesh
+            .contact_nodes
+            .iter()
+            .map(|&n| R::of(crate::contact::plane::gap(mesh.nodes[n as usize][2], displacement[3 * n as usize + 2])))
+            .collect();
+        context.upload_at(&self.gap, index * sizes.contact_points, &gaps)
+    }
+}
+
+/// Reference gradients `[3 a + j][point]` and volumes `[point]` of a mesh.
+fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
+    let points = QUADRATURE_POINTS * mesh.elements.len();
+    let mut gradient = vec![R::ZERO; GRADIENT * points];
+    let mut volume = vec![R::ZERO; points];
+    for (e, nodes) in mesh.elements.iter().enumerate() {
+        let geometry = Geometry::<R>::new(&nodes.map(|n| mesh.nodes[n as usize])).map_err(|invalid| {
+            let (Invalid::Inverted(point) | Invalid::Material(point)) = invalid;
+            ComputeError::InvertedMesh { element: e, point }
+        })?;
+        let first = QUADRATURE_POINTS * e;
+        volume[first..first + QUADRATURE_POINTS].copy_from_slice(&geometry.volume.0);
+        for a in 0..NODES {
+            for j in 0..3 {
+                let row = (3 * a + j) * points + first;
+                gradient[row..row + QUADRATURE_POINTS].copy_from_slice(&geometry.gradient[a][j].0);
+            }
+        }
+    }
+    Ok((gradient, volume))
+}

@@ -1,0 +1,145 @@
+//! The smoother: a Chebyshev polynomial of block Jacobi.
+
+use wide::f32x4;
+
+use super::bsr::BlockMatrix;
+use super::kernel::{Inverse, Node, inverse_times, row_times};
+use super::parallel::{each, each_of_two};
+use crate::mesh::pattern::Pattern;
+
+/// The polynomial damps the eigenvalues of D^-1 A between these.
+///
+/// 8 is a bound that needs no estimate: for the sum of positive semidefinite matrices of elements with 8 nodes, D the block
+/// diagonal, x^T A x <= 8 x^T D x by Cauchy and Schwarz in each element (Fried, J. Sound Vib. 20, 1972; Wathen, IMA J. Numer. Anal.
+/// 7, 1987). Measured on the sphere: 5.4 elastic, 7.8 with a plastic core, 7.9 nearly incompressible; on coarse levels 4 to 5.6. An
+/// estimate from below does harm: with 0.95 of the largest eigenvalue iterations double.
+const HIGH: f32 = 8.0;
+/// Iteration counts do not change by more than one from 0.12 to 0.5.
+const LOW: f32 = 0.25;
+
+/// A level's matrix, smoothed by Chebyshev acceleration of block Jacobi (Adams, Brezina, Hu and Tuminaro, J. Comput. Phys. 188,
+/// 2003): an error is multiplied by a polynomial of D^-1 A that is small on the upper part of its spectrum.
+#[derive(Clone, Debug)]
+pub(super) struct Smoother {
+    pub matrix: BlockMatrix<f32>,
+    degree: usize,
+    /// Inverses of the diagonal blocks.
+    inverse: Vec<Inverse>,
+    /// Last step of the recurrence, and the next iterate.
+    step: Vec<Node>,
+    next: Vec<Node>,
+}
+
+impl Smoother {
+    pub fn new(pattern: Pattern, degree: usize) -> Self {
+        let rows = pattern.rows();
+        Self {
+            matrix: BlockMatrix::zeros(pattern),
+            degree: degree.max(1),
+            inverse: vec![[[0.0; 4]; 3]; rows],
+            step: vec![[0.0; 4]; rows],
+            next: vec![[0.0; 4]; rows],
+        }
+    }
+
+    /// After the matrix changed.
+    pub fn update(&mut self) {
+        let (blocks, diagonal) = (&self.matrix.blocks, &self.matrix.pattern.diagonal);
+        each(&mut self.inverse, |i, inverse| *inverse = invert(&blocks[diagonal[i] as usize]));
+    }
+
+    /// x = the polynomial applied to b from x = 0.
+    pub fn smooth_from_zero(&mut self, b: &[Node], x: &mut Vec<Node>) {
+        self.smooth_with(b, x, true);
+    }
+
+    /// Smooths x towards A x = b.
+    pub fn smooth(&mut self, b: &[Node], x: &mut Vec<Node>) {
+        self.smooth_with(b, x, false);
+    }
+
+    /// r = b - A x.
+    pub fn residual(&self, b: &[Node], x: &[Node], r: &mut [Node]) {
+        let matrix = &self.matrix;
+        each(r, |i, r| *r = (f32x4::new(b[i]) - row_times(matrix, i, x)).to_array());
+    }
+
+    /// The recurrence of Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), Algorithm 12.1, for D^-1 A x = D^-1 b.
+    fn smooth_with(&mut self, b: &[Node], x: &mut Vec<Node>, from_zero: bool) {
+        let (center, half) = ((HIGH + LOW) / 2.0, (HIGH - LOW) / 2.0);
+        let mut rho = half / center;
+        let (mut keep, mut add) = (0.0, 1.0 / center);
+        let (matrix, inverse) = (&self.matrix, &self.inverse);
+        for k in 0..self.degree {
+            let (keep4, add4) = (f32x4::splat(keep), f32x4::splat(add));
+            if k > 0 || !from_zero {
+                let now: &[Node] = x;
+                each_of_two(&mut self.step, &mut self.next, |i, d, next| {
+                    let r = f32x4::new(b[i]) - row_times(matrix, i, now);
+                    let mut step = add4 * inverse_times(&inverse[i], r);
+                    if k > 0 {
+                        step += keep4 * f32x4::new(*d);
+                    }
+                    *d = step.to_array();
+                    *next = (f32x4::new(now[i]) + step).to_array();
+                });
+                std::mem::swap(x, &mut self.next);
+            } else {
+                each_of_two(&mut self.step, x, |i, d, x| {
+                    *d = (add4 * inverse_times(&inverse[i], f32x4::new(b[i]))).to_array();
+                    *x = *d;
+                });
+            }
+            let next = 1.0 / (2.0 * center / half - rho);
+            (keep, add) = (next * rho, 2.0 * next / half);
+            rho = next;
+        }
+    }
+}
+
+/// The inverse of a 3x3 block. Components whose row and column vanish are left alone (their inverse is 0, so they receive no
+/// correction); a block that is singular to rounding is shifted first.
+pub(super) fn invert(block: &[f32; 9]) -> Inverse {
+    let mut a = block.map(f64::from);
+    let scale = a.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+    if scale == 0.0 || !scale.is_finite() {
+        return [[0.0; 4]; 3];
+    }
+    let empty: [bool; 3] = std::array::from_fn(|c| (0..3).all(|k| a[3 * c + k].abs().max(a[3 * k + c].abs()) <= 1e-12 * scale));
+    for c in 0..3 {
+        if empty[c] {
+            a[4 * c] = scale;
+        }
+    }
+    let (mut c, mut determinant) = cofactors(&a);
+    if determinant.abs() < 1e-7 * scale * scale * scale {
+        for k in 0..3 {
+            a[4 * k] += 0.01 * scale.copysign(a[4 * k]);
+        }
+        (c, determinant) = cofactors(&a);
+    }
+    let inverse = c.map(|x| (x / determinant) as f32);
+    let usable = inverse.iter().all(|x| x.is_finite());
+    let entry = |r: usize, c: usize| match (empty[r] || empty[c], usable) {
+        (true, _) => 0.0,
+        (false, true) => inverse[3 * r + c],
+        (false, false) => f32::from(r == c) / scale as f32,
+    };
+    std::array::from_fn(|c| [entry(0, c), entry(1, c), entry(2, c), 0.0])
+}
+
+/// The adjugate and the determinant.
+fn cofactors(a: &[f64; 9]) -> ([f64; 9], f64) {
+    let c = [
+        a[4] * a[8] - a[5] * a[7],
+        a[2] * a[7] - a[1] * a[8],
+        a[1] * a[5] - a[2] * a[4],
+        a[5] * a[6] - a[3] * a[8],
+        a[0] * a[8] - a[2] * a[6],
+        a[2] * a[3] - a[0] * a[5],
+        a[3] * a[7] - a[4] * a[6],
+        a[1] * a[6] - a[0] * a[7],
+        a[0] * a[4] - a[1] * a[3],
+    ];
+    (c, a[0] * c[0] + a[1] * c[3] + a[2] * c[6])
+}

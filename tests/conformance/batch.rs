@@ -1,0 +1,164 @@
+//! Batches of cases for the conformance bodies, and who evaluates them.
+
+use asperity::compute::cpu::Cpu;
+use asperity::compute::gpu::{DeviceReal, Gpu, GpuContext};
+use asperity::compute::{CaseModel, CommitRequest, Compute, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest};
+use asperity::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use asperity::material::{Elasticity, Hardening, Material};
+use asperity::mesh::Mesh;
+use asperity::mesh::brick::brick;
+use asperity::mesh::pattern::Pattern;
+use asperity::real::Real;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
+
+/// Who evaluates a batch.
+pub trait Backend<R> {
+    fn start(&self, models: &[CaseModel]) -> Box<dyn Compute>;
+}
+
+pub struct OnCpu;
+pub struct OnGpu(pub Arc<GpuContext>);
+
+impl<R: Real> Backend<R> for OnCpu {
+    fn start(&self, models: &[CaseModel]) -> Box<dyn Compute> {
+        Box::new(Cpu::<R>::new(models.to_vec()).unwrap())
+    }
+}
+
+impl<R: DeviceReal> Backend<R> for OnGpu {
+    fn start(&self, models: &[CaseModel]) -> Box<dyn Compute> {
+        Box::new(Gpu::<R>::new(self.0.clone(), models.to_vec()).unwrap())
+    }
+}
+
+/// Instantiates a body, `fn body<R, B: Backend<R>>(backend: &B, bounds: &Bounds)`, for the four backends.
+macro_rules! for_every_batch {
+    ($($body:ident),+ $(,)?) => {
+        mod cpu_f64 {
+            $(#[test] fn $body() { super::$body::<f64, _>(&crate::batch::OnCpu, &super::Bounds::F64); })+
+        }
+        mod cpu_f32 {
+            $(#[test] fn $body() { super::$body::<f32, _>(&crate::batch::OnCpu, &super::Bounds::F32); })+
+        }
+        mod gpu_f64 {
+            $(#[test] fn $body() {
+                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F64) else { return };
+                super::$body::<f64, _>(&crate::batch::OnGpu(context.into()), &super::Bounds::F64);
+            })+
+        }
+        mod gpu_f32 {
+            $(#[test] fn $body() {
+                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F32) else { return };
+                super::$body::<f32, _>(&crate::batch::OnGpu(context.into()), &super::Bounds::F32);
+            })+
+        }
+    };
+}
+pub(crate) use for_every_batch;
+
+pub fn random(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+/// A box of distorted elements, each about 0.3 wide.
+pub fn distorted(cells: [usize; 3], seed: u64) -> Arc<Mesh> {
+    let mut rng = random(seed);
+    let mut mesh = brick(cells[0], cells[1], cells[2], cells.map(|n| 0.3 * n as f64)).unwrap();
+    for x in &mut mesh.nodes {
+        x.iter_mut().for_each(|x| *x += rng.random_range(-0.04..0.04));
+    }
+    Arc::new(mesh)
+}
+
+/// One law of every kind (E = 1), on meshes of one connectivity; the first and third share theirs.
+pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
+    let laws = [
+        Ok(Hardening::Elastic),
+        Hardening::ideal(2e-3),
+        Hardening::linear(2e-3, 0.05),
+        Hardening::power(2e-3, 0.01, 0.3),
+        Hardening::hollomon(0.01, 5.0, 1.0),
+        Hardening::voce(2e-3, 6e-3, 20.0),
+        Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.03, 3.5e-3], [0.2, 5e-3]]),
+    ];
+    let frictions = [Friction::Coulomb(0.3), Friction::Stick, Friction::Coulomb(0.0), Friction::Coulomb(0.6)];
+    let meshes = [distorted(cells, 1), distorted(cells, 2)];
+    let model = |(i, law): (usize, Result<_, _>)| CaseModel {
+        mesh: meshes[i % 2].clone(),
+        material: Material { elasticity: Elasticity::new(1.0, [0.3, 0.0, 0.45][i % 3]), hardening: law.unwrap() },
+        friction: frictions[i % 4],
+    };
+    laws.into_iter().enumerate().map(model).collect()
+}
+
+/// A random displacement whose gradients are about `strain`, after `from`; the difference is a number of precision R.
+pub fn displaced<R: Real>(from: &[f64], strain: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
+    from.iter().map(|u| u + R::of(strain * rng.random_range(-0.1..0.1)).to_f64()).collect()
+}
+
+pub fn forces(backend: &mut dyn Compute, displacements: &[(usize, Vec<f64>)]) -> Vec<(Outcome, Vec<f64>)> {
+    let mut out: Vec<_> = displacements.iter().map(|(_, u)| vec![0.0; u.len()]).collect();
+    let mut requests: Vec<_> = displacements
+        .iter()
+        .zip(&mut out)
+        .map(|((case, displacement), force)| ForceRequest { case: *case, displacement, force, outcome: Outcome::Valid })
+        .collect();
+    backend.internal_force(&mut requests).unwrap();
+    let outcomes: Vec<_> = requests.iter().map(|r| r.outcome).collect();
+    outcomes.into_iter().zip(out).collect()
+}
+
+pub fn tangents(backend: &mut dyn Compute, displacements: &[(usize, Vec<f64>)]) -> Vec<(Outcome, Vec<[f64; 9]>)> {
+    let mesh = &backend.models()[0].mesh;
+    let entries = Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries();
+    let mut out = vec![vec![[0.0; 9]; entries]; displacements.len()];
+    let mut requests: Vec<_> = displacements
+        .iter()
+        .zip(&mut out)
+        .map(|((case, displacement), blocks)| TangentRequest { case: *case, displacement, blocks, outcome: Outcome::Valid })
+        .collect();
+    backend.tangent(&mut requests).unwrap();
+    let outcomes: Vec<_> = requests.iter().map(|r| r.outcome).collect();
+    outcomes.into_iter().zip(out).collect()
+}
+
+pub fn commits(backend: &mut dyn Compute, displacements: &[(usize, Vec<f64>)]) -> Vec<(Outcome, Energies)> {
+    let mut requests: Vec<_> = displacements
+        .iter()
+        .map(|(case, displacement)| CommitRequest {
+            case: *case,
+            displacement,
+            energies: Energies::default(),
+            outcome: Outcome::Valid,
+        })
+        .collect();
+    backend.commit(&mut requests).unwrap();
+    requests.iter().map(|r| (r.outcome, r.energies)).collect()
+}
+
+/// Contact rows at displacements with given forces.
+pub fn contacts(backend: &mut dyn Compute, trials: &[(usize, Vec<f64>, Vec<f64>)]) -> Vec<Vec<Rows<f64>>> {
+    let empty = Point { force: [0.0; 3], gap: 1.0, slip: [0.0; 2], weight: 1.0, on_symmetry_plane: false };
+    let points = backend.models()[0].mesh.contact_nodes.len();
+    let mut out = vec![vec![contact_rows(Friction::Coulomb(0.0), &empty); points]; trials.len()];
+    let mut requests: Vec<_> = trials
+        .iter()
+        .zip(&mut out)
+        .map(|((case, displacement, force), rows)| ContactRequest { case: *case, displacement, force, rows })
+        .collect();
+    backend.contact(&mut requests).unwrap();
+    out
+}
+
+/// Largest difference by the largest number of the reference; infinite where one is not finite.
+pub fn difference<'a>(ours: impl IntoIterator<Item = &'a f64>, reference: impl IntoIterator<Item = &'a f64>) -> f64 {
+    let (mut worst, mut scale) = (0.0f64, f64::MIN_POSITIVE);
+    for (a, b) in ours.into_iter().zip(reference) {
+        let error = (a - b).abs();
+        worst = if error.is_finite() { worst.max(error) } else { f64::INFINITY };
+        scale = scale.max(b.abs());
+    }
+    worst / scale
+}

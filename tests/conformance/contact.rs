@@ -1,0 +1,108 @@
+//! The contact conditions of points that are open, stick, slip, or sit on an edge between them, against the CPU in f64.
+
+use crate::batch::{Backend, OnCpu, commits, contacts, difference, displaced, for_every_batch, models, random};
+use asperity::compute::Outcome;
+use asperity::contact::coulomb::Status;
+use asperity::real::Real;
+use rand::RngExt;
+
+pub struct Bounds(f64);
+
+impl Bounds {
+    pub const F64: Self = Self(1e-13);
+    pub const F32: Self = Self(1e-5);
+}
+
+const CELLS: [usize; 3] = [6, 4, 1];
+
+/// Displacements and forces that put the contact points of a mesh into every status.
+fn trials<R: Real>(mesh: &asperity::mesh::Mesh, committed: &[f64], seed: u64) -> (Vec<f64>, Vec<f64>) {
+    let mut rng = random(seed);
+    let mut u = displaced::<R>(committed, 1e-3, &mut rng);
+    let mut force = vec![0.0; u.len()];
+    for (i, &node) in mesh.contact_nodes.iter().enumerate() {
+        let base = 3 * node as usize;
+        // close to the plane, on either side of it
+        let height = if i % 5 == 0 { 0.0 } else { rng.random_range(-1e-3..1e-3) };
+        let z = mesh.nodes[node as usize][2] + committed[base + 2];
+        u[base + 2] = committed[base + 2] + R::of(height - z).to_f64();
+        let size = 10f64.powf(rng.random_range(-5.0..-3.0));
+        for f in &mut force[base..base + 3] {
+            *f = R::of(size * rng.random_range(-0.3..1.0)).to_f64();
+        }
+        match i % 7 {
+            0 => force[base..base + 3].fill(0.0),
+            1 => (force[base], force[base + 1]) = (0.0, 0.0),
+            2 => u[base..base + 2].copy_from_slice(&committed[base..base + 2]),
+            _ => {}
+        }
+    }
+    (u, force)
+}
+
+fn rows_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+    let models = models(CELLS);
+    let (mut ours, mut reference) = (backend.start(&models), <OnCpu as Backend<f64>>::start(&OnCpu, &models));
+    let start = vec![0.0; 3 * models[0].mesh.nodes.len()];
+    let committed: Vec<_> = (0..models.len()).map(|c| (c, displaced::<R>(&start, 1e-3, &mut random(80 + c as u64)))).collect();
+    assert!(commits(ours.as_mut(), &committed).iter().all(|(outcome, _)| *outcome == Outcome::Valid));
+    commits(reference.as_mut(), &committed);
+    let mut requests: Vec<_> = committed
+        .iter()
+        .map(|(case, start)| {
+            let (u, force) = trials::<R>(&models[*case].mesh, start, 90 + *case as u64);
+            (*case, u, force)
+        })
+        .collect();
+    // one case after another, and one of them twice in a call
+    requests.push(requests[2].clone());
+    let (rows, expected) = (contacts(ours.as_mut(), &requests), contacts(reference.as_mut(), &requests));
+    assert!(rows[2] == *rows.last().unwrap());
+    let (mut counts, mut ties) = ([0; 3], 0);
+    for (case, (rows, expected)) in rows.iter().zip(&expected).enumerate() {
+        for (i, (a, b)) in rows.iter().zip(expected).enumerate() {
+            let place = format!("{}, case {case}, point {i}: {a:?}, not {b:?}", R::NAME);
+            let node = models[0].mesh.contact_nodes[i] as usize;
+            let (case_index, u, force) = &requests[case];
+            let force = &force[3 * node..3 * node + 3];
+            // only a point that neither presses nor gapes may fall to either side
+            let xi_n = force[2] - b.weight * (models[*case_index].mesh.nodes[node][2] + u[3 * node + 2]);
+            if a.status != b.status && xi_n.abs() <= bounds.0 * b.weight * 1e-3 {
+                ties += 1;
+                continue;
+            }
+            assert_eq!((a.status, a.fixed), (b.status, b.fixed), "{place}");
+            let scale = force.iter().fold(b.weight * 1e-3, |m, f| m.max(f.abs()));
+            for k in 0..3 {
+                assert!((a.residual[k] - b.residual[k]).abs() <= bounds.0 * scale, "{place}");
+                // next to a tip of the friction cone the direction of slip is ill-defined: the rows there carry its error
+                let slack = if b.status == Status::Slip { 1e-3 } else { 1.0 };
+                assert!(difference(&a.force_rows[k], &b.force_rows[k]) <= bounds.0 / slack, "{place}");
+                assert!(difference(&a.displacement_rows[k], &b.displacement_rows[k]) <= bounds.0 / slack, "{place}");
+            }
+            assert!((a.weight / b.weight - 1.0).abs() <= bounds.0, "{place}");
+            counts[a.status as usize] += 1;
+        }
+    }
+    assert!(counts.iter().all(|&n| n > 20) && ties < 10, "{counts:?}, {ties} ties: the test tests nothing");
+}
+
+/// A force that is not a number must not pass for a point at rest.
+fn nan_is_not_swallowed<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
+    let models = models(CELLS);
+    let mut ours = backend.start(&models);
+    let mesh = &models[0].mesh;
+    let u = vec![0.0; 3 * mesh.nodes.len()];
+    let mut force = vec![1e-4; u.len()];
+    let node = 3 * mesh.contact_nodes[3] as usize;
+    force[node + 2] = f64::NAN;
+    force[3 * mesh.contact_nodes[8] as usize] = f64::NAN;
+    let rows = contacts(ours.as_mut(), &[(0, u, force)]).remove(0);
+    for i in [3, 8] {
+        let numbers = rows[i].residual.iter().chain(rows[i].force_rows.iter().flatten());
+        assert!(rows[i].status == Status::Open || numbers.clone().any(|x| x.is_nan()) || rows[i].fixed[2], "{:?}", rows[i]);
+    }
+    assert!(rows[8].residual.iter().any(|r| r.is_nan()), "{:?}", rows[8]);
+}
+
+for_every_batch!(rows_agree, nan_is_not_swallowed);

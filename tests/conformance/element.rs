@@ -1,0 +1,184 @@
+//! The element on small distorted meshes: forces, tangents, commits and energies of every law against the CPU in f64.
+
+use crate::batch::{Backend, OnCpu, commits, difference, displaced, for_every_batch, forces, models, random, tangents};
+use asperity::compute::{CaseState, Compute, Outcome};
+use asperity::real::Real;
+
+/// How far from the reference a backend may be, relative to the largest number of the answer.
+pub struct Bounds {
+    force: f64,
+    tangent: f64,
+    state: f64,
+    /// Of the tangent from differences of the force; none where rounding hides them.
+    differences: Option<f64>,
+}
+
+impl Bounds {
+    pub const F64: Self = Self { force: 1e-12, tangent: 1e-12, state: 1e-12, differences: Some(1e-6) };
+    pub const F32: Self = Self { force: 2e-5, tangent: 1e-4, state: 2e-5, differences: None };
+}
+
+/// Strain of a first, committed step and of the trial step after it; the third number reverses the first step by that factor.
+const KINDS: [(&str, f64, f64, f64); 6] = [
+    ("near zero", 0.0, 1e-9, 0.0),
+    ("elastic", 0.0, 3e-4, 0.0),
+    ("yielding", 0.0, 2e-2, 0.0),
+    ("yielding on", 2e-2, 2e-2, 0.0),
+    ("reversal", 1e-2, 1e-4, -1.5),
+    ("large strain", 1e-2, 4e-1, 0.0),
+];
+const CELLS: [usize; 3] = [2, 2, 1];
+
+struct Pair {
+    ours: Box<dyn Compute>,
+    reference: Box<dyn Compute>,
+    trials: Vec<(usize, Vec<f64>)>,
+}
+
+/// The backend and the reference after the first step of a kind, and the displacements of its second.
+fn prepare<R: Real, B: Backend<R>>(backend: &B, kind: (&str, f64, f64, f64), seed: u64) -> Pair {
+    let models = models(CELLS);
+    let (mut ours, mut reference) = (backend.start(&models), <OnCpu as Backend<f64>>::start(&OnCpu, &models));
+    let mut rng = random(seed);
+    let (_, first, second, back) = kind;
+    let start = vec![0.0; 3 * models[0].mesh.nodes.len()];
+    let committed: Vec<_> = (0..models.len()).map(|case| (case, displaced::<R>(&start, first, &mut rng))).collect();
+    if first > 0.0 {
+        assert!(commits(ours.as_mut(), &committed).iter().all(|(outcome, _)| *outcome == Outcome::Valid));
+        commits(reference.as_mut(), &committed);
+    }
+    let trials = committed
+        .iter()
+        .map(|(case, u)| {
+            let next = displaced::<R>(u, second, &mut rng);
+            (*case, next.iter().zip(u).map(|(n, u)| n + R::of(back * u).to_f64()).collect())
+        })
+        .collect();
+    Pair { ours, reference, trials }
+}
+
+fn forces_and_tangents_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+    let (mut worst_force, mut worst_tangent) = (0.0f64, 0.0f64);
+    for (seed, kind) in (10..).zip(KINDS) {
+        let Pair { mut ours, mut reference, trials } = prepare(backend, kind, seed);
+        let (f, g) = (forces(ours.as_mut(), &trials), forces(reference.as_mut(), &trials));
+        let (k, l) = (tangents(ours.as_mut(), &trials), tangents(reference.as_mut(), &trials));
+        for case in 0..trials.len() {
+            assert_eq!((f[case].0, g[case].0, k[case].0), (Outcome::Valid, Outcome::Valid, Outcome::Valid), "{}", kind.0);
+            let force = difference(&f[case].1, &g[case].1);
+            let tangent = difference(k[case].1.iter().flatten(), l[case].1.iter().flatten());
+            assert!(force <= bounds.force, "{} {}, case {case}: force {force:e}", R::NAME, kind.0);
+            assert!(tangent <= bounds.tangent, "{} {}, case {case}: tangent {tangent:e}", R::NAME, kind.0);
+            (worst_force, worst_tangent) = (worst_force.max(force), worst_tangent.max(tangent));
+        }
+    }
+    println!("{}: worst force {worst_force:.1e}, tangent {worst_tangent:.1e}", R::NAME);
+}
+
+fn distance(ours: &CaseState, reference: &CaseState) -> f64 {
+    let flat = |s: &CaseState| s.points.iter().flatten().flat_map(|p| p.be.into_iter().chain([p.alpha])).collect::<Vec<_>>();
+    assert_eq!(ours.displacement, reference.displacement);
+    difference(&flat(ours), &flat(reference)).max(difference(&ours.plastic_work, &reference.plastic_work))
+}
+
+fn commits_and_energies_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+    let mut worst = 0.0f64;
+    for (seed, kind) in (30..).zip(KINDS) {
+        let Pair { mut ours, mut reference, trials } = prepare(backend, kind, seed);
+        let (e, f) = (commits(ours.as_mut(), &trials), commits(reference.as_mut(), &trials));
+        for case in 0..trials.len() {
+            assert_eq!((e[case].0, f[case].0), (Outcome::Valid, Outcome::Valid), "{}", kind.0);
+            let (e, f) = (e[case].1, f[case].1);
+            let state = distance(&ours.state(case).unwrap(), &reference.state(case).unwrap());
+            let error = [[e.elastic, f.elastic], [e.plastic, f.plastic], [e.max_alpha, f.max_alpha]]
+                .iter()
+                .fold(state, |worst, [ours, reference]| worst.max(difference([ours], [reference])));
+            assert!(error <= bounds.state, "{} {}, case {case}: {error:e}, {e:?}, {f:?}", R::NAME, kind.0);
+            assert!(case == 0 || kind.2 < 1e-2 || (e.plastic > 0.0 && e.max_alpha > 0.0), "{}, case {case}: {e:?}", kind.0);
+            let fields = [ours.fields(case).unwrap(), reference.fields(case).unwrap()];
+            let [stress, expected] = fields.map(|f| f.stress.into_iter().flatten().collect::<Vec<_>>());
+            assert!(difference(&stress, &expected) <= bounds.force, "{} {}, case {case}: fields", R::NAME, kind.0);
+            worst = worst.max(error);
+        }
+    }
+    println!("{}: worst state and energies {worst:.1e}", R::NAME);
+}
+
+/// A restored state is the one that was taken: the answers that follow have the same bits.
+fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
+    let Pair { mut ours, trials, .. } = prepare(backend, KINDS[3], 50);
+    let expected = forces(ours.as_mut(), &trials);
+    let mut other = backend.start(&models(CELLS));
+    for case in 0..trials.len() {
+        other.restore(case, &ours.state(case).unwrap()).unwrap();
+        assert_eq!(other.state(case).unwrap(), ours.state(case).unwrap());
+    }
+    assert!(forces(other.as_mut(), &trials) == expected);
+}
+
+/// Newton's third law, no force from a shift of the whole body, and a tangent that is the derivative of the force.
+fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+    let Pair { mut ours, trials, .. } = prepare(backend, KINDS[3], 60);
+    let moved: Vec<_> = trials.iter().map(|(case, u)| (*case, u.iter().map(|u| u + 0.25).collect())).collect();
+    let (still, shifted) = (forces(ours.as_mut(), &trials), forces(ours.as_mut(), &moved));
+    for (case, ((_, f), (_, g))) in still.iter().zip(&shifted).enumerate() {
+        assert!(difference(g, f) <= 10.0 * bounds.force, "{}, case {case}: shifted {:e}", R::NAME, difference(g, f));
+        let scale = f.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        for i in 0..3 {
+            let sum: f64 = f.iter().skip(i).step_by(3).sum();
+            assert!(sum.abs() <= 10.0 * bounds.force * scale, "{}, case {case}: sum {sum:e}", R::NAME);
+        }
+    }
+    let Some(bound) = bounds.differences else { return };
+    let mesh = ours.models()[0].mesh.clone();
+    let pattern = asperity::mesh::pattern::Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
+    // The moduli of plastic flow are the symmetrised ones: their part of the tangent is exact only where the flow is radial.
+    let elastic = vec![trials[0].clone()];
+    let blocks = tangents(ours.as_mut(), &elastic).remove(0).1;
+    let direction = displaced::<R>(&vec![0.0; elastic[0].1.len()], 1.0, &mut random(61));
+    let at = |step: f64| vec![(0, elastic[0].1.iter().zip(&direction).map(|(u, d)| u + step * d).collect())];
+    let step = 1e-5;
+    let (after, before) = (forces(ours.as_mut(), &at(step)).remove(0).1, forces(ours.as_mut(), &at(-step)).remove(0).1);
+    let expected: Vec<f64> = after.iter().zip(&before).map(|(a, b)| (a - b) / (2.0 * step)).collect();
+    let mut product = vec![0.0; expected.len()];
+    for node in 0..pattern.rows() {
+        for k in pattern.row(node) {
+            for (i, j) in (0..9).map(|c| (c / 3, c % 3)) {
+                product[3 * node + i] += blocks[k][3 * i + j] * direction[3 * pattern.column[k] as usize + j];
+            }
+        }
+    }
+    assert!(difference(&product, &expected) <= bound, "{:e}", difference(&product, &expected));
+}
+
+/// J <= 0 and NaN are named by element and point, and spoil neither the other cases nor the calls after them.
+fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
+    let Pair { mut ours, mut reference, trials } = prepare(backend, KINDS[3], 70);
+    let good = forces(ours.as_mut(), &trials);
+    let mut bad = trials.clone();
+    bad[1].1[3 * 4 + 2] += 2.0;
+    bad[3].1[5] = f64::NAN;
+    bad[5].1[7] = f64::INFINITY;
+    let (f, g) = (forces(ours.as_mut(), &bad), forces(reference.as_mut(), &bad));
+    let (k, c) = (tangents(ours.as_mut(), &bad), commits(ours.as_mut(), &bad));
+    for case in 0..bad.len() {
+        let refused = case % 2 == 1;
+        assert_eq!(f[case].0 == Outcome::Valid, !refused, "case {case}");
+        assert_eq!([f[case].0, k[case].0, c[case].0], [g[case].0; 3], "case {case}");
+        if !refused {
+            assert!(f[case].1 == good[case].1, "case {case}");
+        } else {
+            // not committed: the state and the answers are those of before
+            assert!(ours.state(case).unwrap().displacement != bad[case].1);
+            assert!(forces(ours.as_mut(), &trials[case..=case])[0] == good[case], "case {case}");
+        }
+    }
+}
+
+for_every_batch!(
+    forces_and_tangents_agree,
+    commits_and_energies_agree,
+    a_state_survives_being_taken_and_restored,
+    obeys_its_equations,
+    bad_displacements_are_refused,
+);

@@ -1,0 +1,141 @@
+//! Which backend a run gets, and what it is told, where a device is missing, small, imprecise, or lost.
+
+mod device;
+
+use asperity::compute::gpu::{GpuError, Precision};
+use asperity::compute::select::{DeviceWish, PrecisionWish, Selected, select, select_on};
+use asperity::compute::{CaseModel, Compute, ComputeError, ForceRequest, Outcome};
+use asperity::contact::coulomb::Friction;
+use asperity::material::{Elasticity, Hardening, Material};
+use asperity::mesh::brick::brick;
+use device::device;
+use std::process::Command;
+use std::sync::Arc;
+
+fn models() -> Vec<CaseModel> {
+    let mesh = Arc::new(brick(2, 2, 2, [1.0; 3]).unwrap());
+    let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() };
+    let model = CaseModel { mesh, material, friction: Friction::Coulomb(0.3) };
+    vec![model.clone(), model]
+}
+
+fn force(backend: &mut dyn Compute) -> Result<Vec<f64>, ComputeError> {
+    let displacement: Vec<f64> = (0..3 * backend.models()[1].mesh.nodes.len()).map(|i| 1e-4 * ((i * i) % 7) as f64).collect();
+    let mut force = vec![0.0; displacement.len()];
+    let request = ForceRequest { case: 1, displacement: &displacement, force: &mut force, outcome: Outcome::Valid };
+    backend.internal_force(&mut [request])?;
+    Ok(force)
+}
+
+fn message(selected: Result<Selected, ComputeError>) -> String {
+    match selected {
+        Ok(selected) => panic!("{} was selected: {:?}", selected.backend.description().device, selected.notes),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn the_cpu_is_what_was_asked_for() {
+    for (wish, precision) in [(PrecisionWish::Auto, "f64"), (PrecisionWish::F64, "f64"), (PrecisionWish::F32, "f32")] {
+        let selected = select(DeviceWish::Cpu, wish, models()).unwrap();
+        assert!(selected.notes.is_empty() && selected.backend.description().device.starts_with("CPU"));
+        assert_eq!(selected.backend.description().precision, precision);
+    }
+}
+
+/// Two cases that cannot share a batch are an error of the caller on every device, not a reason to change it.
+#[test]
+fn a_bad_batch_is_no_fault_of_the_device() {
+    let mut bad = models();
+    bad[1].mesh = Arc::new(brick(2, 2, 1, [1.0; 3]).unwrap());
+    let refused = |s: Result<Selected, _>| matches!(s, Err(ComputeError::Connectivity { case: 1 }));
+    assert!(refused(select(DeviceWish::Cpu, PrecisionWish::Auto, bad.clone())));
+    let Some(context) = device("a_bad_batch_is_no_fault_of_the_device", Precision::F32) else { return };
+    assert!(refused(select_on(Ok(Some(context)), DeviceWish::Auto, PrecisionWish::F32, bad)));
+}
+
+#[test]
+fn the_device_is_named_with_its_precision() {
+    let name = "the_device_is_named_with_its_precision";
+    for (wish, precision) in [(PrecisionWish::Auto, "f64"), (PrecisionWish::F32, "f32")] {
+        let Some(context) = device(name, Precision::F64) else { return };
+        let adapter = context.adapter().name.clone();
+        let mut selected = select_on(Ok(Some(context)), DeviceWish::Gpu, wish, models()).unwrap();
+        let description = selected.backend.description();
+        assert!(description.device.contains(&adapter) && description.precision == precision, "{description:?}");
+        assert!(selected.notes.is_empty() && force(selected.backend.as_mut()).is_ok());
+    }
+}
+
+#[test]
+fn without_double_precision_the_residual_comes_from_the_cpu() {
+    let name = "without_double_precision_the_residual_comes_from_the_cpu";
+    let mut reference = select(DeviceWish::Cpu, PrecisionWish::Auto, models()).unwrap();
+    for device_wish in [DeviceWish::Auto, DeviceWish::Gpu] {
+        let Some(context) = device(name, Precision::F32) else { return };
+        let context = context.without_double_precision();
+        let mut selected = select_on(Ok(Some(context)), device_wish, PrecisionWish::Auto, models()).unwrap();
+        let description = selected.backend.description();
+        assert!(description.device.contains("tangents in f32") && description.precision == "f64", "{description:?}");
+        assert!(selected.notes.len() == 1 && selected.notes[0].contains("no double precision"), "{:?}", selected.notes);
+        assert_eq!(force(selected.backend.as_mut()).unwrap(), force(reference.backend.as_mut()).unwrap());
+    }
+}
+
+#[test]
+fn a_budget_too_small_is_the_cpus_turn_or_an_error() {
+    let name = "a_budget_too_small_is_the_cpus_turn_or_an_error";
+    // nothing fits; the resident arrays fit, and no evaluation
+    for budget in [1000, 40_000] {
+        let Some(context) = device(name, Precision::F32) else { return };
+        let context = context.with_budget(budget);
+        let mut selected = select_on(Ok(Some(context)), DeviceWish::Auto, PrecisionWish::F32, models()).unwrap();
+        assert!(selected.backend.description().device.starts_with("CPU"));
+        let [note] = &selected.notes[..] else { panic!("{:?}", selected.notes) };
+        assert!(note.contains("ASPERITY_GPU_MEMORY") && note.contains("the CPU was taken instead"), "{note}");
+        assert!(force(selected.backend.as_mut()).is_ok());
+        let Some(context) = device(name, Precision::F32) else { return };
+        let text = message(select_on(Ok(Some(context.with_budget(budget))), DeviceWish::Gpu, PrecisionWish::F32, models()));
+        assert!(text.contains("ASPERITY_GPU_MEMORY") && text.contains("device memory"), "{text}");
+    }
+}
+
+#[test]
+fn a_driver_that_opens_no_device_is_the_cpus_turn_or_an_error() {
+    let broken = || Err(GpuError::NoDevice { adapter: "Some GPU".into(), reason: "no".into() });
+    let selected = select_on(broken(), DeviceWish::Auto, PrecisionWish::Auto, models()).unwrap();
+    assert!(selected.backend.description().device.starts_with("CPU"));
+    assert!(selected.notes.len() == 1 && selected.notes[0].contains("Some GPU"), "{:?}", selected.notes);
+    assert!(message(select_on(broken(), DeviceWish::Gpu, PrecisionWish::Auto, models())).contains("Some GPU"));
+}
+
+#[test]
+fn a_device_lost_before_its_first_step_is_the_cpus_turn() {
+    let name = "a_device_lost_before_its_first_step_is_the_cpus_turn";
+    let Some(context) = device(name, Precision::F32) else { return };
+    context.destroy();
+    let mut selected = select_on(Ok(Some(context)), DeviceWish::Auto, PrecisionWish::F32, models()).unwrap();
+    assert!(selected.notes.len() == 1 && selected.notes[0].contains("failed"), "{:?}", selected.notes);
+    assert!(force(selected.backend.as_mut()).is_ok());
+}
+
+/// `VK_DRIVER_FILES` is how the Vulkan loader is told that there is no driver.
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_driver_auto_is_the_cpu_and_gpu_is_one_clear_error() {
+    let name = "without_a_driver_auto_is_the_cpu_and_gpu_is_one_clear_error";
+    if std::env::var_os("ASPERITY_CHILD").is_none() {
+        let mut child = Command::new(std::env::current_exe().unwrap());
+        child.args(["--exact", name, "--nocapture"]).env("ASPERITY_CHILD", "1").env("ASPERITY_ADAPTER", "");
+        let output = child.env("VK_DRIVER_FILES", "/dev/null").env("VK_ICD_FILENAMES", "/dev/null").output().unwrap();
+        let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && text.contains("child: done"), "{text}");
+        return;
+    }
+    let mut selected = select(DeviceWish::Auto, PrecisionWish::Auto, models()).unwrap();
+    assert!(selected.backend.description().device.starts_with("CPU"));
+    assert!(force(selected.backend.as_mut()).is_ok());
+    let text = message(select(DeviceWish::Gpu, PrecisionWish::Auto, models()));
+    assert!(text.contains("no GPU found") && text.contains("--device cpu"), "{text}");
+    println!("child: done");
+}
