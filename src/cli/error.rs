@@ -7,6 +7,7 @@ use crate::case::CaseError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
+use crate::verify::VerifyError;
 
 /// Bad input or usage: nothing was computed.
 pub const BAD_INPUT: u8 = 2;
@@ -112,16 +113,21 @@ pub enum CliError {
         /// The directory of `--out`.
         dir: PathBuf,
     },
-    /// The simulation is not part of this build.
-    #[error("this build has no simulation. `asperity check` is what it can do with a case")]
-    NoSimulation,
+    /// The checks of a verification could not be run.
+    #[error("verify, {family}: {source}. `asperity devices` lists what there is to compute on; --device cpu needs nothing")]
+    Verify {
+        /// The family of checks.
+        family: &'static str,
+        /// What went wrong.
+        source: VerifyError,
+    },
 }
 
 impl CliError {
     /// The exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::BrokeOff { .. } => NOT_CONVERGED,
+            CliError::BrokeOff { .. } | CliError::Verify { .. } => NOT_CONVERGED,
             _ => BAD_INPUT,
         }
     }

@@ -1,13 +1,32 @@
 //! `asperity verify`: closed-form checks as a table.
 
-use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
 
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
+use super::backend::choose_backend;
 use super::options::{DeviceArgs, Verbosity};
 use super::{CliError, Outcome};
+use crate::compute::ComputeError;
+use crate::output::write_atomically;
+use crate::verify::{FAMILIES, Level, Report, Runner, Verdict, VerifyError, table};
 
 /// Compare this build with closed-form solutions: ours, reference, error, verdict.
+///
+/// Ends with 3 if a check fails. Every tolerance has its reason, which -v prints and --out writes.
 #[derive(Clone, Debug, Args)]
 pub struct VerifyArgs {
+    /// Default meshes (16 elements along the contact radius) where the checks take coarser ones to be done in a minute or two.
+    #[arg(long)]
+    pub fine: bool,
+    /// Only this family of checks; may be repeated.
+    #[arg(long, value_name = "FAMILY", value_parser = PossibleValuesParser::new(FAMILIES.map(|family| family.name)))]
+    pub only: Vec<String>,
+    /// Write the rows with their reasons to this file, as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
     /// Device, precision, threads.
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -16,9 +35,35 @@ pub struct VerifyArgs {
     pub verbosity: Verbosity,
 }
 
-/// Runs the checks.
+/// Runs the checks, a family at a time, and prints the table.
 pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
-    Err(CliError::NoSimulation)
+    let wanted = |name: &str| args.only.is_empty() || args.only.iter().any(|only| only == name);
+    let mut make = |models| choose_backend(&args.device, models).map(|selected| selected.backend);
+    let mut runner = Runner::new(&mut make, if args.fine { Level::Fine } else { Level::Quick });
+    let mut report = Report::default();
+    for family in FAMILIES.iter().filter(|family| wanted(family.name)) {
+        let rows = family.run(&mut runner).map_err(|error| match error {
+            VerifyError::Compute(ComputeError::Device(what)) if report.checks.is_empty() => CliError::Device { what },
+            source => CliError::Verify { family: family.name, source },
+        })?;
+        if !args.verbosity.quiet {
+            let failed = rows.checks.iter().filter(|check| check.verdict() == Verdict::Fail).count();
+            let (rows, seconds) = (rows.checks.len(), rows.took.as_secs_f64());
+            // A closed stderr is no reason to stop computing.
+            let _ = writeln!(std::io::stderr(), "{}: {rows} rows, {failed} failed, {seconds:.1} s", family.name);
+        }
+        report.add(rows);
+    }
+    report.computed_on(&runner);
+    super::print(&table::table(&report.checks))?;
+    if args.verbosity.verbose > 0 {
+        super::print(&format!("\n{}", table::reasons(&report.checks)))?;
+    }
+    super::print(&format!("\n{}\n", table::summary(&report)))?;
+    if let Some(path) = &args.out {
+        write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
+    }
+    Ok(if report.passed() { Outcome::Done } else { Outcome::ChecksFailed })
 }

@@ -34,6 +34,7 @@ fn exact(nu: f64, history: &History) -> CattaneoMindlin {
     exact
 }
 
+/// Presses, then shears to each of the displacements, given over d_s.
 fn case(nu: f64, elements: usize, hold: Hold, displacements: impl Iterator<Item = f64>) -> Case {
     let sphere_data = ElasticSphere { radius: RADIUS, youngs_modulus: YOUNGS_MODULUS, poissons_ratio: nu };
     let slip = CattaneoMindlin::at_indentation(sphere_data, MU, H).slip_displacement();
@@ -53,10 +54,11 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     let path = || std::iter::once(FIRST).chain(LOADING);
     let history = runner.follow(&case(0.49, elements, Hold::Indentation, path().chain(REVERSAL).chain([SLIDING])))?;
     let (exact_49, body) = (exact(0.49, &history), runner.equator(0.49)?);
-    let mut checks = loading(&history, &exact_49, &body);
+    let mut checks = loading(&history, &exact_49, &body, elements);
     checks.extend(reversal(&history, &exact_49, &body));
     checks.extend(body.rows(0.49));
 
+    // In its own conditions: F_N held.
     let history = runner.follow(&case(0.3, elements, Hold::NormalForce, path().chain([1.2])))?;
     let (exact_30, body) = (exact(0.3, &history), runner.equator(0.3)?);
     let limit = MU * exact_30.normal_force;
@@ -70,7 +72,8 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     Ok(checks)
 }
 
-fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator) -> Vec<Check> {
+/// First loading: stiffness, forces, the stick zone, and F_N, which should not feel it.
+fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator, elements: usize) -> Vec<Check> {
     const FORCE: &str = "beta = 0.02 and slip across the shear direction are worth 1 % together, the mesh another";
     let limit = MU * exact.normal_force;
     let mut checks = vec![Check::relative(
@@ -85,7 +88,15 @@ fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator) -> Vec<Ch
         let row = history.end(segment);
         let what = format!("F_T/(mu F_N) at {x} d_s");
         checks.push(
-            Check::relative("cattaneo-mindlin", what, row.f_t / limit, exact.force(body.contact_shear(row.delta_t, row.f_t)) / limit, 0.02, FORCE).by(1.0),
+            Check::relative(
+                "cattaneo-mindlin",
+                what,
+                row.f_t / limit,
+                exact.force(body.contact_shear(row.delta_t, row.f_t)) / limit,
+                0.02,
+                FORCE,
+            )
+            .by(1.0),
         );
     }
     for (segment, x) in (2..).zip(LOADING) {
@@ -97,8 +108,8 @@ fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator) -> Vec<Ch
                 format!("c/a at {x} d_s"),
                 ours,
                 reference,
-                0.0625,
-                "the stick zone is counted in whole points: half an element is a/16",
+                0.5 / elements as f64,
+                "the stick zone is counted in whole points: half an element",
             )
             .by(1.0),
         );
@@ -114,7 +125,7 @@ fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator) -> Vec<Ch
             worst,
             0.0,
             0.01,
-            "shear moves F_N by mu beta = 0.6 % at the most",
+            "shear acts on the pressure through beta alone: of the order of mu beta = 0.6 %",
         )
         .by(1.0),
     );
@@ -131,6 +142,7 @@ fn initial_stiffness(history: &History, body: &Equator) -> f64 {
     }
 }
 
+/// The way back from the last displacement of first loading, and sliding at its end.
 fn reversal(history: &History, exact: &CattaneoMindlin, body: &Equator) -> Vec<Check> {
     let limit = MU * exact.normal_force;
     let contact = |row: &StepRecord| body.contact_shear(row.delta_t, row.f_t);
@@ -141,7 +153,8 @@ fn reversal(history: &History, exact: &CattaneoMindlin, body: &Equator) -> Vec<C
             let row = history.end(segment);
             let (ours, reference) = (row.f_t / limit, exact.reversed_force(turning, contact(&row)) / limit);
             let because = "as on first loading";
-            Check::relative("mindlin-deresiewicz", format!("F_T/(mu F_N) back at {x} d_s"), ours, reference, 0.02, because).by(1.0)
+            Check::relative("mindlin-deresiewicz", format!("F_T/(mu F_N) back at {x} d_s"), ours, reference, 0.02, because)
+                .by(1.0)
         })
         .collect()
 }

@@ -91,7 +91,8 @@ fn ball(nu: f64) -> ElasticSphere {
 }
 
 fn case(nu: f64, elements: usize, a: f64) -> Case {
-    let mut case = sphere(nu, Hardening::Elastic, 0.0, elements, vec![press(a * a / RADIUS), shear(SHEAR * a, Hold::Indentation)]);
+    let mut case =
+        sphere(nu, Hardening::Elastic, 0.0, elements, vec![press(a * a / RADIUS), shear(SHEAR * a, Hold::Indentation)]);
     case.contact.friction = Friction::Stick;
     case.mesh.contact_radius = Some(a);
     case.solver.press_steps = Some(3);

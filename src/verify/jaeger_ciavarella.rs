@@ -31,8 +31,11 @@ const SPHERE: ElasticSphere = ElasticSphere { radius: RADIUS, youngs_modulus: YO
 
 /// The unloading as a model expects it: where to take samples. What is compared uses the computed curve.
 fn expected() -> Unloading {
-    let hardening =
-        olsson_larsson::Hardening::ThreeParameter { yield_stress: YIELD_STRESS, coefficient: MODULUS / YIELD_STRESS, exponent: 1.0 };
+    let hardening = olsson_larsson::Hardening::ThreeParameter {
+        yield_stress: YIELD_STRESS,
+        coefficient: MODULUS / YIELD_STRESS,
+        exponent: 1.0,
+    };
     let model = OlssonLarsson { sphere: SPHERE, hardening };
     Unloading { sphere: SPHERE, indentation: H, contact_radius: model.contact_radius(H), force: model.force(H) }
 }
