@@ -205,7 +205,7 @@ fn two_runs_are_equal_to_the_bit_on_any_number_of_threads() {
     let (_, first) = scratch.done("a", &["--threads", "1"]);
     let (_, second) = scratch.done("b", &["--threads", "2"]);
     let bytes = |name: &str, file: &str| fs::read(scratch.out(name).join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
-    for file in ["history.csv", "case.toml", "contact/step_0005.csv", "fields/step_0005.vtu", "plots/forces.svg"] {
+    for file in ["history.csv", "case.toml", "contact/step_0010.csv", "fields/step_0010.vtu", "plots/forces.svg"] {
         assert!(bytes("a", file) == bytes("b", file), "{file} differs");
     }
     assert_eq!((first.device.as_str(), second.device.as_str()), ("CPU (1 thread)", "CPU (2 threads)"));
@@ -302,7 +302,8 @@ fn full_stick_never_slips() {
     for row in &history {
         assert!(row.slipping_points == 0 && row.work_friction.abs() < 1e-5 * last.work_external, "{row:?}");
     }
-    assert!(last.f_t / last.f_n > 0.25, "{last:?}");
+    // Beyond what friction alone gives a fifth of F_N: only the yield stress in shear limits it.
+    assert!(last.f_t / last.f_n > 0.2, "{last:?}");
     assert!(!summary.full_slip_reached && summary.f_n_slip.is_none() && summary.delta_t_slip.is_none());
 }
 
@@ -450,12 +451,12 @@ fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let message = stderr(&output);
     assert!(
-        message.contains("error: the run broke off after 5 steps: cannot write ") && message.contains("step_0005.vtu"),
+        message.contains("error: the run broke off after 10 steps: cannot write ") && message.contains("step_0010.vtu"),
         "{message}"
     );
     assert_eq!(message.lines().filter(|line| line.starts_with("error")).count(), 1, "{message}");
     let (history, summary) = results(&scratch.out("out"));
     assert_eq!((history.len(), summary.status), (5, Status::Interrupted));
-    assert!(summary.messages[0].contains("step_0005.vtu"), "{:?}", summary.messages);
+    assert!(summary.messages[0].contains("step_0010.vtu"), "{:?}", summary.messages);
     assert!(names(&scratch.out("out").join("fields")).is_empty());
 }

@@ -33,7 +33,7 @@ pub enum Mode {
 /// Drive one material point and print its stress, plastic strain and energies as CSV.
 #[derive(Clone, Debug, Args)]
 pub struct PointArgs {
-    /// A TOML file with a [material] table: a case file, or a material alone.
+    /// A TOML file with a `[material]` table: a case file, or a material alone.
     #[arg(value_name = "MATERIAL.toml")]
     pub material: PathBuf,
     /// How the point is deformed [default: uniaxial, or path with --path].

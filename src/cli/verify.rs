@@ -40,7 +40,18 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let wanted = |name: &str| args.only.is_empty() || args.only.iter().any(|only| only == name);
-    let mut make = |models| choose_backend(&args.device, models).map(|selected| selected.backend);
+    let quiet = args.verbosity.quiet;
+    let mut told: Vec<String> = Vec::new();
+    let mut make = |models| {
+        let selected = choose_backend(&args.device, models)?;
+        for note in selected.notes.into_iter().filter(|_| !quiet) {
+            if !told.contains(&note) {
+                say(&note);
+                told.push(note);
+            }
+        }
+        Ok(selected.backend)
+    };
     let mut runner = Runner::new(&mut make, if args.fine { Level::Fine } else { Level::Quick });
     let mut report = Report::default();
     for family in FAMILIES.iter().filter(|family| wanted(family.name)) {
@@ -48,11 +59,10 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
             VerifyError::Compute(ComputeError::Device(what)) if report.checks.is_empty() => CliError::Device { what },
             source => CliError::Verify { family: family.name, source },
         })?;
-        if !args.verbosity.quiet {
+        if !quiet {
             let failed = rows.checks.iter().filter(|check| check.verdict() == Verdict::Fail).count();
             let (rows, seconds) = (rows.checks.len(), rows.took.as_secs_f64());
-            // A closed stderr is no reason to stop computing.
-            let _ = writeln!(std::io::stderr(), "{}: {rows} rows, {failed} failed, {seconds:.1} s", family.name);
+            say(&format!("{}: {rows} rows, {failed} failed, {seconds:.1} s", family.name));
         }
         report.add(rows);
     }
@@ -66,4 +76,9 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
         write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
     }
     Ok(if report.passed() { Outcome::Done } else { Outcome::ChecksFailed })
+}
+
+/// A line on stderr; a closed one is no reason to stop computing.
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -35,7 +35,7 @@ const PARALLEL_FRONT: usize = 200;
 /// thread count.
 #[derive(Debug)]
 pub struct DirectSolver {
-    /// Memory in bytes that a factorisation may take before [`DirectSolver::update`] refuses.
+    /// Memory in bytes that a factorisation may take before an update refuses.
     pub memory_limit: usize,
     pattern: Pattern,
     dissection: Option<Arc<Dissection>>,

@@ -232,7 +232,7 @@ pub fn return_mapping<R: Real>(
 /// The moduli of the exact linearisation have `n (x) dev n^2` in the place of its symmetric part.
 ///
 /// Entry `[a][b]` is the component c_ijkl of the pairs a = ij and b = kl in the order xx, yy, zz, xy, yz, zx, with no factor in
-/// it (the fourth-order identity has 1/2 at [3][3]). The stress rate is therefore
+/// it (the fourth-order identity has 1/2 at `[3][3]`). The stress rate is therefore
 /// `L_v s_a = sum_(b < 3) c_ab d_b + sum_(b >= 3) c_ab 2 d_b` with tensor components d_b: the usual 6 x 6 matrix for a strain
 /// vector with engineering shears 2 d_xy, 2 d_yz, 2 d_zx.
 #[inline]

@@ -9,7 +9,7 @@
 //!
 //! [`j2`] holds the deviatoric half (the return mapping and its tangent), [`hardening`] the laws `sigma(alpha)`, and this file
 //! the volumetric half, which the element evaluates once for its mean dilatation. Kernels are generic over
-//! [`Real`](crate::real::Real), allocate nothing and report a bad deformation as a [`PointError`].
+//! [`Real`], allocate nothing and report a bad deformation as a [`PointError`].
 //!
 //! Symmetric tensors are `[xx, yy, zz, xy, yz, zx]`, tensor components everywhere: no engineering factors. Stresses are in the
 //! unit of the moduli given (inside the program: scaled by E).

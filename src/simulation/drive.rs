@@ -358,6 +358,7 @@ impl<'a> Drive<'a> {
         self.state.u_before.copy_from_slice(&self.state.u);
         self.state.u.copy_from_slice(&accepted.u);
         self.state.force.copy_from_slice(&accepted.force);
+        self.newton.committed();
         self.state.last_increment = target.delta_t - before.delta_t;
         self.state.h_max = self.state.h_max.max(h);
         self.state.points = self.contact_points();

@@ -23,6 +23,8 @@ const MONOTONE_FROM: usize = 5;
 
 /// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
 const ROUNDING: f64 = 1e-14;
+/// Force by which merits are scaled before anything has ever touched (a fully plastic contact of a = 0.03 R at sigma_Y = E/1000 carries it).
+const UNLOADED_SCALE: f64 = 1e-5;
 /// Share of the largest normal force so far that measures residuals when nothing touches.
 const LOST_SHARE: f64 = 1e-4;
 
@@ -95,7 +97,15 @@ impl Newton {
     /// What merits are measured by: the sum of the normal contact forces, but where contact is being lost or is lost not less than what it was at
     /// the step's start, nor than a small share of what it ever was. Without contact there is no force to compare with.
     fn scale(&self) -> f64 {
-        self.current.force_scale.max(self.last_scale).max(LOST_SHARE * self.largest_scale)
+        let scale = self.current.force_scale.max(self.last_scale).max(LOST_SHARE * self.largest_scale);
+        if scale > 0.0 { scale } else { UNLOADED_SCALE }
+    }
+
+    /// Tells that the accepted trial has been committed: its normal force is what later steps are measured by where they lose contact. A step
+    /// that is not committed leaves nothing behind.
+    pub fn committed(&mut self) {
+        self.last_scale = self.current.force_scale;
+        self.largest_scale = self.largest_scale.max(self.last_scale);
     }
 
     /// Number of unknown displacements that are not prescribed.
@@ -124,8 +134,6 @@ impl Newton {
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
             if self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
-                self.last_scale = self.current.force_scale;
-                self.largest_scale = self.largest_scale.max(self.last_scale);
                 return Ok(Ok(report));
             }
             if iteration == self.settings.max_iterations {

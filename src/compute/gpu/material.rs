@@ -100,14 +100,14 @@ struct Dimensions {
     reserved: u32,
 }
 
-/// The answers of all points, arrays [case][component][point].
+/// The answers of all points, arrays `[case][component][point]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answers<R> {
     /// [`ANSWER`] components; meaningless where the status is no answer.
     pub answer: Vec<R>,
     /// [`TANGENT`] components; likewise.
     pub tangent: Vec<R>,
-    /// [case][point].
+    /// `[case][point]`.
     pub status: Vec<PointStatus>,
 }
 
@@ -184,7 +184,7 @@ impl<R: DeviceReal> ReturnMapping<R> {
 
 /// [`ReturnMapping`] for any number of cases, in as many chunks as the device's limits and memory ask for.
 ///
-/// `relative` and `committed` are [case][component][point].
+/// `relative` and `committed` are `[case][component][point]`.
 ///
 /// # Errors
 /// As [`ReturnMapping::new`] and [`ReturnMapping::run`].
