@@ -2,7 +2,7 @@
 //!
 //! The rooms, from the kernels up; each knows only those named before it:
 //! `analytical` (closed forms), `case` (the case file), `mesh`, `material`, `element`, `contact`, `compute` (one trait, CPU and
-//! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `law`, `study`, `cli`. ARCHITECTURE.md follows one case through them.
+//! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `law`, `study`, `verify` (closed-form checks), `cli`. ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
 pub mod case;

@@ -7,6 +7,7 @@ use crate::case::CaseError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
+use crate::verify::VerifyError;
 
 /// Bad input or usage: nothing was computed.
 pub const BAD_INPUT: u8 = 2;
@@ -112,17 +113,13 @@ pub enum CliError {
         /// The directory of `--out`.
         dir: PathBuf,
     },
-    /// A check of `verify` could not be set up, or the device failed.
-    #[error("the checks broke off: {source}")]
+    /// The checks of a verification could not be run.
+    #[error("verify, {family}: {source}. `asperity devices` lists what there is to compute on; --device cpu needs nothing")]
     Verify {
+        /// The family of checks.
+        family: &'static str,
         /// What went wrong.
-        source: crate::verify::VerifyError,
-    },
-    /// The rows of `verify` cannot be put as JSON.
-    #[error("the rows cannot be written as JSON: {source}")]
-    Rows {
-        /// What went wrong.
-        source: serde_json::Error,
+        source: VerifyError,
     },
 }
 
@@ -130,7 +127,7 @@ impl CliError {
     /// The exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::BrokeOff { .. } => NOT_CONVERGED,
+            CliError::BrokeOff { .. } | CliError::Verify { .. } => NOT_CONVERGED,
             _ => BAD_INPUT,
         }
     }

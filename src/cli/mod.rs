@@ -27,7 +27,7 @@ struct Cli {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not converge (what was computed is kept), \
+const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not converge (what was computed is kept) or a check failed, \
                           75 interrupted (likewise).";
 
 #[derive(Debug, Subcommand)]
@@ -58,6 +58,8 @@ pub enum Outcome {
     Done,
     /// A step did not converge or the contact outgrew the mesh, what was computed is kept: exit code 3.
     NotConverged,
+    /// A check of a verification failed: exit code 3.
+    ChecksFailed,
     /// Interrupted, what was computed is kept: exit code 75 (EX_TEMPFAIL of sysexits.h).
     Interrupted,
 }
@@ -66,7 +68,7 @@ impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> Self {
         ExitCode::from(match outcome {
             Outcome::Done => 0,
-            Outcome::NotConverged => error::NOT_CONVERGED,
+            Outcome::NotConverged | Outcome::ChecksFailed => error::NOT_CONVERGED,
             Outcome::Interrupted => 75,
         })
     }

@@ -13,7 +13,7 @@ use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, spher
 use super::{Check, VerifyError};
 use crate::analytical::cattaneo_mindlin::initial_stiffness;
 use crate::analytical::{ElasticSphere, hertz};
-use crate::case::{Case, Friction, Hardening};
+use crate::case::{Case, Friction, Hardening, Hold};
 use crate::simulation::record::StepRecord;
 
 /// The two compliances of the body, over 1/(E R).
@@ -91,7 +91,8 @@ fn ball(nu: f64) -> ElasticSphere {
 }
 
 fn case(nu: f64, elements: usize, a: f64) -> Case {
-    let mut case = sphere(nu, Hardening::Elastic, 0.0, elements, vec![press(a * a / RADIUS), shear(SHEAR * a)]);
+    let mut case =
+        sphere(nu, Hardening::Elastic, 0.0, elements, vec![press(a * a / RADIUS), shear(SHEAR * a, Hold::Indentation)]);
     case.contact.friction = Friction::Stick;
     case.mesh.contact_radius = Some(a);
     case.solver.press_steps = Some(3);

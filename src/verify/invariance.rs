@@ -2,7 +2,7 @@
 
 use super::runner::{History, RADIUS, Runner, press, shear, sphere};
 use super::{Check, VerifyError};
-use crate::case::{Case, Hardening, Segment};
+use crate::case::{Case, Hardening, Hold, Segment, ShearTarget};
 use crate::simulation::record::StepRecord;
 
 /// Contact merit at which the steps of these cases are accepted.
@@ -12,7 +12,7 @@ const ALLOWED: f64 = 1e-6;
 
 /// An elastic-plastic press and shear, coarse, solved far beyond the usual tolerance.
 fn case(d: f64) -> Case {
-    let path: Vec<Segment> = vec![press(0.01 * RADIUS), shear(d)];
+    let path: Vec<Segment> = vec![press(0.01 * RADIUS), shear(d, Hold::Indentation)];
     let mut case = sphere(0.3, Hardening::Linear { yield_stress: 400.0, modulus: 2000.0 }, 0.3, 4, path);
     case.solver.tolerance = TOLERANCE;
     case.solver.shear_steps = Some(4);
@@ -28,7 +28,7 @@ fn in_other_units(case: &Case, length: f64, stress: f64) -> Case {
     for segment in &mut other.path {
         match segment {
             Segment::Indentation { indentation } => *indentation *= length,
-            Segment::Shear { shear: crate::case::ShearTarget::Displacement(d), .. } => *d *= length,
+            Segment::Shear { shear: ShearTarget::Displacement(d), .. } => *d *= length,
             _ => {}
         }
     }

@@ -10,7 +10,7 @@ use super::{Check, VerifyError};
 use crate::analytical::mesarovic_johnson::Unloading;
 use crate::analytical::olsson_larsson::{self, OlssonLarsson};
 use crate::analytical::{ElasticSphere, jaeger_ciavarella};
-use crate::case::{Case, Hardening};
+use crate::case::{Case, Hardening, Hold};
 
 const NU: f64 = 0.49;
 /// Small, so that the contact is well in the plastic range at a/R = 0.02.
@@ -45,7 +45,7 @@ fn case(elements: usize) -> Case {
     let at = |share: f64| H - share * expected.recovery();
     let slip = jaeger_ciavarella::slip_displacement(&SPHERE, MU, at(SHEARED_AT), expected.lost());
     let mut path = vec![press(H), press(at(UNLOADED_TO)), press(at(SHEARED_AT))];
-    path.extend(SHEAR.map(|x| shear(x * slip)));
+    path.extend(SHEAR.map(|x| shear(x * slip, Hold::Indentation)));
     let mut case = sphere(NU, Hardening::Linear { yield_stress: YIELD_STRESS, modulus: MODULUS }, MU, elements, path);
     case.solver.shear_steps = Some(2);
     // The preload may be any: its accuracy does not matter.
@@ -84,11 +84,10 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
                 format!("F_T/(mu F_N) at {x} of sliding, unloaded to {:.2} F_N0", start.f_n / top.f_n),
                 row.f_t / limit,
                 reference / limit,
-                0.0,
-                "as good as the shear stays elastic",
+                0.03,
+                "as Cattaneo-Mindlin's 2 %, and 1 % for a curve of twelve points and for shear that is not quite elastic",
             )
-            .by(1.0)
-            .without_verdict(),
+            .by(1.0),
         );
     }
     Ok(checks)

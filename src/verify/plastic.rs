@@ -46,7 +46,8 @@ fn at_indentation(history: &History, h: f64) -> Option<StepRecord> {
 }
 
 fn pressed(history: &History) -> Vec<Check> {
-    const MESH: &str = "the axisymmetric codes' own uncertainty, and the mesh";
+    const MESH: &str =
+        "beyond the axisymmetric codes' own uncertainty: load steps and a mesh of 12 elements, 6 of them at h = 0.005 R, 2 %";
     let mut checks = Vec::new();
     for (h, [force, force_uncertainty], [radius, radius_uncertainty]) in PRESSED {
         let row =
@@ -81,19 +82,20 @@ fn sheared(history: &History) -> Vec<Check> {
     let peak = history.segment(1).map(|row| row.f_t).fold(0.0, f64::max);
     let check =
         |what: &str, ours, range, tolerance, because| Check::range("plastic shear", what, ours, range, tolerance, because);
-    const CODES: &str = "the range of two three-dimensional codes, and the mesh";
+    const CODES: &str = "beyond the range of two three-dimensional codes: the mesh, as while pressing";
+    const FLAT: &str = "beyond the range of two codes: F_T/F_N rises slowly there, 0.1 % of it is 2 % of delta_T";
     vec![
-        check("loss of F_N", 1.0 - last.f_n / pressed.f_n, [0.28, 0.32], 0.05, CODES),
+        check("loss of F_N", 1.0 - last.f_n / pressed.f_n, [0.28, 0.32], 0.02, CODES),
         Check::relative(
             "plastic shear",
             "F_T/F_N at full slip",
             last.f_t / last.f_n,
             MU,
             0.005,
-            "mu at every point; what sticks carries 0.2 % of F_N",
+            "mu at every point; what still sticks carries at most 0.2 % of F_N, and the merit is 0.03 % of it",
         ),
         check("peak of F_T", peak, [30.0, 31.6], 0.02, CODES),
-        check("delta_T where F_T/F_N = 0.297", reaches(history, 0.297), [0.0029, 0.003], 0.05, CODES),
+        check("delta_T where F_T/F_N = 0.297", reaches(history, 0.297), [0.0029, 0.003], 0.05, FLAT),
     ]
 }
 
@@ -117,7 +119,8 @@ fn imbalance(row: &StepRecord) -> f64 {
 
 fn energy(history: &History) -> Vec<Check> {
     let check = |what: &str, row: StepRecord| {
-        let because = "the trapezoidal rule of 15 to 30 steps, first-order where the contact's edge moves";
+        let because =
+            "trapezoidal rule; with 10 to 20 steps the missing work was 2.6 to 1 % and halves with the steps (next row)";
         Check::relative("energy", what, imbalance(&row), 0.0, 0.02, because).by(1.0)
     };
     vec![check("missing work, pressed", history.end(0)), check("missing work, sheared", history.last())]

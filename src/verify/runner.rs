@@ -1,11 +1,13 @@
 //! Follows one case of the checks and keeps what the checks ask for.
 
+use serde::Serialize;
+
 use super::VerifyError;
 use super::equator::Equator;
 use crate::case::{
     Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere,
 };
-use crate::compute::{CaseModel, Compute, ComputeError};
+use crate::compute::{CaseModel, Compute, ComputeError, Description};
 use crate::output::Units;
 use crate::simulation::drive::{Drive, Ending, Observer, StepView};
 use crate::simulation::problem::Problem;
@@ -15,7 +17,8 @@ use crate::simulation::record::StepRecord;
 pub type BackendFactory<'a> = dyn FnMut(Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> + 'a;
 
 /// How finely the cases are meshed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Level {
     /// Meshes with which all checks take about a minute.
     #[default]
@@ -35,12 +38,18 @@ pub struct Runner<'a> {
     /// How finely the cases are meshed.
     pub level: Level,
     equator: Vec<(f64, Equator)>,
+    computed_on: Option<Description>,
 }
 
 impl<'a> Runner<'a> {
     /// A runner whose cases are computed by what `backend` makes.
     pub fn new(backend: &'a mut BackendFactory<'a>, level: Level) -> Self {
-        Self { backend, level, equator: Vec::new() }
+        Self { backend, level, equator: Vec::new(), computed_on: None }
+    }
+
+    /// Where the last case was computed.
+    pub fn computed_on(&self) -> Option<&Description> {
+        self.computed_on.as_ref()
     }
 
     /// Elements along the contact radius: `quick`, or at the fine level at least as many as a case has by default.
@@ -73,7 +82,10 @@ impl<'a> Runner<'a> {
         let mut backend = (self.backend)(vec![problem.model.clone()])?;
         let newton = problem.newton()?;
         let mut keeper = Keeper { units: Units::of(case), rows: Vec::new() };
-        match Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut keeper)? {
+        let ending = Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut keeper);
+        // Not where it began, if the device failed on the way.
+        self.computed_on = Some(backend.description());
+        match ending? {
             Ending::Done => Ok(History { rows: keeper.rows }),
             Ending::NotConverged(reason) | Ending::Outgrown(reason) => Err(VerifyError::Stopped(reason)),
             Ending::Interrupted => Err(VerifyError::Stopped("interrupted".to_owned())),
@@ -143,9 +155,9 @@ pub fn press(h: f64) -> Segment {
     Segment::Indentation { indentation: h }
 }
 
-/// A segment that shears to `d` at constant h.
-pub fn shear(d: f64) -> Segment {
-    Segment::Shear { shear: ShearTarget::Displacement(d), hold: Hold::Indentation }
+/// A segment that shears to `d`.
+pub fn shear(d: f64, hold: Hold) -> Segment {
+    Segment::Shear { shear: ShearTarget::Displacement(d), hold }
 }
 
 /// A segment that shears to full slip at constant h.
