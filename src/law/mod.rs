@@ -5,14 +5,23 @@
 //! `law.json`); `predict` applies it to a case. `least_squares` and `report` serve them.
 
 pub mod data;
+pub mod fit;
 pub mod forms;
 pub mod model;
 pub mod normal;
+pub mod predict;
 pub mod report;
 pub mod variables;
 
+mod baseline;
 mod error;
+mod folds;
+mod formulas;
 mod least_squares;
+mod own_fit;
+
+#[cfg(test)]
+mod tests;
 
 pub use error::LawError;
 pub use model::{Axisymmetric, Law, Parameters};
