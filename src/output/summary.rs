@@ -26,6 +26,8 @@ pub enum Status {
     /// Stopped from outside, by a signal or because results could not be written; what was computed is kept.
     #[default]
     Interrupted,
+    /// Broke off for another reason: the device failed, say; what was computed is kept.
+    Failed,
 }
 
 impl std::fmt::Display for Status {
@@ -35,6 +37,7 @@ impl std::fmt::Display for Status {
             Status::NotConverged => "not converged",
             Status::ContactOutgrewMesh => "the contact outgrew the mesh",
             Status::Interrupted => "interrupted",
+            Status::Failed => "failed",
         })
     }
 }
