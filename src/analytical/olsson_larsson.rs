@@ -96,7 +96,7 @@ impl Hardening {
 }
 
 /// Plastic part of a total strain under the flow stress `flow`(eps_p): the root of eps_p + flow(eps_p)/E = strain; zero below yield.
-pub(super) fn plastic_share(youngs_modulus: f64, strain: f64, flow: impl Fn(f64) -> f64) -> f64 {
+pub fn plastic_share(youngs_modulus: f64, strain: f64, flow: impl Fn(f64) -> f64) -> f64 {
     if strain * youngs_modulus <= flow(0.0) {
         return 0.0;
     }
