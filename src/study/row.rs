@@ -6,13 +6,14 @@ use super::StudyError;
 use super::directory::StudyDirectory;
 use super::file::{Study, StudyCase};
 use crate::case::{Case, Friction};
+use crate::law::variables::{Body, Variables};
 use crate::output::{OutputDirectory, Status, Summary, write_atomically};
 
 /// First columns of `study.csv`; the grid's keys follow, and then [`NUMBERS`].
 pub const FIRST_COLUMNS: [&str; 4] = ["case", "directory", "status", "reason"];
 
 /// Last columns of `study.csv`, in the case's own units; the four normalised variables are those just before the shear. What does not exist
-/// is empty: mu of full stick, sigma_Y of an elastic sphere, the slip of a shear that stopped early.
+/// is empty: mu of full stick, sigma_Y and sigma_rep of an elastic sphere, the slip of a shear that stopped early.
 pub const NUMBERS: [&str; 20] = [
     "E",
     "nu",
@@ -143,8 +144,12 @@ impl Row {
 
     /// sigma_rep, Lambda, Hbar and c^2 just before the shear.
     fn normalised(&self, case: &Case) -> [Option<f64>; 4] {
-        let _ = case;
-        [None; 4]
+        let state = self.summary.as_ref().and_then(|s| Some((s.h0?, s.a0?, s.f_n0?)));
+        let (Some((h, a, force)), Ok(body)) = (state, Body::from_case(case)) else {
+            return [None; 4];
+        };
+        let Variables { sigma_rep, lambda, hardness, c_squared } = body.variables(h, a, force);
+        [sigma_rep, lambda, hardness, c_squared].map(Some)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::case::{Case, Segment, estimated_elements};
+use crate::case::{Case, Friction, Segment, estimated_elements};
 
 /// One of some shares of a study, `1/4` to `4/4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,8 +60,9 @@ const PRESS_STEPS_PER_ELEMENT: f64 = 2.5;
 /// Steps of a shear to full slip, typically.
 const SHEAR_STEPS: f64 = 22.0;
 
-/// How long a case is likely to take, in no unit: elements times steps, and more where the plastic strains are large against the elastic ones, which
-/// costs Newton iterations. For the order of cases and for the time left, not for science.
+/// How long a case is likely to take, in no unit: elements times steps, and more where plastic strains are large against the elastic ones and where
+/// friction is high, which costs Newton iterations. For the order of cases and for the time left, not for science: measured times of single cases are
+/// up to a factor of three off it.
 pub fn cost(case: &Case) -> f64 {
     let radius = case.sphere.radius;
     let (mut steps, mut deepest) = (0.0, 0.0f64);
@@ -81,7 +82,11 @@ pub fn cost(case: &Case) -> f64 {
     let modulus = case.material.youngs_modulus;
     let plasticity =
         case.material.hardening.yield_stress(modulus).map_or(0.0, |stress| (2.0 * deepest).sqrt() * modulus / stress);
-    estimated_elements(case) as f64 * steps * (1.0 + 0.3 * (1.0 + plasticity).ln())
+    let friction = match case.contact.friction {
+        Friction::Coefficient(mu) => mu.min(1.0),
+        Friction::Stick => 0.0,
+    };
+    estimated_elements(case) as f64 * steps * (1.0 + plasticity / 150.0) * (1.0 + friction)
 }
 
 #[cfg(test)]
@@ -122,7 +127,7 @@ mod tests {
         let base = with("contact.friction=0.3");
         assert!(with("mesh.elements_per_contact_radius=20") > base);
         assert!(with("material.hardening.yield_stress=100") > base);
-        assert!(with("contact.friction=0.1") == base);
+        assert!(with("contact.friction=0.1") < base);
         assert_eq!(dearest_first(&[1.0, 3.0, 1.0, 2.0]), [1, 3, 0, 2]);
     }
 }
