@@ -407,6 +407,8 @@ mod tests {
         summary.status = Status::NotConverged;
         summary.device = "cpu".into();
         summary.messages.push("note".into());
+        // A number that a hasty reader of decimals gets wrong in its last bit.
+        summary.a0 = Some(0.123_877_429_705_042_23);
         summary.write(&path).unwrap();
         assert_eq!(Summary::read(&path).unwrap(), summary);
         let json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
