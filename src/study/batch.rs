@@ -29,10 +29,12 @@ enum Ask {
     Restore(CaseState),
 }
 
+type Answer = Result<Ask, ComputeError>;
+
 struct Request {
     case: usize,
     ask: Ask,
-    reply: Sender<Result<Ask, ComputeError>>,
+    reply: Sender<Answer>,
 }
 
 /// What the backend says of itself, for all guests.
@@ -100,7 +102,7 @@ impl Host {
     }
 
     /// Answers requests of different cases, those of a kind in one call.
-    fn answer(&mut self, waiting: Vec<Request>) -> Vec<(Sender<Result<Ask, ComputeError>>, Result<Ask, ComputeError>)> {
+    fn answer(&mut self, waiting: Vec<Request>) -> Vec<(Sender<Answer>, Answer)> {
         let (mut forces, mut contacts, mut tangents, mut commits, mut others) = (vec![], vec![], vec![], vec![], vec![]);
         for request in waiting {
             match request.ask {

@@ -19,7 +19,7 @@ pub enum StudyError {
     #[error("{source} (in the combination {combination}; {failing} of {count} combinations are refused)")]
     Combination {
         /// What is wrong with the first of them.
-        source: CaseError,
+        source: Box<CaseError>,
         /// Its grid values, `key = value, ...`.
         combination: String,
         /// How many are refused.

@@ -224,7 +224,7 @@ fn check_all(base: &Document, grid: &[GridKey], count: usize, file: &str) -> Res
     match refused.into_iter().next() {
         None => Ok(cases),
         Some((error, _)) if alike => Err(error.into()),
-        Some((source, combination)) => Err(StudyError::Combination { source, combination, failing, count }),
+        Some((error, combination)) => Err(StudyError::Combination { source: Box::new(error), combination, failing, count }),
     }
 }
 
