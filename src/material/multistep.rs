@@ -84,9 +84,8 @@ pub fn complete<R: Real>(
 fn push_forward<R: Real>(d: &[[R; 3]; 3], a: &[R; 6]) -> [R; 6] {
     let [xx, yy, zz, xy, yz, zx] = *a;
     let a = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
-    let fa: [[R; 3]; 3] = std::array::from_fn(|i| {
-        std::array::from_fn(|k| a[i][k] + d[i][0] * a[0][k] + d[i][1] * a[1][k] + d[i][2] * a[2][k])
-    });
+    let fa: [[R; 3]; 3] =
+        std::array::from_fn(|i| std::array::from_fn(|k| a[i][k] + d[i][0] * a[0][k] + d[i][1] * a[1][k] + d[i][2] * a[2][k]));
     let scale = R::ONE + isochoric_factor_minus_one(determinant_minus_one(d));
     let m = |i: usize, k: usize| scale * (fa[i][k] + fa[i][0] * d[k][0] + fa[i][1] * d[k][1] + fa[i][2] * d[k][2]);
     deviator(&[m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(1, 2), m(2, 0)]).0

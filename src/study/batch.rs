@@ -24,6 +24,7 @@ enum Ask {
     Contact { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>> },
     Tangent { displacement: Vec<f64>, blocks: Vec<[f64; 9]>, outcome: Outcome },
     Commit { displacement: Vec<f64>, energies: Energies, outcome: Outcome },
+    Begin(f64),
     Fields(Option<CaseFields>),
     State(Option<CaseState>),
     Restore(CaseState),
@@ -110,7 +111,7 @@ impl Host {
                 Ask::Contact { .. } => contacts.push(request),
                 Ask::Tangent { .. } => tangents.push(request),
                 Ask::Commit { .. } => commits.push(request),
-                Ask::Fields(_) | Ask::State(_) | Ask::Restore(_) => others.push(request),
+                Ask::Begin(_) | Ask::Fields(_) | Ask::State(_) | Ask::Restore(_) => others.push(request),
             }
         }
         let backend = self.backend.as_mut();
@@ -190,6 +191,10 @@ fn commit(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), Com
 /// What the trait has no batch of.
 fn single(backend: &mut dyn Compute, case: usize, ask: Ask) -> Result<Ask, ComputeError> {
     Ok(match ask {
+        Ask::Begin(weight) => {
+            backend.begin_step(case, weight)?;
+            Ask::Begin(weight)
+        }
         Ask::Fields(_) => Ask::Fields(Some(backend.fields(case)?)),
         Ask::State(_) => Ask::State(Some(backend.state(case)?)),
         Ask::Restore(state) => {
@@ -241,6 +246,10 @@ impl Compute for Guest {
 
     fn models(&self) -> &[CaseModel] {
         &self.models
+    }
+
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        self.ask(case, Ask::Begin(weight)).map(drop)
     }
 
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {

@@ -86,7 +86,7 @@ pub fn cost(case: &Case) -> f64 {
         Friction::Coefficient(mu) => mu.min(1.0),
         Friction::Stick => 0.0,
     };
-    estimated_elements(case) as f64 * steps * (1.0 + plasticity / 150.0) * (1.0 + friction)
+    estimated_elements(case) as f64 * steps * (1.0 + plasticity / 250.0) * (1.0 + friction)
 }
 
 #[cfg(test)]

@@ -63,6 +63,9 @@ impl Compute for Watched {
     fn models(&self) -> &[CaseModel] {
         self.inner.models()
     }
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        self.inner.begin_step(case, weight)
+    }
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
         if self.calls.fetch_add(1, Ordering::Relaxed) >= self.fails_from {
             return Err(ComputeError::Device("lost".to_owned()));

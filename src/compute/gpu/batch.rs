@@ -12,8 +12,8 @@ use super::error::GpuError;
 use super::pipelines::Bound;
 use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
 use super::shader_sources::{
-    CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_MODULI,
-    HEX8_UPDATE, Kernel,
+    CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN,
+    HEX8_MODULI, HEX8_UPDATE, Kernel,
 };
 use crate::compute::cpu::CONTACT_WEIGHT;
 use crate::compute::gather::GatherPlan;

@@ -10,8 +10,8 @@ mod tangent;
 
 use super::hex8::{CORNERS, Geometry, NODES, Nodal, QUADRATURE_POINTS, State, internal_force, update};
 use crate::material::hardening::Hardening;
-use crate::material::{Elasticity, Material};
 use crate::material::multistep::Flow;
+use crate::material::{Elasticity, Material};
 use crate::real::Real;
 
 /// 3 x 3, rows first.

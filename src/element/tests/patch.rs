@@ -48,7 +48,8 @@ impl Patch {
                     forces[n as usize][i] += f[i];
                 }
             }
-            self.state[e] = update(&self.geometry[e], material, &self.state[e], &self.state[e].points, &committed, &increment).unwrap();
+            self.state[e] =
+                update(&self.geometry[e], material, &self.state[e], &self.state[e].points, &committed, &increment).unwrap();
         }
         self.u = target;
         forces
