@@ -4,6 +4,7 @@ pub mod backend;
 pub mod check;
 pub mod devices;
 pub mod error;
+pub mod law;
 pub mod options;
 pub mod out;
 pub mod point;
@@ -39,6 +40,7 @@ enum Command {
     Devices(devices::DevicesArgs),
     Point(point::PointArgs),
     Study(study::StudyArgs),
+    Law(law::LawArgs),
 }
 
 impl Command {
@@ -50,6 +52,7 @@ impl Command {
             Command::Devices(args) => devices::devices(args),
             Command::Point(args) => point::point(args),
             Command::Study(args) => study::study(args),
+            Command::Law(args) => law::law(args),
         }
     }
 }
