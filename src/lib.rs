@@ -18,4 +18,5 @@ pub mod output;
 pub mod real;
 pub mod simulation;
 pub mod solver;
+pub mod study;
 pub mod verify;

@@ -8,6 +8,7 @@ use crate::law::LawError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
+use crate::study::StudyError;
 use crate::verify::VerifyError;
 
 /// Bad input or usage: nothing was computed.
@@ -125,6 +126,17 @@ pub enum CliError {
         /// The directory of `--out`.
         dir: PathBuf,
     },
+    /// A study.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// A study where `--set` was given.
+    #[error("--set {argument}: {} is a study, whose values are those of its file. edit the file, or give a case", .file.display())]
+    SetInStudy {
+        /// The argument.
+        argument: String,
+        /// The study file.
+        file: PathBuf,
+    },
     /// The checks of a verification could not be run.
     #[error("verify, {family}: {source}. `asperity devices` lists what there is to compute on; --device cpu needs nothing")]
     Verify {
@@ -139,7 +151,7 @@ impl CliError {
     /// The exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::BrokeOff { .. } | CliError::Verify { .. } => NOT_CONVERGED,
+            CliError::BrokeOff { .. } | CliError::Verify { .. } | CliError::Study(StudyError::BrokeOff { .. }) => NOT_CONVERGED,
             CliError::LawCase { source, .. } if matches!(**source, LawError::Press(_)) => NOT_CONVERGED,
             _ => BAD_INPUT,
         }

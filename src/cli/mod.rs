@@ -11,6 +11,7 @@ pub mod point;
 pub mod processor;
 pub mod run;
 pub mod signals;
+pub mod study;
 pub mod verify;
 
 pub use error::CliError;
@@ -38,6 +39,7 @@ enum Command {
     Verify(verify::VerifyArgs),
     Devices(devices::DevicesArgs),
     Point(point::PointArgs),
+    Study(study::StudyArgs),
     Law(law::LawArgs),
 }
 
@@ -49,6 +51,7 @@ impl Command {
             Command::Verify(args) => verify::verify(args),
             Command::Devices(args) => devices::devices(args),
             Command::Point(args) => point::point(args),
+            Command::Study(args) => study::study(args),
             Command::Law(args) => law::law(args),
         }
     }
@@ -63,6 +66,8 @@ pub enum Outcome {
     NotConverged,
     /// A check of a verification failed: exit code 3.
     ChecksFailed,
+    /// Cases of a study failed, all rows are kept: exit code 3.
+    CasesFailed,
     /// Interrupted, what was computed is kept: exit code 75 (EX_TEMPFAIL of sysexits.h).
     Interrupted,
 }
@@ -71,7 +76,7 @@ impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> Self {
         ExitCode::from(match outcome {
             Outcome::Done => 0,
-            Outcome::NotConverged | Outcome::ChecksFailed => error::NOT_CONVERGED,
+            Outcome::NotConverged | Outcome::ChecksFailed | Outcome::CasesFailed => error::NOT_CONVERGED,
             Outcome::Interrupted => 75,
         })
     }

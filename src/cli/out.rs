@@ -1,15 +1,12 @@
 //! The directory of `--out`: made, or recognised as an earlier result, and never anything of the user's.
 
 use std::fs;
-use std::io::{self, BufRead, BufReader, ErrorKind};
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use super::CliError;
 use crate::case::Case;
 use crate::output::OutputDirectory;
-
-/// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a result that may be replaced.
-pub const MARKER: &str = "# The resolved case of an asperity run. Running into this directory again replaces its results.";
 
 /// Prepares `dir` for the results of `case` and writes the resolved case to `case.toml` there.
 ///
@@ -27,19 +24,12 @@ pub fn prepare(dir: &Path, case: &Case) -> Result<(), CliError> {
     for entry in fs::read_dir(dir).map_err(failed("be read"))? {
         names.push(entry.map_err(failed("be read"))?.file_name().to_string_lossy().into_owned());
     }
-    if let Some(found) = names.iter().min().filter(|_| !is_result(dir)) {
+    let out = OutputDirectory::existing(dir);
+    if let Some(found) = names.iter().min().filter(|_| !out.holds_result()) {
         return Err(CliError::NotAResult { dir: dir.to_owned(), found: found.clone() });
     }
-    let out = OutputDirectory::existing(dir);
     out.clear()?;
-    Ok(out.write_case(&format!("{MARKER}\n{}", case.to_toml()))?)
-}
-
-/// Whether `dir` holds a result: its `case.toml` begins with [`MARKER`].
-pub fn is_result(dir: &Path) -> bool {
-    let mut first = String::new();
-    let read = fs::File::open(dir.join("case.toml")).and_then(|file| BufReader::new(file).read_line(&mut first));
-    read.is_ok() && first.trim_end() == MARKER
+    Ok(out.write_case(&case.to_toml())?)
 }
 
 #[cfg(test)]
@@ -56,7 +46,7 @@ mod tests {
         let scratch = tempfile::tempdir().expect("a scratch directory");
         let dir = scratch.path().join("a/b");
         prepare(&dir, &case()).expect("a new directory");
-        assert!(is_result(&dir));
+        assert!(OutputDirectory::existing(&dir).holds_result());
         assert_eq!(Case::load(&dir.join("case.toml"), &[]).expect("it reads back"), case());
     }
 

@@ -6,13 +6,30 @@ use std::time::Instant;
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
     wall: Instant,
+    whose: Whose,
     cpu: Option<f64>,
+}
+
+/// Whose processor time it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Whose {
+    Process,
+    Thread,
 }
 
 impl Clock {
     /// Starts it.
     pub fn start() -> Self {
-        Self { wall: Instant::now(), cpu: process_seconds() }
+        Self::of(Whose::Process)
+    }
+
+    /// Starts one for the work of this thread alone, for runs side by side in one process; it must be read in the thread that started it.
+    pub fn start_for_thread() -> Self {
+        Self::of(Whose::Thread)
+    }
+
+    fn of(whose: Whose) -> Self {
+        Self { wall: Instant::now(), whose, cpu: cpu_seconds(whose) }
     }
 
     /// Seconds on the wall since the start.
@@ -20,21 +37,24 @@ impl Clock {
         self.wall.elapsed().as_secs_f64()
     }
 
-    /// Processor seconds of the whole process since the start, all threads; `None` where the system does not tell.
+    /// Processor seconds since the start, of the whole process or of the thread; `None` where the system does not tell.
     pub fn cpu_seconds(&self) -> Option<f64> {
-        Some(process_seconds()? - self.cpu?)
+        Some(cpu_seconds(self.whose)? - self.cpu?)
     }
 }
 
 #[cfg(unix)]
-fn process_seconds() -> Option<f64> {
+fn cpu_seconds(whose: Whose) -> Option<f64> {
     use rustix::time::{ClockId, clock_gettime};
-    let time = clock_gettime(ClockId::ProcessCPUTime);
+    let time = clock_gettime(match whose {
+        Whose::Process => ClockId::ProcessCPUTime,
+        Whose::Thread => ClockId::ThreadCPUTime,
+    });
     Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
 }
 
 #[cfg(not(unix))]
-fn process_seconds() -> Option<f64> {
+fn cpu_seconds(_: Whose) -> Option<f64> {
     None
 }
 
@@ -50,5 +70,20 @@ mod tests {
         // Other tests run in the same process: the processor's time is at least this one's.
         #[cfg(unix)]
         assert!(clock.cpu_seconds().is_some_and(|seconds| seconds > 0.0));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_threads_clock_does_not_count_the_others_work() {
+        let clock = Clock::start_for_thread();
+        let work = || std::hint::black_box((0..20_000_000).map(|i| f64::from(i).sqrt()).sum::<f64>());
+        let theirs = std::thread::spawn(move || {
+            let clock = Clock::start_for_thread();
+            work();
+            clock.cpu_seconds()
+        });
+        let theirs = theirs.join().expect("the thread ends").expect("this system tells");
+        let ours = clock.cpu_seconds().expect("this system tells");
+        assert!(theirs > 0.0 && ours < 0.5 * theirs, "{ours} and {theirs}");
     }
 }

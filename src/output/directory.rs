@@ -2,7 +2,11 @@
 
 use super::{OutputError, write_atomically};
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
+
+/// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a result that may be replaced.
+pub const RESULT_MARKER: &str = "# The resolved case of an asperity run. Running into this directory again replaces its results.";
 
 /// The folder of one run: the names in it, in one place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,9 +108,16 @@ impl OutputDirectory {
         Ok(())
     }
 
-    /// Writes `case.toml`.
+    /// Writes `case.toml`, its first line the [`RESULT_MARKER`].
     pub fn write_case(&self, toml: &str) -> Result<(), OutputError> {
-        write_atomically(&self.case(), |out| out.write_all(toml.as_bytes()))
+        write_atomically(&self.case(), |out| write!(out, "{RESULT_MARKER}\n{toml}"))
+    }
+
+    /// Whether the folder holds a result: its `case.toml` begins with [`RESULT_MARKER`].
+    pub fn holds_result(&self) -> bool {
+        let mut first = String::new();
+        let read = fs::File::open(self.case()).and_then(|file| BufReader::new(file).read_line(&mut first));
+        read.is_ok() && first.trim_end() == RESULT_MARKER
     }
 }
 
@@ -149,7 +160,8 @@ mod tests {
         write_atomically(&out.root().join("contact/notes.txt"), |_| Ok(())).unwrap();
         assert_eq!(out.contact_steps().unwrap(), [3, 20]);
         out.write_case("[sphere]\nradius = 1.0\n").unwrap();
-        assert_eq!(fs::read_to_string(out.case()).unwrap(), "[sphere]\nradius = 1.0\n");
+        assert_eq!(fs::read_to_string(out.case()).unwrap(), format!("{RESULT_MARKER}\n[sphere]\nradius = 1.0\n"));
+        assert!(out.holds_result() && !OutputDirectory::existing(folder.path()).holds_result());
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub use crate::simulation::record::StepRecord;
 pub use atomic::write_atomically;
 pub use clock::Clock;
 pub use contact_csv::{ContactPoint, ContactStatus, read_contact, write_contact};
-pub use directory::OutputDirectory;
+pub use directory::{OutputDirectory, RESULT_MARKER};
 pub use error::OutputError;
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, read_history};

@@ -32,6 +32,8 @@ pub struct ResultWriter {
     out: OutputDirectory,
     units: Units,
     fields: Fields,
+    /// Write the contact table at the end of each segment though no fields are written.
+    contact_tables: bool,
     plots: Option<PlotInputs>,
     inputs: SummaryInputs,
     setting: Setting,
@@ -63,6 +65,7 @@ impl ResultWriter {
         Ok(Self {
             units: Units::of(case),
             fields: case.output.fields,
+            contact_tables: false,
             plots: case.output.plots.then(|| PlotInputs::of(case)),
             inputs: SummaryInputs::of(case),
             setting,
@@ -79,6 +82,12 @@ impl ResultWriter {
             messages: Vec::new(),
             out,
         })
+    }
+
+    /// Writes the contact table at the end of each segment even where the case wants no fields: a few kilobytes.
+    pub fn with_contact_tables(mut self) -> Self {
+        self.contact_tables = true;
+        self
     }
 
     /// Says anew where the run is computed: a device may have failed on the way.
@@ -179,6 +188,8 @@ impl Observer for ResultWriter {
         let contact = self.contact(view);
         if self.fields != Fields::None {
             self.save(view, &contact)?;
+        } else if self.contact_tables {
+            write_contact(&self.out.contact(view.record.step), &contact)?;
         }
         if contact.iter().any(|point| point.status != ContactStatus::Open) {
             self.shown = contact;

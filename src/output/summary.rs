@@ -26,6 +26,8 @@ pub enum Status {
     /// Stopped from outside, by a signal or because results could not be written; what was computed is kept.
     #[default]
     Interrupted,
+    /// Broke off for another reason: the device failed, say; what was computed is kept.
+    Failed,
 }
 
 impl std::fmt::Display for Status {
@@ -35,6 +37,7 @@ impl std::fmt::Display for Status {
             Status::NotConverged => "not converged",
             Status::ContactOutgrewMesh => "the contact outgrew the mesh",
             Status::Interrupted => "interrupted",
+            Status::Failed => "failed",
         })
     }
 }
@@ -404,6 +407,8 @@ mod tests {
         summary.status = Status::NotConverged;
         summary.device = "cpu".into();
         summary.messages.push("note".into());
+        // A number that a hasty reader of decimals gets wrong in its last bit.
+        summary.a0 = Some(0.123_877_429_705_042_23);
         summary.write(&path).unwrap();
         assert_eq!(Summary::read(&path).unwrap(), summary);
         let json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();

@@ -1,0 +1,96 @@
+//! `asperity study`: a grid of cases, from its file to a row each.
+
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Args;
+
+use super::backend::{device_wish, precision_wish};
+use super::options::{DeviceArgs, Verbosity};
+use super::signals::stop_flag;
+use super::{CliError, Outcome};
+use crate::compute::ComputeError;
+use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgress};
+
+/// Simulate every combination of a grid of cases, one directory and one row of study.csv each.
+///
+/// A case that fails stops no other: its row says why. An interrupted study goes on with --resume.
+#[derive(Clone, Debug, Args)]
+pub struct StudyArgs {
+    /// The study file: a case under [base], and a [grid] of dotted keys with lists of values.
+    #[arg(value_name = "STUDY.toml")]
+    pub study: PathBuf,
+    /// Directory for the results: a new one, an empty one, or one that holds an earlier study, which is replaced (not with --resume or --shard).
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Only the I-th of N shares of about the same size; several machines may work into one directory, a share each. `--resume` without a share then
+    /// gathers all rows.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Go on in a directory with results of this study: cases that are done stay, interrupted ones and those that broke off are computed again.
+    #[arg(long)]
+    pub resume: bool,
+    /// With --resume: compute also those cases again that did not converge or outgrew their mesh.
+    #[arg(long, requires = "resume")]
+    pub retry: bool,
+    /// Device, precision, threads.
+    #[command(flatten)]
+    pub device: DeviceArgs,
+    /// How much to say.
+    #[command(flatten)]
+    pub verbosity: Verbosity,
+}
+
+/// Reads and checks the study, computes what there is to compute, and reports.
+pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
+    args.verbosity.start_log();
+    args.device.start_threads()?;
+    let study = Study::load(&args.study)?;
+    let all_cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let options = Options {
+        device: device_wish(&args.device),
+        precision: precision_wish(&args.device),
+        threads: args.device.threads.unwrap_or_else(all_cores).get(),
+        shard: args.shard,
+        resume: args.resume,
+        retry: args.retry,
+    };
+    let progress = Arc::new(StudyProgress::new(args.verbosity.quiet));
+    let stop = stop_flag()?;
+    let report = study::run(&study, &args.out, &options, progress, stop).map_err(|error| match error {
+        StudyError::Compute(ComputeError::Device(what)) => CliError::Device { what },
+        error => error.into(),
+    })?;
+    conclude(&report, args)
+}
+
+/// Says how it went and gives the exit code.
+fn conclude(report: &Report, args: &StudyArgs) -> Result<Outcome, CliError> {
+    let (dir, Report { done, failed, pending, .. }) = (args.out.display(), report);
+    if !args.verbosity.quiet {
+        let elsewhere = match report.pending_elsewhere {
+            0 => String::new(),
+            count => format!(", {count} of other shares pending"),
+        };
+        super::print(&format!("{done} done, {failed} failed, {pending} pending{elsewhere}; a row each in {dir}/study.csv\n"))?;
+    }
+    // A closed stderr does not change how the study went.
+    if *pending > 0 {
+        let _ = writeln!(
+            std::io::stderr(),
+            "error: interrupted by a signal with {pending} cases to go. what was computed is kept in {dir}; to go on, run the same command with --resume"
+        );
+        return Ok(Outcome::Interrupted);
+    }
+    if let Some((id, reason)) = &report.first_failure {
+        let _ = writeln!(
+            std::io::stderr(),
+            "error: {failed} of {} cases failed, the first in {dir}/cases/{id}: {reason}. all rows are kept in {dir}/study.csv",
+            done + failed
+        );
+        return Ok(Outcome::CasesFailed);
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,334 @@
+//! One device for many cases: their drives run side by side, each in its thread, and meet at the device.
+//!
+//! ```text
+//! drive 1 --ask-->  queue  --all that wait-->  backend, one call a kind  --answers--> drives
+//! drive 2 --ask-->
+//! ```
+//! Whoever serves takes all requests that wait at that moment and makes one call of each kind out of them, so that one dispatch serves every case
+//! that is at that point. It does not wait for the others, whose linear systems take their own time on the cores: a device that is idle takes what
+//! there is, and one that is busy finds the larger a batch. What a case gets does not depend on the others of the call ([`Compute`]), so
+//! neither do results.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::compute::{
+    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
+    Outcome, TangentRequest,
+};
+use crate::contact::coulomb::Rows;
+
+/// What a case asks for, and the answer when it comes back.
+enum Ask {
+    Force { displacement: Vec<f64>, force: Vec<f64>, outcome: Outcome },
+    Contact { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>> },
+    Tangent { displacement: Vec<f64>, blocks: Vec<[f64; 9]>, outcome: Outcome },
+    Commit { displacement: Vec<f64>, energies: Energies, outcome: Outcome },
+    Begin(f64),
+    Fields(Option<CaseFields>),
+    State(Option<CaseState>),
+    Restore(CaseState),
+}
+
+type Answer = Result<Ask, ComputeError>;
+
+struct Request {
+    case: usize,
+    ask: Ask,
+    reply: Sender<Answer>,
+}
+
+/// What the backend says of itself, for all guests.
+struct Told {
+    description: Description,
+    notes: Vec<String>,
+}
+
+/// A backend that will be shared.
+pub struct Host {
+    backend: Box<dyn Compute>,
+    requests: Receiver<Request>,
+    told: Arc<Mutex<Told>>,
+}
+
+/// One case's way to a shared backend, which it takes for its own.
+pub struct Guest {
+    models: Arc<Vec<CaseModel>>,
+    requests: Sender<Request>,
+    told: Arc<Mutex<Told>>,
+    /// Notes heard so far.
+    heard: usize,
+    /// Buffers that go to the host and come back.
+    displacement: Vec<f64>,
+    force: Vec<f64>,
+    blocks: Vec<[f64; 9]>,
+}
+
+/// A host for a backend and a guest for each of its cases.
+pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Guest>) {
+    let models = Arc::new(backend.models().to_vec());
+    let told = Arc::new(Mutex::new(Told { description: backend.description(), notes: Vec::new() }));
+    let (sender, requests) = channel();
+    let guest = |_| Guest {
+        models: models.clone(),
+        requests: sender.clone(),
+        told: told.clone(),
+        heard: 0,
+        displacement: Vec::new(),
+        force: Vec::new(),
+        blocks: Vec::new(),
+    };
+    let guests = (0..models.len()).map(guest).collect();
+    (Host { backend, requests, told }, guests)
+}
+
+impl Host {
+    /// Serves until the last guest has gone.
+    pub fn serve(mut self) {
+        while let Ok(first) = self.requests.recv() {
+            let mut waiting = vec![first];
+            waiting.extend(self.requests.try_iter());
+            let answers = self.answer(waiting);
+            let notes = self.backend.take_notes();
+            if !notes.is_empty() {
+                let mut told = lock(&self.told);
+                told.description = self.backend.description();
+                told.notes.extend(notes);
+            }
+            for (reply, answer) in answers {
+                // A guest that has gone needs no answer.
+                let _ = reply.send(answer);
+            }
+        }
+    }
+
+    /// Answers requests of different cases, those of a kind in one call.
+    fn answer(&mut self, waiting: Vec<Request>) -> Vec<(Sender<Answer>, Answer)> {
+        let (mut forces, mut contacts, mut tangents, mut commits, mut others) = (vec![], vec![], vec![], vec![], vec![]);
+        for request in waiting {
+            match request.ask {
+                Ask::Force { .. } => forces.push(request),
+                Ask::Contact { .. } => contacts.push(request),
+                Ask::Tangent { .. } => tangents.push(request),
+                Ask::Commit { .. } => commits.push(request),
+                Ask::Begin(_) | Ask::Fields(_) | Ask::State(_) | Ask::Restore(_) => others.push(request),
+            }
+        }
+        let backend = self.backend.as_mut();
+        let mut answers = Vec::new();
+        for (call, mut requests) in
+            [(internal_force as Call, forces), (contact, contacts), (tangent, tangents), (commit, commits)]
+        {
+            if requests.is_empty() {
+                continue;
+            }
+            let result = call(backend, &mut requests);
+            answers.extend(
+                requests.into_iter().map(|Request { ask, reply, .. }| (reply, result.as_ref().map(|()| ask).map_err(again))),
+            );
+        }
+        answers.extend(others.into_iter().map(|Request { case, ask, reply }| (reply, single(backend, case, ask))));
+        answers
+    }
+}
+
+type Call = fn(&mut dyn Compute, &mut [Request]) -> Result<(), ComputeError>;
+
+fn internal_force(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
+    let mut outcomes = Vec::new();
+    let mut calls: Vec<ForceRequest<'_>> = Vec::new();
+    for Request { case, ask, .. } in requests {
+        if let Ask::Force { displacement, force, outcome } = ask {
+            calls.push(ForceRequest { case: *case, displacement, force, outcome: Outcome::Valid });
+            outcomes.push(outcome);
+        }
+    }
+    backend.internal_force(&mut calls)?;
+    outcomes.into_iter().zip(&calls).for_each(|(out, call)| *out = call.outcome);
+    Ok(())
+}
+
+fn contact(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
+    let mut calls: Vec<ContactRequest<'_>> = Vec::new();
+    for Request { case, ask, .. } in requests {
+        if let Ask::Contact { displacement, force, rows } = ask {
+            calls.push(ContactRequest { case: *case, displacement, force, rows });
+        }
+    }
+    backend.contact(&mut calls)
+}
+
+fn tangent(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
+    let mut outcomes = Vec::new();
+    let mut calls: Vec<TangentRequest<'_>> = Vec::new();
+    for Request { case, ask, .. } in requests {
+        if let Ask::Tangent { displacement, blocks, outcome } = ask {
+            calls.push(TangentRequest { case: *case, displacement, blocks, outcome: Outcome::Valid });
+            outcomes.push(outcome);
+        }
+    }
+    backend.tangent(&mut calls)?;
+    outcomes.into_iter().zip(&calls).for_each(|(out, call)| *out = call.outcome);
+    Ok(())
+}
+
+fn commit(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
+    let mut answers = Vec::new();
+    let mut calls: Vec<CommitRequest<'_>> = Vec::new();
+    for Request { case, ask, .. } in requests {
+        if let Ask::Commit { displacement, energies, outcome } = ask {
+            calls.push(CommitRequest { case: *case, displacement, energies: Energies::default(), outcome: Outcome::Valid });
+            answers.push((energies, outcome));
+        }
+    }
+    backend.commit(&mut calls)?;
+    for ((energies, outcome), call) in answers.into_iter().zip(&calls) {
+        (*energies, *outcome) = (call.energies, call.outcome);
+    }
+    Ok(())
+}
+
+/// What the trait has no batch of.
+fn single(backend: &mut dyn Compute, case: usize, ask: Ask) -> Result<Ask, ComputeError> {
+    Ok(match ask {
+        Ask::Begin(weight) => {
+            backend.begin_step(case, weight)?;
+            Ask::Begin(weight)
+        }
+        Ask::Fields(_) => Ask::Fields(Some(backend.fields(case)?)),
+        Ask::State(_) => Ask::State(Some(backend.state(case)?)),
+        Ask::Restore(state) => {
+            backend.restore(case, &state)?;
+            Ask::Restore(state)
+        }
+        other => other,
+    })
+}
+
+/// The error of a call, for each of its guests.
+fn again(error: &ComputeError) -> ComputeError {
+    match *error {
+        ComputeError::InvertedMesh { element, point } => ComputeError::InvertedMesh { element, point },
+        ComputeError::Connectivity { case } => ComputeError::Connectivity { case },
+        ComputeError::Device(ref what) => ComputeError::Device(what.clone()),
+    }
+}
+
+fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {
+    told.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn gone() -> ComputeError {
+    ComputeError::Device("whoever served the batch has gone".to_owned())
+}
+
+impl Guest {
+    fn ask(&self, case: usize, ask: Ask) -> Result<Ask, ComputeError> {
+        // A channel for each request: it closes with the request if the host goes before it answers.
+        let (reply, answer) = channel();
+        self.requests.send(Request { case, ask, reply }).map_err(|_| gone())?;
+        answer.recv().map_err(|_| gone())?
+    }
+}
+
+/// A buffer with these contents.
+fn filled<T: Copy>(buffer: &mut Vec<T>, contents: &[T]) -> Vec<T> {
+    let mut buffer = std::mem::take(buffer);
+    buffer.clear();
+    buffer.extend_from_slice(contents);
+    buffer
+}
+
+impl Compute for Guest {
+    fn description(&self) -> Description {
+        lock(&self.told).description.clone()
+    }
+
+    fn models(&self) -> &[CaseModel] {
+        &self.models
+    }
+
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        self.ask(case, Ask::Begin(weight)).map(drop)
+    }
+
+    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
+        for request in requests {
+            let mut force = std::mem::take(&mut self.force);
+            force.resize(request.force.len(), 0.0);
+            let displacement = filled(&mut self.displacement, request.displacement);
+            let ask = Ask::Force { displacement, force, outcome: Outcome::Valid };
+            if let Ask::Force { displacement, force, outcome } = self.ask(request.case, ask)? {
+                request.force.copy_from_slice(&force);
+                request.outcome = outcome;
+                (self.displacement, self.force) = (displacement, force);
+            }
+        }
+        Ok(())
+    }
+
+    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
+        for request in requests {
+            let mut blocks = std::mem::take(&mut self.blocks);
+            blocks.resize(request.blocks.len(), [0.0; 9]);
+            let displacement = filled(&mut self.displacement, request.displacement);
+            let ask = Ask::Tangent { displacement, blocks, outcome: Outcome::Valid };
+            if let Ask::Tangent { displacement, blocks, outcome } = self.ask(request.case, ask)? {
+                request.blocks.copy_from_slice(&blocks);
+                request.outcome = outcome;
+                (self.displacement, self.blocks) = (displacement, blocks);
+            }
+        }
+        Ok(())
+    }
+
+    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
+        for request in requests {
+            let displacement = filled(&mut self.displacement, request.displacement);
+            let force = filled(&mut self.force, request.force);
+            let ask = Ask::Contact { displacement, force, rows: request.rows.to_vec() };
+            if let Ask::Contact { displacement, force, rows } = self.ask(request.case, ask)? {
+                request.rows.copy_from_slice(&rows);
+                (self.displacement, self.force) = (displacement, force);
+            }
+        }
+        Ok(())
+    }
+
+    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
+        for request in requests {
+            let displacement = filled(&mut self.displacement, request.displacement);
+            let ask = Ask::Commit { displacement, energies: Energies::default(), outcome: Outcome::Valid };
+            if let Ask::Commit { displacement, energies, outcome } = self.ask(request.case, ask)? {
+                (request.energies, request.outcome) = (energies, outcome);
+                self.displacement = displacement;
+            }
+        }
+        Ok(())
+    }
+
+    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
+        match self.ask(case, Ask::Fields(None))? {
+            Ask::Fields(Some(fields)) => Ok(fields),
+            _ => Err(gone()),
+        }
+    }
+
+    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
+        match self.ask(case, Ask::State(None))? {
+            Ask::State(Some(state)) => Ok(state),
+            _ => Err(gone()),
+        }
+    }
+
+    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
+        self.ask(case, Ask::Restore(state.clone())).map(drop)
+    }
+
+    fn take_notes(&mut self) -> Vec<String> {
+        let told = lock(&self.told);
+        let new = told.notes[self.heard..].to_vec();
+        self.heard = told.notes.len();
+        new
+    }
+}

@@ -1,0 +1,27 @@
+//! Grids of cases: read and checked as a whole, computed side by side, one row each.
+//!
+//! `file` reads a base case and a grid into cases; `shard` deals them out; `run` decides which there are to compute and on what; `schedule` gives each a core
+//! of its own, or `batch` lets them share a device; `simulate` takes one from its directory to its summary; `row` makes `study.csv` of the
+//! summaries. What can go wrong with one case is a row; what can go wrong with all of them is a [`StudyError`].
+
+mod batch;
+mod directory;
+mod error;
+mod file;
+mod progress;
+mod row;
+mod run;
+mod schedule;
+mod shard;
+mod simulate;
+
+#[cfg(test)]
+mod tests;
+
+pub use directory::StudyDirectory;
+pub use error::StudyError;
+pub use file::{Study, StudyCase};
+pub use progress::StudyProgress;
+pub use row::{FIRST_COLUMNS, NUMBERS, Row, RowStatus};
+pub use run::{Options, Report, run};
+pub use shard::{Shard, cost};

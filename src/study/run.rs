@@ -1,0 +1,341 @@
+//! From a checked study to its directory: which cases there are to compute, on what, and their rows.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use super::StudyError;
+use super::batch::{Guest, share};
+use super::directory::StudyDirectory;
+use super::file::Study;
+use super::progress::StudyProgress;
+use super::row::{Row, RowStatus, write_table};
+use super::schedule::{pools, side_by_side};
+use super::shard::{Shard, cost, dearest_first};
+use super::simulate::Simulator;
+use crate::compute::gpu::{DeviceRequest, GpuContext, GpuError};
+use crate::compute::select::{DeviceWish, PrecisionWish, Selected, select};
+use crate::compute::{CaseModel, ComputeError};
+use crate::mesh::Mesh;
+use crate::output::Summary;
+use crate::simulation::problem::Problem;
+
+/// How a study is to be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Where the kernels run.
+    pub device: DeviceWish,
+    /// Their precision.
+    pub precision: PrecisionWish,
+    /// Cores to use: that many cases side by side, and twice as many where a device serves them.
+    pub threads: usize,
+    /// Only this share of the cases.
+    pub shard: Option<Shard>,
+    /// Go on in a directory that has results of this study.
+    pub resume: bool,
+    /// When going on, compute also those cases again that did not converge or outgrew their mesh: the same program would do the same again, another
+    /// version may not.
+    pub retry: bool,
+}
+
+/// What became of the cases that were asked for: all, or those of the share.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Computed to the end, now or before.
+    pub done: usize,
+    /// Ended, but not well.
+    pub failed: usize,
+    /// Still to be computed.
+    pub pending: usize,
+    /// Of the other shares, still to be computed.
+    pub pending_elsewhere: usize,
+    /// Number of the first case that failed, and why.
+    pub first_failure: Option<(String, String)>,
+}
+
+/// Most cases that share a device at a time.
+const LARGEST_BATCH: usize = 64;
+
+/// Computes a study into `dir`: a directory a case, and `study.csv`, which is written anew as cases end.
+///
+/// Cases that are done are not computed again if `resume` is set, or another share ran here before; a case is done if its `case.toml` is the very case and
+/// its `summary.json` says so. Cases that broke off or were interrupted are computed again, from their beginning; those that did not converge or outgrew
+/// their mesh, only with `retry`. A case that fails is a row with its reason and stops no other. Once `stop` is set, running cases end after their step
+/// and no other begins.
+///
+/// # Errors
+/// Before anything is computed: [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`], [`StudyError::Directory`],
+/// [`StudyError::Compute`] if a GPU was asked for and there is none, [`StudyError::Threads`]. Then only [`StudyError::BrokeOff`]: `study.csv` cannot be
+/// written.
+pub fn run(
+    study: &Study,
+    dir: &Path,
+    options: &Options,
+    progress: Arc<StudyProgress>,
+    stop: Arc<AtomicBool>,
+) -> Result<Report, StudyError> {
+    let device = device(options.device)?;
+    let slots = if device { (2 * options.threads).clamp(1, LARGEST_BATCH) } else { options.threads.max(1) };
+    let directory = StudyDirectory::new(dir);
+    let costs: Vec<f64> = study.cases.iter().map(|case| cost(&case.case)).collect();
+    let share = options.shard.map_or_else(|| (0..study.cases.len()).collect(), |shard| shard.of(&costs));
+    let pools = pools(slots.min(share.len()))?;
+    // Shares run into one directory one after the other: what the others left stays.
+    directory.prepare(study, options.resume || options.shard.is_some())?;
+
+    let mut rows = read_rows(study, &directory);
+    if !options.resume {
+        share.iter().for_each(|&case| rows[case] = Row::pending());
+    }
+    let open = |row: &Row| match row.status {
+        RowStatus::Done => false,
+        RowStatus::Pending | RowStatus::Failed => true,
+        RowStatus::NotConverged | RowStatus::Outgrown => options.retry,
+    };
+    let to_compute: Vec<usize> = share.iter().copied().filter(|&case| open(&rows[case])).collect();
+    to_compute.iter().for_each(|&case| rows[case] = Row::pending());
+    write_table(&directory, study, &rows)?;
+    directory.write_study(study)?;
+
+    let before = Report::of(study, &rows, &share);
+    progress.begin(
+        &headline(study, options, to_compute.len(), &before, pools.len()),
+        &costs,
+        &to_compute,
+        before.done,
+        before.failed,
+    );
+    let order: Vec<usize> = dearest_first(&costs).into_iter().filter(|case| to_compute.binary_search(case).is_ok()).collect();
+    let simulator = Simulator { cases: &study.cases, directory: &directory, progress: progress.clone(), stop: stop.clone() };
+    let mut table = Table { study, directory: &directory, rows, written: Instant::now(), took: Duration::ZERO };
+    let mut finished = |case: usize, result: Result<Summary, String>| {
+        let fault = |what| format!("the program panicked: {what}. this is a fault of the program, please report it");
+        let row = Row::of(result.unwrap_or_else(|what| simulator.broke_off(case, &fault(what))));
+        progress.finished(case, &study.cases[case].id, &row);
+        table.rows[case] = row;
+        table.write_if_due()
+    };
+    let computed = if device {
+        on_device(&simulator, options, &pools, &order, &mut finished)
+    } else {
+        on_cores(&simulator, options.precision, &pools, &order, &mut finished)
+    };
+    progress.end();
+    let mut rows = table.rows;
+    // Another process may have computed other shares in the meantime.
+    for (case, found) in read_rows(study, &directory).into_iter().enumerate() {
+        if share.binary_search(&case).is_err() {
+            rows[case] = found;
+        }
+    }
+    let broke_off = |source| StudyError::BrokeOff { source: Box::new(source), dir: dir.to_owned() };
+    computed.and_then(|()| write_table(&directory, study, &rows)).map_err(broke_off)?;
+    Ok(Report::of(study, &rows, &share))
+}
+
+impl Report {
+    fn of(study: &Study, rows: &[Row], share: &[usize]) -> Self {
+        let count = |wanted: &dyn Fn(&Row) -> bool| share.iter().filter(|&&case| wanted(&rows[case])).count();
+        let pending = count(&|row| row.status == RowStatus::Pending);
+        let failure = share.iter().find(|&&case| rows[case].has_failed());
+        Self {
+            done: count(&|row| row.status == RowStatus::Done),
+            failed: count(&Row::has_failed),
+            pending,
+            pending_elsewhere: rows.iter().filter(|row| row.status == RowStatus::Pending).count() - pending,
+            first_failure: failure.map(|&case| (study.cases[case].id.clone(), rows[case].reason.clone())),
+        }
+    }
+}
+
+fn headline(study: &Study, options: &Options, to_compute: usize, before: &Report, side_by_side: usize) -> String {
+    let mut text = study.size();
+    if let Some(Shard { index, count }) = options.shard {
+        text += &format!("; share {index}/{count}");
+    }
+    if before.done + before.failed > 0 {
+        text += &format!("; {} done and {} failed before", before.done, before.failed);
+    }
+    text + &format!("; {to_compute} to compute, {side_by_side} at a time")
+}
+
+fn read_rows(study: &Study, directory: &StudyDirectory) -> Vec<Row> {
+    study.cases.iter().map(|case| Row::read(&case.case, &directory.case(&case.id))).collect()
+}
+
+/// Writes `study.csv` as cases end, but spends no more than a few per cent of the time on it, however long it is.
+struct Table<'a> {
+    study: &'a Study,
+    directory: &'a StudyDirectory,
+    rows: Vec<Row>,
+    written: Instant,
+    took: Duration,
+}
+
+impl Table<'_> {
+    fn write_if_due(&mut self) -> Result<(), StudyError> {
+        if self.written.elapsed() >= 20 * self.took {
+            let begun = Instant::now();
+            write_table(self.directory, self.study, &self.rows)?;
+            (self.written, self.took) = (Instant::now(), begun.elapsed());
+        }
+        Ok(())
+    }
+}
+
+/// Whether a device is to be used: asked for or found, and able to be opened.
+fn device(wish: DeviceWish) -> Result<bool, StudyError> {
+    let found = match wish {
+        DeviceWish::Cpu => return Ok(false),
+        DeviceWish::Gpu => GpuContext::open(DeviceRequest::Gpu),
+        DeviceWish::Auto => GpuContext::open(DeviceRequest::Auto),
+    };
+    match found {
+        Ok(Some(_)) => Ok(true),
+        Ok(None) if wish == DeviceWish::Gpu => Err(ComputeError::from(GpuError::NoAdapter).into()),
+        Ok(None) => Ok(false),
+        Err(error) if wish == DeviceWish::Gpu => Err(ComputeError::from(error).into()),
+        Err(error) => {
+            log::info!("the GPU could not be used ({error}); the CPU was taken instead");
+            Ok(false)
+        }
+    }
+}
+
+type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Result<(), StudyError> + 'a;
+
+/// Every case on a core of its own.
+fn on_cores(
+    simulator: &Simulator<'_>,
+    precision: PrecisionWish,
+    pools: &[ThreadPool],
+    order: &[usize],
+    finished: &mut Finished<'_>,
+) -> Result<(), StudyError> {
+    let compute = |case: usize| -> Result<Summary, StudyError> {
+        simulator.begin(case)?;
+        let problem = Problem::new(&simulator.cases[case].case)?;
+        let Selected { mut backend, notes } = select(DeviceWish::Cpu, precision, vec![problem.model.clone()])?;
+        simulator.follow(case, &problem, backend.as_mut(), 0, &notes)
+    };
+    let work = |case: usize| {
+        simulator.progress.started();
+        compute(case).unwrap_or_else(|error| simulator.broke_off(case, &error.to_string()))
+    };
+    side_by_side(pools, order, &simulator.stop, work, finished)
+}
+
+/// Cases of one mesh connectivity share the device, as many at a time as there are pools.
+fn on_device(
+    simulator: &Simulator<'_>,
+    options: &Options,
+    pools: &[ThreadPool],
+    order: &[usize],
+    finished: &mut Finished<'_>,
+) -> Result<(), StudyError> {
+    let mut batches: Vec<Vec<usize>> = Vec::new();
+    for alike in by_connectivity(simulator, order) {
+        batches.extend(alike.chunks(pools.len()).map(<[usize]>::to_vec));
+    }
+    batches.reverse();
+    while let Some(batch) = batches.pop() {
+        if simulator.stop.load(Ordering::Relaxed) {
+            break;
+        }
+        let mut problems: Vec<(usize, Problem)> = Vec::new();
+        for &case in &batch {
+            let begun = simulator.begin(case).and_then(|_| Ok(Problem::new(&simulator.cases[case].case)?));
+            match begun {
+                Ok(problem) => problems.push((case, problem)),
+                Err(error) => {
+                    simulator.progress.started();
+                    finished(case, Ok(simulator.broke_off(case, &error.to_string())))?;
+                }
+            }
+        }
+        let models: Vec<CaseModel> = problems.iter().map(|(_, problem)| problem.model.clone()).collect();
+        match select(options.device, options.precision, models) {
+            Ok(selected) => on_one_device(simulator, selected, pools, &problems, finished)?,
+            // Too large for the device, perhaps: halves may not be.
+            Err(ComputeError::Device(_)) if problems.len() > 1 => {
+                let cases: Vec<usize> = problems.iter().map(|(case, _)| *case).collect();
+                let (first, second) = cases.split_at(cases.len() / 2);
+                batches.extend([second.to_vec(), first.to_vec()]);
+            }
+            Err(error) => {
+                for (case, _) in &problems {
+                    simulator.progress.started();
+                    finished(*case, Ok(simulator.broke_off(*case, &error.to_string())))?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One batch: its cases are the guests of one backend, which this thread's scope serves.
+fn on_one_device(
+    simulator: &Simulator<'_>,
+    selected: Selected,
+    pools: &[ThreadPool],
+    problems: &[(usize, Problem)],
+    finished: &mut Finished<'_>,
+) -> Result<(), StudyError> {
+    let Selected { backend, notes } = selected;
+    let (host, guests) = share(backend);
+    let guests: Vec<Mutex<Option<Guest>>> = guests.into_iter().map(|guest| Mutex::new(Some(guest))).collect();
+    let work = |slot: usize| {
+        let (case, problem) = &problems[slot];
+        simulator.progress.started();
+        // Each job is done once, so that its guest is there.
+        let guest = guests[slot].lock().unwrap_or_else(PoisonError::into_inner).take();
+        let followed = match guest {
+            Some(mut guest) => simulator.follow(*case, problem, &mut guest, slot, &notes),
+            None => Err(ComputeError::Device("the case was begun twice".to_owned()).into()),
+        };
+        followed.unwrap_or_else(|error| simulator.broke_off(*case, &error.to_string()))
+    };
+    let order: Vec<usize> = (0..problems.len()).collect();
+    std::thread::scope(|scope| {
+        // Should the backend panic, its guests find it gone, and that is their error.
+        scope.spawn(|| catch_unwind(AssertUnwindSafe(|| host.serve())));
+        let outcome = side_by_side(pools, &order, &simulator.stop, work, |slot, result| finished(problems[slot].0, result));
+        // Guests of cases that were not begun: with the last of them the host goes.
+        for guest in &guests {
+            drop(guest.lock().unwrap_or_else(PoisonError::into_inner).take());
+        }
+        outcome
+    })
+}
+
+/// The cases of `order` in groups of one mesh connectivity; groups and cases in the order in which they come. A case that has no mesh is a group of its own.
+fn by_connectivity(simulator: &Simulator<'_>, order: &[usize]) -> Vec<Vec<usize>> {
+    let key = |&case: &usize| match Problem::new(&simulator.cases[case].case) {
+        Ok(problem) => connectivity(&problem.model.mesh),
+        Err(_) => (0, case as u64),
+    };
+    let keys: Vec<(usize, u64)> = order.par_iter().map(key).collect();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut group_of = BTreeMap::new();
+    for (&case, key) in order.iter().zip(keys) {
+        let group = *group_of.entry(key).or_insert_with(|| {
+            groups.push(Vec::new());
+            groups.len() - 1
+        });
+        groups[group].push(case);
+    }
+    groups
+}
+
+/// Number of elements and a hash of their nodes and the contact's (FNV-1a, Fowler, Noll & Vo 1991): equal where a batch can be shared.
+fn connectivity(mesh: &Mesh) -> (usize, u64) {
+    let nodes = mesh.elements.iter().flatten().chain(&mesh.contact_nodes);
+    let hash = nodes.fold(0xcbf2_9ce4_8422_2325u64, |hash, &node| (hash ^ u64::from(node)).wrapping_mul(0x0100_0000_01b3));
+    (mesh.elements.len(), hash)
+}

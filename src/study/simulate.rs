@@ -1,0 +1,92 @@
+//! One case of a study, from its directory to its summary.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::StudyError;
+use super::directory::StudyDirectory;
+use super::file::StudyCase;
+use super::progress::{CaseProgress, StudyProgress};
+use crate::compute::Compute;
+use crate::output::{Clock, OutputDirectory, ResultWriter, Setting, Status, Summary, SummaryInputs, read_history};
+use crate::simulation::drive::{Drive, Ending};
+use crate::simulation::problem::Problem;
+
+/// What all cases have in common.
+pub struct Simulator<'a> {
+    /// The cases.
+    pub cases: &'a [StudyCase],
+    /// Where their directories are.
+    pub directory: &'a StudyDirectory,
+    /// Who is told how far they are.
+    pub progress: Arc<StudyProgress>,
+    /// Asked after every step.
+    pub stop: Arc<AtomicBool>,
+}
+
+impl Simulator<'_> {
+    /// Makes the directory of a case anew, with its `case.toml`: from now on it is a case that has begun.
+    ///
+    /// # Errors
+    /// [`StudyError::Output`].
+    pub fn begin(&self, case: usize) -> Result<OutputDirectory, StudyError> {
+        let StudyCase { id, case, .. } = &self.cases[case];
+        let out = OutputDirectory::create(self.directory.case(id).root())?;
+        out.clear()?;
+        out.write_case(&case.to_toml())?;
+        Ok(out)
+    }
+
+    /// Follows the path of a case that has begun, on case number `slot` of `backend`, which is `problem`'s model in its virgin state; writes its results.
+    /// `notes` are on how the backend was chosen.
+    ///
+    /// # Errors
+    /// [`StudyError::Simulation`], [`StudyError::Output`]; a step that does not converge is none, but the summary's status.
+    pub fn follow(
+        &self,
+        case: usize,
+        problem: &Problem,
+        backend: &mut dyn Compute,
+        slot: usize,
+        notes: &[String],
+    ) -> Result<Summary, StudyError> {
+        let clock = Clock::start_for_thread();
+        let StudyCase { id, case: in_units, .. } = &self.cases[case];
+        let out = self.directory.case(id);
+        let newton = problem.newton()?;
+        let setting = Setting {
+            computed_on: backend.description(),
+            elements: problem.model.mesh.elements.len(),
+            unknowns: newton.free_unknowns(),
+        };
+        let progress = Box::new(CaseProgress { study: self.progress.clone(), case, id: id.clone() });
+        let results = ResultWriter::create(in_units, out.root(), setting, clock, progress, self.stop.clone())?;
+        let mut results = results.with_contact_tables();
+        notes.iter().for_each(|note| crate::simulation::drive::Observer::note(&mut results, note));
+        let ending = Drive::new(problem, backend, slot, newton).run(&mut results)?;
+        results.computed_on(backend.description());
+        let (status, message) = match ending {
+            Ending::Done => (Status::Done, None),
+            Ending::NotConverged(reason) => (Status::NotConverged, Some(format!("no convergence: {reason}"))),
+            Ending::Outgrown(reason) => (Status::ContactOutgrewMesh, Some(reason)),
+            Ending::Interrupted => (Status::Interrupted, Some(format!("interrupted after step {}", results.steps()))),
+        };
+        Ok(results.finish(status, message.as_deref())?)
+    }
+
+    /// The summary of a case that broke off for `reason`, with the numbers of what was computed until then; also written to its directory, as far as
+    /// that can be written.
+    pub fn broke_off(&self, case: usize, reason: &str) -> Summary {
+        let StudyCase { id, case, .. } = &self.cases[case];
+        let out = self.directory.case(id);
+        let history = read_history(&out.history()).unwrap_or_default();
+        let summary = Summary {
+            status: Status::Failed,
+            messages: vec![reason.to_owned()],
+            ..Summary::from_history(&history, &SummaryInputs::of(case))
+        };
+        // If the disk is full, the study's table is where that is told.
+        let _ = summary.write(&out.summary());
+        summary
+    }
+}

@@ -1,0 +1,307 @@
+//! A shared backend against one's own, bit by bit; rows; directories.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+
+use super::batch::share;
+use super::directory::StudyDirectory;
+use super::file::Study;
+use super::row::{Row, RowStatus, write_table};
+use crate::compute::cpu::Cpu;
+use crate::compute::{
+    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest,
+    TangentRequest,
+};
+use crate::output::{OutputDirectory, Status, Summary};
+use crate::simulation::drive::{Drive, Ending, Observer, StepView};
+use crate::simulation::problem::Problem;
+use crate::simulation::record::StepRecord;
+
+const STUDY: &str = r#"
+[base.sphere]
+radius = 2.0
+[base.material]
+youngs_modulus = 200e3
+poissons_ratio = 0.3
+[base.material.hardening]
+law = "ideal"
+yield_stress = 800.0
+[base.contact]
+friction = 0.3
+[base.mesh]
+elements_per_contact_radius = 4
+contact_radius = 0.2
+[base.solver]
+press_steps = 2
+shear_steps = 2
+[[base.path]]
+indentation = 0.01
+[[base.path]]
+shear = 0.0005
+[grid]
+"material.hardening.yield_stress" = [400.0, 800.0]
+"contact.friction" = [0.1, "stick"]
+"#;
+
+fn study() -> Study {
+    Study::parse(STUDY, "study.toml").expect("a study")
+}
+
+/// Counts calls and their requests; fails from the given call of `internal_force` on.
+struct Watched {
+    inner: Cpu<f64>,
+    calls: Arc<AtomicUsize>,
+    largest: Arc<AtomicUsize>,
+    fails_from: usize,
+    note: Arc<Mutex<Vec<String>>>,
+}
+
+impl Compute for Watched {
+    fn description(&self) -> Description {
+        self.inner.description()
+    }
+    fn models(&self) -> &[CaseModel] {
+        self.inner.models()
+    }
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        self.inner.begin_step(case, weight)
+    }
+    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
+        if self.calls.fetch_add(1, Ordering::Relaxed) >= self.fails_from {
+            return Err(ComputeError::Device("lost".to_owned()));
+        }
+        self.largest.fetch_max(requests.len(), Ordering::Relaxed);
+        self.inner.internal_force(requests)
+    }
+    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
+        self.inner.tangent(requests)
+    }
+    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
+        self.inner.contact(requests)
+    }
+    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
+        self.inner.commit(requests)
+    }
+    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
+        self.inner.fields(case)
+    }
+    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
+        self.inner.state(case)
+    }
+    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
+        self.inner.restore(case, state)
+    }
+    fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.note.lock().unwrap())
+    }
+}
+
+fn watched(models: Vec<CaseModel>, fails_from: usize) -> (Box<Watched>, Arc<AtomicUsize>, Arc<AtomicUsize>) {
+    let (calls, largest) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
+    let inner = Cpu::new(models).expect("a batch");
+    let watched = Watched { inner, calls: calls.clone(), largest: largest.clone(), fails_from, note: Arc::default() };
+    (Box::new(watched), calls, largest)
+}
+
+fn problems() -> Vec<Problem> {
+    study().cases.iter().map(|case| Problem::new(&case.case).expect("a problem")).collect()
+}
+
+fn models(problems: &[Problem]) -> Vec<CaseModel> {
+    problems.iter().map(|problem| problem.model.clone()).collect()
+}
+
+/// Remembers what a run shows.
+#[derive(Default)]
+struct Seen {
+    rows: Vec<StepRecord>,
+    fields: Vec<CaseFields>,
+    notes: Vec<String>,
+}
+
+impl Observer for Seen {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.rows.push(view.record);
+        Ok(())
+    }
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.fields.push(view.fields()?);
+        Ok(())
+    }
+    fn note(&mut self, text: &str) {
+        self.notes.push(text.to_owned());
+    }
+}
+
+fn follow(problem: &Problem, backend: &mut dyn Compute, slot: usize) -> (Result<Ending, String>, Seen) {
+    let mut seen = Seen::default();
+    let newton = problem.newton().expect("a solver");
+    let ending = Drive::new(problem, backend, slot, newton).run(&mut seen).map_err(|error| error.to_string());
+    (ending, seen)
+}
+
+#[test]
+fn cases_that_share_a_backend_get_what_they_would_get_alone() {
+    let problems = problems();
+    let (backend, calls, largest) = watched(models(&problems), usize::MAX);
+    let note = backend.note.clone();
+    note.lock().unwrap().push("a note of the device".to_owned());
+    let (host, guests) = share(backend);
+    let shared: Vec<_> = std::thread::scope(|scope| {
+        let drives: Vec<_> = problems
+            .iter()
+            .zip(guests)
+            .enumerate()
+            .map(|(slot, (problem, mut guest))| scope.spawn(move || follow(problem, &mut guest, slot)))
+            .collect();
+        host.serve();
+        drives.into_iter().map(|drive| drive.join().expect("no panic")).collect()
+    });
+    let mut evaluations = 0;
+    for (problem, (ending, seen)) in problems.iter().zip(&shared) {
+        let (mut alone, calls, _) = watched(vec![problem.model.clone()], usize::MAX);
+        let (own_ending, own) = follow(problem, alone.as_mut(), 0);
+        assert_eq!((ending, &own_ending), (&Ok(Ending::Done), &Ok(Ending::Done)));
+        assert_eq!(seen.rows, own.rows);
+        assert_eq!(seen.fields, own.fields);
+        assert_eq!(seen.notes, ["a note of the device"]);
+        evaluations += calls.load(Ordering::Relaxed);
+    }
+    // Drives that wait together were served together.
+    let (calls, largest) = (calls.load(Ordering::Relaxed), largest.load(Ordering::Relaxed));
+    assert!(calls < evaluations && (2..=4).contains(&largest), "{calls} calls for {evaluations}, {largest} at once");
+}
+
+#[test]
+fn a_backend_that_fails_or_goes_is_an_error_of_every_case_and_no_deadlock() {
+    let problems = problems();
+    let (backend, _, _) = watched(models(&problems), 3);
+    let (host, guests) = share(backend);
+    let endings: Vec<_> = std::thread::scope(|scope| {
+        let drives: Vec<_> = problems
+            .iter()
+            .zip(guests)
+            .enumerate()
+            .map(|(slot, (problem, mut guest))| scope.spawn(move || follow(problem, &mut guest, slot).0))
+            .collect();
+        host.serve();
+        drives.into_iter().map(|drive| drive.join().expect("no panic")).collect()
+    });
+    for ending in endings {
+        assert!(ending.unwrap_err().contains("the compute device failed: lost"));
+    }
+    let (host, mut guests) = share(watched(models(&problems), 0).0);
+    drop(host);
+    let (ending, _) = follow(&problems[0], &mut guests[0], 0);
+    assert!(ending.unwrap_err().contains("has gone"));
+}
+
+#[test]
+fn a_row_is_the_summary_of_the_very_case() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let study = study();
+    let directory = StudyDirectory::new(scratch.path());
+    let (mine, other) = (&study.cases[0].case, &study.cases[1].case);
+    let out = OutputDirectory::create(directory.case("0001").root()).expect("a directory");
+    assert_eq!(Row::read(mine, &out), Row::pending());
+    let mut summary = Summary { status: Status::Done, f_n0: Some(5.0), a0: Some(0.2), h0: Some(0.01), ..Summary::default() };
+    summary.messages.push("note: a note".to_owned());
+    out.write_case(&mine.to_toml()).expect("a case");
+    assert_eq!(Row::read(mine, &out), Row::pending());
+    summary.write(&out.summary()).expect("a summary");
+    assert_eq!(Row::read(mine, &out), Row { status: RowStatus::Done, reason: String::new(), summary: Some(summary.clone()) });
+    assert_eq!(Row::read(other, &out), Row::pending());
+    for (status, expected) in [
+        (Status::NotConverged, RowStatus::NotConverged),
+        (Status::ContactOutgrewMesh, RowStatus::Outgrown),
+        (Status::Interrupted, RowStatus::Pending),
+        (Status::Failed, RowStatus::Failed),
+    ] {
+        let messages = vec!["note: before".to_owned(), "why\nit ended".to_owned(), "note: after".to_owned()];
+        let row = Row::of(Summary { status, messages, ..summary.clone() });
+        assert_eq!((row.status, row.reason.as_str()), (expected, "why it ended"));
+    }
+}
+
+#[test]
+fn the_table_has_the_promised_columns_and_normalised_variables() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let study = study();
+    let directory = StudyDirectory::new(scratch.path());
+    let (f_n0, a0, h0) = (430.0, 0.2, 0.01);
+    let summary = Summary {
+        status: Status::Done,
+        f_n0: Some(f_n0),
+        a0: Some(a0),
+        h0: Some(h0),
+        newton_iterations: 12,
+        ..Summary::default()
+    };
+    let rows: Vec<Row> = [Row::of(summary), Row::pending(), Row::pending(), Row::pending()].into();
+    write_table(&directory, &study, &rows).expect("a table");
+    assert!(directory.holds_study());
+    let mut reader = csv::Reader::from_path(directory.table()).expect("a table");
+    let header: Vec<String> = reader.headers().expect("a header").iter().map(str::to_owned).collect();
+    assert_eq!(header[..6], ["case", "directory", "status", "reason", "material.hardening.yield_stress", "contact.friction"]);
+    assert_eq!(
+        header[6..].join(","),
+        "E,nu,sigma_Y,mu,R,h0,a0,F_N0,F_N_slip,F_T_max,delta_T_slip,k_T0,sigma_rep,Lambda,Hbar,c2,elements_per_contact_radius,\
+         newton_iterations,cutbacks,cpu_s"
+    );
+    let records: Vec<csv::StringRecord> = reader.records().map(|record| record.expect("a row")).collect();
+    let column = |row: usize, name: &str| &records[row][header.iter().position(|column| column == name).expect("a column")];
+    let number = |name: &str| column(0, name).parse::<f64>().expect("a number");
+    assert_eq!(&records[0].iter().take(6).collect::<Vec<_>>().join(","), "0001,cases/0001,done,,400.0,0.1");
+    assert_eq!([number("E"), number("sigma_Y"), number("R"), number("newton_iterations")], [200e3, 400.0, 2.0, 12.0]);
+    // An ideally plastic sphere beyond first yield: sigma_rep = sigma_Y.
+    let lambda = 200e3 / (1.0 - 0.09) / 400.0 * a0 / 2.0;
+    assert!((number("Lambda") / lambda - 1.0).abs() < 1e-12 && number("sigma_rep") == 400.0);
+    assert!((number("Hbar") / (f_n0 / (std::f64::consts::PI * a0 * a0 * 400.0)) - 1.0).abs() < 1e-12);
+    assert!((number("c2") / (a0 * a0 / (4.0 * h0)) - 1.0).abs() < 1e-12);
+    assert_eq!([column(0, "F_N_slip"), column(1, "mu"), column(1, "F_N0"), column(1, "status")], ["", "", "", "pending"]);
+    assert_eq!([column(1, "contact.friction"), column(1, "elements_per_contact_radius")], ["stick", "4"]);
+}
+
+#[test]
+fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let directory = StudyDirectory::new(scratch.path().join("a/b"));
+    let study = study();
+    directory.prepare(&study, false).expect("a new directory");
+    directory.prepare(&study, true).expect("an empty directory");
+    write_table(&directory, &study, &vec![Row::pending(); 4]).expect("a table");
+    directory.prepare(&study, true).expect("killed early");
+    directory.write_study(&study).expect("a copy");
+    let spaced = Study::parse(&format!("# the same\n{STUDY}"), "study.toml").expect("a study");
+    directory.prepare(&spaced, true).expect("the same study");
+    let friction = "\"contact.friction\" = [0.1, \"stick\"]";
+    let ratio = "\"material.poissons_ratio\" = [0.1, 0.3]";
+    for (from, to, difference) in [
+        (
+            friction,
+            "\"contact.friction\" = [0.2, \"stick\"]",
+            "a case of it is material.hardening.yield_stress = 400.0, contact.friction = 0.1,",
+        ),
+        (friction, "\"contact.friction\" = [0.1]", "it has 4 cases"),
+        (friction, ratio, "its grid is 4 cases"),
+        ("poissons_ratio = 0.3", "poissons_ratio = 0.2", "its base gives another case 0001"),
+    ] {
+        let other = Study::parse(&STUDY.replace(from, to), "study.toml").expect("a study");
+        let error = directory.prepare(&other, true).expect_err("another study").to_string();
+        assert!(error.contains("holds another study") && error.contains("nothing was changed"), "{error}");
+        assert!(error.contains(difference), "{error}");
+    }
+    // A case of ours, with a file of the user's beside it, and a directory of the user's.
+    let out = OutputDirectory::create(directory.case("0003").root()).expect("a directory");
+    out.write_case(&study.cases[2].case.to_toml()).expect("a case");
+    std::fs::write(directory.root().join("notes.txt"), "mine").expect("a file");
+    std::fs::create_dir_all(directory.case("0004").root()).expect("a directory");
+    std::fs::write(directory.case("0004").root().join("notes.txt"), "mine").expect("a file");
+    directory.prepare(&study, false).expect("replaced");
+    assert!(!directory.holds_study() && !out.root().exists());
+    assert!(directory.root().join("notes.txt").exists() && directory.case("0004").root().join("notes.txt").exists());
+    let error = directory.prepare(&study, false).expect_err("not a study").to_string();
+    assert!(error.contains("is not an Asperity study") && error.contains("nothing was changed"), "{error}");
+    let file = StudyDirectory::new(directory.root().join("notes.txt"));
+    assert!(file.prepare(&study, true).expect_err("a file").to_string().contains("is not a directory"));
+}
