@@ -2,4 +2,6 @@
 //!
 //! `variables` are the normalised quantities in which contacts of different materials fall together.
 
+pub mod contact;
+pub mod model;
 pub mod variables;

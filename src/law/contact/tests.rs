@@ -1,0 +1,231 @@
+use super::*;
+use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
+use crate::analytical::olsson_larsson::{Hardening, OlssonLarsson};
+use crate::analytical::{ElasticSphere, hertz};
+use crate::law::model::Parameters;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const SPHERE: ElasticSphere = ElasticSphere { radius: 2.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
+const FRICTION: f64 = 0.3;
+
+/// A made-up law with the features of a fitted one: elastic below Lambda = 4, and from there on gradually another.
+fn law(yield_stress: f64, h: f64) -> (f64, Parameters) {
+    let model = OlssonLarsson { sphere: SPHERE, hardening: Hardening::Ideal { yield_stress } };
+    let a = model.contact_radius(h);
+    let f_n0 = model.force(h);
+    let k_t0 = 8.0 * SPHERE.shear_modulus() * a / (2.0 - SPHERE.poissons_ratio);
+    let s = 1.0 - 1.0 / (1.0 + 0.02 * (model.lambda(a) - 4.0).max(0.0));
+    let n = 1.5 + 1.8 * s;
+    let f_n_slip = f_n0 * (1.0 - 0.45 * s);
+    let delta_t_slip = 1.5 * FRICTION * f_n0 / k_t0 * (1.0 + 2.5 * s);
+    (a, Parameters { f_n0, f_n_slip, delta_t_slip, k_t0, n, m_exponent: 1.6 + s, n_exponent: 1.4 })
+}
+
+fn pair(yield_stress: f64, form: f64) -> ContactParameters {
+    let a = 3.0 * yield_stress * SPHERE.radius / SPHERE.effective_modulus();
+    let range = [(a * a / SPHERE.radius).min(0.01 * SPHERE.radius), 0.1 * SPHERE.radius];
+    ContactParameters::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, form, range, |h| law(yield_stress, h))
+        .unwrap()
+}
+
+fn pairs() -> [ContactParameters; 4] {
+    [pair(400.0, 0.0), pair(400.0, 1.0), pair(2000.0, 0.0), pair(1e5, 0.0)]
+}
+
+fn pressed(p: &ContactParameters, h: f64, steps: usize) -> (ContactState, ContactResponse) {
+    let mut now = (ContactState::default(), ContactResponse::default());
+    for i in 1..=steps {
+        now = p.update(&now.0, h * i as f64 / steps as f64, [0.0, 0.0]);
+    }
+    now
+}
+
+#[test]
+fn the_table_gives_back_the_normal_model_it_was_made_from() {
+    for (yield_stress, p) in [(400.0, pair(400.0, 0.0)), (1e5, pair(1e5, 0.0))] {
+        for i in 0..500 {
+            let h = SPHERE.radius * 10f64.powf(-6.5 + 5.4 * i as f64 / 500.0);
+            let (a, expected) = law(yield_stress, h);
+            let v = p.virgin(h);
+            assert!((v.point.f_n0 / expected.f_n0 - 1.0).abs() < 6e-3, "{h}: {} {}", v.point.f_n0, expected.f_n0);
+            assert!((v.point.a / a - 1.0).abs() < 4e-3);
+            assert!((v.point.delta_t_slip / expected.delta_t_slip - 1.0).abs() < 5e-3);
+            let step = 1e-5 * h;
+            let difference = (p.virgin(h + step).point.f_n0 - p.virgin(h - step).point.f_n0) / (2.0 * step);
+            assert!((v.slope / difference - 1.0).abs() < 1e-5);
+            assert!(v.depth <= h * (1.0 + 1e-3), "{h}: {}", v.depth);
+            // Pressing further is never stiffer than the elastic response of the contact there is.
+            assert!(v.slope <= 2.0 * p.effective_modulus * a * 1.02, "{h}: {}", v.slope / (2.0 * p.effective_modulus * a));
+        }
+    }
+}
+
+#[test]
+fn sliders_lie_on_the_backbone_and_never_below_it() {
+    for backbone in [1.5, 4.0 / std::f64::consts::PI] {
+        let (weight, lost) = virgin::sliders(backbone);
+        assert!((weight.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        let at = |x: f64| backbone * (0..SLIDERS).map(|i| weight[i] * x.min(1.0 - lost[i])).sum::<f64>();
+        assert!((at(1.0) - 1.0).abs() < 1e-14);
+        for i in 0..=1000 {
+            let x = i as f64 / 1000.0;
+            let error = at(x) - (1.0 - (1.0 - x).powf(backbone));
+            assert!((-1e-14..3e-3).contains(&error), "{backbone} {x} {error}");
+        }
+    }
+}
+
+#[test]
+fn first_loading_is_the_law_for_any_step_and_direction() {
+    for p in pairs() {
+        for (h, steps, angle) in [(0.04, 7, 0.0), (0.04, 400, 0.6), (0.002, 50, 2.0), (1e-4, 60, -2.5), (0.12, 33, 4.0)] {
+            let (mut state, _) = pressed(&p, h, 10);
+            let v = p.virgin(h);
+            let mut out = ContactResponse::default();
+            for i in 1..=steps {
+                let x: f64 = 1.2 * i as f64 / steps as f64;
+                let d = 1.2 * v.point.delta_t_slip / steps as f64;
+                (state, out) = p.update(&state, h, [d * f64::cos(angle), d * f64::sin(angle)]);
+                let x = x.min(1.0);
+                let (f, m, n) = (1.0 - (1.0 - x).powf(v.point.n), v.point.m_exponent, v.point.n_exponent);
+                let f_n = if p.form == 0.0 { (1.0 - (1.0 - x).powf(m)).powf(n) } else { 1.0 - (1.0 - x.powf(m)).powf(n) };
+                let size = FRICTION * v.point.f_n_slip * f;
+                let force = out.f_t[0].hypot(out.f_t[1]);
+                // Where the law is the elastic curve itself, the sliders' broken line may run below it.
+                let tolerance = if h > 0.01 && p.virgin(h).gamma < 1.4 { 1e-10 * size } else { 6e-3 * FRICTION * out.f_n };
+                assert!((force - size).abs() < tolerance, "h {h} steps {steps} x {x}: {force} for {size}");
+                assert!((out.f_t[0] - force * f64::cos(angle)).abs() < 1e-10 * size);
+                let expected = v.point.f_n0 - (v.point.f_n0 - v.point.f_n_slip) * f_n;
+                assert!((out.f_n / expected - 1.0).abs() < tolerance / size * 1e-2, "{h} {x}: {} for {expected}", out.f_n);
+            }
+            assert!((out.f_t[0].hypot(out.f_t[1]) / (FRICTION * out.f_n) - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn an_elastic_contact_reverses_as_mindlin_and_deresiewicz_have_it() {
+    let p = pair(1e5, 0.0);
+    let h = 1e-3;
+    let reference = CattaneoMindlin::at_indentation(SPHERE, FRICTION, h);
+    let slip = reference.slip_displacement();
+    for turn in [0.4, 0.8, 1.0] {
+        let (mut state, out) = pressed(&p, h, 5);
+        assert!((out.f_n / hertz::force(&SPHERE, h) - 1.0).abs() < 1e-9);
+        let step = slip / 100.0;
+        let (mut d, mut out) = (0.0, ContactResponse::default());
+        let mut go = |to: f64, check: &dyn Fn(f64) -> f64| {
+            let sign = f64::signum(to - d);
+            while (to - d) * sign > 0.5 * step {
+                d += sign * step;
+                (state, out) = p.update(&state, h, [sign * step, 0.0]);
+                let expected = check(d);
+                assert!(
+                    (out.f_t[0] - expected).abs() < 5e-3 * FRICTION * out.f_n,
+                    "turn {turn} at {d}: {} {expected}",
+                    out.f_t[0]
+                );
+            }
+        };
+        go(turn * slip, &|d| reference.force(d));
+        go(-1.5 * slip, &|d| reference.reversed_force(turn * slip, d));
+    }
+}
+
+#[test]
+fn unloading_starts_with_twice_e_star_a_and_reloading_returns() {
+    for (p, h) in [(pair(400.0, 0.0), 0.04), (pair(2000.0, 0.0), 0.04), (pair(1e5, 0.0), 1e-3)] {
+        let (state, out) = pressed(&p, h, 9);
+        let v = p.virgin(h);
+        assert!((out.f_n / v.point.f_n0 - 1.0).abs() < 1e-12);
+        let step = 1e-6 * v.depth;
+        let (_, less) = p.update(&state, h - step, [0.0, 0.0]);
+        assert!(((out.f_n - less.f_n) / step / (2.0 * p.effective_modulus * out.a) - 1.0).abs() < 1e-5);
+        let mut down = state;
+        let mut forces = vec![];
+        for i in 1..=20 {
+            let result = p.update(&down, h - 1.1 * v.depth * i as f64 / 20.0, [0.0, 0.0]);
+            (down, _) = result;
+            forces.push(result.1.f_n);
+        }
+        assert_eq!(forces.last(), Some(&0.0));
+        for i in (1..20).rev() {
+            let result = p.update(&down, h - 1.1 * v.depth * i as f64 / 20.0, [0.0, 0.0]);
+            down = result.0;
+            assert!((result.1.f_n - forces[i - 1]).abs() < 1e-9 * v.point.f_n0);
+        }
+        let (again, out) = p.update(&down, h, [0.0, 0.0]);
+        assert!((out.f_n / v.point.f_n0 - 1.0).abs() < 1e-9);
+        let (_, out) = p.update(&again, 1.5 * h, [0.0, 0.0]);
+        assert!((out.f_n / p.virgin(1.5 * h).point.f_n0 - 1.0).abs() < 1e-9);
+    }
+}
+
+/// A random path: targets of (h, delta_T) reached in `per_leg` steps each.
+fn legs(seed: u64, count: usize, scale: [f64; 2]) -> Vec<[f64; 3]> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut at = [0.0; 3];
+    (0..count)
+        .map(|_| {
+            let kind = random.random_range(0..4);
+            if kind != 0 {
+                at[1] = scale[1] * random.random_range(-1.5..1.5);
+                at[2] = if kind == 1 { at[2] } else { scale[1] * random.random_range(-1.5..1.5) };
+            }
+            if kind < 2 {
+                at[0] = scale[0] * random.random_range(0.0f64..1.0).powi(2);
+            } else if kind == 2 {
+                at[0] *= random.random_range(0.9..1.05);
+            }
+            at
+        })
+        .collect()
+}
+
+#[test]
+fn no_path_gives_back_more_than_the_energy_stored() {
+    let mut worst: f64 = 0.0;
+    for (number, p) in pairs().iter().enumerate() {
+        for seed in 0..60 {
+            let h = [0.06, 2e-3, 0.15][seed as usize % 3];
+            let (mut state, mut out) = (ContactState::default(), ContactResponse::default());
+            let mut at = [0.0; 3];
+            let mut through = 0.0;
+            let steps = 2000;
+            for target in legs(seed, 12, [h, p.virgin(h).point.delta_t_slip]) {
+                let from = at;
+                let step: [f64; 3] = std::array::from_fn(|i| (target[i] - from[i]) / steps as f64);
+                for k in 1..=steps {
+                    at = std::array::from_fn(|i| from[i] + step[i] * k as f64);
+                    let stored = p.stored_energy(&state);
+                    let (next, answer) = p.update(&state, at[0], [step[1], step[2]]);
+                    let work = 0.5
+                        * ((out.f_n + answer.f_n) * step[0]
+                            + (out.f_t[0] + answer.f_t[0]) * step[1]
+                            + (out.f_t[1] + answer.f_t[1]) * step[2]);
+                    let gain = p.stored_energy(&next) - stored - work;
+                    through += work.abs();
+                    // Of the energy that went in and out so far: quadrature over a step that changes its mind.
+                    if gain / through > 2e-5 {
+                        println!(
+                            "{number} {seed} leg {target:?} step {k} h {} hm {} x {} -> {} gain {:.2e} of {:.2e}",
+                            state.h,
+                            state.h_max,
+                            state.x,
+                            next.x,
+                            gain / through,
+                            gain / work.abs()
+                        );
+                    }
+                    worst = worst.max(gain / through);
+                    assert!(gain <= 2e-3 * through, "{number} {seed} {k} {gain} {through} {state:?} {next:?}");
+                    let force = out.f_t[0].hypot(out.f_t[1]);
+                    assert!(force <= FRICTION * out.f_n * (1.0 + 1e-12));
+                    (state, out) = (next, answer);
+                }
+            }
+        }
+    }
+    println!("{worst}");
+}
