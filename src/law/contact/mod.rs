@@ -3,7 +3,7 @@ mod update;
 mod virgin;
 
 pub use update::{ContactResponse, ContactState};
-pub use virgin::{COLUMNS, ContactError, ContactParameters, KNOTS, SLIDERS};
+pub use virgin::{Axial, COLUMNS, ContactError, ContactParameters, KNOTS, SLIDERS};
 
 #[cfg(test)]
 mod tests;

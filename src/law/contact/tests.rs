@@ -10,7 +10,7 @@ const SPHERE: ElasticSphere = ElasticSphere { radius: 2.0, youngs_modulus: 200e3
 const FRICTION: f64 = 0.3;
 
 /// A made-up law with the features of a fitted one: elastic below Lambda = 4, and from there on gradually another.
-fn law(yield_stress: f64, h: f64) -> (f64, Parameters) {
+fn law(yield_stress: f64, h: f64) -> Axial {
     let model = OlssonLarsson { sphere: SPHERE, hardening: Hardening::Ideal { yield_stress } };
     let a = model.contact_radius(h);
     let f_n0 = model.force(h);
@@ -19,7 +19,8 @@ fn law(yield_stress: f64, h: f64) -> (f64, Parameters) {
     let n = 1.5 + 1.8 * s;
     let f_n_slip = f_n0 * (1.0 - 0.45 * s);
     let delta_t_slip = 1.5 * FRICTION * f_n0 / k_t0 * (1.0 + 2.5 * s);
-    (a, Parameters { f_n0, f_n_slip, delta_t_slip, k_t0, n, m_exponent: 1.6 + s, n_exponent: 1.4 })
+    let law = Parameters { f_n0, f_n_slip, delta_t_slip, k_t0, n, m_exponent: 1.6 + s, n_exponent: 1.4 };
+    Axial { a, k_t: k_t0, law }
 }
 
 fn pair(yield_stress: f64, form: f64) -> ContactParameters {
@@ -46,7 +47,7 @@ fn the_table_gives_back_the_normal_model_it_was_made_from() {
     for (yield_stress, p) in [(400.0, pair(400.0, 0.0)), (1e5, pair(1e5, 0.0))] {
         for i in 0..500 {
             let h = SPHERE.radius * 10f64.powf(-6.5 + 5.4 * i as f64 / 500.0);
-            let (a, expected) = law(yield_stress, h);
+            let Axial { a, law: expected, .. } = law(yield_stress, h);
             let v = p.virgin(h);
             assert!((v.point.f_n0 / expected.f_n0 - 1.0).abs() < 6e-3, "{h}: {} {}", v.point.f_n0, expected.f_n0);
             assert!((v.point.a / a - 1.0).abs() < 4e-3);
@@ -192,7 +193,7 @@ fn no_path_gives_back_more_than_the_energy_stored() {
             let (mut state, mut out) = (ContactState::default(), ContactResponse::default());
             let mut at = [0.0; 3];
             let mut through = 0.0;
-            let steps = 2000;
+            let steps = 200;
             for target in legs(seed, 12, [h, p.virgin(h).point.delta_t_slip]) {
                 let from = at;
                 let step: [f64; 3] = std::array::from_fn(|i| (target[i] - from[i]) / steps as f64);
@@ -207,19 +208,8 @@ fn no_path_gives_back_more_than_the_energy_stored() {
                     let gain = p.stored_energy(&next) - stored - work;
                     through += work.abs();
                     // Of the energy that went in and out so far: quadrature over a step that changes its mind.
-                    if gain / through > 2e-5 {
-                        println!(
-                            "{number} {seed} leg {target:?} step {k} h {} hm {} x {} -> {} gain {:.2e} of {:.2e}",
-                            state.h,
-                            state.h_max,
-                            state.x,
-                            next.x,
-                            gain / through,
-                            gain / work.abs()
-                        );
-                    }
                     worst = worst.max(gain / through);
-                    assert!(gain <= 2e-3 * through, "{number} {seed} {k} {gain} {through} {state:?} {next:?}");
+                    assert!(gain <= 2e-4 * through, "{number} {seed} {k} {gain} {through} {state:?} {next:?}");
                     let force = out.f_t[0].hypot(out.f_t[1]);
                     assert!(force <= FRICTION * out.f_n * (1.0 + 1e-12));
                     (state, out) = (next, answer);
@@ -227,5 +217,43 @@ fn no_path_gives_back_more_than_the_energy_stored() {
             }
         }
     }
-    println!("{worst}");
+    println!("greatest gain {worst:e} of the work exchanged");
+}
+
+#[test]
+#[ignore]
+fn fe() {
+    let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
+    let model = OlssonLarsson { sphere, hardening: Hardening::Ideal { yield_stress: 400.0 } };
+    let law = |h: f64| {
+        let a = model.contact_radius(h);
+        let f_n0 = model.force(h) * 0.975;
+        let m = 8.0 * sphere.shear_modulus() * a / 1.7;
+        let s = ((model.lambda(a) - 4.0).max(0.0) / 90.0).min(1.0);
+        let n = 1.5 + 2.3 * s;
+        let f_n_slip = f_n0 * (1.0 - 0.31 * s);
+        let delta_t_slip = 1.5 * 0.3 * f_n0 / m * (1.0 + 2.2 * s);
+        Axial { a, k_t: m / (1.0 + 1.9 * a * s), law: Parameters { f_n0, f_n_slip, delta_t_slip, k_t0: m, n, m_exponent: 2.6, n_exponent: 1.5 } }
+    };
+    let p = ContactParameters::tabulate(1.0, sphere.effective_modulus(), 0.3, 0.0, [2e-5, 0.1], law).unwrap();
+    for name in ["full", "small", "mixed", "unl"] {
+        let text = std::fs::read_to_string(format!("/tmp/rev/{name}/history.csv")).unwrap();
+        let (mut state, mut at, mut last) = (ContactState::default(), [0.0; 2], String::new());
+        println!("== {name}: h delta FE F_N model, FE F_T model, x");
+        for line in text.lines().skip(1) {
+            let c: Vec<&str> = line.split(',').collect();
+            let v = |i: usize| c[i].parse::<f64>().unwrap();
+            let mut out = ContactResponse::default();
+            let to = [v(2), v(3)];
+            for k in 1..=20 {
+                let h = at[0] + (to[0] - at[0]) * k as f64 / 20.0;
+                (state, out) = p.update(&state, h, [(to[1] - at[1]) / 20.0, 0.0]);
+            }
+            at = to;
+            if c[1] != "0" || c[1] != last {
+                println!("{} {:.6} {:.6}  {:8.3} {:8.3}  {:8.3} {:8.3}  {:.3}", c[1], v(2), v(3), v(4), out.f_n, v(5), out.f_t[0], state.x);
+            }
+            last = c[1].to_string();
+        }
+    }
 }

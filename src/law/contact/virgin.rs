@@ -30,8 +30,19 @@ pub struct ContactParameters {
     pub log_first: f64,
     /// Step of ln h from knot to knot.
     pub log_step: f64,
-    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T0.
+    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T.
     pub table: [[f64; COLUMNS]; KNOTS],
+}
+
+/// What a pair of materials answers for one indentation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axial {
+    /// Contact radius a, length.
+    pub a: f64,
+    /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
+    pub k_t: f64,
+    /// The law.
+    pub law: Parameters,
 }
 
 /// Why there are no contact parameters.
@@ -104,7 +115,7 @@ const PLASTIC_GAMMA: f64 = 1.2732395447351628;
 
 impl ContactParameters {
     /// Tabulates `law` over the indentations `range` (both > 0), from first yield (below it the contact must be Hertz's) to the greatest that will
-    /// be met. `law`(h) answers the contact radius and the law's parameters there.
+    /// be met. `law` answers for an indentation.
     ///
     /// # Errors
     /// [`ContactError::Value`] where a quantity is not positive and finite.
@@ -114,20 +125,20 @@ impl ContactParameters {
         friction: f64,
         form: f64,
         range: [f64; 2],
-        law: impl Fn(f64) -> (f64, Parameters),
+        law: impl Fn(f64) -> Axial,
     ) -> Result<Self, ContactError> {
         let log_first = range[0].ln();
         let log_step = (range[1].ln() - log_first) / (KNOTS as f64 - 1.0);
         let mut table = [[0.0; COLUMNS]; KNOTS];
         for i in 0..KNOTS {
             let h = (log_first + log_step * i as f64).exp();
-            let (a, p) = law(h);
+            let Axial { a, k_t, law: p } = law(h);
             let positive = [
                 ("a", a),
                 ("F_N0", p.f_n0),
                 ("F_N_slip", p.f_n_slip),
                 ("delta_T_slip", p.delta_t_slip),
-                ("k_T0", p.k_t0),
+                ("k_T", k_t),
                 ("n", p.n),
                 ("M", p.m_exponent),
                 ("N", p.n_exponent),
@@ -146,7 +157,7 @@ impl ContactParameters {
                 p.n,
                 p.m_exponent,
                 p.n_exponent,
-                p.k_t0.ln(),
+                k_t.ln(),
             ];
         }
         Ok(Self { radius, effective_modulus, friction, form, log_first, log_step, table })
