@@ -120,7 +120,7 @@ pub fn c_squared(lambda: f64, plastic: f64) -> f64 {
 
 /// Hbar at small deformation: Hertz's 4 Lambda/(3 pi) while below H_max - 0.0965 (ln Lambda - ln 160)^2, then that, then H_max from 160 on.
 pub fn normalized_hardness(lambda: f64, maximum: f64) -> f64 {
-    hardness(lambda, maximum, 1.0)
+    limited_hardness(lambda, maximum, 1.0)
 }
 
 /// Factor by which large deformation lowers the plastic hardness on a rigid plane: 1 - 0.0460789 q^2.2139, q = ln(a/R) - ln 0.041;
@@ -130,7 +130,8 @@ pub fn large_deformation_factor(relative_radius: f64) -> f64 {
     if q > 0.0 { (1.0 - 0.0460789 * q.powf(2.2139)).max(0.0) } else { 1.0 }
 }
 
-fn hardness(lambda: f64, maximum: f64, factor: f64) -> f64 {
+/// [`normalized_hardness`] with its plastic branch times `factor`, that of [`large_deformation_factor`].
+pub fn limited_hardness(lambda: f64, maximum: f64, factor: f64) -> f64 {
     let elastic = johnson::elastic_hardness(lambda);
     if lambda < SURELY_ELASTIC_LAMBDA {
         return elastic; // the parabola crosses Hertz a second time far below first yield
@@ -175,7 +176,7 @@ impl OlssonLarsson {
     /// Hbar at the contact radius `a`, large deformation included. The factor acts on the plastic branch: Hertz's own error of order
     /// (a/R)^2 is another matter.
     pub fn normalized_hardness(&self, a: f64) -> f64 {
-        hardness(self.lambda(a), self.hardening.maximum_hardness(), large_deformation_factor(a / self.sphere.radius))
+        limited_hardness(self.lambda(a), self.hardening.maximum_hardness(), large_deformation_factor(a / self.sphere.radius))
     }
 
     /// Normal force at the contact radius `a`, Hbar pi a^2 sigma_rep.

@@ -1,7 +1,19 @@
 //! From simulations to a contact law that needs axisymmetric data only.
 //!
-//! `variables` are the normalised quantities in which contacts of different materials fall together.
+//! `variables` are the normalised quantities in which contacts of different materials fall together; `data` reads a study back; `forms` and `normal` are
+//! the candidate correlations; `fit` determines their constants, compares them by cross-validation and keeps the best as a [`Law`] (`model`,
+//! `law.json`); `predict` applies it to a case. `least_squares` and `report` serve them.
 
 pub mod contact;
+pub mod data;
+pub mod forms;
 pub mod model;
+pub mod normal;
+pub mod report;
 pub mod variables;
+
+mod error;
+mod least_squares;
+
+pub use error::LawError;
+pub use model::{Axisymmetric, Law, Parameters};

@@ -1,20 +1,309 @@
-//! The fitted law.
+//! The law: forms, constants, where they come from, where they hold and how well, as `law.json` has them.
 
-/// The law at one contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::LawError;
+use super::forms::{self, Constants, Forms, Plasticity};
+use super::normal::NormalModel;
+use super::report::{Candidate, FittedCase, NormalCandidate, RegionError};
+use super::variables::{c_squared, yield_lambda};
+use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
+use crate::output::write_atomically;
+
+/// The first key of a law file, by which it is recognised.
+pub const FORMAT: &str = "asperity-law";
+/// Version of the file's layout.
+pub const VERSION: u32 = 1;
+
+/// What a contact is before it is sheared: all that the law needs. Any one consistent system of units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Axisymmetric {
+    /// E, stress.
+    pub youngs_modulus: f64,
+    /// nu.
+    pub poissons_ratio: f64,
+    /// R, length.
+    pub radius: f64,
+    /// mu.
+    pub friction: f64,
+    /// sigma_rep, the flow stress at the representative strain 0.2 a/R and never below sigma_Y; infinite for an elastic sphere.
+    pub sigma_rep: f64,
+    /// Indentation h, length.
+    pub h: f64,
+    /// Contact radius a, length.
+    pub a: f64,
+    /// Normal force F_N, compression positive.
+    pub f_n: f64,
+}
+
+impl Axisymmetric {
+    /// The elastic sphere.
+    pub fn sphere(&self) -> ElasticSphere {
+        ElasticSphere { radius: self.radius, youngs_modulus: self.youngs_modulus, poissons_ratio: self.poissons_ratio }
+    }
+
+    /// Lambda.
+    pub fn lambda(&self) -> f64 {
+        johnson::lambda(&self.sphere(), self.sigma_rep, self.a)
+    }
+
+    /// c^2 = a^2/(2 R h).
+    pub fn c_squared(&self) -> f64 {
+        c_squared(self.radius, self.h, self.a)
+    }
+}
+
+/// The law of one contact, in the units of its [`Axisymmetric`] data:
+/// F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x), x = delta_T/delta_T_slip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameters {
-    /// F_N0.
+    /// F_N0 before the shear.
     pub f_n0: f64,
-    /// F_N_slip.
+    /// F_N at full slip.
     pub f_n_slip: f64,
-    /// delta_T_slip.
+    /// delta_T at full slip, length.
     pub delta_t_slip: f64,
-    /// k_T0.
+    /// Initial tangential stiffness, n mu F_N_slip/delta_T_slip, force per length.
     pub k_t0: f64,
-    /// n.
+    /// n of f_T = 1 - (1 - x)^n.
     pub n: f64,
-    /// M.
+    /// M of f_N.
     pub m_exponent: f64,
-    /// N.
+    /// N of f_N.
     pub n_exponent: f64,
+}
+
+/// A closed interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// Lower end.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+}
+
+impl Interval {
+    /// The smallest one that holds all values; `None` for no values.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        values.into_iter().fold(None, |interval: Option<Self>, x| {
+            Some(interval.map_or(Self { from: x, to: x }, |i| Self { from: i.from.min(x), to: i.to.max(x) }))
+        })
+    }
+
+    /// Whether `x` lies in it, to a share `margin` of the ends.
+    pub fn contains(&self, x: f64, margin: f64) -> bool {
+        x >= self.from - margin * self.from.abs() && x <= self.to + margin * self.to.abs()
+    }
+}
+
+/// The data that the law was fitted to: where it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Validity {
+    /// Lambda. Below first yield the law is Cattaneo and Mindlin's and holds without data.
+    pub lambda: Interval,
+    /// mu.
+    pub friction: Interval,
+    /// a/R.
+    pub relative_radius: Interval,
+    /// c^2.
+    pub c_squared: Interval,
+    /// nu.
+    pub poissons_ratio: Interval,
+}
+
+/// A quantity of a contact that lies outside of what the law was fitted to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutOfRange {
+    /// Its name.
+    pub quantity: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Where the law holds.
+    pub range: Interval,
+}
+
+impl std::fmt::Display for OutOfRange {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { quantity, value, range } = self;
+        write!(f, "{quantity} = {value:.4} is outside of {:.4} to {:.4}", range.from, range.to)
+    }
+}
+
+/// Where the constants come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// The program and its version.
+    pub program: String,
+    /// Name of the study's directory.
+    pub study: String,
+    /// Cases used.
+    pub cases: usize,
+    /// Cases left out, with the reasons.
+    pub left_out: Vec<(String, String)>,
+    /// Different materials.
+    pub materials: usize,
+    /// Fewest and most elements per contact radius.
+    pub elements_per_contact_radius: (usize, usize),
+    /// Folds of the cross-validation, by material.
+    pub folds: usize,
+    /// Seed of the folds.
+    pub seed: u64,
+}
+
+/// A fitted law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Law {
+    /// [`FORMAT`].
+    pub format: String,
+    /// [`VERSION`].
+    pub version: u32,
+    /// The chosen forms.
+    pub forms: Forms,
+    /// Their constants.
+    pub constants: Constants,
+    /// F_N0 and a0 from h.
+    pub normal: NormalModel,
+    /// Where it holds.
+    pub validity: Validity,
+    /// Where it comes from.
+    pub provenance: Provenance,
+    /// Cross-validated errors by region, F_N0 and a0 being known.
+    pub errors: Vec<RegionError>,
+    /// Cross-validated errors by region, F_N0 and a0 being predicted as well.
+    pub errors_predicted: Vec<RegionError>,
+    /// The forms that were compared, best first, and the baselines.
+    pub candidates: Vec<Candidate>,
+    /// The normal forms that were compared, best first.
+    pub normal_candidates: Vec<NormalCandidate>,
+    /// Every case with its own best parameters.
+    pub cases: Vec<FittedCase>,
+}
+
+/// Share of an end by which a quantity may pass it before it is called outside.
+const MARGIN: f64 = 0.02;
+
+impl Law {
+    /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly; a contact without force has no slip force.
+    pub fn contact(&self, inputs: &Axisymmetric) -> Parameters {
+        contact(&self.forms, &self.constants, inputs)
+    }
+
+    /// F_T and F_N at the displacement `delta_t` of a shear in one direction, constant from delta_T_slip on; F_T is odd and F_N even in `delta_t`.
+    pub fn forces(&self, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
+        forces(&self.forms, parameters, friction, delta_t)
+    }
+
+    /// What of the contact lies outside of the range of the fit; empty if nothing does.
+    pub fn out_of_range(&self, inputs: &Axisymmetric) -> Vec<OutOfRange> {
+        let Validity { lambda, friction, relative_radius, c_squared, poissons_ratio } = self.validity;
+        let elastic = inputs.lambda() <= yield_lambda(inputs.poissons_ratio);
+        let mut checks = vec![("nu", inputs.poissons_ratio, poissons_ratio)];
+        if elastic {
+            // Cattaneo and Mindlin need a small contact only.
+            checks.push(("a/R", inputs.a / inputs.radius, Interval { from: 0.0, ..relative_radius }));
+            checks.remove(0);
+        } else {
+            checks.push(("Lambda", inputs.lambda(), Interval { from: lambda.from.min(yield_lambda(inputs.poissons_ratio)), ..lambda }));
+            checks.push(("mu", inputs.friction, Interval { from: 0.0, ..friction }));
+            checks.push(("a/R", inputs.a / inputs.radius, relative_radius));
+            checks.push(("c^2", inputs.c_squared(), Interval { from: c_squared.from.min(0.5), ..c_squared }));
+        }
+        checks
+            .into_iter()
+            .filter(|(_, value, range)| !range.contains(*value, MARGIN))
+            .map(|(quantity, value, range)| OutOfRange { quantity, value, range })
+            .collect()
+    }
+
+    /// Writes `law.json`, whole or not at all.
+    ///
+    /// # Errors
+    /// The place cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), LawError> {
+        Ok(write_atomically(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
+            out.write_all(b"\n")
+        })?)
+    }
+
+    /// Reads a `law.json` and checks it.
+    ///
+    /// # Errors
+    /// [`LawError::BadLaw`]: no such file, not a law, another version, constants that are none.
+    pub fn read(path: &Path) -> Result<Self, LawError> {
+        let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
+        let text = fs::read_to_string(path).map_err(|error| bad(format!("cannot be read: {error}")))?;
+        Self::from_json(&text).map_err(bad)
+    }
+
+    /// A law from the text of its file; the error is what is wrong, in words.
+    fn from_json(text: &str) -> Result<Self, String> {
+        /// Read first, so that a file of another version is called that.
+        #[derive(Deserialize)]
+        struct Head {
+            format: String,
+            version: u32,
+        }
+        let head: Head = serde_json::from_str(text).map_err(|error| format!("is not a law: {error}"))?;
+        if head.format != FORMAT {
+            return Err(format!("is not a law: its format is {:?}", head.format));
+        }
+        if head.version != VERSION {
+            return Err(format!("is a law of version {}, and this program reads version {VERSION}", head.version));
+        }
+        let law: Self = serde_json::from_str(text).map_err(|error| format!("is not a law: {error}"))?;
+        if !law.constants.all().all(|x| x > 0.0 && x.is_finite()) {
+            return Err("has a constant that is not a positive number".to_owned());
+        }
+        if !law.normal.is_complete() {
+            return Err("has not as many constants for the normal problem as its form needs".to_owned());
+        }
+        Ok(law)
+    }
+}
+
+/// As [`Law::contact`].
+pub(super) fn contact(forms: &Forms, constants: &Constants, inputs: &Axisymmetric) -> Parameters {
+    let sphere = inputs.sphere();
+    let state = Plasticity::new(
+        forms.variable,
+        inputs.friction,
+        inputs.a / inputs.radius,
+        inputs.lambda(),
+        yield_lambda(inputs.poissons_ratio),
+        johnson::normalized_hardness(inputs.f_n, inputs.sigma_rep, inputs.a),
+        inputs.c_squared(),
+    );
+    let n = forms::exponent(forms, &constants.exponent, &state);
+    let share = 1.0 - forms::fall(forms, &constants.fall, &state);
+    let factor = forms::slip_factor(forms, &constants.slip, &state, n, share);
+    let (steep, gentle) = forms::curve_exponents(&constants.curve, inputs.friction, n);
+    let (m_exponent, n_exponent) = forms.normal_curve.exponents(steep, gentle);
+    let mindlin = cattaneo_mindlin::initial_stiffness(&sphere, inputs.a);
+    let elastic_slip = if mindlin > 0.0 { 1.5 * inputs.friction * inputs.f_n / mindlin } else { 0.0 };
+    Parameters {
+        f_n0: inputs.f_n,
+        f_n_slip: share * inputs.f_n,
+        delta_t_slip: factor * elastic_slip,
+        k_t0: mindlin * n / 1.5 * share / factor,
+        n,
+        m_exponent,
+        n_exponent,
+    }
+}
+
+/// As [`Law::forces`].
+pub(super) fn forces(forms: &Forms, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
+    let p = parameters;
+    let x = if p.delta_t_slip > 0.0 { (delta_t.abs() / p.delta_t_slip).min(1.0) } else { 1.0 };
+    let f_t = friction * p.f_n_slip * forms::f_t(x, p.n);
+    let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * forms.normal_curve.value(x, p.m_exponent, p.n_exponent);
+    (if delta_t == 0.0 { 0.0 } else { f_t.copysign(delta_t) }, f_n)
 }

@@ -1,0 +1,225 @@
+//! Reads a study back: `study.csv` and the run directories in `cases/`, reduced to what a law is fitted to.
+
+use std::fs;
+use std::path::Path;
+
+use super::LawError;
+use super::variables::{Body, Variables};
+use crate::case::{Case, Friction, Hold, Segment};
+use crate::output::{OutputDirectory, StepRecord, Summary, SummaryInputs, read_history};
+
+/// One point of a shear, as sizes, in the case's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// |delta_T|.
+    pub delta_t: f64,
+    /// F_T in the direction of the shear.
+    pub f_t: f64,
+    /// F_N.
+    pub f_n: f64,
+}
+
+/// A case of a study that was pressed once and sheared to full slip at constant h.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// The case's name in `study.csv`.
+    pub id: String,
+    /// The sphere.
+    pub body: Body,
+    /// Samples with the same number are of the same material (hardening, sigma_Y/E and nu).
+    pub material: usize,
+    /// mu.
+    pub friction: f64,
+    /// h0.
+    pub h0: f64,
+    /// a0.
+    pub a0: f64,
+    /// F_N0.
+    pub f_n0: f64,
+    /// F_N at full slip, the end of the shear.
+    pub f_n_slip: f64,
+    /// The simulation's initial tangential stiffness k_T0.
+    pub k_t0: f64,
+    /// delta_T at which F_T/F_N reaches 0.99 mu.
+    pub delta_t_99: f64,
+    /// The normalised variables before the shear.
+    pub variables: Variables,
+    /// The shear, from its start (delta_T = 0, F_T = 0, F_N = F_N0) to full slip.
+    pub curve: Vec<Point>,
+    /// How finely it was meshed.
+    pub elements_per_contact_radius: usize,
+}
+
+impl Sample {
+    /// Greatest F_T of the shear.
+    pub fn peak(&self) -> f64 {
+        self.curve.iter().fold(0.0, |peak, point| point.f_t.max(peak))
+    }
+}
+
+/// A case that is of no use for a law, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Skipped {
+    /// The case's name in `study.csv`.
+    pub id: String,
+    /// Why, in a few words.
+    pub reason: String,
+}
+
+/// What a study gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyData {
+    /// Usable cases, in the order of the table.
+    pub samples: Vec<Sample>,
+    /// The others.
+    pub skipped: Vec<Skipped>,
+}
+
+impl StudyData {
+    /// Number of different materials.
+    pub fn materials(&self) -> usize {
+        self.samples.iter().map(|sample| sample.material + 1).max().unwrap_or(0)
+    }
+
+    /// Reads the study in `dir`. Cases that did not end well, or were not pressed once and sheared once to full slip at constant h, are left out and
+    /// listed.
+    ///
+    /// # Errors
+    /// No study there; a table, case or history that cannot be read.
+    pub fn read(dir: &Path) -> Result<Self, LawError> {
+        let mut data = Self { samples: Vec::new(), skipped: Vec::new() };
+        let mut materials: Vec<Case> = Vec::new();
+        for row in read_table(&dir.join("study.csv"))? {
+            let skipped = if row.status == "done" {
+                let directory = OutputDirectory::existing(dir.join(&row.directory));
+                match read_sample(&row.id, &directory, &mut materials)? {
+                    Ok(sample) => {
+                        data.samples.push(sample);
+                        continue;
+                    }
+                    Err(reason) => reason.to_owned(),
+                }
+            } else {
+                row.status
+            };
+            data.skipped.push(Skipped { id: row.id, reason: skipped });
+        }
+        Ok(data)
+    }
+
+    /// The reasons for leaving out cases with their numbers, as one sentence; empty if there are none.
+    pub fn skipped_sentence(&self) -> String {
+        let mut reasons: Vec<(&str, usize)> = Vec::new();
+        for skipped in &self.skipped {
+            match reasons.iter_mut().find(|(reason, _)| *reason == skipped.reason) {
+                Some((_, count)) => *count += 1,
+                None => reasons.push((&skipped.reason, 1)),
+            }
+        }
+        if reasons.is_empty() {
+            return String::new();
+        }
+        let list: Vec<String> = reasons.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+        format!("Left out: {}. ", list.join(", "))
+    }
+}
+
+struct Row {
+    id: String,
+    directory: String,
+    status: String,
+}
+
+/// `case`, `directory` and `status` of every row.
+fn read_table(path: &Path) -> Result<Vec<Row>, LawError> {
+    let text = fs::read_to_string(path).map_err(|source| LawError::NoStudy { path: path.to_owned(), source })?;
+    let malformed = |line: u64, problem: String| LawError::Table { path: path.to_owned(), line, problem };
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| malformed(1, error.to_string()))?.clone();
+    let column = |name: &str| {
+        header.iter().position(|column| column == name).ok_or_else(|| malformed(1, format!("there is no column {name}")))
+    };
+    let (id, directory, status) = (column("case")?, column("directory")?, column("status")?);
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| malformed(error.position().map_or(0, csv::Position::line), error.to_string()))?;
+        let cell = |index: usize| record.get(index).unwrap_or_default().to_owned();
+        rows.push(Row { id: cell(id), directory: cell(directory), status: cell(status) });
+    }
+    Ok(rows)
+}
+
+/// A sample from a run's directory, or why it is none.
+fn read_sample(
+    id: &str,
+    directory: &OutputDirectory,
+    materials: &mut Vec<Case>,
+) -> Result<Result<Sample, &'static str>, LawError> {
+    let case = Case::load(&directory.case(), &[])?;
+    let friction = match case.contact.friction {
+        Friction::Coefficient(mu) if mu > 0.0 => mu,
+        Friction::Coefficient(_) => return Ok(Err("without friction")),
+        Friction::Stick => return Ok(Err("with full stick")),
+    };
+    match case.path.as_slice() {
+        [Segment::Indentation { .. }, Segment::Shear { hold: Hold::Indentation, .. }, ..] => {}
+        [Segment::Indentation { .. }, Segment::Shear { hold: Hold::NormalForce, .. }, ..] => {
+            return Ok(Err("sheared at constant normal force"));
+        }
+        _ => return Ok(Err("not pressed once and then sheared")),
+    }
+    let history = read_history(&directory.history())?;
+    let inputs = SummaryInputs {
+        radius: case.sphere.radius,
+        youngs_modulus: case.material.youngs_modulus,
+        friction: Some(friction),
+    };
+    let summary = Summary::from_history(&history, &inputs);
+    let (Some(h0), Some(a0), Some(f_n0), Some(k_t0), Some(delta_t_99), Some(_)) =
+        (summary.h0, summary.a0, summary.f_n0, summary.k_t0, summary.delta_t_slip, summary.f_n_slip)
+    else {
+        return Ok(Err("without full slip"));
+    };
+    let curve = first_stroke(&history, f_n0);
+    let f_n_slip = curve.last().map_or(f_n0, |point| point.f_n);
+    if curve.len() < 5 || !(f_n0 > 0.0 && a0 > 0.0 && h0 > 0.0 && f_n_slip > 0.0) {
+        return Ok(Err("with too few steps"));
+    }
+    let body = Body::from_case(&case)?;
+    let variables = body.variables(h0, a0, f_n0);
+    let scaled = case.scaled();
+    let material = materials.iter().position(|known| known.material == scaled.material).unwrap_or_else(|| {
+        materials.push(scaled);
+        materials.len() - 1
+    });
+    Ok(Ok(Sample {
+        id: id.to_owned(),
+        body,
+        material,
+        friction,
+        h0,
+        a0,
+        f_n0,
+        f_n_slip,
+        k_t0,
+        delta_t_99,
+        variables,
+        curve,
+        elements_per_contact_radius: case.mesh.elements_per_contact_radius,
+    }))
+}
+
+/// The first shear as far as it goes in one direction, its start included.
+fn first_stroke(history: &[StepRecord], f_n0: f64) -> Vec<Point> {
+    let mut curve = vec![Point { delta_t: 0.0, f_t: 0.0, f_n: f_n0 }];
+    let first = history.iter().position(|record| record.segment == 1).unwrap_or(history.len());
+    let direction = history.get(first).map_or(1.0, |record| record.delta_t.signum());
+    for record in history[first..].iter().take_while(|record| record.segment == 1) {
+        let point = Point { delta_t: direction * record.delta_t, f_t: direction * record.f_t, f_n: record.f_n };
+        if curve.last().is_some_and(|last| point.delta_t <= last.delta_t) {
+            break;
+        }
+        curve.push(point);
+    }
+    curve
+}
