@@ -114,8 +114,7 @@ mod tests {
     #[test]
     fn recovers_the_constants_of_exact_data() {
         let model = |c: &[f64], x: f64| c[0] * (-c[1] * x).exp() + c[2];
-        let data: Vec<(f64, f64)> =
-            (0..200).map(|i| f64::from(i) * 0.02).map(|x| (x, model(&[2.0, 1.5, 0.3], x))).collect();
+        let data: Vec<(f64, f64)> = (0..200).map(|i| f64::from(i) * 0.02).map(|x| (x, model(&[2.0, 1.5, 0.3], x))).collect();
         let residuals = |c: &[f64]| data.iter().map(|&(x, y)| 10.0 * (model(c, x) - y)).collect();
         for sign in [Sign::Positive, Sign::Any] {
             let found = minimize(sign, &[1.0, 1.0, 1.0], residuals).unwrap();

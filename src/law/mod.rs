@@ -6,6 +6,7 @@
 
 pub mod contact;
 pub mod data;
+pub mod export;
 pub mod forms;
 pub mod model;
 pub mod normal;

@@ -210,7 +210,11 @@ impl Law {
             checks.push(("a/R", inputs.a / inputs.radius, Interval { from: 0.0, ..relative_radius }));
             checks.remove(0);
         } else {
-            checks.push(("Lambda", inputs.lambda(), Interval { from: lambda.from.min(yield_lambda(inputs.poissons_ratio)), ..lambda }));
+            checks.push((
+                "Lambda",
+                inputs.lambda(),
+                Interval { from: lambda.from.min(yield_lambda(inputs.poissons_ratio)), ..lambda },
+            ));
             checks.push(("mu", inputs.friction, Interval { from: 0.0, ..friction }));
             checks.push(("a/R", inputs.a / inputs.radius, relative_radius));
             checks.push(("c^2", inputs.c_squared(), Interval { from: c_squared.from.min(0.5), ..c_squared }));

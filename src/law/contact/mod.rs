@@ -1,4 +1,5 @@
 //! The law as an incremental update of one contact, the form in which a discrete-element code calls it.
+mod material;
 mod update;
 mod virgin;
 

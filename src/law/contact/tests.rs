@@ -2,6 +2,7 @@ use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::analytical::olsson_larsson::{Hardening, OlssonLarsson};
 use crate::analytical::{ElasticSphere, hertz};
+use crate::law::forms::NormalCurve::{self, ComplementOfPower, PowerOfComplement};
 use crate::law::model::Parameters;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -23,7 +24,7 @@ fn law(yield_stress: f64, h: f64) -> Axial {
     Axial { a, k_t: k_t0, law }
 }
 
-fn pair(yield_stress: f64, form: f64) -> ContactParameters {
+fn pair(yield_stress: f64, form: NormalCurve) -> ContactParameters {
     let a = 3.0 * yield_stress * SPHERE.radius / SPHERE.effective_modulus();
     let range = [(a * a / SPHERE.radius).min(0.01 * SPHERE.radius), 0.1 * SPHERE.radius];
     ContactParameters::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, form, range, |h| law(yield_stress, h))
@@ -31,7 +32,12 @@ fn pair(yield_stress: f64, form: f64) -> ContactParameters {
 }
 
 fn pairs() -> [ContactParameters; 4] {
-    [pair(400.0, 0.0), pair(400.0, 1.0), pair(2000.0, 0.0), pair(1e5, 0.0)]
+    [
+        pair(400.0, PowerOfComplement),
+        pair(400.0, ComplementOfPower),
+        pair(2000.0, PowerOfComplement),
+        pair(1e5, PowerOfComplement),
+    ]
 }
 
 fn pressed(p: &ContactParameters, h: f64, steps: usize) -> (ContactState, ContactResponse) {
@@ -44,7 +50,7 @@ fn pressed(p: &ContactParameters, h: f64, steps: usize) -> (ContactState, Contac
 
 #[test]
 fn the_table_gives_back_the_normal_model_it_was_made_from() {
-    for (yield_stress, p) in [(400.0, pair(400.0, 0.0)), (1e5, pair(1e5, 0.0))] {
+    for (yield_stress, p) in [(400.0, pair(400.0, PowerOfComplement)), (1e5, pair(1e5, PowerOfComplement))] {
         for i in 0..500 {
             let h = SPHERE.radius * 10f64.powf(-6.5 + 5.4 * i as f64 / 500.0);
             let Axial { a, law: expected, .. } = law(yield_stress, h);
@@ -107,7 +113,7 @@ fn first_loading_is_the_law_for_any_step_and_direction() {
 
 #[test]
 fn an_elastic_contact_reverses_as_mindlin_and_deresiewicz_have_it() {
-    let p = pair(1e5, 0.0);
+    let p = pair(1e5, PowerOfComplement);
     let h = 1e-3;
     let reference = CattaneoMindlin::at_indentation(SPHERE, FRICTION, h);
     let slip = reference.slip_displacement();
@@ -136,7 +142,9 @@ fn an_elastic_contact_reverses_as_mindlin_and_deresiewicz_have_it() {
 
 #[test]
 fn unloading_starts_with_twice_e_star_a_and_reloading_returns() {
-    for (p, h) in [(pair(400.0, 0.0), 0.04), (pair(2000.0, 0.0), 0.04), (pair(1e5, 0.0), 1e-3)] {
+    for (p, h) in
+        [(pair(400.0, PowerOfComplement), 0.04), (pair(2000.0, PowerOfComplement), 0.04), (pair(1e5, PowerOfComplement), 1e-3)]
+    {
         let (state, out) = pressed(&p, h, 9);
         let v = p.virgin(h);
         assert!((out.f_n / v.point.f_n0 - 1.0).abs() < 1e-12);
@@ -233,9 +241,13 @@ fn fe() {
         let n = 1.5 + 2.3 * s;
         let f_n_slip = f_n0 * (1.0 - 0.31 * s);
         let delta_t_slip = 1.5 * 0.3 * f_n0 / m * (1.0 + 2.2 * s);
-        Axial { a, k_t: m / (1.0 + 1.9 * a * s), law: Parameters { f_n0, f_n_slip, delta_t_slip, k_t0: m, n, m_exponent: 2.6, n_exponent: 1.5 } }
+        Axial {
+            a,
+            k_t: m / (1.0 + 1.9 * a * s),
+            law: Parameters { f_n0, f_n_slip, delta_t_slip, k_t0: m, n, m_exponent: 2.6, n_exponent: 1.5 },
+        }
     };
-    let p = ContactParameters::tabulate(1.0, sphere.effective_modulus(), 0.3, 0.0, [2e-5, 0.1], law).unwrap();
+    let p = ContactParameters::tabulate(1.0, sphere.effective_modulus(), 0.3, PowerOfComplement, [2e-5, 0.1], law).unwrap();
     for name in ["full", "small", "mixed", "unl"] {
         let text = std::fs::read_to_string(format!("/tmp/rev/{name}/history.csv")).unwrap();
         let (mut state, mut at, mut last) = (ContactState::default(), [0.0; 2], String::new());
@@ -251,7 +263,17 @@ fn fe() {
             }
             at = to;
             if c[1] != "0" || c[1] != last {
-                println!("{} {:.6} {:.6}  {:8.3} {:8.3}  {:8.3} {:8.3}  {:.3}", c[1], v(2), v(3), v(4), out.f_n, v(5), out.f_t[0], state.x);
+                println!(
+                    "{} {:.6} {:.6}  {:8.3} {:8.3}  {:8.3} {:8.3}  {:.3}",
+                    c[1],
+                    v(2),
+                    v(3),
+                    v(4),
+                    out.f_n,
+                    v(5),
+                    out.f_t[0],
+                    state.x
+                );
             }
             last = c[1].to_string();
         }

@@ -39,6 +39,9 @@ pub struct ContactResponse {
 /// Share of F_N0 from which a force counts as F_N0, so that rounding is not taken for unloading.
 const AT_CAP: f64 = 1.0 - 1e-9;
 
+/// Share of a bound up to which a force counts as within it, so that a contact at rest answers with its elastic stiffness.
+const AT_BOUND: f64 = 1.0 + 1e-10;
+
 /// F_N_slip/F_N0 from which a contact counts as elastic.
 const ELASTIC: f64 = 1.0 - 1e-6;
 
@@ -172,7 +175,7 @@ fn slider_stiffness(virgin: &Virgin, before: &[[f64; 2]; SLIDERS], limit: &[f64;
         let q = [before[i][0] + increment[0], before[i][1] + increment[1]];
         let size = (q[0] * q[0] + q[1] * q[1]).sqrt();
         let k = virgin.point.k_t * virgin.weight[i];
-        if size > limit[i] {
+        if size > AT_BOUND * limit[i] {
             let k = k * limit[i] / size;
             let m = [q[0] / size, q[1] / size];
             sum[0] += k * m[1] * m[1];
@@ -335,14 +338,14 @@ fn shear(
     let slip_force = p.friction * virgin.point.f_n_slip;
     let bound = slip_force * tangential_shape(virgin, next.x)[0];
     let trial = length(out.f_t);
-    if next.x >= 1.0 || trial <= bound || is_elastic(virgin) {
+    if next.x >= 1.0 || trial <= AT_BOUND * bound || is_elastic(virgin) {
         return;
     }
     let direction = [out.f_t[0] / trial, out.f_t[1] / trial];
     let along = direction[0] * force_before[0] + direction[1] * force_before[1];
     // Share of the increment that is beyond the curve: all of it when the contact stood on it.
-    let beyond = (trial - bound) / (trial - along);
-    let beyond = if beyond < 1.0 { beyond } else { 1.0 };
+    let (excess, travel) = (trial - bound, trial - along);
+    let beyond = if excess < travel { excess / travel } else { 1.0 };
     let forward = direction[0] * increment[0] + direction[1] * increment[1];
     let forward = if forward > 0.0 { forward } else { 0.0 };
     let x = next.x + beyond * forward / virgin.point.delta_t_slip;

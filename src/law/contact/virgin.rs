@@ -3,6 +3,7 @@
 //! The table is cubic in ln h through [`KNOTS`] equidistant knots, so that an update costs no root search. Its last digits differ from the
 //! formulas that filled it by some 1e-4; what counts is that every language fills and reads it by the same operations.
 
+use crate::law::forms::NormalCurve;
 use crate::law::model::Parameters;
 
 /// Number of knots over ln h.
@@ -48,6 +49,14 @@ pub struct Axial {
 /// Why there are no contact parameters.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
+    /// Coulomb's coefficient.
+    #[error(
+        "mu = {value}: a contact update needs a finite friction coefficient, 0 or more. full stick has no slip force to scale with"
+    )]
+    Friction {
+        /// mu.
+        value: f64,
+    },
     /// Something is not a positive, finite number.
     #[error(
         "contact at h/R = {relative_indentation:e}: {what} = {value:e} is no positive number. check the material and the law"
@@ -123,10 +132,14 @@ impl ContactParameters {
         radius: f64,
         effective_modulus: f64,
         friction: f64,
-        form: f64,
+        curve: NormalCurve,
         range: [f64; 2],
         law: impl Fn(f64) -> Axial,
     ) -> Result<Self, ContactError> {
+        let form = match curve {
+            NormalCurve::PowerOfComplement => 0.0,
+            NormalCurve::ComplementOfPower => 1.0,
+        };
         let log_first = range[0].ln();
         let log_step = (range[1].ln() - log_first) / (KNOTS as f64 - 1.0);
         let mut table = [[0.0; COLUMNS]; KNOTS];
