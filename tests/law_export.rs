@@ -42,6 +42,7 @@ fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurv
             relative_radius: interval(0.02, 0.25),
             c_squared: interval(0.49, 0.9),
             poissons_ratio: interval(0.3, 0.3),
+            hardening_exponent: interval(0.0, 0.2),
         },
         provenance: Provenance {
             program: "asperity".to_owned(),
@@ -266,6 +267,9 @@ fn the_module_warns_where_the_law_does() {
     );
     let run = Command::new("python3").args(["-c", &program]).current_dir(dir.path()).output().unwrap();
     assert!(run.status.success(), "{}", text(&run));
+    let hardening = "import asperity_law as a\nfor m in 3.0, 9.0:\n    print(a.out_of_range(a.Material(1e3, 0.3, a.HOLLOMON, (16.0, m, 0.0)), 2.0, 0.2, 0.02))";
+    let hardening = Command::new("python3").args(["-c", hardening]).current_dir(dir.path()).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&hardening.stdout), "32\n0\n", "{}", text(&hardening));
     let answers: Vec<u32> = String::from_utf8_lossy(&run.stdout).lines().map(|line| line.parse().unwrap()).collect();
     assert_eq!(answers.len(), cases.len());
     assert!((0..5).all(|bit| answers.iter().any(|answer| answer & (1 << bit) != 0)) && answers.contains(&0), "{answers:?}");
@@ -287,4 +291,38 @@ fn the_module_warns_where_the_law_does() {
         let expected: u32 = law.out_of_range(&inputs).iter().map(|outside| bit(outside.quantity)).sum();
         assert_eq!(answer, expected, "{yield_stress} {nu} {friction} {h}");
     }
+}
+
+#[test]
+fn the_command_writes_what_the_library_makes() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("law.json");
+    let law = &laws()[3];
+    law.write(&path).unwrap();
+    let asperity = |arguments: &[&str]| {
+        let path = path.to_str().unwrap();
+        Command::new(env!("CARGO_BIN_EXE_asperity"))
+            .args(["law", "export", path])
+            .args(arguments)
+            .current_dir(dir.path())
+            .output()
+            .unwrap()
+    };
+    for (format, language) in [("c", Language::C), ("python", Language::Python)] {
+        let printed = asperity(&["--format", format]);
+        assert!(printed.status.success() && printed.stderr.is_empty(), "{}", text(&printed));
+        assert_eq!(String::from_utf8(printed.stdout).unwrap(), source(law, language));
+        let written = asperity(&["--format", format, "--out", "for/dem"]);
+        assert!(written.status.success(), "{}", text(&written));
+        for file in files(law, language) {
+            assert_eq!(fs::read_to_string(dir.path().join("for/dem").join(file.name)).unwrap(), file.content);
+        }
+    }
+    for wrong in [&["--format", "fortran"][..], &[]] {
+        assert_eq!(asperity(wrong).status.code(), Some(2));
+    }
+    fs::write(&path, "{}").unwrap();
+    let refused = asperity(&["--format", "c"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(refused.stdout.is_empty() && text(&refused).contains("law.json"), "{}", text(&refused));
 }

@@ -2,7 +2,7 @@
 // thread an element, its points in order.
 
 @group(0) @binding(9) var<storage, read> jacobian: array<real>;         // [slot][point]: det F - 1
-@group(0) @binding(10) var<storage, read> next_state: array<real>;      // [slot][component][point]
+@group(0) @binding(10) var<storage, read> next_history: array<real>;    // [slot][component][point], as hex8_update wrote it
 @group(0) @binding(11) var<storage, read> point_work: array<real>;      // [slot][elastic energy, plastic work][point]
 @group(0) @binding(12) var<storage, read> work_at_start: array<real>;   // [case][element], at the start of the step
 @group(0) @binding(13) var<storage, read_write> energies: array<real>;  // [slot][elastic, plastic, largest alpha][element]
@@ -30,7 +30,7 @@ fn hex8_energies(@builtin(global_invocation_id) id: vec3<u32>) {
         total += v;
         elastic += point_work[2u * slot * points + point];
         plastic += point_work[(2u * slot + 1u) * points + point];
-        alpha = max(alpha, next_state[(7u * slot + 6u) * points + point]);
+        alpha = max(alpha, next_history[(14u * slot + 6u) * points + point]);
     }
     let material = load_material(case_index, dimensions.cases);
     let first = 3u * slot * elements + element;

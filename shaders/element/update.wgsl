@@ -1,7 +1,8 @@
-// The state of every quadrature point at the end of a step, with its elastic energy and its plastic work in the step.
+// The state of every quadrature point at the end of a step and what flowed, with its elastic energy and its plastic work in the step.
 
-@group(0) @binding(12) var<storage, read_write> next_state: array<real>;    // [slot][component][point], as state
-@group(0) @binding(13) var<storage, read_write> point_work: array<real>;    // [slot][elastic energy, plastic work][point]
+@group(0) @binding(12) var<storage, read> history: array<real>;             // [case][component][point]: committed state (7), last flow (7)
+@group(0) @binding(13) var<storage, read_write> next_history: array<real>;  // [slot][component][point], as history
+@group(0) @binding(14) var<storage, read_write> point_work: array<real>;    // [slot][elastic energy, plastic work][point]
 
 @compute @workgroup_size(64)
 fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -15,17 +16,37 @@ fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let points = point_count();
-    let s = a.response.state;
-    let first = 7u * at.slot * points + at.point;
-    next_state[first] = s.be.diagonal.x;
-    next_state[first + points] = s.be.diagonal.y;
-    next_state[first + 2u * points] = s.be.diagonal.z;
-    next_state[first + 3u * points] = s.be.shear.x;
-    next_state[first + 4u * points] = s.be.shear.y;
-    next_state[first + 5u * points] = s.be.shear.z;
-    next_state[first + 6u * points] = s.alpha;
+    let h = 14u * at.case_index * points + at.point;
+    let committed = PointState(
+        Sym(
+            vec3<real>(history[h], history[h + points], history[h + 2u * points]),
+            vec3<real>(history[h + 3u * points], history[h + 4u * points], history[h + 5u * points]),
+        ),
+        history[h + 6u * points],
+    );
+    let done = complete(material, a.k.relative, committed, load_state(at.case_index, at.point), a.response);
+    if done.response.status >= STATUS_INVERTED {
+        refuse(at, REFUSED_BY_MATERIAL);
+        return;
+    }
+    let s = done.response.state;
+    let first = 14u * at.slot * points + at.point;
+    next_history[first] = s.be.diagonal.x;
+    next_history[first + points] = s.be.diagonal.y;
+    next_history[first + 2u * points] = s.be.diagonal.z;
+    next_history[first + 3u * points] = s.be.shear.x;
+    next_history[first + 4u * points] = s.be.shear.y;
+    next_history[first + 5u * points] = s.be.shear.z;
+    next_history[first + 6u * points] = s.alpha;
+    next_history[first + 7u * points] = done.flow.strain.diagonal.x;
+    next_history[first + 8u * points] = done.flow.strain.diagonal.y;
+    next_history[first + 9u * points] = done.flow.strain.diagonal.z;
+    next_history[first + 10u * points] = done.flow.strain.shear.x;
+    next_history[first + 11u * points] = done.flow.strain.shear.y;
+    next_history[first + 12u * points] = done.flow.strain.shear.z;
+    next_history[first + 13u * points] = done.flow.alpha;
     let v = point_volume(at.geometry, at.point);
     let w = 2u * at.slot * points + at.point;
     point_work[w] = v * elastic_energy_deviatoric(material.elasticity, s.be);
-    point_work[w + points] = v * a.response.plastic_work;
+    point_work[w + points] = v * done.response.plastic_work;
 }

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::case::CaseError;
+use crate::law::LawError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
@@ -100,6 +101,17 @@ pub enum CliError {
         /// What the simulation says.
         source: SimulationError,
     },
+    /// A law cannot be fitted or read.
+    #[error(transparent)]
+    Law(#[from] LawError),
+    /// A law does not apply to a case.
+    #[error("{}: {source}", .file.display())]
+    LawCase {
+        /// The case file.
+        file: PathBuf,
+        /// What the law says.
+        source: Box<LawError>,
+    },
     /// Results cannot be begun.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -128,6 +140,7 @@ impl CliError {
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::BrokeOff { .. } | CliError::Verify { .. } => NOT_CONVERGED,
+            CliError::LawCase { source, .. } if matches!(**source, LawError::Press(_)) => NOT_CONVERGED,
             _ => BAD_INPUT,
         }
     }

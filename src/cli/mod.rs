@@ -4,6 +4,7 @@ pub mod backend;
 pub mod check;
 pub mod devices;
 pub mod error;
+pub mod law;
 pub mod options;
 pub mod out;
 pub mod point;
@@ -37,6 +38,7 @@ enum Command {
     Verify(verify::VerifyArgs),
     Devices(devices::DevicesArgs),
     Point(point::PointArgs),
+    Law(law::LawArgs),
 }
 
 impl Command {
@@ -47,6 +49,7 @@ impl Command {
             Command::Verify(args) => verify::verify(args),
             Command::Devices(args) => devices::devices(args),
             Command::Point(args) => point::point(args),
+            Command::Law(args) => law::law(args),
         }
     }
 }

@@ -11,7 +11,8 @@ use super::{
 };
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
-use crate::element::hex8::{self, Geometry, Invalid, NODES, Nodal, State, Tangent, pair};
+use crate::element::hex8::{self, Geometry, Invalid, NODES, Nodal, Points, State, Tangent, pair};
+use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
 use crate::real::Real;
@@ -27,6 +28,8 @@ struct Case<R> {
     geometry: Vec<Geometry<R>>,
     /// Committed state of each element.
     state: Vec<State<R>>,
+    /// The states from which the present step starts.
+    start: Vec<Points<R>>,
     /// Committed displacement, three a node.
     committed: Vec<f64>,
     /// Weight c of each contact node.
@@ -99,6 +102,7 @@ impl<R: Real> Case<R> {
                 Friction::Stick => Friction::Stick,
             },
             state: vec![State::default(); mesh.elements.len()],
+            start: vec![Points::default(); mesh.elements.len()],
             committed: vec![0.0; 3 * mesh.nodes.len()],
             weight: mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect(),
             on_symmetry_plane: mesh.contact_nodes.iter().map(|&n| on_plane[n as usize]).collect(),
@@ -166,12 +170,19 @@ impl<R: Real> Compute for Cpu<R> {
         &self.models
     }
 
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        let case = &mut self.cases[case];
+        let weight = R::of(weight);
+        case.start.par_iter_mut().zip(&case.state).with_min_len(CHUNK).for_each(|(start, state)| *start = state.start(weight));
+        Ok(())
+    }
+
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
             request.outcome =
                 case.each_element(request.displacement, &mut self.element_force, |case, e, committed, increment, out| {
-                    *out = hex8::internal_force(&case.geometry[e], &case.material, &case.state[e], committed, increment)?;
+                    *out = hex8::internal_force(&case.geometry[e], &case.material, &case.start[e], committed, increment)?;
                     Ok(())
                 });
             let (lists, element_force) = (&case.mesh.node_elements, &self.element_force);
@@ -199,7 +210,7 @@ impl<R: Real> Compute for Cpu<R> {
             let case = &self.cases[request.case];
             request.outcome =
                 case.each_element(request.displacement, &mut self.element_tangent, |case, e, committed, increment, out| {
-                    hex8::tangent(&case.geometry[e], &case.material, &case.state[e], committed, increment, out)
+                    hex8::tangent(&case.geometry[e], &case.material, &case.start[e], committed, increment, out)
                 });
             gather_tangent(&self.plan, &case.mesh, &self.element_tangent, request.blocks);
         }
@@ -231,20 +242,22 @@ impl<R: Real> Compute for Cpu<R> {
             let case = &self.cases[request.case];
             let mut next = vec![(State::default(), R::ZERO); case.state.len()];
             request.outcome = case.each_element(request.displacement, &mut next, |case, e, committed, increment, out| {
-                let state = hex8::update(&case.geometry[e], &case.material, &case.state[e], committed, increment)?;
+                let (state, start) = (&case.state[e], &case.start[e]);
+                let state = hex8::update(&case.geometry[e], &case.material, state, start, committed, increment)?;
                 let mut total = *committed;
                 for (t, d) in total.iter_mut().flatten().zip(increment.iter().flatten()) {
                     *t += *d;
                 }
-                let fields = hex8::fields(&case.geometry[e], &case.material, &state, &total)?;
+                let fields = hex8::fields(&case.geometry[e], &case.material, &state.points, &total)?;
                 *out = (state, fields.elastic_energy);
                 Ok(())
             });
             if request.outcome == Outcome::Valid {
                 let case = &mut self.cases[request.case];
                 let mut energies = Energies::default();
-                for (state, (next, elastic)) in case.state.iter_mut().zip(next) {
+                for ((state, start), (next, elastic)) in case.state.iter_mut().zip(&mut case.start).zip(next) {
                     *state = next;
+                    *start = next.points;
                     energies.elastic += elastic.to_f64();
                     energies.plastic += next.plastic_work.to_f64();
                     energies.max_alpha = next.points.iter().fold(energies.max_alpha, |m, p| m.max(p.alpha.to_f64()));
@@ -261,7 +274,7 @@ impl<R: Real> Compute for Cpu<R> {
         let mut out = vec![([0.0; 6], 0.0, 0.0_f64); case.state.len()];
         let outcome = case.each_element(&case.committed, &mut out, |case, e, committed, _, out| {
             let geometry = &case.geometry[e];
-            let fields = hex8::fields(geometry, &case.material, &case.state[e], committed)?;
+            let fields = hex8::fields(geometry, &case.material, &case.state[e].points, committed)?;
             for q in 0..hex8::QUADRATURE_POINTS {
                 let share = (geometry.volume.0[q] / geometry.total_volume).to_f64();
                 let alpha = case.state[e].points[q].alpha.to_f64();
@@ -292,6 +305,11 @@ impl<R: Real> Compute for Cpu<R> {
                 .iter()
                 .map(|s| s.points.map(|p| PointState { be: p.be.map(R::to_f64), alpha: p.alpha.to_f64() }))
                 .collect(),
+            flow: case
+                .state
+                .iter()
+                .map(|s| s.flow.map(|f| Flow { strain: f.strain.map(R::to_f64), alpha: f.alpha.to_f64() }))
+                .collect(),
             plastic_work: case.state.iter().map(|s| s.plastic_work.to_f64()).collect(),
         })
     }
@@ -299,9 +317,11 @@ impl<R: Real> Compute for Cpu<R> {
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         let case = &mut self.cases[case];
         case.committed.clone_from(&state.displacement);
-        for ((s, points), work) in case.state.iter_mut().zip(&state.points).zip(&state.plastic_work) {
-            s.points = points.map(|p| PointState { be: p.be.map(R::of), alpha: R::of(p.alpha) });
-            s.plastic_work = R::of(*work);
+        for (e, s) in case.state.iter_mut().enumerate() {
+            s.points = state.points[e].map(|p| PointState { be: p.be.map(R::of), alpha: R::of(p.alpha) });
+            s.flow = state.flow[e].map(|f| Flow { strain: f.strain.map(R::of), alpha: R::of(f.alpha) });
+            s.plastic_work = R::of(state.plastic_work[e]);
+            case.start[e] = s.points;
         }
         Ok(())
     }

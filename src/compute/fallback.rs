@@ -16,6 +16,8 @@ pub struct Fallback {
     models: Vec<CaseModel>,
     name: String,
     committed: Vec<Option<CaseState>>,
+    /// What the present step of each case anticipates.
+    weights: Vec<f64>,
     commits: usize,
     notes: Vec<String>,
 }
@@ -25,8 +27,9 @@ impl Fallback {
     pub fn new(device: Box<dyn Compute>) -> Self {
         let models = device.models().to_vec();
         let committed = models.iter().map(|_| None).collect();
+        let weights = vec![0.0; models.len()];
         let name = device.description().device;
-        Self { device: Some(device), cpu: None, models, name, committed, commits: 0, notes: Vec::new() }
+        Self { device: Some(device), cpu: None, models, name, committed, weights, commits: 0, notes: Vec::new() }
     }
 
     /// Calls `f` on the device; if that fails, on the CPU, now and ever after.
@@ -50,6 +53,7 @@ impl Fallback {
         for (case, state) in self.committed.iter().enumerate() {
             if let Some(state) = state {
                 cpu.restore(case, state)?;
+                cpu.begin_step(case, self.weights[case])?;
             }
         }
         let note = format!(
@@ -79,6 +83,11 @@ impl Compute for Fallback {
         &self.models
     }
 
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        self.weights[case] = weight;
+        self.call(|backend| backend.begin_step(case, weight))
+    }
+
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
         self.call(|backend| backend.internal_force(requests))
     }
@@ -103,6 +112,7 @@ impl Compute for Fallback {
         })?;
         for (case, state) in states {
             self.commits += 1;
+            self.weights[case] = 0.0;
             if self.device.is_some() {
                 self.committed[case] = state;
             }

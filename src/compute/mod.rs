@@ -19,6 +19,7 @@ mod tests;
 use std::sync::Arc;
 
 use crate::contact::coulomb::{Friction, Rows};
+use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
 
@@ -118,6 +119,8 @@ pub struct CaseState {
     pub displacement: Vec<f64>,
     /// State of each element's eight quadrature points.
     pub points: Vec<[PointState<f64>; 8]>,
+    /// What flowed in the last step at each element's eight quadrature points.
+    pub flow: Vec<[Flow<f64>; 8]>,
     /// Plastic work of each element.
     pub plastic_work: Vec<f64>,
 }
@@ -172,6 +175,9 @@ pub trait Compute: Send {
     fn description(&self) -> Description;
     /// The cases of the batch.
     fn models(&self) -> &[CaseModel];
+    /// Starts a step of one case: what is asked of it up to its next commit starts from its committed state with `weight` times the flow of
+    /// its last step anticipated (see [`crate::material::multistep`]). A step that is not started so, as any after a commit, anticipates nothing.
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError>;
     /// Internal forces.
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError>;
     /// Tangents.

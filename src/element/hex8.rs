@@ -10,6 +10,7 @@
 
 use super::lanes::Lanes;
 use crate::material::j2::{Response, deviatoric_tangent, return_mapping};
+use crate::material::multistep::{Flow, anticipate, complete};
 use crate::material::{Material, PointState, pressure};
 use crate::real::Real;
 
@@ -46,13 +47,25 @@ pub struct Geometry<R> {
     pub total_volume: R,
 }
 
+/// States of an element's quadrature points.
+pub type Points<R> = [PointState<R>; QUADRATURE_POINTS];
+
 /// Committed state of an element's quadrature points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State<R> {
     /// Elastic strain and hardening variable of each point.
-    pub points: [PointState<R>; QUADRATURE_POINTS],
+    pub points: Points<R>,
+    /// What flowed in the last step.
+    pub flow: [Flow<R>; QUADRATURE_POINTS],
     /// Plastic work done so far in the element, an energy.
     pub plastic_work: R,
+}
+
+impl<R: Real> State<R> {
+    /// The states from which the next step starts, with `weight` times the last flow anticipated (see `material::multistep`).
+    pub fn start(&self, weight: R) -> Points<R> {
+        std::array::from_fn(|q| anticipate(&self.points[q], &self.flow[q], weight))
+    }
 }
 
 /// Why an element could not be evaluated at a trial displacement. The solver backtracks; it is no error of the program.
@@ -208,9 +221,13 @@ fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: 
 }
 
 #[inline(always)]
-fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, state: &State<R>, q: usize) -> Result<Response<R>, Invalid> {
-    let relative = std::array::from_fn(|i| std::array::from_fn(|j| k.relative[i][j].0[q]));
-    return_mapping(material, &relative, &state.points[q]).map_err(|_| Invalid::Material(q))
+fn relative_gradient<R: Real>(k: &Kinematics<R>, q: usize) -> [[R; 3]; 3] {
+    std::array::from_fn(|i| std::array::from_fn(|j| k.relative[i][j].0[q]))
+}
+
+#[inline(always)]
+fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, start: &Points<R>, q: usize) -> Result<Response<R>, Invalid> {
+    return_mapping(material, &relative_gradient(k, q), &start[q]).map_err(|_| Invalid::Material(q))
 }
 
 /// f_a = sum_q V_q tau_q . grad N_a with the Kirchhoff stress [xx, yy, zz, xy, yz, zx] already weighted by the volumes.
@@ -226,18 +243,18 @@ fn divergence<R: Real>(gradient: &[[Lanes<R>; 3]; NODES], weighted: &[Lanes<R>; 
 
 /// Internal force of the element on its nodes, dW/du, at the displacement `committed + increment`.
 ///
-/// `committed` is the displacement at which `state` was committed. Force unit: stress times area of the scaled problem.
+/// `committed` is the displacement of the last committed state, `start` the states from which the step starts. Force unit: stress times area of the scaled problem.
 pub fn internal_force<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
-    state: &State<R>,
+    start: &Points<R>,
     committed: &Nodal<R>,
     increment: &Nodal<R>,
 ) -> Result<Nodal<R>, Invalid> {
     let k = kinematics(geometry, committed, increment)?;
     let mut stress = [Lanes::ZERO; 6];
     for q in 0..QUADRATURE_POINTS {
-        let response = respond(material, &k, state, q)?;
+        let response = respond(material, &k, start, q)?;
         for c in 0..6 {
             stress[c].0[q] = response.stress[c];
         }
@@ -266,7 +283,7 @@ pub const fn pair(a: usize, b: usize) -> usize {
 pub fn tangent<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
-    state: &State<R>,
+    start: &Points<R>,
     committed: &Nodal<R>,
     increment: &Nodal<R>,
     out: &mut Tangent<R>,
@@ -276,7 +293,7 @@ pub fn tangent<R: Real>(
     let mut stress = [Lanes::ZERO; 6];
     let mut moduli = [[Lanes::ZERO; 6]; 6];
     for q in 0..QUADRATURE_POINTS {
-        let response = respond(material, &k, state, q)?;
+        let response = respond(material, &k, start, q)?;
         let c = deviatoric_tangent(&response);
         let v = geometry.volume.0[q];
         let p_j = p * (R::ONE + k.j_minus_1.0[q]);
@@ -328,19 +345,23 @@ pub fn tangent<R: Real>(
     Ok(())
 }
 
-/// The state at the end of a step that went from `committed` by `increment`.
+/// The state at the end of a step that went from `committed` by `increment`, and whose trial states were found from `start`.
 pub fn update<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
     state: &State<R>,
+    start: &Points<R>,
     committed: &Nodal<R>,
     increment: &Nodal<R>,
 ) -> Result<State<R>, Invalid> {
     let k = kinematics(geometry, committed, increment)?;
     let mut next = *state;
     for q in 0..QUADRATURE_POINTS {
-        let response = respond(material, &k, state, q)?;
+        let response = respond(material, &k, start, q)?;
+        let (response, flow) = complete(material, &relative_gradient(&k, q), &state.points[q], &start[q], response)
+            .map_err(|_| Invalid::Material(q))?;
         next.points[q] = response.state;
+        next.flow[q] = flow;
         next.plastic_work += response.plastic_work * geometry.volume.0[q];
     }
     Ok(next)
@@ -359,7 +380,7 @@ pub struct Fields<R> {
 pub fn fields<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
-    state: &State<R>,
+    points: &Points<R>,
     committed: &Nodal<R>,
 ) -> Result<Fields<R>, Invalid> {
     let k = kinematics(geometry, committed, &[[R::ZERO; 3]; NODES])?;
@@ -367,7 +388,7 @@ pub fn fields<R: Real>(
     let mut out = Fields::default();
     let third = R::ONE / R::of(3.0);
     for q in 0..QUADRATURE_POINTS {
-        let be = &state.points[q].be;
+        let be = &points[q].be;
         let mean = third * (be[0] + be[1] + be[2]);
         let j = R::ONE + k.j_minus_1.0[q];
         for c in 0..6 {
@@ -375,7 +396,7 @@ pub fn fields<R: Real>(
             out.stress[q][c] = s / j + if c < 3 { p } else { R::ZERO };
         }
         out.elastic_energy +=
-            crate::material::elastic_energy_deviatoric(&material.elasticity, &state.points[q].be) * geometry.volume.0[q];
+            crate::material::elastic_energy_deviatoric(&material.elasticity, &points[q].be) * geometry.volume.0[q];
     }
     out.elastic_energy +=
         crate::material::elastic_energy_volumetric(&material.elasticity, k.theta_minus_1) * geometry.total_volume;

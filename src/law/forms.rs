@@ -128,6 +128,19 @@ pub struct Forms {
     pub normal_curve: NormalCurve,
 }
 
+impl Forms {
+    /// Number of fitted constants.
+    pub fn constants(&self) -> usize {
+        // With mu Lambda, mu^p is in the variable; through the stiffness, S z has no powers.
+        let powers = if self.variable == Variable::FrictionLambda { 0 } else { 1 };
+        let slip = match self.slip_displacement {
+            SlipForm::Direct => 3 + powers,
+            SlipForm::ThroughStiffness => 2,
+        };
+        (3 + powers) + (2 + powers) + slip + 4
+    }
+}
+
 /// What the correlations see of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plasticity {

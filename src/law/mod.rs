@@ -2,19 +2,29 @@
 //!
 //! `variables` are the normalised quantities in which contacts of different materials fall together; `data` reads a study back; `forms` and `normal` are
 //! the candidate correlations; `fit` determines their constants, compares them by cross-validation and keeps the best as a [`Law`] (`model`,
-//! `law.json`); `predict` applies it to a case. `least_squares` and `report` serve them.
+//! `law.json`); `predict` applies it to a case; `contact` is the law as an
+//! incremental update of one contact, and `export` writes that for other programs. `least_squares` and `report` serve them.
 
 pub mod contact;
 pub mod data;
 pub mod export;
+pub mod fit;
 pub mod forms;
 pub mod model;
 pub mod normal;
+pub mod predict;
 pub mod report;
 pub mod variables;
 
+mod baseline;
 mod error;
+mod folds;
+mod formulas;
 mod least_squares;
+mod own_fit;
+
+#[cfg(test)]
+mod tests;
 
 pub use error::LawError;
 pub use model::{Axisymmetric, Law, Parameters};

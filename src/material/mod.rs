@@ -16,6 +16,7 @@
 
 pub mod hardening;
 pub mod j2;
+pub mod multistep;
 pub mod point;
 
 pub use hardening::{Hardening, HardeningError};

@@ -11,6 +11,8 @@ use crate::case::{Hold, Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::{CaseFields, Compute, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
+use crate::contact::plane::gap;
+use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::newton::{Newton, StepReport};
 use crate::solver::{Control, StepFailure};
@@ -71,14 +73,25 @@ struct Committed {
     u: Vec<f64>,
     /// Displacement one accepted step before, for extrapolation.
     u_before: Vec<f64>,
-    /// Normalised length of the last step in the present segment, 0 if there is none.
-    last_increment: f64,
+    /// Change of h and delta_T in the last step of the present segment, `None` if there is none.
+    last_increment: Option<[f64; 2]>,
+    /// Length of the last step as [`Committed::length_to`] measures it.
+    last_length: f64,
     force: Vec<f64>,
     points: Vec<ContactPoint>,
     record: StepRecord,
     h_max: f64,
     /// Direction of the last shear.
     direction: f64,
+}
+
+impl Committed {
+    /// Length of a step to (h, delta_T) in the measure in which plastic flow goes on evenly: the contact radius grows as sqrt(h) under pressing, and
+    /// shear is measured by itself.
+    fn length_to(&self, h: f64, delta_t: f64) -> f64 {
+        let radius = |h: f64| h.max(0.0).sqrt();
+        (radius(h) - radius(self.record.h)).abs() + (delta_t - self.record.delta_t).abs()
+    }
 }
 
 /// Follows a path.
@@ -98,6 +111,8 @@ pub struct Drive<'a> {
 
 /// Full slip: the sticking points carry no more than this share of the normal force.
 const STICK_SHARE: f64 = 2e-3;
+/// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a third fewer than none.
+const PRESS_EXTRAPOLATION: f64 = 0.6;
 /// F_T has stopped rising when it grows by less than this share over a step.
 const PLATEAU: f64 = 1e-3;
 
@@ -131,7 +146,7 @@ impl<'a> Drive<'a> {
         observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
         for (index, segment) in self.problem.case.path.iter().enumerate() {
             self.state.record.segment = index;
-            self.state.last_increment = 0.0;
+            self.state.last_increment = None;
             let ending = match segment {
                 Segment::Indentation { indentation } => self.indentation(*indentation, observer)?,
                 Segment::Release => self.release(observer)?,
@@ -325,13 +340,35 @@ impl<'a> Drive<'a> {
             delta_t: target.delta_t,
             normal_force: if target.hold_force { self.held_force } else { None },
         };
-        let increment = target.delta_t - self.state.record.delta_t;
-        let guess: Option<Vec<f64>> = (target.extrapolate && self.state.last_increment != 0.0).then(|| {
-            let ratio = increment / self.state.last_increment;
-            self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect()
-        });
+        let guess = self.guess(target);
+        let weight = match self.state.last_increment {
+            Some(_) => multistep::weight(self.state.length_to(target.h, target.delta_t) / self.state.last_length),
+            None => 0.0,
+        };
+        self.backend.begin_step(self.case, weight)?;
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
         Ok(self.newton.solve(&mut handle, &self.state.u, self.state.record.h, guess.as_deref(), &control)?)
+    }
+
+    /// Extrapolates the last step of the segment: under shear all of it; under pressing a part, so that points that are about to touch come down
+    /// but are not pushed through the plane. Pressing, what matters is not the guess's accuracy but that points that flow are found flowing: the
+    /// first tangent is then a plastic one.
+    fn guess(&self, target: &Target) -> Option<Vec<f64>> {
+        let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
+        let r = &self.state.record;
+        let ratio = if last_delta_t != 0.0 {
+            (target.delta_t - r.delta_t) / last_delta_t
+        } else if last_h != 0.0 {
+            PRESS_EXTRAPOLATION * (target.h - r.h) / last_h
+        } else {
+            return None;
+        };
+        let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
+        for &node in &self.mesh.contact_nodes {
+            let z = 3 * node as usize + 2;
+            guess[z] -= gap(self.mesh.nodes[node as usize][2], guess[z]).min(0.0);
+        }
+        Some(guess)
     }
 
     /// Commits the accepted trial and records it.
@@ -354,12 +391,14 @@ impl<'a> Drive<'a> {
             let (closed, slipping) = self.newton.contact_counts();
             (accepted.h, closed, slipping)
         };
+        let length = self.state.length_to(target.h, target.delta_t);
         let friction_work = self.friction_work(&accepted.u, &accepted.force);
         self.state.u_before.copy_from_slice(&self.state.u);
         self.state.u.copy_from_slice(&accepted.u);
         self.state.force.copy_from_slice(&accepted.force);
         self.newton.committed();
-        self.state.last_increment = target.delta_t - before.delta_t;
+        self.state.last_increment = Some([h - before.h, target.delta_t - before.delta_t]);
+        self.state.last_length = length;
         self.state.h_max = self.state.h_max.max(h);
         self.state.points = self.contact_points();
         let size = footprint(&self.state.points, self.problem.spacing);

@@ -81,7 +81,7 @@ impl Start {
 
 /// Targets of an indentation segment from `start` to indentation `h`.
 pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Vec<Target> {
-    let target = |h| Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
+    let target = |h, extrapolate| Target { h, delta_t: start.delta_t, hold_force: false, extrapolate };
     let mut targets = Vec::new();
     let mut from = start.h;
     if h < from || from < start.h_max {
@@ -93,9 +93,9 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         let elastic = if recovery > 0.0 { length.min(1.5 * recovery) } else { 0.0 };
         let n = if recovery > 0.0 { (RELEASE_STEPS * elastic / recovery).ceil().max(1.0) as usize } else { 0 };
         let sign = (to - from).signum();
-        targets.extend((1..=n).map(|i| target(from + sign * elastic * i as f64 / n as f64)));
+        targets.extend((1..=n).map(|i| target(from + sign * elastic * i as f64 / n as f64, false)));
         if length > elastic {
-            targets.push(target(to));
+            targets.push(target(to, false));
         } else if let Some(last) = targets.last_mut() {
             last.h = to;
         }
@@ -107,7 +107,7 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         let n = (resolution.press_steps as f64 * (r1 - r0) / r1).ceil().max(1.0) as usize;
         targets.extend((1..=n).map(|i| {
             let r = r0 + (r1 - r0) * i as f64 / n as f64;
-            target(if i == n { h } else { r * r })
+            target(if i == n { h } else { r * r }, true)
         }));
     }
     targets

@@ -18,8 +18,9 @@ const FORCING_MAX: f64 = 0.1;
 /// Linear tolerance of a step's first system.
 const FORCING_FIRST: f64 = 0.01;
 /// From this iteration on the line search compares with the last iterate alone; before, with the largest merit so far, because the first
-/// changes of contact status raise the merit on the way down.
-const MONOTONE_FROM: usize = 5;
+/// changes of contact status raise the merit on the way down. In deep plasticity the merit must not rise for long: at E/sigma_Y = 5000 a press of
+/// 20 steps took 375 iterations and 7 cuts from the fifth iteration on, 166 and none from the second or third.
+const MONOTONE_FROM: usize = 2;
 
 /// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
 const ROUNDING: f64 = 1e-14;

@@ -17,6 +17,7 @@ use crate::contact::coulomb::{Rows, Status};
 use crate::contact::plane::slip;
 use crate::element::hex8::QUADRATURE_POINTS;
 use crate::material::PointState;
+use crate::material::multistep::Flow;
 
 /// Evaluates a batch on a device in precision `R`: residuals, tangents, contact and state.
 ///
@@ -85,6 +86,10 @@ impl<R: DeviceReal> Compute for Gpu<R> {
 
     fn models(&self) -> &[CaseModel] {
         &self.models
+    }
+
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        Ok(self.batch()?.begin_step(case, weight)?)
     }
 
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
@@ -210,9 +215,15 @@ impl<R: DeviceReal> Compute for Gpu<R> {
             let component = |c: usize| state[c * count + p].to_f64();
             PointState { be: std::array::from_fn(component), alpha: component(6) }
         };
+        let flow = |p: usize| {
+            let component = |c: usize| state[(super::resident::STATE + c) * count + p].to_f64();
+            Flow { strain: std::array::from_fn(component), alpha: component(6) }
+        };
+        let elements = batch.sizes().elements;
         Ok(CaseState {
             displacement: self.committed[case].clone(),
-            points: (0..batch.sizes().elements).map(|e| std::array::from_fn(|q| point(QUADRATURE_POINTS * e + q))).collect(),
+            points: (0..elements).map(|e| std::array::from_fn(|q| point(QUADRATURE_POINTS * e + q))).collect(),
+            flow: (0..elements).map(|e| std::array::from_fn(|q| flow(QUADRATURE_POINTS * e + q))).collect(),
             plastic_work: work.iter().map(|w| w.to_f64()).collect(),
         })
     }
@@ -220,9 +231,10 @@ impl<R: DeviceReal> Compute for Gpu<R> {
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         let batch = self.batch()?;
         let count = batch.sizes().points();
-        let mut rows = vec![R::ZERO; super::resident::STATE * count];
-        for (p, point) in state.points.iter().flatten().enumerate() {
-            for (c, &value) in point.be.iter().chain([&point.alpha]).enumerate() {
+        let mut rows = vec![R::ZERO; super::resident::HISTORY * count];
+        for (p, (point, flow)) in state.points.iter().flatten().zip(state.flow.iter().flatten()).enumerate() {
+            let numbers = point.be.iter().chain([&point.alpha]).chain(&flow.strain).chain([&flow.alpha]);
+            for (c, &value) in numbers.enumerate() {
                 rows[c * count + p] = R::of(value);
             }
         }

@@ -10,10 +10,10 @@ use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::pipelines::Bound;
-use super::resident::{Connectivity, Resident, STATE, Sizes};
+use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
 use super::shader_sources::{
-    CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_MODULI,
-    HEX8_UPDATE, Kernel,
+    CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN,
+    HEX8_MODULI, HEX8_UPDATE, Kernel,
 };
 use crate::compute::cpu::CONTACT_WEIGHT;
 use crate::compute::gather::GatherPlan;
@@ -51,7 +51,7 @@ struct Scratch<R> {
     force: StorageBuffer<R>,
     moduli: StorageBuffer<R>,
     blocks: StorageBuffer<R>,
-    next_state: StorageBuffer<R>,
+    next_history: StorageBuffer<R>,
     point_work: StorageBuffer<R>,
     energies: StorageBuffer<R>,
     contact_trial: StorageBuffer<R>,
@@ -73,7 +73,7 @@ impl<R: DeviceReal> Scratch<R> {
             force: zeros("internal forces", 3 * sizes.nodes)?,
             moduli: zeros("moduli", MODULI * points)?,
             blocks: zeros("tangent blocks", 9 * sizes.blocks)?,
-            next_state: zeros("new states", STATE * points)?,
+            next_history: zeros("new states", HISTORY * points)?,
             point_work: zeros("energies of points", 2 * points)?,
             energies: zeros("energies of elements", 3 * sizes.elements)?,
             contact_trial: zeros("contact points", CONTACT_TRIAL * sizes.contact_points)?,
@@ -86,7 +86,7 @@ impl<R: DeviceReal> Scratch<R> {
     fn bytes(sizes: Sizes) -> (u64, u64) {
         let points = sizes.points();
         let widest = (MODULI * points).max(9 * sizes.blocks);
-        let all = (1 + 9 + MODULI + STATE + 2) * points + 6 * sizes.nodes + 2 * 9 * sizes.blocks + 3 * sizes.elements;
+        let all = (1 + 9 + MODULI + HISTORY + 2) * points + 6 * sizes.nodes + 2 * 9 * sizes.blocks + 3 * sizes.elements;
         let contact = (CONTACT_TRIAL + CONTACT_ANSWER + 1) * sizes.contact_points;
         ((widest * size_of::<R>()) as u64, ((all + contact + 16) * size_of::<R>()) as u64)
     }
@@ -100,6 +100,7 @@ struct Kernels {
     node_force: Bound,
     moduli: Bound,
     tangent_blocks: Bound,
+    begin_step: Bound,
     update: Bound,
     energies: Bound,
     contact: Bound,
@@ -284,23 +285,40 @@ impl<R: DeviceReal> Batch<R> {
     pub fn keep(&self, dispatch: &Dispatch, slot: usize, model: &CaseModel, displacement: &[f64]) -> Result<(), GpuError> {
         let (scratch, sizes, case) = (&self.scratch, self.sizes(), dispatch.cases[slot]);
         let resident = &self.groups[dispatch.group].0;
-        let (state, elements) = (STATE * sizes.points(), sizes.elements);
+        let (history, state, elements) = (HISTORY * sizes.points(), STATE * sizes.points(), sizes.elements);
         let mut list = self.context.record();
-        list.copy(&scratch.next_state, slot * state, &resident.state, case * state, state)?;
+        list.copy(&scratch.next_history, slot * history, &resident.history, case * history, history)?;
+        list.copy(&scratch.next_history, slot * history, &resident.state, case * state, state)?;
         list.copy(&scratch.energies, (3 * slot + 1) * elements, &resident.plastic_work, case * elements, elements)?;
         list.submit()?;
         resident.set_displacement(&self.context, sizes, case, &model.mesh, displacement)
     }
 
-    /// Committed state `[component][point]` and plastic work `[element]` of a case.
+    /// Forms the states from which the next step of a case starts, with `weight` times the last flow anticipated.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn begin_step(&self, case: usize, weight: f64) -> Result<(), GpuError> {
+        for dispatch in self.schedule(&[case]) {
+            self.begin(&dispatch)?;
+            let (resident, kernels) = &self.groups[dispatch.group];
+            self.context.upload_at(&resident.anticipated, dispatch.cases[0], &[R::of(weight)])?;
+            let mut list = self.context.record();
+            list.dispatch(&kernels.begin_step, self.sizes().points(), 1)?;
+            list.submit()?;
+        }
+        Ok(())
+    }
+
+    /// Committed state and last flow `[component][point]` and plastic work `[element]` of a case.
     ///
     /// # Errors
     /// The device's fault.
     pub fn state(&self, case: usize) -> Result<(Vec<R>, Vec<R>), GpuError> {
         let (resident, index) = self.resident(case)?;
-        let mut state = vec![R::ZERO; STATE * self.sizes().points()];
+        let mut state = vec![R::ZERO; HISTORY * self.sizes().points()];
         let mut work = vec![R::ZERO; self.sizes().elements];
-        self.context.download_at(&resident.state, index * state.len(), &mut state)?;
+        self.context.download_at(&resident.history, index * state.len(), &mut state)?;
         self.context.download_at(&resident.plastic_work, index * work.len(), &mut work)?;
         Ok((state, work))
     }
@@ -311,7 +329,9 @@ impl<R: DeviceReal> Batch<R> {
     /// The device's fault.
     pub fn restore(&self, case: usize, model: &CaseModel, displacement: &[f64], state: &[R], work: &[R]) -> Result<(), GpuError> {
         let (resident, index) = self.resident(case)?;
-        self.context.upload_at(&resident.state, index * STATE * self.sizes().points(), state)?;
+        let points = self.sizes().points();
+        self.context.upload_at(&resident.history, index * HISTORY * points, state)?;
+        self.context.upload_at(&resident.state, index * STATE * points, &state[..STATE * points])?;
         self.context.upload_at(&resident.plastic_work, index * self.sizes().elements, work)?;
         resident.set_displacement(&self.context, self.sizes(), index, &model.mesh, displacement)
     }
@@ -345,7 +365,7 @@ impl Kernels {
         let blocks = [mesh.block_start.binding(), mesh.block_entry.binding(), s.moduli.binding(), s.blocks.binding()];
         let energies = [
             s.jacobian.binding(),
-            s.next_state.binding(),
+            s.next_history.binding(),
             s.point_work.binding(),
             r.plastic_work.binding(),
             s.energies.binding(),
@@ -367,7 +387,8 @@ impl Kernels {
             node_force: bind(&GATHER_NODE_FORCE, &[&shape, &element, &gather])?,
             moduli: at(&HEX8_MODULI, &[s.moduli.binding()])?,
             tangent_blocks: bind(&GATHER_TANGENT_BLOCKS, &[&shape, &element, &blocks])?,
-            update: at(&HEX8_UPDATE, &[s.next_state.binding(), s.point_work.binding()])?,
+            begin_step: bind(&HEX8_BEGIN_STEP, &[&shape, &[r.history.binding(), r.anticipated.binding(), r.state.binding()]])?,
+            update: at(&HEX8_UPDATE, &[r.history.binding(), s.next_history.binding(), s.point_work.binding()])?,
             energies: bind(&HEX8_ENERGIES, &[&shape, &element, &material, &energies])?,
             contact: bind(&CONTACT_POINTS, &[&shape, &contact])?,
         })

@@ -46,6 +46,11 @@ impl Compute for Mixed {
         self.residual.models()
     }
 
+    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+        self.residual.begin_step(case, weight)?;
+        self.tangent.begin_step(case, weight)
+    }
+
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
         self.residual.internal_force(requests)
     }

@@ -13,8 +13,10 @@ use crate::element::hex8::{Geometry, Invalid, NODES, QUADRATURE_POINTS};
 use crate::material::Material;
 use crate::mesh::Mesh;
 
-/// Components of a point's committed state.
+/// Components of a point's state.
 pub const STATE: usize = super::material::STATE;
+/// Components of a point's committed state and of what flowed in its last step.
+pub const HISTORY: usize = 2 * STATE;
 /// Components of a point's reference gradients.
 pub const GRADIENT: usize = 3 * NODES;
 /// The coefficient of friction that stands for full stick in `coulomb.wgsl`.
@@ -42,7 +44,7 @@ impl Sizes {
     /// Bytes a case keeps on the device, with its own geometry: the widest array, and all together.
     pub fn resident_bytes<R>(&self) -> (u64, u64) {
         let widest = GRADIENT * self.points();
-        let all = widest + (1 + STATE) * self.points() + self.elements + 3 * self.nodes + 2 * self.contact_points + 32;
+        let all = widest + (1 + STATE + HISTORY) * self.points() + self.elements + 3 * self.nodes + 2 * self.contact_points + 32;
         ((widest * size_of::<R>()) as u64, (all * size_of::<R>()) as u64)
     }
 }
@@ -107,7 +109,12 @@ pub struct Resident<R> {
     pub(super) committed: StorageBuffer<R>,
     pub(super) parameters: StorageBuffer<R>,
     pub(super) table: StorageBuffer<R>,
+    /// The states from which the present step starts.
     pub(super) state: StorageBuffer<R>,
+    /// Committed states and last flows.
+    pub(super) history: StorageBuffer<R>,
+    /// Weight of the last flow in `state`, a case.
+    pub(super) anticipated: StorageBuffer<R>,
     pub(super) plastic_work: StorageBuffer<R>,
     pub(super) weight: StorageBuffer<R>,
     pub(super) friction: StorageBuffer<R>,
@@ -168,7 +175,9 @@ impl<R: DeviceReal> Resident<R> {
             committed: context.zeros("committed displacements", count * 3 * sizes.nodes)?,
             parameters: context.array("material parameters", &parameters)?,
             table: context.array("hardening tables", &table)?,
-            state: context.zeros("committed states", count * STATE * points)?,
+            state: context.zeros("states at the start", count * STATE * points)?,
+            history: context.zeros("committed states", count * HISTORY * points)?,
+            anticipated: context.zeros("weights of the last flow", count)?,
             plastic_work: context.zeros("plastic work", count * sizes.elements)?,
             friction: context.array("coefficients of friction", &friction)?,
             gap: context.zeros("gaps at the start of the step", count * sizes.contact_points)?,

@@ -60,6 +60,8 @@ pub const HARDENING: Source = source!("material/hardening.wgsl");
 pub const MATERIAL: Source = source!("material/material.wgsl");
 /// Return mapping and tangent at a point.
 pub const J2: Source = source!("material/j2.wgsl");
+/// Flow to second order in the step.
+pub const MULTISTEP: Source = source!("material/multistep.wgsl");
 const RETURN_MAPPING_POINTS: Source = source!("material/return_mapping.wgsl");
 
 /// The shape of a batch.
@@ -103,6 +105,7 @@ pub static KERNELS: &[&Kernel] = &[
     &HEX8_JACOBIAN,
     &HEX8_INTERNAL_FORCE,
     &HEX8_MODULI,
+    &HEX8_BEGIN_STEP,
     &HEX8_UPDATE,
     &HEX8_ENERGIES,
     &GATHER_NODE_FORCE,
@@ -154,11 +157,19 @@ pub static HEX8_MODULI: Kernel = Kernel {
     workgroup: 64,
 };
 
+/// The state from which every quadrature point starts a step.
+pub static HEX8_BEGIN_STEP: Kernel = Kernel {
+    name: "hex8_begin_step",
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, MULTISTEP, source!("element/begin_step.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, ReadWrite],
+    workgroup: 64,
+};
+
 /// The state of every quadrature point at the end of a step.
 pub static HEX8_UPDATE: Kernel = Kernel {
     name: "hex8_update",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, POINT, source!("element/update.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, MULTISTEP, HEX8, POINT, source!("element/update.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
 

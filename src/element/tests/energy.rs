@@ -5,8 +5,8 @@ use crate::element::hex8::fields;
 use crate::material::j2;
 
 fn energy(g: &Geometry<f64>, m: &Material<f64>, u: &Nodal<f64>) -> f64 {
-    let state = update(g, m, &State::default(), &ZERO, u).unwrap();
-    fields(g, m, &state, u).unwrap().elastic_energy
+    let state = update(g, m, &State::default(), &State::default().points, &ZERO, u).unwrap();
+    fields(g, m, &state.points, u).unwrap().elastic_energy
 }
 
 #[test]
@@ -51,10 +51,10 @@ fn imbalance(yield_stress: f64, n: usize) -> (f64, f64) {
                 work += 0.5 * (f[a][i] + next[a][i]) * increment[a][i];
             }
         }
-        state = update(&g, &m, &state, &committed, &increment).unwrap();
+        state = update(&g, &m, &state, &state.points, &committed, &increment).unwrap();
         (committed, f) = (target, next);
     }
-    let elastic = fields(&g, &m, &state, &committed).unwrap().elastic_energy;
+    let elastic = fields(&g, &m, &state.points, &committed).unwrap().elastic_energy;
     assert!(state.plastic_work > elastic, "the path is hardly plastic");
     let strain = state.points.iter().map(|p| j2::norm_squared(&j2::deviator(&p.be).0).sqrt()).fold(0.0, f64::max);
     ((work - elastic - state.plastic_work) / work, strain / 6.0_f64.sqrt())

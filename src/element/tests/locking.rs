@@ -68,7 +68,7 @@ impl Cylinder {
                 let (committed, step) = (Self::nodal(e, &self.q), Self::nodal(e, &increment));
                 let nodal = force(g, &self.material, s, &committed, &step);
                 let mut blocks = [[0.0; 9]; PAIRS];
-                tangent(g, &self.material, s, &committed, &step, &mut blocks).unwrap();
+                tangent(g, &self.material, &s.points, &committed, &step, &mut blocks).unwrap();
                 for a in 0..NODES {
                     let d = direction(a);
                     f[e + RING[a]] += (0..3).map(|i| nodal[a][i] * d[i]).sum::<f64>();
@@ -123,7 +123,7 @@ impl Cylinder {
         for e in 0..LAYERS {
             let (committed, step) = (Self::nodal(e, &self.q), Self::nodal(e, &increment));
             for (g, s) in self.geometry[e].iter().zip(self.state[e].iter_mut()) {
-                *s = update(g, &self.material, s, &committed, &step).unwrap();
+                *s = update(g, &self.material, s, &s.points, &committed, &step).unwrap();
             }
         }
         self.q = q;

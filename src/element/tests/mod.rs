@@ -10,6 +10,7 @@ mod tangent;
 
 use super::hex8::{CORNERS, Geometry, NODES, Nodal, QUADRATURE_POINTS, State, internal_force, update};
 use crate::material::hardening::Hardening;
+use crate::material::multistep::Flow;
 use crate::material::{Elasticity, Material};
 use crate::real::Real;
 
@@ -74,20 +75,20 @@ pub fn largest(f: &Nodal<f64>) -> f64 {
 }
 
 pub fn force(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &Nodal<f64>, increment: &Nodal<f64>) -> Nodal<f64> {
-    internal_force(g, m, s, committed, increment).unwrap()
+    internal_force(g, m, &s.points, committed, increment).unwrap()
 }
 
 /// A plastic history: two steps of loading, committed. Returns the state and its displacement.
 pub fn loaded(g: &Geometry<f64>, m: &Material<f64>) -> (State<f64>, Nodal<f64>) {
     let first =
         plus(&homogeneous(&irregular(), &[[0.004, 0.003, 0.0], [0.0, -0.006, 0.002], [0.001, 0.0, 0.003]]), &wild(3, 5e-4), 1.0);
-    let state = update(g, m, &State::default(), &ZERO, &first).unwrap();
+    let state = update(g, m, &State::default(), &State::default().points, &ZERO, &first).unwrap();
     let second = plus(
         &homogeneous(&irregular(), &[[0.006, -0.002, 0.001], [0.004, -0.005, 0.0], [0.0, 0.003, 0.001]]),
         &wild(4, 5e-4),
         1.0,
     );
-    let state = update(g, m, &state, &first, &second).unwrap();
+    let state = update(g, m, &state, &state.points, &first, &second).unwrap();
     assert!(state.points.iter().all(|p| p.alpha > 1e-3), "the history is not plastic at every point");
     (state, plus(&first, &second, 1.0))
 }
@@ -115,6 +116,7 @@ pub fn cast_state<R: Real>(s: &State<f64>) -> State<R> {
             be: s.points[q].be.map(R::of),
             alpha: R::of(s.points[q].alpha),
         }),
+        flow: s.flow.map(|f| Flow { strain: f.strain.map(R::of), alpha: R::of(f.alpha) }),
         plastic_work: R::of(s.plastic_work),
     }
 }

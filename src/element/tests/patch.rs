@@ -48,7 +48,8 @@ impl Patch {
                     forces[n as usize][i] += f[i];
                 }
             }
-            self.state[e] = update(&self.geometry[e], material, &self.state[e], &committed, &increment).unwrap();
+            self.state[e] =
+                update(&self.geometry[e], material, &self.state[e], &self.state[e].points, &committed, &increment).unwrap();
         }
         self.u = target;
         forces
@@ -61,7 +62,7 @@ impl Patch {
         let all = forces.iter().map(size).fold(0.0, f64::max);
         let inner = forces.iter().zip(&self.inner).filter(|(_, i)| **i).map(|(f, _)| size(f)).fold(0.0, f64::max);
         let stress: Vec<[f64; 6]> = (0..self.elements.len())
-            .flat_map(|e| fields(&self.geometry[e], material, &self.state[e], &self.of(e, &self.u)).unwrap().stress)
+            .flat_map(|e| fields(&self.geometry[e], material, &self.state[e].points, &self.of(e, &self.u)).unwrap().stress)
             .collect();
         let scale = stress[0].iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let spread = stress.iter().flat_map(|s| (0..6).map(|c| (s[c] - stress[0][c]).abs())).fold(0.0, f64::max);

@@ -9,7 +9,7 @@ type Full = [[f64; 24]; 24];
 /// The whole tangent from its upper triangle of blocks.
 fn full(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &Nodal<f64>, increment: &Nodal<f64>) -> Full {
     let mut blocks = [[0.0; 9]; PAIRS];
-    tangent(g, m, s, committed, increment, &mut blocks).unwrap();
+    tangent(g, m, &s.points, committed, increment, &mut blocks).unwrap();
     let mut k = [[0.0; 24]; 24];
     for a in 0..NODES {
         for b in a..NODES {
@@ -113,7 +113,7 @@ fn the_elastic_tangent_is_the_derivative_of_the_force() {
     }
     // From a committed state the same tangent comes out: only the total deformation counts.
     let (u, part) = (wild(31, 0.1), wild(32, 0.08));
-    let state = update(&g, &m, &State::default(), &ZERO, &part).unwrap();
+    let state = update(&g, &m, &State::default(), &State::default().points, &ZERO, &part).unwrap();
     let (whole, split) = (full(&g, &m, &State::default(), &ZERO, &u), full(&g, &m, &state, &part, &plus(&u, &part, -1.0)));
     assert!(distance(&whole, &split) < 1e-14 * size(&whole) * 24.0);
 }
@@ -162,7 +162,7 @@ fn the_tangent_is_symmetric() {
     let (g, m) = (geometry(), hardening());
     let (state, committed) = loaded(&g, &m);
     let mut blocks = [[0.0; 9]; PAIRS];
-    tangent(&g, &m, &state, &committed, &wild(33, 5e-3), &mut blocks).unwrap();
+    tangent(&g, &m, &state.points, &committed, &wild(33, 5e-3), &mut blocks).unwrap();
     let scale = blocks.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     // Off the diagonal only one triangle is formed; the blocks on it have both.
     for a in 0..NODES {

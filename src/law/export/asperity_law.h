@@ -398,9 +398,10 @@ static inline int asperity_setup(asperity_parameters *p, const asperity_material
     return 0;
 }
 
-/* Which quantities lie outside of what the law was fitted to, at the indentation h > 0: a sum of 1 Lambda, 2 mu, 4 a/R, 8 c^2, 16 nu. */
+/* Which quantities lie outside of what the law was fitted to, at the indentation h > 0: a sum of 1 Lambda, 2 mu, 4 a/R, 8 c^2, 16 nu,
+ * 32 hardening exponent at the representative strain. */
 static inline int asperity_out_of_range(const asperity_material *m, double radius, double friction, double h) {
-    double a, f_n, lambda, yield = asperity_yield_lambda(m->poissons_ratio), c_squared, from;
+    double a, f_n, lambda, yield = asperity_yield_lambda(m->poissons_ratio), c_squared, exponent, from;
     int outside = 0;
     asperity_normal(m, radius, h, &a, &f_n);
     lambda = asperity_lambda(m, radius, a);
@@ -427,6 +428,10 @@ static inline int asperity_out_of_range(const asperity_material *m, double radiu
     }
     if (m->poissons_ratio < 0.98 * ASPERITY_NU_FROM || m->poissons_ratio > ASPERITY_NU_TO * 1.02) {
         outside |= 16;
+    }
+    exponent = asperity_hardening_exponent(m, radius, a);
+    if (exponent < 0.98 * ASPERITY_HARDENING_FROM || exponent > ASPERITY_HARDENING_TO * 1.02) {
+        outside |= 32;
     }
     return outside;
 }

@@ -333,7 +333,8 @@ def setup(m, radius, friction):
 
 
 def out_of_range(m, radius, friction, h):
-    """Which quantities lie outside of what the law was fitted to, at the indentation h > 0: a sum of 1 Lambda, 2 mu, 4 a/R, 8 c^2, 16 nu."""
+    """Which quantities lie outside of what the law was fitted to, at the indentation h > 0: a sum of 1 Lambda, 2 mu, 4 a/R, 8 c^2, 16 nu,
+    32 hardening exponent at the representative strain."""
     a, _ = normal(m, radius, h)
     value = johnson_lambda(m, radius, a)
     first = yield_lambda(m.poissons_ratio)
@@ -353,6 +354,9 @@ def out_of_range(m, radius, friction, h):
         outside |= 8
     if m.poissons_ratio < 0.98 * NU_FROM or m.poissons_ratio > NU_TO * 1.02:
         outside |= 16
+    exponent = hardening_exponent(m, radius, a)
+    if exponent < 0.98 * HARDENING_FROM or exponent > HARDENING_TO * 1.02:
+        outside |= 32
     return outside
 
 

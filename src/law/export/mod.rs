@@ -17,11 +17,11 @@ const MODULE: &str = include_str!("asperity_law.py");
 const CHECK: &str = include_str!("asperity_law_check.c");
 
 /// A language of the export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Language {
-    /// C99 and C++17, one header.
+    /// One header, C99 and C++17.
     C,
-    /// Python 3, one module.
+    /// One module, Python 3.8 or later.
     Python,
 }
 
@@ -76,6 +76,7 @@ pub fn source(law: &Law, language: Language) -> String {
         ("RADIUS", range.relative_radius),
         ("AREA", range.c_squared),
         ("NU", range.poissons_ratio),
+        ("HARDENING", range.hardening_exponent),
     ] {
         constant(&format!("{name}_FROM"), interval.from);
         constant(&format!("{name}_TO"), interval.to);

@@ -2,6 +2,7 @@
 
 mod hardening;
 mod invariance;
+mod multistep;
 mod precision;
 mod sweep;
 mod tangent;

@@ -1,0 +1,38 @@
+// The state from which every quadrature point starts a step.
+
+@group(0) @binding(2) var<storage, read> history: array<real>;          // [case][component][point]: committed state (7), last flow (7)
+@group(0) @binding(3) var<storage, read> anticipated: array<real>;      // [case]: weight of the last flow
+@group(0) @binding(4) var<storage, read_write> state: array<real>;      // [case][component][point], as evaluate_point reads it
+
+@compute @workgroup_size(64)
+fn hex8_begin_step(@builtin(global_invocation_id) id: vec3<u32>) {
+    let points = 8u * dimensions.elements;
+    if id.x >= points || id.y >= dimensions.in_dispatch {
+        return;
+    }
+    let case_index = active_cases[id.y].x;
+    let h = 14u * case_index * points + id.x;
+    let committed = PointState(
+        Sym(
+            vec3<real>(history[h], history[h + points], history[h + 2u * points]),
+            vec3<real>(history[h + 3u * points], history[h + 4u * points], history[h + 5u * points]),
+        ),
+        history[h + 6u * points],
+    );
+    let flow = Flow(
+        Sym(
+            vec3<real>(history[h + 7u * points], history[h + 8u * points], history[h + 9u * points]),
+            vec3<real>(history[h + 10u * points], history[h + 11u * points], history[h + 12u * points]),
+        ),
+        history[h + 13u * points],
+    );
+    let start = anticipate(committed, flow, anticipated[case_index]);
+    let s = 7u * case_index * points + id.x;
+    state[s] = start.be.diagonal.x;
+    state[s + points] = start.be.diagonal.y;
+    state[s + 2u * points] = start.be.diagonal.z;
+    state[s + 3u * points] = start.be.shear.x;
+    state[s + 4u * points] = start.be.shear.y;
+    state[s + 5u * points] = start.be.shear.z;
+    state[s + 6u * points] = start.alpha;
+}

@@ -1,0 +1,155 @@
+//! `asperity law`: fits a contact law to a study, and applies it to a case.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+
+use super::{CliError, Outcome, print};
+use crate::case::Case;
+use crate::law::export::{Language, files, source};
+use crate::law::predict::{NormalSource, Prediction, predict};
+use crate::law::{Law, LawError, fit, report};
+use crate::output::write_atomically;
+
+/// Fit a contact law to a study, and use it.
+#[derive(Clone, Debug, Args)]
+pub struct LawArgs {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: LawCommand,
+}
+
+/// The subcommands of `asperity law`.
+#[derive(Clone, Debug, Subcommand)]
+pub enum LawCommand {
+    /// Fit a law to a study: writes DIR/law.json and prints the forms that were compared and the errors.
+    Fit(FitArgs),
+    /// Predict F_T and F_N over delta_T for a case, without simulating its shear; prints CSV.
+    Predict(PredictArgs),
+    /// Write the law for a DEM code: an incremental contact update as a C header or a Python module, to stdout or with test vectors to a directory.
+    Export(ExportArgs),
+}
+
+/// The arguments of `law fit`.
+#[derive(Clone, Debug, Args)]
+pub struct FitArgs {
+    /// The directory of a study.
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+}
+
+/// The arguments of `law predict`.
+#[derive(Clone, Debug, Args)]
+pub struct PredictArgs {
+    /// A law, as `law fit` writes it.
+    #[arg(value_name = "LAW.json")]
+    pub law: PathBuf,
+    /// The case: pressed once, sheared once at constant indentation.
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Take F_N0 and a0 from a simulation of the press alone, not from the law's formulas.
+    #[arg(long)]
+    pub press: bool,
+    /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// The arguments of `law export`.
+#[derive(Clone, Debug, Args)]
+pub struct ExportArgs {
+    /// A law, as `law fit` writes it.
+    #[arg(value_name = "LAW.json")]
+    pub law: PathBuf,
+    /// The language.
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
+    pub format: Language,
+    /// Write asperity_law.h or asperity_law.py there, with asperity_law_vectors.csv and, for C, the program that checks them; files of these names are
+    /// replaced [default: the header or module alone, to stdout].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Runs a subcommand of `asperity law`.
+pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
+    match &args.command {
+        LawCommand::Fit(args) => fit_law(&args.dir),
+        LawCommand::Predict(args) => predict_case(args),
+        LawCommand::Export(args) => export_law(args),
+    }
+}
+
+fn fit_law(dir: &Path) -> Result<Outcome, CliError> {
+    let law = fit::fit(dir)?;
+    let path = dir.join("law.json");
+    law.write(&path)?;
+    print(&format!("{}\nlaw in {}\n", summary(&law), path.display()))?;
+    Ok(Outcome::Done)
+}
+
+/// What `law fit` prints.
+fn summary(law: &Law) -> String {
+    let p = &law.provenance;
+    let (coarsest, finest) = p.elements_per_contact_radius;
+    let mut text = format!(
+        "{} cases of {} materials, {coarsest} to {finest} elements per contact radius, {} left out; {} folds, whole materials left out (seed {})\n\n",
+        p.cases,
+        p.materials,
+        p.left_out.len(),
+        p.folds,
+        p.seed
+    );
+    let predicted = "Errors with F_N0 and a0 predicted from h, cross-validated, in per cent";
+    let known = "Errors of the kept forms (*) with F_N0 and a0 known, cross-validated, in per cent";
+    for table in [
+        report::candidate_table(&law.candidates),
+        report::normal_table(&law.normal_candidates),
+        report::region_table(known, &law.errors),
+        report::region_table(predicted, &law.errors_predicted),
+    ] {
+        let _ = writeln!(text, "{table}");
+    }
+    text.push_str(&law.formulas());
+    text
+}
+
+fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
+    let law = Law::read(&args.law)?;
+    let case = Case::load(&args.case, &args.set)?;
+    let source = if args.press { NormalSource::Press } else { NormalSource::Formulas };
+    let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
+    let Prediction { curve, out_of_range, .. } = predict(&law, &case, source).map_err(in_case)?;
+    if !out_of_range.is_empty() {
+        let list: Vec<String> = out_of_range.iter().map(ToString::to_string).collect();
+        // A closed stderr does not change the prediction.
+        let _ = writeln!(
+            std::io::stderr(),
+            "warning: {} lies outside of what the law was fitted to: {}. compare with `asperity run`",
+            args.case.display(),
+            list.join(", ")
+        );
+    }
+    let mut text = String::from("delta_T,F_T,F_N\n");
+    for point in &curve {
+        let _ = writeln!(text, "{:?},{:?},{:?}", point.delta_t, point.f_t, point.f_n);
+    }
+    print(&text)?;
+    Ok(Outcome::Done)
+}
+
+fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
+    let law = Law::read(&args.law)?;
+    let Some(dir) = &args.out else {
+        print(&source(&law, args.format))?;
+        return Ok(Outcome::Done);
+    };
+    let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
+    fs::create_dir_all(dir).map_err(failed("be created"))?;
+    for file in files(&law, args.format) {
+        write_atomically(&dir.join(file.name), |out| out.write_all(file.content.as_bytes()))?;
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,158 @@
+//! Applies a law to a case: F_T and F_N over delta_T without any simulation of the shear.
+
+use super::LawError;
+use super::data::Point;
+use super::model::{Axisymmetric, Law, MARGIN, OutOfRange, Parameters};
+use super::normal::NormalState;
+use super::variables::{Body, yield_lambda};
+use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::compute::select::{DeviceWish, PrecisionWish, select};
+use crate::simulation::SimulationError;
+use crate::simulation::drive::{Drive, Ending, Observer, StepView};
+use crate::simulation::problem::Problem;
+use crate::simulation::record::StepRecord;
+
+/// Where F_N0 and a0 come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalSource {
+    /// The law's own formulas in h.
+    Formulas,
+    /// A simulation of the press alone, on a coarse mesh.
+    Press,
+}
+
+/// What a law says of a case, in the case's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// The normal data that the law was given.
+    pub inputs: Axisymmetric,
+    /// The law of this contact.
+    pub parameters: Parameters,
+    /// The curve, from delta_T = 0 on; delta_T and F_T have the sign of the shear.
+    pub curve: Vec<Point>,
+    /// What lies outside of the law's range.
+    pub out_of_range: Vec<OutOfRange>,
+}
+
+/// Intervals of a curve up to full slip, finer where it is steep.
+const INTERVALS: usize = 100;
+/// Elements along the contact radius of a press.
+const PRESS_ELEMENTS: usize = 8;
+
+/// The law of a case that presses once and shears once at constant h.
+///
+/// # Errors
+/// [`LawError::NotCovered`] for another path, another hold or full stick; what goes wrong in a press.
+pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Prediction, LawError> {
+    let (indentation, target, friction) = covered(case)?;
+    let body = Body::from_case(case)?;
+    let normal = match source {
+        NormalSource::Formulas => law.normal.state(&body, indentation),
+        NormalSource::Press => press(case)?,
+    };
+    let inputs = Axisymmetric {
+        youngs_modulus: case.material.youngs_modulus,
+        poissons_ratio: case.material.poissons_ratio,
+        radius: case.sphere.radius,
+        friction,
+        sigma_rep: body.representative_stress(normal.a),
+        h: indentation,
+        a: normal.a,
+        f_n: normal.f_n,
+    };
+    let parameters = law.contact(&inputs);
+    let slip = parameters.delta_t_slip;
+    let (end, direction) = match target {
+        ShearTarget::FullSlip => (slip, 1.0),
+        ShearTarget::Displacement(d) => (d.abs(), d.signum()),
+    };
+    let curve = displacements(slip, end)
+        .into_iter()
+        .map(|d| {
+            let (f_t, f_n) = law.forces(&parameters, friction, direction * d);
+            Point { delta_t: direction * d, f_t, f_n }
+        })
+        .collect();
+    let mut out_of_range = law.out_of_range(&inputs);
+    let (exponent, range) = (body.hardening_exponent(inputs.a), law.validity.hardening_exponent);
+    let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);
+    if yielded && !range.contains(exponent, MARGIN) {
+        out_of_range.push(OutOfRange { quantity: "hardening exponent", value: exponent, range });
+    }
+    Ok(Prediction { inputs, parameters, curve, out_of_range })
+}
+
+/// Indentation, target of the shear and mu of a case of the kind that the law describes.
+fn covered(case: &Case) -> Result<(f64, ShearTarget, f64), LawError> {
+    let refuse = |problem, remedy| Err(LawError::NotCovered { problem, remedy });
+    let Friction::Coefficient(friction) = case.contact.friction else {
+        return refuse(
+            "the case has friction = \"stick\", and the law describes slip",
+            "give contact.friction a number, or simulate the case with `asperity run`",
+        );
+    };
+    match case.path.as_slice() {
+        [Segment::Indentation { indentation }, Segment::Shear { shear, hold: Hold::Indentation }] => {
+            Ok((*indentation, *shear, friction))
+        }
+        [Segment::Indentation { .. }, Segment::Shear { hold: Hold::NormalForce, .. }] => refuse(
+            "the case holds the normal force, and the law describes a shear at constant indentation",
+            "set hold = \"indentation\", or simulate the case with `asperity run`",
+        ),
+        [Segment::Indentation { .. }, Segment::Shear { .. }, ..] => refuse(
+            "the case goes on after its first shear, and the law's closed form describes one shear",
+            "leave one [[path]] with an indentation and one with a shear; `asperity law export` has the law for any path",
+        ),
+        path if !path.iter().any(|segment| matches!(segment, Segment::Shear { .. })) => {
+            refuse("the case has no shear", "add a [[path]] with shear = \"full-slip\"")
+        }
+        _ => refuse(
+            "the case presses more than once before its shear, and the law describes a sphere that was only pressed",
+            "leave one [[path]] with an indentation and one with a shear",
+        ),
+    }
+}
+
+/// Displacements from 0 to `end`, growing as i^2 up to `slip`; beyond it nothing changes.
+fn displacements(slip: f64, end: f64) -> Vec<f64> {
+    let to = slip.min(end);
+    let mut all = vec![0.0];
+    if to > 0.0 {
+        all.extend((1..INTERVALS).map(|i| to * (i as f64 / INTERVALS as f64).powi(2)));
+        all.push(to);
+    }
+    if end > to {
+        all.push(end);
+    }
+    all
+}
+
+/// Simulates the press alone.
+fn press(case: &Case) -> Result<NormalState, LawError> {
+    /// Keeps the last step.
+    struct Last(StepRecord);
+    impl Observer for Last {
+        fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+            self.0 = view.record;
+            Ok(())
+        }
+        fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+            Ok(())
+        }
+        fn note(&mut self, _: &str) {}
+    }
+    let mut case = case.clone();
+    case.path.truncate(1);
+    case.mesh.elements_per_contact_radius = case.mesh.elements_per_contact_radius.min(PRESS_ELEMENTS);
+    let problem = Problem::new(&case)?;
+    let mut selected = select(DeviceWish::Cpu, PrecisionWish::F64, vec![problem.model.clone()]).map_err(SimulationError::from)?;
+    let newton = problem.newton()?;
+    let mut last = Last(StepRecord::default());
+    match Drive::new(&problem, selected.backend.as_mut(), 0, newton).run(&mut last)? {
+        Ending::Done => {}
+        Ending::NotConverged(reason) | Ending::Outgrown(reason) => return Err(LawError::Press(reason)),
+        Ending::Interrupted => return Err(LawError::Press("it was interrupted".to_owned())),
+    }
+    let (radius, modulus) = (case.sphere.radius, case.material.youngs_modulus);
+    Ok(NormalState { a: last.0.a * radius, f_n: last.0.f_n * modulus * radius * radius })
+}

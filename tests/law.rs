@@ -1,0 +1,183 @@
+//! The contact law from the outside: fitted to studies that follow a known law, and applied through the program.
+
+#[path = "law/synthetic.rs"]
+mod synthetic;
+
+use std::fs;
+use std::path::Path;
+
+use asperity::case::Case;
+use asperity::law::fit::fit;
+use asperity::law::predict::{NormalSource, predict};
+use asperity::law::{Law, LawError};
+use assert_cmd::Command;
+
+fn asperity(args: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("asperity").expect("the program").args(args).assert()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a path in UTF-8")
+}
+
+/// Greatest differences to the synthetic truth over materials, friction and indentations that the study does not have, as shares of the peak of F_T and of
+/// F_N0.
+fn unseen(law: &Law) -> [f64; 2] {
+    let hardenings = ["law = \"ideal\"\nyield_stress = 800.0", "law = \"hollomon\"\ncoefficient = 1200.0\nexponent = 6.0"];
+    let mut greatest = [0.0_f64; 2];
+    for (hardening, friction, h) in [(0, 0.15, 0.005), (0, 0.4, 0.02), (1, 0.2, 0.015), (1, 0.35, 0.006)] {
+        let case = Case::parse(&synthetic::case_text(hardenings[hardening], friction, h), "unseen.toml", &[]).expect("a case");
+        let (inputs, curve) = synthetic::truth(&case, friction, 2.0 * h);
+        let prediction = predict(law, &case, NormalSource::Formulas).expect("a prediction");
+        assert!(prediction.out_of_range.is_empty(), "{:?}", prediction.out_of_range);
+        let peak = curve.iter().fold(0.0_f64, |peak, point| peak.max(point[1]));
+        for [d, f_t, f_n] in curve {
+            let (ours_t, ours_n) = law.forces(&prediction.parameters, friction, d);
+            greatest[0] = greatest[0].max((ours_t - f_t).abs() / peak);
+            greatest[1] = greatest[1].max((ours_n - f_n).abs() / inputs.f_n);
+        }
+    }
+    greatest
+}
+
+#[test]
+fn a_known_law_is_found_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    synthetic::write_study(folder.path(), 0.0);
+    let law = fit(folder.path()).expect("a law");
+    assert_eq!(law.forms, synthetic::FORMS, "{}", asperity::law::report::candidate_table(&law.candidates));
+    assert_eq!(law.normal.form, synthetic::normal().form);
+    let [f_t, f_n] = unseen(&law);
+    assert!(f_t < 0.01 && f_n < 0.01, "{f_t} {f_n}\n{}", law.formulas());
+    let all = &law.errors.last().expect("a row for all").errors;
+    assert_eq!(all.cases, 36);
+    assert!(all.f_t_rms < 0.005 && all.f_n_rms < 0.005, "{all:?}");
+    // What is not used is told.
+    assert_eq!(law.provenance.left_out, [("0036".to_owned(), "failed".to_owned())]);
+}
+
+#[test]
+fn noise_of_a_mesh_does_not_lead_astray() {
+    let folder = tempfile::tempdir().expect("a folder");
+    synthetic::write_study(folder.path(), 0.02);
+    let law = fit(folder.path()).expect("a law");
+    let [f_t, f_n] = unseen(&law);
+    assert!(f_t < 0.04 && f_n < 0.04, "{f_t} {f_n}\n{}", law.formulas());
+    // The elastic baseline knows nothing of the fall of F_N.
+    let score = |name: &str| {
+        law.candidates.iter().filter(|c| c.name.starts_with(name)).map(|c| c.errors.score()).fold(f64::INFINITY, f64::min)
+    };
+    assert!(score("Jaeger-Ciavarella") > 5.0 * law.candidates[0].errors.score());
+    assert!(law.candidates[0].kept && law.candidates.iter().filter(|c| c.kept).count() == 1);
+    // The same study, the same bytes, at any number of threads; and the file reads back.
+    let path = folder.path().join("law.json");
+    law.write(&path).expect("law.json");
+    assert!(Law::read(&path).expect("it reads back") == law, "law.json does not read back to the bit");
+    let first = fs::read(&path).expect("bytes");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    pool.install(|| fit(folder.path())).expect("a law").write(&path).expect("law.json");
+    assert!(fs::read(&path).expect("bytes") == first, "another number of threads gives another law");
+}
+
+#[test]
+fn fit_and_predict_through_the_program() {
+    let folder = tempfile::tempdir().expect("a folder");
+    synthetic::write_study(folder.path(), 0.01);
+    let fitted = asperity(&["law", "fit", text(folder.path())]).code(0);
+    let printed = String::from_utf8_lossy(&fitted.get_output().stdout).into_owned();
+    for expected in ["36 cases of 8 materials", "Jaeger-Ciavarella", "Olsson & Larsson", "F_N_slip/F_N0", "mu 0.2 to 0.4"] {
+        assert!(printed.contains(expected), "{expected} is missing in\n{printed}");
+    }
+    let law = folder.path().join("law.json");
+    let case = folder.path().join("case.toml");
+    let ideal = "law = \"ideal\"\nyield_stress = 800.0";
+    fs::write(&case, synthetic::case_text(ideal, 0.3, 0.01)).expect("case.toml");
+
+    let within = asperity(&["law", "predict", text(&law), text(&case)]).code(0);
+    assert!(within.get_output().stderr.is_empty(), "{}", String::from_utf8_lossy(&within.get_output().stderr));
+    let csv = String::from_utf8_lossy(&within.get_output().stdout).into_owned();
+    let rows: Vec<Vec<f64>> =
+        csv.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    assert!(csv.starts_with("delta_T,F_T,F_N\n") && rows.len() > 50);
+    assert_eq!((rows[0][0], rows[0][1]), (0.0, 0.0));
+    let last = rows.last().expect("rows");
+    assert!((last[1] / (0.3 * last[2]) - 1.0).abs() < 1e-9, "full slip: {last:?}");
+    assert!(rows.windows(2).all(|w| w[1][0] > w[0][0] && w[1][1] >= w[0][1] && w[1][2] <= w[0][2]));
+
+    // The other way round, in the same units.
+    let back = asperity(&["law", "predict", text(&law), text(&case), "--set", "path.1.shear=-1e-3"]).code(0);
+    let back = String::from_utf8_lossy(&back.get_output().stdout).into_owned();
+    let end = back.lines().last().expect("rows").to_owned();
+    assert!(end.starts_with("-0.001,-"), "{end}");
+
+    let outside = asperity(&["law", "predict", text(&law), text(&case), "--set", "contact.friction=0.9"]).code(0);
+    let warning = String::from_utf8_lossy(&outside.get_output().stderr).into_owned();
+    assert!(warning.contains("mu = 0.9") && warning.contains("outside"), "{warning}");
+
+    // A material that hardens more than any of the study.
+    let hard = synthetic::case_text("law = \"linear\"\nyield_stress = 200.0\nmodulus = 20000.0", 0.3, 0.01);
+    fs::write(folder.path().join("hard.toml"), hard).expect("hard.toml");
+    let hard = asperity(&["law", "predict", text(&law), text(&folder.path().join("hard.toml"))]).code(0);
+    let warning = String::from_utf8_lossy(&hard.get_output().stderr).into_owned();
+    assert!(warning.contains("hardening exponent"), "{warning}");
+
+    for (set, told) in [
+        ("contact.friction=\"stick\"", "stick"),
+        ("path.1.hold=\"normal-force\"", "normal force"),
+        ("path=[{indentation = 0.02}]", "no shear"),
+        ("path=[{indentation = 0.02}, {shear = 0.001}, {shear = -0.001}]", "goes on after"),
+        ("path=[{indentation = 0.02}, {indentation = 0.01}, {shear = 0.001}]", "more than once"),
+    ] {
+        let mut args = vec!["law", "predict", text(&law), text(&case), "--set", set];
+        if told == "stick" {
+            args.extend(["--set", "path.1.shear=0.01"]);
+        }
+        let refused = asperity(&args).code(2);
+        let said = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+        assert!(said.contains(told) && said.lines().count() == 1, "{set}: {said}");
+    }
+}
+
+#[test]
+fn the_press_gives_the_normal_data() {
+    let folder = tempfile::tempdir().expect("a folder");
+    synthetic::write_study(folder.path(), 0.0);
+    let law = fit(folder.path()).expect("a law");
+    let text = synthetic::case_text("law = \"ideal\"\nyield_stress = 400.0", 0.3, 0.02);
+    let case = Case::parse(&text, "case.toml", &["mesh.elements_per_contact_radius=4".to_owned()]).expect("a case");
+    let inputs = predict(&law, &case, NormalSource::Press).expect("a prediction").inputs;
+    // Axisymmetric computations of this case with R = 1: F_N = 148.8 and a = 0.2087.
+    assert!((inputs.f_n / (4.0 * 148.8) - 1.0).abs() < 0.02 && (inputs.a / (2.0 * 0.2087) - 1.0).abs() < 0.05, "{inputs:?}");
+}
+
+#[test]
+fn what_is_no_study_and_no_law_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let refuse = |args: &[&str], told: &str| {
+        let refused = asperity(args).code(2);
+        let said = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+        assert!(said.starts_with("error: ") && said.contains(told) && said.lines().count() == 1, "{told}: {said}");
+    };
+    refuse(&["law", "fit", text(&folder.path().join("nowhere"))], "is not a study");
+    fs::write(folder.path().join("study.csv"), "case,status\n0000,done\n").expect("study.csv");
+    refuse(&["law", "fit", text(folder.path())], "no column directory");
+    fs::write(folder.path().join("study.csv"), "case,directory,status\n0000,cases/0000,failed\n").expect("study.csv");
+    refuse(&["law", "fit", text(folder.path())], "0 usable cases of 0 materials");
+    assert!(matches!(fit(folder.path()), Err(LawError::TooFewCases { needed_cases: 8, .. })));
+    fs::write(folder.path().join("study.csv"), "case,directory,status\n0000,cases/0000,done\n").expect("study.csv");
+    refuse(&["law", "fit", text(folder.path())], "case.toml");
+
+    let case = folder.path().join("case.toml");
+    fs::write(&case, synthetic::case_text("law = \"ideal\"\nyield_stress = 400.0", 0.3, 0.02)).expect("case.toml");
+    let law = folder.path().join("law.json");
+    refuse(&["law", "predict", text(&law), text(&case)], "cannot be read");
+    for (content, told) in [
+        ("{", "is not a law"),
+        ("{\"format\": \"other\", \"version\": 1}", "its format is \"other\""),
+        ("{\"format\": \"asperity-law\", \"version\": 7}", "version 7"),
+        ("{\"format\": \"asperity-law\", \"version\": 1}", "missing field"),
+    ] {
+        fs::write(&law, content).expect("law.json");
+        refuse(&["law", "predict", text(&law), text(&case)], told);
+    }
+}
