@@ -248,6 +248,65 @@ fn the_update_follows_the_law_it_is_made_of() {
     }
 }
 
+/// Every step of a path, however it turns, takes at least the stored energy that it adds; so no closed path returns work.
+#[test]
+fn no_path_extracts_work() {
+    let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
+    let mut seed = 1u64;
+    let mut random = |from: f64, to: f64| {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        from + (to - from) * ((seed >> 11) as f64 / (1u64 << 53) as f64)
+    };
+    let mut worst: f64 = 0.0;
+    for law in laws() {
+        for (stress, friction) in [(20.0, 0.5), (400.0, 0.3), (2500.0, 0.1)] {
+            let pair =
+                ContactParameters::new(&law, &Body { sphere, hardening: Hardening::ideal(stress).unwrap() }, friction).unwrap();
+            for _ in 0..8 {
+                let deepest = 10f64.powf(random(-4.0, -1.2));
+                let virgin = pair.virgin(deepest);
+                let mut state = Default::default();
+                let (mut at, mut f, mut work, mut through) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
+                for leg in 0..13 {
+                    let mut to = at;
+                    let kind = random(0.0, 1.0);
+                    if leg == 0 || kind < 0.3 {
+                        to[0] = deepest * random(0.3, 1.0);
+                    } else if kind < 0.5 {
+                        to[0] = at[0] - virgin.depth * random(-0.2, 0.6);
+                    }
+                    if leg > 0 && kind > 0.2 {
+                        to[1] = virgin.point.delta_t_slip * random(-1.5, 1.5);
+                        to[2] = virgin.point.delta_t_slip * random(-0.5, 0.5);
+                    }
+                    if leg == 12 {
+                        to = [-1e-2 * deepest, 0.0, 0.0]; // back to where it started
+                    }
+                    let step: [f64; 3] = std::array::from_fn(|i| (to[i] - at[i]) / 500.0);
+                    for _ in 0..500 {
+                        at = std::array::from_fn(|i| at[i] + step[i]);
+                        let (next, out) = pair.update(&state, at[0], [step[1], step[2]]);
+                        let now = [out.f_n, out.f_t[0], out.f_t[1]];
+                        let done: f64 = (0..3).map(|i| 0.5 * (f[i] + now[i]) * step[i]).sum();
+                        let gain = pair.stored_energy(&next) - pair.stored_energy(&state) - done;
+                        through += done.abs();
+                        work += done;
+                        // Between the knots of the table next to yield a step may gain a little of what others lost.
+                        assert!(gain <= 1e-3 * through, "{:?} {stress} leg {leg}: {gain:e} of {through:e}", law.forms);
+                        (state, f) = (next, now);
+                        let lost = work - pair.stored_energy(&state);
+                        worst = worst.min(lost / through);
+                        assert!(lost >= -1e-4 * through, "{:?} {stress} leg {leg}: {lost:e} of {through:e}", law.forms);
+                    }
+                }
+                // All that was stored is given back where the contact is lost; work in is what is left.
+                assert!(f == [0.0; 3] && work > 0.0, "{:?} {stress}: {f:?} {work:e} of {through:e}", law.forms);
+            }
+        }
+    }
+    println!("least dissipation {worst:e} of the work exchanged");
+}
+
 #[test]
 fn the_module_warns_where_the_law_does() {
     if !has("python3", "the_module_warns_where_the_law_does") {

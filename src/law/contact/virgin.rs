@@ -173,7 +173,40 @@ impl ContactParameters {
                 k_t.ln(),
             ];
         }
-        Ok(Self { radius, effective_modulus, friction, form, log_first, log_step, table })
+        let mut parameters = Self { radius, effective_modulus, friction, form, log_first, log_step, table };
+        parameters.conserve();
+        Ok(parameters)
+    }
+
+    /// Widens the contact where the law's F_N0 and a would let a press store more energy than was put in (a fit may be off by that much next to
+    /// first yield): the stored energy of a knot is at most that of the one before and the work between, F_N0 being a power of h there; and a dent
+    /// never rises above where the sphere began.
+    fn conserve(&mut self) {
+        let mut before = self.stored_at(0);
+        for i in 1..KNOTS {
+            let (h0, h1) =
+                ((self.log_first + self.log_step * (i - 1) as f64).exp(), (self.log_first + self.log_step * i as f64).exp());
+            let power = (self.table[i][0] - self.table[i - 1][0]) / self.log_step;
+            let most = before + (self.table[i][0].exp() * h1 - self.table[i - 1][0].exp() * h0) / (power + 1.0);
+            let stored = self.stored_at(i);
+            if stored > most {
+                self.table[i][1] += (stored / most).ln();
+            }
+            let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
+            let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+            let depth = gamma * f_n0 / (2.0 * self.effective_modulus * a);
+            if depth > h1 {
+                self.table[i][1] += (depth / h1).ln();
+            }
+            before = self.stored_at(i);
+        }
+    }
+
+    /// Elastic energy of the virgin contact at a knot.
+    fn stored_at(&self, i: usize) -> f64 {
+        let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
+        let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+        gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * self.effective_modulus * a)
     }
 
     /// Slope of a column at a knot, per step. The steeper secant for the force and the flatter one for the radius: so neither kink at yield makes

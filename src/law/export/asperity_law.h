@@ -365,6 +365,44 @@ static inline void asperity_row(const asperity_material *m, double radius, doubl
     row[7] = log(mindlin / body);
 }
 
+/* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
+static inline double asperity_unloading_exponent(double radius, double effective_modulus, double a, double f_n0) {
+    double hertz = 4.0 * effective_modulus * a * a * a / (3.0 * radius);
+    double share = f_n0 < hertz ? f_n0 / hertz : 1.0;
+    return 1.2732395447351628 + (1.5 - 1.2732395447351628) * share;
+}
+
+/* Elastic energy of the virgin contact at a knot. */
+static inline double asperity_stored_at(const asperity_parameters *p, int i) {
+    double f_n0 = exp(p->table[i][0]), a = exp(p->table[i][1]);
+    double gamma = asperity_unloading_exponent(p->radius, p->effective_modulus, a, f_n0);
+    return gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * p->effective_modulus * a);
+}
+
+/* Widens the contact where F_N0 and a would let a press store more energy than was put in, or the
+ * dent rise above where the sphere began. */
+static inline void asperity_conserve(asperity_parameters *p) {
+    double before = asperity_stored_at(p, 0), h0, h1, power, most, stored, f_n0, a, depth;
+    int i;
+    for (i = 1; i < ASPERITY_KNOTS; i++) {
+        h0 = exp(p->log_first + p->log_step * (i - 1));
+        h1 = exp(p->log_first + p->log_step * i);
+        power = (p->table[i][0] - p->table[i - 1][0]) / p->log_step;
+        most = before + (exp(p->table[i][0]) * h1 - exp(p->table[i - 1][0]) * h0) / (power + 1.0);
+        stored = asperity_stored_at(p, i);
+        if (stored > most) {
+            p->table[i][1] += log(stored / most);
+        }
+        f_n0 = exp(p->table[i][0]);
+        a = exp(p->table[i][1]);
+        depth = asperity_unloading_exponent(p->radius, p->effective_modulus, a, f_n0) * f_n0 / (2.0 * p->effective_modulus * a);
+        if (depth > h1) {
+            p->table[i][1] += log(depth / h1);
+        }
+        before = asperity_stored_at(p, i);
+    }
+}
+
 /* The parameters of a sphere of the material `m` and the radius `radius` with Coulomb friction `friction` >= 0. Returns 0, or nonzero if
  * a number is out of its range: then `p` is not to be used. */
 static inline int asperity_setup(asperity_parameters *p, const asperity_material *m, double radius, double friction) {
@@ -395,6 +433,7 @@ static inline int asperity_setup(asperity_parameters *p, const asperity_material
             }
         }
     }
+    asperity_conserve(p);
     return 0;
 }
 
@@ -448,13 +487,6 @@ typedef struct asperity_virgin_curve {
     double weight[ASPERITY_SLIDERS];
     double lost[ASPERITY_SLIDERS];
 } asperity_virgin_curve;
-
-/* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
-static inline double asperity_unloading_exponent(double radius, double effective_modulus, double a, double f_n0) {
-    double hertz = 4.0 * effective_modulus * a * a * a / (3.0 * radius);
-    double share = f_n0 < hertz ? f_n0 / hertz : 1.0;
-    return 1.2732395447351628 + (1.5 - 1.2732395447351628) * share;
-}
 
 /* Slope of a column at a knot, per step. */
 static inline double asperity_knot_slope(const asperity_parameters *p, int column, int i) {

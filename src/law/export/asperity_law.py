@@ -307,6 +307,40 @@ def row(m, radius, friction, h):
     ]
 
 
+def unloading_exponent(radius, modulus, a, f_n0):
+    """3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius."""
+    hertz = 4.0 * modulus * a * a * a / (3.0 * radius)
+    share = f_n0 / hertz if f_n0 < hertz else 1.0
+    return 1.2732395447351628 + (1.5 - 1.2732395447351628) * share
+
+
+def stored_at(p, i):
+    """Elastic energy of the virgin contact at a knot."""
+    f_n0 = math.exp(p.table[i][0])
+    a = math.exp(p.table[i][1])
+    gamma = unloading_exponent(p.radius, p.effective_modulus, a, f_n0)
+    return gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * p.effective_modulus * a)
+
+
+def conserve(p):
+    """Widens the contact where F_N0 and a would let a press store more energy than was put in, or the dent rise above where the sphere began."""
+    before = stored_at(p, 0)
+    for i in range(1, KNOTS):
+        h0 = math.exp(p.log_first + p.log_step * (i - 1))
+        h1 = math.exp(p.log_first + p.log_step * i)
+        power = (p.table[i][0] - p.table[i - 1][0]) / p.log_step
+        most = before + (math.exp(p.table[i][0]) * h1 - math.exp(p.table[i - 1][0]) * h0) / (power + 1.0)
+        stored = stored_at(p, i)
+        if stored > most:
+            p.table[i][1] += math.log(stored / most)
+        f_n0 = math.exp(p.table[i][0])
+        a = math.exp(p.table[i][1])
+        depth = unloading_exponent(p.radius, p.effective_modulus, a, f_n0) * f_n0 / (2.0 * p.effective_modulus * a)
+        if depth > h1:
+            p.table[i][1] += math.log(depth / h1)
+        before = stored_at(p, i)
+
+
 def setup(m, radius, friction):
     """The parameters of a sphere of the material `m` with Coulomb friction `friction` >= 0; ValueError for a number out of its range."""
     if not (m.youngs_modulus > 0.0 and 0.0 <= m.poissons_ratio <= 0.5 and radius > 0.0 and 0.0 <= friction < math.inf):
@@ -329,6 +363,7 @@ def setup(m, radius, friction):
     p.table = [row(m, radius, friction if friction > 0.0 else 1e-6, math.exp(p.log_first + p.log_step * i)) for i in range(KNOTS)]
     if not all(math.isfinite(value) for line in p.table for value in line):
         raise ValueError("the law has no positive numbers for this material")
+    conserve(p)
     return p
 
 
@@ -369,13 +404,6 @@ class Virgin:
     __slots__ = (
         "f_n0", "a", "f_n_slip", "delta_t_slip", "k_t", "n", "m_exponent", "n_exponent", "slope", "gamma", "depth", "backbone", "weight", "lost"
     )  # fmt: skip
-
-
-def unloading_exponent(radius, modulus, a, f_n0):
-    """3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius."""
-    hertz = 4.0 * modulus * a * a * a / (3.0 * radius)
-    share = f_n0 / hertz if f_n0 < hertz else 1.0
-    return 1.2732395447351628 + (1.5 - 1.2732395447351628) * share
 
 
 def knot_slope(p, column, i):

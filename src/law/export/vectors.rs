@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use crate::analytical::ElasticSphere;
 use crate::law::contact::{ContactParameters, ContactState};
+use crate::law::folds::splitmix;
 use crate::law::model::Law;
 use crate::law::variables::Body;
 use crate::material::hardening::{Hardening, HardeningError};
@@ -24,17 +25,13 @@ const STEPS: usize = 15;
 pub const COLUMNS: &str = "path,E,nu,hardening,stress,second,third,R,mu,h,d0,d1,cosine,sine,\
                            f_n,f_t0,f_t1,k00,k01,k10,k11,kn,kn0,kn1,a,energy,x";
 
-/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers on every machine and for every version.
+/// The same numbers on every machine and for every version.
 struct Random(u64);
 
 impl Random {
     /// A number in \[from, to).
     fn between(&mut self, from: f64, to: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
+        let z = splitmix(&mut self.0);
         from + (to - from) * ((z >> 11) as f64 / (1u64 << 53) as f64)
     }
 }
