@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::clock::Clock;
 use super::path_share::PathShare;
 use super::{
-    Collection, ContactPoint, ContactStatus, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
+    Collection, ContactPoint, ContactStatus, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position,
+    Progress, Status, StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
 use crate::compute::Description;
@@ -48,6 +48,7 @@ pub struct ResultWriter {
     /// Contact at the end of the last segment that ended in contact, for the plot.
     shown: Vec<ContactPoint>,
     fallbacks: usize,
+    estimate: Option<ErrorEstimate>,
     messages: Vec<String>,
 }
 
@@ -79,6 +80,7 @@ impl ResultWriter {
             saved: None,
             shown: Vec::new(),
             fallbacks: 0,
+            estimate: None,
             messages: Vec::new(),
             out,
         })
@@ -93,6 +95,13 @@ impl ResultWriter {
     /// Says anew where the run is computed: a device may have failed on the way.
     pub fn computed_on(&mut self, description: Description) {
         self.setting.computed_on = description;
+    }
+
+    /// Estimates the errors of the run on `elements` along the contact radius from the history of its companion, in the same units.
+    pub fn compare(&mut self, elements: usize, companion: &[StepRecord], companion_elements: usize) {
+        let run = Summary::from_history(&self.rows, &self.inputs);
+        let other = Summary::from_history(companion, &self.inputs);
+        self.estimate = Some(ErrorEstimate::new(&self.rows, &run, elements, &other, companion_elements));
     }
 
     /// Steps written so far.
@@ -112,7 +121,12 @@ impl ResultWriter {
         if let Err(error) = &plots {
             self.messages.push(error.to_string());
         }
+        let estimate = self.estimate.unwrap_or_default();
         let summary = Summary {
+            f_n0_error: estimate.f_n0,
+            a0_error: estimate.a0,
+            f_t_max_error: estimate.f_t_max,
+            error_companion_elements: self.estimate.map(|e| e.companion_elements),
             status,
             elements: self.setting.elements,
             unknowns: self.setting.unknowns,
