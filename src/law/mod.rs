@@ -12,8 +12,10 @@ pub mod fit;
 pub mod forms;
 pub mod model;
 pub mod normal;
+pub mod plots;
 pub mod predict;
 pub mod report;
+pub mod table;
 pub mod variables;
 
 mod baseline;

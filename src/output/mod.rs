@@ -5,6 +5,8 @@
 //! beside its place and moved there when it is whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job
 //! keeps what it computed.
 
+pub mod plots;
+
 mod atomic;
 mod clock;
 mod contact_csv;
@@ -13,7 +15,6 @@ mod error;
 mod fields;
 mod history;
 mod path_share;
-mod plots;
 mod progress;
 mod report;
 mod results;
@@ -30,7 +31,7 @@ pub use error::OutputError;
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, read_history};
 pub use path_share::PathShare;
-pub use plots::{PlotInputs, plot_contact, plot_forces, plot_indentation, plot_ratio, write_plots};
+pub use plots::{Picture, PlotInputs, write_plots};
 pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, progress};
 pub use results::{ResultWriter, Setting};
 pub use summary::{FULL_SLIP_RATIO, NormalizedResults, SLIP_DISPLACEMENT_RATIO, Status, Summary, SummaryInputs};

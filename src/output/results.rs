@@ -6,9 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::clock::Clock;
 use super::path_share::PathShare;
+use super::plots::Tables;
 use super::{
-    Collection, ContactPoint, ContactStatus, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
+    Collection, ContactPoint, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status, StepRecord,
+    Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
 use crate::compute::Description;
@@ -45,8 +46,8 @@ pub struct ResultWriter {
     rows: Vec<StepRecord>,
     collection: Collection,
     saved: Option<usize>,
-    /// Contact at the end of the last segment that ended in contact, for the plot.
-    shown: Vec<ContactPoint>,
+    /// Contact at the ends of segments, for the plots.
+    tables: Tables,
     fallbacks: usize,
     messages: Vec<String>,
 }
@@ -77,7 +78,7 @@ impl ResultWriter {
             rows: Vec::new(),
             collection: Collection::new(&out.collection()),
             saved: None,
-            shown: Vec::new(),
+            tables: Tables::default(),
             fallbacks: 0,
             messages: Vec::new(),
             out,
@@ -106,7 +107,7 @@ impl ResultWriter {
         self.progress.finish(&format!("{status}: {} steps", self.rows.len()));
         self.messages.extend(message.map(str::to_owned));
         let plots = match &self.plots {
-            Some(inputs) => write_plots(&self.out, &self.rows, Some(&self.shown), inputs).map(drop),
+            Some(inputs) => write_plots(&self.out, &self.rows, &self.tables, inputs).map(drop),
             None => Ok(()),
         };
         if let Err(error) = &plots {
@@ -191,8 +192,8 @@ impl Observer for ResultWriter {
         } else if self.contact_tables {
             write_contact(&self.out.contact(view.record.step), &contact)?;
         }
-        if contact.iter().any(|point| point.status != ContactStatus::Open) {
-            self.shown = contact;
+        if self.plots.is_some() {
+            self.tables.add(&self.rows, contact);
         }
         Ok(())
     }
