@@ -8,8 +8,8 @@ use super::clock::Clock;
 use super::path_share::PathShare;
 use super::plots::Tables;
 use super::{
-    Collection, ContactPoint, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status, StepRecord,
-    Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
+    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
+    StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
 use crate::compute::Description;
@@ -49,6 +49,7 @@ pub struct ResultWriter {
     /// Contact at the ends of segments, for the plots.
     tables: Tables,
     fallbacks: usize,
+    estimate: Option<ErrorEstimate>,
     messages: Vec<String>,
 }
 
@@ -80,6 +81,7 @@ impl ResultWriter {
             saved: None,
             tables: Tables::default(),
             fallbacks: 0,
+            estimate: None,
             messages: Vec::new(),
             out,
         })
@@ -94,6 +96,13 @@ impl ResultWriter {
     /// Says anew where the run is computed: a device may have failed on the way.
     pub fn computed_on(&mut self, description: Description) {
         self.setting.computed_on = description;
+    }
+
+    /// Estimates the errors of the run on `elements` along the contact radius from the history of its companion, in the same units.
+    pub fn compare(&mut self, elements: usize, companion: &[StepRecord], companion_elements: usize) {
+        let run = Summary::from_history(&self.rows, &self.inputs);
+        let other = Summary::from_history(companion, &self.inputs);
+        self.estimate = Some(ErrorEstimate::new(&self.rows, &run, elements, &other, companion_elements));
     }
 
     /// Steps written so far.
@@ -113,7 +122,12 @@ impl ResultWriter {
         if let Err(error) = &plots {
             self.messages.push(error.to_string());
         }
+        let estimate = self.estimate.unwrap_or_default();
         let summary = Summary {
+            f_n0_error: estimate.f_n0,
+            a0_error: estimate.a0,
+            f_t_max_error: estimate.f_t_max,
+            error_companion_elements: self.estimate.map(|e| e.companion_elements),
             status,
             elements: self.setting.elements,
             unknowns: self.setting.unknowns,
