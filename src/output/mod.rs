@@ -18,6 +18,7 @@ mod progress;
 mod report;
 mod results;
 mod summary;
+mod time_by_phase;
 mod units;
 mod vtu;
 
@@ -34,5 +35,6 @@ pub use plots::{PlotInputs, plot_contact, plot_forces, plot_indentation, plot_ra
 pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, progress};
 pub use results::{ResultWriter, Setting};
 pub use summary::{FULL_SLIP_RATIO, NormalizedResults, SLIP_DISPLACEMENT_RATIO, Status, Summary, SummaryInputs};
+pub use time_by_phase::{PhaseTime, TimeByPhase};
 pub use units::Units;
 pub use vtu::{Collection, Field, Grid, Values, write_vtu};

@@ -3,16 +3,18 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use super::clock::Clock;
 use super::path_share::PathShare;
 use super::{
     Collection, ContactPoint, ContactStatus, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
+    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
 use crate::compute::Description;
 use crate::simulation::drive::{Observer, StepView};
+use crate::solver::phases::PhaseTimes;
 
 /// What the summary has to know beside the history.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,6 +50,10 @@ pub struct ResultWriter {
     /// Contact at the end of the last segment that ended in contact, for the plot.
     shown: Vec<ContactPoint>,
     fallbacks: usize,
+    /// Seconds on the wall until the first step began, of the steps, and of what is written.
+    setup: f64,
+    times: PhaseTimes,
+    writing: f64,
     messages: Vec<String>,
 }
 
@@ -79,6 +85,9 @@ impl ResultWriter {
             saved: None,
             shown: Vec::new(),
             fallbacks: 0,
+            setup: clock.wall_seconds(),
+            times: PhaseTimes::default(),
+            writing: 0.0,
             messages: Vec::new(),
             out,
         })
@@ -105,6 +114,7 @@ impl ResultWriter {
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
         self.progress.finish(&format!("{status}: {} steps", self.rows.len()));
         self.messages.extend(message.map(str::to_owned));
+        let begun = Instant::now();
         let plots = match &self.plots {
             Some(inputs) => write_plots(&self.out, &self.rows, Some(&self.shown), inputs).map(drop),
             None => Ok(()),
@@ -112,6 +122,8 @@ impl ResultWriter {
         if let Err(error) = &plots {
             self.messages.push(error.to_string());
         }
+        self.writing += begun.elapsed().as_secs_f64();
+        let wall_s = self.clock.wall_seconds();
         let summary = Summary {
             status,
             elements: self.setting.elements,
@@ -119,8 +131,9 @@ impl ResultWriter {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.fallbacks,
-            wall_s: self.clock.wall_seconds(),
+            wall_s,
             cpu_s: self.clock.cpu_seconds(),
+            time_by_phase: TimeByPhase::new(self.setup, &self.times, self.writing, wall_s),
             messages: self.messages,
             ..Summary::from_history(&self.rows, &self.inputs)
         };
@@ -162,10 +175,12 @@ impl Observer for ResultWriter {
             // The undeformed state is no step that was computed.
             return Ok(());
         }
+        let begun = Instant::now();
         let row = view.record.in_units(&self.units);
         self.history.append(&row)?;
         self.rows.push(row);
         self.fallbacks += view.report.fallbacks;
+        self.times += view.report.times;
         if self.fields == Fields::All {
             let contact = self.contact(view);
             self.save(view, &contact)?;
@@ -178,13 +193,16 @@ impl Observer for ResultWriter {
             detail: self.detail(&row),
         };
         self.progress.step(&position);
+        self.writing += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        self.times += view.unfinished;
         if view.record.step == 0 {
             return Ok(());
         }
+        let begun = Instant::now();
         let contact = self.contact(view);
         if self.fields != Fields::None {
             self.save(view, &contact)?;
@@ -194,6 +212,7 @@ impl Observer for ResultWriter {
         if contact.iter().any(|point| point.status != ContactStatus::Open) {
             self.shown = contact;
         }
+        self.writing += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
