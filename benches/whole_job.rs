@@ -7,7 +7,7 @@ use std::path::Path;
 
 use asperity::case::Case;
 use asperity::compute::cpu::Cpu;
-use asperity::output::{Clock, TimeByPhase};
+use asperity::output::{Clock, OutsideSteps, TimeByPhase};
 use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
 use asperity::simulation::problem::Problem;
 use asperity::solver::phases::{Phase, PhaseTimes};
@@ -105,7 +105,8 @@ fn job(quick: bool) -> Result<(), Failed> {
     let run = run(&[format!("mesh.elements_per_contact_radius={}", if quick { 4 } else { 16 })], None)?;
     let Tally { steps, newton, krylov, times, .. } = &run.tally;
     println!("main job: {} unknowns, {steps} steps, {newton} Newton and {krylov} Krylov iterations", run.unknowns);
-    print!("{}", TimeByPhase::new(run.setup_s, times, 0.0, run.wall_s).table(run.wall_s, Some(run.cpu_s)));
+    let outside = OutsideSteps { setup: run.setup_s, ..OutsideSteps::default() };
+    print!("{}", TimeByPhase::new(times, &outside, run.wall_s).table(run.wall_s, Some(run.cpu_s)));
     Ok(())
 }
 

@@ -11,10 +11,14 @@ begin() {
     echo "== $step"
 }
 
-# A Vulkan driver that runs on the CPU, for the GPU tests, and spirv-val. Only where apt-get is there and something is missing.
+# A Vulkan driver that runs on the CPU, for the GPU tests, spirv-val, and what compiles and runs the exported laws. Only where apt-get is
+# there and something is missing.
 install_packages() {
     local package missing=()
     command -v apt-get >/dev/null && command -v dpkg-query >/dev/null || return 0
+    command -v gcc >/dev/null || missing+=(gcc)
+    command -v g++ >/dev/null || missing+=(g++)
+    command -v python3 >/dev/null || missing+=(python3 python3-venv)
     for package in libvulkan1 mesa-vulkan-drivers spirv-tools; do
         dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
     done
@@ -31,8 +35,18 @@ install_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}"
 }
 
+# meshio, which opens the fields as ParaView would; the tests look for it in target/python. Without it they say that they skip.
+install_meshio() {
+    local python=target/python/bin/python
+    "$python" -c "import meshio" 2>/dev/null || python3 -c "import meshio" 2>/dev/null && return 0
+    python3 -m venv target/python && timeout 300 "$python" -m pip install --quiet --disable-pip-version-check meshio==5.3.5 numpy ||
+        echo "meshio could not be installed; the tests that open the fields with it will be skipped" >&2
+}
+
 begin "packages"
 install_packages
+begin "meshio"
+install_meshio
 
 # Mesa wants a runtime directory of the user's own, and says so otherwise.
 if [ -z "${XDG_RUNTIME_DIR:-}" ]; then

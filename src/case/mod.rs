@@ -108,6 +108,8 @@ pub struct Solver {
     pub max_iterations: usize,
     /// How often a step may be cut in half.
     pub max_cutbacks: usize,
+    /// Whether a run is followed by a coarser one from which its error is estimated, a tenth of its work.
+    pub error_estimate: bool,
     /// Memory that the mesh and the linear systems may take, in GiB.
     pub max_memory_gib: f64,
 }
@@ -158,6 +160,7 @@ impl Default for Solver {
             shear_steps: None,
             max_iterations: 25,
             max_cutbacks: 8,
+            error_estimate: true,
             max_memory_gib: 8.0,
         }
     }

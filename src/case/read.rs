@@ -110,7 +110,16 @@ fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
 }
 
 fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
-    table.only(&["linear", "tolerance", "press_steps", "shear_steps", "max_iterations", "max_cutbacks", "max_memory_gib"])?;
+    table.only(&[
+        "linear",
+        "tolerance",
+        "press_steps",
+        "shear_steps",
+        "max_iterations",
+        "max_cutbacks",
+        "error_estimate",
+        "max_memory_gib",
+    ])?;
     let mut solver = Solver::default();
     if let Some(field) = table.get("linear") {
         solver.linear = field.choice(&[("multigrid", Linear::Multigrid), ("direct", Linear::Direct)])?;
@@ -129,6 +138,9 @@ fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
     }
     if let Some(field) = table.get("max_cutbacks") {
         solver.max_cutbacks = field.count(0..=30)?;
+    }
+    if let Some(field) = table.get("error_estimate") {
+        solver.error_estimate = field.boolean()?;
     }
     if let Some(field) = table.get("max_memory_gib") {
         solver.max_memory_gib = field.number("a number > 0, in GiB", |gib| gib > 0.0)?;

@@ -27,6 +27,7 @@ fn the_reference_case_reads_with_the_documented_defaults() {
             shear_steps: None,
             max_iterations: 25,
             max_cutbacks: 8,
+            error_estimate: true,
             max_memory_gib: 8.0,
         },
         output: Output { fields: Fields::Segments, plots: true },

@@ -1,6 +1,7 @@
 //! `asperity law`: fits a contact law to a study, and applies it to a case.
 
 use std::fmt::Write as _;
+use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -8,8 +9,10 @@ use clap::{Args, Subcommand};
 
 use super::{CliError, Outcome, print};
 use crate::case::Case;
+use crate::law::export::{Language, files, source};
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::{Law, LawError, fit, report};
+use crate::output::write_atomically;
 
 /// Fit a contact law to a study, and use it.
 #[derive(Clone, Debug, Args)]
@@ -26,6 +29,8 @@ pub enum LawCommand {
     Fit(FitArgs),
     /// Predict F_T and F_N over delta_T for a case, without simulating its shear; prints CSV.
     Predict(PredictArgs),
+    /// Write the law for a DEM code: an incremental contact update as a C header or a Python module, to stdout or with test vectors to a directory.
+    Export(ExportArgs),
 }
 
 /// The arguments of `law fit`.
@@ -53,11 +58,27 @@ pub struct PredictArgs {
     pub set: Vec<String>,
 }
 
+/// The arguments of `law export`.
+#[derive(Clone, Debug, Args)]
+pub struct ExportArgs {
+    /// A law, as `law fit` writes it.
+    #[arg(value_name = "LAW.json")]
+    pub law: PathBuf,
+    /// The language.
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
+    pub format: Language,
+    /// Write asperity_law.h or asperity_law.py there, with asperity_law_vectors.csv and, for C, the program that checks them; files of these names are
+    /// replaced [default: the header or module alone, to stdout].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
 /// Runs a subcommand of `asperity law`.
 pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
     match &args.command {
         LawCommand::Fit(args) => fit_law(&args.dir),
         LawCommand::Predict(args) => predict_case(args),
+        LawCommand::Export(args) => export_law(args),
     }
 }
 
@@ -116,5 +137,19 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
         let _ = writeln!(text, "{:?},{:?},{:?}", point.delta_t, point.f_t, point.f_n);
     }
     print(&text)?;
+    Ok(Outcome::Done)
+}
+
+fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
+    let law = Law::read(&args.law)?;
+    let Some(dir) = &args.out else {
+        print(&source(&law, args.format))?;
+        return Ok(Outcome::Done);
+    };
+    let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
+    fs::create_dir_all(dir).map_err(failed("be created"))?;
+    for file in files(&law, args.format) {
+        write_atomically(&dir.join(file.name), |out| out.write_all(file.content.as_bytes()))?;
+    }
     Ok(Outcome::Done)
 }

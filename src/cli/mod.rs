@@ -2,6 +2,7 @@
 
 pub mod backend;
 pub mod check;
+mod companion;
 pub mod devices;
 pub mod error;
 pub mod law;

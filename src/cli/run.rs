@@ -2,13 +2,14 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Args;
 
 use super::backend::choose_backend;
 use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
-use super::{CliError, Outcome, out};
+use super::{CliError, Outcome, companion, out};
 use crate::case::Case;
 use crate::compute::ComputeError;
 use crate::output::{Clock, ResultWriter, Setting, Status, progress};
@@ -58,11 +59,23 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         elements: problem.model.mesh.elements.len(),
         unknowns: newton.free_unknowns(),
     };
-    let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress(args.verbosity.quiet), stop)?;
+    let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress(args.verbosity.quiet), stop.clone())?;
     selected.notes.iter().for_each(|note| results.note(note));
     let followed = Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut results);
     // Not where it began, if the device failed on the way.
     results.computed_on(backend.description());
+    drop(backend);
+    if matches!(followed, Ok(Ending::Done)) && case.solver.error_estimate {
+        let begun = Instant::now();
+        let companion = companion::companion(&case);
+        let elements = [&case, &companion].map(|c| c.mesh.elements_per_contact_radius);
+        log::info!("error estimate: the same path on {} elements per contact radius", elements[1]);
+        match companion::follow(&companion, stop) {
+            Ok(rows) => results.compare(elements[0], &rows, elements[1]),
+            Err(reason) => results.note(&format!("no error estimate, the run on {} elements ended: {reason}", elements[1])),
+        }
+        results.estimate_took(begun.elapsed().as_secs_f64());
+    }
     conclude(followed, results, args)
 }
 

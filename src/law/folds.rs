@@ -15,7 +15,7 @@ pub fn assign(materials: usize, folds: usize, seed: u64) -> Vec<usize> {
 }
 
 /// SplitMix64 (Steele, Lea & Flood 2014): a generator of one number of state that never changes under a library's hands.
-fn splitmix(state: &mut u64) -> u64 {
+pub(super) fn splitmix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

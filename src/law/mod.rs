@@ -2,9 +2,12 @@
 //!
 //! `variables` are the normalised quantities in which contacts of different materials fall together; `data` reads a study back; `forms` and `normal` are
 //! the candidate correlations; `fit` determines their constants, compares them by cross-validation and keeps the best as a [`Law`] (`model`,
-//! `law.json`); `predict` applies it to a case. `least_squares` and `report` serve them.
+//! `law.json`); `predict` applies it to a case; `contact` is the law as an
+//! incremental update of one contact, and `export` writes that for other programs. `least_squares` and `report` serve them.
 
+pub mod contact;
 pub mod data;
+pub mod export;
 pub mod fit;
 pub mod forms;
 pub mod model;

@@ -8,24 +8,24 @@ impl Summary {
     /// Some lines: what came out, in the user's units, and what it took.
     pub fn report(&self) -> String {
         let mut text = String::new();
-        let mut line = |name: &str, value: Option<f64>, what: &str| {
+        let mut line = |name: &str, value: Option<f64>, error: Option<f64>, what: &str| {
             if let Some(value) = value {
+                let error = error.map(|e| format!(" (+- {:.1} %)", 100.0 * e / value.abs())).unwrap_or_default();
                 // Writing to a String cannot fail.
-                let _ = writeln!(text, "{name:<13} {:<13} {what}", significant(value));
+                let _ = writeln!(text, "{name:<13} {:<13} {what}{error}", significant(value));
             }
         };
-        let sheared = self.f_t_max.is_some();
-        line(
-            "F_N0",
-            self.f_n0,
-            if sheared { "normal force before the shear" } else { "normal force at the greatest indentation" },
-        );
-        line("a0", self.a0, "contact radius there");
-        line("h0", self.h0, "indentation there");
-        line("F_N_slip", self.f_n_slip, "normal force at full slip");
-        line("F_T_max", self.f_t_max, "greatest tangential force");
-        line("delta_T_slip", self.delta_t_slip, "displacement at which F_T/F_N is 0.99 of the friction coefficient");
-        line("k_T0", self.k_t0, "initial tangential stiffness");
+        let pressed = match self.f_t_max {
+            Some(_) => "normal force before the shear",
+            None => "normal force at the greatest indentation",
+        };
+        line("F_N0", self.f_n0, self.f_n0_error, pressed);
+        line("a0", self.a0, self.a0_error, "contact radius there");
+        line("h0", self.h0, None, "indentation there");
+        line("F_N_slip", self.f_n_slip, None, "normal force at full slip");
+        line("F_T_max", self.f_t_max, self.f_t_max_error, "greatest tangential force");
+        line("delta_T_slip", self.delta_t_slip, None, "displacement at which F_T/F_N is 0.99 of the friction coefficient");
+        line("k_T0", self.k_t0, None, "initial tangential stiffness");
         let cutbacks = if self.cutbacks > 0 { format!(", {} cut-backs", self.cutbacks) } else { String::new() };
         let _ = writeln!(
             text,

@@ -8,8 +8,9 @@ use std::time::Instant;
 use super::clock::Clock;
 use super::path_share::PathShare;
 use super::{
-    Collection, ContactPoint, ContactStatus, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
+    Collection, ContactPoint, ContactStatus, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, OutsideSteps,
+    PlotInputs, Position, Progress, Status, StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields,
+    write_plots,
 };
 use crate::case::{Case, Fields};
 use crate::compute::Description;
@@ -50,10 +51,9 @@ pub struct ResultWriter {
     /// Contact at the end of the last segment that ended in contact, for the plot.
     shown: Vec<ContactPoint>,
     fallbacks: usize,
-    /// Seconds on the wall until the first step began, of the steps, and of what is written.
-    setup: f64,
     times: PhaseTimes,
-    writing: f64,
+    outside: OutsideSteps,
+    estimate: Option<ErrorEstimate>,
     messages: Vec<String>,
 }
 
@@ -85,9 +85,9 @@ impl ResultWriter {
             saved: None,
             shown: Vec::new(),
             fallbacks: 0,
-            setup: clock.wall_seconds(),
             times: PhaseTimes::default(),
-            writing: 0.0,
+            outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
+            estimate: None,
             messages: Vec::new(),
             out,
         })
@@ -102,6 +102,18 @@ impl ResultWriter {
     /// Says anew where the run is computed: a device may have failed on the way.
     pub fn computed_on(&mut self, description: Description) {
         self.setting.computed_on = description;
+    }
+
+    /// Estimates the errors of the run on `elements` along the contact radius from the history of its companion, in the same units.
+    pub fn compare(&mut self, elements: usize, companion: &[StepRecord], companion_elements: usize) {
+        let run = Summary::from_history(&self.rows, &self.inputs);
+        let other = Summary::from_history(companion, &self.inputs);
+        self.estimate = Some(ErrorEstimate::new(&self.rows, &run, elements, &other, companion_elements));
+    }
+
+    /// Says how many seconds on the wall the error estimate took.
+    pub fn estimate_took(&mut self, seconds: f64) {
+        self.outside.error_estimate = seconds;
     }
 
     /// Steps written so far.
@@ -122,9 +134,14 @@ impl ResultWriter {
         if let Err(error) = &plots {
             self.messages.push(error.to_string());
         }
-        self.writing += begun.elapsed().as_secs_f64();
+        self.outside.output += begun.elapsed().as_secs_f64();
         let wall_s = self.clock.wall_seconds();
+        let estimate = self.estimate.unwrap_or_default();
         let summary = Summary {
+            f_n0_error: estimate.f_n0,
+            a0_error: estimate.a0,
+            f_t_max_error: estimate.f_t_max,
+            error_companion_elements: self.estimate.map(|e| e.companion_elements),
             status,
             elements: self.setting.elements,
             unknowns: self.setting.unknowns,
@@ -133,7 +150,7 @@ impl ResultWriter {
             linear_fallbacks: self.fallbacks,
             wall_s,
             cpu_s: self.clock.cpu_seconds(),
-            time_by_phase: TimeByPhase::new(self.setup, &self.times, self.writing, wall_s),
+            time_by_phase: TimeByPhase::new(&self.times, &self.outside, wall_s),
             messages: self.messages,
             ..Summary::from_history(&self.rows, &self.inputs)
         };
@@ -193,7 +210,7 @@ impl Observer for ResultWriter {
             detail: self.detail(&row),
         };
         self.progress.step(&position);
-        self.writing += begun.elapsed().as_secs_f64();
+        self.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
@@ -212,7 +229,7 @@ impl Observer for ResultWriter {
         if contact.iter().any(|point| point.status != ContactStatus::Open) {
             self.shown = contact;
         }
-        self.writing += begun.elapsed().as_secs_f64();
+        self.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
 

@@ -97,6 +97,19 @@ pub struct Summary {
     /// secant if there is one step). The body's own compliance up to the equator is in it.
     #[serde(rename = "k_T0")]
     pub k_t0: Option<f64>,
+    /// Estimated discretisation error of F_N0, a size, see [`super::estimate`]; null where none was made.
+    #[serde(rename = "F_N0_error")]
+    pub f_n0_error: Option<f64>,
+    /// That of a0.
+    pub a0_error: Option<f64>,
+    /// That of F_T_max.
+    #[serde(rename = "F_T_max_error")]
+    pub f_t_max_error: Option<f64>,
+    /// Root mean square of ln F_N about a smooth curve through the first press: the ripple of nodes coming into contact, part of the errors.
+    #[serde(rename = "F_N_ripple")]
+    pub f_n_ripple: Option<f64>,
+    /// Elements along the contact radius of the run from which the errors were estimated.
+    pub error_companion_elements: Option<usize>,
     /// |F_T|/F_N at the end of the shear.
     pub mu_at_slip: Option<f64>,
     /// Whether the shear got to full slip.
@@ -150,6 +163,7 @@ impl Summary {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             ..Self::default()
         };
+        summary.f_n_ripple = super::ripple(history);
         let (start, shear) = first_shear(history);
         if let Some(start) = start {
             (summary.f_n0, summary.a0, summary.h0) = (Some(start.f_n), Some(start.a), Some(start.h));

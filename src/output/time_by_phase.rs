@@ -16,6 +16,17 @@ pub struct PhaseTime {
     pub share: f64,
 }
 
+/// Seconds on the wall that a run spends outside its steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OutsideSteps {
+    /// Before the first step.
+    pub setup: f64,
+    /// Writing results.
+    pub output: f64,
+    /// On the coarser companion by which the error is estimated.
+    pub error_estimate: f64,
+}
+
 /// Time on the wall by phase; together they are the whole run. Cases of a study that share a device wait for each other, and that counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -36,13 +47,16 @@ pub struct TimeByPhase {
     pub commit: PhaseTime,
     /// History, fields, contact tables, plots, progress.
     pub output: PhaseTime,
+    /// The coarser companion by which the error is estimated.
+    pub error_estimate: PhaseTime,
     /// All else.
     pub other: PhaseTime,
 }
 
 impl TimeByPhase {
-    /// From the seconds before the first step, of the steps' phases, of writing, and of the whole run.
-    pub fn new(setup: f64, steps: &PhaseTimes, output: f64, whole: f64) -> Self {
+    /// From the seconds of the steps' phases, of what is outside them, and of the whole run.
+    pub fn new(steps: &PhaseTimes, outside: &OutsideSteps, whole: f64) -> Self {
+        let &OutsideSteps { setup, output, error_estimate } = outside;
         let part = |seconds: f64| PhaseTime { seconds, share: if whole > 0.0 { seconds / whole } else { 0.0 } };
         let of = |phase| part(steps.seconds(phase));
         Self {
@@ -54,12 +68,13 @@ impl TimeByPhase {
             linear_solve: of(Phase::LinearSolve),
             commit: of(Phase::Commit),
             output: part(output),
-            other: part((whole - setup - steps.total() - output).max(0.0)),
+            error_estimate: part(error_estimate),
+            other: part((whole - setup - steps.total() - output - error_estimate).max(0.0)),
         }
     }
 
     /// The phases by name, in the order in which a run goes through them.
-    pub fn rows(&self) -> [(&'static str, PhaseTime); 9] {
+    pub fn rows(&self) -> [(&'static str, PhaseTime); 10] {
         [
             ("set-up", self.setup),
             ("element tangents", self.tangent),
@@ -69,6 +84,7 @@ impl TimeByPhase {
             ("linear solve", self.linear_solve),
             ("commit", self.commit),
             ("output", self.output),
+            ("error estimate", self.error_estimate),
             ("other", self.other),
         ]
     }
@@ -94,9 +110,9 @@ mod tests {
     fn phases_add_up_to_the_whole() {
         let mut steps = PhaseTimes::default();
         Phase::ALL.iter().zip(1..).for_each(|(&phase, seconds)| steps.add(phase, f64::from(seconds)));
-        let times = TimeByPhase::new(4.0, &steps, 5.0, 40.0);
+        let times = TimeByPhase::new(&steps, &OutsideSteps { setup: 4.0, output: 3.0, error_estimate: 2.0 }, 40.0);
         let seconds = times.rows().map(|(_, time)| time.seconds);
-        assert_eq!(seconds, [4.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 5.0, 10.0]);
+        assert_eq!(seconds, [4.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 3.0, 2.0, 10.0]);
         assert!((times.rows().iter().map(|(_, time)| time.share).sum::<f64>() - 1.0).abs() < 1e-15);
         let table = times.table(40.0, Some(75.25));
         assert!(table.contains("\nlinear solve           5.00    12.5\n"), "{table}");
@@ -106,6 +122,6 @@ mod tests {
 
     #[test]
     fn a_run_that_took_no_time_has_no_shares() {
-        assert_eq!(TimeByPhase::new(0.0, &PhaseTimes::default(), 0.0, 0.0), TimeByPhase::default());
+        assert_eq!(TimeByPhase::new(&PhaseTimes::default(), &OutsideSteps::default(), 0.0), TimeByPhase::default());
     }
 }

@@ -298,7 +298,21 @@ impl<'a> Drive<'a> {
             if observer.stop_requested() {
                 return Ok(Ending::Interrupted);
             }
-            match self.attempt(&next)? {
+            let mut attempted = self.attempt(&next)?;
+            if let (Err(failure), Friction::Stick) = (&attempted, self.problem.model.friction) {
+                // Points that come down within the step may have no place to stick to: they slide in it, and stick from the next step on.
+                log::info!(
+                    "step to h = {:.5}, delta_T = {:.5} failed, new contact slides in it: {failure}",
+                    next.h,
+                    next.delta_t
+                );
+                wasted += failure.iterations();
+                let open: Vec<bool> = self.state.points.iter().map(|p| p.status == Status::Open).collect();
+                self.newton.let_slide(&open);
+                attempted = self.attempt(&next)?;
+                self.newton.let_slide(&[]);
+            }
+            match attempted {
                 Ok(report) => {
                     waiting.pop();
                     self.accept(&next, report, wasted, cutbacks, observer)?;
@@ -311,10 +325,7 @@ impl<'a> Drive<'a> {
                     let r = &self.state.record;
                     log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
                     cutbacks += 1;
-                    wasted += match &failure {
-                        StepFailure::Iterations { iterations, .. } => *iterations,
-                        _ => 1,
-                    };
+                    wasted += failure.iterations();
                     if waiting.len() > self.problem.max_cutbacks {
                         return Ok(Ending::NotConverged(format!(
                             "step {} of segment {} (from h = {:.6} R, delta_T = {:.6} R to h = {:.6} R, delta_T = {:.6} R): {failure}; \

@@ -72,6 +72,16 @@ pub enum StepFailure {
     Linear(String),
 }
 
+impl StepFailure {
+    /// Iterations that were made, at least one.
+    pub fn iterations(&self) -> usize {
+        match self {
+            Self::Iterations { iterations, .. } => *iterations,
+            _ => 1,
+        }
+    }
+}
+
 /// The degree of freedom with the largest residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Worst {

@@ -115,6 +115,12 @@ impl Newton {
         self.largest_scale = self.largest_scale.max(self.last_scale);
     }
 
+    /// Lets the contact points that `points` marks slide without friction until it is called again; none of them for an empty list.
+    pub fn let_slide(&mut self, points: &[bool]) {
+        self.boundary.frictionless.fill(false);
+        self.boundary.frictionless.iter_mut().zip(points).for_each(|(slides, &point)| *slides = point);
+    }
+
     /// Number of unknown displacements that are not prescribed.
     pub fn free_unknowns(&self) -> usize {
         self.boundary.prescribed.iter().filter(|p| !**p).count()

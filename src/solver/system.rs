@@ -6,7 +6,8 @@ use super::phases::{Lap, Phase, PhaseTimes};
 use super::{Control, Worst};
 use crate::compute::handle::Evaluate;
 use crate::compute::{ComputeError, Outcome};
-use crate::contact::coulomb::{Rows, Status, contact_rows};
+use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
+use crate::contact::plane::gap;
 use crate::linalg::bsr::BlockMatrix;
 use crate::mesh::Mesh;
 
@@ -17,6 +18,9 @@ pub struct Boundary {
     pub plate: Vec<u32>,
     /// Per unknown: prescribed by the plate or by symmetry.
     pub prescribed: Vec<bool>,
+    /// Per contact point: slides without friction in the present step, whatever the case says. For points that come into contact within a step
+    /// under full stick: where they touch down, and so what they stick to, is not known before its end.
+    pub frictionless: Vec<bool>,
     /// Per unknown: a typical stiffness by which a missing prescribed displacement enters the merit.
     pub weight: f64,
 }
@@ -32,7 +36,8 @@ impl Boundary {
             prescribed[3 * n as usize..3 * n as usize + 3].fill(true);
         }
         let mean_size = mesh.contact_size.iter().sum::<f64>() / mesh.contact_size.len().max(1) as f64;
-        Self { plate: mesh.plate_nodes.clone(), prescribed, weight: 0.1 * mean_size }
+        let frictionless = vec![false; mesh.contact_nodes.len()];
+        Self { plate: mesh.plate_nodes.clone(), prescribed, frictionless, weight: 0.1 * mean_size }
     }
 
     /// Writes the plate's position into a displacement.
@@ -68,8 +73,8 @@ impl Trial {
     /// An empty trial for a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let open = contact_rows(
-            crate::contact::coulomb::Friction::Coulomb(0.0),
-            &crate::contact::coulomb::Point { force: [0.0; 3], gap: 1.0, slip: [0.0; 2], weight: 1.0, on_symmetry_plane: false },
+            Friction::Coulomb(0.0),
+            &Point { force: [0.0; 3], gap: 1.0, slip: [0.0; 2], weight: 1.0, on_symmetry_plane: false },
         );
         let n = 3 * mesh.nodes.len();
         Self {
@@ -113,6 +118,17 @@ impl Trial {
         let mut lap = Lap::start();
         case.contact(&self.u, &self.force, &mut self.rows)?;
         let mesh = case.model().mesh.clone();
+        for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free) {
+            let base = 3 * mesh.contact_nodes[i] as usize;
+            let point = Point {
+                force: [self.force[base], self.force[base + 1], self.force[base + 2]],
+                gap: gap(mesh.nodes[base / 3][2], self.u[base + 2]),
+                slip: [0.0; 2],
+                weight: self.rows[i].weight,
+                on_symmetry_plane: boundary.prescribed[base + 1],
+            };
+            self.rows[i] = contact_rows(Friction::Coulomb(0.0), &point);
+        }
         self.residual.copy_from_slice(&self.force);
         for (rows, &node) in self.rows.iter().zip(&mesh.contact_nodes) {
             self.residual[3 * node as usize..3 * node as usize + 3].copy_from_slice(&rows.residual);

@@ -8,8 +8,8 @@ use crate::case::{
     Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere,
 };
 use crate::compute::{CaseModel, Compute, ComputeError, Description};
-use crate::output::Units;
-use crate::simulation::drive::{Drive, Ending, Observer, StepView};
+use crate::output::Recorder;
+use crate::simulation::drive::{Drive, Ending};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::StepRecord;
 
@@ -81,12 +81,12 @@ impl<'a> Runner<'a> {
         let problem = Problem::new(case)?;
         let mut backend = (self.backend)(vec![problem.model.clone()])?;
         let newton = problem.newton()?;
-        let mut keeper = Keeper { units: Units::of(case), rows: Vec::new() };
-        let ending = Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut keeper);
+        let mut recorder = Recorder::new(case, None);
+        let ending = Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut recorder);
         // Not where it began, if the device failed on the way.
         self.computed_on = Some(backend.description());
         match ending? {
-            Ending::Done => Ok(History { rows: keeper.rows }),
+            Ending::Done => Ok(History { rows: recorder.rows }),
             Ending::NotConverged(reason) | Ending::Outgrown(reason) => Err(VerifyError::Stopped(reason)),
             Ending::Interrupted => Err(VerifyError::Stopped("interrupted".to_owned())),
         }
@@ -114,26 +114,6 @@ impl History {
     /// The last row.
     pub fn last(&self) -> StepRecord {
         self.rows.last().copied().unwrap_or_default()
-    }
-}
-
-struct Keeper {
-    units: Units,
-    rows: Vec<StepRecord>,
-}
-
-impl Observer for Keeper {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.rows.push(view.record.in_units(&self.units));
-        Ok(())
-    }
-
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        Ok(())
-    }
-
-    fn note(&mut self, text: &str) {
-        log::info!("{text}");
     }
 }
 

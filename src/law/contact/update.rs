@@ -1,0 +1,385 @@
+//! One increment of one contact. The C and the Python twin have the same functions in the same order and do the same operations.
+
+use super::virgin::{ContactParameters, SLIDERS, Virgin};
+
+/// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a file as it is.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ContactState {
+    /// Indentation h, length; negative is a gap.
+    pub h: f64,
+    /// Greatest h so far, length.
+    pub h_max: f64,
+    /// Elastic approach, length: what is recovered until contact is lost; negative is the gap over the residual dent.
+    pub approach: f64,
+    /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of its loss of F_N to shear.
+    pub x: f64,
+    /// Tangential deflections of the sliders, length, innermost (last to slip) first.
+    pub deflection: [[f64; 2]; SLIDERS],
+}
+
+/// The answer of an increment.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct ContactResponse {
+    /// Normal force, compression positive.
+    pub f_n: f64,
+    /// Tangential force along the displacement: what drives the sphere; the plane gives the sphere the opposite.
+    pub f_t: [f64; 2],
+    /// d f_t\[i\]/d delta_T\[j\].
+    pub df_t_ddelta: [[f64; 2]; 2],
+    /// d f_n/dh at constant delta_T, for the direction in which h last moved.
+    pub df_n_dh: f64,
+    /// d f_n/d delta_T at constant h, for the direction in which delta_T last moved.
+    pub df_n_ddelta: [f64; 2],
+    /// Radius of the contact, length.
+    pub a: f64,
+}
+
+/// Share of F_N0 from which a force counts as F_N0, so that rounding is not taken for unloading.
+const AT_CAP: f64 = 1.0 - 1e-9;
+
+/// Share of a bound up to which a force counts as within it, so that a contact at rest answers with its elastic stiffness.
+const AT_BOUND: f64 = 1.0 + 1e-10;
+
+/// F_N_slip/F_N0 from which a contact counts as elastic.
+const ELASTIC: f64 = 1.0 - 1e-6;
+
+/// f_T(x) = 1 - (1 - x)^n and its derivative, 0 <= x <= 1.
+fn tangential_shape(virgin: &Virgin, x: f64) -> [f64; 2] {
+    let n = virgin.point.n;
+    let rest = 1.0 - x;
+    if rest <= 0.0 {
+        return [1.0, 0.0];
+    }
+    let power = rest.powf(n - 1.0);
+    [1.0 - power * rest, n * power]
+}
+
+/// The x at which f_T has the value `f`.
+fn tangential_shape_inverse(virgin: &Virgin, f: f64) -> f64 {
+    if f >= 1.0 { 1.0 } else { 1.0 - (1.0 - f).powf(1.0 / virgin.point.n) }
+}
+
+/// f_N(x) and its derivative, 0 <= x <= 1; the derivative is 0 at both ends.
+fn normal_shape(p: &ContactParameters, virgin: &Virgin, x: f64) -> [f64; 2] {
+    if x <= 0.0 {
+        return [0.0, 0.0];
+    }
+    if x >= 1.0 {
+        return [1.0, 0.0];
+    }
+    let (m, n) = (virgin.point.m_exponent, virgin.point.n_exponent);
+    if p.form == 0.0 {
+        let rest = (1.0 - x).powf(m);
+        let risen = 1.0 - rest;
+        let power = risen.powf(n - 1.0);
+        [power * risen, n * power * m * rest / (1.0 - x)]
+    } else {
+        let risen = x.powf(m);
+        let rest = 1.0 - risen;
+        let power = rest.powf(n - 1.0);
+        [1.0 - power * rest, n * power * m * risen / x]
+    }
+}
+
+/// The x at which f_N has the value `f`.
+fn normal_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> f64 {
+    if f <= 0.0 {
+        return 0.0;
+    }
+    if f >= 1.0 {
+        return 1.0;
+    }
+    let (m, n) = (virgin.point.m_exponent, virgin.point.n_exponent);
+    if p.form == 0.0 { 1.0 - (1.0 - f.powf(1.0 / n)).powf(1.0 / m) } else { (1.0 - (1.0 - f).powf(1.0 / n)).powf(1.0 / m) }
+}
+
+/// F_N on the virgin curve at `x`.
+fn normal_cap(p: &ContactParameters, virgin: &Virgin, x: f64) -> f64 {
+    virgin.point.f_n0 - (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[0]
+}
+
+/// Whether shear costs no normal force: the sliders alone then are Cattaneo and Mindlin's contact.
+fn is_elastic(virgin: &Virgin) -> bool {
+    virgin.point.f_n_slip >= ELASTIC * virgin.point.f_n0
+}
+
+/// The x of the virgin curve that has the normal force `f_n`.
+fn mobilisation(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> f64 {
+    if f_n >= AT_CAP * virgin.point.f_n0 {
+        return 0.0;
+    }
+    if f_n <= virgin.point.f_n_slip {
+        return 1.0;
+    }
+    normal_shape_inverse(p, virgin, (virgin.point.f_n0 - f_n) / (virgin.point.f_n0 - virgin.point.f_n_slip))
+}
+
+/// Elastic unloading: F_N at the approach `e`.
+fn force_at(virgin: &Virgin, e: f64) -> f64 {
+    if e <= 0.0 { 0.0 } else { virgin.point.f_n0 * (e / virgin.depth).powf(virgin.gamma) }
+}
+
+/// Inverse of [`force_at`].
+fn approach_at(virgin: &Virgin, f_n: f64) -> f64 {
+    if f_n >= virgin.point.f_n0 { virgin.depth } else { virgin.depth * (f_n / virgin.point.f_n0).powf(1.0 / virgin.gamma) }
+}
+
+/// Greatest deflection of each slider under the normal force `f_n`: their forces then add up to mu F_N.
+fn slider_limits(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> [f64; SLIDERS] {
+    let mut limit = [0.0; SLIDERS];
+    if f_n <= 0.0 {
+        return limit;
+    }
+    let eta = (f_n / virgin.point.f_n0).powf(1.0 / virgin.backbone);
+    let mut sum = 0.0;
+    for i in 0..SLIDERS {
+        limit[i] = if eta > virgin.lost[i] { eta - virgin.lost[i] } else { 0.0 };
+        if i == 0 && limit[i] < 0.1 * eta {
+            limit[i] = 0.1 * eta; // the innermost carries what little force there is
+        }
+        sum += virgin.weight[i] * limit[i];
+    }
+    let scale = p.friction * f_n / (virgin.point.k_t * sum);
+    for i in 0..SLIDERS {
+        limit[i] *= scale;
+    }
+    limit
+}
+
+/// Moves the sliders by `increment` and holds each to its limit.
+fn slide(deflection: &mut [[f64; 2]; SLIDERS], limit: &[f64; SLIDERS], increment: [f64; 2]) {
+    for i in 0..SLIDERS {
+        let q = [deflection[i][0] + increment[0], deflection[i][1] + increment[1]];
+        let size = (q[0] * q[0] + q[1] * q[1]).sqrt();
+        let keep = if size > limit[i] { limit[i] / size } else { 1.0 };
+        deflection[i] = [keep * q[0], keep * q[1]];
+    }
+}
+
+/// Tangential force of the sliders.
+fn slider_force(virgin: &Virgin, deflection: &[[f64; 2]; SLIDERS]) -> [f64; 2] {
+    let mut sum = [0.0, 0.0];
+    for i in 0..SLIDERS {
+        sum[0] += virgin.weight[i] * deflection[i][0];
+        sum[1] += virgin.weight[i] * deflection[i][1];
+    }
+    [virgin.point.k_t * sum[0], virgin.point.k_t * sum[1]]
+}
+
+/// Stiffness of the sliders after [`slide`]: a slider at its limit only turns.
+fn slider_stiffness(virgin: &Virgin, before: &[[f64; 2]; SLIDERS], limit: &[f64; SLIDERS], increment: [f64; 2]) -> [[f64; 2]; 2] {
+    let mut sum = [0.0, 0.0, 0.0];
+    for i in 0..SLIDERS {
+        let q = [before[i][0] + increment[0], before[i][1] + increment[1]];
+        let size = (q[0] * q[0] + q[1] * q[1]).sqrt();
+        let k = virgin.point.k_t * virgin.weight[i];
+        if size > AT_BOUND * limit[i] {
+            let k = k * limit[i] / size;
+            let m = [q[0] / size, q[1] / size];
+            sum[0] += k * m[1] * m[1];
+            sum[1] -= k * m[0] * m[1];
+            sum[2] += k * m[0] * m[0];
+        } else {
+            sum[0] += k;
+            sum[2] += k;
+        }
+    }
+    [[sum[0], sum[1]], [sum[1], sum[2]]]
+}
+
+/// Length of a vector.
+fn length(v: [f64; 2]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
+/// Normal part of an increment.
+struct Pressed {
+    f_n: f64,
+    x: f64,
+    df_n_dh: f64,
+}
+
+/// Moves h with delta_T held. The elastic force follows the unloading curve; first loading caps it; a sheared contact that is pressed
+/// against its cap loses tangential force to plastic flow as it gains normal force.
+fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f64) -> Pressed {
+    let dh = h - state.h;
+    let grown = h > state.h_max;
+    let first = grown && (state.x == 0.0 || !(state.h_max > 0.0));
+    let (mut trial, mut stiffness) = (virgin.point.f_n0, virgin.slope);
+    let e = state.approach + dh;
+    if grown && state.h_max > 0.0 {
+        let old = p.virgin(state.h_max);
+        // The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it.
+        for i in 0..SLIDERS {
+            let keep = old.point.k_t * old.weight[i] / (virgin.point.k_t * virgin.weight[i]);
+            if keep < 1.0 {
+                state.deflection[i] = [keep * state.deflection[i][0], keep * state.deflection[i][1]];
+            }
+        }
+        if !first {
+            trial = force_at(&old, e);
+            stiffness = if e > 0.0 { old.gamma * trial / e } else { 0.0 };
+        }
+    } else if !grown {
+        trial = force_at(virgin, e);
+        stiffness = if e > 0.0 { virgin.gamma * trial / e } else { 0.0 };
+    }
+    let f_n = if trial < virgin.point.f_n0 { trial } else { virgin.point.f_n0 };
+    if dh == 0.0 {
+        // At rest on the virgin curve the next press is first loading.
+        let slope = if state.x == 0.0 && state.h == state.h_max { virgin.slope } else { stiffness };
+        return Pressed { f_n, x: state.x, df_n_dh: slope };
+    }
+    let elastic = mobilisation(p, virgin, f_n);
+    if dh < 0.0 {
+        let x = if elastic > state.x { elastic } else { state.x };
+        return Pressed { f_n, x, df_n_dh: stiffness };
+    }
+    if trial >= virgin.point.f_n0 && grown {
+        stiffness = virgin.slope;
+    }
+    slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [0.0, 0.0]);
+    let f_t = length(slider_force(virgin, &state.deflection));
+    let slip_force = p.friction * virgin.point.f_n_slip;
+    if f_t <= slip_force * tangential_shape(virgin, elastic)[0] {
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness };
+    }
+    if is_elastic(virgin) {
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness }; // pressing leaves F_T as it is
+    }
+    let bound = tangential_shape_inverse(virgin, f_t / slip_force);
+    let cap = normal_cap(p, virgin, bound);
+    let share = slip_force * tangential_shape(virgin, bound)[1] / (virgin.point.k_t * virgin.point.delta_t_slip);
+    let gain = if share < 1.0 { 1.0 - share } else { 0.0 };
+    let raised = cap + gain * (trial - cap);
+    let f_n = if raised < virgin.point.f_n0 { raised } else { virgin.point.f_n0 };
+    let x = mobilisation(p, virgin, f_n);
+    let keep = slip_force * tangential_shape(virgin, x)[0] / f_t;
+    if keep < 1.0 {
+        for q in &mut state.deflection {
+            *q = [keep * q[0], keep * q[1]];
+        }
+    }
+    Pressed { f_n, x, df_n_dh: gain * stiffness + (1.0 - gain) * virgin.slope }
+}
+
+impl ContactState {
+    /// Turns the memory into axes that are turned by the angle whose cosine and sine are given: the new components of a vector v are
+    /// (c v0 + s v1, -s v0 + c v1). Call it when the tangent frame follows the contact's normal.
+    pub fn rotate(&mut self, cosine: f64, sine: f64) {
+        for q in &mut self.deflection {
+            *q = [cosine * q[0] + sine * q[1], -sine * q[0] + cosine * q[1]];
+        }
+    }
+}
+
+impl ContactParameters {
+    /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in the tangent frame), the press
+    /// first. A pure function of the state before; `h` or the increment not finite gives an answer that is not finite, no panic.
+    pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
+        let mut next = *state;
+        let mut out = ContactResponse::default();
+        let greatest = if h > state.h_max { h } else { state.h_max };
+        if !(greatest > 0.0) {
+            next.h = h;
+            return (next, out);
+        }
+        let virgin = self.virgin(greatest);
+        let pressed = press(self, &mut next, &virgin, h);
+        if h != state.h {
+            next.approach = if pressed.f_n > 0.0 { approach_at(&virgin, pressed.f_n) } else { state.approach + (h - state.h) };
+        }
+        next.h = h;
+        next.h_max = greatest;
+        next.x = pressed.x;
+        if !(pressed.f_n > 0.0) {
+            next.deflection = [[0.0; 2]; SLIDERS];
+            return (next, out);
+        }
+        out.df_n_dh = pressed.df_n_dh;
+        shear(self, &mut next, &mut out, &virgin, pressed.f_n, increment);
+        out.a = virgin.point.a * (next.approach / virgin.depth).powf(virgin.gamma - 1.0);
+        (next, out)
+    }
+
+    /// Elastic energy that the contact stores, force times length: no path gives back more than it.
+    pub fn stored_energy(&self, state: &ContactState) -> f64 {
+        if !(state.h_max > 0.0) || state.approach <= 0.0 {
+            return 0.0;
+        }
+        let virgin = self.virgin(state.h_max);
+        let mut sum = 0.0;
+        for i in 0..SLIDERS {
+            let q = state.deflection[i];
+            sum += virgin.weight[i] * (q[0] * q[0] + q[1] * q[1]);
+        }
+        force_at(&virgin, state.approach) * state.approach / (virgin.gamma + 1.0) + 0.5 * virgin.point.k_t * sum
+    }
+}
+
+/// Moves delta_T with h held. Inside the virgin curve the sliders answer; on it F_T and F_N follow the law in x.
+fn shear(
+    p: &ContactParameters,
+    next: &mut ContactState,
+    out: &mut ContactResponse,
+    virgin: &Virgin,
+    f_n: f64,
+    increment: [f64; 2],
+) {
+    let before = next.deflection;
+    let force_before = slider_force(virgin, &before);
+    let limit = slider_limits(p, virgin, f_n);
+    slide(&mut next.deflection, &limit, increment);
+    out.f_n = f_n;
+    out.f_t = slider_force(virgin, &next.deflection);
+    out.df_t_ddelta = slider_stiffness(virgin, &before, &limit, increment);
+    let slip_force = p.friction * virgin.point.f_n_slip;
+    let bound = slip_force * tangential_shape(virgin, next.x)[0];
+    let trial = length(out.f_t);
+    if next.x >= 1.0 || trial <= AT_BOUND * bound || is_elastic(virgin) {
+        return;
+    }
+    let direction = [out.f_t[0] / trial, out.f_t[1] / trial];
+    let along = direction[0] * force_before[0] + direction[1] * force_before[1];
+    // Share of the increment that is beyond the curve: all of it when the contact stood on it.
+    let (excess, travel) = (trial - bound, trial - along);
+    let beyond = if excess < travel { excess / travel } else { 1.0 };
+    let forward = direction[0] * increment[0] + direction[1] * increment[1];
+    let forward = if forward > 0.0 { forward } else { 0.0 };
+    let x = next.x + beyond * forward / virgin.point.delta_t_slip;
+    next.x = if x < 1.0 { x } else { 1.0 };
+    let cap = normal_cap(p, virgin, next.x);
+    out.f_n = if cap < f_n { cap } else { f_n };
+    next.approach = approach_at(virgin, out.f_n);
+    let limit = slider_limits(p, virgin, out.f_n);
+    next.deflection = before;
+    slide(&mut next.deflection, &limit, increment);
+    let held = slider_force(virgin, &next.deflection);
+    let stiffness = slider_stiffness(virgin, &before, &limit, increment);
+    let [shape, shape_slope] = tangential_shape(virgin, next.x);
+    let bound = slip_force * shape;
+    let size = length(held);
+    out.f_t = held;
+    out.df_t_ddelta = stiffness;
+    let per_x = beyond / virgin.point.delta_t_slip;
+    let loss = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, next.x)[1];
+    out.df_n_ddelta = [-loss * per_x * direction[0], -loss * per_x * direction[1]];
+    if size <= bound {
+        return;
+    }
+    let keep = bound / size;
+    for q in &mut next.deflection {
+        *q = [keep * q[0], keep * q[1]];
+    }
+    let m = [held[0] / size, held[1] / size];
+    out.f_t = [bound * m[0], bound * m[1]];
+    let rate = slip_force * shape_slope * per_x;
+    for j in 0..2 {
+        let radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j];
+        for i in 0..2 {
+            out.df_t_ddelta[i][j] = rate * m[i] * direction[j] + keep * (stiffness[i][j] - m[i] * radial);
+        }
+    }
+}

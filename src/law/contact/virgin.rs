@@ -1,0 +1,321 @@
+//! The virgin curves of one pair of materials: everything that the contact update asks of the law, tabulated over the indentation.
+//!
+//! The table is cubic in ln h through [`KNOTS`] equidistant knots, so that an update costs no root search. Its last digits differ from the
+//! formulas that filled it by some 1e-4; what counts is that every language fills and reads it by the same operations.
+
+use crate::law::forms::NormalCurve;
+use crate::law::model::Parameters;
+
+/// Number of knots over ln h.
+pub const KNOTS: usize = 128;
+/// Number of tabulated quantities.
+pub const COLUMNS: usize = 8;
+/// Number of sliders that stand for the contact's annuli.
+pub const SLIDERS: usize = 16;
+
+/// Powers of h in a Hertz contact of the quantities whose logarithms are tabulated.
+const ELASTIC_POWERS: [f64; COLUMNS] = [1.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5];
+
+/// What the update needs to know of a pair of materials. Plain data, shared by all contacts of the pair; any one consistent system of units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactParameters {
+    /// Radius R, length.
+    pub radius: f64,
+    /// E* = E/(1 - nu^2), stress.
+    pub effective_modulus: f64,
+    /// Coulomb's coefficient mu.
+    pub friction: f64,
+    /// Form of f_N: 0 is \[1 - (1 - x)^M\]^N, 1 is 1 - (1 - x^M)^N.
+    pub form: f64,
+    /// ln h of the first knot.
+    pub log_first: f64,
+    /// Step of ln h from knot to knot.
+    pub log_step: f64,
+    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T.
+    pub table: [[f64; COLUMNS]; KNOTS],
+}
+
+/// What a pair of materials answers for one indentation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axial {
+    /// Contact radius a, length.
+    pub a: f64,
+    /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
+    pub k_t: f64,
+    /// The law.
+    pub law: Parameters,
+}
+
+/// Why there are no contact parameters.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ContactError {
+    /// Coulomb's coefficient.
+    #[error(
+        "mu = {value}: a contact update needs a finite friction coefficient, 0 or more. full stick has no slip force to scale with"
+    )]
+    Friction {
+        /// mu.
+        value: f64,
+    },
+    /// Something is not a positive, finite number.
+    #[error(
+        "contact at h/R = {relative_indentation:e}: {what} = {value:e} is no positive number. check the material and the law"
+    )]
+    Value {
+        /// Indentation over R.
+        relative_indentation: f64,
+        /// What.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}
+
+/// The axisymmetric state and the law at one indentation of first loading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VirginPoint {
+    /// Contact radius a, length.
+    pub a: f64,
+    /// Normal force F_N0 before any shear, force.
+    pub f_n0: f64,
+    /// Normal force at full slip, force.
+    pub f_n_slip: f64,
+    /// Displacement at full slip delta_T_slip, length.
+    pub delta_t_slip: f64,
+    /// Elastic tangential stiffness, force over length.
+    pub k_t: f64,
+    /// Exponent n of f_T.
+    pub n: f64,
+    /// Exponent M of f_N.
+    pub m_exponent: f64,
+    /// Exponent N of f_N.
+    pub n_exponent: f64,
+}
+
+/// [`VirginPoint`] as the update uses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Virgin {
+    /// The law.
+    pub point: VirginPoint,
+    /// dF_N0/dh, force over length.
+    pub slope: f64,
+    /// Exponent gamma of the elastic unloading, F_N = F_N0 eta^gamma: 3/2 for Hertz, 4/pi for a uniform pressure.
+    pub gamma: f64,
+    /// Elastic approach D = gamma F_N0/(2 E* a), length: h less D is the residual indentation.
+    pub depth: f64,
+    /// Exponent of the sliders' backbone, the smaller of gamma and n.
+    pub backbone: f64,
+    /// Shares of the sliders in k_T; their sum is 1.
+    pub weight: [f64; SLIDERS],
+    /// Approach over D at which each slider's annulus loses contact.
+    pub lost: [f64; SLIDERS],
+}
+
+/// gamma from how far the hardness has fallen below Hertz's at the same contact radius: 3/2 while it has not (Hertz), 4/pi at the end (a uniform
+/// pressure taken off, Mesarovic & Johnson 2000, whose unloading curve it keeps to 2 % of the force).
+pub fn unloading_exponent(radius: f64, effective_modulus: f64, a: f64, f_n0: f64) -> f64 {
+    let hertz = 4.0 * effective_modulus * a * a * a / (3.0 * radius);
+    let share = if f_n0 < hertz { f_n0 / hertz } else { 1.0 };
+    PLASTIC_GAMMA + (1.5 - PLASTIC_GAMMA) * share
+}
+
+/// 4/pi: with it unloading from a uniform pressure starts with 2 E* a and recovers 2 p a/E*.
+const PLASTIC_GAMMA: f64 = 1.2732395447351628;
+
+impl ContactParameters {
+    /// Tabulates `law` over the indentations `range` (both > 0), from first yield (below it the contact must be Hertz's) to the greatest that will
+    /// be met. `law` answers for an indentation.
+    ///
+    /// # Errors
+    /// [`ContactError::Value`] where a quantity is not positive and finite.
+    pub fn tabulate(
+        radius: f64,
+        effective_modulus: f64,
+        friction: f64,
+        curve: NormalCurve,
+        range: [f64; 2],
+        law: impl Fn(f64) -> Axial,
+    ) -> Result<Self, ContactError> {
+        let form = match curve {
+            NormalCurve::PowerOfComplement => 0.0,
+            NormalCurve::ComplementOfPower => 1.0,
+        };
+        let log_first = range[0].ln();
+        let log_step = (range[1].ln() - log_first) / (KNOTS as f64 - 1.0);
+        let mut table = [[0.0; COLUMNS]; KNOTS];
+        for i in 0..KNOTS {
+            let h = (log_first + log_step * i as f64).exp();
+            let Axial { a, k_t, law: p } = law(h);
+            let positive = [
+                ("a", a),
+                ("F_N0", p.f_n0),
+                ("F_N_slip", p.f_n_slip),
+                ("delta_T_slip", p.delta_t_slip),
+                ("k_T", k_t),
+                ("n", p.n),
+                ("M", p.m_exponent),
+                ("N", p.n_exponent),
+            ];
+            for (what, value) in positive {
+                if !(value > 0.0 && value.is_finite()) {
+                    return Err(ContactError::Value { relative_indentation: h / radius, what, value });
+                }
+            }
+            let ratio = p.f_n_slip / p.f_n0;
+            table[i] = [
+                p.f_n0.ln(),
+                a.ln(),
+                if ratio < 1.0 { ratio } else { 1.0 },
+                p.delta_t_slip.ln(),
+                p.n,
+                p.m_exponent,
+                p.n_exponent,
+                k_t.ln(),
+            ];
+        }
+        let mut parameters = Self { radius, effective_modulus, friction, form, log_first, log_step, table };
+        parameters.conserve();
+        Ok(parameters)
+    }
+
+    /// Widens the contact where the law's F_N0 and a would let a press store more energy than was put in (a fit may be off by that much next to
+    /// first yield): the stored energy of a knot is at most that of the one before and the work between, F_N0 being a power of h there; and a dent
+    /// never rises above where the sphere began.
+    fn conserve(&mut self) {
+        let mut before = self.stored_at(0);
+        for i in 1..KNOTS {
+            let (h0, h1) =
+                ((self.log_first + self.log_step * (i - 1) as f64).exp(), (self.log_first + self.log_step * i as f64).exp());
+            let power = (self.table[i][0] - self.table[i - 1][0]) / self.log_step;
+            let most = before + (self.table[i][0].exp() * h1 - self.table[i - 1][0].exp() * h0) / (power + 1.0);
+            let stored = self.stored_at(i);
+            if stored > most {
+                self.table[i][1] += (stored / most).ln();
+            }
+            let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
+            let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+            let depth = gamma * f_n0 / (2.0 * self.effective_modulus * a);
+            if depth > h1 {
+                self.table[i][1] += (depth / h1).ln();
+            }
+            before = self.stored_at(i);
+        }
+    }
+
+    /// Elastic energy of the virgin contact at a knot.
+    fn stored_at(&self, i: usize) -> f64 {
+        let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
+        let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+        gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * self.effective_modulus * a)
+    }
+
+    /// Slope of a column at a knot, per step. The steeper secant for the force and the flatter one for the radius: so neither kink at yield makes
+    /// a virgin contact store more energy than was put in. The mean for the others.
+    fn knot_slope(&self, column: usize, i: usize) -> f64 {
+        let value = |i: usize| self.table[i][column];
+        if i == 0 {
+            return value(1) - value(0);
+        }
+        let below = value(i) - value(i - 1);
+        if i == KNOTS - 1 {
+            return below;
+        }
+        let above = value(i + 1) - value(i);
+        match column {
+            0 => {
+                if above > below {
+                    above
+                } else {
+                    below
+                }
+            }
+            1 => {
+                if above < below {
+                    above
+                } else {
+                    below
+                }
+            }
+            _ => 0.5 * (above + below),
+        }
+    }
+
+    /// The table's column `column` and its slope in steps, cubic between the knots. Below the first the contact is Hertz's; beyond the last logarithms
+    /// go on straight and the others stay.
+    fn column(&self, column: usize, position: f64) -> [f64; 2] {
+        let value = |i: usize| self.table[i][column];
+        let last = (KNOTS - 1) as f64;
+        if position < 0.0 {
+            let slope = ELASTIC_POWERS[column] * self.log_step;
+            return [value(0) + slope * position, slope];
+        }
+        if position >= last {
+            let end = KNOTS - 1;
+            let slope = if ELASTIC_POWERS[column] > 0.0 { self.knot_slope(column, end) } else { 0.0 };
+            return [value(end) + slope * (position - last), slope];
+        }
+        let i = position as usize;
+        let u = position - i as f64;
+        let (y0, y1, s0, s1) = (value(i), value(i + 1), self.knot_slope(column, i), self.knot_slope(column, i + 1));
+        let rise = y1 - y0;
+        let quadratic = 3.0 * rise - 2.0 * s0 - s1;
+        let cubic = s0 + s1 - 2.0 * rise;
+        [y0 + u * (s0 + u * (quadratic + u * cubic)), s0 + u * (2.0 * quadratic + 3.0 * u * cubic)]
+    }
+
+    /// First loading at the indentation `h` > 0.
+    pub fn virgin(&self, h: f64) -> Virgin {
+        let position = (h.ln() - self.log_first) / self.log_step;
+        let [log_f, log_f_slope] = self.column(0, position);
+        let f_n0 = log_f.exp();
+        let a = self.column(1, position)[0].exp();
+        let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+        let f_n_slip = self.column(2, position)[0] * f_n0;
+        let delta_t_slip = self.column(3, position)[0].exp();
+        let n = self.column(4, position)[0];
+        let m_exponent = self.column(5, position)[0];
+        let n_exponent = self.column(6, position)[0];
+        let backbone = if gamma < n { gamma } else { n };
+        // The elastic sliders must be able to follow the virgin curve: neither softer at its start nor slower to slip.
+        let mut k_t = self.column(7, position)[0].exp();
+        let start = n * self.friction * f_n_slip / delta_t_slip;
+        let end = backbone * self.friction * f_n0 / delta_t_slip;
+        if k_t < start {
+            k_t = start;
+        }
+        if k_t < end {
+            k_t = end;
+        }
+        let (weight, lost) = sliders(backbone);
+        Virgin {
+            point: VirginPoint { a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent },
+            slope: f_n0 * log_f_slope / (self.log_step * h),
+            gamma,
+            depth: gamma * f_n0 / (2.0 * self.effective_modulus * a),
+            backbone,
+            weight,
+            lost,
+        }
+    }
+}
+
+/// Shares and points of loss of the sliders whose backbone is 1 - (1 - x)^backbone.
+///
+/// Each stands for a cell of the annuli at its centre of gravity, so that the broken line lies on the curve at the cells' ends, above it
+/// between them (by 2e-3 at most) and at 1 at full slip.
+pub(super) fn sliders(backbone: f64) -> ([f64; SLIDERS], [f64; SLIDERS]) {
+    let (mut weight, mut lost) = ([0.0; SLIDERS], [0.0; SLIDERS]);
+    let (mut below, mut below_moment) = (0.0, 0.0);
+    for i in 0..SLIDERS {
+        let end = (i + 1) as f64 / SLIDERS as f64;
+        // Cells narrow towards the rim that slips last, where the curve bends most.
+        let end = end * end.sqrt();
+        let above = if i == SLIDERS - 1 { 1.0 } else { end.powf(backbone - 1.0) };
+        let above_moment = above * end;
+        weight[i] = above - below;
+        lost[i] = (backbone - 1.0) / backbone * (above_moment - below_moment) / weight[i];
+        below = above;
+        below_moment = above_moment;
+    }
+    (weight, lost)
+}

@@ -1,0 +1,42 @@
+//! Keeps the rows of a run in memory and writes nothing.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{StepRecord, Units};
+use crate::case::Case;
+use crate::simulation::drive::{Observer, StepView};
+
+/// The history of a run, in the case's units, the undeformed state first.
+pub struct Recorder {
+    units: Units,
+    stop: Option<Arc<AtomicBool>>,
+    /// The rows.
+    pub rows: Vec<StepRecord>,
+}
+
+impl Recorder {
+    /// For a run of `case`, which ends early when `stop` is set.
+    pub fn new(case: &Case, stop: Option<Arc<AtomicBool>>) -> Self {
+        Self { units: Units::of(case), stop, rows: Vec::new() }
+    }
+}
+
+impl Observer for Recorder {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.rows.push(view.record.in_units(&self.units));
+        Ok(())
+    }
+
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        Ok(())
+    }
+
+    fn note(&mut self, text: &str) {
+        log::info!("{text}");
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+}

@@ -1,0 +1,387 @@
+//! The exported law, compiled by the compilers and run by the interpreter that users have, against the vectors of the Rust update.
+//!
+//! A missing gcc, g++ or python3 skips its test, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is a failure.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use asperity::analytical::ElasticSphere;
+use asperity::law::contact::ContactParameters;
+use asperity::law::export::{Language, files, source, vectors};
+use asperity::law::forms::{Constants, Forms, NormalCurve, SlipForm, Variable};
+use asperity::law::model::{FORMAT, Interval, Law, Provenance, VERSION, Validity};
+use asperity::law::normal::{NormalForm, NormalModel};
+use asperity::law::variables::Body;
+use asperity::law::{Axisymmetric, Parameters};
+use asperity::material::hardening::Hardening;
+
+/// A made-up law of the given forms.
+fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurve, form: NormalForm) -> Law {
+    let (radius, force) = match form {
+        NormalForm::Published => (vec![], vec![]),
+        NormalForm::Corrected => (vec![-0.031, 0.0123], vec![-0.017, 0.11, -0.052, 0.0037]),
+        NormalForm::Smooth => (vec![0.97, 0.31, 1.03, 0.12], vec![0.29, 1.01, 0.93, 0.47, 0.11, 0.52]),
+    };
+    let interval = |from, to| Interval { from, to };
+    Law {
+        format: FORMAT.to_owned(),
+        version: VERSION,
+        forms: Forms { variable, slip_displacement, normal_curve },
+        constants: Constants {
+            fall: [1.13, 0.31, 0.47, 0.9],
+            exponent: [1.7, 0.21, 0.83],
+            slip: [1.61, 0.23, 0.37, 1.11],
+            curve: [0.61, 0.43, 0.77, 0.35],
+        },
+        normal: NormalModel { form, radius, force },
+        validity: Validity {
+            lambda: interval(3.0, 800.0),
+            friction: interval(0.1, 0.4),
+            relative_radius: interval(0.02, 0.25),
+            c_squared: interval(0.49, 0.9),
+            poissons_ratio: interval(0.3, 0.3),
+            hardening_exponent: interval(0.0, 0.2),
+        },
+        provenance: Provenance {
+            program: "asperity".to_owned(),
+            study: "made */ up \"\"\" \\".to_owned(),
+            cases: 12,
+            left_out: vec![],
+            materials: 3,
+            elements_per_contact_radius: (5, 6),
+            folds: 3,
+            seed: 1,
+        },
+        errors: vec![],
+        errors_predicted: vec![],
+        candidates: vec![],
+        normal_candidates: vec![],
+        cases: vec![],
+    }
+}
+
+/// Laws in which every form occurs.
+fn laws() -> Vec<Law> {
+    let mut laws = vec![];
+    for (i, variable) in Variable::ALL.into_iter().enumerate() {
+        laws.push(law(variable, SlipForm::ALL[i % 2], NormalCurve::ALL[i / 2], NormalForm::ALL[(i + 2) % 3]));
+    }
+    laws
+}
+
+/// Whether `program` is there; if not, the test ends here.
+fn has(program: &str, test: &str) -> bool {
+    let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !found {
+        let required = std::env::var_os("ASPERITY_REQUIRE_COMPILERS").is_some_and(|value| value == "1");
+        assert!(!required, "{test}: no {program}, and ASPERITY_REQUIRE_COMPILERS=1");
+        // The print macros are captured for passing tests; the handle is not.
+        #[allow(clippy::explicit_write)]
+        writeln!(std::io::stderr(), "SKIPPED {test}: no {program}").expect("stderr");
+    }
+    found
+}
+
+fn text(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+fn write_files(dir: &Path, law: &Law, language: Language) {
+    for file in files(law, language) {
+        fs::write(dir.join(file.name), file.content).unwrap();
+    }
+}
+
+/// Compiles and runs the checking program in `dir`.
+fn compile_and_run(dir: &Path, compiler: &[&str], vectors: &str) -> Output {
+    let warnings = ["-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"];
+    let language = if compiler[0] == "g++" { "c++" } else { "c" };
+    let source = ["-o", "check", "-x", language, "asperity_law_check.c", "-lm"];
+    let mut command = Command::new(compiler[0]);
+    let built = command.args(&compiler[1..]).args(warnings).args(source).current_dir(dir).output().unwrap();
+    assert!(built.status.success(), "{compiler:?}\n{}", text(&built));
+    Command::new(dir.join("check")).arg(vectors).current_dir(dir).output().unwrap()
+}
+
+fn compiled_header_agrees(compiler: &[&str], test: &str) {
+    if !has(compiler[0], test) {
+        return;
+    }
+    for (number, law) in laws().into_iter().enumerate() {
+        let dir = tempfile::tempdir().unwrap();
+        write_files(dir.path(), &law, Language::C);
+        if let Some(kept) = std::env::var_os("ASPERITY_KEEP_EXPORTS") {
+            let kept = Path::new(&kept).join(number.to_string());
+            fs::create_dir_all(&kept).unwrap();
+            write_files(&kept, &law, Language::C);
+            write_files(&kept, &law, Language::Python);
+        }
+        let run = compile_and_run(dir.path(), compiler, "asperity_law_vectors.csv");
+        assert!(run.status.success(), "{:?}: {}", law.forms, text(&run));
+        println!("{}", text(&run));
+    }
+}
+
+#[test]
+fn the_header_agrees_as_c99() {
+    compiled_header_agrees(&["gcc", "-std=c99"], "the_header_agrees_as_c99");
+}
+
+#[test]
+fn the_header_agrees_as_cpp17() {
+    compiled_header_agrees(&["g++", "-std=c++17"], "the_header_agrees_as_cpp17");
+}
+
+#[test]
+fn two_translation_units_may_include_the_header() {
+    if !has("gcc", "two_translation_units_may_include_the_header") {
+        return;
+    }
+    let dir = tempfile::tempdir().unwrap();
+    write_files(dir.path(), &laws()[0], Language::C);
+    fs::write(
+        dir.path().join("one.c"),
+        "#include \"asperity_law.h\"\n#include \"asperity_law.h\"\nint main(void) { return 0; }\n",
+    )
+    .unwrap();
+    fs::write(dir.path().join("two.c"), "#include \"asperity_law.h\"\nextern int two;\nint two = 2;\n").unwrap();
+    let flags = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-o", "both", "one.c", "two.c", "-lm"];
+    let built = Command::new("gcc").args(flags).current_dir(dir.path()).output().unwrap();
+    assert!(built.status.success(), "{}", text(&built));
+}
+
+#[test]
+fn the_module_agrees() {
+    if !has("python3", "the_module_agrees") {
+        return;
+    }
+    for law in laws() {
+        let dir = tempfile::tempdir().unwrap();
+        write_files(dir.path(), &law, Language::Python);
+        let mut python = Command::new("python3");
+        let run =
+            python.args(["-W", "error", "asperity_law.py", "asperity_law_vectors.csv"]).current_dir(dir.path()).output().unwrap();
+        assert!(run.status.success(), "{:?}: {}", law.forms, text(&run));
+        println!("{}", text(&run));
+    }
+}
+
+#[test]
+fn a_wrong_constant_is_found() {
+    let law = &laws()[1];
+    let mut wrong = law.clone();
+    wrong.constants.slip[1] *= 1.0 + 1e-10;
+    let dir = tempfile::tempdir().unwrap();
+    if has("gcc", "a_wrong_constant_is_found") {
+        write_files(dir.path(), law, Language::C);
+        fs::write(dir.path().join("asperity_law.h"), source(&wrong, Language::C)).unwrap();
+        let run = compile_and_run(dir.path(), &["gcc", "-std=c99"], "asperity_law_vectors.csv");
+        assert_eq!(run.status.code(), Some(1), "{}", text(&run));
+    }
+    if has("python3", "a_wrong_constant_is_found") {
+        write_files(dir.path(), law, Language::Python);
+        fs::write(dir.path().join("asperity_law.py"), source(&wrong, Language::Python)).unwrap();
+        let mut python = Command::new("python3");
+        let run = python.args(["asperity_law.py", "asperity_law_vectors.csv"]).current_dir(dir.path()).output().unwrap();
+        assert_eq!(run.status.code(), Some(1), "{}", text(&run));
+    }
+}
+
+#[test]
+fn the_vectors_go_where_a_contact_can_go() {
+    let text = vectors(&laws()[0], 2014);
+    let rows: Vec<Vec<f64>> = text.lines().skip(1).map(|line| line.split(',').map(|v| v.parse().unwrap()).collect()).collect();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let at = |row: &[f64], name: &str| row[names.iter().position(|other| *other == name).unwrap()];
+    let count = |test: &dyn Fn(&[f64]) -> bool| rows.iter().filter(|row| test(row)).count();
+    assert!(rows.iter().all(|row| row.len() == names.len() && row.iter().all(|value| value.is_finite())));
+    for kind in 0..6 {
+        assert!(count(&|row| at(row, "hardening") == f64::from(kind)) >= 300, "{kind}");
+    }
+    assert!(count(&|row| at(row, "f_n") == 0.0) > 10);
+    assert!(count(&|row| at(row, "x") == 1.0 && at(row, "f_n") > 0.0) > 100);
+    assert!(count(&|row| at(row, "x") > 0.0 && at(row, "x") < 1.0) > 100);
+    let force = |row: &[f64]| at(row, "f_t0").hypot(at(row, "f_t1"));
+    let slips = |row: &[f64]| at(row, "f_n") > 0.0 && force(row) > 0.999999 * at(row, "mu") * at(row, "f_n");
+    assert!(count(&slips) > 100);
+    assert!(count(&|row| at(row, "cosine") != 1.0) > 100);
+    assert!(rows.iter().all(|row| force(row) <= at(row, "mu") * at(row, "f_n") * (1.0 + 1e-12)));
+    assert_eq!(text, vectors(&laws()[0], 2014));
+}
+
+#[test]
+fn the_update_follows_the_law_it_is_made_of() {
+    let sphere = ElasticSphere { radius: 0.5, youngs_modulus: 70e3, poissons_ratio: 0.3 };
+    for law in laws() {
+        for hardening in [Hardening::ideal(100.0).unwrap(), Hardening::hollomon(400.0, 4.0, 70e3).unwrap(), Hardening::Elastic] {
+            let body = Body { sphere, hardening };
+            let friction = 0.25;
+            let pair = ContactParameters::new(&law, &body, friction).unwrap();
+            for h in [1e-5, 1e-3, 0.02].map(|h| h * sphere.radius) {
+                let normal = law.normal.state(&body, h);
+                let inputs = Axisymmetric {
+                    youngs_modulus: sphere.youngs_modulus,
+                    poissons_ratio: sphere.poissons_ratio,
+                    radius: sphere.radius,
+                    friction,
+                    sigma_rep: body.representative_stress(normal.a),
+                    h,
+                    a: normal.a,
+                    f_n: normal.f_n,
+                };
+                let expected: Parameters = law.contact(&inputs);
+                let (mut state, _) = pair.update(&Default::default(), h, [0.0; 2]);
+                for k in 1..=20 {
+                    let delta = 1.1 * expected.delta_t_slip * f64::from(k) / 20.0;
+                    let increment = 1.1 * expected.delta_t_slip / 20.0;
+                    let (next, out) = pair.update(&state, h, [0.0, increment]);
+                    state = next;
+                    let (f_t, f_n) = law.forces(&expected, friction, delta);
+                    // The table over ln h is good for some 1e-3; the sliders of an elastic contact for 3e-3.
+                    assert!((out.f_t[1] - f_t).abs() < 8e-3 * friction * f_n, "{:?} {h} {k}: {} {f_t}", law.forms, out.f_t[1]);
+                    assert!((out.f_n - f_n).abs() < 5e-3 * f_n, "{:?} {h} {k}: {} {f_n}", law.forms, out.f_n);
+                }
+            }
+        }
+    }
+}
+
+/// Every step of a path, however it turns, takes at least the stored energy that it adds; so no closed path returns work.
+#[test]
+fn no_path_extracts_work() {
+    let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
+    let mut seed = 1u64;
+    let mut random = |from: f64, to: f64| {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        from + (to - from) * ((seed >> 11) as f64 / (1u64 << 53) as f64)
+    };
+    let mut worst: f64 = 0.0;
+    for law in laws() {
+        for (stress, friction) in [(20.0, 0.5), (400.0, 0.3), (2500.0, 0.1)] {
+            let pair =
+                ContactParameters::new(&law, &Body { sphere, hardening: Hardening::ideal(stress).unwrap() }, friction).unwrap();
+            for _ in 0..8 {
+                let deepest = 10f64.powf(random(-4.0, -1.2));
+                let virgin = pair.virgin(deepest);
+                let mut state = Default::default();
+                let (mut at, mut f, mut work, mut through) = ([0.0; 3], [0.0; 3], 0.0, 0.0);
+                for leg in 0..13 {
+                    let mut to = at;
+                    let kind = random(0.0, 1.0);
+                    if leg == 0 || kind < 0.3 {
+                        to[0] = deepest * random(0.3, 1.0);
+                    } else if kind < 0.5 {
+                        to[0] = at[0] - virgin.depth * random(-0.2, 0.6);
+                    }
+                    if leg > 0 && kind > 0.2 {
+                        to[1] = virgin.point.delta_t_slip * random(-1.5, 1.5);
+                        to[2] = virgin.point.delta_t_slip * random(-0.5, 0.5);
+                    }
+                    if leg == 12 {
+                        to = [-1e-2 * deepest, 0.0, 0.0]; // back to where it started
+                    }
+                    let step: [f64; 3] = std::array::from_fn(|i| (to[i] - at[i]) / 500.0);
+                    for _ in 0..500 {
+                        at = std::array::from_fn(|i| at[i] + step[i]);
+                        let (next, out) = pair.update(&state, at[0], [step[1], step[2]]);
+                        let now = [out.f_n, out.f_t[0], out.f_t[1]];
+                        let done: f64 = (0..3).map(|i| 0.5 * (f[i] + now[i]) * step[i]).sum();
+                        let gain = pair.stored_energy(&next) - pair.stored_energy(&state) - done;
+                        through += done.abs();
+                        work += done;
+                        // Between the knots of the table next to yield a step may gain a little of what others lost.
+                        assert!(gain <= 1e-3 * through, "{:?} {stress} leg {leg}: {gain:e} of {through:e}", law.forms);
+                        (state, f) = (next, now);
+                        let lost = work - pair.stored_energy(&state);
+                        worst = worst.min(lost / through);
+                        assert!(lost >= -1e-4 * through, "{:?} {stress} leg {leg}: {lost:e} of {through:e}", law.forms);
+                    }
+                }
+                // All that was stored is given back where the contact is lost; work in is what is left.
+                assert!(f == [0.0; 3] && work > 0.0, "{:?} {stress}: {f:?} {work:e} of {through:e}", law.forms);
+            }
+        }
+    }
+    println!("least dissipation {worst:e} of the work exchanged");
+}
+
+#[test]
+fn the_module_warns_where_the_law_does() {
+    if !has("python3", "the_module_warns_where_the_law_does") {
+        return;
+    }
+    let law = &laws()[0];
+    let dir = tempfile::tempdir().unwrap();
+    write_files(dir.path(), law, Language::Python);
+    let mut cases = vec![];
+    for (yield_stress, nu) in [(0.1, 0.3), (4.0, 0.3), (40.0, 0.3), (4.0, 0.45)] {
+        for (friction, h) in [(0.2, 1e-6), (0.2, 1e-3), (0.2, 0.02), (0.2, 0.09), (0.6, 0.01), (0.01, 0.01)] {
+            cases.push((yield_stress, nu, friction, h));
+        }
+    }
+    let program = format!(
+        "import asperity_law as a\nfor s, nu, mu, h in {cases:?}:\n    print(a.out_of_range(a.Material(1e3, nu, a.IDEAL, (s, 0.0, 0.0)), 2.0, mu, 2.0 * h))"
+    );
+    let run = Command::new("python3").args(["-c", &program]).current_dir(dir.path()).output().unwrap();
+    assert!(run.status.success(), "{}", text(&run));
+    let hardening = "import asperity_law as a\nfor m in 3.0, 9.0:\n    print(a.out_of_range(a.Material(1e3, 0.3, a.HOLLOMON, (16.0, m, 0.0)), 2.0, 0.2, 0.02))";
+    let hardening = Command::new("python3").args(["-c", hardening]).current_dir(dir.path()).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&hardening.stdout), "32\n0\n", "{}", text(&hardening));
+    let answers: Vec<u32> = String::from_utf8_lossy(&run.stdout).lines().map(|line| line.parse().unwrap()).collect();
+    assert_eq!(answers.len(), cases.len());
+    assert!((0..5).all(|bit| answers.iter().any(|answer| answer & (1 << bit) != 0)) && answers.contains(&0), "{answers:?}");
+    for (answer, (yield_stress, nu, friction, h)) in answers.into_iter().zip(cases) {
+        let sphere = ElasticSphere { radius: 2.0, youngs_modulus: 1e3, poissons_ratio: nu };
+        let body = Body { sphere, hardening: Hardening::ideal(yield_stress).unwrap() };
+        let normal = law.normal.state(&body, 2.0 * h);
+        let inputs = Axisymmetric {
+            youngs_modulus: 1e3,
+            poissons_ratio: nu,
+            radius: 2.0,
+            friction,
+            sigma_rep: body.representative_stress(normal.a),
+            h: 2.0 * h,
+            a: normal.a,
+            f_n: normal.f_n,
+        };
+        let bit = |quantity| ["Lambda", "mu", "a/R", "c^2", "nu"].iter().position(|name| *name == quantity).map_or(0, |i| 1 << i);
+        let expected: u32 = law.out_of_range(&inputs).iter().map(|outside| bit(outside.quantity)).sum();
+        assert_eq!(answer, expected, "{yield_stress} {nu} {friction} {h}");
+    }
+}
+
+#[test]
+fn the_command_writes_what_the_library_makes() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("law.json");
+    let law = &laws()[3];
+    law.write(&path).unwrap();
+    let asperity = |arguments: &[&str]| {
+        let path = path.to_str().unwrap();
+        Command::new(env!("CARGO_BIN_EXE_asperity"))
+            .args(["law", "export", path])
+            .args(arguments)
+            .current_dir(dir.path())
+            .output()
+            .unwrap()
+    };
+    for (format, language) in [("c", Language::C), ("python", Language::Python)] {
+        let printed = asperity(&["--format", format]);
+        assert!(printed.status.success() && printed.stderr.is_empty(), "{}", text(&printed));
+        assert_eq!(String::from_utf8(printed.stdout).unwrap(), source(law, language));
+        let written = asperity(&["--format", format, "--out", "for/dem"]);
+        assert!(written.status.success(), "{}", text(&written));
+        for file in files(law, language) {
+            assert_eq!(fs::read_to_string(dir.path().join("for/dem").join(file.name)).unwrap(), file.content);
+        }
+    }
+    for wrong in [&["--format", "fortran"][..], &[]] {
+        assert_eq!(asperity(wrong).status.code(), Some(2));
+    }
+    fs::write(&path, "{}").unwrap();
+    let refused = asperity(&["--format", "c"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(refused.stdout.is_empty() && text(&refused).contains("law.json"), "{}", text(&refused));
+}
