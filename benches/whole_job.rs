@@ -16,8 +16,8 @@ type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// The cost of an iteration may grow with this power of the unknowns.
 const LARGEST_EXPONENT: f64 = 1.15;
-/// Elements per radius of the cost table: about 10, 20, 45, 100 and 200 thousand unknowns.
-const SIZES: [usize; 5] = [8, 10, 16, 22, 28];
+/// Elements per radius of the cost table: about 11, 20, 46, 112 and 197 thousand unknowns.
+const SIZES: [usize; 5] = [8, 10, 16, 22, 29];
 /// For the cost table the press is cut into so many steps, of which the first few are made.
 const PRESS_STEPS: usize = 12;
 const STEPS_MADE: usize = 5;
