@@ -45,6 +45,8 @@ fn complete(
         let lost = Sym(committed.be.diagonal - start.be.diagonal, committed.be.shear - start.be.shear);
         let pushed = push_forward(relative, lost);
         flow.strain = Sym(flow.strain.diagonal + pushed.diagonal, flow.strain.shear + pushed.shear);
+        flow.alpha = min(flow.alpha, sqrt(norm_squared(flow.strain)) * 0.4082482904638630);
+        response.state.alpha = committed.alpha + flow.alpha;
         let h = material.hardening;
         let end = response.state.alpha;
         let done = plastic_work(h, end, flow_stress(h, end));

@@ -10,6 +10,7 @@ use clap::{Args, Subcommand};
 use super::{CliError, Outcome, print};
 use crate::case::Case;
 use crate::law::export::{Language, files, source};
+use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
 use crate::law::{Law, LawError, fit, report};
@@ -137,16 +138,7 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     let source = if args.press { NormalSource::Press } else { NormalSource::Formulas };
     let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
     let Prediction { curve, out_of_range, .. } = predict(&law, &case, source).map_err(in_case)?;
-    if !out_of_range.is_empty() {
-        let list: Vec<String> = out_of_range.iter().map(ToString::to_string).collect();
-        // A closed stderr does not change the prediction.
-        let _ = writeln!(
-            std::io::stderr(),
-            "warning: {} lies outside of what the law was fitted to: {}. compare with `asperity run`",
-            args.case.display(),
-            list.join(", ")
-        );
-    }
+    warn_out_of_range(&args.case, &out_of_range);
     let mut text = String::from("delta_T,F_T,F_N\n");
     for point in &curve {
         let _ = writeln!(text, "{:?},{:?},{:?}", point.delta_t, point.f_t, point.f_n);
@@ -167,4 +159,18 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
         write_atomically(&dir.join(file.name), |out| out.write_all(file.content.as_bytes()))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Says on stderr what of a case lies outside of a law's range.
+pub(super) fn warn_out_of_range(case: &Path, out_of_range: &[OutOfRange]) {
+    if !out_of_range.is_empty() {
+        let list: Vec<String> = out_of_range.iter().map(ToString::to_string).collect();
+        // A closed stderr does not change the prediction.
+        let _ = writeln!(
+            std::io::stderr(),
+            "warning: {} lies outside of what the law was fitted to: {}. compare with `asperity run`",
+            case.display(),
+            list.join(", ")
+        );
+    }
 }

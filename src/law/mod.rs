@@ -12,9 +12,11 @@ pub mod fit;
 pub mod forms;
 pub mod model;
 pub mod normal;
+pub mod plots;
 pub mod predict;
 pub mod prior;
 pub mod report;
+pub mod table;
 pub mod variables;
 
 mod baseline;

@@ -13,7 +13,9 @@
 //! A backward Euler step balances, at its end, stresses that belong to the mean flow of the step: where a contact spreads the error of its
 //! radius and force is of the first order in the step, however exactly a straight strain path is integrated within a step.
 
-use super::j2::{Response, determinant_minus_one, deviator, isochoric_factor_minus_one, isochoric_mean, return_mapping};
+use super::j2::{
+    Response, determinant_minus_one, deviator, isochoric_factor_minus_one, isochoric_mean, norm_squared, return_mapping,
+};
 use super::{Material, PointError, PointState};
 use crate::real::Real;
 
@@ -72,6 +74,10 @@ pub fn complete<R: Real>(
     if kept {
         let pushed = push_forward(relative, &std::array::from_fn(|c| committed.be[c] - start.be[c]));
         flow.strain = std::array::from_fn(|c| flow.strain[c] + pushed[c]);
+        // Equivalent strain of what flowed altogether, sqrt(2/3) |strain/2|: where the flow turns, less than what was anticipated and what was added
+        // one by one.
+        flow.alpha = flow.alpha.min(norm_squared(&flow.strain).sqrt() * R::of(1.0 / 6.0_f64.sqrt()));
+        response.state.alpha = committed.alpha + flow.alpha;
         let hardening = &material.hardening;
         let work = |alpha: R| hardening.plastic_work(alpha, hardening.flow_stress(alpha));
         response.plastic_work = (work(response.state.alpha) - work(committed.alpha)).max(R::ZERO);

@@ -5,6 +5,8 @@
 //! beside its place and moved there when it is whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job
 //! keeps what it computed.
 
+pub mod plots;
+
 mod atomic;
 mod clock;
 mod contact_csv;
@@ -14,12 +16,12 @@ mod estimate;
 mod fields;
 mod history;
 mod path_share;
-mod plots;
 mod progress;
 mod recorder;
 mod report;
 mod results;
 mod summary;
+mod time_by_phase;
 mod units;
 mod vtu;
 
@@ -33,10 +35,11 @@ pub use estimate::{ErrorEstimate, companion_elements, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, read_history};
 pub use path_share::PathShare;
-pub use plots::{PlotInputs, plot_contact, plot_forces, plot_indentation, plot_ratio, write_plots};
+pub use plots::{Picture, PlotInputs, write_plots};
 pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, progress};
 pub use recorder::Recorder;
 pub use results::{ResultWriter, Setting};
 pub use summary::{FULL_SLIP_RATIO, NormalizedResults, SLIP_DISPLACEMENT_RATIO, Status, Summary, SummaryInputs};
+pub use time_by_phase::{OutsideSteps, PhaseTime, TimeByPhase};
 pub use units::Units;
 pub use vtu::{Collection, Field, Grid, Values, write_vtu};
