@@ -12,7 +12,7 @@ mod clock;
 mod contact_csv;
 mod directory;
 mod error;
-mod estimate;
+pub mod estimate;
 mod fields;
 mod history;
 mod path_share;
