@@ -2,6 +2,8 @@
 
 #[path = "law/synthetic.rs"]
 mod synthetic;
+#[path = "law/unseen.rs"]
+mod unseen;
 
 use std::fs;
 use std::path::Path;
