@@ -113,6 +113,14 @@ pub enum CliError {
         /// What the law says.
         source: Box<LawError>,
     },
+    /// The directory of `plot` holds nothing that can be drawn.
+    #[error("{}: {what}. give the directory that was given to `asperity run --out` or `asperity study --out`", .dir.display())]
+    NothingToPlot {
+        /// The directory.
+        dir: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
     /// Results cannot be begun.
     #[error(transparent)]
     Output(#[from] OutputError),

@@ -10,7 +10,9 @@ use clap::{Args, Subcommand};
 use super::{CliError, Outcome, print};
 use crate::case::Case;
 use crate::law::export::{Language, files, source};
+use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
+use crate::law::prior::Prior;
 use crate::law::{Law, LawError, fit, report};
 use crate::output::write_atomically;
 
@@ -39,6 +41,10 @@ pub struct FitArgs {
     /// The directory of a study.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
+    /// Constants to start from, which count as much as cross-validation allows: built-in (for a study with less than a quarter of its cases), none, or
+    /// another law.json.
+    #[arg(long, value_name = "PRIOR", default_value = "built-in")]
+    pub prior: String,
 }
 
 /// The arguments of `law predict`.
@@ -76,15 +82,15 @@ pub struct ExportArgs {
 /// Runs a subcommand of `asperity law`.
 pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
     match &args.command {
-        LawCommand::Fit(args) => fit_law(&args.dir),
+        LawCommand::Fit(args) => fit_law(args),
         LawCommand::Predict(args) => predict_case(args),
         LawCommand::Export(args) => export_law(args),
     }
 }
 
-fn fit_law(dir: &Path) -> Result<Outcome, CliError> {
-    let law = fit::fit(dir)?;
-    let path = dir.join("law.json");
+fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
+    let law = fit::fit(&args.dir, &Prior::from_option(&args.prior)?)?;
+    let path = args.dir.join("law.json");
     law.write(&path)?;
     print(&format!("{}\nlaw in {}\n", summary(&law), path.display()))?;
     Ok(Outcome::Done)
@@ -102,6 +108,16 @@ fn summary(law: &Law) -> String {
         p.folds,
         p.seed
     );
+    if let Some(prior) = &p.prior {
+        let weight = |weight: Option<f64>| weight.map_or_else(|| "none".to_owned(), |weight| weight.to_string());
+        let _ = writeln!(
+            text,
+            "Prior: the law of {}; weight for the shear {}, for the normal problem {}\n",
+            prior.study,
+            weight(prior.shear),
+            weight(prior.normal)
+        );
+    }
     let predicted = "Errors with F_N0 and a0 predicted from h, cross-validated, in per cent";
     let known = "Errors of the kept forms (*) with F_N0 and a0 known, cross-validated, in per cent";
     for table in [
@@ -122,16 +138,7 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     let source = if args.press { NormalSource::Press } else { NormalSource::Formulas };
     let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
     let Prediction { curve, out_of_range, .. } = predict(&law, &case, source).map_err(in_case)?;
-    if !out_of_range.is_empty() {
-        let list: Vec<String> = out_of_range.iter().map(ToString::to_string).collect();
-        // A closed stderr does not change the prediction.
-        let _ = writeln!(
-            std::io::stderr(),
-            "warning: {} lies outside of what the law was fitted to: {}. compare with `asperity run`",
-            args.case.display(),
-            list.join(", ")
-        );
-    }
+    warn_out_of_range(&args.case, &out_of_range);
     let mut text = String::from("delta_T,F_T,F_N\n");
     for point in &curve {
         let _ = writeln!(text, "{:?},{:?},{:?}", point.delta_t, point.f_t, point.f_n);
@@ -152,4 +159,18 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
         write_atomically(&dir.join(file.name), |out| out.write_all(file.content.as_bytes()))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Says on stderr what of a case lies outside of a law's range.
+pub(super) fn warn_out_of_range(case: &Path, out_of_range: &[OutOfRange]) {
+    if !out_of_range.is_empty() {
+        let list: Vec<String> = out_of_range.iter().map(ToString::to_string).collect();
+        // A closed stderr does not change the prediction.
+        let _ = writeln!(
+            std::io::stderr(),
+            "warning: {} lies outside of what the law was fitted to: {}. compare with `asperity run`",
+            case.display(),
+            list.join(", ")
+        );
+    }
 }

@@ -8,6 +8,7 @@ pub mod error;
 pub mod law;
 pub mod options;
 pub mod out;
+pub mod plot;
 pub mod point;
 pub mod processor;
 pub mod run;
@@ -42,6 +43,7 @@ enum Command {
     Point(point::PointArgs),
     Study(study::StudyArgs),
     Law(law::LawArgs),
+    Plot(plot::PlotArgs),
 }
 
 impl Command {
@@ -54,6 +56,7 @@ impl Command {
             Command::Point(args) => point::point(args),
             Command::Study(args) => study::study(args),
             Command::Law(args) => law::law(args),
+            Command::Plot(args) => plot::plot(args),
         }
     }
 }

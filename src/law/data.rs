@@ -1,9 +1,9 @@
 //! Reads a study back: `study.csv` and the run directories in `cases/`, reduced to what a law is fitted to.
 
-use std::fs;
 use std::path::Path;
 
 use super::LawError;
+use super::table::StudyTable;
 use super::variables::{Body, Variables};
 use crate::case::{Case, Friction, Hold, Segment};
 use crate::output::{OutputDirectory, StepRecord, Summary, SummaryInputs, read_history};
@@ -89,8 +89,8 @@ impl StudyData {
     pub fn read(dir: &Path) -> Result<Self, LawError> {
         let mut data = Self { samples: Vec::new(), skipped: Vec::new() };
         let mut materials: Vec<Case> = Vec::new();
-        for row in read_table(&dir.join("study.csv"))? {
-            let skipped = if row.status == "done" {
+        for row in StudyTable::read(&dir.join("study.csv"))?.rows {
+            let skipped = if row.is_done() {
                 let directory = OutputDirectory::existing(dir.join(&row.directory));
                 match read_sample(&row.id, &directory, &mut materials)? {
                     Ok(sample) => {
@@ -122,31 +122,6 @@ impl StudyData {
         let list: Vec<String> = reasons.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
         format!("Left out: {}. ", list.join(", "))
     }
-}
-
-struct Row {
-    id: String,
-    directory: String,
-    status: String,
-}
-
-/// `case`, `directory` and `status` of every row.
-fn read_table(path: &Path) -> Result<Vec<Row>, LawError> {
-    let text = fs::read_to_string(path).map_err(|source| LawError::NoStudy { path: path.to_owned(), source })?;
-    let malformed = |line: u64, problem: String| LawError::Table { path: path.to_owned(), line, problem };
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| malformed(1, error.to_string()))?.clone();
-    let column = |name: &str| {
-        header.iter().position(|column| column == name).ok_or_else(|| malformed(1, format!("there is no column {name}")))
-    };
-    let (id, directory, status) = (column("case")?, column("directory")?, column("status")?);
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| malformed(error.position().map_or(0, csv::Position::line), error.to_string()))?;
-        let cell = |index: usize| record.get(index).unwrap_or_default().to_owned();
-        rows.push(Row { id: cell(id), directory: cell(directory), status: cell(status) });
-    }
-    Ok(rows)
 }
 
 /// A sample from a run's directory, or why it is none.

@@ -1,5 +1,6 @@
 //! Where each result of a run lies in its folder.
 
+use super::plots::RUN_PICTURES;
 use super::{OutputError, write_atomically};
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -137,7 +138,7 @@ fn ours(folder: &str, name: &str) -> bool {
         "" => matches!(name, "history.csv" | "summary.json" | "checkpoint"),
         "fields" => name == "case.pvd" || step(".vtu"),
         "contact" => step(".csv"),
-        "plots" => matches!(name, "indentation.svg" | "forces.svg" | "ratio.svg" | "contact.svg"),
+        "plots" => name.strip_suffix(".svg").is_some_and(|name| RUN_PICTURES.contains(&name)),
         _ => false,
     };
     named || draft()

@@ -5,16 +5,17 @@
 //! beside its place and moved there when it is whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job
 //! keeps what it computed.
 
+pub mod plots;
+
 mod atomic;
 mod clock;
 mod contact_csv;
 mod directory;
 mod error;
-mod estimate;
+pub mod estimate;
 mod fields;
 mod history;
 mod path_share;
-mod plots;
 mod progress;
 mod recorder;
 mod report;
@@ -34,7 +35,7 @@ pub use estimate::{ErrorEstimate, companion_elements, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, read_history};
 pub use path_share::PathShare;
-pub use plots::{PlotInputs, plot_contact, plot_forces, plot_indentation, plot_ratio, write_plots};
+pub use plots::{Picture, PlotInputs, write_plots};
 pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, progress};
 pub use recorder::Recorder;
 pub use results::{ResultWriter, Setting};

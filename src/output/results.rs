@@ -7,10 +7,10 @@ use std::time::Instant;
 
 use super::clock::Clock;
 use super::path_share::PathShare;
+use super::plots::Tables;
 use super::{
-    Collection, ContactPoint, ContactStatus, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, OutsideSteps,
-    PlotInputs, Position, Progress, Status, StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields,
-    write_plots,
+    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, OutsideSteps, PlotInputs, Position,
+    Progress, Status, StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
 use crate::compute::Description;
@@ -48,8 +48,8 @@ pub struct ResultWriter {
     rows: Vec<StepRecord>,
     collection: Collection,
     saved: Option<usize>,
-    /// Contact at the end of the last segment that ended in contact, for the plot.
-    shown: Vec<ContactPoint>,
+    /// Contact at the ends of segments, for the plots.
+    tables: Tables,
     fallbacks: usize,
     times: PhaseTimes,
     outside: OutsideSteps,
@@ -83,7 +83,7 @@ impl ResultWriter {
             rows: Vec::new(),
             collection: Collection::new(&out.collection()),
             saved: None,
-            shown: Vec::new(),
+            tables: Tables::default(),
             fallbacks: 0,
             times: PhaseTimes::default(),
             outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
@@ -128,7 +128,7 @@ impl ResultWriter {
         self.messages.extend(message.map(str::to_owned));
         let begun = Instant::now();
         let plots = match &self.plots {
-            Some(inputs) => write_plots(&self.out, &self.rows, Some(&self.shown), inputs).map(drop),
+            Some(inputs) => write_plots(&self.out, &self.rows, &self.tables, inputs).map(drop),
             None => Ok(()),
         };
         if let Err(error) = &plots {
@@ -226,8 +226,8 @@ impl Observer for ResultWriter {
         } else if self.contact_tables {
             write_contact(&self.out.contact(view.record.step), &contact)?;
         }
-        if contact.iter().any(|point| point.status != ContactStatus::Open) {
-            self.shown = contact;
+        if self.plots.is_some() {
+            self.tables.add(&self.rows, contact);
         }
         self.outside.output += begun.elapsed().as_secs_f64();
         Ok(())

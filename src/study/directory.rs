@@ -1,4 +1,5 @@
-//! Where the results of a study lie: `study.toml`, `study.csv` and `cases/0001/`, each an ordinary run's directory.
+//! Where the results of a study lie: `study.toml`, `study.csv` and `cases/0001/`, each an ordinary run's directory; `plots/*.svg` and `report.html` of
+//! `asperity plot`.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -7,6 +8,7 @@ use std::path::{Path, PathBuf};
 use super::StudyError;
 use super::file::Study;
 use super::row::FIRST_COLUMNS;
+use crate::law::plots::STUDY_PICTURES;
 use crate::output::{OutputDirectory, write_atomically};
 
 /// The folder of one study.
@@ -34,6 +36,16 @@ impl StudyDirectory {
     /// `study.csv`, a row a case.
     pub fn table(&self) -> PathBuf {
         self.root.join("study.csv")
+    }
+
+    /// `plots/NAME.svg`.
+    pub fn plot(&self, name: &str) -> PathBuf {
+        self.root.join(format!("plots/{name}.svg"))
+    }
+
+    /// `report.html`.
+    pub fn report(&self) -> PathBuf {
+        self.root.join("report.html")
     }
 
     /// The directory of a case from the study's, as `study.csv` names it.
@@ -118,11 +130,13 @@ impl StudyDirectory {
             }
             remove_if_empty(&cases).map_err(failed)?;
         }
-        for file in [self.study(), self.table()] {
+        let pictures = STUDY_PICTURES.into_iter().map(|name| self.plot(name));
+        for file in pictures.chain([self.report(), self.study(), self.table()]) {
             if file.is_file() {
                 fs::remove_file(&file).map_err(failed)?;
             }
         }
+        remove_if_empty(&self.root.join("plots")).map_err(failed)?;
         Ok(())
     }
 

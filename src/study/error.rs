@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use crate::case::CaseError;
 use crate::compute::ComputeError;
+use crate::law::LawError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
@@ -75,6 +76,9 @@ pub enum StudyError {
     /// Results cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The results of a study cannot be read back, or a picture of them fails.
+    #[error(transparent)]
+    Law(#[from] LawError),
     /// One case could not be simulated; it becomes the reason in its row.
     #[error(transparent)]
     Simulation(#[from] SimulationError),

@@ -2,13 +2,14 @@
 //!
 //! `file` reads a base case and a grid into cases; `shard` deals them out; `run` decides which there are to compute and on what; `schedule` gives each a core
 //! of its own, or `batch` lets them share a device; `simulate` takes one from its directory to its summary; `row` makes `study.csv` of the
-//! summaries. What can go wrong with one case is a row; what can go wrong with all of them is a [`StudyError`].
+//! summaries; `report` draws them and writes `report.html`. What can go wrong with one case is a row; what can go wrong with all of them is a [`StudyError`].
 
 mod batch;
 mod directory;
 mod error;
 mod file;
 mod progress;
+pub mod report;
 mod row;
 mod run;
 mod schedule;

@@ -1,25 +1,86 @@
 //! The contact surface seen along its normal: status above the symmetry line, pressure mirrored below it.
 
 use super::super::{ContactPoint, ContactStatus, OutputError};
-use super::style::{BLUE, Drawn, FAINT, FONT, INK, ORANGE, draw, tick, viridis};
-use plotters::coord::Shift;
+use super::chart::nice_step;
+use super::style::{Area, BLUE, Drawn, FONT, INK, ORANGE, Picture, rounded, tick, viridis};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::path::Path;
 
-const SIZE: (u32, u32) = (780, 640);
-/// Left, right, top and bottom of the square that holds the map, in pixels.
-const FRAME: (i32, i32, i32, i32) = (84, 604, 52, 572);
-/// Left and right of the colour bar.
-const BAR: (i32, i32) = (640, 660);
 const OPEN: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
 /// The map of one step at current positions: open, stick and slip in the upper half, the pressure in the lower one. The shear runs to the right.
-pub fn plot_contact(path: &Path, points: &[ContactPoint]) -> Result<(), OutputError> {
-    draw(path, SIZE, |root| draw_map(root, points))
+pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
+    let caption = "The contact surface at the last saved step in contact, at current positions; the shear runs to the right.";
+    Picture::draw("contact", caption, (780, 640), |root| {
+        let map = Map { view: View::of(points), highest: highest(points), square: Square { left: 88, top: 52, side: 520 } };
+        map.draw(root, points)?;
+        let middle = map.square.top + map.square.side / 2;
+        root.draw(&Text::new("Contact surface", (map.square.left, 26), text(18, HPos::Left)))?;
+        map.axes(root, true)?;
+        root.draw(&Text::new("status", (map.square.left + 10, map.square.top + 16), text(14, HPos::Left)))?;
+        let below = map.square.top + map.square.side - 16;
+        root.draw(&Text::new("pressure (mirrored)", (map.square.left + 10, below), text(14, HPos::Left)))?;
+        status_names(root, points, 640, map.square.top + 14, true)?;
+        pressure_bar(root, map.highest, 640, middle + 8, map.square.top + map.square.side)
+    })
+}
+
+/// One panel of [`plot_slip`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlipPanel {
+    /// delta_T.
+    pub delta_t: f64,
+    /// F_T over F_N; `None` without a normal force.
+    pub ratio: Option<f64>,
+    /// The surface then.
+    pub points: Vec<ContactPoint>,
+}
+
+/// Maps of some steps of a shear side by side, all to one scale: how slip eats into the contact from its edge.
+pub fn plot_slip(panels: &[SlipPanel]) -> Result<Picture, OutputError> {
+    const PANEL: (i32, i32) = (300, 322);
+    const HEAD: i32 = 48;
+    let columns = match panels.len() as i32 {
+        4 => 2,
+        count => count.clamp(1, 3),
+    };
+    let rows = (panels.len() as i32 + columns - 1) / columns;
+    let size = ((columns * PANEL.0 + 196) as u32, (HEAD + rows.max(1) * PANEL.1 + 8) as u32);
+    let caption = "Stick and slip (upper halves) and pressure (lower halves, mirrored) at saved steps of the shear, to one scale; \
+                   the shear runs to the right.";
+    Picture::draw("slip", caption, size, |root| {
+        let all: Vec<ContactPoint> = panels.iter().flat_map(|panel| panel.points.iter().cloned()).collect();
+        let (view, highest) = (View::of(&all), highest(&all));
+        root.draw(&Text::new("Stick and slip during the shear", (24, 26), text(18, HPos::Left)))?;
+        for (i, panel) in panels.iter().enumerate() {
+            let (column, row) = (i as i32 % columns, i as i32 / columns);
+            let (left, top) = (column * PANEL.0 + 62, HEAD + row * PANEL.1 + 26);
+            let map = Map { view, highest, square: Square { left, top, side: 228 } };
+            // Covers what sticks out of the square, in its own panel alone.
+            let (x, y) = (column * PANEL.0, HEAD + row * PANEL.1);
+            let area = root.clone().shrink((x as u32, y as u32), (PANEL.0 as u32, PANEL.1 as u32));
+            let inside = Map { square: Square { left: left - x, top: top - y, ..map.square }, ..map };
+            inside.draw(&area, &panel.points)?;
+            let ratio = panel.ratio.map_or(String::new(), |ratio| format!(", F_T/F_N = {ratio:.3}"));
+            let head = format!("δ_T = {}{ratio}", tick(rounded(panel.delta_t)));
+            root.draw(&Text::new(head, (left, top - 13), text(14, HPos::Left)))?;
+            // Named where no other panel stands below.
+            map.axes(root, i as i32 + columns >= panels.len() as i32)?;
+        }
+        let left = columns * PANEL.0 + 20;
+        let first = panels.last().map(|panel| panel.points.as_slice()).unwrap_or_default();
+        status_names(root, first, left, HEAD + 40, false)?;
+        pressure_bar(root, highest, left, HEAD + 130, HEAD + PANEL.1 - 68)
+    })
+}
+
+/// Greatest finite pressure.
+fn highest(points: &[ContactPoint]) -> f64 {
+    points.iter().map(|point| point.pressure).filter(|p| p.is_finite()).fold(0.0, f64::max)
 }
 
 /// The square that is shown: everything in contact and a third more.
+#[derive(Clone, Copy)]
 struct View {
     centre: f64,
     reach: f64,
@@ -34,17 +95,106 @@ impl View {
         let side = shown.iter().map(|point| point.current_y.abs()).fold(0.0, f64::max);
         let cell = shown.iter().map(|point| point.area).fold(0.0, f64::max).sqrt();
         let reach = 1.33 * (0.5 * (high - low)).max(side).max(2.0 * cell).max(f64::MIN_POSITIVE);
-        Self { centre: 0.5 * (low + high), reach }
+        let centre = if shown.is_empty() { 0.0 } else { 0.5 * (low + high) };
+        Self { centre, reach }
     }
+}
 
+/// Where a map is drawn, in pixels.
+#[derive(Clone, Copy)]
+struct Square {
+    left: i32,
+    top: i32,
+    side: i32,
+}
+
+#[derive(Clone, Copy)]
+struct Map {
+    view: View,
+    /// The pressure at the upper end of the colours.
+    highest: f64,
+    square: Square,
+}
+
+impl Map {
     fn scale(&self) -> f64 {
-        0.5 * f64::from(FRAME.1 - FRAME.0) / self.reach
+        0.5 * f64::from(self.square.side) / self.view.reach
     }
 
     fn pixel(&self, x: f64, y: f64) -> (i32, i32) {
-        let (middle_x, middle_y) = (0.5 * f64::from(FRAME.0 + FRAME.1), 0.5 * f64::from(FRAME.2 + FRAME.3));
-        ((middle_x + (x - self.centre) * self.scale()).round() as i32, (middle_y - y * self.scale()).round() as i32)
+        let half = 0.5 * f64::from(self.square.side);
+        let (middle_x, middle_y) = (f64::from(self.square.left) + half, f64::from(self.square.top) + half);
+        let (x, y) = (middle_x + (x - self.view.centre) * self.scale(), middle_y - y * self.scale());
+        (x.round() as i32, y.round() as i32)
     }
+
+    /// The points, and white over all of the area that is outside of the square.
+    fn draw(&self, area: &Area<'_>, points: &[ContactPoint]) -> Drawn {
+        let middle = self.pixel(0.0, 0.0).1;
+        let reach = self.view.reach;
+        // The open ones first, so that they hide nothing of the contact.
+        let (closed, open): (Vec<&ContactPoint>, _) = points.iter().partition(|point| point.status != ContactStatus::Open);
+        for point in open.into_iter().chain(closed) {
+            if !((point.current_x - self.view.centre).abs() <= reach && point.current_y.abs() <= reach) {
+                continue;
+            }
+            // Discs that just overlap; the nodes on the symmetry line stand for half a cell.
+            let radius = (0.6 * point.area.max(0.0).sqrt() * self.scale()).clamp(1.5, 14.0) as i32;
+            let pressure = match point.status {
+                ContactStatus::Open => OPEN,
+                _ if self.highest > 0.0 => viridis(point.pressure / self.highest),
+                _ => viridis(0.0),
+            };
+            let (x, upper) = self.pixel(point.current_x, point.current_y);
+            let lower = self.pixel(point.current_x, -point.current_y).1;
+            area.draw(&Circle::new((x, upper.min(middle - radius)), radius, status_colour(point.status).filled()))?;
+            area.draw(&Circle::new((x, lower.max(middle + radius)), radius, pressure.filled()))?;
+        }
+        let Square { left, top, side } = self.square;
+        let (width, height) = area.dim_in_pixel();
+        let (width, height) = (width as i32, height as i32);
+        for cover in [
+            [(0, 0), (width, top)],
+            [(0, top + side), (width, height)],
+            [(0, top), (left, top + side)],
+            [(left + side, top), (width, top + side)],
+        ] {
+            area.draw(&Rectangle::new(cover, WHITE.filled()))?;
+        }
+        area.draw(&PathElement::new([(left, middle), (left + side, middle)], INK.stroke_width(1)))?;
+        area.draw(&Rectangle::new([(left, top), (left + side, top + side)], INK.stroke_width(1)))?;
+        Ok(())
+    }
+
+    /// Ticks and their numbers, with the names of the axes; the horizontal name only where it is wanted.
+    fn axes(&self, root: &Area<'_>, named: bool) -> Drawn {
+        let Square { left, top, side } = self.square;
+        let (centre, reach) = (self.view.centre, self.view.reach);
+        let step = nice_step(2.0 * reach / 5.0);
+        for i in ((centre - reach) / step).ceil() as i64..=((centre + reach) / step).floor() as i64 {
+            let x = self.pixel(i as f64 * step, 0.0).0;
+            root.draw(&PathElement::new([(x, top + side), (x, top + side + 5)], INK.stroke_width(1)))?;
+            root.draw(&Text::new(tick(i as f64 * step), (x, top + side + 15), text(13, HPos::Center)))?;
+        }
+        let count = (reach / step).floor() as i64;
+        for i in -count..=count {
+            let y = self.pixel(0.0, i as f64 * step).1;
+            root.draw(&PathElement::new([(left - 5, y), (left, y)], INK.stroke_width(1)))?;
+            root.draw(&Text::new(tick(i as f64 * step), (left - 9, y), text(13, HPos::Right)))?;
+        }
+        if named {
+            let name = if side > 400 { "x, along the shear (case's unit of length)" } else { "x, along the shear" };
+            root.draw(&Text::new(name, (left + side / 2, top + side + 38), text(15, HPos::Center)))?;
+        }
+        let upwards = (FONT, 15).into_font().transform(FontTransform::Rotate270).color(&INK);
+        let upwards = upwards.pos(Pos::new(HPos::Center, VPos::Center));
+        root.draw(&Text::new("y", (left - if side > 400 { 68 } else { 52 }, top + side / 2), upwards))?;
+        Ok(())
+    }
+}
+
+fn text(size: i32, place: HPos) -> TextStyle<'static> {
+    (FONT, size).into_font().color(&INK).pos(Pos::new(place, VPos::Center))
 }
 
 fn status_colour(status: ContactStatus) -> RGBColor {
@@ -55,105 +205,34 @@ fn status_colour(status: ContactStatus) -> RGBColor {
     }
 }
 
-fn draw_map(root: &DrawingArea<SVGBackend<'_>, Shift>, points: &[ContactPoint]) -> Drawn {
-    let view = View::of(points);
-    let highest = points.iter().map(|point| point.pressure).filter(|p| p.is_finite()).fold(0.0, f64::max);
-    let text = |size: i32| (FONT, size).into_font().color(&INK);
-    let centred = |size: i32| text(size).pos(Pos::new(HPos::Center, VPos::Center));
-    let right = |size: i32| text(size).pos(Pos::new(HPos::Right, VPos::Center));
-
-    for point in points {
-        let inside = (point.current_x - view.centre).abs() <= view.reach && point.current_y.abs() <= view.reach;
-        if !inside {
-            continue;
-        }
-        // Discs that just overlap; the nodes on the symmetry line stand for half a cell.
-        let radius = (0.6 * point.area.max(0.0).sqrt() * view.scale()).clamp(1.5, 14.0) as i32;
-        let pressure = match point.status {
-            ContactStatus::Open => OPEN,
-            _ if highest > 0.0 => viridis(point.pressure / highest),
-            _ => viridis(0.0),
-        };
-        let (x, upper) = view.pixel(point.current_x, point.current_y);
-        let lower = view.pixel(point.current_x, -point.current_y).1;
-        let middle = view.pixel(0.0, 0.0).1;
-        root.draw(&Circle::new((x, upper.min(middle - radius)), radius, status_colour(point.status).filled()))?;
-        root.draw(&Circle::new((x, lower.max(middle + radius)), radius, pressure.filled()))?;
-    }
-
-    frame(root)?;
-    root.draw(&Text::new("Contact surface", ((FRAME.0 + FRAME.1) / 2, 24), centred(20)))?;
-    let middle = view.pixel(0.0, 0.0).1;
-    root.draw(&PathElement::new([(FRAME.0, middle), (FRAME.1, middle)], INK.stroke_width(1)))?;
-    root.draw(&Text::new("status", (FRAME.0 + 10, FRAME.2 + 10), text(14)))?;
-    root.draw(&Text::new("pressure (mirrored)", (FRAME.0 + 10, FRAME.3 - 22), text(14)))?;
-
+/// The colours of the status, with the number of points of each if `counted`.
+fn status_names(root: &Area<'_>, points: &[ContactPoint], left: i32, top: i32, counted: bool) -> Drawn {
     let names = [(ContactStatus::Stick, "stick"), (ContactStatus::Slip, "slip"), (ContactStatus::Open, "open")];
-    for ((status, name), y) in names.into_iter().zip((FRAME.2 + 14..).step_by(24)) {
+    for ((status, name), y) in names.into_iter().zip((top..).step_by(24)) {
         let count = points.iter().filter(|point| point.status == status).count();
-        root.draw(&Circle::new((BAR.0 + 8, y), 7, status_colour(status).filled()))?;
-        let label = text(14).pos(Pos::new(HPos::Left, VPos::Center));
-        root.draw(&Text::new(format!("{name} ({count})"), (BAR.0 + 24, y), label))?;
+        root.draw(&Circle::new((left + 8, y), 7, status_colour(status).filled()))?;
+        let label = if counted { format!("{name} ({count})") } else { name.to_owned() };
+        root.draw(&Text::new(label, (left + 24, y), text(14, HPos::Left)))?;
     }
-    if highest > 0.0 {
-        let (top, bottom) = (middle + 30, FRAME.3);
-        root.draw(&Text::new("pressure", (BAR.0, middle + 4), text(14)))?;
-        for y in top..bottom {
-            let share = f64::from(bottom - y) / f64::from(bottom - top);
-            root.draw(&Rectangle::new([(BAR.0, y), (BAR.1, y + 1)], viridis(share).filled()))?;
-        }
-        for i in 0..=4 {
-            let y = bottom - (bottom - top) * i / 4;
-            let label = text(13).pos(Pos::new(HPos::Left, VPos::Center));
-            let value = rounded(highest * f64::from(i) / 4.0);
-            root.draw(&PathElement::new([(BAR.1, y), (BAR.1 + 5, y)], INK.stroke_width(1)))?;
-            root.draw(&Text::new(tick(value), (BAR.1 + 9, y), label))?;
-        }
-    }
-
-    let step = nice_step(view.reach);
-    let first = ((view.centre - view.reach) / step).ceil() as i64;
-    let last = ((view.centre + view.reach) / step).floor() as i64;
-    for i in first..=last {
-        let x = view.pixel(i as f64 * step, 0.0).0;
-        root.draw(&PathElement::new([(x, FRAME.3), (x, FRAME.3 + 5)], INK.stroke_width(1)))?;
-        root.draw(&Text::new(tick(i as f64 * step), (x, FRAME.3 + 16), centred(13)))?;
-    }
-    let count = (view.reach / step).floor() as i64;
-    for i in -count..=count {
-        let y = view.pixel(0.0, i as f64 * step).1;
-        root.draw(&PathElement::new([(FRAME.0 - 5, y), (FRAME.0, y)], INK.stroke_width(1)))?;
-        root.draw(&Text::new(tick(i as f64 * step), (FRAME.0 - 9, y), right(13)))?;
-    }
-    root.draw(&Text::new("x, along the shear", ((FRAME.0 + FRAME.1) / 2, FRAME.3 + 42), centred(15)))?;
-    root.draw(&Text::new("y", (24, middle), centred(15)))?;
     Ok(())
 }
 
-/// Hides the halves of the discs that stick out and draws the border.
-fn frame(root: &DrawingArea<SVGBackend<'_>, Shift>) -> Drawn {
-    let (left, right, top, bottom) = FRAME;
-    let (width, height) = (SIZE.0 as i32, SIZE.1 as i32);
-    for cover in
-        [[(0, 0), (width, top)], [(0, bottom), (width, height)], [(0, top), (left, bottom)], [(right, top), (width, bottom)]]
-    {
-        root.draw(&Rectangle::new(cover, WHITE.filled()))?;
+fn pressure_bar(root: &Area<'_>, highest: f64, left: i32, top: i32, bottom: i32) -> Drawn {
+    if highest <= 0.0 {
+        return Ok(());
     }
-    root.draw(&Rectangle::new([(left, top), (right, bottom)], FAINT.stroke_width(1)))?;
+    root.draw(&Text::new("pressure (case's", (left, top), text(14, HPos::Left)))?;
+    root.draw(&Text::new("unit of stress)", (left, top + 17), text(14, HPos::Left)))?;
+    let top = top + 36;
+    for y in top..bottom {
+        let share = f64::from(bottom - y) / f64::from(bottom - top);
+        root.draw(&Rectangle::new([(left, y), (left + 20, y + 1)], viridis(share).filled()))?;
+    }
+    for i in 0..=4 {
+        let y = bottom - (bottom - top) * i / 4;
+        let value = rounded(highest * f64::from(i) / 4.0);
+        root.draw(&PathElement::new([(left + 20, y), (left + 25, y)], INK.stroke_width(1)))?;
+        root.draw(&Text::new(tick(value), (left + 29, y), text(13, HPos::Left)))?;
+    }
     Ok(())
-}
-
-/// Three digits, for the labels of the colour bar.
-fn rounded(value: f64) -> f64 {
-    if value <= 0.0 {
-        return 0.0;
-    }
-    let unit = 10f64.powf(value.log10().floor() - 2.0);
-    (value / unit).round() * unit
-}
-
-/// A round distance of ticks, four to nine of them over twice the reach.
-fn nice_step(reach: f64) -> f64 {
-    let decade = 10f64.powf((0.5 * reach).log10().floor());
-    [5.0, 2.0, 1.0].into_iter().map(|digit| digit * decade).find(|&step| step <= 0.5 * reach).unwrap_or(decade)
 }

@@ -1,16 +1,29 @@
 //! `plots/*.svg`: what a run looks like, on a white card with dark text and colours that hold in print and for colour-blind readers.
+//!
+//! `style` is the card, the colours and the writing of numbers; `chart` draws any diagram; the others are the pictures of a run. A picture is drawn
+//! into a [`Picture`] first and then written.
+
+pub mod chart;
+pub mod style;
 
 mod contact_map;
 mod curves;
-mod style;
+mod pressure;
+mod replot;
 
-pub use contact_map::plot_contact;
-pub use curves::{plot_forces, plot_indentation, plot_ratio};
+pub use contact_map::{SlipPanel, plot_contact, plot_slip};
+pub use curves::{plot_forces, plot_indentation, plot_law, plot_ratio, plot_stick};
+pub use pressure::plot_pressure;
+pub use replot::replot;
+pub use style::Picture;
 
-use super::{ContactPoint, OutputDirectory, OutputError, StepRecord};
+use super::{ContactPoint, ContactStatus, OutputDirectory, OutputError, StepRecord};
 use crate::analytical::ElasticSphere;
 use crate::analytical::olsson_larsson::Hardening;
 use std::path::PathBuf;
+
+/// Names of all pictures of a run, by which an earlier run's are removed.
+pub const RUN_PICTURES: [&str; 8] = ["indentation", "pressure", "forces", "ratio", "stick", "slip", "contact", "law"];
 
 /// What the plots show beside the computed curves, in the user's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,30 +36,89 @@ pub struct PlotInputs {
     pub friction: Option<f64>,
 }
 
-/// Writes every plot for which there is something to show and returns their paths: `indentation` from the pressing, `forces` and `ratio` from
-/// the shear, `contact` from the points of one step.
+/// The contact tables of a run that are shown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tables {
+    /// At the end of the press, with the row of the history.
+    pub pressed: Option<(StepRecord, Vec<ContactPoint>)>,
+    /// Some of the shear.
+    pub shear: Vec<SlipPanel>,
+    /// The last one in contact.
+    pub last: Vec<ContactPoint>,
+}
+
+impl Tables {
+    /// Takes the table of the last step of a history, where it is one that is shown.
+    pub fn add(&mut self, history: &[StepRecord], points: Vec<ContactPoint>) {
+        let Some(record) = history.last().copied() else { return };
+        if points.iter().any(|point| point.status != ContactStatus::Open) {
+            self.last.clone_from(&points);
+        }
+        if !curves::split(history).1.is_empty() {
+            let ratio = (record.f_n > 0.0).then(|| record.f_t / record.f_n);
+            self.shear.push(SlipPanel { delta_t: record.delta_t, ratio, points });
+        } else if self.pressed.as_ref().is_none_or(|(deepest, _)| record.h >= deepest.h) {
+            self.pressed = Some((record, points));
+        }
+    }
+}
+
+/// Most panels of the stick/slip picture.
+const PANELS: usize = 6;
+
+/// Up to `count` items, evenly over their numbers, the first and the last among them.
+fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
+    if items.len() <= count {
+        return items.to_vec();
+    }
+    (0..count).map(|i| items[i * (items.len() - 1) / (count - 1)].clone()).collect()
+}
+
+/// Every picture for which there is something to show: `indentation` and `pressure` of the press, `forces`, `ratio`, `stick` and `slip` of the shear,
+/// `contact` of the last step in contact.
+///
+/// # Errors
+/// A drawing fails.
+pub fn run_pictures(history: &[StepRecord], tables: &Tables, inputs: &PlotInputs) -> Result<Vec<Picture>, OutputError> {
+    let mut pictures = Vec::new();
+    let (pressing, shear) = curves::split(history);
+    if !pressing.is_empty() {
+        pictures.push(plot_indentation(history, inputs)?);
+    }
+    if let Some((record, points)) = &tables.pressed {
+        pictures.push(plot_pressure(points, record, &inputs.sphere)?);
+    }
+    if shear.len() > 1 {
+        pictures.extend([plot_forces(history)?, plot_ratio(history, inputs.friction)?, plot_stick(history, inputs.friction)?]);
+    }
+    if !tables.shear.is_empty() {
+        pictures.push(plot_slip(&spread(&tables.shear, PANELS))?);
+    }
+    if !tables.last.is_empty() {
+        pictures.push(plot_contact(&tables.last)?);
+    }
+    Ok(pictures)
+}
+
+/// Draws and writes [`run_pictures`] and returns their paths.
+///
+/// # Errors
+/// A drawing fails, or the place cannot be written.
 pub fn write_plots(
     out: &OutputDirectory,
     history: &[StepRecord],
-    contact: Option<&[ContactPoint]>,
+    tables: &Tables,
     inputs: &PlotInputs,
 ) -> Result<Vec<PathBuf>, OutputError> {
-    let mut written = Vec::new();
-    let (pressing, shear) = curves::split(history);
-    if !pressing.is_empty() {
-        plot_indentation(&out.plot("indentation"), history, inputs)?;
-        written.push(out.plot("indentation"));
-    }
-    if shear.len() > 1 {
-        plot_forces(&out.plot("forces"), history)?;
-        plot_ratio(&out.plot("ratio"), history, inputs.friction)?;
-        written.extend([out.plot("forces"), out.plot("ratio")]);
-    }
-    if let Some(points) = contact.filter(|points| !points.is_empty()) {
-        plot_contact(&out.plot("contact"), points)?;
-        written.push(out.plot("contact"));
-    }
-    Ok(written)
+    let pictures = run_pictures(history, tables, inputs)?;
+    pictures
+        .iter()
+        .map(|picture| {
+            let path = out.plot(picture.name);
+            picture.write(&path)?;
+            Ok(path)
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -64,12 +64,32 @@ pub(super) fn contact() -> Vec<ContactPoint> {
     points
 }
 
+/// The text of an SVG without its markup, subscripts with their `_` lost: F_N is FN.
 fn parsed(path: &Path) -> String {
+    use quick_xml::events::Event;
     let text = fs::read_to_string(path).unwrap();
-    let mut reader = quick_xml::Reader::from_str(&text);
-    while !matches!(reader.read_event().unwrap(), quick_xml::events::Event::Eof) {}
     assert!(text.starts_with("<svg"), "{}", &text[..80]);
-    text
+    let mut reader = quick_xml::Reader::from_str(&text);
+    reader.config_mut().check_end_names = true;
+    let mut words = String::new();
+    loop {
+        match reader.read_event().unwrap() {
+            Event::Eof => return words,
+            Event::Text(text) => words.push_str(&text),
+            Event::End(end) if end.name().as_ref() == "text" => words.push('\n'),
+            _ => {}
+        }
+    }
+}
+
+fn tables() -> Tables {
+    let rows = history();
+    let mut tables = Tables::default();
+    tables.add(&rows[..20], contact());
+    for count in [22, 24, 26, 28, 30, 32, 34] {
+        tables.add(&rows[..count], contact());
+    }
+    tables
 }
 
 #[test]
@@ -78,26 +98,34 @@ fn every_plot_is_sound_xml_with_its_labels() {
     // For a look: ASPERITY_KEEP_PLOTS=FOLDER cargo test --lib output::plots
     let root = std::env::var_os("ASPERITY_KEEP_PLOTS").map_or(folder.path().to_path_buf(), PathBuf::from);
     let out = OutputDirectory::create(root).unwrap();
-    let written = write_plots(&out, &history(), Some(&contact()), &INPUTS).unwrap();
-    assert_eq!(written.len(), 4);
-    let indentation = parsed(&out.plot("indentation"));
-    for label in ["computed", "Hertz", "Olsson", "F_N"] {
-        assert!(indentation.contains(label), "{label}");
+    let written = write_plots(&out, &history(), &tables(), &INPUTS).unwrap();
+    assert_eq!(written.len(), 7);
+    for (name, labels) in [
+        ("indentation", ["simulation", "Hertz", "Olsson", "normal force FN"]),
+        ("pressure", ["same FN and a", "elastic at the same h", "contact radius a", "pressure p"]),
+        ("forces", ["FT, tangential", "FN, normal", "δT", "force"]),
+        ("ratio", ["μ = 0.3", "FT / FN", "Friction used", "δT"]),
+        ("stick", ["Mindlin", "stick radius", "simulation", "δT"]),
+        ("slip", ["FT/FN =", "stick", "slip", "along the shear"]),
+        ("contact", ["stick (", "slip (", "open (", "pressure (mirrored)"]),
+    ] {
+        let words = parsed(&out.plot(name));
+        for label in labels {
+            assert!(words.contains(label), "{name}: {label} is missing in {words}");
+        }
     }
-    assert!(parsed(&out.plot("forces")).contains("F_T"));
-    assert!(parsed(&out.plot("ratio")).contains("μ = 0.3"));
-    let contact = parsed(&out.plot("contact"));
-    for label in ["stick (", "slip (", "open (", "pressure (mirrored)"] {
-        assert!(contact.contains(label), "{label}");
-    }
+    // Six of the seven, the first and the last among them.
+    let slip = parsed(&out.plot("slip"));
+    assert_eq!(slip.matches("FT/FN =").count(), 6);
+    assert!(slip.contains("δT = 0.0039"), "{slip}");
 }
 
 #[test]
 fn only_what_there_is_gets_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let out = OutputDirectory::create(folder.path()).unwrap();
-    assert!(write_plots(&out, &[], None, &INPUTS).unwrap().is_empty());
-    assert_eq!(write_plots(&out, &history()[..5], Some(&[]), &INPUTS).unwrap(), [out.plot("indentation")]);
+    assert!(write_plots(&out, &[], &Tables::default(), &INPUTS).unwrap().is_empty());
+    assert_eq!(write_plots(&out, &history()[..5], &Tables::default(), &INPUTS).unwrap(), [out.plot("indentation")]);
     assert!(!out.plot("forces").exists());
 }
 
@@ -113,17 +141,47 @@ fn odd_histories_do_not_break_the_plots() {
     rows[25].f_n = 0.0;
     rows[26].f_t = f64::NAN;
     let elastic = PlotInputs { hardening: None, friction: None, ..INPUTS };
-    assert_eq!(write_plots(&out, &rows, None, &elastic).unwrap().len(), 3);
+    assert_eq!(write_plots(&out, &rows, &Tables::default(), &elastic).unwrap().len(), 4);
     let mut open = contact();
     for point in &mut open {
         (point.status, point.pressure) = (ContactStatus::Open, 0.0);
     }
-    plot_contact(&out.plot("contact"), &open).unwrap();
-    plot_contact(&out.plot("contact"), &open[..1]).unwrap();
+    let mut tables = Tables::default();
+    tables.add(&rows[..20], open.clone());
+    tables.add(&rows[..30], open[..1].to_vec());
+    assert!(tables.last.is_empty() && tables.shear.len() == 1);
+    write_plots(&out, &rows, &tables, &elastic).unwrap();
+    plot_contact(&open).unwrap().write(&out.plot("contact")).unwrap();
     parsed(&out.plot("contact"));
+    plot_contact(&open[..1]).unwrap();
+    plot_slip(&[]).unwrap();
     // All zero: nothing to scale by.
     let flat = vec![StepRecord::default(), StepRecord { delta_t: 1.0, ..StepRecord::default() }];
-    write_plots(&out, &flat, None, &INPUTS).unwrap();
+    write_plots(&out, &flat, &Tables::default(), &INPUTS).unwrap();
+}
+
+#[test]
+fn a_run_is_drawn_again_from_its_directory() {
+    use crate::output::{HistoryWriter, write_contact};
+    let folder = tempfile::tempdir().unwrap();
+    let out = OutputDirectory::create(folder.path()).unwrap();
+    let case = "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\n\
+                law = \"ideal\"\nyield_stress = 400.0\n[contact]\nfriction = 0.3\n[[path]]\nindentation = 0.02\n";
+    let case = crate::case::Case::parse(case, "case.toml", &[]).unwrap();
+    let mut writer = HistoryWriter::create(&out.history()).unwrap();
+    history().iter().for_each(|row| writer.append(row).unwrap());
+    let names = |pictures: Vec<Picture>| pictures.iter().map(|picture| picture.name).collect::<Vec<_>>();
+    let bare = names(replot(&out, &case, &history()).unwrap());
+    assert_eq!(bare, ["indentation", "forces", "ratio", "stick"]);
+    // Step 99 is of another run.
+    for step in [20, 22, 24, 26, 28, 30, 32, 34, 99] {
+        write_contact(&out.contact(step), &contact()).unwrap();
+    }
+    let again = replot(&out, &case, &history()).unwrap();
+    assert_eq!(again, run_pictures(&history(), &tables(), &INPUTS).unwrap());
+    assert!(names(again).iter().all(|name| RUN_PICTURES.contains(name)));
+    fs::write(out.contact(34), "point\nx\n").unwrap();
+    assert!(replot(&out, &case, &history()).unwrap_err().to_string().contains("step_0034.csv"));
 }
 
 #[test]

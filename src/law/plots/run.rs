@@ -1,0 +1,38 @@
+//! A law beside the simulation of one case.
+
+use crate::case::Case;
+use crate::law::predict::{NormalSource, Prediction, predict};
+use crate::law::variables::Body;
+use crate::law::{Law, LawError, model};
+use crate::output::plots::{Picture, plot_law};
+use crate::output::{StepRecord, Summary, SummaryInputs};
+
+/// The forces of a run with the law's: from the case alone, and given the F_N0 and a0 of the run. The prediction is returned for its range.
+///
+/// # Errors
+/// [`LawError::NotCovered`] for a case that the law says nothing about; a drawing fails.
+pub fn law_beside_run(law: &Law, case: &Case, history: &[StepRecord]) -> Result<(Picture, Prediction), LawError> {
+    let prediction = predict(law, case, NormalSource::Formulas)?;
+    let direction = if prediction.curve.last().is_some_and(|point| point.delta_t < 0.0) { -1.0 } else { 1.0 };
+    let friction = prediction.inputs.friction;
+    let reached = history.iter().map(|record| record.delta_t.abs()).fold(0.0, f64::max);
+    let curve = |parameters: &model::Parameters| -> Vec<[f64; 3]> {
+        // Dense where it is steep.
+        let displacements = (0..=150).map(|i| reached * (f64::from(i) / 150.0).powi(2));
+        displacements
+            .map(|d| {
+                let (f_t, f_n) = law.forces(parameters, friction, direction * d);
+                [direction * d, f_t, f_n]
+            })
+            .collect()
+    };
+    let mut laws = Vec::new();
+    let summary = Summary::from_history(history, &SummaryInputs::of(case));
+    if let (Some(h), Some(a), Some(f_n)) = (summary.h0, summary.a0, summary.f_n0) {
+        let sigma_rep = Body::from_case(case)?.representative_stress(a);
+        let known = law.contact(&model::Axisymmetric { h, a, f_n, sigma_rep, ..prediction.inputs });
+        laws.push(("law, F_N0 and a_0 known".to_owned(), curve(&known)));
+    }
+    laws.push(("law from the case alone".to_owned(), curve(&prediction.parameters)));
+    Ok((plot_law(history, &laws)?, prediction))
+}

@@ -1,0 +1,69 @@
+//! The way from a study to a prediction with simulations of its own: the small study, its law, and cases that it never saw.
+
+use std::fs;
+use std::path::Path;
+
+use asperity::case::Case;
+use asperity::law::Law;
+use asperity::law::predict::{NormalSource, predict};
+use asperity::output::read_history;
+
+use super::{asperity, text};
+
+/// sigma_Y, mu and h0 of cases within the study's range, none of whose values occur in it; the first of a random sequence.
+const UNSEEN: [[f64; 3]; 3] = [[1125.0, 0.323, 0.0144], [2728.0, 0.322, 0.0176], [217.0, 0.24, 0.0183]];
+
+/// The study's base case with other values.
+fn case_text(study: &str, [yield_stress, friction, indentation]: [f64; 3]) -> String {
+    let base = study.split("[grid]").next().expect("a base").replace("base.", "");
+    let set = |text: String, from: &str, to: String| {
+        assert_eq!(text.matches(from).count(), 1, "{from}");
+        text.replace(from, &to)
+    };
+    let text = set(base, "yield_stress = 400.0", format!("yield_stress = {yield_stress}"));
+    let text = set(text, "friction = 0.3", format!("friction = {friction}"));
+    set(text, "indentation = 0.01", format!("indentation = {indentation}"))
+}
+
+/// (rms, greatest) of F_T as a share of its peak and of F_N as a share of F_N0, the prediction being from h alone.
+fn errors(law: &Law, case: &Path, run: &Path) -> [[f64; 2]; 2] {
+    let case = Case::load(case, &[]).expect("a case");
+    let prediction = predict(law, &case, NormalSource::Formulas).expect("a prediction");
+    assert!(prediction.out_of_range.is_empty(), "{:?}", prediction.out_of_range);
+    let history = read_history(&run.join("history.csv")).expect("a history");
+    let f_n0 = history.iter().rfind(|record| record.segment == 0).expect("a press").f_n;
+    let shear: Vec<_> = history.iter().filter(|record| record.segment == 1).collect();
+    let peak = shear.iter().fold(0.0_f64, |peak, record| peak.max(record.f_t));
+    let mu = prediction.inputs.friction;
+    let differences: Vec<[f64; 2]> = std::iter::once([0.0, (prediction.inputs.f_n - f_n0) / f_n0])
+        .chain(shear.iter().map(|record| {
+            let (f_t, f_n) = law.forces(&prediction.parameters, mu, record.delta_t);
+            [(f_t - record.f_t) / peak, (f_n - record.f_n) / f_n0]
+        }))
+        .collect();
+    [0, 1].map(|i| {
+        let squares: f64 = differences.iter().map(|d| d[i] * d[i]).sum();
+        [(squares / differences.len() as f64).sqrt(), differences.iter().fold(0.0_f64, |most, d| most.max(d[i].abs()))]
+    })
+}
+
+#[test]
+fn a_small_study_predicts_cases_that_it_never_saw() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/studies/small.toml");
+    let study = folder.path().join("small");
+    asperity(&["study", text(&source), "--out", text(&study), "--device", "cpu"]).code(0);
+    asperity(&["law", "fit", text(&study)]).code(0);
+    let law = Law::read(&study.join("law.json")).expect("a law");
+    assert_eq!((law.provenance.cases, law.provenance.materials), (27, 3), "{:?}", law.provenance.left_out);
+
+    let source = fs::read_to_string(source).expect("the study");
+    for (i, values) in UNSEEN.into_iter().enumerate() {
+        let (case, run) = (folder.path().join(format!("{i}.toml")), folder.path().join(format!("run{i}")));
+        fs::write(&case, case_text(&source, values)).expect("a case");
+        asperity(&["run", text(&case), "--out", text(&run), "--device", "cpu"]).code(0);
+        let [f_t, f_n] = errors(&law, &case, &run);
+        println!("{values:?}: F_T rms {:.4} max {:.4}, F_N rms {:.4} max {:.4}", f_t[0], f_t[1], f_n[0], f_n[1]);
+        assert!(f_t.iter().chain(&f_n).all(|&error| error < 0.05), "{values:?}: F_T {f_t:?}, F_N {f_n:?}");
+    }
+}
