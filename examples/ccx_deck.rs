@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example ccx_deck -- CASE.toml OUT.inp [--set KEY=VALUE]`
 //!
-//! Contact is what CalculiX has: surface to surface, a linear pressure-overclosure law of slope 100 E/R and a stick slope of 5 E/R (softer than
-//! exact contact; with stiffer springs it does not finish). The rigid plane is one large element whose nodes are all held.
+//! Contact is what CalculiX has: surface to surface, a linear pressure-overclosure law of slope 100 E/R and a stick slope of 5 E/R, settings
+//! with which it is known to finish. The rigid plane is one large element whose nodes are all held.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use asperity::simulation::problem::Problem;
 const OVERCLOSURE_SLOPE: f64 = 100.0;
 /// Slope of the traction-slip law of sticking points, in E/R.
 const STICK_SLOPE: f64 = 5.0;
-/// First and largest increment of a step: a tenth of it; with larger ones CalculiX does not finish.
+/// First and largest increment of a step: a tenth of it, with which CalculiX is known to finish.
 const LARGEST_INCREMENT: f64 = 0.1;
 /// Faces in CalculiX' numbering, S1 to S6, as positions in [`FACES`].
 const FACE_ORDER: [usize; 6] = [4, 5, 2, 1, 3, 0];
