@@ -119,7 +119,10 @@ fn leaves_every_file_of_the_contract() {
     let ends = [press, history.len()].map(|step| format!("step_{step:04}"));
     assert_eq!(names(&dir.join("contact")), ends.clone().map(|name| name + ".csv"));
     assert_eq!(names(&dir.join("fields")), ["case.pvd".to_owned(), ends[0].clone() + ".vtu", ends[1].clone() + ".vtu"]);
-    assert_eq!(names(&dir.join("plots")), ["contact.svg", "forces.svg", "indentation.svg", "ratio.svg"]);
+    assert_eq!(
+        names(&dir.join("plots")),
+        ["contact.svg", "forces.svg", "indentation.svg", "pressure.svg", "ratio.svg", "slip.svg", "stick.svg"]
+    );
 
     // Pressed to where it was told, then sheared to full slip at constant indentation.
     assert_eq!(history[press - 1].h, 0.02);
