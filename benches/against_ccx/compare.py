@@ -36,7 +36,7 @@ def measured(command, log, **options):
 def build(profile):
     flags = ["--release"] if profile == "release" else []
     subprocess.run(["cargo", "build", "--quiet", *flags, "--bin", "asperity", "--example", "ccx_deck"], cwd=ROOT, check=True)
-    folder = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / ("release" if profile == "release" else "debug")
+    folder = ROOT / (os.environ.get("CARGO_TARGET_DIR") or "target") / ("release" if profile == "release" else "debug")
     return folder / "asperity", folder / "examples" / "ccx_deck"
 
 
