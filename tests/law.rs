@@ -9,6 +9,7 @@ use std::path::Path;
 use asperity::case::Case;
 use asperity::law::fit::fit;
 use asperity::law::predict::{NormalSource, predict};
+use asperity::law::prior::Prior;
 use asperity::law::{Law, LawError};
 use assert_cmd::Command;
 
@@ -44,7 +45,7 @@ fn unseen(law: &Law) -> [f64; 2] {
 fn a_known_law_is_found_again() {
     let folder = tempfile::tempdir().expect("a folder");
     synthetic::write_study(folder.path(), 0.0);
-    let law = fit(folder.path()).expect("a law");
+    let law = fit(folder.path(), &Prior::BuiltIn).expect("a law");
     assert_eq!(law.forms, synthetic::FORMS, "{}", asperity::law::report::candidate_table(&law.candidates));
     assert_eq!(law.normal.form, synthetic::normal().form);
     let [f_t, f_n] = unseen(&law);
@@ -60,7 +61,7 @@ fn a_known_law_is_found_again() {
 fn noise_of_a_mesh_does_not_lead_astray() {
     let folder = tempfile::tempdir().expect("a folder");
     synthetic::write_study(folder.path(), 0.02);
-    let law = fit(folder.path()).expect("a law");
+    let law = fit(folder.path(), &Prior::BuiltIn).expect("a law");
     let [f_t, f_n] = unseen(&law);
     assert!(f_t < 0.04 && f_n < 0.04, "{f_t} {f_n}\n{}", law.formulas());
     // The elastic baseline knows nothing of the fall of F_N.
@@ -75,7 +76,7 @@ fn noise_of_a_mesh_does_not_lead_astray() {
     assert!(Law::read(&path).expect("it reads back") == law, "law.json does not read back to the bit");
     let first = fs::read(&path).expect("bytes");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-    pool.install(|| fit(folder.path())).expect("a law").write(&path).expect("law.json");
+    pool.install(|| fit(folder.path(), &Prior::BuiltIn)).expect("a law").write(&path).expect("law.json");
     assert!(fs::read(&path).expect("bytes") == first, "another number of threads gives another law");
 }
 
@@ -142,7 +143,7 @@ fn fit_and_predict_through_the_program() {
 fn the_press_gives_the_normal_data() {
     let folder = tempfile::tempdir().expect("a folder");
     synthetic::write_study(folder.path(), 0.0);
-    let law = fit(folder.path()).expect("a law");
+    let law = fit(folder.path(), &Prior::BuiltIn).expect("a law");
     let text = synthetic::case_text("law = \"ideal\"\nyield_stress = 400.0", 0.3, 0.02);
     let case = Case::parse(&text, "case.toml", &["mesh.elements_per_contact_radius=4".to_owned()]).expect("a case");
     let inputs = predict(&law, &case, NormalSource::Press).expect("a prediction").inputs;
@@ -163,7 +164,7 @@ fn what_is_no_study_and_no_law_is_refused() {
     refuse(&["law", "fit", text(folder.path())], "no column directory");
     fs::write(folder.path().join("study.csv"), "case,directory,status\n0000,cases/0000,failed\n").expect("study.csv");
     refuse(&["law", "fit", text(folder.path())], "0 usable cases of 0 materials");
-    assert!(matches!(fit(folder.path()), Err(LawError::TooFewCases { needed_cases: 8, .. })));
+    assert!(matches!(fit(folder.path(), &Prior::BuiltIn), Err(LawError::TooFewCases { needed_cases: 8, .. })));
     fs::write(folder.path().join("study.csv"), "case,directory,status\n0000,cases/0000,done\n").expect("study.csv");
     refuse(&["law", "fit", text(folder.path())], "case.toml");
 

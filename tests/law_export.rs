@@ -31,7 +31,7 @@ fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurv
         forms: Forms { variable, slip_displacement, normal_curve },
         constants: Constants {
             fall: [1.13, 0.31, 0.47, 0.9],
-            exponent: [1.7, 0.21, 0.83],
+            exponent: [1.7, 0.21, 0.83, 0.9],
             slip: [1.61, 0.23, 0.37, 1.11],
             curve: [0.61, 0.43, 0.77, 0.35],
         },
@@ -53,6 +53,7 @@ fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurv
             elements_per_contact_radius: (5, 6),
             folds: 3,
             seed: 1,
+            prior: None,
         },
         errors: vec![],
         errors_predicted: vec![],

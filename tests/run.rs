@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_contact, read_history};
+use asperity::output::{OutputDirectory, Status, StepRecord, Summary, TimeByPhase, read_contact, read_history};
 use tempfile::TempDir;
 
 /// Pressed and sheared, ideally plastic; everything below varies it by `--set`.
@@ -99,7 +99,7 @@ fn numbers(row: &StepRecord) -> Vec<(String, f64)> {
 
 /// The summary without what may differ between two runs of one case: times.
 fn timeless(summary: &Summary) -> Summary {
-    Summary { wall_s: 0.0, cpu_s: None, ..summary.clone() }
+    Summary { wall_s: 0.0, cpu_s: None, time_by_phase: TimeByPhase::default(), ..summary.clone() }
 }
 
 #[test]
@@ -135,6 +135,10 @@ fn leaves_every_file_of_the_contract() {
     assert_eq!(summary.newton_iterations, history.iter().map(|row| row.newton_iterations).sum::<usize>());
     assert!(summary.elements > 400 && summary.unknowns > 1000 && summary.krylov_iterations > 0);
     assert!(summary.wall_s > 0.0 && summary.device.starts_with("CPU"));
+    // Every second is one of some phase; the elements take time and so do the files.
+    let phases = summary.time_by_phase;
+    assert!((phases.rows().iter().map(|(_, time)| time.seconds).sum::<f64>() / summary.wall_s - 1.0).abs() < 1e-9, "{phases:?}");
+    assert!(phases.rows().iter().all(|(_, time)| time.seconds > 0.0) && phases.other.share < 0.5, "{phases:?}");
     assert_eq!((summary.precision.as_str(), summary.messages.len()), ("f64", 0));
     let json: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(dir.join("summary.json")).expect("text")).expect("JSON");
@@ -152,9 +156,18 @@ fn leaves_every_file_of_the_contract() {
 
     // A person is told what came out, and where it is.
     let told = stdout(&output);
-    for word in
-        ["F_N0 ", "a0 ", "F_N_slip ", "F_T_max ", "delta_T_slip ", "Newton iterations", " s on CPU", &dir.to_string_lossy()]
-    {
+    for word in [
+        "F_N0 ",
+        "a0 ",
+        "F_N_slip ",
+        "F_T_max ",
+        "delta_T_slip ",
+        "Newton iterations",
+        " s on CPU",
+        "\ntime by phase ",
+        "\nelement tangents ",
+        &dir.to_string_lossy(),
+    ] {
         assert!(told.contains(word), "{word}: {told}");
     }
     // Not a terminal: plain lines.
@@ -371,7 +384,25 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let (history, summary) = results(&scratch.out("none"));
     assert!(history.is_empty() && summary.f_n0.is_none() && summary.steps == 0);
+    // The time of attempts that led to no step is told all the same.
+    assert!(summary.time_by_phase.tangent.seconds > 0.0 && summary.time_by_phase.linear_solve.seconds > 0.0, "{summary:?}");
     assert!(stdout(&output).contains("not converged: 0 steps"), "{}", stdout(&output));
+}
+
+#[test]
+fn asked_to_say_more_it_tells_what_each_step_took() {
+    let scratch = Scratch::new("");
+    let output = scratch.run("out", &["-v"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let (history, _) = results(&scratch.out("out"));
+    let told = stderr(&output);
+    for row in &history {
+        let (step, newton, krylov) = (row.step, row.newton_iterations, row.krylov_iterations);
+        let line =
+            told.lines().find(|line| line.contains(&format!(" step {step}: "))).unwrap_or_else(|| panic!("step {step}: {told}"));
+        assert!(line.contains(&format!(" {newton} iterations, {krylov} Krylov, ")), "{line}");
+        assert!(line.contains(&format!("merit {:.1e}, ", row.merit)) && line.contains(" s (tangent "), "{line}");
+    }
 }
 
 #[test]

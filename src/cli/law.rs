@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
@@ -12,6 +12,7 @@ use crate::case::Case;
 use crate::law::export::{Language, files, source};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
+use crate::law::prior::Prior;
 use crate::law::{Law, LawError, fit, report};
 use crate::output::write_atomically;
 
@@ -40,6 +41,10 @@ pub struct FitArgs {
     /// The directory of a study.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
+    /// Constants to start from, which count as much as cross-validation allows: built-in (for a study with less than a quarter of its cases), none, or
+    /// another law.json.
+    #[arg(long, value_name = "PRIOR", default_value = "built-in")]
+    pub prior: String,
 }
 
 /// The arguments of `law predict`.
@@ -77,15 +82,15 @@ pub struct ExportArgs {
 /// Runs a subcommand of `asperity law`.
 pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
     match &args.command {
-        LawCommand::Fit(args) => fit_law(&args.dir),
+        LawCommand::Fit(args) => fit_law(args),
         LawCommand::Predict(args) => predict_case(args),
         LawCommand::Export(args) => export_law(args),
     }
 }
 
-fn fit_law(dir: &Path) -> Result<Outcome, CliError> {
-    let law = fit::fit(dir)?;
-    let path = dir.join("law.json");
+fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
+    let law = fit::fit(&args.dir, &Prior::from_option(&args.prior)?)?;
+    let path = args.dir.join("law.json");
     law.write(&path)?;
     print(&format!("{}\nlaw in {}\n", summary(&law), path.display()))?;
     Ok(Outcome::Done)
@@ -103,6 +108,16 @@ fn summary(law: &Law) -> String {
         p.folds,
         p.seed
     );
+    if let Some(prior) = &p.prior {
+        let weight = |weight: Option<f64>| weight.map_or_else(|| "none".to_owned(), |weight| weight.to_string());
+        let _ = writeln!(
+            text,
+            "Prior: the law of {}; weight for the shear {}, for the normal problem {}\n",
+            prior.study,
+            weight(prior.shear),
+            weight(prior.normal)
+        );
+    }
     let predicted = "Errors with F_N0 and a0 predicted from h, cross-validated, in per cent";
     let known = "Errors of the kept forms (*) with F_N0 and a0 known, cross-validated, in per cent";
     for table in [

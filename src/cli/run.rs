@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Args;
 
@@ -65,12 +66,15 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     results.computed_on(backend.description());
     drop(backend);
     if matches!(followed, Ok(Ending::Done)) && case.solver.error_estimate {
+        let begun = Instant::now();
         let companion = companion::companion(&case);
         let elements = [&case, &companion].map(|c| c.mesh.elements_per_contact_radius);
+        log::info!("error estimate: the same path on {} elements per contact radius", elements[1]);
         match companion::follow(&companion, stop) {
             Ok(rows) => results.compare(elements[0], &rows, elements[1]),
             Err(reason) => results.note(&format!("no error estimate, the run on {} elements ended: {reason}", elements[1])),
         }
+        results.estimate_took(begun.elapsed().as_secs_f64());
     }
     conclude(followed, results, args)
 }

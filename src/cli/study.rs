@@ -19,7 +19,7 @@ use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgres
 /// A case that fails stops no other: its row says why. An interrupted study goes on with --resume.
 #[derive(Clone, Debug, Args)]
 pub struct StudyArgs {
-    /// The study file: a case under [base], and a [grid] of dotted keys with lists of values.
+    /// The study file: a case under base, and a grid of dotted keys with lists of values.
     #[arg(value_name = "STUDY.toml")]
     pub study: PathBuf,
     /// Directory for the results: a new one, an empty one, or one that holds an earlier study, which is replaced (not with --resume or --shard).

@@ -327,8 +327,8 @@ impl<R: Real> Compute for Cpu<R> {
     }
 }
 
-/// Sums the element tangents into block rows.
-fn gather_tangent<R: Real>(plan: &GatherPlan, mesh: &Mesh, tangents: &[Tangent<R>], blocks: &mut [[f64; 9]]) {
+/// Sums the element tangents into block rows: `blocks` in the order of the plan's pattern, every sum in the order of the node's elements.
+pub fn gather_tangent<R: Real>(plan: &GatherPlan, mesh: &Mesh, tangents: &[Tangent<R>], blocks: &mut [[f64; 9]]) {
     let lists = &mesh.node_elements;
     let mut rows = Vec::with_capacity(plan.pattern.rows());
     let mut rest = blocks;

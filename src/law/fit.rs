@@ -11,10 +11,11 @@ use rayon::prelude::*;
 use super::LawError;
 use super::data::{Sample, StudyData};
 use super::forms::{self, Constants, Forms, NormalCurve, Plasticity, SlipForm, Variable};
-use super::least_squares::{Sign, minimize};
-use super::model::{self, Axisymmetric, FORMAT, Interval, Law, Parameters, Provenance, VERSION, Validity};
+use super::least_squares::{PULL, Sign, minimize};
+use super::model::{self, Axisymmetric, FORMAT, Interval, Law, Parameters, PriorUse, Provenance, VERSION, Validity};
 use super::normal::{self, NormalForm, NormalModel};
 use super::own_fit::own_fit;
+use super::prior::{Prior, WEIGHTS};
 use super::report::{Candidate, CaseErrors, Errors, FittedCase, NormalCandidate, by_region};
 use super::variables::yield_lambda;
 use super::{baseline, folds};
@@ -64,13 +65,33 @@ fn failed(what: &'static str) -> impl Fn(String) -> LawError {
     move |problem| LawError::Fit { what, problem }
 }
 
+/// Where a fit starts and how strongly it is drawn there: to another law's constants, or weakly to constants of order one.
+#[derive(Clone, Copy, Debug)]
+struct Start<T> {
+    constants: T,
+    pull: f64,
+    /// Whether `constants` are another law's.
+    prior: bool,
+}
+
+impl<T: Copy> Start<T> {
+    /// The weight, if it is another law's.
+    fn weight(&self) -> Option<f64> {
+        self.prior.then_some(self.pull)
+    }
+
+    fn suffix(&self) -> String {
+        self.weight().map_or_else(String::new, |weight| format!(", prior {weight}"))
+    }
+}
+
 /// The constants of one combination of forms that fit the samples best.
-fn fit_constants(forms: &Forms, samples: &[&Sample]) -> Result<Constants, LawError> {
+fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -> Result<Constants, LawError> {
     let states: Vec<Plasticity> = samples.iter().map(|sample| plasticity(forms.variable, sample)).collect();
-    let mut constants = Constants::START;
+    let Start { mut constants, pull, .. } = *start;
 
     constants.fall = array(
-        &minimize(Sign::Positive, &constants.fall, |c| {
+        &minimize(Sign::Positive, &constants.fall, pull, |c| {
             let c = array(c);
             let fall =
                 |(sample, state): (&&Sample, &Plasticity)| forms::fall(forms, &c, state) - (1.0 - sample.f_n_slip / sample.f_n0);
@@ -84,8 +105,8 @@ fn fit_constants(forms: &Forms, samples: &[&Sample]) -> Result<Constants, LawErr
     let start = [&constants.exponent[..], &constants.slip[..]].concat();
     let normal: Vec<Axisymmetric> = samples.iter().map(|sample| inputs(sample)).collect();
     let weights: Vec<f64> = samples.iter().map(|sample| 1.0 / (sample.peak() * points(sample))).collect();
-    let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[3..]), ..constants };
-    let found = minimize(Sign::Positive, &start, |c| {
+    let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[4..]), ..constants };
+    let found = minimize(Sign::Positive, &start, pull, |c| {
         let trial = with(c);
         let mut residuals = Vec::new();
         for ((sample, inputs), weight) in samples.iter().zip(&normal).zip(&weights) {
@@ -100,7 +121,7 @@ fn fit_constants(forms: &Forms, samples: &[&Sample]) -> Result<Constants, LawErr
 
     // Only M and N change in what follows.
     let contacts: Vec<Parameters> = normal.iter().map(|inputs| model::contact(forms, &constants, inputs)).collect();
-    let found = minimize(Sign::Positive, &constants.curve, |c| {
+    let found = minimize(Sign::Positive, &constants.curve, pull, |c| {
         let c = array(c);
         let mut residuals = Vec::new();
         for (sample, contact) in samples.iter().zip(&contacts) {
@@ -143,22 +164,36 @@ fn split(samples: &[Sample], fold_of: &[usize], fold: usize) -> (Vec<usize>, Vec
 }
 
 /// Constants for each fold, found without it; the last ones with all samples.
-fn constants_by_fold(forms: &Forms, samples: &[Sample], fold_of: &[usize], folds: usize) -> Result<Vec<Constants>, LawError> {
+fn constants_by_fold(
+    forms: &Forms,
+    start: &Start<Constants>,
+    samples: &[Sample],
+    fold_of: &[usize],
+    folds: usize,
+) -> Result<Vec<Constants>, LawError> {
     let fold = |fold: usize| {
         let (seen, _) = split(samples, fold_of, fold);
-        fit_constants(forms, &seen.iter().map(|&i| &samples[i]).collect::<Vec<_>>())
+        fit_constants(forms, start, &seen.iter().map(|&i| &samples[i]).collect::<Vec<_>>())
     };
     (0..=folds).map(fold).collect()
 }
 
+/// As [`Start`]; no prior model means the form's own start.
+type NormalStart<'a> = Start<Option<&'a NormalModel>>;
+
 /// Fits one form of the normal problem.
-fn fit_normal(form: NormalForm, samples: &[&Sample]) -> Result<NormalModel, LawError> {
-    let radius = minimize(form.sign(), &form.radius_start(), |c| {
+fn fit_normal(form: NormalForm, start: &NormalStart, samples: &[&Sample]) -> Result<NormalModel, LawError> {
+    let pull = start.pull;
+    let (radius_start, force_start) = match start.constants {
+        Some(prior) => (prior.radius.clone(), prior.force.clone()),
+        None => (form.radius_start(), form.force_start()),
+    };
+    let radius = minimize(form.sign(), &radius_start, pull, |c| {
         samples.iter().map(|s| (normal::contact_radius(form, c, &s.body, s.h0) / s.a0).ln()).collect()
     })
     .map_err(failed("a0(h)"))?;
     let radii: Vec<f64> = samples.iter().map(|s| normal::contact_radius(form, &radius, &s.body, s.h0)).collect();
-    let force = minimize(form.sign(), &form.force_start(), |c| {
+    let force = minimize(form.sign(), &force_start, pull, |c| {
         let force = |(s, &a): (&&Sample, &f64)| (normal::normal_force(form, c, &s.body, s.h0, a) / s.f_n0).ln();
         samples.iter().zip(&radii).map(force).collect()
     })
@@ -166,19 +201,25 @@ fn fit_normal(form: NormalForm, samples: &[&Sample]) -> Result<NormalModel, LawE
     Ok(NormalModel { form, radius, force })
 }
 
-/// The normal forms compared; the best one's models by fold, the last one fitted to all.
+/// The normal forms compared; the best one's weight of the prior and its models by fold, the last one fitted to all.
 fn choose_normal(
+    prior: Option<&NormalModel>,
     samples: &[Sample],
     fold_of: &[usize],
     folds: usize,
-) -> Result<(Vec<NormalCandidate>, Vec<NormalModel>), LawError> {
-    let fitted: Vec<(NormalCandidate, Vec<NormalModel>)> = NormalForm::ALL
-        .into_par_iter()
-        .map(|form| {
+) -> Result<(Vec<NormalCandidate>, Option<f64>, Vec<NormalModel>), LawError> {
+    let mut starts: Vec<(NormalForm, NormalStart)> =
+        NormalForm::ALL.into_iter().map(|form| (form, Start { constants: None, pull: PULL, prior: false })).collect();
+    if let Some(prior) = prior.filter(|prior| prior.form != NormalForm::Published) {
+        starts.extend(WEIGHTS.map(|pull| (prior.form, Start { constants: Some(prior), pull, prior: true })));
+    }
+    let fitted: Vec<(NormalCandidate, Vec<NormalModel>)> = starts
+        .par_iter()
+        .map(|&(form, start)| {
             let models: Vec<NormalModel> = (0..=folds)
                 .map(|fold| {
                     let (seen, _) = split(samples, fold_of, fold);
-                    fit_normal(form, &seen.iter().map(|&i| &samples[i]).collect::<Vec<_>>())
+                    fit_normal(form, &start, &seen.iter().map(|&i| &samples[i]).collect::<Vec<_>>())
                 })
                 .collect::<Result<_, _>>()?;
             let errors: Vec<CaseErrors> = samples
@@ -191,7 +232,7 @@ fn choose_normal(
                 .collect();
             let errors = Errors::over(&errors);
             let candidate = NormalCandidate {
-                name: form.label().to_owned(),
+                name: format!("{}{}", form.label(), start.suffix()),
                 constants: form.radius_start().len() + form.force_start().len(),
                 a_rms: errors.f_t_rms,
                 a_max: errors.f_t_max,
@@ -207,23 +248,25 @@ fn choose_normal(
     let best = (0..candidates.len()).min_by(|&i, &j| score(&candidates[i]).total_cmp(&score(&candidates[j]))).unwrap_or(0);
     candidates[best].kept = true;
     candidates.sort_by(|a, b| score(a).total_cmp(&score(b)));
-    Ok((candidates, models.into_iter().nth(best).unwrap_or_default()))
+    let weight = starts.get(best).and_then(|(_, start)| start.weight());
+    Ok((candidates, weight, models.into_iter().nth(best).unwrap_or_default()))
 }
 
 /// One combination of forms, compared.
 struct Compared {
     forms: Forms,
+    start: Start<Constants>,
     by_fold: Vec<Constants>,
     errors: Vec<CaseErrors>,
 }
 
 /// Fits a law to a study.
 ///
-/// `dir` is the directory of the study. The same study gives the same law, to the bit, at any number of threads.
+/// `dir` is the directory of the study; `prior` what is known before. The same study gives the same law, to the bit, at any number of threads.
 ///
 /// # Errors
 /// No study, too few cases, files that cannot be read, a fit that ends nowhere.
-pub fn fit(dir: &Path) -> Result<Law, LawError> {
+pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
     let data = StudyData::read(dir)?;
     let (samples, materials) = (&data.samples, data.materials());
     if samples.len() < FEWEST_CASES || materials < FEWEST_MATERIALS {
@@ -236,22 +279,27 @@ pub fn fit(dir: &Path) -> Result<Law, LawError> {
             skipped: data.skipped_sentence(),
         });
     }
+    let prior = prior.law(samples.len())?;
     let folds = FOLDS.min(materials);
     let fold_of = folds::assign(materials, folds, SEED);
 
-    let combinations: Vec<Forms> = Variable::ALL
+    let without = Start { constants: Constants::START, pull: PULL, prior: false };
+    let mut combinations: Vec<(Forms, Start<Constants>)> = Variable::ALL
         .into_iter()
         .flat_map(|variable| SlipForm::ALL.into_iter().map(move |slip| (variable, slip)))
         .flat_map(|(variable, slip_displacement)| {
-            NormalCurve::ALL.into_iter().map(move |normal_curve| Forms { variable, slip_displacement, normal_curve })
+            NormalCurve::ALL.into_iter().map(move |normal_curve| (Forms { variable, slip_displacement, normal_curve }, without))
         })
         .collect();
+    if let Some(Law { forms, constants, .. }) = prior {
+        combinations.extend(WEIGHTS.map(|pull| (forms, Start { constants, pull, prior: true })));
+    }
     let mut compared: Vec<Compared> = combinations
         .into_par_iter()
-        .map(|forms| {
-            let by_fold = constants_by_fold(&forms, samples, &fold_of, folds)?;
+        .map(|(forms, start)| {
+            let by_fold = constants_by_fold(&forms, &start, samples, &fold_of, folds)?;
             let error = |s: &Sample| law_errors(&forms, &by_fold[fold_of[s.material]], s, &inputs(s));
-            Ok(Compared { forms, errors: samples.iter().map(error).collect(), by_fold })
+            Ok(Compared { forms, start, errors: samples.iter().map(error).collect(), by_fold })
         })
         .collect::<Result<_, LawError>>()?;
     let score = |c: &Compared| Errors::over(&c.errors).score();
@@ -261,10 +309,11 @@ pub fn fit(dir: &Path) -> Result<Law, LawError> {
         .enumerate()
         .map(|(rank, c)| Candidate {
             name: format!(
-                "{}, {}, {}",
+                "{}, {}, {}{}",
                 c.forms.variable.label(),
                 c.forms.slip_displacement.label(),
-                c.forms.normal_curve.label()
+                c.forms.normal_curve.label(),
+                c.start.suffix()
             ),
             constants: c.forms.constants(),
             errors: Errors::over(&c.errors),
@@ -273,8 +322,9 @@ pub fn fit(dir: &Path) -> Result<Law, LawError> {
         .collect();
     candidates.extend(baseline::candidates(samples));
 
-    let (normal_candidates, normal_models) = choose_normal(samples, &fold_of, folds)?;
-    let Compared { forms, by_fold, errors } = compared.swap_remove(0);
+    let (normal_candidates, normal_weight, normal_models) =
+        choose_normal(prior.as_ref().map(|law| &law.normal), samples, &fold_of, folds)?;
+    let Compared { forms, start, by_fold, errors } = compared.swap_remove(0);
     let (Some(constants), Some(normal)) = (by_fold.last().copied(), normal_models.last().cloned()) else {
         return Err(failed("the law")("there are no folds".to_owned()));
     };
@@ -311,6 +361,11 @@ pub fn fit(dir: &Path) -> Result<Law, LawError> {
             ),
             folds,
             seed: SEED,
+            prior: prior.filter(|_| start.prior || normal_weight.is_some()).map(|law| PriorUse {
+                study: law.provenance.study,
+                shear: start.weight(),
+                normal: normal_weight,
+            }),
         },
         errors: regions(&errors),
         errors_predicted: regions(&predicted),

@@ -3,10 +3,10 @@
 //! With z the plasticity of the contact in one of the [`Variable`]s, zero at first yield, and g = 1 - (Lambda_Y/Lambda)^2,
 //! ```text
 //! F_N_slip/F_N0 = 1 - tanh(A mu) tanh(B mu^p z^q)                    fall of the normal force
-//! n             = 3/2 + N tanh(C mu^p z^q / N),  N = 8.5             exponent of f_T
+//! n             = 3/2 + N tanh(C mu^p z^q exp(-d a/R) / N), N = 8.5  exponent of f_T
 //! delta_T_slip  = 3 mu F_N0 (2 - nu)/(16 G a) f(y),                  displacement at full slip:
 //!             f = 1 + b g a/R + S mu^p z^q                             directly, or
-//!             f = (2 n/3) (F_N_slip/F_N0) (1 + b g a/R + S z)          through the initial stiffness
+//!             f = (2 n/3) (F_N_slip/F_N0) (1 + b g a/R + S z^q)        through the initial stiffness
 //! f_N           = [1 - (1 - x)^M]^N or 1 - (1 - x^M)^N               one steep exponent 1 + s + t (n - 3/2), one gentle one 1 + u mu^v
 //! ```
 //! All constants are positive. Below first yield z = g = 0, so that n = 3/2, f = 1 and F_N_slip = F_N0: Cattaneo and Mindlin's law. b is the
@@ -131,13 +131,13 @@ pub struct Forms {
 impl Forms {
     /// Number of fitted constants.
     pub fn constants(&self) -> usize {
-        // With mu Lambda, mu^p is in the variable; through the stiffness, S z has no powers.
+        // With mu Lambda, mu^p is in the variable; through the stiffness, S z^q has none.
         let powers = if self.variable == Variable::FrictionLambda { 0 } else { 1 };
         let slip = match self.slip_displacement {
             SlipForm::Direct => 3 + powers,
-            SlipForm::ThroughStiffness => 2,
+            SlipForm::ThroughStiffness => 3,
         };
-        (3 + powers) + (2 + powers) + slip + 4
+        (3 + powers) + (3 + powers) + slip + 4
     }
 }
 
@@ -188,9 +188,9 @@ impl Plasticity {
 pub struct Constants {
     /// F_N_slip/F_N0: A, B, p, q.
     pub fall: [f64; 4],
-    /// n: C, p, q.
-    pub exponent: [f64; 3],
-    /// f: b, S, and for the direct form p, q.
+    /// n: C, p, q, d.
+    pub exponent: [f64; 4],
+    /// f: b, S, p, q; through the stiffness there is no p.
     pub slip: [f64; 4],
     /// The exponents of f_N: s, t, u, v.
     pub curve: [f64; 4],
@@ -199,7 +199,7 @@ pub struct Constants {
 impl Constants {
     /// Every constant of order one, from which the fits start and to which what the data leave open is drawn.
     pub const START: Self =
-        Self { fall: [1.0, 1.0, 0.5, 1.0], exponent: [10.0, 1.0, 1.0], slip: [1.0, 0.3, 1.0, 1.0], curve: [0.5, 0.5, 0.5, 1.0] };
+        Self { fall: [1.0, 1.0, 0.5, 1.0], exponent: [10.0, 1.0, 1.0, 1.0], slip: [1.0, 0.3, 1.0, 1.0], curve: [0.5, 0.5, 0.5, 1.0] };
 
     /// All of them, in order.
     pub fn all(&self) -> impl Iterator<Item = f64> + '_ {
@@ -223,9 +223,10 @@ pub fn fall(forms: &Forms, constants: &[f64; 4], state: &Plasticity) -> f64 {
 }
 
 /// n of f_T.
-pub fn exponent(forms: &Forms, constants: &[f64; 3], state: &Plasticity) -> f64 {
-    let [c, p, q] = *constants;
-    1.5 + EXPONENT_SPAN * (c * product(forms.variable, p, q, state) / EXPONENT_SPAN).tanh()
+pub fn exponent(forms: &Forms, constants: &[f64; 4], state: &Plasticity) -> f64 {
+    let [c, p, q, d] = *constants;
+    let size = (-d * state.relative_radius).exp();
+    1.5 + EXPONENT_SPAN * (c * product(forms.variable, p, q, state) * size / EXPONENT_SPAN).tanh()
 }
 
 /// f(y) = delta_T_slip over its elastic value, given n and F_N_slip/F_N0.
@@ -234,7 +235,7 @@ pub fn slip_factor(forms: &Forms, constants: &[f64; 4], state: &Plasticity, n: f
     let body = 1.0 + body * state.ramp * state.relative_radius;
     match forms.slip_displacement {
         SlipForm::Direct => body + rate * product(forms.variable, p, q, state),
-        SlipForm::ThroughStiffness => n / 1.5 * slip_share * (body + rate * state.z),
+        SlipForm::ThroughStiffness => n / 1.5 * slip_share * (body + rate * state.z.powf(q)),
     }
 }
 

@@ -21,12 +21,12 @@ impl Law {
             Variable::Area => "g (2 c2 - 1), c2 = a^2/(2 R h)",
         };
         let [fall_a, fall_b, fall_p, fall_q] = self.constants.fall;
-        let [n_c, n_p, n_q] = self.constants.exponent;
+        let [n_c, n_p, n_q, n_d] = self.constants.exponent;
         let [body, rate, slip_p, slip_q] = self.constants.slip;
         let [s, t, u, v] = self.constants.curve;
         let slip = match self.forms.slip_displacement {
             SlipForm::Direct => format!("1 + {body:.4} g a/R + {rate:.4} {}", product(slip_p, slip_q)),
-            SlipForm::ThroughStiffness => format!("(2 n/3) (F_N_slip/F_N0) (1 + {body:.4} g a/R + {rate:.4} z)"),
+            SlipForm::ThroughStiffness => format!("(2 n/3) (F_N_slip/F_N0) (1 + {body:.4} g a/R + {rate:.4} z^{slip_q:.4})"),
         };
         let (steep, gentle, curve) = match self.forms.normal_curve {
             NormalCurve::PowerOfComplement => ("M", "N", "[1 - (1 - x)^M]^N"),
@@ -41,7 +41,7 @@ impl Law {
         line("Lambda_Y", "Lambda at first yield (2.533 at nu = 0.3); g = 1 - (Lambda_Y/Lambda)^2; below it g = z = 0");
         line("z", z);
         line("F_N_slip/F_N0", &format!("1 - tanh({fall_a:.4} mu) tanh({fall_b:.4} {})", product(fall_p, fall_q)));
-        line("n", &format!("1.5 + {EXPONENT_SPAN} tanh({:.4} {})", n_c / EXPONENT_SPAN, product(n_p, n_q)));
+        line("n", &format!("1.5 + {EXPONENT_SPAN} tanh[{:.4} {} exp(-{n_d:.4} a/R)]", n_c / EXPONENT_SPAN, product(n_p, n_q)));
         line("delta_T_slip", &format!("3 mu F_N0 (2 - nu)/(16 G a0) f, f = {slip}"));
         line(steep, &format!("{:.4} + {t:.4} (n - 1.5)", 1.0 + s));
         line(gentle, &format!("1 + {u:.4} mu^{v:.4}"));

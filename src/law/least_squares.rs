@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
 
 /// Weight of the pull of a constant (or its logarithm) towards its start. Residuals are shares of a force, a per cent or so each: the pull decides only what the
 /// data leave open, and keeps a small study's constants finite.
-const PULL: f64 = 0.01;
+pub const PULL: f64 = 0.01;
 /// Range of a logarithm beyond which nothing changes any more, but overflows do.
 const LARGEST_LOGARITHM: f64 = 12.0;
 
@@ -38,6 +38,7 @@ impl Sign {
 struct Problem<'a, F> {
     residuals: &'a F,
     sign: Sign,
+    pull: f64,
     start: DVector<f64>,
     unknowns: DVector<f64>,
 }
@@ -47,7 +48,7 @@ impl<F: Fn(&[f64]) -> Vec<f64>> Problem<'_, F> {
     fn evaluate(&self, unknowns: &DVector<f64>) -> DVector<f64> {
         let constants: Vec<f64> = unknowns.iter().map(|&x| self.sign.constant(x)).collect();
         let mut all = (self.residuals)(&constants);
-        all.extend((unknowns - &self.start).iter().map(|x| PULL * x));
+        all.extend((unknowns - &self.start).iter().map(|x| self.pull * x));
         DVector::from_vec(all)
     }
 }
@@ -88,16 +89,17 @@ impl<F: Fn(&[f64]) -> Vec<f64>> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'
     }
 }
 
-/// The constants that minimise the sum of squares of `residuals`(constants), from `start` (> 0 where they have to be positive).
+/// The constants that minimise the sum of squares of `residuals`(constants), from `start` (> 0 where they have to be positive), to which they are drawn with
+/// the weight `pull`: the residual of a constant that, or whose logarithm, is 1 away.
 ///
 /// # Errors
 /// What the library says, where the residuals are not finite or it makes no way.
-pub fn minimize(sign: Sign, start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Result<Vec<f64>, String> {
+pub fn minimize(sign: Sign, start: &[f64], pull: f64, residuals: impl Fn(&[f64]) -> Vec<f64>) -> Result<Vec<f64>, String> {
     if start.is_empty() {
         return Ok(Vec::new());
     }
     let unknowns = DVector::from_iterator(start.len(), start.iter().map(|&x| sign.unknown(x)));
-    let problem = Problem { residuals: &residuals, sign, start: unknowns.clone(), unknowns };
+    let problem = Problem { residuals: &residuals, sign, pull, start: unknowns.clone(), unknowns };
     let (problem, report) =
         LevenbergMarquardt::new().with_ftol(1e-10).with_xtol(1e-8).with_gtol(1e-10).with_patience(40).minimize(problem);
     // An exhausted patience is an answer as good as its last digit; anything else without success is none.
@@ -117,7 +119,7 @@ mod tests {
         let data: Vec<(f64, f64)> = (0..200).map(|i| f64::from(i) * 0.02).map(|x| (x, model(&[2.0, 1.5, 0.3], x))).collect();
         let residuals = |c: &[f64]| data.iter().map(|&(x, y)| 10.0 * (model(c, x) - y)).collect();
         for sign in [Sign::Positive, Sign::Any] {
-            let found = minimize(sign, &[1.0, 1.0, 1.0], residuals).unwrap();
+            let found = minimize(sign, &[1.0, 1.0, 1.0], PULL, residuals).unwrap();
             for (found, exact) in found.iter().zip([2.0, 1.5, 0.3]) {
                 assert!((found / exact - 1.0).abs() < 1e-3, "{sign:?}: {found} instead of {exact}");
             }
@@ -127,13 +129,13 @@ mod tests {
     #[test]
     fn what_the_data_leave_open_stays_where_it_was() {
         let residuals = |c: &[f64]| vec![c[0] - 3.0; 100];
-        let found = minimize(Sign::Positive, &[1.0, 0.7], residuals).unwrap();
+        let found = minimize(Sign::Positive, &[1.0, 0.7], PULL, residuals).unwrap();
         assert!((found[0] - 3.0).abs() < 1e-3 && (found[1] / 0.7 - 1.0).abs() < 1e-6, "{found:?}");
-        assert!(minimize(Sign::Any, &[], |_| Vec::new()).unwrap().is_empty());
+        assert!(minimize(Sign::Any, &[], PULL, |_| Vec::new()).unwrap().is_empty());
     }
 
     #[test]
     fn residuals_that_are_no_numbers_are_an_error() {
-        assert!(minimize(Sign::Any, &[1.0], |c| vec![(c[0] - 5.0).sqrt()]).is_err());
+        assert!(minimize(Sign::Any, &[1.0], PULL, |c| vec![(c[0] - 5.0).sqrt()]).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! From simulations to a contact law that needs axisymmetric data only.
 //!
 //! `variables` are the normalised quantities in which contacts of different materials fall together; `data` reads a study back; `forms` and `normal` are
-//! the candidate correlations; `fit` determines their constants, compares them by cross-validation and keeps the best as a [`Law`] (`model`,
+//! the candidate correlations; `prior` is what a small study may take from a bigger one; `fit` determines their constants, compares them by cross-validation and keeps the best as a [`Law`] (`model`,
 //! `law.json`); `predict` applies it to a case; `contact` is the law as an
 //! incremental update of one contact, and `export` writes that for other programs. `least_squares` and `report` serve them.
 
@@ -14,6 +14,7 @@ pub mod model;
 pub mod normal;
 pub mod plots;
 pub mod predict;
+pub mod prior;
 pub mod report;
 pub mod table;
 pub mod variables;

@@ -157,6 +157,20 @@ pub struct Provenance {
     pub folds: usize,
     /// Seed of the folds.
     pub seed: u64,
+    /// Study of the law whose constants the fit started from and was drawn to; `None` if it knew of none, or did better without.
+    pub prior: Option<PriorUse>,
+}
+
+/// How far a fit was drawn to the constants of another law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PriorUse {
+    /// Name of that law's study.
+    pub study: String,
+    /// Weight for the constants of the shear; `None`: they were fitted without.
+    pub shear: Option<f64>,
+    /// Weight for the constants of the normal problem, likewise.
+    pub normal: Option<f64>,
 }
 
 /// A fitted law.
@@ -249,7 +263,7 @@ impl Law {
     }
 
     /// A law from the text of its file; the error is what is wrong, in words.
-    fn from_json(text: &str) -> Result<Self, String> {
+    pub(super) fn from_json(text: &str) -> Result<Self, String> {
         /// Read first, so that a file of another version is called that.
         #[derive(Deserialize)]
         struct Head {

@@ -5,7 +5,7 @@
 
 use super::data::Sample;
 use super::forms::{self, EXPONENT_SPAN, NormalCurve};
-use super::least_squares::{Sign, minimize};
+use super::least_squares::{PULL, Sign, minimize};
 use crate::analytical::cattaneo_mindlin;
 
 /// One case's own parameters.
@@ -36,11 +36,11 @@ pub fn own_fit(curve: NormalCurve, sample: &Sample) -> Result<OwnFit, String> {
     let f_t = |c: &[f64], delta_t: f64| limit * forms::f_t(delta_t / (c[0] * elastic_slip), exponent(c[1]));
     let peak = sample.peak();
     let found =
-        minimize(Sign::Positive, &[1.5, 0.1], |c| points.iter().map(|at| (f_t(c, at.delta_t) - at.f_t) / peak).collect())?;
+        minimize(Sign::Positive, &[1.5, 0.1], PULL, |c| points.iter().map(|at| (f_t(c, at.delta_t) - at.f_t) / peak).collect())?;
     let f_t_max = points.iter().map(|at| (f_t(&found, at.delta_t) - at.f_t).abs() / peak).fold(0.0, f64::max);
     let slip = found[0] * elastic_slip;
     let fall = sample.f_n0 - sample.f_n_slip;
-    let exponents = minimize(Sign::Positive, &[1.5, 1.5], |c| {
+    let exponents = minimize(Sign::Positive, &[1.5, 1.5], PULL, |c| {
         let fallen = |delta_t: f64| fall * curve.value(delta_t / slip, c[0], c[1]);
         points.iter().map(|at| (sample.f_n0 - fallen(at.delta_t) - at.f_n) / sample.f_n0).collect()
     })?;

@@ -12,7 +12,7 @@ mod clock;
 mod contact_csv;
 mod directory;
 mod error;
-mod estimate;
+pub mod estimate;
 mod fields;
 mod history;
 mod path_share;
@@ -21,6 +21,7 @@ mod recorder;
 mod report;
 mod results;
 mod summary;
+mod time_by_phase;
 mod units;
 mod vtu;
 
@@ -39,5 +40,6 @@ pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgres
 pub use recorder::Recorder;
 pub use results::{ResultWriter, Setting};
 pub use summary::{FULL_SLIP_RATIO, NormalizedResults, SLIP_DISPLACEMENT_RATIO, Status, Summary, SummaryInputs};
+pub use time_by_phase::{OutsideSteps, PhaseTime, TimeByPhase};
 pub use units::Units;
 pub use vtu::{Collection, Field, Grid, Values, write_vtu};

@@ -39,6 +39,7 @@ impl Summary {
             self.device,
             self.precision
         );
+        text += &self.time_by_phase.table(self.wall_s, self.cpu_s);
         text
     }
 }
@@ -71,7 +72,9 @@ mod tests {
         let text = summary.report();
         assert!(text.starts_with("F_N0          72.6000       normal force at the greatest indentation\n"), "{text}");
         assert!(
-            text.ends_with("done: 0 steps, 0 Newton iterations, 0 elements, 0 unknowns, 0.0 s on CPU (1 thread) in f64\n"),
+            text.contains(
+                "done: 0 steps, 0 Newton iterations, 0 elements, 0 unknowns, 0.0 s on CPU (1 thread) in f64\ntime by phase "
+            ),
             "{text}"
         );
         assert!(!text.contains("F_T_max") && !text.contains("cut-backs"));

@@ -3,17 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use super::clock::Clock;
 use super::path_share::PathShare;
 use super::plots::Tables;
 use super::{
-    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, Units, write_contact, write_fields, write_plots,
+    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, OutsideSteps, PlotInputs, Position,
+    Progress, Status, StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
 use crate::compute::Description;
 use crate::simulation::drive::{Observer, StepView};
+use crate::solver::phases::PhaseTimes;
 
 /// What the summary has to know beside the history.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +51,8 @@ pub struct ResultWriter {
     /// Contact at the ends of segments, for the plots.
     tables: Tables,
     fallbacks: usize,
+    times: PhaseTimes,
+    outside: OutsideSteps,
     estimate: Option<ErrorEstimate>,
     messages: Vec<String>,
 }
@@ -81,6 +85,8 @@ impl ResultWriter {
             saved: None,
             tables: Tables::default(),
             fallbacks: 0,
+            times: PhaseTimes::default(),
+            outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
             estimate: None,
             messages: Vec::new(),
             out,
@@ -105,6 +111,11 @@ impl ResultWriter {
         self.estimate = Some(ErrorEstimate::new(&self.rows, &run, elements, &other, companion_elements));
     }
 
+    /// Says how many seconds on the wall the error estimate took.
+    pub fn estimate_took(&mut self, seconds: f64) {
+        self.outside.error_estimate = seconds;
+    }
+
     /// Steps written so far.
     pub fn steps(&self) -> usize {
         self.rows.len()
@@ -115,6 +126,7 @@ impl ResultWriter {
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
         self.progress.finish(&format!("{status}: {} steps", self.rows.len()));
         self.messages.extend(message.map(str::to_owned));
+        let begun = Instant::now();
         let plots = match &self.plots {
             Some(inputs) => write_plots(&self.out, &self.rows, &self.tables, inputs).map(drop),
             None => Ok(()),
@@ -122,6 +134,8 @@ impl ResultWriter {
         if let Err(error) = &plots {
             self.messages.push(error.to_string());
         }
+        self.outside.output += begun.elapsed().as_secs_f64();
+        let wall_s = self.clock.wall_seconds();
         let estimate = self.estimate.unwrap_or_default();
         let summary = Summary {
             f_n0_error: estimate.f_n0,
@@ -134,8 +148,9 @@ impl ResultWriter {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.fallbacks,
-            wall_s: self.clock.wall_seconds(),
+            wall_s,
             cpu_s: self.clock.cpu_seconds(),
+            time_by_phase: TimeByPhase::new(&self.times, &self.outside, wall_s),
             messages: self.messages,
             ..Summary::from_history(&self.rows, &self.inputs)
         };
@@ -177,10 +192,12 @@ impl Observer for ResultWriter {
             // The undeformed state is no step that was computed.
             return Ok(());
         }
+        let begun = Instant::now();
         let row = view.record.in_units(&self.units);
         self.history.append(&row)?;
         self.rows.push(row);
         self.fallbacks += view.report.fallbacks;
+        self.times += view.report.times;
         if self.fields == Fields::All {
             let contact = self.contact(view);
             self.save(view, &contact)?;
@@ -193,13 +210,16 @@ impl Observer for ResultWriter {
             detail: self.detail(&row),
         };
         self.progress.step(&position);
+        self.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        self.times += view.unfinished;
         if view.record.step == 0 {
             return Ok(());
         }
+        let begun = Instant::now();
         let contact = self.contact(view);
         if self.fields != Fields::None {
             self.save(view, &contact)?;
@@ -209,6 +229,7 @@ impl Observer for ResultWriter {
         if self.plots.is_some() {
             self.tables.add(&self.rows, contact);
         }
+        self.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! `summary.json`: one run in some numbers, and how they are read off its history.
 
-use super::{OutputError, StepRecord, write_atomically};
+use super::{OutputError, StepRecord, TimeByPhase, write_atomically};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io;
@@ -136,6 +136,8 @@ pub struct Summary {
     pub wall_s: f64,
     /// Processor time likewise, seconds, all threads; null where the system does not tell.
     pub cpu_s: Option<f64>,
+    /// What the time on the wall was spent on.
+    pub time_by_phase: TimeByPhase,
     /// Device that ran the kernels.
     pub device: String,
     /// Precision of the kernels, f32 or f64.

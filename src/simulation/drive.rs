@@ -15,6 +15,7 @@ use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::newton::{Newton, StepReport};
+use crate::solver::phases::{Lap, Phase, PhaseTimes};
 use crate::solver::{Control, StepFailure};
 
 /// Watches a run.
@@ -37,6 +38,8 @@ pub struct StepView<'a> {
     pub record: StepRecord,
     /// How Newton went.
     pub report: &'a StepReport,
+    /// Time of attempts since then that led to no step.
+    pub unfinished: PhaseTimes,
     /// The mesh.
     pub mesh: &'a Mesh,
     /// Displacement, three a node.
@@ -356,7 +359,9 @@ impl<'a> Drive<'a> {
             Some(_) => multistep::weight(self.state.length_to(target.h, target.delta_t) / self.state.last_length),
             None => 0.0,
         };
+        let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;
+        lap.end(&mut self.newton.times, Phase::Commit);
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
         Ok(self.newton.solve(&mut handle, &self.state.u, self.state.record.h, guess.as_deref(), &control)?)
     }
@@ -386,14 +391,16 @@ impl<'a> Drive<'a> {
     fn accept(
         &mut self,
         target: &Target,
-        report: StepReport,
+        mut report: StepReport,
         wasted: usize,
         cutbacks: usize,
         observer: &mut dyn Observer,
     ) -> Result<(), SimulationError> {
         let before = self.state.record;
         let accepted = self.newton.accepted();
+        let mut lap = Lap::start();
         let (energies, outcome) = CaseHandle { backend: &mut *self.backend, case: self.case }.commit(&accepted.u)?;
+        lap.end(&mut report.times, Phase::Commit);
         if let Outcome::Inverted { element, point } = outcome {
             return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
         }
@@ -440,6 +447,23 @@ impl<'a> Drive<'a> {
             max_alpha: 0.0,
         };
         self.state.record.max_alpha = energies.max_alpha;
+        log::info!(
+            "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
+             contact {:.2}, linear update {:.2}, linear solve {:.2}, commit {:.2})",
+            self.state.record.step,
+            target.delta_t,
+            self.state.record.newton_iterations,
+            report.krylov(),
+            cutbacks,
+            report.merit,
+            report.times.total(),
+            report.times.seconds(Phase::Tangent),
+            report.times.seconds(Phase::Force),
+            report.times.seconds(Phase::Contact),
+            report.times.seconds(Phase::LinearUpdate),
+            report.times.seconds(Phase::LinearSolve),
+            report.times.seconds(Phase::Commit),
+        );
         self.last_report = report;
         self.backend.take_notes().iter().for_each(|note| observer.note(note));
         observer.step(&mut self.view()).map_err(SimulationError::Observer)
@@ -450,6 +474,7 @@ impl<'a> Drive<'a> {
         StepView {
             record: self.state.record,
             report: &self.last_report,
+            unfinished: std::mem::take(&mut self.newton.times),
             mesh: &self.mesh,
             displacement: &self.state.u,
             points: &self.state.points,

@@ -1,5 +1,6 @@
 //! One step: semismooth Newton with a backtracking line search on the contact merit, inexact linear solves.
 
+use super::phases::{Lap, Phase, PhaseTimes};
 use super::system::{Boundary, Trial, apply_contact, plate_functional, right_hand_side};
 use super::{Control, Iteration, Settings, SolverError, StepFailure};
 use crate::compute::Outcome;
@@ -47,6 +48,8 @@ pub struct Newton {
     functional: Vec<f64>,
     unit_rhs: Vec<f64>,
     unit_response: Vec<f64>,
+    /// Time spent since the last converged step; whoever drives the iteration adds what else a step takes.
+    pub times: PhaseTimes,
 }
 
 /// A converged step.
@@ -58,6 +61,8 @@ pub struct StepReport {
     pub merit: f64,
     /// Times the linear solver fell back to the direct one.
     pub fallbacks: usize,
+    /// Time by phase, that of failed attempts since the last converged step included.
+    pub times: PhaseTimes,
 }
 
 impl StepReport {
@@ -87,6 +92,7 @@ impl Newton {
             functional: vec![0.0; n],
             unit_rhs: vec![0.0; n],
             unit_response: vec![0.0; n],
+            times: PhaseTimes::default(),
         }
     }
 
@@ -141,6 +147,7 @@ impl Newton {
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
             if self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
+                report.times = std::mem::take(&mut self.times);
                 return Ok(Ok(report));
             }
             if iteration == self.settings.max_iterations {
@@ -195,13 +202,13 @@ impl Newton {
         if let Some(guess) = guess {
             self.current.u.copy_from_slice(guess);
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
-            if self.current.evaluate(case, &self.boundary, control)? == Outcome::Valid {
+            if self.current.evaluate(case, &self.boundary, control, &mut self.times)? == Outcome::Valid {
                 return Ok(());
             }
         }
         self.current.u.copy_from_slice(start);
         // The committed state can always be evaluated; the plate's increment enters through the linear system.
-        self.current.evaluate(case, &self.boundary, control)?;
+        self.current.evaluate(case, &self.boundary, control, &mut self.times)?;
         if self.current.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.
             let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
@@ -214,7 +221,7 @@ impl Newton {
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
             // A shift leaves the forces as they are. Evaluated anew they would be those of an unloaded body, nothing but rounding, and
             // which points stick would hang on it: the step would go another way on every device.
-            self.current.assess(case, &self.boundary, control)?;
+            self.current.assess(case, &self.boundary, control, &mut self.times)?;
         }
         Ok(())
     }
@@ -249,15 +256,19 @@ impl Newton {
         control: &Control,
         eta: f64,
     ) -> Result<Result<(usize, bool, f64), StepFailure>, SolverError> {
+        let mut lap = Lap::start();
         if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut self.matrix.blocks)? {
             return Ok(Err(StepFailure::Inverted { element, point }));
         }
+        lap.end(&mut self.times, Phase::Tangent);
         if control.normal_force.is_some() {
             plate_functional(&self.matrix, &self.boundary.plate, &mut self.functional);
         }
         apply_contact(&mut self.matrix, mesh, &self.boundary, &self.current.rows, &mut self.fixed);
         right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
+        lap.end(&mut self.times, Phase::Contact);
         self.linear.update(&self.matrix, &self.fixed)?;
+        lap.end(&mut self.times, Phase::LinearUpdate);
         self.delta.fill(0.0);
         let solved = match self.linear.solve(&self.rhs, eta, &mut self.delta) {
             Ok(report) => report,
@@ -289,6 +300,7 @@ impl Newton {
                 *d += delta_h * b;
             }
         }
+        lap.end(&mut self.times, Phase::LinearSolve);
         Ok(Ok((krylov, fallback, delta_h)))
     }
 
@@ -311,7 +323,7 @@ impl Newton {
                 // Rounding must not leave the plate a hair from where it belongs.
                 self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, control.delta_t);
             }
-            let outcome = self.candidate.evaluate(case, &self.boundary, control)?;
+            let outcome = self.candidate.evaluate(case, &self.boundary, control, &mut self.times)?;
             if outcome != Outcome::Valid {
                 invalid = outcome;
                 continue;

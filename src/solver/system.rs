@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::phases::{Lap, Phase, PhaseTimes};
 use super::{Control, Worst};
 use crate::compute::handle::Evaluate;
 use crate::compute::{ComputeError, Outcome};
@@ -88,18 +89,33 @@ impl Trial {
         }
     }
 
-    /// Evaluates forces, contact, residual and merit at `self.u`.
-    pub fn evaluate(&mut self, case: &mut dyn Evaluate, boundary: &Boundary, control: &Control) -> Result<Outcome, ComputeError> {
+    /// Evaluates forces, contact, residual and merit at `self.u`; what it takes is added to `times`.
+    pub fn evaluate(
+        &mut self,
+        case: &mut dyn Evaluate,
+        boundary: &Boundary,
+        control: &Control,
+        times: &mut PhaseTimes,
+    ) -> Result<Outcome, ComputeError> {
+        let mut lap = Lap::start();
         let outcome = case.internal_force(&self.u, &mut self.force)?;
+        lap.end(times, Phase::Force);
         if outcome != Outcome::Valid {
             self.merit = f64::INFINITY;
             return Ok(outcome);
         }
-        self.assess(case, boundary, control)
+        self.assess(case, boundary, control, times)
     }
 
     /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces there.
-    pub fn assess(&mut self, case: &mut dyn Evaluate, boundary: &Boundary, control: &Control) -> Result<Outcome, ComputeError> {
+    pub fn assess(
+        &mut self,
+        case: &mut dyn Evaluate,
+        boundary: &Boundary,
+        control: &Control,
+        times: &mut PhaseTimes,
+    ) -> Result<Outcome, ComputeError> {
+        let mut lap = Lap::start();
         case.contact(&self.u, &self.force, &mut self.rows)?;
         let mesh = case.model().mesh.clone();
         for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free) {
@@ -145,6 +161,7 @@ impl Trial {
         });
         let missing = control.normal_force.map_or(0.0, |f| f - self.plate_force);
         self.merit = (sum + missing * missing).sqrt();
+        lap.end(times, Phase::Contact);
         Ok(if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } })
     }
 

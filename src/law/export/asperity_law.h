@@ -343,13 +343,14 @@ static inline void asperity_row(const asperity_material *m, double radius, doubl
     }
     n = 1.5
         + ASPERITY_EXPONENT_SPAN
-              * tanh(ASPERITY_EXPONENT_0 * asperity_product(ASPERITY_EXPONENT_1, ASPERITY_EXPONENT_2, friction, z) / ASPERITY_EXPONENT_SPAN);
+              * tanh(ASPERITY_EXPONENT_0 * asperity_product(ASPERITY_EXPONENT_1, ASPERITY_EXPONENT_2, friction, z) * exp(-ASPERITY_EXPONENT_3 * (a / radius))
+                     / ASPERITY_EXPONENT_SPAN);
     share = 1.0 - tanh(ASPERITY_FALL_0 * friction) * tanh(ASPERITY_FALL_1 * asperity_product(ASPERITY_FALL_2, ASPERITY_FALL_3, friction, z));
     body = 1.0 + ASPERITY_SLIP_0 * ramp * (a / radius);
     if (ASPERITY_SLIP_FORM == 0) {
         factor = body + ASPERITY_SLIP_1 * asperity_product(ASPERITY_SLIP_2, ASPERITY_SLIP_3, friction, z);
     } else {
-        factor = n / 1.5 * share * (body + ASPERITY_SLIP_1 * z);
+        factor = n / 1.5 * share * (body + ASPERITY_SLIP_1 * pow(z, ASPERITY_SLIP_3));
     }
     steep = 1.0 + ASPERITY_CURVE_0 + ASPERITY_CURVE_1 * (n - 1.5);
     gentle = 1.0 + ASPERITY_CURVE_2 * pow(friction, ASPERITY_CURVE_3);

@@ -284,13 +284,14 @@ def row(m, radius, friction, h):
         else:
             z = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0)
         z = z if z > 0.0 else 0.0
-    n = 1.5 + EXPONENT_SPAN * math.tanh(EXPONENT_0 * product(EXPONENT_1, EXPONENT_2, friction, z) / EXPONENT_SPAN)
+    size = math.exp(-EXPONENT_3 * (a / radius))
+    n = 1.5 + EXPONENT_SPAN * math.tanh(EXPONENT_0 * product(EXPONENT_1, EXPONENT_2, friction, z) * size / EXPONENT_SPAN)
     share = 1.0 - math.tanh(FALL_0 * friction) * math.tanh(FALL_1 * product(FALL_2, FALL_3, friction, z))
     body = 1.0 + SLIP_0 * ramp * (a / radius)
     if SLIP_FORM == 0:
         factor = body + SLIP_1 * product(SLIP_2, SLIP_3, friction, z)
     else:
-        factor = n / 1.5 * share * (body + SLIP_1 * z)
+        factor = n / 1.5 * share * (body + SLIP_1 * z**SLIP_3)
     steep = 1.0 + CURVE_0 + CURVE_1 * (n - 1.5)
     gentle = 1.0 + CURVE_2 * friction**CURVE_3
     mindlin = 8.0 * (0.5 * m.youngs_modulus / (1.0 + m.poissons_ratio)) * a / (2.0 - m.poissons_ratio)

@@ -63,7 +63,7 @@ pub fn source(law: &Law, language: Language) -> String {
         }
     };
     list("FALL", &law.constants.fall, 4);
-    list("EXPONENT", &law.constants.exponent, 3);
+    list("EXPONENT", &law.constants.exponent, 4);
     list("SLIP", &law.constants.slip, 4);
     list("CURVE", &law.constants.curve, 4);
     list("NORMAL_RADIUS", &law.normal.radius, 4);

@@ -1,0 +1,140 @@
+//! The phases of one Newton iteration at the default mesh, in the middle of the main job's press: element forces and tangents, gathering, contact,
+//! multigrid, Krylov.
+//!
+//! `cargo bench --bench phases`; `RAYON_NUM_THREADS=1` shows what one core takes. With `--test` on the coarsest mesh, each once.
+
+use std::path::Path;
+
+use asperity::case::Case;
+use asperity::compute::Compute;
+use asperity::compute::cpu::{Cpu, gather_tangent};
+use asperity::compute::gather::GatherPlan;
+use asperity::compute::handle::{CaseHandle, Evaluate};
+use asperity::element::hex8::{NODES, PAIRS, Tangent};
+use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, SolverKind};
+use asperity::simulation::drive::{Drive, Observer, StepView};
+use asperity::simulation::problem::Problem;
+use asperity::solver::Control;
+use asperity::solver::phases::PhaseTimes;
+use asperity::solver::system::{Boundary, Trial, apply_contact, right_hand_side};
+use criterion::{BatchSize, Criterion};
+
+type Failed = Box<dyn std::error::Error + Send + Sync>;
+
+/// The press is cut into so many steps, of which all but the last are made: the bench's iteration is on the way to the last.
+const PRESS_STEPS: usize = 8;
+const LINEAR_TOLERANCE: f64 = 1e-2;
+
+/// Displacements of the last two steps, and the indentation; asks to stop one step before the press ends.
+#[derive(Default)]
+struct Pressed {
+    last: Vec<f64>,
+    before: Vec<f64>,
+    h: f64,
+    steps: usize,
+}
+
+impl Observer for Pressed {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        self.before = std::mem::replace(&mut self.last, view.displacement.to_vec());
+        (self.h, self.steps) = (view.record.h, view.record.step);
+        Ok(())
+    }
+
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
+        Ok(())
+    }
+
+    fn note(&mut self, text: &str) {
+        eprintln!("{text}");
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.steps + 1 >= PRESS_STEPS
+    }
+}
+
+fn main() -> Result<(), Failed> {
+    let quick = std::env::args().any(|argument| argument == "--test");
+    let mut criterion = Criterion::default().sample_size(20).configure_from_args();
+    phases(&mut criterion, if quick { 4 } else { 16 })?;
+    criterion.final_summary();
+    Ok(())
+}
+
+fn phases(criterion: &mut Criterion, elements_per_contact_radius: usize) -> Result<(), Failed> {
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/cases/ideal.toml"));
+    let mesh_key = format!("mesh.elements_per_contact_radius={elements_per_contact_radius}");
+    let case = Case::load(file, &[mesh_key, format!("solver.press_steps={PRESS_STEPS}")])?;
+    let problem = Problem::new(&case)?;
+    let mesh = problem.model.mesh.clone();
+    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()])?;
+    let newton = problem.newton()?;
+    let unknowns = newton.free_unknowns();
+    let mut pressed = Pressed::default();
+    Drive::new(&problem, &mut backend, 0, newton).run(&mut pressed)?;
+
+    // Half of the last step again: the elements that flowed go on flowing.
+    let boundary = Boundary::new(&mesh);
+    let mut trial = Trial::new(&mesh);
+    for ((u, last), before) in trial.u.iter_mut().zip(&pressed.last).zip(&pressed.before) {
+        *u = last + 0.5 * (last - before);
+    }
+    let plate = boundary.plate.first().map_or(0, |&node| 3 * node as usize + 2);
+    trial.h = -trial.u[plate];
+    let control = Control { h: trial.h, delta_t: 0.0, normal_force: None };
+    backend.begin_step(0, 0.0)?;
+    let mut handle = CaseHandle { backend: &mut backend, case: 0 };
+    let outcome = trial.evaluate(&mut handle, &boundary, &control, &mut PhaseTimes::default())?;
+    let plan = GatherPlan::new(&mesh);
+    let mut matrix = BlockMatrix::<f64>::zeros(plan.pattern.clone());
+    handle.tangent(&trial.u, &mut matrix.blocks)?;
+    let raw = matrix.clone();
+    let mut fixed = vec![false; trial.u.len()];
+    apply_contact(&mut matrix, &mesh, &boundary, &trial.rows, &mut fixed);
+    let mut rhs = vec![0.0; trial.u.len()];
+    right_hand_side(&trial, &mesh, &boundary, &mut rhs);
+    assert!(handle.model().mesh.nodes.len() == mesh.nodes.len() && outcome == asperity::compute::Outcome::Valid, "{outcome:?}");
+
+    let name = format!("phases, {unknowns} unknowns, {} elements, {} threads", mesh.elements.len(), rayon::current_num_threads());
+    let mut group = criterion.benchmark_group(name);
+    let mut force = vec![0.0; trial.u.len()];
+    group.bench_function("force", |b| b.iter(|| handle.internal_force(&trial.u, &mut force)));
+    let mut blocks = vec![[0.0; 9]; matrix.blocks.len()];
+    group.bench_function("tangent, with gather", |b| b.iter(|| handle.tangent(&trial.u, &mut blocks)));
+    let tangents: Vec<Tangent<f64>> = vec![[[0.5; 9]; PAIRS]; mesh.elements.len()];
+    assert_eq!(PAIRS, NODES * (NODES + 1) / 2);
+    group.bench_function("gather of tangents", |b| b.iter(|| gather_tangent(&plan, &mesh, &tangents, &mut blocks)));
+    group.bench_function("contact, residual, merit", |b| {
+        b.iter(|| trial.assess(&mut handle, &boundary, &control, &mut PhaseTimes::default()))
+    });
+    group.bench_function("contact rows, right-hand side", |b| {
+        b.iter_batched_ref(
+            || raw.clone(),
+            |matrix| {
+                apply_contact(matrix, &mesh, &boundary, &trial.rows, &mut fixed);
+                right_hand_side(&trial, &mesh, &boundary, &mut rhs);
+            },
+            BatchSize::LargeInput,
+        )
+    });
+    let mut solver = LinearSolver::new(SolverKind::Multigrid, &plan.pattern, &mesh.hierarchy)?;
+    group.bench_function("multigrid update", |b| b.iter(|| solver.update(&matrix, &fixed)));
+    solver.update(&matrix, &fixed)?;
+    let mut hierarchy = Hierarchy::new(&plan.pattern, &mesh.hierarchy)?;
+    hierarchy.update(&matrix, &fixed)?;
+    let free: Vec<f64> = rhs.iter().zip(&fixed).map(|(b, fixed)| if *fixed { 0.0 } else { *b }).collect();
+    let mut correction = vec![0.0_f32; free.len()];
+    group.bench_function("V-cycle", |b| b.iter(|| hierarchy.v_cycle(&free, &mut correction)));
+    let mut x = vec![0.0; rhs.len()];
+    x.fill(0.0);
+    let iterations = solver.solve(&rhs, LINEAR_TOLERANCE, &mut x)?.iterations;
+    group.bench_function(format!("FGMRES to {LINEAR_TOLERANCE}, {iterations} iterations"), |b| {
+        b.iter(|| {
+            x.fill(0.0);
+            solver.solve(&rhs, LINEAR_TOLERANCE, &mut x)
+        })
+    });
+    group.finish();
+    Ok(())
+}
