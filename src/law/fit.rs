@@ -201,13 +201,16 @@ fn fit_normal(form: NormalForm, start: &NormalStart, samples: &[&Sample]) -> Res
     Ok(NormalModel { form, radius, force })
 }
 
+/// The normal forms compared; the weight of the prior, if one was used; the best form's models by fold.
+type ChosenNormal = (Vec<NormalCandidate>, Option<f64>, Vec<NormalModel>);
+
 /// The normal forms compared; the best one's weight of the prior and its models by fold, the last one fitted to all.
 fn choose_normal(
     prior: Option<&NormalModel>,
     samples: &[Sample],
     fold_of: &[usize],
     folds: usize,
-) -> Result<(Vec<NormalCandidate>, Option<f64>, Vec<NormalModel>), LawError> {
+) -> Result<ChosenNormal, LawError> {
     let mut starts: Vec<(NormalForm, NormalStart)> =
         NormalForm::ALL.into_iter().map(|form| (form, Start { constants: None, pull: PULL, prior: false })).collect();
     if let Some(prior) = prior.filter(|prior| prior.form != NormalForm::Published) {

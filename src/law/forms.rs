@@ -198,8 +198,12 @@ pub struct Constants {
 
 impl Constants {
     /// Every constant of order one, from which the fits start and to which what the data leave open is drawn.
-    pub const START: Self =
-        Self { fall: [1.0, 1.0, 0.5, 1.0], exponent: [10.0, 1.0, 1.0, 1.0], slip: [1.0, 0.3, 1.0, 1.0], curve: [0.5, 0.5, 0.5, 1.0] };
+    pub const START: Self = Self {
+        fall: [1.0, 1.0, 0.5, 1.0],
+        exponent: [10.0, 1.0, 1.0, 1.0],
+        slip: [1.0, 0.3, 1.0, 1.0],
+        curve: [0.5, 0.5, 0.5, 1.0],
+    };
 
     /// All of them, in order.
     pub fn all(&self) -> impl Iterator<Item = f64> + '_ {

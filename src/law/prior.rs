@@ -6,8 +6,8 @@
 
 use std::path::Path;
 
-use super::model::Law;
 use super::LawError;
+use super::model::Law;
 
 /// The weights that are tried. The greatest all but keeps the prior's constants; the least decides only what the data leave open.
 pub const WEIGHTS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
