@@ -354,7 +354,7 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
         validity: validity(samples)?,
         provenance: Provenance {
             program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
-            study: dir.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            study: study_name(dir),
             cases: samples.len(),
             left_out: data.skipped.iter().map(|skipped| (skipped.id.clone(), skipped.reason.clone())).collect(),
             materials,
@@ -376,6 +376,12 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
         normal_candidates,
         cases: samples.iter().zip(&errors).map(|(s, e)| fitted_case(&forms, s, e)).collect::<Result<_, _>>()?,
     })
+}
+
+/// Name of the directory, even if it was given as `.`.
+fn study_name(dir: &Path) -> String {
+    let dir = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
+    dir.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 fn validity(samples: &[Sample]) -> Result<Validity, LawError> {

@@ -131,7 +131,9 @@ mod limits {
                 assert!(p.m_exponent >= 1.0 && p.n_exponent >= 1.0);
                 assert!((p.k_t0 - p.n * 0.5 * p.f_n_slip / p.delta_t_slip).abs() < 1e-12 * p.k_t0);
                 if let Some(last) = last {
-                    assert!(share <= last.f_n_slip / last.f_n0 + 1e-12 && p.n >= last.n - 1e-12, "{forms:?} at {lambda}");
+                    assert!(share <= last.f_n_slip / last.f_n0 + 1e-12, "{forms:?} at {lambda}");
+                    // n falls again where the contact is large: these contacts grow with Lambda.
+                    assert!(lambda > 100.0 || p.n >= last.n - 1e-12, "{forms:?} at {lambda}");
                 }
                 last = Some(p);
             }

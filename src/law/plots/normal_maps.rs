@@ -37,9 +37,9 @@ pub fn johnson(contacts: &[NormalContact], law: Option<&Law>) -> Result<Picture,
     series.extend(ours(contacts, |v| v.hardness));
     series.extend(reference(contacts, law, |v| v.hardness));
     let greatest = extent(contacts.iter().map(|contact| contact.variables.hardness)).1.max(3.0);
-    let y = Axis::linear("H\u{304} = F_N / (π a² σ_rep)", 0.0, 1.12 * greatest);
+    let y = Axis::linear("Hbar = F_N / (π a² σ_rep)", 0.0, 1.12 * greatest);
     let chart = Chart { title: "Johnson's map".into(), x, y, series, bar: None };
-    let caption = "Normalised hardness Hbar (H\u{304}) over Johnson's Λ, of every case before its shear. e is the local hardening exponent \
+    let caption = "Normalised hardness Hbar over Johnson's Λ, of every case before its shear. e is the local hardening exponent \
                    d ln σ/d ln ε_p at the representative strain; hollow marks are large contacts, a/R > 0.15, for which the published \
                    curves, of small deformation, are too high.";
     Picture::draw("johnson", caption, SIZE, |root| draw_chart(root, &chart))

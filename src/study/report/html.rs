@@ -113,6 +113,14 @@ pub fn formula(plain: &str) -> String {
     out
 }
 
+/// A value of a grid as the table has it, escaped: of an inline table, as hardening laws are, the law's name and then its numbers.
+pub fn grid_value(cell: &str) -> String {
+    let Some(inner) = cell.trim().strip_prefix('{').and_then(|cell| cell.strip_suffix('}')) else { return escape(cell) };
+    let (law, numbers): (Vec<&str>, Vec<&str>) = inner.split(',').map(str::trim).partition(|part| part.starts_with("law"));
+    let name = law.iter().map(|law| law.trim_start_matches("law").trim_matches([' ', '=', '"']));
+    escape(&name.chain(numbers).collect::<Vec<_>>().join(", "))
+}
+
 fn end_of(letters: &[char], start: usize, inside: impl Fn(char) -> bool) -> usize {
     (start..letters.len()).find(|&i| !inside(letters[i])).unwrap_or(letters.len())
 }
@@ -149,7 +157,8 @@ fn symbol(word: &str) -> String {
         "sigma" => "σ",
         "delta" => "δ",
         "eps" => "ε",
-        "Hbar" => "H\u{304}",
+        "Hbar" => "<span class=\"bar\">H</span>",
+        "a0" => "a<sub>0</sub>",
         "c2" => "c<sup>2</sup>",
         word => word,
     }
@@ -168,10 +177,18 @@ mod tests {
             formula("[1 + X^2]^(-1/0.5) < a_H^2."),
             "[1 + X<sup>2</sup>]<sup>−1/0.5</sup> &lt; a<sub>H</sub><sup>2</sup>."
         );
+        assert_eq!(formula("a0^2"), "a<sub>0</sub><sup>2</sup>");
         assert_eq!(formula("(R h)^(1/2)"), "(R h)<sup>1/2</sup>");
-        assert_eq!(formula("Hbar(Lambda/Lambda_Y)"), "H\u{304}(Λ/Λ<sub>Y</sub>)");
+        assert_eq!(formula("Hbar(Lambda/Lambda_Y)"), "<span class=\"bar\">H</span>(Λ/Λ<sub>Y</sub>)");
         assert_eq!(formula("Jaeger-Ciavarella, [1-(1-x)^M]"), "Jaeger-Ciavarella, [1−(1−x)<sup>M</sup>]");
         assert_eq!(formula("a^(b"), "a<sup></sup>(b");
+    }
+
+    #[test]
+    fn hardening_laws_are_named_first() {
+        let cell = "{ coefficient = 8325.53, exponent = 2.5, law = \"hollomon\" }";
+        assert_eq!(grid_value(cell), "hollomon, coefficient = 8325.53, exponent = 2.5");
+        assert_eq!([grid_value("0.05"), grid_value("\"stick\"")], ["0.05", "&quot;stick&quot;"]);
     }
 
     #[test]

@@ -19,6 +19,12 @@ pub fn law_section(law: &Law) -> String {
         p.materials,
         p.left_out.len()
     );
+    if let Some(prior) = &p.prior {
+        html.push_str(&format!(
+            "<p>What these cases leave open was drawn to the constants of the law of the study <i>{}</i>.</p>\n",
+            escape(&prior.study)
+        ));
+    }
     html.push_str("<div class=\"wide\"><table class=\"formulas\"><tbody>\n");
     for line in law.formulas().lines() {
         let (left, right) = line.split_once('=').unwrap_or(("", line));

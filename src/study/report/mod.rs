@@ -6,7 +6,7 @@ mod law_section;
 use std::fs;
 use std::path::PathBuf;
 
-use self::html::{Table, escape, number, percent};
+use self::html::{Table, escape, grid_value, number, percent};
 use super::row::{FIRST_COLUMNS, NUMBERS};
 use super::{StudyDirectory, StudyError};
 use crate::law::Law;
@@ -124,7 +124,7 @@ impl Report<'_> {
                 }
                 // Tables, which are long, a line each.
                 let separator = if values.iter().any(|value| value.len() > 16) { "<br/>" } else { ", " };
-                let values: Vec<String> = values.into_iter().map(escape).collect();
+                let values: Vec<String> = values.into_iter().map(grid_value).collect();
                 table.row("", &[escape(key), values.join(separator)]);
             }
             html.push_str(&table.html());
@@ -146,7 +146,7 @@ impl Report<'_> {
         let mut table = Table::new(&header, &columns);
         for row in failed {
             let mut cells = vec![escape(&row.id)];
-            cells.extend(keys.iter().map(|key| escape(self.table.cell(row, key))));
+            cells.extend(keys.iter().map(|key| grid_value(self.table.cell(row, key))));
             cells.extend([escape(&row.status), escape(self.table.cell(row, "reason"))]);
             table.row("", &cells);
         }
@@ -169,7 +169,7 @@ impl Report<'_> {
         let mut table = Table::new(&header, &text);
         for row in &self.table.rows {
             let mut cells = vec![escape(&row.id), escape(&row.status)];
-            cells.extend(keys.iter().map(|key| escape(self.table.cell(row, key))));
+            cells.extend(keys.iter().map(|key| grid_value(self.table.cell(row, key))));
             cells.extend(self.numbers(row).map(number));
             let sample = self.data.samples.iter().position(|sample| sample.id == row.id);
             if let Some((all, _)) = &errors {
