@@ -363,7 +363,7 @@ fn every_mistake_in_a_study_file_ends_with_2_and_is_named() {
 
 #[test]
 fn check_tells_how_many_cases_and_shows_the_first() {
-    for (name, size) in [("small", "# 12 cases: "), ("wear-2014", "# 240 cases: material.hardening (15) x ")] {
+    for (name, size) in [("small", "# 27 cases: "), ("wear-2014", "# 240 cases: material.hardening (15) x ")] {
         let file = format!("fixtures/studies/{name}.toml");
         let output = Command::new(assert_cmd::cargo::cargo_bin!("asperity")).args(["check", &file]).output().expect("it runs");
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
