@@ -70,5 +70,6 @@ if compgen -G "benches/*.rs" >/dev/null; then
     cargo bench --benches -- --test
 fi
 
+# Every test target runs, whatever failed before it: one run tells all.
 begin "cargo test"
-cargo test
+cargo test --no-fail-fast
