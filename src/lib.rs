@@ -10,6 +10,7 @@ pub mod cli;
 pub mod compute;
 pub mod contact;
 pub mod element;
+pub mod lanes;
 pub mod law;
 pub mod linalg;
 pub mod material;
