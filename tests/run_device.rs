@@ -41,7 +41,11 @@ fn run_case(dir: &Path, case: &str, options: &[&str], environment: &[(&str, &str
     fs::write(dir.join("case.toml"), case).unwrap();
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
     command.arg("run").arg(dir.join("case.toml")).arg("--out").arg(dir.join("out")).args(options);
-    command.env_remove("ASPERITY_ADAPTER").env_remove("ASPERITY_GPU_MEMORY").env_remove(LOSE_VARIABLE).envs(environment.iter().copied());
+    command
+        .env_remove("ASPERITY_ADAPTER")
+        .env_remove("ASPERITY_GPU_MEMORY")
+        .env_remove(LOSE_VARIABLE)
+        .envs(environment.iter().copied());
     command.output().unwrap()
 }
 
@@ -172,7 +176,9 @@ fn a_device_asked_for_and_lost_ends_the_run_with_one_message() {
     // the driver of the tests may speak as well
     let errors: Vec<&str> = said.lines().filter(|line| line.contains("error") || line.contains("device")).collect();
     let [error] = &errors[..] else { panic!("{said}") };
-    for part in [&format!("broke off after {LOST_AFTER} steps"), "device failed", "--device cpu", "what was computed until then is kept"] {
+    for part in
+        [&format!("broke off after {LOST_AFTER} steps"), "device failed", "--device cpu", "what was computed until then is kept"]
+    {
         assert!(error.starts_with("error: ") && error.contains(part), "{part}: {error}");
     }
     assert_eq!(history.len(), LOST_AFTER);

@@ -280,8 +280,10 @@ fn respond<T: Number>(material: &Material<T::Scalar>, relative: &[[T; 3]; 3], st
     response.stress = deviator.map(|x| mu * x);
     let [xx, yy, zz, xy, yz, zx] = deviator;
     let returned = [xx + mean, yy + mean, zz + mean, xy, yz, zx];
-    response.state =
-        PointState { be: std::array::from_fn(|c| T::select(yielding, returned[c], be[c])), alpha: T::select(yielding, alpha, state.alpha) };
+    response.state = PointState {
+        be: std::array::from_fn(|c| T::select(yielding, returned[c], be[c])),
+        alpha: T::select(yielding, alpha, state.alpha),
+    };
     response.yielding = yielding;
     let plastic = |x: T| T::select(yielding, x, zero);
     response.delta_gamma = plastic(T::of(1.224_744_871_391_589) * step.increment);
