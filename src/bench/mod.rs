@@ -94,7 +94,7 @@ impl Options {
     /// A look at it in a minute, for machines without a GPU and for tests: small meshes, small batches, few repetitions.
     pub fn quick(device: Device, threads: usize) -> Self {
         let patience = Patience { least: 3, most: 5, seconds: 0.05 };
-        Self { device, threads, batches: vec![1, 4, 16], elements: 4, points: 512, copied: 16 << 20, patience }
+        Self { device, threads, batches: vec![1, 4, 8], elements: 4, points: 512, copied: 64 << 20, patience }
     }
 }
 
@@ -127,14 +127,23 @@ impl Pools {
 /// # Errors
 /// [`BenchError`]; what does not fit in memory is a row that says so.
 pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<Report, BenchError> {
-    let context = match options.device {
-        Device::Cpu => None,
-        Device::Auto => GpuContext::open(DeviceRequest::Auto)?,
-        Device::Gpu => GpuContext::open(DeviceRequest::Gpu)?,
+    let opened = match options.device {
+        Device::Cpu => Ok(None),
+        Device::Auto => GpuContext::open(DeviceRequest::Auto),
+        Device::Gpu => GpuContext::open(DeviceRequest::Gpu),
     };
-    let context = context.map(Arc::new);
+    let (context, missing) = match (options.device, opened) {
+        (Device::Cpu, _) => (None, None),
+        (_, Ok(Some(context))) => (Some(Arc::new(context)), None),
+        (Device::Auto, Ok(None)) => {
+            (None, Some("there is none, or only a software adapter, which --device gpu takes too".to_owned()))
+        }
+        (Device::Auto, Err(error)) => (None, Some(error.to_string())),
+        (Device::Gpu, Ok(None)) => return Err(GpuError::NoAdapter.into()),
+        (Device::Gpu, Err(error)) => return Err(error.into()),
+    };
     let pools = Pools::new(options.threads)?;
-    let mut header = Header::new(options, context.as_deref());
+    let mut header = Header::new(options, context.as_deref(), missing);
     say(&header.device_line());
     say("copies");
     header.copy = CopyRates::measure(options, context.as_deref(), &pools)?;

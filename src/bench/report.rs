@@ -4,9 +4,9 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
 
+use super::Options;
 use super::copy::CopyRates;
 use super::timing::Timing;
-use super::{Device, Options};
 use crate::compute::gpu::GpuContext;
 
 /// Where and how it was measured.
@@ -59,8 +59,8 @@ const COUNTED: &str = "bytes: every array that the kernels of an evaluation read
                        copies: bytes read and written; rates of a device: of its kernels, without transfers";
 
 impl Header {
-    /// Of this machine, with the copies still to be measured.
-    pub fn new(options: &Options, context: Option<&GpuContext>) -> Self {
+    /// Of this machine, with the copies still to be measured; `missing` says why there is no device though one was not ruled out.
+    pub fn new(options: &Options, context: Option<&GpuContext>, missing: Option<String>) -> Self {
         let adapter = context.map(|context| {
             let a = context.adapter();
             let yes = |what: &str, there: bool| there.then(|| what.to_owned());
@@ -80,11 +80,8 @@ impl Header {
                 memory_budget_mib: context.budget().limit() as f64 / f64::from(1 << 20),
             }
         });
-        let no_device = (adapter.is_none() && options.device == Device::Auto).then(|| {
-            "NO GPU WAS MEASURED: there is none, or only a software adapter (`asperity devices` lists them; --device gpu takes a software adapter \
-             too). All rows are the CPU's"
-                .to_owned()
-        });
+        let no_device = missing
+            .map(|why| format!("NO GPU WAS MEASURED: {why} (`asperity devices` lists what is there). All rows are the CPU's"));
         Self {
             version: env!("CARGO_PKG_VERSION"),
             date: date(),

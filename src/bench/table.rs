@@ -11,20 +11,20 @@ const HEAD: [&str; 17] = [
     "real",
     "batch",
     "items",
-    "device ms (min to max)",
+    "device ms (min-max)",
     "first ms",
     "kernels ms",
     "M/s",
     "Gop/s",
     "copy",
-    "1 core ms (min to max)",
+    "1 core ms (min-max)",
     "M/s",
     "Gop/s",
     "copy",
-    "all cores ms (min to max)",
+    "all cores ms (min-max)",
     "M/s",
 ];
-const MORE: [&str; 3] = ["copy", "device/1 core", "kernels/all cores"];
+const MORE: [&str; 3] = ["copy", "x 1 core", "x all, kernels"];
 
 /// The header, the table and what did not fit.
 pub fn table(report: &Report) -> String {
@@ -108,7 +108,9 @@ fn header(h: &Header) -> String {
     let _ = writeln!(text, "\ncounted: {}", h.counted);
     let _ = writeln!(
         text,
-        "times are medians on the wall in ms; M/s are million items (points, elements, contact points) a second of the call"
+        "times are medians on the wall in ms, the first call apart; M/s are million items (points, elements, contact points) a second of the call; copy is \
+         the share of the rate of a copy there (beyond 100 %: from caches); x 1 core is how much faster the device's call is than one core, x all, \
+         kernels how much faster its kernels alone are than all cores"
     );
     text
 }
@@ -123,7 +125,7 @@ fn line(group: &[&Row]) -> Vec<String> {
     let time = |on: On| {
         measured(on).map_or_else(
             || nothing(on),
-            |m| format!("{} ({} to {})", number(m.call.median_ms), number(m.call.min_ms), number(m.call.max_ms)),
+            |m| format!("{} ({}-{})", number(m.call.median_ms), number(m.call.min_ms), number(m.call.max_ms)),
         )
     };
     let rate = |on: On| show(on, &|m| number(1e-6 * m.items_per_s));
