@@ -25,7 +25,7 @@ pub struct CopyRates {
 }
 
 /// Copies are short: enough of them for a steady median.
-const PATIENCE: Patience = Patience { least: 5, most: 15, seconds: 0.5 };
+const PATIENCE: Patience = Patience { least: 5, most: 15, seconds: 0.5, enough: 4.0 };
 
 impl CopyRates {
     /// Measures the copies of arrays of `options.copied` bytes, or of what the device's limits allow.

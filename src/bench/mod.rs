@@ -86,14 +86,14 @@ pub struct Options {
 impl Options {
     /// The whole table: minutes on a machine with a GPU.
     pub fn full(device: Device, threads: usize) -> Self {
-        let patience = Patience { least: 3, most: 15, seconds: 1.0 };
+        let patience = Patience { least: 3, most: 15, seconds: 1.0, enough: 4.0 };
         let batches = vec![1, 4, 16, 64, 256];
         Self { device, threads, batches, elements: 8, points: 4096, copied: 256 << 20, patience }
     }
 
     /// A look at it in a minute, for machines without a GPU and for tests: small meshes, small batches, few repetitions.
     pub fn quick(device: Device, threads: usize) -> Self {
-        let patience = Patience { least: 3, most: 5, seconds: 0.05 };
+        let patience = Patience { least: 3, most: 5, seconds: 0.05, enough: 1.0 };
         Self { device, threads, batches: vec![1, 4, 8], elements: 4, points: 512, copied: 64 << 20, patience }
     }
 }

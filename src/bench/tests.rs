@@ -10,7 +10,7 @@ use crate::real::Real;
 
 /// So small that debug builds do it in a second.
 fn options() -> Options {
-    let patience = Patience { least: 1, most: 1, seconds: 0.0 };
+    let patience = Patience { least: 1, most: 1, seconds: 0.0, enough: 0.0 };
     Options { batches: vec![1, 2], points: 64, copied: 1 << 20, patience, ..Options::quick(Device::Cpu, 2) }
 }
 

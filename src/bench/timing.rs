@@ -5,12 +5,14 @@ use std::time::Instant;
 /// How often a call is repeated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patience {
-    /// At least so often.
+    /// At least so often, unless `enough` is over.
     pub least: usize,
     /// At most so often.
     pub most: usize,
     /// Beyond the least only until so many seconds have gone.
     pub seconds: f64,
+    /// After so many seconds a single repetition is enough.
+    pub enough: f64,
 }
 
 /// Milliseconds on the wall of a first call and of those after it.
@@ -47,8 +49,12 @@ pub fn measure<E>(patience: Patience, mut f: impl FnMut(usize) -> Result<(), E>)
 pub fn gather<E>(patience: Patience, mut call: impl FnMut(usize) -> Result<f64, E>) -> Result<Timing, E> {
     let first_ms = call(0)?;
     let begun = Instant::now();
-    let mut times = Vec::new();
-    while times.len() < patience.least || (times.len() < patience.most && begun.elapsed().as_secs_f64() < patience.seconds) {
+    let mut times = vec![call(1)?];
+    while times.len() < patience.most {
+        let gone = begun.elapsed().as_secs_f64();
+        if gone > patience.enough || (gone > patience.seconds && times.len() >= patience.least) {
+            break;
+        }
         times.push(call(times.len() + 1)?);
     }
     times.sort_by(f64::total_cmp);
@@ -101,11 +107,15 @@ mod tests {
             std::thread::sleep(std::time::Duration::from_millis(if i == 0 { 30 } else { 1 }));
             Ok::<(), ()>(())
         };
-        let timing = measure(Patience { least: 3, most: 3, seconds: 0.0 }, slow_start).unwrap();
+        let timing = measure(Patience { least: 3, most: 3, seconds: 0.0, enough: 9.0 }, slow_start).unwrap();
         assert_eq!((calls, timing.repetitions), (vec![0, 1, 2, 3], 3));
         assert!(timing.first_ms >= 30.0 && timing.min_ms >= 1.0 && timing.min_ms <= timing.median_ms);
         assert!(timing.median_ms <= timing.max_ms);
-        assert_eq!(measure(Patience { least: 1, most: 9, seconds: 9.0 }, |i| if i < 2 { Ok(()) } else { Err(i) }), Err(2));
+        let long = Patience { least: 1, most: 9, seconds: 9.0, enough: 9.0 };
+        assert_eq!(measure(long, |i| if i < 2 { Ok(()) } else { Err(i) }), Err(2));
+        assert_eq!(measure(long, |_| Ok::<(), ()>(())).unwrap().repetitions, 9);
+        let impatient = Patience { least: 5, seconds: 0.0, enough: 0.0, ..long };
+        assert_eq!(measure(impatient, |_| Ok::<(), ()>(())).unwrap().repetitions, 1);
     }
 
     #[test]
