@@ -164,7 +164,7 @@ fn flat(text: &str) -> BTreeMap<String, String> {
     values
 }
 
-/// Sums up what is written and keeps what went wrong.
+/// Sums up what is written, and keeps what went wrong.
 struct Checked<'a> {
     out: &'a mut dyn Write,
     sum: crc32fast::Hasher,
@@ -188,5 +188,40 @@ impl Write for Checked<'_> {
 
     fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_is_told_by_its_key() {
+        let case = "[contact]\nfriction = 0.3\n[[path]]\nindentation = 0.02\n[[path]]\nshear = 0.01\n";
+        assert_eq!(case_difference(case, &format!("# a comment\n\n{case}")), None);
+        for (there, here, expected) in [
+            ("friction = 0.3", "friction = \"stick\"", "contact.friction is 0.3 there and \"stick\" here"),
+            ("[[path]]\nshear = 0.01\n", "", "path.1.shear is 0.01 there and absent here"),
+            ("0.02", "0.020000000000000004", "path.0.indentation is 0.02 there and 0.020000000000000004 here"),
+            ("[contact]", "]", "contact.friction is 0.3 there and absent here"),
+        ] {
+            assert_eq!(case_difference(case, &case.replace(there, here)).as_deref(), Some(expected));
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_told_as_what_it_is() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let mut out = Checked { out: &mut Full, sum: crc32fast::Hasher::new(), failed: None };
+        assert!(postcard::to_io(&Ledger::default(), &mut out).is_err());
+        assert_eq!(out.failed.map(|error| error.kind()), Some(ErrorKind::StorageFull));
     }
 }
