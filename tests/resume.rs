@@ -1,6 +1,8 @@
 //! `asperity run --resume`: a run that was interrupted or killed goes on to the results of one that never stopped, bit for bit.
 #![cfg(unix)]
 
+mod device;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -13,6 +15,7 @@ use std::time::{Duration, Instant};
 use asperity::case::Case;
 use asperity::compute::Compute;
 use asperity::compute::cpu::Cpu;
+use asperity::compute::gpu::Precision;
 use asperity::output::{Clock, OutputDirectory, Position, Progress, ResultWriter, Setting, Summary, TimeByPhase, read_history};
 use asperity::simulation::drive::{Drive, Ending};
 use asperity::simulation::problem::Problem;
@@ -378,6 +381,51 @@ fn without_resume_a_run_begins_anew() {
     let output = scratch.run("out", &["-q"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_same(&scratch.out("out"), whole());
+}
+
+#[test]
+fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() {
+    if device::device("resume", Precision::F64).is_none() {
+        return;
+    }
+    let scratch = Scratch::new();
+    // The press alone, in few steps: software adapters are slow.
+    let press: Vec<&str> = CASE.split("[[path]]").take(2).collect();
+    fs::write(scratch.out("case.toml"), press.join("[[path]]")).expect("the case");
+    let small = ["mesh.elements_per_contact_radius=4", "solver.press_steps=5", "solver.error_estimate=false"];
+    let sets: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
+    for precision in ["f64", "f32"] {
+        let run = |options: &[&str], device: &str| {
+            let mut args = scratch.args(precision, &[&sets[..], &["--precision", precision], options].concat());
+            args.iter_mut().filter(|arg| *arg == "cpu").for_each(|arg| device.clone_into(arg));
+            args
+        };
+        let whole = scratch.out("whole");
+        let args = run(&[], "gpu")
+            .into_iter()
+            .map(|arg| if Path::new(&arg) == scratch.out(precision) { whole.display().to_string() } else { arg });
+        assert_eq!(program().args(args).output().expect("it runs").status.code(), Some(0));
+        let out = scratch.out(precision);
+        let output = stop(piped(program().args(run(&[], "gpu"))), Signal::TERM, &out, 2);
+        assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
+        let (left, at) = (files(&out), steps(&out));
+        let output = program().args(run(&["--resume"], "gpu")).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(stderr(&output).contains(&format!("resumed after step {at} ")), "{}", stderr(&output));
+        assert_same(&out, &whole);
+
+        // The checkpoint again, now on the CPU in the same precision.
+        fs::remove_file(out.join("summary.json")).expect("a summary");
+        fs::write(out.join("checkpoint.bin"), &left["checkpoint.bin"]).expect("a checkpoint");
+        let output = program().args(run(&["--resume"], "cpu")).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let read = |dir: &Path| Summary::read(&dir.join("summary.json")).expect("a summary");
+        let (here, there) = (read(&out), read(&whole));
+        let note = format!("note: computed up to step {at} on {}, from there on {}", there.device, here.device);
+        assert_eq!(here.messages, [note]);
+        let ratio = here.f_n0.expect("a force") / there.f_n0.expect("a force");
+        assert!((ratio - 1.0).abs() < if precision == "f64" { 1e-7 } else { 5e-4 }, "{precision}: {ratio}");
+    }
 }
 
 /// A limit on the size of a file stands for a full disk; nothing else that this run writes is as large as its checkpoint.

@@ -87,7 +87,10 @@ impl Simulator<'_> {
             |checkpoint: &Checkpoint| checkpoint.check_precision(&out.checkpoint(), setting.computed_on.precision).is_ok();
         let checkpoint = self.checkpoint(case).filter(same_precision);
         match &checkpoint {
-            Some(checkpoint) => drive.resume(checkpoint.snapshot())?,
+            Some(checkpoint) => {
+                drive.resume(checkpoint.snapshot())?;
+                log::info!("case {id}: resumed after step {}", checkpoint.step());
+            }
             // There may be one in another precision.
             None => out.clear()?,
         }
