@@ -11,6 +11,7 @@ pub mod out;
 pub mod plot;
 pub mod point;
 pub mod processor;
+pub mod resume;
 pub mod run;
 pub mod signals;
 pub mod study;
@@ -32,7 +33,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not converge (what was computed is kept) or a check failed, \
-                          75 interrupted (likewise).";
+                          75 interrupted (likewise; --resume goes on).";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -22,6 +22,8 @@ pub mod point;
 pub use hardening::{Hardening, HardeningError};
 pub use j2::{Response, deviatoric_tangent, return_mapping};
 
+use serde::{Deserialize, Serialize};
+
 use crate::real::Real;
 
 /// Why a point has no answer for the deformation it was given. A reason to cut the step back, not to stop the program.
@@ -58,7 +60,7 @@ impl<R: Real> Elasticity<R> {
 }
 
 /// What a point remembers between accepted steps. [`Default`] is the virgin state.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointState<R> {
     /// b_e_bar - I: the isochoric elastic left Cauchy-Green tensor less the identity, whose digits at small strains it keeps.
     pub be: [R; 6],

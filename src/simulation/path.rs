@@ -1,9 +1,11 @@
 //! The increments of a path: where each step of a segment should end.
 
+use serde::{Deserialize, Serialize};
+
 use crate::case::{Hold, Segment, ShearTarget};
 
 /// Where a step should end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Indentation, or the first guess of it when the normal force is held.
     pub h: f64,
@@ -16,7 +18,7 @@ pub struct Target {
 }
 
 /// What the increments of a segment are made from: the state at its start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Indentation.
     pub h: f64,

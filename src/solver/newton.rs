@@ -113,6 +113,17 @@ impl Newton {
         self.largest_scale = self.largest_scale.max(self.last_scale);
     }
 
+    /// Sums of the normal contact forces of the last committed step and the largest of any (see [`Newton::committed`]): all that a step depends on of
+    /// what the iteration keeps between steps.
+    pub fn force_scales(&self) -> [f64; 2] {
+        [self.last_scale, self.largest_scale]
+    }
+
+    /// Sets them, to go on from an earlier state.
+    pub fn set_force_scales(&mut self, [last, largest]: [f64; 2]) {
+        (self.last_scale, self.largest_scale) = (last, largest);
+    }
+
     /// Lets the contact points that `points` marks slide without friction until it is called again; none of them for an empty list.
     pub fn let_slide(&mut self, points: &[bool]) {
         self.boundary.frictionless.fill(false);
