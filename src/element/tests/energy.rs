@@ -51,7 +51,7 @@ fn imbalance(yield_stress: f64, n: usize) -> (f64, f64) {
                 work += 0.5 * (f[a][i] + next[a][i]) * increment[a][i];
             }
         }
-        state = update(&g, &m, &state, &state.points, &committed, &increment).unwrap();
+        state = update(&g, &m, &state, &state.points, &committed, &increment).unwrap().0;
         (committed, f) = (target, next);
     }
     let elastic = fields(&g, &m, &state.points, &committed).unwrap().elastic_energy;
