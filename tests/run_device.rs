@@ -3,7 +3,8 @@
 mod device;
 
 use asperity::compute::gpu::Precision;
-use asperity::output::{OutputDirectory, Status, Summary};
+use asperity::compute::lost::LOSE_VARIABLE;
+use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -33,10 +34,18 @@ indentation = 0.01
 "#;
 
 fn run(dir: &Path, options: &[&str], environment: &[(&str, &str)]) -> Output {
-    fs::write(dir.join("case.toml"), CASE).unwrap();
+    run_case(dir, CASE, options, environment)
+}
+
+fn run_case(dir: &Path, case: &str, options: &[&str], environment: &[(&str, &str)]) -> Output {
+    fs::write(dir.join("case.toml"), case).unwrap();
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
     command.arg("run").arg(dir.join("case.toml")).arg("--out").arg(dir.join("out")).args(options);
-    command.env_remove("ASPERITY_ADAPTER").env_remove("ASPERITY_GPU_MEMORY").envs(environment.iter().copied());
+    command
+        .env_remove("ASPERITY_ADAPTER")
+        .env_remove("ASPERITY_GPU_MEMORY")
+        .env_remove(LOSE_VARIABLE)
+        .envs(environment.iter().copied());
     command.output().unwrap()
 }
 
@@ -94,4 +103,89 @@ fn without_a_driver_auto_is_the_cpu_and_gpu_ends_with_2() {
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.starts_with("error: --device gpu: no GPU found") && said.lines().count() == 1, "{said}");
     assert!(!dir.path().join("out").exists());
+}
+
+/// Press and shear on a device that is lost after the sixth step; `ASPERITY_TEST_LOSE_DEVICE_AFTER` is the hook for it.
+const LOST_AFTER: usize = 6;
+const SHEAR: [&str; 4] = ["--set", "solver.shear_steps=4", "--set", "solver.error_estimate=false"];
+
+fn with_shear(dir: &Path, options: &[&str], environment: &[(&str, &str)]) -> (Output, Vec<StepRecord>, Summary) {
+    let output = run_case(dir, &format!("{CASE}[[path]]\nshear = 0.002\n"), &[options, &SHEAR].concat(), environment);
+    let said = String::from_utf8_lossy(&output.stderr);
+    let out = OutputDirectory::existing(dir.join("out"));
+    let history = read_history(&out.history()).unwrap_or_else(|error| panic!("{error}: {said}"));
+    (output, history, Summary::read(&out.summary()).unwrap())
+}
+
+fn columns(r: &StepRecord) -> [f64; 11] {
+    let energies = [r.work_external, r.energy_elastic, r.work_plastic, r.work_friction];
+    let [external, elastic, plastic, friction] = energies;
+    [r.h, r.delta_t, r.f_n, r.f_t, r.a, r.stick_radius, r.a_gap, external, elastic, plastic, friction]
+}
+
+/// The largest difference of any column over the largest number in it.
+fn gap(ours: &[StepRecord], reference: &[StepRecord]) -> f64 {
+    assert_eq!(ours.len(), reference.len(), "another number of steps");
+    let of_column = |c: usize| {
+        let scale = reference.iter().fold(f64::MIN_POSITIVE, |m, r| m.max(columns(r)[c].abs()));
+        ours.iter().zip(reference).fold(0.0f64, |m, (a, b)| m.max((columns(a)[c] - columns(b)[c]).abs())) / scale
+    };
+    (0..11).map(of_column).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_device_lost_on_the_way_costs_no_step() {
+    let Some(context) = device::device("a_device_lost_on_the_way_costs_no_step", Precision::F64) else { return };
+    let adapter = context.adapter().name.as_str();
+    let after = LOST_AFTER.to_string();
+    let dir = tempfile::tempdir().unwrap();
+    let (output, reference, _) = with_shear(dir.path(), &["--device", "cpu"], &[]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(reference.len() > LOST_AFTER + 2, "{} steps: the device should be lost in the middle", reference.len());
+
+    let dir = tempfile::tempdir().unwrap();
+    let environment = [("ASPERITY_ADAPTER", adapter), (LOSE_VARIABLE, &after)];
+    let (output, history, summary) = with_shear(dir.path(), &["--device", "auto"], &environment);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert_eq!(summary.status, Status::Done);
+    assert!(history.iter().enumerate().all(|(i, row)| row.step == i + 1), "a step is missing");
+    assert!(gap(&history, &reference) < 1e-7, "{:e}", gap(&history, &reference));
+    // told once, on stderr and in the summary
+    let told = format!("{adapter} (");
+    let [message] = &summary.messages[..] else { panic!("{:?}", summary.messages) };
+    for text in [message, &said] {
+        let expected = format!("failed after {LOST_AFTER} accepted steps");
+        assert!(text.contains(&expected) && text.contains("no accepted step was lost") && text.contains(&told), "{text}");
+    }
+    assert_eq!(said.matches("no accepted step was lost").count(), 1, "{said}");
+    assert!(summary.device.starts_with("CPU") && summary.device.contains("failed"), "{}", summary.device);
+    assert_eq!(summary.precision, "f64");
+}
+
+#[test]
+fn a_device_asked_for_and_lost_ends_the_run_with_one_message() {
+    let name = "a_device_asked_for_and_lost_ends_the_run_with_one_message";
+    let Some(context) = device::device(name, Precision::F64) else { return };
+    let after = LOST_AFTER.to_string();
+    let environment = [("ASPERITY_ADAPTER", context.adapter().name.as_str()), (LOSE_VARIABLE, &after)];
+    let dir = tempfile::tempdir().unwrap();
+    let (output, history, summary) = with_shear(dir.path(), &["--device", "gpu", "--quiet"], &environment);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    // the driver of the tests may speak as well
+    let errors: Vec<&str> = said.lines().filter(|line| line.contains("error") || line.contains("device")).collect();
+    let [error] = &errors[..] else { panic!("{said}") };
+    for part in
+        [&format!("broke off after {LOST_AFTER} steps"), "device failed", "--device cpu", "what was computed until then is kept"]
+    {
+        assert!(error.starts_with("error: ") && error.contains(part), "{part}: {error}");
+    }
+    assert_eq!(history.len(), LOST_AFTER);
+    assert_eq!(summary.status, Status::Interrupted);
+    assert!(summary.messages.len() == 1 && summary.messages[0].contains("device failed"), "{:?}", summary.messages);
+
+    let dir = tempfile::tempdir().unwrap();
+    let (_, reference, _) = with_shear(dir.path(), &["--device", "cpu"], &[]);
+    assert!(gap(&history, &reference[..LOST_AFTER]) < 1e-7);
 }

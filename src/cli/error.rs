@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::bench::BenchError;
 use crate::case::CaseError;
 use crate::law::LawError;
 use crate::material::HardeningError;
@@ -88,6 +89,9 @@ pub enum CliError {
         /// What is wrong and what to do.
         what: String,
     },
+    /// The kernels cannot be measured.
+    #[error("bench: {0}")]
+    Bench(#[from] BenchError),
     /// The signals cannot be caught.
     #[error("cannot listen for SIGINT and SIGTERM: {source}. this system allows no signal handlers, which a run needs")]
     Signals {

@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand; parses, prints, exits.
 
 pub mod backend;
+pub mod bench;
 pub mod check;
 mod companion;
 pub mod devices;
@@ -41,6 +42,7 @@ enum Command {
     Check(check::CheckArgs),
     Verify(verify::VerifyArgs),
     Devices(devices::DevicesArgs),
+    Bench(bench::BenchArgs),
     Point(point::PointArgs),
     Study(study::StudyArgs),
     Law(law::LawArgs),
@@ -54,6 +56,7 @@ impl Command {
             Command::Check(args) => check::check(args),
             Command::Verify(args) => verify::verify(args),
             Command::Devices(args) => devices::devices(args),
+            Command::Bench(args) => bench::bench(args),
             Command::Point(args) => point::point(args),
             Command::Study(args) => study::study(args),
             Command::Law(args) => law::law(args),

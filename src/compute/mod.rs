@@ -11,6 +11,7 @@ pub mod fallback;
 pub mod gather;
 pub mod gpu;
 pub mod handle;
+pub mod lost;
 pub mod select;
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::cpu::Cpu;
 use super::fallback::Fallback;
 use super::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, Mixed, Precision};
+use super::lost::hooked;
 use super::{CaseModel, Compute, ComputeError};
 
 /// The device wished for.
@@ -96,15 +97,15 @@ fn gpu(
     models: Vec<CaseModel>,
 ) -> Result<(Box<dyn Compute>, Vec<String>), ComputeError> {
     if precision == PrecisionWish::F32 {
-        return Ok((Box::new(Gpu::<f32>::new(context, models)?), Vec::new()));
+        return Ok((hooked(Box::new(Gpu::<f32>::new(context.clone(), models)?), context), Vec::new()));
     }
     if context.supports(Precision::F64).is_ok() {
-        return Ok((Box::new(Gpu::<f64>::new(context, models)?), Vec::new()));
+        return Ok((hooked(Box::new(Gpu::<f64>::new(context.clone(), models)?), context), Vec::new()));
     }
     let note = format!(
         "{} has no double precision in shaders: it computes the tangents in f32, the CPU the residuals in f64",
         context.adapter().name
     );
     log::info!("{note}");
-    Ok((Box::new(Mixed::new(context, models)?), vec![note]))
+    Ok((hooked(Box::new(Mixed::new(context.clone(), models)?), context), vec![note]))
 }

@@ -9,7 +9,7 @@
 //! keep their digits (see `material::j2`).
 
 use super::lanes::Lanes;
-use crate::material::j2::{Response, deviatoric_tangent, return_mapping};
+use crate::material::j2::{Response, deviatoric_tangent, return_mapping_of_eight};
 use crate::material::multistep::{Flow, anticipate, complete};
 use crate::material::{Material, PointState, elastic_energy_deviatoric, elastic_energy_volumetric, pressure};
 use crate::real::Real;
@@ -226,8 +226,8 @@ fn relative_gradient<R: Real>(k: &Kinematics<R>, q: usize) -> [[R; 3]; 3] {
 }
 
 #[inline(always)]
-fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, start: &Points<R>, q: usize) -> Result<Response<R>, Invalid> {
-    return_mapping(material, &relative_gradient(k, q), &start[q]).map_err(|_| Invalid::Material(q))
+fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, start: &Points<R>) -> Result<Response<Lanes<R>>, Invalid> {
+    return_mapping_of_eight(material, &k.relative, &PointState::of_eight(start)).map_err(|(q, _)| Invalid::Material(q))
 }
 
 /// f_a = sum_q V_q tau_q . grad N_a with the Kirchhoff stress [xx, yy, zz, xy, yz, zx] already weighted by the volumes.
@@ -252,13 +252,7 @@ pub fn internal_force<R: Real>(
     increment: &Nodal<R>,
 ) -> Result<Nodal<R>, Invalid> {
     let k = kinematics(geometry, committed, increment)?;
-    let mut stress = [Lanes::ZERO; 6];
-    for q in 0..QUADRATURE_POINTS {
-        let response = respond(material, &k, start, q)?;
-        for c in 0..6 {
-            stress[c].0[q] = response.stress[c];
-        }
-    }
+    let mut stress = respond(material, &k, start)?.stress;
     let (p, _) = pressure(&material.elasticity, k.theta_minus_1);
     let p_j = Lanes::from_fn(|q| p * (R::ONE + k.j_minus_1.0[q]));
     for (c, s) in stress.iter_mut().enumerate() {
@@ -290,27 +284,18 @@ pub fn tangent<R: Real>(
 ) -> Result<(), Invalid> {
     let k = kinematics(geometry, committed, increment)?;
     let (p, dp) = pressure(&material.elasticity, k.theta_minus_1);
-    let mut stress = [Lanes::ZERO; 6];
-    let mut moduli = [[Lanes::ZERO; 6]; 6];
-    for q in 0..QUADRATURE_POINTS {
-        let response = respond(material, &k, start, q)?;
-        let c = deviatoric_tangent(&response);
-        let v = geometry.volume.0[q];
-        let p_j = p * (R::ONE + k.j_minus_1.0[q]);
-        for i in 0..6 {
-            stress[i].0[q] = v * (response.stress[i] + if i < 3 { p_j } else { R::ZERO });
-            for j in 0..6 {
-                moduli[i][j].0[q] = v * c[i][j];
-            }
+    let response = respond(material, &k, start)?;
+    let v = geometry.volume;
+    let p_j = Lanes::from_fn(|q| p * (R::ONE + k.j_minus_1.0[q]));
+    let stress: [Lanes<R>; 6] = std::array::from_fn(|i| v * if i < 3 { response.stress[i] + p_j } else { response.stress[i] });
+    let mut moduli = deviatoric_tangent(&response).map(|row| row.map(|c| v * c));
+    // d(p J grad N) at fixed p: p J (1 (x) 1 - 2 I_sym), with p J I among the stresses of the geometric term.
+    let v_p_j = v * p_j;
+    for i in 0..3 {
+        for j in 0..3 {
+            moduli[i][j] += if i == j { -v_p_j } else { v_p_j };
         }
-        // d(p J grad N) at fixed p: p J (1 (x) 1 - 2 I_sym), with p J I among the stresses of the geometric term.
-        for i in 0..3 {
-            for j in 0..3 {
-                let m = if i == j { -R::ONE } else { R::ONE };
-                moduli[i][j].0[q] += v * p_j * m;
-            }
-            moduli[i + 3][i + 3].0[q] += -(v * p_j);
-        }
+        moduli[i + 3][i + 3] += -v_p_j;
     }
     let g = &k.gradient;
     // Volume change: h_a = sum_q V J grad N_a, the derivative of the current volume.
@@ -357,8 +342,9 @@ pub fn update<R: Real>(
 ) -> Result<(State<R>, R), Invalid> {
     let k = kinematics(geometry, committed, increment)?;
     let mut next = *state;
+    let responses = respond(material, &k, start)?;
     for q in 0..QUADRATURE_POINTS {
-        let response = respond(material, &k, start, q)?;
+        let response = responses.point(q);
         let (response, flow) = complete(material, &relative_gradient(&k, q), &state.points[q], &start[q], response)
             .map_err(|_| Invalid::Material(q))?;
         next.points[q] = response.state;

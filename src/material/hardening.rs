@@ -14,6 +14,7 @@
 // `!(x > 0)` is true for a NaN, which is what it is written for.
 
 use crate::case;
+use crate::lanes::Number;
 use crate::real::Real;
 
 /// Why a hardening law cannot be built.
@@ -256,11 +257,18 @@ impl<R: Real> Hardening<R> {
 
     /// sigma(alpha), stress; infinite for the elastic law.
     #[inline]
-    pub fn flow_stress(&self, alpha: R) -> R {
+    pub fn flow_stress<T: Number<Scalar = R>>(&self, alpha: T) -> T {
         match self {
-            Self::Elastic => R::of(f64::INFINITY),
-            Self::Ideal { yield_stress } => *yield_stress,
-            Self::Linear { yield_stress, modulus } => *yield_stress + *modulus * alpha,
+            Self::Elastic => T::of(f64::INFINITY),
+            Self::Ideal { yield_stress } => T::splat(*yield_stress),
+            Self::Linear { yield_stress, modulus } => T::splat(*yield_stress) + T::splat(*modulus) * alpha,
+            _ => T::from_fn(|i| self.curved_flow_stress(alpha.lane(i))),
+        }
+    }
+
+    /// [`Hardening::flow_stress`] of the laws that are evaluated point by point.
+    fn curved_flow_stress(&self, alpha: R) -> R {
+        match self {
             Self::Power { yield_stress, coefficient, exponent } => *yield_stress + *coefficient * power(alpha, *exponent),
             Self::Hollomon { coefficient, exponent, youngs_modulus, yield_stress } => {
                 hollomon_flow_stress(*coefficient, *exponent, *youngs_modulus, *yield_stress, alpha)
@@ -272,6 +280,7 @@ impl<R: Real> Hardening<R> {
                 let i = segment(points, alpha);
                 points[i][1] + table_slope(points, i) * (alpha - points[i][0])
             }
+            Self::Elastic | Self::Ideal { .. } | Self::Linear { .. } => self.flow_stress(alpha),
         }
     }
 
@@ -291,12 +300,19 @@ impl<R: Real> Hardening<R> {
 
     /// The integral of sigma d alpha from 0 to alpha, given sigma(alpha): the plastic work per reference volume, stress.
     #[inline]
-    pub fn plastic_work(&self, alpha: R, flow_stress: R) -> R {
+    pub fn plastic_work<T: Number<Scalar = R>>(&self, alpha: T, flow_stress: T) -> T {
+        match self {
+            Self::Elastic => T::of(0.0),
+            Self::Ideal { yield_stress } => T::splat(*yield_stress) * alpha,
+            Self::Linear { yield_stress, .. } => T::of(0.5) * (T::splat(*yield_stress) + flow_stress) * alpha,
+            _ => T::from_fn(|i| self.curved_plastic_work(alpha.lane(i), flow_stress.lane(i))),
+        }
+    }
+
+    /// [`Hardening::plastic_work`] of the laws that are evaluated point by point.
+    fn curved_plastic_work(&self, alpha: R, flow_stress: R) -> R {
         let half = R::of(0.5);
         match self {
-            Self::Elastic => R::ZERO,
-            Self::Ideal { yield_stress } => *yield_stress * alpha,
-            Self::Linear { yield_stress, .. } => half * (*yield_stress + flow_stress) * alpha,
             Self::Power { yield_stress, exponent, .. } => {
                 (*yield_stress + (flow_stress - *yield_stress) / (R::ONE + *exponent)) * alpha
             }
@@ -314,6 +330,7 @@ impl<R: Real> Hardening<R> {
                 let i = segment(points, alpha);
                 points[i][2] + half * (points[i][1] + flow_stress) * (alpha - points[i][0])
             }
+            Self::Elastic | Self::Ideal { .. } | Self::Linear { .. } => self.plastic_work(alpha, flow_stress),
         }
     }
 
@@ -322,15 +339,52 @@ impl<R: Real> Hardening<R> {
     /// `trial` is the von Mises stress of the trial state, above `flow_stress` = sigma(alpha); `stiffness` is 3 mu_bar > 0.
     #[inline]
     pub fn plastic_strain_increment(&self, alpha: R, flow_stress: R, trial: R, stiffness: R) -> PlasticStep<R> {
-        let excess = trial - flow_stress;
+        self.plastic_step(true, alpha, flow_stress, trial, stiffness)
+    }
+
+    /// [`Hardening::plastic_strain_increment`] of one point or of eight, for those that `yielding` says; the others get what is meaningless,
+    /// with an increment that is finite.
+    #[inline(always)]
+    pub(super) fn plastic_step<T: Number<Scalar = R>>(
+        &self,
+        yielding: T::Mask,
+        alpha: T,
+        flow_stress: T,
+        trial: T,
+        stiffness: T,
+    ) -> PlasticStep<T> {
+        let (zero, excess) = (T::of(0.0), trial - flow_stress);
         match self {
-            Self::Elastic => PlasticStep { increment: R::ZERO, flow_stress, slope: R::ZERO },
+            Self::Elastic => PlasticStep { increment: zero, flow_stress, slope: zero },
             Self::Ideal { yield_stress } => {
-                PlasticStep { increment: excess / stiffness, flow_stress: *yield_stress, slope: R::ZERO }
+                PlasticStep { increment: excess / stiffness, flow_stress: T::splat(*yield_stress), slope: zero }
             }
             Self::Linear { modulus, .. } => {
-                let increment = excess / (stiffness + *modulus);
-                PlasticStep { increment, flow_stress: flow_stress + *modulus * increment, slope: *modulus }
+                let modulus = T::splat(*modulus);
+                let increment = excess / (stiffness + modulus);
+                PlasticStep { increment, flow_stress: flow_stress + modulus * increment, slope: modulus }
+            }
+            _ => {
+                let mut steps = [PlasticStep { increment: R::ZERO, flow_stress: R::ZERO, slope: R::ZERO }; 8];
+                for (i, step) in steps.iter_mut().enumerate().take(T::COUNT) {
+                    if T::says(yielding, i) {
+                        *step = self.curved_step(alpha.lane(i), flow_stress.lane(i), trial.lane(i), stiffness.lane(i));
+                    }
+                }
+                PlasticStep {
+                    increment: T::from_fn(|i| steps[i].increment),
+                    flow_stress: T::from_fn(|i| steps[i].flow_stress),
+                    slope: T::from_fn(|i| steps[i].slope),
+                }
+            }
+        }
+    }
+
+    /// [`Hardening::plastic_strain_increment`] of the laws that are solved point by point.
+    fn curved_step(&self, alpha: R, flow_stress: R, trial: R, stiffness: R) -> PlasticStep<R> {
+        match self {
+            Self::Elastic | Self::Ideal { .. } | Self::Linear { .. } => {
+                self.plastic_step(true, alpha, flow_stress, trial, stiffness)
             }
             Self::Power { yield_stress, coefficient, exponent } => {
                 power_step(*yield_stress, *coefficient, *exponent, alpha, flow_stress, trial, stiffness)

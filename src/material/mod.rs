@@ -20,10 +20,11 @@ pub mod multistep;
 pub mod point;
 
 pub use hardening::{Hardening, HardeningError};
-pub use j2::{Response, deviatoric_tangent, return_mapping};
+pub use j2::{Response, deviatoric_tangent, return_mapping, return_mapping_of_eight};
 
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Lanes;
 use crate::real::Real;
 
 /// Why a point has no answer for the deformation it was given. A reason to cut the step back, not to stop the program.
@@ -66,6 +67,15 @@ pub struct PointState<R> {
     pub be: [R; 6],
     /// Equivalent plastic strain, >= 0.
     pub alpha: R,
+}
+
+impl<R: Real> PointState<Lanes<R>> {
+    /// Eight states side by side.
+    #[inline(always)]
+    pub fn of_eight(points: &[PointState<R>; 8]) -> Self {
+        let be = std::array::from_fn(|c| Lanes::from_fn(|q| points[q].be[c]));
+        Self { be, alpha: Lanes::from_fn(|q| points[q].alpha) }
+    }
 }
 
 /// The constants of one material.

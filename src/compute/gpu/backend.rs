@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::batch::{Batch, CONTACT_ANSWER, CONTACT_TRIAL, Dispatch};
+use super::batch::{Batch, CONTACT_ANSWER, CONTACT_TRIAL, Dispatch, Evaluation};
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::error::GpuError;
@@ -56,6 +56,18 @@ impl<R: DeviceReal> Gpu<R> {
     /// The device; none for an empty batch.
     pub fn context(&self) -> Option<&Arc<GpuContext>> {
         self.batch.as_ref().map(Batch::context)
+    }
+
+    /// Runs the kernels of an evaluation of these cases `times` times over what its last call left on the device, and waits for them: for
+    /// timing them without transfers. Nothing is committed.
+    ///
+    /// # Errors
+    /// [`ComputeError::Device`].
+    pub fn repeat(&self, evaluation: Evaluation, cases: &[usize], times: usize) -> Result<(), ComputeError> {
+        for dispatch in self.schedule(cases.iter().copied()) {
+            self.batch()?.repeat(&dispatch, evaluation, times)?;
+        }
+        Ok(())
     }
 
     fn batch(&self) -> Result<&Batch<R>, GpuError> {

@@ -9,7 +9,7 @@ use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::pipelines::Bound;
+use super::pipelines::{Bound, Recorder};
 use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
 use super::shader_sources::{
     CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN,
@@ -118,6 +118,19 @@ pub struct Batch<R> {
     slots: usize,
 }
 
+/// What a batch evaluates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evaluation {
+    /// Internal forces.
+    InternalForce,
+    /// Tangents.
+    Tangent,
+    /// Contact rows.
+    Contact,
+    /// States at the end of a step and their energies, what a commit computes.
+    Update,
+}
+
 /// Some of a call's requests, served by one dispatch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dispatch {
@@ -209,18 +222,51 @@ impl<R: DeviceReal> Batch<R> {
         Ok(first.into_iter().map(outcome).collect())
     }
 
+    /// Appends the kernels of an evaluation.
+    fn append(&self, dispatch: &Dispatch, evaluation: Evaluation, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+        let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
+        if evaluation == Evaluation::Contact {
+            return list.dispatch(&kernels.contact, sizes.contact_points, slots);
+        }
+        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
+        let (at_points, gathered, items) = match evaluation {
+            Evaluation::InternalForce => (&kernels.internal_force, &kernels.node_force, sizes.nodes),
+            Evaluation::Tangent => (&kernels.moduli, &kernels.tangent_blocks, sizes.blocks),
+            Evaluation::Contact | Evaluation::Update => (&kernels.update, &kernels.energies, sizes.elements),
+        };
+        list.dispatch(at_points, sizes.points(), slots)?;
+        list.dispatch(gathered, items, slots)
+    }
+
+    fn submit(&self, dispatch: &Dispatch, evaluation: Evaluation) -> Result<(), GpuError> {
+        let mut list = self.context.record();
+        self.append(dispatch, evaluation, &mut list)?;
+        list.submit()
+    }
+
+    /// Runs the kernels of an evaluation `times` times over the numbers that its last call left on the device, and waits for them: what
+    /// they take without transfers.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn repeat(&self, dispatch: &Dispatch, evaluation: Evaluation, times: usize) -> Result<(), GpuError> {
+        self.begin(dispatch)?;
+        let mut list = self.context.record();
+        for _ in 0..times {
+            self.append(dispatch, evaluation, &mut list)?;
+        }
+        list.submit()?;
+        self.outcomes(dispatch).map(drop)
+    }
+
     /// Internal forces `[slot][3 node + i]` at increments `[slot][3 node + i]`.
     ///
     /// # Errors
     /// The device's fault.
     pub fn internal_force(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
-        let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
-        let mut list = self.context.record();
-        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
-        list.dispatch(&kernels.internal_force, sizes.points(), slots)?;
-        list.dispatch(&kernels.node_force, sizes.nodes, slots)?;
-        list.submit()?;
+        let (sizes, slots) = (self.sizes(), dispatch.cases.len());
+        self.submit(dispatch, Evaluation::InternalForce)?;
         let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
         self.context.download_at(&self.scratch.force, 0, &mut force)?;
         Ok((self.outcomes(dispatch)?, force))
@@ -232,12 +278,8 @@ impl<R: DeviceReal> Batch<R> {
     /// The device's fault.
     pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
-        let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
-        let mut list = self.context.record();
-        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
-        list.dispatch(&kernels.moduli, sizes.points(), slots)?;
-        list.dispatch(&kernels.tangent_blocks, sizes.blocks, slots)?;
-        list.submit()?;
+        let (sizes, slots) = (self.sizes(), dispatch.cases.len());
+        self.submit(dispatch, Evaluation::Tangent)?;
         let mut blocks = vec![R::ZERO; slots * 9 * sizes.blocks];
         self.context.download_at(&self.scratch.blocks, 0, &mut blocks)?;
         Ok((self.outcomes(dispatch)?, blocks))
@@ -251,9 +293,7 @@ impl<R: DeviceReal> Batch<R> {
         self.begin(dispatch)?;
         self.context.upload_at(&self.scratch.contact_trial, 0, trial)?;
         let (points, slots) = (self.sizes().contact_points, dispatch.cases.len());
-        let mut list = self.context.record();
-        list.dispatch(&self.groups[dispatch.group].1.contact, points, slots)?;
-        list.submit()?;
+        self.submit(dispatch, Evaluation::Contact)?;
         let mut answer = vec![R::ZERO; slots * CONTACT_ANSWER * points];
         self.context.download_at(&self.scratch.contact_answer, 0, &mut answer)?;
         let mut status = vec![0; slots * points];
@@ -267,12 +307,8 @@ impl<R: DeviceReal> Batch<R> {
     /// The device's fault.
     pub fn update(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
-        let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
-        let mut list = self.context.record();
-        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
-        list.dispatch(&kernels.update, sizes.points(), slots)?;
-        list.dispatch(&kernels.energies, sizes.elements, slots)?;
-        list.submit()?;
+        let (sizes, slots) = (self.sizes(), dispatch.cases.len());
+        self.submit(dispatch, Evaluation::Update)?;
         let mut energies = vec![R::ZERO; slots * 3 * sizes.elements];
         self.context.download_at(&self.scratch.energies, 0, &mut energies)?;
         Ok((self.outcomes(dispatch)?, energies))

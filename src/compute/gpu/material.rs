@@ -174,11 +174,29 @@ impl<R: DeviceReal> ReturnMapping<R> {
         context.upload_at(&self.active, 0, active)?;
         context.upload(&self.relative, relative)?;
         context.upload(&self.committed, committed)?;
-        let mut list = context.record();
-        list.dispatch(&self.bound, self.points, active.len())?;
-        list.submit()?;
+        self.repeat(context, active.len(), 1)?;
         let status = context.download(&self.status)?.into_iter().map(PointStatus::of).collect();
         Ok(Answers { answer: context.download(&self.answer)?, tangent: context.download(&self.tangent)?, status })
+    }
+
+    /// Maps the first `active` cases of the last run `times` times more; [`ReturnMapping::wait`] waits for it.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn repeat(&self, context: &GpuContext, active: usize, times: usize) -> Result<(), GpuError> {
+        let mut list = context.record();
+        for _ in 0..times {
+            list.dispatch(&self.bound, self.points, active)?;
+        }
+        list.submit()
+    }
+
+    /// Waits for what was submitted.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn wait(&self, context: &GpuContext) -> Result<(), GpuError> {
+        context.download_at(&self.status, 0, &mut [0u32]).map(drop)
     }
 }
 

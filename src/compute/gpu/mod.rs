@@ -27,6 +27,7 @@ pub mod shader_sources;
 
 pub use adapters::{Adapter, AdapterKind, Choice, DeviceRequest};
 pub use backend::Gpu;
+pub use batch::Evaluation;
 pub use buffers::{Chunk, DeviceReal, StorageBuffer};
 pub use context::GpuContext;
 pub use error::GpuError;

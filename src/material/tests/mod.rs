@@ -1,5 +1,6 @@
 //! One file a theme; what they share is here.
 
+mod eight;
 mod hardening;
 mod invariance;
 mod multistep;

@@ -1,0 +1,126 @@
+//! What is evaluated: seeded, the same in every run and on every machine.
+
+use std::sync::Arc;
+
+use super::BenchError;
+use crate::compute::CaseModel;
+use crate::contact::coulomb::Friction;
+use crate::lanes::Lanes;
+use crate::material::{Elasticity, Hardening, HardeningError, Material, PointState, return_mapping};
+use crate::mesh::sphere::{SphereSpec, sphere_mesh};
+use crate::mesh::{Mesh, MeshError};
+use crate::real::Real;
+
+/// Pseudo-random numbers: SplitMix64 (Steele, Lea & Flood 2014).
+#[derive(Clone, Debug)]
+pub struct Seeded(u64);
+
+impl Seeded {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The next number, even in [low, high).
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        low + (high - low) * (z >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// The hardening laws by name, at stresses of metals over E.
+///
+/// # Errors
+/// None, unless the constants here are no law.
+pub fn laws<R: Real>() -> Result<Vec<(&'static str, Material<R>)>, HardeningError> {
+    let laws = [
+        ("elastic", Hardening::Elastic),
+        ("ideal", Hardening::ideal(2e-3)?),
+        ("linear", Hardening::linear(2e-3, 0.05)?),
+        ("power", Hardening::power(2e-3, 5e-3, 0.3)?),
+        ("hollomon", Hardening::hollomon(0.02, 3.0, 1.0)?),
+        ("voce", Hardening::voce(2e-3, 5e-3, 20.0)?),
+        ("table", Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]])?),
+    ];
+    Ok(laws.map(|(name, hardening)| (name, Material { elasticity: Elasticity::new(1.0, 0.3), hardening })).into())
+}
+
+/// A material point before a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialPoint<R> {
+    /// f - I of the step, rows first.
+    pub relative: [[R; 3]; 3],
+    /// The committed state.
+    pub state: PointState<R>,
+}
+
+/// Committed states after a random step of 1 %, and the next step of 1 % along the same direction: every point yields in both, unless the
+/// law never yields.
+pub fn material_points<R: Real>(material: &Material<R>, count: usize) -> Vec<MaterialPoint<R>> {
+    let mut random = Seeded::new(1);
+    let mut points = Vec::with_capacity(count);
+    let never = matches!(material.hardening, Hardening::Elastic);
+    // A step that does not yield twice is drawn again; so few are not that this ends.
+    while points.len() < count {
+        let relative = std::array::from_fn(|_| std::array::from_fn(|_| R::of(0.01 * random.between(-1.0, 1.0))));
+        let Ok(first) = return_mapping(material, &relative, &PointState::default()) else { continue };
+        let yields = |state| return_mapping(material, &relative, state).is_ok_and(|r| r.yielding);
+        if never || (first.yielding && yields(&first.state)) {
+            points.push(MaterialPoint { relative, state: first.state });
+        }
+    }
+    points
+}
+
+/// Eight [`MaterialPoint`]s side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EightPoints<R> {
+    /// f - I of the step, rows first.
+    pub relative: [[Lanes<R>; 3]; 3],
+    /// The committed state.
+    pub state: PointState<Lanes<R>>,
+}
+
+/// Points in groups of eight; what is left over is left out.
+pub fn side_by_side<R: Real>(points: &[MaterialPoint<R>]) -> Vec<EightPoints<R>> {
+    let (groups, _) = points.as_chunks::<8>();
+    let eight = |p: &[MaterialPoint<R>; 8]| EightPoints {
+        relative: std::array::from_fn(|i| std::array::from_fn(|k| Lanes::from_fn(|q| p[q].relative[i][k]))),
+        state: PointState::of_eight(&p.map(|p| p.state)),
+    };
+    groups.iter().map(eight).collect()
+}
+
+/// The bench's sphere: the default mesh of a contact of a fifth of the radius.
+///
+/// # Errors
+/// [`MeshError::ElementsPerContactRadius`].
+pub fn mesh(elements_per_contact_radius: usize) -> Result<Mesh, MeshError> {
+    sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3 })
+}
+
+/// A batch on one connectivity, as a study has it: every case has a size, a power law and a friction of its own.
+///
+/// # Errors
+/// As [`laws`].
+pub fn models(mesh: &Mesh, count: usize) -> Result<Vec<CaseModel>, BenchError> {
+    let mut random = Seeded::new(2);
+    let case = |_| {
+        let mut mesh = mesh.clone();
+        let size = random.between(0.9, 1.1);
+        mesh.nodes.iter_mut().flatten().for_each(|x| *x *= size);
+        let hardening = Hardening::power(random.between(1e-3, 3e-3), random.between(3e-3, 6e-3), random.between(0.2, 0.5))?;
+        let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
+        Ok(CaseModel { mesh: Arc::new(mesh), material, friction: Friction::Coulomb(random.between(0.1, 0.5)) })
+    };
+    (0..count).map(case).collect()
+}
+
+/// Squeezed against the plane by a strain of `strain`, and sheared by a tenth of it: from 1 % on every point of [`models`] yields.
+pub fn squeezed(mesh: &Mesh, strain: f64) -> Vec<f64> {
+    mesh.nodes.iter().flat_map(|x| [0.1 * strain * x[2], 0.0, -strain * x[2]]).collect()
+}

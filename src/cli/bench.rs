@@ -1,0 +1,70 @@
+//! `asperity bench`: rates of the kernels on a device and on the CPU.
+
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::options::{Device, Verbosity};
+use super::{CliError, Outcome};
+use crate::bench::{self, BenchError, Options, table};
+use crate::output::write_atomically;
+
+/// Measure the kernels: return mapping, internal force, tangent, contact and commit, on a GPU and beside it on the CPU.
+///
+/// Needs nothing but this program (and a driver for the GPU): no files, no sources. The whole takes some minutes.
+#[derive(Clone, Debug, Args)]
+pub struct BenchArgs {
+    /// What is measured beside the CPU.
+    #[arg(long, value_enum, default_value_t, value_name = "DEVICE")]
+    pub device: Device,
+    /// Small meshes, small batches, few repetitions: a minute.
+    #[arg(long)]
+    pub quick: bool,
+    /// Elements along the contact radius of the mesh, 4 to 32; by default 8, with --quick 4.
+    #[arg(long, value_name = "N")]
+    pub elements: Option<usize>,
+    /// Write the numbers to this file, as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub export: Option<PathBuf>,
+    /// Threads of the rows on all cores; by default all of the machine's.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// How much to say.
+    #[command(flatten)]
+    pub verbosity: Verbosity,
+}
+
+/// Measures, prints the table and writes the numbers.
+pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
+    args.verbosity.start_log();
+    let device = match args.device {
+        Device::Auto => bench::Device::Auto,
+        Device::Cpu => bench::Device::Cpu,
+        Device::Gpu => bench::Device::Gpu,
+    };
+    let threads = args.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let mut options = if args.quick { Options::quick(device, threads) } else { Options::full(device, threads) };
+    options.elements = args.elements.unwrap_or(options.elements);
+    if let Some(path) = args.export.as_ref().filter(|path| !path.exists()) {
+        // Minutes of measuring are not lost to a file that cannot be written.
+        write_atomically(path, |_| Ok(()))?;
+    }
+    let quiet = args.verbosity.quiet;
+    let mut say = |text: &str| {
+        if !quiet {
+            // A closed stderr is no reason to stop measuring.
+            let _ = writeln!(std::io::stderr(), "{text}");
+        }
+    };
+    let report = bench::run(&options, &mut say).map_err(|error| match error {
+        BenchError::Device(error) => CliError::Device { what: error.to_string() },
+        error => CliError::Bench(error),
+    })?;
+    super::print(&table::table(&report))?;
+    if let Some(path) = &args.export {
+        write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,163 @@
+//! `asperity bench`: complete, paired, finite, and the same rows in the table and in the file.
+
+mod device;
+
+use asperity::compute::gpu::Precision;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::process::{Command, Output};
+
+const LAWS: [&str; 7] = ["elastic", "ideal", "linear", "power", "hollomon", "voce", "table"];
+const EVALUATIONS: [&str; 4] = ["internal force", "tangent", "contact", "commit"];
+const BATCHES: [u64; 3] = [1, 4, 8];
+
+fn bench(options: &[&str], environment: &[(&str, &str)]) -> Output {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
+    command.args(["bench", "--quick"]).args(options);
+    command.env_remove("ASPERITY_ADAPTER").env_remove("ASPERITY_GPU_MEMORY").envs(environment.iter().copied());
+    command.output().unwrap()
+}
+
+/// The table and the numbers.
+fn measured(options: &[&str], environment: &[(&str, &str)]) -> (String, String, Value) {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("bench.json");
+    let output = bench(&[options, &["--export", file.to_str().unwrap()]].concat(), environment);
+    let [table, said] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    (table, said, serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap())
+}
+
+fn text<'a>(value: &'a Value, key: &str) -> &'a str {
+    value[key].as_str().unwrap_or_else(|| panic!("{key} in {value}"))
+}
+
+fn number(value: &Value, key: &str) -> f64 {
+    value[key].as_f64().unwrap_or_else(|| panic!("{key} in {value}"))
+}
+
+/// Every evaluation, law, precision and batch size in each of `places`, and nothing else; every measured number finite and positive.
+fn complete(report: &Value, places: &[&str]) -> usize {
+    let mut found: BTreeMap<(String, String, String, u64), Vec<String>> = BTreeMap::new();
+    let mut skipped = 0;
+    for row in report["rows"].as_array().unwrap() {
+        let key = [text(row, "evaluation"), text(row, "law"), text(row, "precision")].map(str::to_owned);
+        let [evaluation, law, precision] = key;
+        found.entry((evaluation, law, precision, row["batch"].as_u64().unwrap())).or_default().push(text(row, "on").to_owned());
+        for count in ["items", "bytes", "operations"] {
+            assert!(number(row, count) > 0.0, "{row}");
+        }
+        let measured = &row["outcome"]["measured"];
+        if measured.is_null() {
+            assert!(!text(&row["outcome"], "skipped").is_empty() && text(row, "on") == "device", "{row}");
+            skipped += 1;
+            continue;
+        }
+        for key in [
+            "first_ms",
+            "median_ms",
+            "min_ms",
+            "max_ms",
+            "repetitions",
+            "items_per_s",
+            "bytes_per_s",
+            "operations_per_s",
+            "share_of_copy",
+        ] {
+            let x = number(measured, key);
+            assert!(x.is_finite() && x > 0.0, "{key}: {row}");
+        }
+        let [min, median, max] = ["min_ms", "median_ms", "max_ms"].map(|key| number(measured, key));
+        assert!(min <= median && median <= max && number(measured, "repetitions") >= 1.0, "{row}");
+        assert_eq!(measured["kernels_ms"].is_number(), text(row, "on") == "device", "{row}");
+        let rate = number(row, "items") / (1e-3 * median);
+        assert!((number(measured, "items_per_s") / rate - 1.0).abs() < 1e-9, "{row}");
+    }
+    let laws = LAWS.map(|law| ("return mapping", law));
+    let evaluations = EVALUATIONS.map(|evaluation| (evaluation, "power"));
+    for (evaluation, law) in laws.into_iter().chain(evaluations) {
+        for precision in ["f64", "f32"] {
+            for batch in BATCHES {
+                let key = (evaluation.to_owned(), law.to_owned(), precision.to_owned(), batch);
+                assert_eq!(found.remove(&key).unwrap_or_default(), places, "{key:?}");
+            }
+        }
+    }
+    assert!(found.is_empty(), "{found:?}");
+    skipped
+}
+
+#[test]
+fn device_and_cpu_stand_side_by_side() {
+    let Some(context) = device::device("device_and_cpu_stand_side_by_side", Precision::F64) else { return };
+    let (table, said, report) = measured(&["--device", "gpu", "--threads", "2"], &[]);
+    assert_eq!(complete(&report, &["device", "one-core", "all-cores"]), 0, "{table}");
+    let adapter = &report["adapter"];
+    assert_eq!(text(adapter, "name"), context.adapter().name);
+    for key in ["driver", "backend", "kind"] {
+        assert!(!text(adapter, key).is_empty(), "{adapter}");
+    }
+    assert!(adapter["features"].as_array().unwrap().iter().any(|f| f == "f64") && number(adapter, "memory_budget_mib") > 0.0);
+    assert_eq!((number(&report, "threads"), text(&report, "version")), (2.0, env!("CARGO_PKG_VERSION")));
+    let date: Vec<usize> = text(&report, "date").split('-').map(|part| part.parse().unwrap()).collect();
+    assert!(date.len() == 3 && date[0] >= 2026 && (1..=12).contains(&date[1]) && (1..=31).contains(&date[2]), "{date:?}");
+    for rate in ["one_core", "all_cores", "device", "to_device", "from_device"] {
+        assert!(number(&report["copy"], rate) > 0.0, "{rate}");
+    }
+    for precision in ["f64", "f32"] {
+        for evaluation in ["return mapping", "all of an element"] {
+            let of = |s: &&Value| text(s, "precision") == precision && text(s, "evaluation") == evaluation;
+            assert!(report["setups"].as_array().unwrap().iter().filter(of).all(|s| number(s, "ms") > 0.0), "{precision}");
+            assert!(report["setups"].as_array().unwrap().iter().any(|s| of(&s)), "{precision} {evaluation}");
+        }
+    }
+    // the same in the table: a line each, and a software driver is called one
+    assert_eq!(table.lines().filter(|line| line.starts_with('|')).count(), 2 + (7 + 4) * 2 * BATCHES.len(), "{table}");
+    let software = adapter["software"].as_bool().unwrap();
+    assert!(table.contains(&context.adapter().name) && table.contains("SOFTWARE DRIVER") == software, "{table}");
+    assert!(said.contains("return mapping, linear, f64") && said.contains("batch of 8"), "{said}");
+}
+
+#[test]
+fn what_does_not_fit_is_said_in_its_row() {
+    if device::device("what_does_not_fit_is_said_in_its_row", Precision::F64).is_none() {
+        return;
+    }
+    let (table, _, report) = measured(&["--device", "gpu", "--quiet"], &[("ASPERITY_GPU_MEMORY", "8")]);
+    let skipped = complete(&report, &["device", "one-core", "all-cores"]);
+    assert!(skipped > 0 && skipped < 2 * 11 * BATCHES.len(), "{skipped}");
+    let reasons: Vec<&str> = report["rows"].as_array().unwrap().iter().filter_map(|r| r["outcome"]["skipped"].as_str()).collect();
+    assert!(reasons.iter().all(|reason| reason.contains("memory")), "{reasons:?}");
+    assert!(table.contains("does not fit") && table.contains("Not measured:"), "{table}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_driver_the_cpu_is_measured_and_that_is_said_loudly() {
+    let nothing = [("VK_DRIVER_FILES", "/dev/null"), ("VK_ICD_FILENAMES", "/dev/null")];
+    let (table, said, report) = measured(&[], &nothing);
+    assert_eq!(complete(&report, &["one-core", "all-cores"]), 0);
+    assert!(report["adapter"].is_null() && text(&report, "no_device").contains("NO GPU WAS MEASURED"));
+    assert!(table.contains("NO GPU WAS MEASURED") && said.contains("NO GPU WAS MEASURED"), "{table}{said}");
+    let output = bench(&["--device", "gpu"], &nothing);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.starts_with("error: --device gpu: no GPU found") && said.lines().count() == 1, "{said}");
+}
+
+#[test]
+fn bad_input_is_one_message() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("in-the-way"), "").unwrap();
+    let export = dir.path().join("in-the-way/bench.json");
+    let bad: [([&str; 2], &str); 2] = [
+        (["--elements", "3"], "--elements: elements_per_contact_radius = 3"),
+        (["--export", export.to_str().unwrap()], "in-the-way"),
+    ];
+    for (options, part) in bad {
+        let output = bench(&[&options[..], &["--device", "cpu", "--quiet"]].concat(), &[]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.starts_with("error: ") && said.contains(part) && said.lines().count() == 1, "{said}");
+    }
+}
