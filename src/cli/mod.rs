@@ -3,7 +3,7 @@
 pub mod backend;
 pub mod bench;
 pub mod check;
-mod companion;
+pub mod companion;
 pub mod devices;
 pub mod error;
 pub mod law;

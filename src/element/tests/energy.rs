@@ -5,8 +5,10 @@ use crate::element::hex8::fields;
 use crate::material::j2;
 
 fn energy(g: &Geometry<f64>, m: &Material<f64>, u: &Nodal<f64>) -> f64 {
-    let state = update(g, m, &State::default(), &State::default().points, &ZERO, u).unwrap();
-    fields(g, m, &state.points, u).unwrap().elastic_energy
+    let (state, energy) = update(g, m, &State::default(), &State::default().points, &ZERO, u).unwrap();
+    let shown = fields(g, m, &state.points, u).unwrap().elastic_energy;
+    assert!((energy - shown).abs() <= 1e-12 * shown, "{energy:e} {shown:e}");
+    energy
 }
 
 #[test]
