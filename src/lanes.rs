@@ -1,5 +1,5 @@
-//! Eight numbers side by side, one a quadrature point: the form in which the element does its arithmetic, so that the compiler
-//! turns each operation into vector instructions.
+//! Eight numbers side by side, one a quadrature point: the form in which the element does its arithmetic, in the machine's vector
+//! instructions.
 //!
 //! [`Number`] is what one number and eight have in common: a kernel written for it takes either, and does the same to each of the
 //! eight as to one alone, bit for bit.
@@ -158,27 +158,19 @@ impl<R: Real> Lanes<R> {
     /// `self + a * b`, fused where the machine can.
     #[inline(always)]
     pub fn plus(self, a: Self, b: Self) -> Self {
-        let mut out = self;
-        for q in 0..8 {
-            out.0[q] = a.0[q].mul_add(b.0[q], out.0[q]);
-        }
-        out
+        Self(R::mul_add_eight(a.0, b.0, self.0))
     }
 
     /// `self + s * b` with one number for all lanes.
     #[inline(always)]
     pub fn plus_scaled(self, s: R, b: Self) -> Self {
-        let mut out = self;
-        for q in 0..8 {
-            out.0[q] = s.mul_add(b.0[q], out.0[q]);
-        }
-        out
+        Self(R::mul_add_eight([s; 8], b.0, self.0))
     }
 
     /// 1 / self.
     #[inline(always)]
     pub fn reciprocal(self) -> Self {
-        Self(self.0.map(|x| R::ONE / x))
+        Self(R::div_eight([R::ONE; 8], self.0))
     }
 
     /// The sum of the lanes, always in the same order.
@@ -190,25 +182,21 @@ impl<R: Real> Lanes<R> {
 }
 
 macro_rules! lanewise {
-    ($trait:ident, $name:ident, $op:tt) => {
+    ($trait:ident, $name:ident, $eight:ident) => {
         impl<R: Real> $trait for Lanes<R> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                let mut out = self;
-                for q in 0..8 {
-                    out.0[q] = self.0[q] $op other.0[q];
-                }
-                out
+                Self(R::$eight(self.0, other.0))
             }
         }
     };
 }
 
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
+lanewise!(Add, add, add_eight);
+lanewise!(Sub, sub, sub_eight);
+lanewise!(Mul, mul, mul_eight);
+lanewise!(Div, div, div_eight);
 
 impl<R: Real> AddAssign for Lanes<R> {
     #[inline(always)]
@@ -244,7 +232,7 @@ impl<R: Real> Number for Lanes<R> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(self.0.map(R::sqrt))
+        Self(R::sqrt_eight(self.0))
     }
     #[inline(always)]
     fn abs(self) -> Self {

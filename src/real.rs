@@ -7,6 +7,8 @@ use std::fmt::{Debug, Display};
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use wide::{f32x8, f64x8};
+
 /// A floating-point number: `f32` or `f64`.
 pub trait Real:
     Copy
@@ -63,10 +65,41 @@ pub trait Real:
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
+
+    /// Eight sums `a[q] + b[q]` at once; as the next five the same bits as one by one.
+    #[inline(always)]
+    fn add_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+        std::array::from_fn(|q| a[q] + b[q])
+    }
+    /// Eight differences.
+    #[inline(always)]
+    fn sub_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+        std::array::from_fn(|q| a[q] - b[q])
+    }
+    /// Eight products.
+    #[inline(always)]
+    fn mul_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+        std::array::from_fn(|q| a[q] * b[q])
+    }
+    /// Eight quotients.
+    #[inline(always)]
+    fn div_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+        std::array::from_fn(|q| a[q] / b[q])
+    }
+    /// Eight times `a[q] * b[q] + c[q]`, fused where the machine can.
+    #[inline(always)]
+    fn mul_add_eight(a: [Self; 8], b: [Self; 8], c: [Self; 8]) -> [Self; 8] {
+        std::array::from_fn(|q| a[q].mul_add(b[q], c[q]))
+    }
+    /// Eight square roots.
+    #[inline(always)]
+    fn sqrt_eight(a: [Self; 8]) -> [Self; 8] {
+        a.map(Self::sqrt)
+    }
 }
 
 macro_rules! real {
-    ($t:ident) => {
+    ($t:ident, $eight:ident) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -121,9 +154,38 @@ macro_rules! real {
             fn is_finite(self) -> bool {
                 $t::is_finite(self)
             }
+            #[inline(always)]
+            fn add_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+                ($eight::from(a) + $eight::from(b)).to_array()
+            }
+            #[inline(always)]
+            fn sub_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+                ($eight::from(a) - $eight::from(b)).to_array()
+            }
+            #[inline(always)]
+            fn mul_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+                ($eight::from(a) * $eight::from(b)).to_array()
+            }
+            #[inline(always)]
+            fn div_eight(a: [Self; 8], b: [Self; 8]) -> [Self; 8] {
+                ($eight::from(a) / $eight::from(b)).to_array()
+            }
+            #[inline(always)]
+            fn mul_add_eight(a: [Self; 8], b: [Self; 8], c: [Self; 8]) -> [Self; 8] {
+                // Without the machine's fused product the vectors round twice and the scalars, by a library call, once.
+                if cfg!(target_feature = "fma") {
+                    $eight::from(a).mul_add($eight::from(b), $eight::from(c)).to_array()
+                } else {
+                    std::array::from_fn(|q| $t::mul_add(a[q], b[q], c[q]))
+                }
+            }
+            #[inline(always)]
+            fn sqrt_eight(a: [Self; 8]) -> [Self; 8] {
+                $eight::from(a).sqrt().to_array()
+            }
         }
     };
 }
 
-real!(f32);
-real!(f64);
+real!(f32, f32x8);
+real!(f64, f64x8);

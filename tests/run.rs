@@ -444,7 +444,8 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
         assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
         let message = stderr(&output);
         assert!(
-            message.contains("error: interrupted by a signal after step ") && message.contains("run the same command again"),
+            message.contains("error: interrupted by a signal after step ")
+                && message.contains("run the same command with --resume"),
             "{message}"
         );
         let (history, summary) = results(&scratch.out(name));

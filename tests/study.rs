@@ -256,12 +256,17 @@ fn an_interrupted_study_goes_on_where_it_was() {
         let written = fs::metadata(&summary).and_then(|file| file.modified()).expect("a summary");
 
         // A killed program may have finished a case that the table does not know of yet.
-        let output = scratch.ends_with(0, name, &["--threads", "2", "--resume"]);
+        let unfinished =
+            ["0001", "0002", "0003", "0004"].into_iter().filter(|id| scratch.case(name, id).checkpoint().exists()).count();
+        let output = scratch.ends_with(0, name, &["--threads", "2", "--resume", "-v"]);
         assert!(stderr(&output).contains(" done and 0 failed before; "), "{}", stderr(&output));
+        // An interrupted case goes on from where it was.
+        assert_eq!(stderr(&output).matches(": resumed after step ").count(), unfinished, "{name}: {}", stderr(&output));
         assert_eq!(timeless(rows(&scratch.out(name))), timeless(rows(&scratch.out("whole"))), "{name}, {ended}");
         assert_eq!(fs::metadata(&summary).and_then(|file| file.modified()).expect("a summary"), written, "{name}");
         for id in ["0001", "0002", "0003", "0004"] {
             assert_eq!(history(&scratch.case(name, id)), history(&scratch.case("whole", id)), "{name}, {id}");
+            assert!(!scratch.case(name, id).checkpoint().exists());
         }
     }
 }

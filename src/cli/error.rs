@@ -125,11 +125,23 @@ pub enum CliError {
         /// What is wrong with it.
         what: String,
     },
-    /// Results cannot be begun.
+    /// `--resume` where another case has been computed.
+    #[error(
+        "--out {}: holds the results of another case: {difference}. restore the case file or --set, give another directory, or run without --resume to \
+         replace them",
+        .dir.display()
+    )]
+    OtherRun {
+        /// The directory.
+        dir: PathBuf,
+        /// A key in which they differ.
+        difference: String,
+    },
+    /// Results cannot be begun, or an unfinished run cannot go on.
     #[error(transparent)]
     Output(#[from] OutputError),
     /// A run broke off: results cannot be written, or the device failed.
-    #[error("the run broke off after {steps} steps: {what}. what was computed until then is kept in {}", .dir.display())]
+    #[error("the run broke off after {steps} steps: {what}. what was computed until then is kept in {}; to go on, run the same command with --resume", .dir.display())]
     BrokeOff {
         /// Steps that are kept.
         steps: usize,

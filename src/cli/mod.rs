@@ -3,7 +3,7 @@
 pub mod backend;
 pub mod bench;
 pub mod check;
-mod companion;
+pub mod companion;
 pub mod devices;
 pub mod error;
 pub mod law;
@@ -12,6 +12,7 @@ pub mod out;
 pub mod plot;
 pub mod point;
 pub mod processor;
+pub mod resume;
 pub mod run;
 pub mod signals;
 pub mod study;
@@ -33,7 +34,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not converge (what was computed is kept) or a check failed, \
-                          75 interrupted (likewise).";
+                          75 interrupted (likewise; --resume goes on).";
 
 #[derive(Debug, Subcommand)]
 enum Command {

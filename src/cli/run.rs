@@ -2,17 +2,19 @@
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use clap::Args;
 
 use super::backend::choose_backend;
 use super::options::{DeviceArgs, Verbosity};
+use super::resume::{Standing, refused, standing};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, companion, out};
 use crate::case::Case;
 use crate::compute::ComputeError;
-use crate::output::{Clock, ResultWriter, Setting, Status, progress};
+use crate::output::{Checkpoint, Clock, OutputDirectory, ResultWriter, Setting, Status, Summary, progress};
 use crate::simulation::SimulationError;
 use crate::simulation::drive::{Drive, Ending, Observer};
 use crate::simulation::problem::Problem;
@@ -29,6 +31,10 @@ pub struct RunArgs {
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Go on with an unfinished run of the same case in DIR, from its last checkpoint and to the same results as if it had never stopped. Without one
+    /// the run starts from its beginning; one that is done stays as it is. So batch scripts may always give it.
+    #[arg(long)]
+    pub resume: bool,
     /// Device, precision, threads.
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -37,12 +43,17 @@ pub struct RunArgs {
     pub verbosity: Verbosity,
 }
 
-/// Loads and checks the case, prepares the directory, simulates, and reports.
+/// Loads and checks the case, prepares the directory or goes on with what is in it, simulates, and reports.
 pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let clock = Clock::start();
     args.verbosity.start_log();
     args.device.start_threads()?;
     let case = Case::load(&args.case, &args.set)?;
+    let checkpoint = match args.resume.then(|| standing(&args.out, &case)).transpose()? {
+        Some(Standing::Ended(summary)) => return ended(&summary, args),
+        Some(Standing::Unfinished(checkpoint)) => Some(*checkpoint),
+        Some(Standing::NotBegun) | None => None,
+    };
     let bad_case = |source: SimulationError| CliError::Problem { file: args.case.clone(), source };
     let problem = Problem::new(&case).map_err(bad_case)?;
     let selected = choose_backend(&args.device, vec![problem.model.clone()]).map_err(|error| match error {
@@ -52,31 +63,72 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let mut backend = selected.backend;
     let newton = problem.newton().map_err(bad_case)?;
     let stop = stop_flag()?;
-    out::prepare(&args.out, &case)?;
-
     let setting = Setting {
         computed_on: backend.description(),
         elements: problem.model.mesh.elements.len(),
         unknowns: newton.free_unknowns(),
     };
-    let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress(args.verbosity.quiet), stop.clone())?;
-    selected.notes.iter().for_each(|note| results.note(note));
-    let followed = Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut results);
+    let mut drive = Drive::new(&problem, backend.as_mut(), 0, newton);
+    match &checkpoint {
+        Some(checkpoint) => {
+            checkpoint.check_precision(&OutputDirectory::existing(&args.out).checkpoint(), setting.computed_on.precision)?;
+            drive.resume(checkpoint.snapshot()).map_err(|error| refused(&args.out, &error.to_string()))?;
+        }
+        None => out::prepare(&args.out, &case)?,
+    }
+    let progress = progress(args.verbosity.quiet);
+    let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress, stop.clone(), checkpoint.as_ref())?;
+    match &checkpoint {
+        Some(checkpoint) => results.tell(&resumed(checkpoint, args)),
+        None if args.resume => results.tell(&format!("nothing to resume in {}: from the beginning", args.out.display())),
+        None => {}
+    }
+    // A resumed run has noted them before.
+    selected.notes.iter().filter(|_| checkpoint.is_none()).for_each(|note| results.note(note));
+    let mut followed = drive.run(&mut results);
+    let estimates = matches!(followed, Ok(Ending::Done)) && case.solver.error_estimate;
+    if estimates {
+        // Whatever becomes of the companion, the path has not to be followed again.
+        drive.checkpoint(true, &mut results);
+    }
     // Not where it began, if the device failed on the way.
     results.computed_on(backend.description());
     drop(backend);
-    if matches!(followed, Ok(Ending::Done)) && case.solver.error_estimate {
+    if estimates {
         let begun = Instant::now();
         let companion = companion::companion(&case);
         let elements = [&case, &companion].map(|c| c.mesh.elements_per_contact_radius);
         log::info!("error estimate: the same path on {} elements per contact radius", elements[1]);
-        match companion::follow(&companion, stop) {
+        match companion::follow(&companion, stop.clone()) {
             Ok(rows) => results.compare(elements[0], &rows, elements[1]),
+            Err(_) if stop.load(Ordering::Relaxed) => followed = Ok(Ending::Interrupted),
             Err(reason) => results.note(&format!("no error estimate, the run on {} elements ended: {reason}", elements[1])),
         }
         results.estimate_took(begun.elapsed().as_secs_f64());
     }
     conclude(followed, results, args)
+}
+
+/// Says that a run that was to go on has ended before: as it did then.
+fn ended(summary: &Summary, args: &RunArgs) -> Result<Outcome, CliError> {
+    let (steps, dir) = (summary.steps, args.out.display());
+    if summary.status == Status::Done {
+        if !args.verbosity.quiet {
+            super::print(&format!("already done: {steps} steps on {}; results in {dir}\n", summary.device))?;
+        }
+        return Ok(Outcome::Done);
+    }
+    let reason = summary.messages.last().map_or_else(|| summary.status.to_string(), Clone::clone);
+    // A closed stderr does not change how the run went.
+    let _ = writeln!(
+        std::io::stderr(),
+        "error: ended before: {reason}. what was computed is kept in {dir} ({steps} steps); to compute it again, run without --resume"
+    );
+    Ok(Outcome::NotConverged)
+}
+
+fn resumed(checkpoint: &Checkpoint, args: &RunArgs) -> String {
+    format!("resumed after step {} of the run in {}", checkpoint.step(), args.out.display())
 }
 
 /// Writes the end of the results, says how it went, and gives the exit code.
@@ -91,8 +143,7 @@ fn conclude(followed: Result<Ending, SimulationError>, results: ResultWriter, ar
         }
         Ok(Ending::Outgrown(reason)) => (Status::ContactOutgrewMesh, Outcome::NotConverged, Some(reason)),
         Ok(Ending::Interrupted) => {
-            let reason =
-                format!("interrupted by a signal after step {steps}; to compute the whole path, run the same command again");
+            let reason = format!("interrupted by a signal after step {steps}; to go on, run the same command with --resume");
             (Status::Interrupted, Outcome::Interrupted, Some(reason))
         }
         Err(error) => {

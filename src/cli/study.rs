@@ -29,7 +29,8 @@ pub struct StudyArgs {
     /// gathers all rows.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
-    /// Go on in a directory with results of this study: cases that are done stay, interrupted ones and those that broke off are computed again.
+    /// Go on in a directory with results of this study: cases that are done stay, interrupted ones and those that broke off go on from their checkpoints
+    /// (from their beginning where there is none).
     #[arg(long)]
     pub resume: bool,
     /// With --resume: compute also those cases again that did not converge or outgrew their mesh.

@@ -44,6 +44,8 @@ pub struct Cpu<R> {
     plan: GatherPlan,
     element_force: Vec<Nodal<R>>,
     element_tangent: Vec<Tangent<R>>,
+    /// State and elastic energy of each element at the end of a step, before it is committed.
+    next: Vec<(State<R>, R)>,
 }
 
 /// Alart-Curnier's c = 0.1 E h_c: with c = E h_c the same run took twice the iterations.
@@ -59,6 +61,7 @@ impl<R: Real> Cpu<R> {
                 plan: GatherPlan { pattern: crate::mesh::pattern::Pattern::from_elements(0, &[]), offset: Vec::new() },
                 element_force: Vec::new(),
                 element_tangent: Vec::new(),
+                next: Vec::new(),
             });
         };
         let plan = GatherPlan::new(&first.mesh);
@@ -75,6 +78,7 @@ impl<R: Real> Cpu<R> {
             plan,
             element_force: vec![[[R::ZERO; 3]; NODES]; elements],
             element_tangent: vec![[[R::ZERO; 9]; hex8::PAIRS]; elements],
+            next: Vec::new(),
         })
     }
 }
@@ -240,23 +244,17 @@ impl<R: Real> Compute for Cpu<R> {
     fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
-            let mut next = vec![(State::default(), R::ZERO); case.state.len()];
-            request.outcome = case.each_element(request.displacement, &mut next, |case, e, committed, increment, out| {
+            self.next.resize(case.state.len(), (State::default(), R::ZERO));
+            request.outcome = case.each_element(request.displacement, &mut self.next, |case, e, committed, increment, out| {
                 let (state, start) = (&case.state[e], &case.start[e]);
-                let state = hex8::update(&case.geometry[e], &case.material, state, start, committed, increment)?;
-                let mut total = *committed;
-                for (t, d) in total.iter_mut().flatten().zip(increment.iter().flatten()) {
-                    *t += *d;
-                }
-                let fields = hex8::fields(&case.geometry[e], &case.material, &state.points, &total)?;
-                *out = (state, fields.elastic_energy);
+                *out = hex8::update(&case.geometry[e], &case.material, state, start, committed, increment)?;
                 Ok(())
             });
             if request.outcome == Outcome::Valid {
                 let case = &mut self.cases[request.case];
                 let mut energies = Energies::default();
-                for ((state, start), (next, elastic)) in case.state.iter_mut().zip(&mut case.start).zip(next) {
-                    *state = next;
+                for ((state, start), (next, elastic)) in case.state.iter_mut().zip(&mut case.start).zip(&self.next) {
+                    *state = *next;
                     *start = next.points;
                     energies.elastic += elastic.to_f64();
                     energies.plastic += next.plastic_work.to_f64();

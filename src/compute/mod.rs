@@ -19,6 +19,8 @@ mod tests;
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::coulomb::{Friction, Rows};
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
@@ -114,7 +116,7 @@ pub struct Energies {
 }
 
 /// The committed state of a case, for output and checkpoints.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseState {
     /// Displacement, three a node.
     pub displacement: Vec<f64>,

@@ -10,6 +10,8 @@
 //! The status follows from the present displacement and the tangential position at the start of the step alone; nothing is remembered
 //! between iterations, so the active set cannot cycle through a memory of its own.
 
+use serde::{Deserialize, Serialize};
+
 use crate::real::Real;
 
 /// Coefficient of friction, or no slip at all.
@@ -22,7 +24,7 @@ pub enum Friction<R> {
 }
 
 /// What a contact point does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[repr(u32)]
 pub enum Status {
     /// Not touching.

@@ -11,7 +11,7 @@
 use super::lanes::Lanes;
 use crate::material::j2::{Response, deviatoric_tangent, return_mapping_of_eight};
 use crate::material::multistep::{Flow, anticipate, complete};
-use crate::material::{Material, PointState, pressure};
+use crate::material::{Material, PointState, elastic_energy_deviatoric, elastic_energy_volumetric, pressure};
 use crate::real::Real;
 
 /// Nodes of an element.
@@ -330,7 +330,8 @@ pub fn tangent<R: Real>(
     Ok(())
 }
 
-/// The state at the end of a step that went from `committed` by `increment`, and whose trial states were found from `start`.
+/// The state at the end of a step that went from `committed` by `increment`, and whose trial states were found from `start`; and the
+/// elastic energy of the element there.
 pub fn update<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
@@ -338,7 +339,7 @@ pub fn update<R: Real>(
     start: &Points<R>,
     committed: &Nodal<R>,
     increment: &Nodal<R>,
-) -> Result<State<R>, Invalid> {
+) -> Result<(State<R>, R), Invalid> {
     let k = kinematics(geometry, committed, increment)?;
     let mut next = *state;
     let responses = respond(material, &k, start)?;
@@ -350,7 +351,18 @@ pub fn update<R: Real>(
         next.flow[q] = flow;
         next.plastic_work += response.plastic_work * geometry.volume.0[q];
     }
-    Ok(next)
+    let energy = elastic_energy(geometry, material, &next.points, k.theta_minus_1);
+    Ok((next, energy))
+}
+
+/// Elastic energy of an element with these states and this mean dilatation.
+#[inline(always)]
+fn elastic_energy<R: Real>(geometry: &Geometry<R>, material: &Material<R>, points: &Points<R>, theta_minus_1: R) -> R {
+    let mut energy = R::ZERO;
+    for (point, &volume) in points.iter().zip(&geometry.volume.0) {
+        energy += elastic_energy_deviatoric(&material.elasticity, &point.be) * volume;
+    }
+    energy + elastic_energy_volumetric(&material.elasticity, theta_minus_1) * geometry.total_volume
 }
 
 /// What an element shows of itself at a committed state.
@@ -381,10 +393,7 @@ pub fn fields<R: Real>(
             let s = material.elasticity.shear * (be[c] - if c < 3 { mean } else { R::ZERO });
             out.stress[q][c] = s / j + if c < 3 { p } else { R::ZERO };
         }
-        out.elastic_energy +=
-            crate::material::elastic_energy_deviatoric(&material.elasticity, &points[q].be) * geometry.volume.0[q];
     }
-    out.elastic_energy +=
-        crate::material::elastic_energy_volumetric(&material.elasticity, k.theta_minus_1) * geometry.total_volume;
+    out.elastic_energy = elastic_energy(geometry, material, points, k.theta_minus_1);
     Ok(out)
 }

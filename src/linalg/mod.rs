@@ -205,12 +205,27 @@ impl LinearSolver {
     /// [`LinalgError::Singular`] and [`LinalgError::Factorisation`].
     pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
         self.updated = false;
-        let (unknowns, entries) = (self.matrix.unknowns(), self.matrix.blocks.len());
-        size("the mask of fixed unknowns", fixed.len(), unknowns)?;
-        size("the matrix", matrix.blocks.len(), entries)?;
-        size("the matrix's pattern", matrix.pattern.rows(), unknowns / 3)?;
+        size("the matrix", matrix.blocks.len(), self.matrix.blocks.len())?;
+        size("the matrix's pattern", matrix.pattern.rows(), self.matrix.unknowns() / 3)?;
         self.matrix.blocks.copy_from_slice(&matrix.blocks);
+        self.refresh(fixed)
+    }
+
+    /// The matrix, to be written in place before [`LinearSolver::refresh`].
+    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+        self.updated = false;
+        &mut self.matrix
+    }
+
+    /// [`LinearSolver::update`] with the solver's own matrix, as [`LinearSolver::matrix_mut`] left it.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::update`].
+    pub fn refresh(&mut self, fixed: &[bool]) -> Result<(), LinalgError> {
+        self.updated = false;
+        size("the mask of fixed unknowns", fixed.len(), self.matrix.unknowns())?;
         self.fixed.set(fixed);
+        let matrix = &self.matrix;
         match &mut self.method {
             Method::Multigrid { hierarchy, factorised, .. } => {
                 *factorised = false;

@@ -22,6 +22,8 @@ pub mod point;
 pub use hardening::{Hardening, HardeningError};
 pub use j2::{Response, deviatoric_tangent, return_mapping, return_mapping_of_eight};
 
+use serde::{Deserialize, Serialize};
+
 use crate::lanes::Lanes;
 use crate::real::Real;
 
@@ -59,7 +61,7 @@ impl<R: Real> Elasticity<R> {
 }
 
 /// What a point remembers between accepted steps. [`Default`] is the virgin state.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointState<R> {
     /// b_e_bar - I: the isochoric elastic left Cauchy-Green tensor less the identity, whose digits at small strains it keeps.
     pub be: [R; 6],

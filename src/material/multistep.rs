@@ -13,6 +13,8 @@
 //! A backward Euler step balances, at its end, stresses that belong to the mean flow of the step: where a contact spreads the error of its
 //! radius and force is of the first order in the step, however exactly a straight strain path is integrated within a step.
 
+use serde::{Deserialize, Serialize};
+
 use super::j2::{
     Response, determinant_minus_one, deviator, isochoric_factor_minus_one, isochoric_mean, norm_squared, return_mapping,
 };
@@ -23,7 +25,7 @@ use crate::real::Real;
 const LARGEST_RATIO: f64 = 2.0;
 
 /// What flowed at a point in its last step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flow<R> {
     /// What the elastic strain dev b_e_bar lost to the flow, in the configuration at the end of the step, [xx, yy, zz, xy, yz, zx].
     pub strain: [R; 6],

@@ -48,9 +48,9 @@ impl OutputDirectory {
         self.root.join("summary.json")
     }
 
-    /// The checkpoint, there while the run is unfinished.
+    /// `checkpoint.bin`, there while the run is unfinished.
     pub fn checkpoint(&self) -> PathBuf {
-        self.root.join("checkpoint")
+        self.root.join("checkpoint.bin")
     }
 
     /// `fields/step_0020.vtu`.
@@ -93,6 +93,22 @@ impl OutputDirectory {
     /// Removes what an earlier run left here, so that nothing of it is taken for the next one's: files by the names in this page, and drafts
     /// of killed runs. Everything else, `case.toml` among it, stays.
     pub fn clear(&self) -> Result<(), OutputError> {
+        self.clear_but(|_, _| false)
+    }
+
+    /// Removes what an interrupted run left here beyond its checkpoint, in which the fields and contact tables of the steps `saved` are: later ones,
+    /// summary and pictures, and drafts. History and collection, which have entries of several steps, stay and have to be cut back.
+    pub fn cut_back(&self, saved: &[usize]) -> Result<(), OutputError> {
+        let files: Vec<String> =
+            saved.iter().flat_map(|&step| [self.fields(step), self.contact(step)]).map(|path| file_name(&path)).collect();
+        self.clear_but(|folder, name| match folder {
+            "" => matches!(name, "history.csv" | "checkpoint.bin"),
+            "plots" => false,
+            _ => name == "case.pvd" || files.iter().any(|file| file == name),
+        })
+    }
+
+    fn clear_but(&self, keep: impl Fn(&str, &str) -> bool) -> Result<(), OutputError> {
         for folder in ["", "fields", "contact", "plots"] {
             let path = if folder.is_empty() { self.root.clone() } else { self.root.join(folder) };
             if !path.is_dir() {
@@ -101,7 +117,7 @@ impl OutputDirectory {
             for entry in fs::read_dir(&path).map_err(OutputError::reading(&path))? {
                 let name = entry.map_err(OutputError::reading(&path))?.file_name();
                 let file = path.join(&name);
-                if name.to_str().is_some_and(|name| ours(folder, name)) && file.is_file() {
+                if name.to_str().is_some_and(|name| ours(folder, name) && !keep(folder, name)) && file.is_file() {
                     fs::remove_file(&file).map_err(OutputError::writing(&file))?;
                 }
             }
@@ -114,12 +130,23 @@ impl OutputDirectory {
         write_atomically(&self.case(), |out| write!(out, "{RESULT_MARKER}\n{toml}"))
     }
 
+    /// The text of `case.toml` without the [`RESULT_MARKER`]; `None` if the folder holds no result.
+    pub fn read_case(&self) -> Option<String> {
+        let text = fs::read_to_string(self.case()).ok()?;
+        let (first, toml) = text.split_once('\n')?;
+        (first.trim_end() == RESULT_MARKER).then(|| toml.to_owned())
+    }
+
     /// Whether the folder holds a result: its `case.toml` begins with [`RESULT_MARKER`].
     pub fn holds_result(&self) -> bool {
         let mut first = String::new();
         let read = fs::File::open(self.case()).and_then(|file| BufReader::new(file).read_line(&mut first));
         read.is_ok() && first.trim_end() == RESULT_MARKER
     }
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// Whether a run gives this name to a file in this folder.
@@ -135,7 +162,7 @@ fn ours(folder: &str, name: &str) -> bool {
             .is_some_and(|(name, id)| id.bytes().all(|byte| byte.is_ascii_digit()) && (name == "case.toml" || ours(folder, name)))
     };
     let named = match folder {
-        "" => matches!(name, "history.csv" | "summary.json" | "checkpoint"),
+        "" => matches!(name, "history.csv" | "summary.json" | "checkpoint.bin"),
         "fields" => name == "case.pvd" || step(".vtu"),
         "contact" => step(".csv"),
         "plots" => name.strip_suffix(".svg").is_some_and(|name| RUN_PICTURES.contains(&name)),
@@ -172,6 +199,8 @@ mod tests {
         let gone = [
             "history.csv",
             "summary.json",
+            "checkpoint.bin",
+            ".checkpoint.bin.417.tmp",
             ".summary.json.417.tmp",
             ".case.toml.417.tmp",
             "fields/step_0020.vtu",
@@ -195,5 +224,20 @@ mod tests {
         out.clear().unwrap();
         assert!(gone.iter().all(|name| !folder.path().join(name).exists()));
         assert!(kept.iter().all(|name| folder.path().join(name).exists()));
+    }
+
+    #[test]
+    fn cutting_back_leaves_what_the_checkpoint_has() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDirectory::create(folder.path()).unwrap();
+        let gone =
+            ["summary.json", ".checkpoint.bin.417.tmp", "fields/step_0021.vtu", "contact/step_0021.csv", "plots/forces.svg"];
+        let kept = ["case.toml", "history.csv", "checkpoint.bin", "fields/step_0020.vtu", "contact/step_0020.csv", "notes.txt"];
+        for name in gone.iter().chain(&kept).chain(&["fields/case.pvd"]) {
+            write_atomically(&folder.path().join(name), |_| Ok(())).unwrap();
+        }
+        out.cut_back(&[7, 20]).unwrap();
+        assert!(gone.iter().all(|name| !folder.path().join(name).exists()));
+        assert!(kept.iter().all(|name| folder.path().join(name).exists()) && out.collection().exists());
     }
 }

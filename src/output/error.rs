@@ -32,6 +32,14 @@ pub enum OutputError {
         /// What is wrong there.
         problem: String,
     },
+    /// A run cannot go on from its checkpoint.
+    #[error("{}: a run cannot go on from here: {problem}", path.display())]
+    Checkpoint {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Why, and what to do.
+        problem: String,
+    },
     /// Data handed to a writer do not fit each other.
     #[error("cannot write {}: {problem}; this is a fault of the program, please report it", path.display())]
     Inconsistent {
@@ -59,6 +67,7 @@ impl OutputError {
             Self::Write { path, .. }
             | Self::Read { path, .. }
             | Self::Malformed { path, .. }
+            | Self::Checkpoint { path, .. }
             | Self::Inconsistent { path, .. } => path,
         }
     }

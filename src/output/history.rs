@@ -20,18 +20,12 @@ pub struct HistoryWriter {
 impl HistoryWriter {
     /// A new history with its header; one that stands there is replaced.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
-        Self::restart(path, &[])
+        Self::resume(path, &[])
     }
 
-    /// Goes on after the step `last_step`, that of the checkpoint: later rows, and a row cut short, are dropped; they will be computed again.
-    /// Returns the rows kept as well.
-    pub fn resume(path: &Path, last_step: usize) -> Result<(Self, Vec<StepRecord>), OutputError> {
-        let mut kept = read_history(path)?;
-        kept.retain(|record| record.step <= last_step);
-        Ok((Self::restart(path, &kept)?, kept))
-    }
-
-    fn restart(path: &Path, rows: &[StepRecord]) -> Result<Self, OutputError> {
+    /// Goes on after `rows`, those of the checkpoint: what stands there is replaced by them, so that later rows, and a row cut short, are gone; they
+    /// will be computed again.
+    pub fn resume(path: &Path, rows: &[StepRecord]) -> Result<Self, OutputError> {
         write_atomically(path, |out| {
             out.write_all(header()?.as_bytes())?;
             rows.iter().try_for_each(|row| out.write_all(&encode(row)?))
@@ -151,8 +145,8 @@ mod tests {
         drop(writer);
         OpenOptions::new().append(true).open(&path).unwrap().write_all(b"5,1,0.02,0.0").unwrap();
         assert_eq!(read_history(&path).unwrap().len(), 4);
-        let (mut writer, kept) = HistoryWriter::resume(&path, 3).unwrap();
-        assert_eq!(kept, [record(1), record(2), record(3)]);
+        let mut writer = HistoryWriter::resume(&path, &[1, 2, 3].map(record)).unwrap();
+        assert_eq!(read_history(&path).unwrap(), [1, 2, 3].map(record));
         writer.append(&record(4)).unwrap();
         assert_eq!(read_history(&path).unwrap(), (1..=4).map(record).collect::<Vec<_>>());
     }

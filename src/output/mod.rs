@@ -1,5 +1,5 @@
-//! What a run leaves behind: `history.csv`, `summary.json`, `fields/*.vtu` with a `.pvd`, `contact/*.csv`, `plots/*.svg`, and its progress
-//! on the screen.
+//! What a run leaves behind: `history.csv`, `summary.json`, `fields/*.vtu` with a `.pvd`, `contact/*.csv`, `plots/*.svg`, while
+//! it goes on a checkpoint, and its progress on the screen.
 //!
 //! The writers take plain records in the user's units; `units` makes them from the simulation's scaled ones. Every file but `history.csv` is written
 //! beside its place and moved there when it is whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job
@@ -8,6 +8,7 @@
 pub mod plots;
 
 mod atomic;
+mod checkpoint;
 mod clock;
 mod contact_csv;
 mod directory;
@@ -15,6 +16,7 @@ mod error;
 pub mod estimate;
 mod fields;
 mod history;
+mod ledger;
 mod path_share;
 mod progress;
 mod recorder;
@@ -27,6 +29,7 @@ mod vtu;
 
 pub use crate::simulation::record::StepRecord;
 pub use atomic::write_atomically;
+pub use checkpoint::{Checkpoint, case_difference};
 pub use clock::Clock;
 pub use contact_csv::{ContactPoint, ContactStatus, read_contact, write_contact};
 pub use directory::{OutputDirectory, RESULT_MARKER};

@@ -3,19 +3,20 @@
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
+use super::checkpoint::Checkpoint;
 use super::clock::Clock;
+use super::ledger::Ledger;
 use super::path_share::PathShare;
-use super::plots::Tables;
 use super::{
-    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, OutsideSteps, PlotInputs, Position,
-    Progress, Status, StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
+    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
+    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields};
-use crate::compute::Description;
+use crate::compute::{ComputeError, Description};
+use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::drive::{Observer, StepView};
-use crate::solver::phases::PhaseTimes;
 
 /// What the summary has to know beside the history.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,6 +28,11 @@ pub struct Setting {
     /// Displacements that are not prescribed.
     pub unknowns: usize,
 }
+
+/// Time between checkpoints: what a killed run loses at most, but for the step under way.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(5);
+/// Writing them takes no more than one part in so many of the run, however large they are.
+const CHECKPOINT_SHARE: u32 = 20;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -45,20 +51,25 @@ pub struct ResultWriter {
     stop: Arc<AtomicBool>,
     share: PathShare,
     history: HistoryWriter,
-    rows: Vec<StepRecord>,
     collection: Collection,
-    saved: Option<usize>,
-    /// Contact at the ends of segments, for the plots.
-    tables: Tables,
-    fallbacks: usize,
-    times: PhaseTimes,
-    outside: OutsideSteps,
+    ledger: Ledger,
     estimate: Option<ErrorEstimate>,
-    messages: Vec<String>,
+    /// The resolved case, for checkpoints.
+    case: String,
+    /// Where the run began, as `setting` may not say any more.
+    began_on: Description,
+    checkpoint_interval: Duration,
+    next_checkpoint: Instant,
+    /// The last checkpoint could not be written, and that has been told.
+    checkpoint_failed: bool,
 }
 
 impl ResultWriter {
-    /// Begins the results of a case (in the user's units) in a directory that is there; `stop` is asked after every step.
+    /// Begins the results of a case (in the user's units) in a directory that is there, or goes on with those of an unfinished run of the same case, whose
+    /// files beyond the checkpoint are removed; `stop` is asked after every step.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`], [`OutputError::Read`].
     pub fn create(
         case: &Case,
         dir: &Path,
@@ -66,37 +77,67 @@ impl ResultWriter {
         clock: Clock,
         progress: Box<dyn Progress>,
         stop: Arc<AtomicBool>,
+        resumed: Option<&Checkpoint>,
     ) -> Result<Self, OutputError> {
         let out = OutputDirectory::existing(dir);
-        Ok(Self {
+        let mut ledger = Ledger { cpu_before: Some(0.0), ..Ledger::default() };
+        let mut share = PathShare::new(&case.path);
+        let (history, collection) = match resumed {
+            None => (HistoryWriter::create(&out.history())?, Collection::new(&out.collection())),
+            Some(checkpoint) => {
+                ledger = checkpoint.ledger.clone();
+                for row in &ledger.rows {
+                    share.after(row);
+                }
+                out.cut_back(&ledger.saved)?;
+                let saved = ledger.saved.iter().filter(|_| case.output.fields != Fields::None);
+                let collection = Collection::resume(&out.collection(), saved.map(|&step| (step as f64, out.fields(step))))?;
+                (HistoryWriter::resume(&out.history(), &ledger.rows)?, collection)
+            }
+        };
+        ledger.outside.setup += clock.wall_seconds();
+        let moved = resumed.and_then(|checkpoint| checkpoint.change_of_device(&setting.computed_on.device));
+        let mut results = Self {
             units: Units::of(case),
             fields: case.output.fields,
             contact_tables: false,
             plots: case.output.plots.then(|| PlotInputs::of(case)),
             inputs: SummaryInputs::of(case),
+            began_on: setting.computed_on.clone(),
             setting,
             clock,
             progress,
             stop,
-            share: PathShare::new(&case.path),
-            history: HistoryWriter::create(&out.history())?,
-            rows: Vec::new(),
-            collection: Collection::new(&out.collection()),
-            saved: None,
-            tables: Tables::default(),
-            fallbacks: 0,
-            times: PhaseTimes::default(),
-            outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
+            share,
+            history,
+            collection,
+            ledger,
             estimate: None,
-            messages: Vec::new(),
+            case: case.to_toml(),
+            checkpoint_interval: CHECKPOINT_INTERVAL,
+            next_checkpoint: Instant::now() + CHECKPOINT_INTERVAL,
+            checkpoint_failed: false,
             out,
-        })
+        };
+        moved.iter().for_each(|text| results.note(text));
+        Ok(results)
     }
 
     /// Writes the contact table at the end of each segment even where the case wants no fields: a few kilobytes.
     pub fn with_contact_tables(mut self) -> Self {
         self.contact_tables = true;
         self
+    }
+
+    /// Checkpoints every so often instead of every five seconds. Results do not depend on it.
+    pub fn with_checkpoints_every(mut self, interval: Duration) -> Self {
+        (self.checkpoint_interval, self.next_checkpoint) = (interval, Instant::now() + interval);
+        self
+    }
+
+    /// Tells the user something that is not for the summary.
+    pub fn tell(&mut self, text: &str) {
+        self.progress.message(text);
     }
 
     /// Says anew where the run is computed: a device may have failed on the way.
@@ -106,36 +147,36 @@ impl ResultWriter {
 
     /// Estimates the errors of the run on `elements` along the contact radius from the history of its companion, in the same units.
     pub fn compare(&mut self, elements: usize, companion: &[StepRecord], companion_elements: usize) {
-        let run = Summary::from_history(&self.rows, &self.inputs);
+        let run = Summary::from_history(&self.ledger.rows, &self.inputs);
         let other = Summary::from_history(companion, &self.inputs);
-        self.estimate = Some(ErrorEstimate::new(&self.rows, &run, elements, &other, companion_elements));
+        self.estimate = Some(ErrorEstimate::new(&self.ledger.rows, &run, elements, &other, companion_elements));
     }
 
     /// Says how many seconds on the wall the error estimate took.
     pub fn estimate_took(&mut self, seconds: f64) {
-        self.outside.error_estimate = seconds;
+        self.ledger.outside.error_estimate = seconds;
     }
 
     /// Steps written so far.
     pub fn steps(&self) -> usize {
-        self.rows.len()
+        self.ledger.rows.len()
     }
 
     /// Draws the plots and writes the summary of a run that ended as `status` for the reason `message`. The summary is written even if a plot
-    /// fails, whose error is then returned.
+    /// fails, whose error is then returned. Of a run that has ended for good the checkpoint is removed.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
-        self.progress.finish(&format!("{status}: {} steps", self.rows.len()));
-        self.messages.extend(message.map(str::to_owned));
+        self.progress.finish(&format!("{status}: {} steps", self.ledger.rows.len()));
+        self.ledger.messages.extend(message.map(str::to_owned));
         let begun = Instant::now();
         let plots = match &self.plots {
-            Some(inputs) => write_plots(&self.out, &self.rows, &self.tables, inputs).map(drop),
+            Some(inputs) => write_plots(&self.out, &self.ledger.rows, &self.ledger.tables, inputs).map(drop),
             None => Ok(()),
         };
         if let Err(error) = &plots {
-            self.messages.push(error.to_string());
+            self.ledger.messages.push(error.to_string());
         }
-        self.outside.output += begun.elapsed().as_secs_f64();
-        let wall_s = self.clock.wall_seconds();
+        self.ledger.outside.output += begun.elapsed().as_secs_f64();
+        let (wall_s, cpu_s) = self.spent();
         let estimate = self.estimate.unwrap_or_default();
         let summary = Summary {
             f_n0_error: estimate.f_n0,
@@ -147,15 +188,31 @@ impl ResultWriter {
             unknowns: self.setting.unknowns,
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
-            linear_fallbacks: self.fallbacks,
+            linear_fallbacks: self.ledger.fallbacks,
             wall_s,
-            cpu_s: self.clock.cpu_seconds(),
-            time_by_phase: TimeByPhase::new(&self.times, &self.outside, wall_s),
-            messages: self.messages,
-            ..Summary::from_history(&self.rows, &self.inputs)
+            cpu_s,
+            time_by_phase: TimeByPhase::new(&self.ledger.times, &self.ledger.outside, wall_s),
+            messages: self.ledger.messages,
+            ..Summary::from_history(&self.ledger.rows, &self.inputs)
         };
         summary.write(&self.out.summary())?;
+        if status != Status::Interrupted {
+            // The summary says that the run has ended, so that one which cannot be removed does no harm.
+            let _ = std::fs::remove_file(self.out.checkpoint());
+        }
         plots.map(|()| summary)
+    }
+
+    /// Seconds on the wall and of the processor, those of earlier parts of the run included.
+    fn spent(&self) -> (f64, Option<f64>) {
+        let Ledger { wall_before, cpu_before, .. } = self.ledger;
+        (wall_before + self.clock.wall_seconds(), cpu_before.zip(self.clock.cpu_seconds()).map(|(before, now)| before + now))
+    }
+
+    fn write_checkpoint(&mut self, run: Snapshot) -> Result<(), OutputError> {
+        let (wall_before, cpu_before) = self.spent();
+        let ledger = Ledger { wall_before, cpu_before, ..self.ledger.clone() };
+        Checkpoint::new(&self.case, &self.began_on, ledger, run).write(&self.out.checkpoint())
     }
 
     fn contact(&self, view: &StepView<'_>) -> Vec<ContactPoint> {
@@ -165,7 +222,7 @@ impl ResultWriter {
     /// Writes fields and contact table of a step, once.
     fn save(&mut self, view: &mut StepView<'_>, contact: &[ContactPoint]) -> Result<(), Failed> {
         let step = view.record.step;
-        if self.saved == Some(step) {
+        if self.ledger.saved.last() == Some(&step) {
             return Ok(());
         }
         let fields = view.fields()?;
@@ -173,7 +230,7 @@ impl ResultWriter {
         write_contact(&self.out.contact(step), contact)?;
         write_fields(&path, view.mesh, view.displacement, &fields, contact, &self.units)?;
         self.collection.push(step as f64, &path)?;
-        self.saved = Some(step);
+        self.ledger.saved.push(step);
         Ok(())
     }
 
@@ -195,9 +252,9 @@ impl Observer for ResultWriter {
         let begun = Instant::now();
         let row = view.record.in_units(&self.units);
         self.history.append(&row)?;
-        self.rows.push(row);
-        self.fallbacks += view.report.fallbacks;
-        self.times += view.report.times;
+        self.ledger.rows.push(row);
+        self.ledger.fallbacks += view.report.fallbacks;
+        self.ledger.times += view.report.times;
         if self.fields == Fields::All {
             let contact = self.contact(view);
             self.save(view, &contact)?;
@@ -210,12 +267,12 @@ impl Observer for ResultWriter {
             detail: self.detail(&row),
         };
         self.progress.step(&position);
-        self.outside.output += begun.elapsed().as_secs_f64();
+        self.ledger.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        self.times += view.unfinished;
+        self.ledger.times += view.unfinished;
         if view.record.step == 0 {
             return Ok(());
         }
@@ -225,20 +282,40 @@ impl Observer for ResultWriter {
             self.save(view, &contact)?;
         } else if self.contact_tables {
             write_contact(&self.out.contact(view.record.step), &contact)?;
+            self.ledger.saved.push(view.record.step);
         }
         if self.plots.is_some() {
-            self.tables.add(&self.rows, contact);
+            self.ledger.tables.add(&self.ledger.rows, contact);
         }
-        self.outside.output += begun.elapsed().as_secs_f64();
+        self.ledger.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
     fn note(&mut self, text: &str) {
-        self.messages.push(format!("note: {text}"));
+        self.ledger.messages.push(format!("note: {text}"));
         self.progress.message(&format!("note: {text}"));
     }
 
     fn stop_requested(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
+    }
+
+    /// A checkpoint that cannot be written is no reason to stop computing, and the one before is still there.
+    fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
+        let begun = Instant::now();
+        if !last && begun < self.next_checkpoint {
+            return;
+        }
+        let taken = take().map_err(|error| error.to_string());
+        let written = taken.and_then(|run| self.write_checkpoint(run).map_err(|error| error.to_string()));
+        if let Err(error) = &written
+            && !self.checkpoint_failed
+        {
+            self.progress.message(&format!("warning: no checkpoint, the run goes on without: {error}"));
+        }
+        self.checkpoint_failed = written.is_err();
+        let took = begun.elapsed();
+        self.next_checkpoint = begun + self.checkpoint_interval.max(CHECKPOINT_SHARE * took);
+        self.ledger.outside.output += took.as_secs_f64();
     }
 }

@@ -17,7 +17,7 @@ pub struct PhaseTime {
 }
 
 /// Seconds on the wall that a run spends outside its steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OutsideSteps {
     /// Before the first step.
     pub setup: f64,

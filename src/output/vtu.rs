@@ -6,8 +6,8 @@
 use super::{OutputError, write_atomically};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
+use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
-use quick_xml::{Reader, Writer, XmlVersion};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -184,16 +184,14 @@ impl Collection {
         Self { path: path.to_path_buf(), entries: Vec::new() }
     }
 
-    /// The collection of an interrupted run up to `last_time`; empty if there is none yet.
-    pub fn resume(path: &Path, last_time: f64) -> Result<Self, OutputError> {
+    /// The collection of the files that a run had written when it was interrupted: whatever stands there is replaced by it.
+    pub fn resume(path: &Path, files: impl Iterator<Item = (f64, PathBuf)>) -> Result<Self, OutputError> {
         let mut collection = Self::new(path);
-        if path.exists() {
-            let text = fs::read_to_string(path).map_err(OutputError::reading(path))?;
-            collection.entries = parse_collection(&text).map_err(|(position, problem)| {
-                let line = 1 + text.bytes().take(position).filter(|&byte| byte == b'\n').count() as u64;
-                OutputError::Malformed { path: path.to_path_buf(), line, problem }
-            })?;
-            collection.entries.retain(|entry| entry.0 <= last_time);
+        collection.entries.extend(files.map(|(time, file)| (time, file_name(&file))));
+        match (collection.entries.is_empty(), fs::remove_file(path)) {
+            (false, _) => collection.write()?,
+            (true, Err(error)) if error.kind() != io::ErrorKind::NotFound => return Err(OutputError::writing(path)(error)),
+            (true, _) => {}
         }
         Ok(collection)
     }
@@ -205,8 +203,11 @@ impl Collection {
 
     /// Adds a file and writes the collection; the file has to lie in the collection's folder.
     pub fn push(&mut self, time: f64, file: &Path) -> Result<(), OutputError> {
-        let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        self.entries.push((time, name));
+        self.entries.push((time, file_name(file)));
+        self.write()
+    }
+
+    fn write(&self) -> Result<(), OutputError> {
         write_atomically(&self.path, |out| {
             let mut xml = Xml::start(out, "Collection")?;
             xml.open("Collection", &[])?;
@@ -219,33 +220,14 @@ impl Collection {
     }
 }
 
-fn parse_collection(text: &str) -> Result<Vec<(f64, String)>, (usize, String)> {
-    let mut reader = Reader::from_str(text);
-    let mut entries = Vec::new();
-    loop {
-        let event = reader.read_event().map_err(|error| (reader.error_position() as usize, error.to_string()))?;
-        let position = reader.buffer_position() as usize;
-        let at = |problem: String| (position, problem);
-        match event {
-            Event::Eof => return Ok(entries),
-            Event::Empty(tag) if tag.name().as_ref() == "DataSet" => {
-                let attribute = |name: &str| {
-                    let attribute = tag.try_get_attribute(name).map_err(|error| at(error.to_string()))?;
-                    let attribute = attribute.ok_or_else(|| at(format!("a DataSet without {name}")))?;
-                    attribute.normalized_value(XmlVersion::Explicit1_0).map(String::from).map_err(|error| at(error.to_string()))
-                };
-                let time = attribute("timestep")?;
-                let time = time.parse().map_err(|_| at(format!("timestep {time} is no number")))?;
-                entries.push((time, attribute("file")?));
-            }
-            _ => {}
-        }
-    }
+fn file_name(file: &Path) -> String {
+    file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use quick_xml::{Reader, XmlVersion};
 
     const CUBE: [[f64; 3]; 8] = [
         [0.0, 0.0, 0.0],
@@ -320,12 +302,17 @@ mod tests {
         for step in 1..=3 {
             collection.push(0.1 * step as f64, &folder.path().join(format!("fields/step_{step:04}.vtu"))).unwrap();
         }
-        assert_eq!(Collection::resume(&path, f64::INFINITY).unwrap(), collection);
-        let resumed = Collection::resume(&path, 0.25).unwrap();
+        let whole = fs::read_to_string(&path).unwrap();
+        let files = || (1..=3).map(|step| (0.1 * step as f64, folder.path().join(format!("fields/step_{step:04}.vtu"))));
+        let mut resumed = Collection::resume(&path, files().take(2)).unwrap();
         assert_eq!(resumed.entries(), [(0.1, "step_0001.vtu".to_owned()), (0.2, "step_0002.vtu".to_owned())]);
-        assert!(Collection::resume(&folder.path().join("none.pvd"), 1.0).unwrap().entries().is_empty());
-        fs::write(&path, "<VTKFile>\n<DataSet timestep=\"x\" file=\"a\"/>\n").unwrap();
-        let error = Collection::resume(&path, 1.0).unwrap_err().to_string();
-        assert!(error.contains("line 2") && error.contains("timestep x"), "{error}");
+        assert_eq!(fs::read_to_string(&path).unwrap().matches("<DataSet ").count(), 2);
+        let (time, file) = files().next_back().unwrap();
+        resumed.push(time, &file).unwrap();
+        assert_eq!((&resumed, fs::read_to_string(&path).unwrap()), (&collection, whole));
+        // Nothing was written yet, whatever stands there.
+        assert!(Collection::resume(&path, files().take(0)).unwrap().entries().is_empty());
+        assert!(!path.exists());
+        assert!(Collection::resume(&path, files().take(0)).is_ok());
     }
 }

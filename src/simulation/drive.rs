@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::SimulationError;
+use super::checkpoint::{Committed, Place, Snapshot};
 use super::footprint::footprint;
 use super::path::{Resolution, ShearSteps, Start, Target, indentation_targets};
 use super::problem::Problem;
@@ -29,6 +30,11 @@ pub trait Observer {
     /// Asks the run to end after the present step.
     fn stop_requested(&self) -> bool {
         false
+    }
+    /// Offers a checkpoint, after every accepted step; `take` copies the state that a run could go on from. `last`: no other is offered, because
+    /// the run is interrupted or has followed its path.
+    fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
+        let _ = (last, take);
     }
 }
 
@@ -70,33 +76,6 @@ pub enum Ending {
     Interrupted,
 }
 
-/// The committed state of the drive, scaled.
-#[derive(Clone, Debug, Default)]
-struct Committed {
-    u: Vec<f64>,
-    /// Displacement one accepted step before, for extrapolation.
-    u_before: Vec<f64>,
-    /// Change of h and delta_T in the last step of the present segment, `None` if there is none.
-    last_increment: Option<[f64; 2]>,
-    /// Length of the last step as [`Committed::length_to`] measures it.
-    last_length: f64,
-    force: Vec<f64>,
-    points: Vec<ContactPoint>,
-    record: StepRecord,
-    h_max: f64,
-    /// Direction of the last shear.
-    direction: f64,
-}
-
-impl Committed {
-    /// Length of a step to (h, delta_T) in the measure in which plastic flow goes on evenly: the contact radius grows as sqrt(h) under pressing, and
-    /// shear is measured by itself.
-    fn length_to(&self, h: f64, delta_t: f64) -> f64 {
-        let radius = |h: f64| h.max(0.0).sqrt();
-        (radius(h) - radius(self.record.h)).abs() + (delta_t - self.record.delta_t).abs()
-    }
-}
-
 /// Follows a path.
 pub struct Drive<'a> {
     problem: &'a Problem,
@@ -105,6 +84,7 @@ pub struct Drive<'a> {
     case: usize,
     newton: Newton,
     state: Committed,
+    place: Place,
     /// Normal force that the present segment holds, of the meshed half.
     held_force: Option<f64>,
     full_slip: Option<bool>,
@@ -123,8 +103,7 @@ impl<'a> Drive<'a> {
     /// Prepares to follow the problem's path on a backend whose case `case` is the problem's model in its virgin state.
     pub fn new(problem: &'a Problem, backend: &'a mut dyn Compute, case: usize, newton: Newton) -> Self {
         let mesh = problem.model.mesh.clone();
-        let n = 3 * mesh.nodes.len();
-        let state = Committed { u: vec![0.0; n], u_before: vec![0.0; n], force: vec![0.0; n], ..Committed::default() };
+        let state = Committed::virgin(&mesh);
         Self {
             problem,
             mesh,
@@ -132,6 +111,7 @@ impl<'a> Drive<'a> {
             case,
             newton,
             state,
+            place: Place::default(),
             held_force: None,
             full_slip: None,
             last_report: StepReport::default(),
@@ -143,24 +123,75 @@ impl<'a> Drive<'a> {
         self.full_slip
     }
 
-    /// Follows the whole path.
+    /// Puts the run back to where a snapshot of it was taken; [`Drive::run`] then goes on from there.
+    ///
+    /// # Errors
+    /// [`SimulationError::Snapshot`] if it is one of another mesh, [`SimulationError::Compute`].
+    pub fn resume(&mut self, snapshot: Snapshot) -> Result<(), SimulationError> {
+        snapshot.check(&self.mesh)?;
+        self.backend.restore(self.case, &snapshot.case)?;
+        self.newton.set_force_scales(snapshot.force_scales);
+        (self.state, self.place, self.full_slip) = (snapshot.state, snapshot.place, snapshot.full_slip);
+        self.state.place_points(&self.mesh);
+        Ok(())
+    }
+
+    /// Offers the observer a checkpoint of the last accepted step.
+    pub fn checkpoint(&mut self, last: bool, observer: &mut dyn Observer) {
+        observer.checkpoint(last, &mut || {
+            Ok(Snapshot {
+                state: self.state.clone(),
+                place: self.place.clone(),
+                force_scales: self.newton.force_scales(),
+                full_slip: self.full_slip,
+                case: self.backend.state(self.case)?,
+            })
+        });
+    }
+
+    /// Follows the whole path, or what is left of it.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        self.state.points = self.contact_points();
-        observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
-        for (index, segment) in self.problem.case.path.iter().enumerate() {
-            self.state.record.segment = index;
-            self.state.last_increment = None;
+        if !self.place.begun {
+            observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
+            self.place.begun = true;
+        }
+        let path = &self.problem.case.path;
+        while let Some(segment) = path.get(self.place.segment) {
+            let start = match self.place.start {
+                Some(start) => start,
+                None => self.begin_segment(segment),
+            };
             let ending = match segment {
-                Segment::Indentation { indentation } => self.indentation(*indentation, observer)?,
-                Segment::Release => self.release(observer)?,
-                Segment::Shear { shear, hold } => self.shear(*shear, *hold, observer)?,
+                Segment::Indentation { indentation } => self.indentation(&start, *indentation, observer)?,
+                Segment::Release => self.release(&start, observer)?,
+                Segment::Shear { shear, hold } => self.shear(&start, *shear, *hold, observer)?,
             };
             observer.segment_end(&mut self.view()).map_err(SimulationError::Observer)?;
             if ending != Ending::Done {
                 return Ok(ending);
             }
+            self.place = self.place.next_segment();
         }
         Ok(Ending::Done)
+    }
+
+    /// Sets out for the present segment from the committed state.
+    fn begin_segment(&mut self, segment: &Segment) -> Start {
+        self.state.record.segment = self.place.segment;
+        self.state.last_increment = None;
+        let mut start = self.start();
+        if let Segment::Shear { shear, .. } = segment {
+            let direction = match shear {
+                ShearTarget::Displacement(d) => (d - start.delta_t).signum(),
+                // Full slip goes on in the direction of the last shear, forward if there was none.
+                ShearTarget::FullSlip if self.state.direction != 0.0 => self.state.direction,
+                ShearTarget::FullSlip => 1.0,
+            };
+            start.reversed = self.state.direction * direction < 0.0;
+            self.state.direction = direction;
+        }
+        self.place.start = Some(start);
+        start
     }
 
     fn start(&self) -> Start {
@@ -184,9 +215,9 @@ impl<'a> Drive<'a> {
         self.problem.resolution
     }
 
-    fn indentation(&mut self, h: f64, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let targets = indentation_targets(&self.start(), h, &self.resolution());
-        for target in &targets {
+    fn indentation(&mut self, start: &Start, h: f64, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        let targets = indentation_targets(start, h, &self.resolution());
+        while let Some(target) = targets.get(self.place.reached) {
             let ending = self.advance(target, observer)?;
             if ending != Ending::Done {
                 return Ok(ending);
@@ -196,14 +227,13 @@ impl<'a> Drive<'a> {
     }
 
     /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that the residual indentation is sharp.
-    fn release(&mut self, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let start = self.start();
+    fn release(&mut self, start: &Start, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         let step = start.recovery() / 12.0;
-        if self.state.record.contact_points == 0 || step <= 0.0 {
+        if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
             observer.note("release: nothing touches, so there is nothing to release");
             return Ok(Ending::Done);
         }
-        while self.state.record.contact_points > 0 {
+        while self.place.under_way || self.state.record.contact_points > 0 {
             let f = (self.state.record.f_n / start.f_n).clamp(0.0, 1.0);
             let h = self.state.record.h - step * (0.2 + 0.8 * f.sqrt());
             let target = Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
@@ -215,28 +245,26 @@ impl<'a> Drive<'a> {
         Ok(Ending::Done)
     }
 
-    fn shear(&mut self, shear: ShearTarget, hold: Hold, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let mut start = self.start();
-        if start.f_n <= 0.0 {
+    fn shear(
+        &mut self,
+        start: &Start,
+        shear: ShearTarget,
+        hold: Hold,
+        observer: &mut dyn Observer,
+    ) -> Result<Ending, SimulationError> {
+        if self.place.is_at_segment_start() && start.f_n <= 0.0 {
             observer.note("shear: nothing touches, so the sphere moves freely");
         }
-        let direction = match shear {
-            ShearTarget::Displacement(d) => (d - start.delta_t).signum(),
-            // Full slip goes on in the direction of the last shear, forward if there was none.
-            ShearTarget::FullSlip if self.state.direction != 0.0 => self.state.direction,
-            ShearTarget::FullSlip => 1.0,
-        };
-        start.reversed = self.state.direction * direction < 0.0;
-        self.state.direction = direction;
+        let direction = self.state.direction;
         let length = match shear {
             ShearTarget::Displacement(d) => (d - start.delta_t).abs(),
             ShearTarget::FullSlip => f64::INFINITY,
         };
-        let steps = ShearSteps::new(&start, length, &self.resolution());
+        let steps = ShearSteps::new(start, length, &self.resolution());
         let bound = steps.bound(start.a);
         self.held_force = (hold == Hold::NormalForce).then_some(0.5 * start.f_n);
-        let mut i = 1;
         loop {
+            let i = self.place.reached + 1;
             let distance = steps.distance(i);
             let ends = length.is_finite() && distance >= length * (1.0 - 1e-9);
             let target = Target {
@@ -248,7 +276,6 @@ impl<'a> Drive<'a> {
                 hold_force: self.held_force.is_some(),
                 extrapolate: i > 1,
             };
-            let before = self.state.record;
             let ending = self.advance(&target, observer)?;
             if ending != Ending::Done {
                 self.held_force = None;
@@ -258,7 +285,8 @@ impl<'a> Drive<'a> {
                 break;
             }
             if length.is_infinite() {
-                if self.slips_fully() && (self.state.record.f_t - before.f_t) * direction <= PLATEAU * before.f_t.abs() {
+                let before = self.place.force_before;
+                if self.slips_fully() && (self.state.record.f_t - before) * direction <= PLATEAU * before.abs() {
                     self.full_slip = Some(true);
                     break;
                 }
@@ -271,7 +299,6 @@ impl<'a> Drive<'a> {
                     break;
                 }
             }
-            i += 1;
         }
         self.held_force = None;
         Ok(Ending::Done)
@@ -290,12 +317,21 @@ impl<'a> Drive<'a> {
         stick <= STICK_SHARE * all
     }
 
-    /// Reaches `target` from the committed state in one step, or in as many as bisection needs.
+    /// Reaches `target` from the committed state in one step, or in as many as bisection needs; a target that was set out for before, in what is left
+    /// of it.
     fn advance(&mut self, target: &Target, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let mut waiting = vec![*target];
-        let (mut wasted, mut cutbacks) = (0, 0);
-        while let Some(next) = waiting.last().copied() {
+        if !self.place.under_way {
+            self.place.under_way = true;
+            self.place.waiting.push(*target);
+            self.place.force_before = self.state.record.f_t;
+        }
+        loop {
+            if let Some(reason) = self.outgrown() {
+                return Ok(Ending::Outgrown(reason));
+            }
+            let Some(next) = self.place.waiting.last().copied() else { break };
             if observer.stop_requested() {
+                self.checkpoint(true, observer);
                 return Ok(Ending::Interrupted);
             }
             let mut attempted = self.attempt(&next)?;
@@ -306,27 +342,24 @@ impl<'a> Drive<'a> {
                     next.h,
                     next.delta_t
                 );
-                wasted += failure.iterations();
-                let open: Vec<bool> = self.state.points.iter().map(|p| p.status == Status::Open).collect();
+                self.place.wasted += failure.iterations();
+                let open: Vec<bool> = self.state.statuses.iter().map(|status| *status == Status::Open).collect();
                 self.newton.let_slide(&open);
                 attempted = self.attempt(&next)?;
                 self.newton.let_slide(&[]);
             }
             match attempted {
                 Ok(report) => {
-                    waiting.pop();
-                    self.accept(&next, report, wasted, cutbacks, observer)?;
-                    (wasted, cutbacks) = (0, 0);
-                    if let Some(reason) = self.outgrown() {
-                        return Ok(Ending::Outgrown(reason));
-                    }
+                    self.place.waiting.pop();
+                    self.accept(&next, report, observer)?;
+                    self.checkpoint(false, observer);
                 }
                 Err(failure) => {
                     let r = &self.state.record;
                     log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
-                    cutbacks += 1;
-                    wasted += failure.iterations();
-                    if waiting.len() > self.problem.max_cutbacks {
+                    self.place.cutbacks += 1;
+                    self.place.wasted += failure.iterations();
+                    if self.place.waiting.len() > self.problem.max_cutbacks {
                         return Ok(Ending::NotConverged(format!(
                             "step {} of segment {} (from h = {:.6} R, delta_T = {:.6} R to h = {:.6} R, delta_T = {:.6} R): {failure}; \
                              the step was bisected {} times. A finer mesh ([mesh] elements_per_contact_radius) or more steps ([solver] press_steps, \
@@ -340,10 +373,16 @@ impl<'a> Drive<'a> {
                             self.problem.max_cutbacks,
                         )));
                     }
-                    waiting.push(Target { h: 0.5 * (r.h + next.h), delta_t: 0.5 * (r.delta_t + next.delta_t), ..next });
+                    self.place.waiting.push(Target {
+                        h: 0.5 * (r.h + next.h),
+                        delta_t: 0.5 * (r.delta_t + next.delta_t),
+                        ..next
+                    });
                 }
             }
         }
+        self.place.under_way = false;
+        self.place.reached += 1;
         Ok(Ending::Done)
     }
 
@@ -388,15 +427,9 @@ impl<'a> Drive<'a> {
     }
 
     /// Commits the accepted trial and records it.
-    fn accept(
-        &mut self,
-        target: &Target,
-        mut report: StepReport,
-        wasted: usize,
-        cutbacks: usize,
-        observer: &mut dyn Observer,
-    ) -> Result<(), SimulationError> {
+    fn accept(&mut self, target: &Target, mut report: StepReport, observer: &mut dyn Observer) -> Result<(), SimulationError> {
         let before = self.state.record;
+        let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));
         let accepted = self.newton.accepted();
         let mut lap = Lap::start();
         let (energies, outcome) = CaseHandle { backend: &mut *self.backend, case: self.case }.commit(&accepted.u)?;
@@ -414,11 +447,13 @@ impl<'a> Drive<'a> {
         self.state.u_before.copy_from_slice(&self.state.u);
         self.state.u.copy_from_slice(&accepted.u);
         self.state.force.copy_from_slice(&accepted.force);
+        self.state.statuses.clear();
+        self.state.statuses.extend(accepted.rows.iter().map(|rows| rows.status));
         self.newton.committed();
         self.state.last_increment = Some([h - before.h, target.delta_t - before.delta_t]);
         self.state.last_length = length;
         self.state.h_max = self.state.h_max.max(h);
-        self.state.points = self.contact_points();
+        self.state.place_points(&self.mesh);
         let size = footprint(&self.state.points, self.problem.spacing);
         // 0 - x, not -x: no force is 0, not -0.
         let (f_n, f_t) = (2.0 * force[2], 0.0 - 2.0 * force[0]);
@@ -493,33 +528,6 @@ impl<'a> Drive<'a> {
             }
         }
         work
-    }
-
-    /// The contact points of the committed state.
-    fn contact_points(&self) -> Vec<ContactPoint> {
-        let rows = &self.newton.accepted().rows;
-        self.mesh
-            .contact_nodes
-            .iter()
-            .enumerate()
-            .map(|(i, &node)| {
-                let (base, x) = (3 * node as usize, self.mesh.nodes[node as usize]);
-                let status = rows[i].status;
-                let force = if status == Status::Open {
-                    [0.0; 3]
-                } else {
-                    [self.state.force[base], self.state.force[base + 1], self.state.force[base + 2]]
-                };
-                ContactPoint {
-                    node: node as usize,
-                    reference: x,
-                    position: [x[0] + self.state.u[base], x[1] + self.state.u[base + 1], x[2] + self.state.u[base + 2]],
-                    force,
-                    area: self.mesh.contact_area[i],
-                    status,
-                }
-            })
-            .collect()
     }
 
     /// The contact has come within half an element of the edge of the fine zone.

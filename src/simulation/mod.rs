@@ -1,8 +1,9 @@
 //! One case from its first touch to the end of its path.
 //!
 //! `problem` turns a case file into a scaled model, `path` cuts segments into steps, `drive` takes the steps (bisecting those that fail),
-//! `footprint` measures the contact, `record` holds what is remembered of each step.
+//! `footprint` measures the contact, `record` holds what is remembered of each step, `checkpoint` what the next one depends on.
 
+pub mod checkpoint;
 pub mod drive;
 pub mod footprint;
 pub mod path;
@@ -31,6 +32,16 @@ pub enum SimulationError {
     /// The device.
     #[error(transparent)]
     Compute(#[from] ComputeError),
+    /// A snapshot is of a body with another mesh.
+    #[error("the state to go on from has {found} {what} where the mesh has {expected}")]
+    Snapshot {
+        /// What there is another number of.
+        what: &'static str,
+        /// Its number in the snapshot.
+        found: usize,
+        /// Its number in the mesh.
+        expected: usize,
+    },
     /// Whoever watches the run could not go on: results cannot be written, say.
     #[error("{0}")]
     Observer(Box<dyn std::error::Error + Send + Sync>),

@@ -1,9 +1,11 @@
 //! The increments of a path: where each step of a segment should end.
 
+use serde::{Deserialize, Serialize};
+
 use crate::case::{Hold, Segment, ShearTarget};
 
 /// Where a step should end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Indentation, or the first guess of it when the normal force is held.
     pub h: f64,
@@ -16,7 +18,7 @@ pub struct Target {
 }
 
 /// What the increments of a segment are made from: the state at its start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Indentation.
     pub h: f64,
@@ -53,8 +55,8 @@ const SHEAR_RANGE: f64 = 4.5;
 const FRICTION_LIMIT: f64 = 0.3;
 /// Steps of an unloading over its estimated elastic recovery.
 const RELEASE_STEPS: f64 = 12.0;
-/// Most steps that a shear segment of given length is cut into.
-const MAX_SHEAR_STEPS: f64 = 120.0;
+/// Where everything slips the increments of a shear of given length go on growing, up to this share of the contact radius.
+const LARGEST_SHEAR_STEP: f64 = 0.05;
 
 impl Start {
     /// Elastic modulus E/(1 - nu^2), scaled.
@@ -113,13 +115,14 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
     targets
 }
 
-/// Tangential displacements of a shear segment: growing increments, then equal ones. `next(i)` is the end of step i, counted from 1, as a
-/// distance from the start.
+/// Tangential displacements of a shear segment, as distances from its start: increments that grow; to `"full-slip"`, which is waited for,
+/// equal ones in the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearSteps {
     range: f64,
-    count: usize,
     total: f64,
+    /// Steps that grow, and the increment of those after them.
+    growing: usize,
     later: f64,
 }
 
@@ -129,15 +132,17 @@ impl ShearSteps {
         let count = resolution.shear_steps.max(1);
         let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
         let total: f64 = (1..=count).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
-        let last = range * (count as f64).powf(SHEAR_GROWTH) / total;
-        let later = if length.is_finite() { last.max((length - range) / MAX_SHEAR_STEPS) } else { last };
-        Self { range, count, total, later }
+        let increment = |i: usize| range * (i as f64).powf(SHEAR_GROWTH) / total;
+        let largest = LARGEST_SHEAR_STEP * start.a;
+        let growing =
+            if length.is_finite() { (count..count + 1000).find(|&i| increment(i + 1) > largest).unwrap_or(count) } else { count };
+        Self { range, total, growing, later: increment(growing) }
     }
 
     /// Distance from the start of the segment at the end of step `i >= 1`.
     pub fn distance(&self, i: usize) -> f64 {
-        let growing: f64 = (1..=i.min(self.count)).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
-        self.range * growing / self.total + self.later * i.saturating_sub(self.count) as f64
+        let grown: f64 = (1..=i.min(self.growing)).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
+        self.range * grown / self.total + self.later * i.saturating_sub(self.growing) as f64
     }
 
     /// A shear to full slip is given up beyond this distance.

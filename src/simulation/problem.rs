@@ -8,7 +8,7 @@ use crate::analytical::predicted_contact_radius;
 use crate::case::{self, Case, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
-use crate::linalg::{LinearSolver, SolverKind, bsr::BlockMatrix};
+use crate::linalg::{LinearSolver, SolverKind};
 use crate::material::Material;
 use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
@@ -111,6 +111,6 @@ impl Problem {
             case::Linear::Direct => SolverKind::Direct,
         };
         let linear = LinearSolver::new(kind, &pattern, &mesh.hierarchy).map_err(SolverError::from)?;
-        Ok(Newton::new(mesh, BlockMatrix::zeros(pattern), linear, self.settings))
+        Ok(Newton::new(mesh, linear, self.settings))
     }
 }

@@ -1,1 +1,150 @@
+//! A run that is stopped and goes on is the run that never stopped, bit for bit.
 
+use super::SimulationError;
+use super::checkpoint::Snapshot;
+use super::drive::{Drive, Ending, Observer, StepView};
+use super::problem::Problem;
+use super::record::StepRecord;
+use crate::case::{Case, Hold, Segment, ShearTarget};
+use crate::compute::cpu::Cpu;
+use crate::compute::{CaseState, Compute, ComputeError};
+use crate::real::Real;
+
+/// Every kind of segment, there and back.
+fn problem(friction: &str, solver: &str) -> Problem {
+    // Full stick never slips fully.
+    let end = if friction == "\"stick\"" { "0.001" } else { "\"full-slip\"" };
+    let text = format!(
+        "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\nlaw = \"linear\"\nyield_stress = 400.0\n\
+         modulus = 2000.0\n[contact]\nfriction = {friction}\n[mesh]\nelements_per_contact_radius = 4\nfine_zone = 1.5\n[solver]\npress_steps = 4\n\
+         shear_steps = 4\n{solver}\n[[path]]\nindentation = 0.015\n[[path]]\nshear = 0.001\nhold = \"normal-force\"\n[[path]]\nshear = -0.0003\n[[path]]\n\
+         indentation = 0.014\n[[path]]\nshear = {end}\n[[path]]\nindentation = 0.016\n[[path]]\nrelease = true\n"
+    );
+    let mut problem = Problem::new(&Case::parse(&text, "case.toml", &[]).unwrap()).unwrap();
+    // A case file may not ask for more of what does not touch.
+    let shear = Segment::Shear { shear: ShearTarget::Displacement(0.002), hold: Hold::Indentation };
+    problem.case.path.extend([Segment::Release, shear]);
+    problem
+}
+
+/// What a run shows. It stops after so many attempts, and takes a snapshot then.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Seen {
+    rows: Vec<StepRecord>,
+    ends: Vec<usize>,
+    notes: Vec<String>,
+    attempts: std::cell::Cell<usize>,
+    stop_after: Option<usize>,
+    snapshot: Option<Snapshot>,
+}
+
+impl Observer for Seen {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.rows.push(view.record);
+        Ok(())
+    }
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.ends.push(view.record.step);
+        Ok(())
+    }
+    fn note(&mut self, text: &str) {
+        self.notes.push(text.to_owned());
+    }
+    fn stop_requested(&self) -> bool {
+        self.attempts.set(self.attempts.get() + 1);
+        self.stop_after.is_some_and(|most| self.attempts.get() > most)
+    }
+    fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
+        if last {
+            self.snapshot = Some(take().unwrap());
+        }
+    }
+}
+
+/// Follows the path from a snapshot on, or from the beginning, with everything made anew; returns the last committed state too.
+fn follow<R: Real>(problem: &Problem, from: Option<Snapshot>, seen: &mut Seen) -> (Ending, CaseState) {
+    let mut backend = Cpu::<R>::new(vec![problem.model.clone()]).unwrap();
+    let mut drive = Drive::new(problem, &mut backend, 0, problem.newton().unwrap());
+    if let Some(snapshot) = from {
+        drive.resume(snapshot).unwrap();
+    }
+    let ending = drive.run(seen).unwrap();
+    (ending, backend.state(0).unwrap())
+}
+
+/// The run in one go, and stopped after every attempt at a step: both show the same.
+fn stop_and_go<R: Real>(problem: &Problem) -> Seen {
+    let mut whole = Seen::default();
+    let (ending, state) = follow::<R>(problem, None, &mut whole);
+    let mut pieces = Seen { stop_after: Some(1), ..Seen::default() };
+    let mut from = None;
+    let last = loop {
+        pieces.attempts.set(0);
+        let ends = pieces.ends.len();
+        let (ending, state) = follow::<R>(problem, from.take(), &mut pieces);
+        if ending != Ending::Interrupted {
+            break (ending, state);
+        }
+        // That of the interruption is none.
+        assert!(pieces.ends.len() > ends);
+        pieces.ends.pop();
+        let bytes = postcard::to_stdvec(&pieces.snapshot.take().unwrap()).unwrap();
+        from = Some(postcard::from_bytes(&bytes).unwrap());
+    };
+    assert_eq!(last, (ending, state));
+    assert_eq!(pieces.rows, whole.rows);
+    assert_eq!((&pieces.ends, &pieces.notes), (&whole.ends, &whole.notes));
+    whole
+}
+
+#[test]
+fn a_run_that_stops_after_every_attempt_is_the_run_that_never_stops() {
+    // So few iterations that steps are bisected, some of them twice.
+    let seen = stop_and_go::<f64>(&problem("0.3", "max_iterations = 4"));
+    assert_eq!(seen.ends.len(), 9);
+    let cutbacks: usize = seen.rows.iter().map(|row| row.cutbacks).sum();
+    assert!(cutbacks > 3, "{cutbacks}");
+    assert!(seen.notes.iter().any(|note| note.starts_with("release: nothing touches")), "{:?}", seen.notes);
+    assert!(seen.notes.iter().any(|note| note.starts_with("shear: nothing touches")), "{:?}", seen.notes);
+}
+
+#[test]
+fn so_it_is_in_single_precision_with_full_stick_and_with_the_direct_solver() {
+    for (friction, solver, single) in [("\"stick\"", "", true), ("0.1", "linear = \"direct\"", false)] {
+        let mut problem = problem(friction, solver);
+        problem.case.path.truncate(3);
+        if single {
+            stop_and_go::<f32>(&problem)
+        } else {
+            stop_and_go::<f64>(&problem)
+        };
+    }
+}
+
+#[test]
+fn a_run_that_ends_early_ends_so_again() {
+    let mut narrow = problem("0.3", "");
+    narrow.case.path.truncate(1);
+    narrow.case.path.push(Segment::Indentation { indentation: 0.08 });
+    let mut seen = Seen::default();
+    assert!(matches!(follow::<f64>(&narrow, None, &mut seen).0, Ending::Outgrown(_)), "{seen:?}");
+    stop_and_go::<f64>(&narrow);
+    let stubborn = problem("0.3", "max_iterations = 2\nmax_cutbacks = 1");
+    let mut seen = Seen::default();
+    assert!(matches!(follow::<f64>(&stubborn, None, &mut seen).0, Ending::NotConverged(_)), "{seen:?}");
+    stop_and_go::<f64>(&stubborn);
+}
+
+#[test]
+fn a_snapshot_of_another_mesh_is_refused() {
+    let coarse = problem("0.3", "");
+    let mut seen = Seen { stop_after: Some(1), ..Seen::default() };
+    follow::<f64>(&coarse, None, &mut seen);
+    let mut other = coarse.case.clone();
+    other.mesh.elements_per_contact_radius = 5;
+    let other = Problem::new(&other).unwrap();
+    let mut backend = Cpu::<f64>::new(vec![other.model.clone()]).unwrap();
+    let refused = Drive::new(&other, &mut backend, 0, other.newton().unwrap()).resume(seen.snapshot.unwrap()).unwrap_err();
+    assert!(matches!(refused, SimulationError::Snapshot { .. }), "{refused}");
+    assert!(refused.to_string().contains("displacements where the mesh has"), "{refused}");
+}

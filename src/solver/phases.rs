@@ -3,6 +3,8 @@
 use std::ops::AddAssign;
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
 /// What a step spends its time on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
@@ -27,7 +29,7 @@ impl Phase {
 }
 
 /// Seconds on the wall of each phase. A case that shares a device with others waits for them, and that counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PhaseTimes([f64; Phase::ALL.len()]);
 
 impl PhaseTimes {

@@ -65,7 +65,7 @@ const LARGEST_BATCH: usize = 64;
 /// Computes a study into `dir`: a directory a case, and `study.csv`, which is written anew as cases end.
 ///
 /// Cases that are done are not computed again if `resume` is set, or another share ran here before; a case is done if its `case.toml` is the very case and
-/// its `summary.json` says so. Cases that broke off or were interrupted are computed again, from their beginning; those that did not converge or outgrew
+/// its `summary.json` says so. Cases that broke off or were interrupted go on from their checkpoint; those that did not converge or outgrew
 /// their mesh, only with `retry`. A case that fails is a row with its reason and stops no other. Once `stop` is set, running cases end after their step
 /// and no other begins.
 ///
@@ -112,7 +112,13 @@ pub fn run(
         before.failed,
     );
     let order: Vec<usize> = dearest_first(&costs).into_iter().filter(|case| to_compute.binary_search(case).is_ok()).collect();
-    let simulator = Simulator { cases: &study.cases, directory: &directory, progress: progress.clone(), stop: stop.clone() };
+    let simulator = Simulator {
+        cases: &study.cases,
+        directory: &directory,
+        progress: progress.clone(),
+        stop: stop.clone(),
+        resume: options.resume,
+    };
     let mut table = Table { study, directory: &directory, rows, written: Instant::now(), took: Duration::ZERO };
     let mut finished = |case: usize, result: Result<Summary, String>| {
         let fault = |what| format!("the program panicked: {what}. this is a fault of the program, please report it");

@@ -8,7 +8,9 @@ use super::directory::StudyDirectory;
 use super::file::StudyCase;
 use super::progress::{CaseProgress, StudyProgress};
 use crate::compute::Compute;
-use crate::output::{Clock, OutputDirectory, ResultWriter, Setting, Status, Summary, SummaryInputs, read_history};
+use crate::output::{
+    Checkpoint, Clock, OutputDirectory, OutputError, ResultWriter, Setting, Status, Summary, SummaryInputs, read_history,
+};
 use crate::simulation::drive::{Drive, Ending};
 use crate::simulation::problem::Problem;
 
@@ -22,22 +24,46 @@ pub struct Simulator<'a> {
     pub progress: Arc<StudyProgress>,
     /// Asked after every step.
     pub stop: Arc<AtomicBool>,
+    /// Go on from checkpoints.
+    pub resume: bool,
 }
 
 impl Simulator<'_> {
-    /// Makes the directory of a case anew, with its `case.toml`: from now on it is a case that has begun.
+    /// Makes the directory of a case anew, with its `case.toml`: from now on it is a case that has begun. One that is to go on from its checkpoint
+    /// stays as it is.
     ///
     /// # Errors
     /// [`StudyError::Output`].
     pub fn begin(&self, case: usize) -> Result<OutputDirectory, StudyError> {
-        let StudyCase { id, case, .. } = &self.cases[case];
+        let StudyCase { id, case: in_units, .. } = &self.cases[case];
         let out = OutputDirectory::create(self.directory.case(id).root())?;
-        out.clear()?;
-        out.write_case(&case.to_toml())?;
+        if self.checkpoint(case).is_none() {
+            out.clear()?;
+            out.write_case(&in_units.to_toml())?;
+        }
         Ok(out)
     }
 
-    /// Follows the path of a case that has begun, on case number `slot` of `backend`, which is `problem`'s model in its virgin state; writes its results.
+    /// The checkpoint of a case that is to go on. One that is of another case or version, or damaged, is none: the case is computed from its beginning.
+    fn checkpoint(&self, case: usize) -> Option<Checkpoint> {
+        if !self.resume {
+            return None;
+        }
+        let StudyCase { id, case, .. } = &self.cases[case];
+        let out = self.directory.case(id);
+        let path = out.checkpoint();
+        let usable = || -> Result<Option<Checkpoint>, OutputError> {
+            let checkpoint = Checkpoint::read(&path)?.filter(|_| out.holds_result());
+            checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.check_case(&path, case))?;
+            Ok(checkpoint)
+        };
+        usable().unwrap_or_else(|error| {
+            log::info!("{error}");
+            None
+        })
+    }
+
+    /// Follows the path of a case that has begun, from its checkpoint if there is one, on case number `slot` of `backend`, which is `problem`'s model in its virgin state; writes its results.
     /// `notes` are on how the backend was chosen.
     ///
     /// # Errors
@@ -54,16 +80,29 @@ impl Simulator<'_> {
         let StudyCase { id, case: in_units, .. } = &self.cases[case];
         let out = self.directory.case(id);
         let newton = problem.newton()?;
-        let setting = Setting {
-            computed_on: backend.description(),
-            elements: problem.model.mesh.elements.len(),
-            unknowns: newton.free_unknowns(),
-        };
+        let computed_on = backend.description();
+        let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: newton.free_unknowns() };
+        let mut drive = Drive::new(problem, backend, slot, newton);
+        let same_precision =
+            |checkpoint: &Checkpoint| checkpoint.check_precision(&out.checkpoint(), setting.computed_on.precision).is_ok();
+        let checkpoint = self.checkpoint(case).filter(same_precision);
+        match &checkpoint {
+            Some(checkpoint) => {
+                drive.resume(checkpoint.snapshot())?;
+                log::info!("case {id}: resumed after step {}", checkpoint.step());
+            }
+            // There may be one in another precision.
+            None => out.clear()?,
+        }
         let progress = Box::new(CaseProgress { study: self.progress.clone(), case, id: id.clone() });
-        let results = ResultWriter::create(in_units, out.root(), setting, clock, progress, self.stop.clone())?;
+        let results =
+            ResultWriter::create(in_units, out.root(), setting, clock, progress, self.stop.clone(), checkpoint.as_ref())?;
         let mut results = results.with_contact_tables();
-        notes.iter().for_each(|note| crate::simulation::drive::Observer::note(&mut results, note));
-        let ending = Drive::new(problem, backend, slot, newton).run(&mut results)?;
+        notes
+            .iter()
+            .filter(|_| checkpoint.is_none())
+            .for_each(|note| crate::simulation::drive::Observer::note(&mut results, note));
+        let ending = drive.run(&mut results)?;
         results.computed_on(backend.description());
         let (status, message) = match ending {
             Ending::Done => (Status::Done, None),

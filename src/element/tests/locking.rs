@@ -123,7 +123,7 @@ impl Cylinder {
         for e in 0..LAYERS {
             let (committed, step) = (Self::nodal(e, &self.q), Self::nodal(e, &increment));
             for (g, s) in self.geometry[e].iter().zip(self.state[e].iter_mut()) {
-                *s = update(g, &self.material, s, &s.points, &committed, &step).unwrap();
+                *s = update(g, &self.material, s, &s.points, &committed, &step).unwrap().0;
             }
         }
         self.q = q;

@@ -82,13 +82,13 @@ pub fn force(g: &Geometry<f64>, m: &Material<f64>, s: &State<f64>, committed: &N
 pub fn loaded(g: &Geometry<f64>, m: &Material<f64>) -> (State<f64>, Nodal<f64>) {
     let first =
         plus(&homogeneous(&irregular(), &[[0.004, 0.003, 0.0], [0.0, -0.006, 0.002], [0.001, 0.0, 0.003]]), &wild(3, 5e-4), 1.0);
-    let state = update(g, m, &State::default(), &State::default().points, &ZERO, &first).unwrap();
+    let state = update(g, m, &State::default(), &State::default().points, &ZERO, &first).unwrap().0;
     let second = plus(
         &homogeneous(&irregular(), &[[0.006, -0.002, 0.001], [0.004, -0.005, 0.0], [0.0, 0.003, 0.001]]),
         &wild(4, 5e-4),
         1.0,
     );
-    let state = update(g, m, &state, &state.points, &first, &second).unwrap();
+    let state = update(g, m, &state, &state.points, &first, &second).unwrap().0;
     assert!(state.points.iter().all(|p| p.alpha > 1e-3), "the history is not plastic at every point");
     (state, plus(&first, &second, 1.0))
 }

@@ -49,7 +49,7 @@ impl Patch {
                 }
             }
             self.state[e] =
-                update(&self.geometry[e], material, &self.state[e], &self.state[e].points, &committed, &increment).unwrap();
+                update(&self.geometry[e], material, &self.state[e], &self.state[e].points, &committed, &increment).unwrap().0;
         }
         self.u = target;
         forces

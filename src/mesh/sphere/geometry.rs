@@ -11,7 +11,7 @@
 
 use super::butterfly::{BOTTOM, Butterfly, CORE, SIDE};
 use super::layout::Layout;
-use crate::mesh::hierarchy::Site;
+use crate::mesh::hierarchy::{Blocks, Site};
 use std::f64::consts::FRAC_PI_4;
 
 /// Depth of the shell under the pole, in contact radii.
@@ -90,9 +90,10 @@ impl<'a> Geometry<'a> {
             }
         };
         let t = if big == 0 { 0.0 } else { small as f64 / big as f64 };
+        let shift = self.shift(site);
         let (angle, [across, up]) = match site.block {
-            BOTTOM => self.bottom(big, t, c),
-            SIDE => self.side(t, b, c, swap),
+            BOTTOM => self.bottom(big, t, c, shift),
+            SIDE => self.side(t, b, c, swap, shift),
             CORE => self.core(big, t, c),
             _ => (0.0, [0.0; 2]),
         };
@@ -166,21 +167,40 @@ impl<'a> Geometry<'a> {
         (surface.angle + h01 * (end_angle - surface.angle), [across, up])
     }
 
+    /// Radial move of the surface node above a node of the shell.
+    fn shift(&self, site: Site) -> f64 {
+        let [a, b, _] = site.at;
+        match site.block {
+            CORE => 0.0,
+            block => self.layout.shifts.get(self.blocks.number(Site { block, at: [a, b, 0] }) as usize).copied().unwrap_or(0.0),
+        }
+    }
+
+    /// Position of a surface node in the half ball's plane Z = 0.
+    pub fn on_surface(&self, site: Site) -> [f64; 3] {
+        if self.blocks.is_left(site) {
+            let [x, y, z] = self.in_half_ball(self.blocks.mirrored(site));
+            return [-x, y, z];
+        }
+        self.in_half_ball(site)
+    }
+
     /// A point of the shell's centre.
-    fn bottom(&self, big: usize, t: f64, d: usize) -> (f64, [f64; 2]) {
+    fn bottom(&self, big: usize, t: f64, d: usize, shift: f64) -> (f64, [f64; 2]) {
         let share = big as f64 / self.layout.m as f64;
         let shape = self.centre_shape(share, t);
-        let surface = Polar { radius: self.layout.radii[0] * shape.radius, angle: shape.angle };
+        let surface = Polar { radius: self.layout.radii[0] * shape.radius + shift, angle: shape.angle };
         let end = self.core(big, t, 0);
         self.depth_line(surface, end, self.floor_depth, RIM_INCLINATION * shape.radius * shape.radius, d)
     }
 
     /// A point of the shell's rings.
-    fn side(&self, t: f64, r: usize, d: usize, swap: bool) -> (f64, [f64; 2]) {
+    fn side(&self, t: f64, r: usize, d: usize, swap: bool, shift: f64) -> (f64, [f64; 2]) {
         if r == 0 {
-            return self.bottom(self.layout.m, t, d);
+            return self.bottom(self.layout.m, t, d, shift);
         }
-        let surface = self.ring(r, t, swap);
+        let mut surface = self.ring(r, t, swap);
+        surface.radius += shift;
         let end = self.core(self.layout.m, t, r);
         if r == self.layout.blocks.nr {
             return self.equator_line(surface, end, d);

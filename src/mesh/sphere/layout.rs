@@ -2,6 +2,7 @@
 
 use super::SphereSpec;
 use super::butterfly::Butterfly;
+use super::entry::even_entry;
 use super::geometry::SHELL_DEPTH;
 use crate::mesh::MeshError;
 
@@ -36,6 +37,8 @@ pub struct Layout {
     /// Spacings over which the distances of one ring's nodes from the pole are spread, evenly from the x axis to the y axis: 1 makes
     /// the nodes enter a growing contact one by one instead of ring by ring.
     pub spread: f64,
+    /// Radial moves of the surface nodes by their number, in the half ball's plane, that make them touch evenly; none if empty.
+    pub shifts: Vec<f64>,
     /// Rings outside the fine zone over which the spread fades away.
     pub fading_rings: usize,
     /// Distance from the axis, on the sphere, to which the fine zone reaches.
@@ -117,7 +120,7 @@ impl Layout {
         }
         depths[nd] = 1.0;
 
-        Ok(Layout {
+        let mut layout = Layout {
             m,
             blocks: Butterfly { nx: 2 * m, ny: m, nr, nd },
             spacing,
@@ -128,8 +131,11 @@ impl Layout {
             squareness: 0.70,
             rounding_rings: (m / 2).max(1),
             spread: 1.0,
+            shifts: Vec::new(),
             fading_rings: outer.div_ceil(2),
             fine_radius,
-        })
+        };
+        layout.shifts = even_entry(&layout);
+        Ok(layout)
     }
 }

@@ -1,6 +1,7 @@
 //! The sphere's mesh: an O-grid of half the lower hemisphere, graded from the pole.
 
 mod butterfly;
+mod entry;
 mod geometry;
 mod layout;
 #[cfg(test)]

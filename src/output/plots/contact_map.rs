@@ -5,6 +5,7 @@ use super::chart::nice_step;
 use super::style::{Area, BLUE, Drawn, FONT, INK, ORANGE, Picture, rounded, tick, viridis};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use serde::{Deserialize, Serialize};
 
 const OPEN: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
@@ -26,7 +27,7 @@ pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
 }
 
 /// One panel of [`plot_slip`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlipPanel {
     /// delta_T.
     pub delta_t: f64,

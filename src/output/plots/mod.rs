@@ -20,6 +20,7 @@ pub use style::Picture;
 use super::{ContactPoint, ContactStatus, OutputDirectory, OutputError, StepRecord};
 use crate::analytical::ElasticSphere;
 use crate::analytical::olsson_larsson::Hardening;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Names of all pictures of a run, by which an earlier run's are removed.
@@ -37,7 +38,7 @@ pub struct PlotInputs {
 }
 
 /// The contact tables of a run that are shown.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tables {
     /// At the end of the press, with the row of the history.
     pub pressed: Option<(StepRecord, Vec<ContactPoint>)>,

@@ -13,7 +13,7 @@ use crate::compute::cpu::Cpu;
 use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::{CaseModel, Compute, Energies, Outcome};
 use crate::contact::coulomb::{Friction, Status};
-use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
+use crate::linalg::{LinearSolver, Pattern, SolverKind};
 use crate::material::hardening::Hardening;
 use crate::material::{Elasticity, Material};
 use crate::mesh::Mesh;
@@ -39,7 +39,7 @@ impl Rig {
         let mesh = Arc::new(mesh);
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         let linear = LinearSolver::new(SolverKind::Direct, &pattern, &mesh.hierarchy).unwrap();
-        let newton = Newton::new(&mesh, BlockMatrix::zeros(pattern), linear, settings);
+        let newton = Newton::new(&mesh, linear, settings);
         let backend = Cpu::new(vec![CaseModel { mesh: mesh.clone(), material, friction }]).unwrap();
         Self { backend, newton, u: vec![0.0; 3 * mesh.nodes.len()], mesh, h: 0.0, energies: Energies::default() }
     }

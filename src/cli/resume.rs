@@ -1,0 +1,52 @@
+//! `--resume`: what a directory holds of a run, and whether there is something to go on with.
+
+use std::path::Path;
+
+use super::CliError;
+use crate::case::Case;
+use crate::output::{Checkpoint, OutputDirectory, OutputError, Status, Summary, case_difference};
+
+/// How a run stands that `--resume` asks for.
+#[derive(Debug)]
+pub enum Standing {
+    /// There is nothing to go on with: no directory, an empty one, or a run that was killed before its first checkpoint.
+    NotBegun,
+    /// It is under way.
+    Unfinished(Box<Checkpoint>),
+    /// It has ended for good: computed again it would be the same.
+    Ended(Box<Summary>),
+}
+
+/// Looks into `dir`, and leaves it as it is.
+///
+/// # Errors
+/// [`CliError::OtherRun`] for the results of another case; [`CliError::Output`] for a checkpoint that is damaged, of another version or another case.
+pub fn standing(dir: &Path, case: &Case) -> Result<Standing, CliError> {
+    let out = OutputDirectory::existing(dir);
+    // Anything that is not a result is left to those who prepare the directory.
+    let Some(found) = out.read_case() else { return Ok(Standing::NotBegun) };
+    let ended = |summary: &Summary| match summary.status {
+        Status::Done | Status::NotConverged | Status::ContactOutgrewMesh => true,
+        Status::Interrupted | Status::Failed => false,
+    };
+    // A summary that cannot be read is none.
+    if let Some(summary) = Summary::read(&out.summary()).ok().filter(ended) {
+        return match case_difference(&found, &case.to_toml()) {
+            None => Ok(Standing::Ended(Box::new(summary))),
+            Some(difference) => Err(CliError::OtherRun { dir: dir.to_owned(), difference }),
+        };
+    }
+    let path = out.checkpoint();
+    let Some(checkpoint) = Checkpoint::read(&path)? else { return Ok(Standing::NotBegun) };
+    checkpoint.check_case(&path, case)?;
+    Ok(Standing::Unfinished(Box::new(checkpoint)))
+}
+
+/// An error of the checkpoint in `dir` that only the simulation can see.
+pub fn refused(dir: &Path, problem: &str) -> CliError {
+    OutputError::Checkpoint {
+        path: OutputDirectory::existing(dir).checkpoint(),
+        problem: format!("{problem}; run without --resume to begin anew"),
+    }
+    .into()
+}

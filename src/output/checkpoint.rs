@@ -1,0 +1,227 @@
+//! `checkpoint.bin`: from where an interrupted or killed run goes on.
+//!
+//! A line of text with the version of format and program, the state in postcard's encoding (which keeps every number to the bit), and the CRC-32 of all
+//! that, four bytes, little-endian. It is replaced whole or not at all, and removed when the run has ended.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::ledger::Ledger;
+use super::{OutputError, write_atomically};
+use crate::case::Case;
+use crate::compute::Description;
+use crate::simulation::checkpoint::Snapshot;
+
+/// First words of the file.
+const NAME: &str = "asperity checkpoint";
+/// To be raised with every change of what is stored. The version of the program is compared as well.
+const FORMAT: u32 = 1;
+
+/// An unfinished run: its case, what it depends on, and what it has written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// The resolved case, in TOML.
+    case: String,
+    /// Device of the part of the run that wrote this.
+    device: String,
+    /// Precision in which the run began.
+    precision: String,
+    pub(super) ledger: Ledger,
+    run: Snapshot,
+}
+
+impl Checkpoint {
+    /// Of a run of `case` (resolved, in TOML) on `computed_on`.
+    pub(super) fn new(case: &str, computed_on: &Description, ledger: Ledger, run: Snapshot) -> Self {
+        let Description { device, precision } = computed_on;
+        Self { case: case.to_owned(), device: device.clone(), precision: (*precision).to_owned(), ledger, run }
+    }
+
+    /// Number of the last step that is in it.
+    pub fn step(&self) -> usize {
+        self.run.step()
+    }
+
+    /// The state that [`crate::simulation::drive::Drive::resume`] takes.
+    pub fn snapshot(&self) -> Snapshot {
+        self.run.clone()
+    }
+
+    /// Writes it, whole or not at all.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`]; an earlier checkpoint is then still there.
+    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        write_atomically(path, |out| {
+            let mut out = Checked { out, sum: crc32fast::Hasher::new(), failed: None };
+            out.write_all(head().as_bytes())?;
+            if let Err(error) = postcard::to_io(self, &mut out) {
+                // postcard keeps no more of an error of the writer than that there was one.
+                return Err(out.failed.unwrap_or_else(|| io::Error::other(error)));
+            }
+            out.out.write_all(&out.sum.finalize().to_le_bytes())
+        })
+    }
+
+    /// Reads it; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`OutputError::Read`]; [`OutputError::Checkpoint`] if it is damaged or of another version.
+    pub fn read(path: &Path) -> Result<Option<Self>, OutputError> {
+        let bytes = match fs::read(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            read => read.map_err(OutputError::reading(path))?,
+        };
+        let refused = |problem: String| OutputError::Checkpoint { path: path.to_path_buf(), problem };
+        let damaged = || refused("it is incomplete or damaged; run without --resume to begin anew".to_owned());
+        let line = bytes.iter().position(|&byte| byte == b'\n').and_then(|end| bytes.get(..=end)).ok_or_else(damaged)?;
+        if line != head().as_bytes() {
+            let version = std::str::from_utf8(line).ok().and_then(|line| line.strip_prefix(NAME)).ok_or_else(damaged)?;
+            return Err(refused(format!(
+                "it was written by another version ({}, this is {}); go on with that one, or run without --resume to begin anew",
+                version.trim(),
+                head().trim_start_matches(NAME).trim()
+            )));
+        }
+        let (stored, sum) = bytes.split_last_chunk::<4>().filter(|(stored, _)| stored.len() >= line.len()).ok_or_else(damaged)?;
+        if crc32fast::hash(stored) != u32::from_le_bytes(*sum) {
+            return Err(damaged());
+        }
+        postcard::from_bytes(&stored[line.len()..]).map(Some).map_err(|_| damaged())
+    }
+
+    /// Refuses a checkpoint of another case.
+    ///
+    /// # Errors
+    /// [`OutputError::Checkpoint`] with a key that differs.
+    pub fn check_case(&self, path: &Path, case: &Case) -> Result<(), OutputError> {
+        match case_difference(&self.case, &case.to_toml()) {
+            None => Ok(()),
+            Some(difference) => Err(OutputError::Checkpoint {
+                path: path.to_path_buf(),
+                problem: format!(
+                    "it is of another case: {difference}; restore the case file or --set, choose another --out, or run without --resume to begin anew"
+                ),
+            }),
+        }
+    }
+
+    /// Refuses a checkpoint of a run in another precision.
+    ///
+    /// # Errors
+    /// [`OutputError::Checkpoint`].
+    pub fn check_precision(&self, path: &Path, precision: &str) -> Result<(), OutputError> {
+        if self.precision == precision {
+            return Ok(());
+        }
+        let problem = format!(
+            "it is of a run in {}, and this one would be in {precision}; give --precision {} and the device of that run, or run without --resume to begin anew",
+            self.precision, self.precision
+        );
+        Err(OutputError::Checkpoint { path: path.to_path_buf(), problem })
+    }
+
+    /// What the user should know if the run goes on somewhere else: the bits are then not those of a run in one place.
+    pub(super) fn change_of_device(&self, device: &str) -> Option<String> {
+        let cpu = |device: &str| device.starts_with("CPU (") && device.ends_with(')');
+        let same = self.device == device || (cpu(&self.device) && cpu(device));
+        (!same).then(|| format!("computed up to step {} on {}, from there on {device}", self.step(), self.device))
+    }
+}
+
+fn head() -> String {
+    format!("{NAME}, format {FORMAT}, version {}\n", env!("CARGO_PKG_VERSION"))
+}
+
+/// The first key in which two cases in TOML differ, with both values; `None` if they are the same case.
+pub fn case_difference(there: &str, here: &str) -> Option<String> {
+    let (found, wanted) = (flat(there), flat(here));
+    let keys: std::collections::BTreeSet<&String> = found.keys().chain(wanted.keys()).collect();
+    let told = |values: &BTreeMap<String, String>, key| values.get(key).map_or("absent", String::as_str).to_owned();
+    let differs = keys.into_iter().find(|key| found.get(*key) != wanted.get(*key));
+    differs.map(|key| format!("{key} is {} there and {} here", told(&found, key), told(&wanted, key)))
+}
+
+/// Every value of a document by its dotted key. A text that is not TOML is one value.
+fn flat(text: &str) -> BTreeMap<String, String> {
+    fn take(key: String, value: &toml::Value, flat: &mut BTreeMap<String, String>) {
+        let below = |name: &str| if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
+        match value {
+            toml::Value::Table(table) => table.iter().for_each(|(name, value)| take(below(name), value, flat)),
+            toml::Value::Array(values) => values.iter().enumerate().for_each(|(i, v)| take(below(&i.to_string()), v, flat)),
+            value => drop(flat.insert(key, value.to_string())),
+        }
+    }
+    let mut values = BTreeMap::new();
+    match text.parse::<toml::Table>() {
+        Ok(table) => take(String::new(), &toml::Value::Table(table), &mut values),
+        Err(_) => drop(values.insert("the case".to_owned(), "unreadable".to_owned())),
+    }
+    values
+}
+
+/// Sums up what is written, and keeps what went wrong.
+struct Checked<'a> {
+    out: &'a mut dyn Write,
+    sum: crc32fast::Hasher,
+    failed: Option<io::Error>,
+}
+
+impl Write for Checked<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.out.write(bytes) {
+            Ok(written) => {
+                self.sum.update(&bytes[..written]);
+                Ok(written)
+            }
+            Err(error) => {
+                let kind = error.kind();
+                self.failed = Some(error);
+                Err(kind.into())
+            }
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_is_told_by_its_key() {
+        let case = "[contact]\nfriction = 0.3\n[[path]]\nindentation = 0.02\n[[path]]\nshear = 0.01\n";
+        assert_eq!(case_difference(case, &format!("# a comment\n\n{case}")), None);
+        for (there, here, expected) in [
+            ("friction = 0.3", "friction = \"stick\"", "contact.friction is 0.3 there and \"stick\" here"),
+            ("[[path]]\nshear = 0.01\n", "", "path.1.shear is 0.01 there and absent here"),
+            ("0.02", "0.020000000000000004", "path.0.indentation is 0.02 there and 0.020000000000000004 here"),
+            ("[contact]", "]", "contact.friction is 0.3 there and absent here"),
+        ] {
+            assert_eq!(case_difference(case, &case.replace(there, here)).as_deref(), Some(expected));
+        }
+    }
+
+    #[test]
+    fn a_full_disk_is_told_as_what_it_is() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let mut out = Checked { out: &mut Full, sum: crc32fast::Hasher::new(), failed: None };
+        assert!(postcard::to_io(&Ledger::default(), &mut out).is_err());
+        assert_eq!(out.failed.map(|error| error.kind()), Some(ErrorKind::StorageFull));
+    }
+}

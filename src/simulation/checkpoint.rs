@@ -1,0 +1,144 @@
+//! Where a run stands between two attempts at a step: all that the next one depends on, and nothing else.
+//!
+//! A step is a function of the committed state and its target alone, so a run that is put back to such a place goes on with the same bits. What
+//! the solver keeps between steps besides (matrices, factors, the last trial) is formed anew in each and is not here.
+
+use serde::{Deserialize, Serialize};
+
+use super::SimulationError;
+use super::path::{Start, Target};
+use super::record::{ContactPoint, StepRecord};
+use crate::compute::CaseState;
+use crate::contact::coulomb::Status;
+use crate::mesh::Mesh;
+
+/// The committed state of the drive, scaled.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Committed {
+    pub u: Vec<f64>,
+    /// Displacement one accepted step before, for extrapolation.
+    pub u_before: Vec<f64>,
+    /// Change of h and delta_T in the last step of the present segment, `None` if there is none.
+    pub last_increment: Option<[f64; 2]>,
+    /// Length of the last step as [`Committed::length_to`] measures it.
+    pub last_length: f64,
+    pub force: Vec<f64>,
+    /// What each contact node does; `points` follows from it.
+    pub statuses: Vec<Status>,
+    #[serde(skip)]
+    pub points: Vec<ContactPoint>,
+    pub record: StepRecord,
+    pub h_max: f64,
+    /// Direction of the last shear.
+    pub direction: f64,
+}
+
+impl Committed {
+    /// The undeformed state.
+    pub fn virgin(mesh: &Mesh) -> Self {
+        let zero = vec![0.0; 3 * mesh.nodes.len()];
+        let statuses = vec![Status::Open; mesh.contact_nodes.len()];
+        let mut state = Self { u: zero.clone(), u_before: zero.clone(), force: zero, statuses, ..Self::default() };
+        state.place_points(mesh);
+        state
+    }
+
+    /// Length of a step to (h, delta_T) in the measure in which plastic flow goes on evenly: the contact radius grows as sqrt(h) under pressing, and
+    /// shear is measured by itself.
+    pub fn length_to(&self, h: f64, delta_t: f64) -> f64 {
+        let radius = |h: f64| h.max(0.0).sqrt();
+        (radius(h) - radius(self.record.h)).abs() + (delta_t - self.record.delta_t).abs()
+    }
+
+    /// Forms the contact points from displacement, force and status.
+    pub fn place_points(&mut self, mesh: &Mesh) {
+        let Self { u, force, statuses, points, .. } = self;
+        let point = |(i, (&node, &status)): (usize, (&u32, &Status))| {
+            let (base, x) = (3 * node as usize, mesh.nodes[node as usize]);
+            ContactPoint {
+                node: node as usize,
+                reference: x,
+                position: [x[0] + u[base], x[1] + u[base + 1], x[2] + u[base + 2]],
+                force: if status == Status::Open { [0.0; 3] } else { [force[base], force[base + 1], force[base + 2]] },
+                area: mesh.contact_area[i],
+                status,
+            }
+        };
+        *points = mesh.contact_nodes.iter().zip(&*statuses).enumerate().map(point).collect();
+    }
+}
+
+/// How far the path has been followed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Place {
+    /// The undeformed state has been shown.
+    pub begun: bool,
+    /// The segment that is followed; their number once all are behind.
+    pub segment: usize,
+    /// The state at its start, `None` before it.
+    pub start: Option<Start>,
+    /// Targets of the segment that are reached.
+    pub reached: usize,
+    /// The next target has been set out for. Its parts that are still to be reached are `waiting`, the next one last.
+    pub under_way: bool,
+    pub waiting: Vec<Target>,
+    /// F_T when it was set out for.
+    pub force_before: f64,
+    /// Iterations of failed attempts and bisections since the last accepted step.
+    pub wasted: usize,
+    pub cutbacks: usize,
+}
+
+impl Place {
+    /// Nothing of the segment has been done.
+    pub fn is_at_segment_start(&self) -> bool {
+        self.reached == 0 && !self.under_way
+    }
+
+    /// At the start of the next segment.
+    pub fn next_segment(&self) -> Self {
+        Self { begun: self.begun, segment: self.segment + 1, ..Self::default() }
+    }
+}
+
+/// A copy of everything on which the rest of a run depends; [`super::drive::Drive::resume`] goes on from it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    pub(super) state: Committed,
+    pub(super) place: Place,
+    /// Force scales of the last accepted step and of all (see [`crate::solver::newton::Newton::force_scales`]).
+    pub(super) force_scales: [f64; 2],
+    pub(super) full_slip: Option<bool>,
+    pub(super) case: CaseState,
+}
+
+impl Snapshot {
+    /// Number of the last accepted step.
+    pub fn step(&self) -> usize {
+        self.state.record.step
+    }
+
+    /// Whether this is a state of a body with that mesh.
+    ///
+    /// # Errors
+    /// [`SimulationError::Snapshot`] with the sizes that differ.
+    pub(super) fn check(&self, mesh: &Mesh) -> Result<(), SimulationError> {
+        let Self { state, case, .. } = self;
+        let (unknowns, elements) = (3 * mesh.nodes.len(), mesh.elements.len());
+        for (what, found, expected) in [
+            ("displacements", state.u.len(), unknowns),
+            ("earlier displacements", state.u_before.len(), unknowns),
+            ("forces", state.force.len(), unknowns),
+            ("committed displacements", case.displacement.len(), unknowns),
+            ("contact points", state.statuses.len(), mesh.contact_nodes.len()),
+            ("elements", case.points.len(), elements),
+            ("elements with a last flow", case.flow.len(), elements),
+            ("elements with plastic work", case.plastic_work.len(), elements),
+        ] {
+            if found != expected {
+                return Err(SimulationError::Snapshot { what, found, expected });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,461 @@
+//! `asperity run --resume`: a run that was interrupted or killed goes on to the results of one that never stopped, bit for bit.
+#![cfg(unix)]
+
+mod device;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::Arc;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use asperity::case::Case;
+use asperity::compute::Compute;
+use asperity::compute::cpu::Cpu;
+use asperity::compute::gpu::Precision;
+use asperity::output::{Clock, OutputDirectory, Position, Progress, ResultWriter, Setting, Summary, TimeByPhase, read_history};
+use asperity::simulation::drive::{Drive, Ending};
+use asperity::simulation::problem::Problem;
+use rustix::process::{Pid, Signal, kill_process};
+use tempfile::TempDir;
+
+/// Pressed, sheared to full slip and released, with fields of every step.
+const CASE: &str = r#"
+[sphere]
+radius = 1.0
+[material]
+youngs_modulus = 200e3
+poissons_ratio = 0.3
+[material.hardening]
+law = "ideal"
+yield_stress = 400.0
+[contact]
+friction = 0.3
+[mesh]
+elements_per_contact_radius = 5
+[output]
+fields = "all"
+[[path]]
+indentation = 0.02
+[[path]]
+shear = "full-slip"
+[[path]]
+release = true
+"#;
+/// A program that has not come so far after this time hangs.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+struct Scratch {
+    dir: TempDir,
+}
+
+impl Scratch {
+    fn new() -> Self {
+        let dir = tempfile::tempdir().expect("a scratch directory");
+        fs::write(dir.path().join("case.toml"), CASE).expect("the case");
+        Self { dir }
+    }
+
+    fn out(&self, name: &str) -> PathBuf {
+        self.dir.path().join(name)
+    }
+
+    fn args(&self, name: &str, options: &[&str]) -> Vec<String> {
+        let paths = [self.out("case.toml"), PathBuf::from("--out"), self.out(name)].map(|path| path.display().to_string());
+        let rest = ["--device", "cpu"].iter().chain(options).map(|option| (*option).to_owned());
+        ["run".to_owned()].into_iter().chain(paths).chain(rest).collect()
+    }
+
+    fn run(&self, name: &str, options: &[&str]) -> Output {
+        program().args(self.args(name, options)).output().expect("the program runs")
+    }
+
+    /// Goes on to the end.
+    fn resumed(&self, name: &str, options: &[&str]) -> String {
+        let output = self.run(name, &[&["--resume"], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stderr(&output)
+    }
+
+    /// Begins or goes on, and sends a signal once the history has `rows` rows.
+    fn stopped(&self, name: &str, signal: Signal, rows: usize, options: &[&str]) -> Output {
+        let child = piped(program().args(self.args(name, options)));
+        stop(child, signal, &self.out(name), rows)
+    }
+
+    /// A run that was interrupted after some steps.
+    fn interrupted(&self, name: &str) {
+        let output = self.stopped(name, Signal::TERM, 3, &[]);
+        assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
+        assert!(self.out(name).join("checkpoint.bin").exists());
+    }
+}
+
+fn program() -> Command {
+    Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
+}
+
+fn piped(command: &mut Command) -> Child {
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program runs")
+}
+
+fn stop(child: Child, signal: Signal, dir: &Path, rows: usize) -> Output {
+    let begun = Instant::now();
+    while steps(dir) < rows {
+        assert!(begun.elapsed() < PATIENCE, "{rows} steps take for ever");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    kill_process(Pid::from_child(&child), signal).expect("a signal is sent");
+    child.wait_with_output().expect("it ends")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
+}
+
+/// Steps of the history, 0 if it cannot be read.
+fn steps(dir: &Path) -> usize {
+    read_history(&dir.join("history.csv")).map_or(0, |rows| rows.len())
+}
+
+/// Every file below a directory.
+fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    for entry in fs::read_dir(dir).unwrap_or_else(|error| panic!("{}: {error}", dir.display())) {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            files.extend(self::files(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+        } else {
+            files.insert(name, fs::read(&path).expect("a file"));
+        }
+    }
+    files
+}
+
+/// Both hold the same files with the same bytes; the summaries but for times and the number of threads.
+fn assert_same(found: &Path, expected: &Path) {
+    let summary = |dir: &Path| {
+        let summary = Summary::read(&dir.join("summary.json")).expect("a summary");
+        let device = summary.device.split(" (").next().unwrap_or_default().to_owned();
+        Summary { wall_s: 0.0, cpu_s: None, time_by_phase: TimeByPhase::default(), device, ..summary }
+    };
+    assert_eq!(summary(found), summary(expected));
+    let (found, expected) = (files(found), files(expected));
+    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+    for (name, bytes) in expected.iter().filter(|(name, _)| *name != "summary.json") {
+        assert!(&found[name] == bytes, "{name} differs");
+    }
+}
+
+/// The run that nothing stopped, computed once.
+fn whole() -> &'static Path {
+    static WHOLE: OnceLock<PathBuf> = OnceLock::new();
+    WHOLE.get_or_init(|| {
+        let scratch = Scratch::new();
+        let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("resume-whole");
+        let output = program()
+            .args(["run", &scratch.out("case.toml").display().to_string(), "--device", "cpu", "--out"])
+            .arg(&dir)
+            .output()
+            .expect("the program runs");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        dir
+    })
+}
+
+#[test]
+fn an_interrupted_run_goes_on_to_the_same_bits() {
+    let scratch = Scratch::new();
+    let out = scratch.out("out");
+    // Without anything to go on with it begins, and says so.
+    let output = scratch.stopped("out", Signal::TERM, 3, &["--resume", "--threads", "1"]);
+    assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
+    let message = stderr(&output);
+    assert!(message.contains("nothing to resume in ") && message.contains(": from the beginning"), "{message}");
+    assert!(message.contains("error: interrupted by a signal after step ") && message.contains("with --resume"), "{message}");
+    let first = steps(&out);
+    assert!(out.join("checkpoint.bin").exists() && out.join("summary.json").exists());
+    // Again, elsewhere on the path, on another number of threads.
+    let output = scratch.stopped("out", Signal::INT, first + 8, &["--resume", "--threads", "2"]);
+    assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
+    assert!(stderr(&output).contains(&format!("resumed after step {first} ")), "{}", stderr(&output));
+    let second = steps(&out);
+    let message = scratch.resumed("out", &[]);
+    assert!(message.contains(&format!("resumed after step {second} ")), "{message}");
+    assert_same(&out, whole());
+    // The parts' times add up.
+    let times = |dir: &Path| Summary::read(&dir.join("summary.json")).expect("a summary");
+    let phases = times(&out).time_by_phase;
+    let sum: f64 = phases.rows().iter().map(|(_, time)| time.seconds).sum();
+    assert!((sum / times(&out).wall_s - 1.0).abs() < 1e-9, "{phases:?}");
+}
+
+#[test]
+fn a_killed_run_goes_on_from_its_last_checkpoint() {
+    let scratch = Scratch::new();
+    let out = scratch.out("out");
+    scratch.interrupted("out");
+    let begun = steps(&out);
+    let output = scratch.stopped("out", Signal::KILL, begun + 3, &["--resume", "-q"]);
+    assert_eq!(output.status.code(), None, "{}", stderr(&output));
+    let left = steps(&out);
+    // A row cut short, and the draft of a checkpoint.
+    let torn = fs::read_to_string(out.join("history.csv")).expect("a history") + "99,1,0.02,0.0";
+    fs::write(out.join("history.csv"), torn).expect("a history");
+    fs::write(out.join(".checkpoint.bin.4711.tmp"), "draft").expect("a draft");
+    let message = scratch.resumed("out", &[]);
+    let step: usize =
+        message.split("resumed after step ").nth(1).expect("told").split(' ').next().unwrap().parse().expect("a step");
+    assert!((begun..=left).contains(&step), "{step}: {message}");
+    assert_same(&out, whole());
+}
+
+/// Copies the directory as it is after some steps: what a run that was killed then leaves.
+struct Copies {
+    from: PathBuf,
+    to: PathBuf,
+    after: Vec<usize>,
+}
+
+impl Progress for Copies {
+    fn step(&mut self, position: &Position) {
+        if self.after.contains(&position.step) {
+            for (name, bytes) in files(&self.from) {
+                let path = self.to.join(position.step.to_string()).join(name);
+                fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+                fs::write(path, bytes).expect("a copy");
+            }
+        }
+    }
+    fn message(&mut self, _: &str) {}
+    fn finish(&mut self, _: &str) {}
+}
+
+#[test]
+fn a_run_killed_at_any_step_goes_on() {
+    let scratch = Scratch::new();
+    let case = Case::load(&scratch.out("case.toml"), &[]).expect("the case");
+    let history = read_history(&whole().join("history.csv")).expect("a history");
+    let last_of = |segment| history.iter().filter(|row| row.segment == segment).map(|row| row.step).max().expect("steps");
+    // In the press, at its end, just after it, in the shear, just after it, and at the very end.
+    let after = vec![4, last_of(0), last_of(0) + 1, last_of(0) + 7, last_of(1) + 1, last_of(2)];
+
+    let dir = scratch.out("run");
+    OutputDirectory::create(&dir).and_then(|out| out.write_case(&case.to_toml())).expect("a directory");
+    let problem = Problem::new(&case).expect("a problem");
+    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
+    let newton = problem.newton().expect("a solver");
+    let (elements, unknowns) = (problem.model.mesh.elements.len(), newton.free_unknowns());
+    let setting = Setting { computed_on: backend.description(), elements, unknowns };
+    let copies = Copies { from: dir.clone(), to: scratch.out("killed"), after: after.clone() };
+    let mut results = ResultWriter::create(&case, &dir, setting, Clock::start(), Box::new(copies), Arc::default(), None)
+        .expect("results")
+        .with_checkpoints_every(Duration::ZERO);
+    // What is told of a step comes before its checkpoint: that of each copy is one step old, or older if writing it took long.
+    assert_eq!(Drive::new(&problem, &mut backend, 0, newton).run(&mut results).expect("a run"), Ending::Done);
+    drop(results);
+
+    for step in after {
+        let name = format!("killed/{step}");
+        assert_eq!(steps(&scratch.out(&name)), step);
+        let message = scratch.resumed(&name, &[]);
+        assert!(
+            !message.contains(&format!("resumed after step {step} ")) && message.contains("resumed after step "),
+            "{message}"
+        );
+        assert_same(&scratch.out(&name), whole());
+    }
+}
+
+#[test]
+fn an_interruption_of_the_error_estimate_costs_the_estimate_alone() {
+    let scratch = Scratch::new();
+    let out = scratch.out("out");
+    // The machine may be so slow that the estimate is there before the signal.
+    for _ in 0..5 {
+        let mut child = piped(program().args(scratch.args("out", &["-v"])));
+        let mut told = BufReader::new(child.stderr.take().expect("stderr"));
+        let mut line = String::new();
+        while !line.contains("error estimate: ") {
+            line.clear();
+            assert!(told.read_line(&mut line).expect("stderr is UTF-8") > 0, "no error estimate");
+        }
+        kill_process(Pid::from_child(&child), Signal::TERM).expect("a signal is sent");
+        told.read_to_string(&mut line).expect("stderr is UTF-8");
+        if child.wait().expect("it ends").code() == Some(75) {
+            let message = scratch.resumed("out", &["-v"]);
+            let last = steps(whole());
+            assert!(message.contains(&format!("resumed after step {last} ")), "{message}");
+            // No step of the run itself was computed again: the first that is told is one of the estimate.
+            let (estimate, step) = (message.find("error estimate: "), message.find(" step 1: "));
+            assert!(estimate.is_some() && estimate < step, "{message}");
+            assert_same(&out, whole());
+            return;
+        }
+    }
+    panic!("no interruption came in time");
+}
+
+#[test]
+fn a_run_that_has_ended_is_left_alone() {
+    let scratch = Scratch::new();
+    let small =
+        ["--set", "path.0.indentation=0.002", "--set", "mesh.elements_per_contact_radius=4", "--set", "output.fields=\"none\""];
+    let with = |options: &[&'static str]| [&small[..], options].concat();
+    let run = |name: &str, options: &[&'static str]| scratch.run(name, &with(options));
+    let message = stderr(&run("out", &["--resume"]));
+    assert!(message.contains("nothing to resume in "), "{message}");
+    let before = files(&scratch.out("out"));
+    let output = run("out", &["--resume"]);
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.starts_with("already done: ") && text.contains(" steps on CPU ("), "{text}");
+    assert!(run("out", &["--resume", "-q"]).stdout.is_empty());
+    // Another case has no business there.
+    let output = run("out", &["--resume", "--set", "contact.friction=0.2"]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    assert!(message.contains("contact.friction is 0.3 there and 0.2 here") && message.contains("without --resume"), "{message}");
+    assert!(files(&scratch.out("out")) == before);
+
+    // What did not converge would not converge again.
+    let fails = ["--set", "solver.max_iterations=1", "--set", "solver.max_cutbacks=0"];
+    assert_eq!(run("fails", &fails).status.code(), Some(3));
+    let before = files(&scratch.out("fails"));
+    assert!(!before.contains_key("checkpoint.bin"));
+    let output = run("fails", &[&fails[..], &["--resume"]].concat());
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.starts_with("error: ended before: no convergence: ") && message.contains("without --resume"), "{message}");
+    assert!(files(&scratch.out("fails")) == before);
+}
+
+#[test]
+fn a_checkpoint_that_does_not_fit_is_refused_with_its_name_and_a_remedy() {
+    let scratch = Scratch::new();
+    let out = scratch.out("out");
+    let path = out.join("checkpoint.bin");
+    scratch.interrupted("out");
+    let good = fs::read(&path).expect("a checkpoint");
+    let line = good.iter().position(|&byte| byte == b'\n').expect("a first line");
+    let refused = |bytes: &[u8], options: &[&str], expected: &str| {
+        fs::write(&path, bytes).expect("a checkpoint");
+        let before = files(&out);
+        let output = scratch.run("out", &[&["--resume"], options].concat());
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{expected}: {message}");
+        for part in ["error: ", &path.display().to_string(), expected, "without --resume"] {
+            assert!(message.contains(part), "{part}: {message}");
+        }
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert!(files(&out) == before, "{expected}: something was changed");
+    };
+    refused(&good, &["--set", "contact.friction=0.2"], "contact.friction is 0.3 there and 0.2 here");
+    refused(&good, &["--set", "mesh.elements_per_contact_radius=4"], "mesh.elements_per_contact_radius is 5 there and 4 here");
+    refused(&good, &["--precision", "f32"], "give --precision f64");
+    for length in [0, 1, line, line + 1, line + 4, good.len() / 2, good.len() - 1] {
+        refused(&good[..length], &[], "incomplete or damaged");
+    }
+    for place in [0, line, line + 1, good.len() / 2, good.len() - 1] {
+        let mut flipped = good.clone();
+        flipped[place] ^= 0x10;
+        refused(&flipped, &[], "incomplete or damaged");
+    }
+    refused(&[&good[..], b"more"].concat(), &[], "incomplete or damaged");
+    let other = [b"asperity checkpoint, format 1, version 0.0.1\n", &good[line + 1..]].concat();
+    refused(&other, &[], "version 0.0.1");
+    // The good one still does.
+    fs::write(&path, &good).expect("a checkpoint");
+    scratch.resumed("out", &["-q"]);
+    assert_same(&out, whole());
+}
+
+#[test]
+fn without_resume_a_run_begins_anew() {
+    let scratch = Scratch::new();
+    scratch.interrupted("out");
+    let output = scratch.run("out", &["-q"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_same(&scratch.out("out"), whole());
+}
+
+#[test]
+fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() {
+    if device::device("resume", Precision::F64).is_none() {
+        return;
+    }
+    let scratch = Scratch::new();
+    // The press alone, in few steps: software adapters are slow.
+    let press: Vec<&str> = CASE.split("[[path]]").take(2).collect();
+    fs::write(scratch.out("case.toml"), press.join("[[path]]")).expect("the case");
+    let small = ["mesh.elements_per_contact_radius=4", "solver.press_steps=5", "solver.error_estimate=false"];
+    let sets: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
+    for precision in ["f64", "f32"] {
+        let run = |options: &[&str], device: &str| {
+            let mut args = scratch.args(precision, &[&sets[..], &["--precision", precision], options].concat());
+            args.iter_mut().filter(|arg| *arg == "cpu").for_each(|arg| device.clone_into(arg));
+            args
+        };
+        let whole = scratch.out("whole");
+        let args = run(&[], "gpu")
+            .into_iter()
+            .map(|arg| if Path::new(&arg) == scratch.out(precision) { whole.display().to_string() } else { arg });
+        assert_eq!(program().args(args).output().expect("it runs").status.code(), Some(0));
+        let out = scratch.out(precision);
+        let output = stop(piped(program().args(run(&[], "gpu"))), Signal::TERM, &out, 2);
+        assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
+        let (left, at) = (files(&out), steps(&out));
+        let output = program().args(run(&["--resume"], "gpu")).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(stderr(&output).contains(&format!("resumed after step {at} ")), "{}", stderr(&output));
+        assert_same(&out, &whole);
+
+        // The checkpoint again, now on the CPU in the same precision.
+        fs::remove_file(out.join("summary.json")).expect("a summary");
+        fs::write(out.join("checkpoint.bin"), &left["checkpoint.bin"]).expect("a checkpoint");
+        let output = program().args(run(&["--resume"], "cpu")).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let read = |dir: &Path| Summary::read(&dir.join("summary.json")).expect("a summary");
+        let (here, there) = (read(&out), read(&whole));
+        let note = format!("note: computed up to step {at} on {}, from there on {}", there.device, here.device);
+        assert_eq!(here.messages, [note]);
+        let ratio = here.f_n0.expect("a force") / there.f_n0.expect("a force");
+        assert!((ratio - 1.0).abs() < if precision == "f64" { 1e-7 } else { 5e-4 }, "{precision}: {ratio}");
+    }
+}
+
+/// A limit on the size of a file stands for a full disk; nothing else that this run writes is as large as its checkpoint.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fills_costs_the_checkpoint_and_not_the_run() {
+    let scratch = Scratch::new();
+    let none = ["--set", "output.fields=\"none\""];
+    let limited = |options: &[&str]| {
+        let mut command = Command::new("bash");
+        command.args(["-c", "trap '' XFSZ; ulimit -f 200; exec \"$@\"", "bash"]);
+        command.arg(assert_cmd::cargo::cargo_bin!("asperity"));
+        command.args(scratch.args("out", &[&none[..], options].concat()));
+        command
+    };
+    let out = scratch.out("out");
+    assert_eq!(scratch.stopped("out", Signal::TERM, 2, &none).status.code(), Some(75));
+    let good = fs::read(out.join("checkpoint.bin")).expect("a checkpoint");
+    assert!(good.len() > 200 << 10, "{} bytes", good.len());
+    let output = stop(piped(&mut limited(&["--resume"])), Signal::TERM, &out, steps(&out) + 2);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(75), "{message}");
+    assert!(message.contains("warning: no checkpoint, the run goes on without: cannot write "), "{message}");
+    assert!(fs::read(out.join("checkpoint.bin")).expect("a checkpoint") == good);
+    // To the end without a single checkpoint.
+    let output = limited(&["--resume"]).output().expect("bash runs");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stderr(&output).matches("warning: no checkpoint").count(), 1, "{}", stderr(&output));
+    for name in ["history.csv", "plots/forces.svg", "plots/contact.svg"] {
+        assert!(fs::read(out.join(name)).expect("a file") == fs::read(whole().join(name)).expect("a file"), "{name} differs");
+    }
+    assert!(!out.join("checkpoint.bin").exists());
+}
