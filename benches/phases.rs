@@ -13,53 +13,21 @@ use asperity::compute::handle::{CaseHandle, Evaluate};
 use asperity::compute::{Compute, Outcome};
 use asperity::element::hex8::{PAIRS, Tangent};
 use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, SolverKind};
-use asperity::output::Clock;
 use asperity::simulation::drive::{Drive, Observer, StepView};
 use asperity::simulation::problem::Problem;
 use asperity::solver::Control;
 use asperity::solver::phases::PhaseTimes;
 use asperity::solver::system::{Boundary, Trial, apply_contact, right_hand_side};
-use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{BatchSize, Criterion};
+use processor::Processor;
+
+mod processor;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// The press is cut into so many steps, of which all but the last are made: the bench's iteration is on the way to the last.
 const PRESS_STEPS: usize = 8;
 const LINEAR_TOLERANCE: f64 = 1e-2;
-
-/// Processor time in nanoseconds.
-struct Processor;
-
-impl Measurement for Processor {
-    type Intermediate = Clock;
-    type Value = f64;
-
-    fn start(&self) -> Clock {
-        Clock::start()
-    }
-
-    fn end(&self, clock: Clock) -> f64 {
-        1e9 * clock.cpu_seconds().unwrap_or_else(|| clock.wall_seconds())
-    }
-
-    fn add(&self, a: &f64, b: &f64) -> f64 {
-        a + b
-    }
-
-    fn zero(&self) -> f64 {
-        0.0
-    }
-
-    fn to_f64(&self, value: &f64) -> f64 {
-        *value
-    }
-
-    fn formatter(&self) -> &dyn ValueFormatter {
-        // Criterion's own counts nanoseconds too.
-        WallTime.formatter()
-    }
-}
 
 /// Displacements of the last two steps, and the indentation; asks to stop one step before the press ends.
 #[derive(Default)]

@@ -1,7 +1,7 @@
 //! Points per second of the material kernel on one core: return mapping and consistent tangent, every point yielding, eight side by side as
 //! the element calls it and one at a time.
 //!
-//! `cargo bench --bench return_mapping`
+//! `cargo bench --bench return_mapping`: by processor time, so that other work on the machine counts less.
 
 use std::hint::black_box;
 
@@ -10,10 +10,13 @@ use asperity::bench::material::{EightAnswers, map};
 use asperity::material::{Material, deviatoric_tangent, return_mapping};
 use asperity::real::Real;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use processor::Processor;
+
+mod processor;
 
 const POINTS: usize = 4096;
 
-fn bench_law<R: Real>(criterion: &mut Criterion, name: &str, material: &Material<R>) {
+fn bench_law<R: Real>(criterion: &mut Criterion<Processor>, name: &str, material: &Material<R>) {
     let points = material_points(material, POINTS);
     let groups = side_by_side(&points);
     // Used up at once, as the element does: memory is not what is measured.
@@ -41,7 +44,7 @@ fn bench_law<R: Real>(criterion: &mut Criterion, name: &str, material: &Material
     group.finish();
 }
 
-fn every_law<R: Real>(criterion: &mut Criterion) {
+fn every_law<R: Real>(criterion: &mut Criterion<Processor>) {
     match laws::<R>() {
         Ok(laws) => laws.iter().for_each(|(name, material)| bench_law::<R>(criterion, name, material)),
         Err(error) => panic!("{error}"),
@@ -50,7 +53,7 @@ fn every_law<R: Real>(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300)).measurement_time(std::time::Duration::from_secs(1));
+    config = Criterion::default().with_measurement(Processor).sample_size(20).warm_up_time(std::time::Duration::from_millis(300)).measurement_time(std::time::Duration::from_secs(1));
     targets = every_law::<f64>, every_law::<f32>
 }
 criterion_main!(benches);

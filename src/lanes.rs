@@ -134,8 +134,9 @@ impl<R: Real> Number for R {
 }
 
 /// One number for each of an element's eight quadrature points.
+// Aligned to a vector register, and no wider than eight f32: padding would double what single precision moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(64))]
+#[repr(align(32))]
 pub struct Lanes<R>(pub [R; 8]);
 
 impl<R: Real> Lanes<R> {
