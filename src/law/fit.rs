@@ -105,7 +105,7 @@ fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -
     let start = [&constants.exponent[..], &constants.slip[..]].concat();
     let normal: Vec<Axisymmetric> = samples.iter().map(|sample| inputs(sample)).collect();
     let weights: Vec<f64> = samples.iter().map(|sample| 1.0 / (sample.peak() * points(sample))).collect();
-    let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[4..]), ..constants };
+    let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[6..]), ..constants };
     let found = minimize(Sign::Positive, &start, pull, |c| {
         let trial = with(c);
         let mut residuals = Vec::new();
