@@ -169,8 +169,8 @@ pub struct PriorUse {
     pub study: String,
     /// Weight for the constants of the shear; `None`: they were fitted without.
     pub shear: Option<f64>,
-    /// Weight for the constants of the normal problem, likewise.
-    pub normal: Option<f64>,
+    /// Weights for the constants of a0 and of F_N0, likewise.
+    pub normal: Option<[f64; 2]>,
 }
 
 /// A fitted law.
