@@ -145,7 +145,8 @@ fn multigrid_and_the_direct_solver_agree() {
         assert_eq!(multigrid.len(), direct.len());
         assert!(multigrid.iter().map(|r| r.krylov_iterations).sum::<usize>() > 0);
         assert_eq!(direct.iter().map(|r| r.krylov_iterations).sum::<usize>(), 0);
-        for value in [|r: &StepRecord| r.f_n, |r| r.f_t, |r| r.a, |r| r.work_plastic, |r| r.energy_elastic] {
+        let values: [fn(&StepRecord) -> f64; 5] = [|r| r.f_n, |r| r.f_t, |r| r.a, |r| r.work_plastic, |r| r.energy_elastic];
+        for value in values {
             let largest = direct.iter().map(|r| value(r).abs()).fold(0.0, f64::max);
             for (m, d) in multigrid.iter().zip(&direct) {
                 let error = (value(m) - value(d)).abs() / largest;
