@@ -54,14 +54,17 @@ impl CopyRates {
             let words = words.min((limit / 4) as usize);
             let a = context.array("what is copied", &from[..words])?;
             let b = context.zeros::<u32>("the copy", words)?;
-            let kernel = of_kernels(|times| {
+            let copies = |times: usize| {
                 let mut list = context.record();
                 for _ in 0..times {
                     list.copy(&a, 0, &b, 0, words)?;
                 }
                 list.submit()?;
                 context.download_at(&b, 0, &mut [0u32])
-            })?;
+            };
+            // The first touches fresh memory.
+            copies(1)?;
+            let kernel = of_kernels(copies)?;
             rates.device = Some(rate(kernel, 8 * words));
             let up = measure(PATIENCE, |_| {
                 context.upload(&a, &from[..words])?;
