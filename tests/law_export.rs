@@ -30,8 +30,8 @@ fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurv
         version: VERSION,
         forms: Forms { variable, slip_displacement, normal_curve },
         constants: Constants {
-            fall: [1.13, 0.31, 0.47, 0.9],
-            exponent: [1.7, 0.21, 0.83, 0.9],
+            fall: [1.13, 0.31, 0.47, 0.9, 1.9, 0.4],
+            exponent: [1.7, 0.21, 0.83, 0.9, 0.7, 1.5],
             slip: [1.61, 0.23, 0.37, 1.11],
             curve: [0.61, 0.43, 0.77, 0.35],
         },

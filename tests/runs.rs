@@ -136,6 +136,26 @@ fn a_run_is_the_same_to_the_bit_on_one_thread_and_two() {
     assert_eq!(one, two);
 }
 
+/// Stopped at 1e-8, a run by multigrid and one by the direct solver are the same curve.
+#[test]
+fn multigrid_and_the_direct_solver_agree() {
+    for case in ["ideal.toml", "hollomon.toml"] {
+        let by = |linear: &str| run(case, 6, &[&format!("solver.linear={linear:?}"), "solver.tolerance=1e-8"]);
+        let (multigrid, direct) = (by("multigrid"), by("direct"));
+        assert_eq!(multigrid.len(), direct.len());
+        assert!(multigrid.iter().map(|r| r.krylov_iterations).sum::<usize>() > 0);
+        assert_eq!(direct.iter().map(|r| r.krylov_iterations).sum::<usize>(), 0);
+        let values: [fn(&StepRecord) -> f64; 5] = [|r| r.f_n, |r| r.f_t, |r| r.a, |r| r.work_plastic, |r| r.energy_elastic];
+        for value in values {
+            let largest = direct.iter().map(|r| value(r).abs()).fold(0.0, f64::max);
+            for (m, d) in multigrid.iter().zip(&direct) {
+                let error = (value(m) - value(d)).abs() / largest;
+                assert!(error < 1e-7, "{case}, step {}: {} and {}, {error:.1e} of {largest}", d.step, value(m), value(d));
+            }
+        }
+    }
+}
+
 #[test]
 fn single_precision_follows_double() {
     let steps = ["solver.press_steps=6".to_string(), "solver.shear_steps=6".to_string()];

@@ -112,10 +112,11 @@ fn summary(law: &Law) -> String {
         let weight = |weight: Option<f64>| weight.map_or_else(|| "none".to_owned(), |weight| weight.to_string());
         let _ = writeln!(
             text,
-            "Prior: the law of {}; weight for the shear {}, for the normal problem {}\n",
+            "Prior: the law of {}; weight for the shear {}, for a0 {}, for F_N0 {}\n",
             prior.study,
             weight(prior.shear),
-            weight(prior.normal)
+            weight(prior.normal.map(|weights| weights[0])),
+            weight(prior.normal.map(|weights| weights[1]))
         );
     }
     let predicted = "Errors with F_N0 and a0 predicted from h, cross-validated, in per cent";

@@ -105,7 +105,7 @@ fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -
     let start = [&constants.exponent[..], &constants.slip[..]].concat();
     let normal: Vec<Axisymmetric> = samples.iter().map(|sample| inputs(sample)).collect();
     let weights: Vec<f64> = samples.iter().map(|sample| 1.0 / (sample.peak() * points(sample))).collect();
-    let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[4..]), ..constants };
+    let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[6..]), ..constants };
     let found = minimize(Sign::Positive, &start, pull, |c| {
         let trial = with(c);
         let mut residuals = Vec::new();
@@ -178,17 +178,18 @@ fn constants_by_fold(
     (0..=folds).map(fold).collect()
 }
 
-/// As [`Start`]; no prior model means the form's own start.
-type NormalStart<'a> = Start<Option<&'a NormalModel>>;
+/// As [`Start`]; no prior model means the form's own start. The pull is that of the force, the other that of the radius: a0 and F_N0 are fitted one after the
+/// other, and a small study may know one of them better than its prior, but not the other.
+type NormalStart<'a> = (Start<Option<&'a NormalModel>>, f64);
 
 /// Fits one form of the normal problem.
-fn fit_normal(form: NormalForm, start: &NormalStart, samples: &[&Sample]) -> Result<NormalModel, LawError> {
+fn fit_normal(form: NormalForm, (start, radius_pull): &NormalStart, samples: &[&Sample]) -> Result<NormalModel, LawError> {
     let pull = start.pull;
     let (radius_start, force_start) = match start.constants {
         Some(prior) => (prior.radius.clone(), prior.force.clone()),
         None => (form.radius_start(), form.force_start()),
     };
-    let radius = minimize(form.sign(), &radius_start, pull, |c| {
+    let radius = minimize(form.sign(), &radius_start, *radius_pull, |c| {
         samples.iter().map(|s| (normal::contact_radius(form, c, &s.body, s.h0) / s.a0).ln()).collect()
     })
     .map_err(failed("a0(h)"))?;
@@ -201,8 +202,13 @@ fn fit_normal(form: NormalForm, start: &NormalStart, samples: &[&Sample]) -> Res
     Ok(NormalModel { form, radius, force })
 }
 
-/// What was compared, the weight of the prior that was chosen (none for a free fit), and the models by fold.
-type ChosenNormal = (Vec<NormalCandidate>, Option<f64>, Vec<NormalModel>);
+/// What was compared, the weights of the prior for a0 and F_N0 that were chosen (none for a free fit), and the models by fold.
+type ChosenNormal = (Vec<NormalCandidate>, Option<[f64; 2]>, Vec<NormalModel>);
+
+/// How a table calls a start of the normal problem.
+fn suffix((start, radius_pull): &NormalStart) -> String {
+    start.weight().map_or_else(String::new, |weight| format!(", prior {radius_pull}, {weight}"))
+}
 
 /// The normal forms compared; the best one's weight of the prior and its models by fold, the last one fitted to all.
 fn choose_normal(
@@ -212,9 +218,10 @@ fn choose_normal(
     folds: usize,
 ) -> Result<ChosenNormal, LawError> {
     let mut starts: Vec<(NormalForm, NormalStart)> =
-        NormalForm::ALL.into_iter().map(|form| (form, Start { constants: None, pull: PULL, prior: false })).collect();
+        NormalForm::ALL.into_iter().map(|form| (form, (Start { constants: None, pull: PULL, prior: false }, PULL))).collect();
     if let Some(prior) = prior.filter(|prior| prior.form != NormalForm::Published) {
-        starts.extend(WEIGHTS.map(|pull| (prior.form, Start { constants: Some(prior), pull, prior: true })));
+        let start = |pull| Start { constants: Some(prior), pull, prior: true };
+        starts.extend(WEIGHTS.into_iter().flat_map(|a| WEIGHTS.map(|f| (prior.form, (start(f), a)))));
     }
     let fitted: Vec<(NormalCandidate, Vec<NormalModel>)> = starts
         .par_iter()
@@ -235,7 +242,7 @@ fn choose_normal(
                 .collect();
             let errors = Errors::over(&errors);
             let candidate = NormalCandidate {
-                name: format!("{}{}", form.label(), start.suffix()),
+                name: format!("{}{}", form.label(), suffix(&start)),
                 constants: form.radius_start().len() + form.force_start().len(),
                 a_rms: errors.f_t_rms,
                 a_max: errors.f_t_max,
@@ -251,7 +258,7 @@ fn choose_normal(
     let best = (0..candidates.len()).min_by(|&i, &j| score(&candidates[i]).total_cmp(&score(&candidates[j]))).unwrap_or(0);
     candidates[best].kept = true;
     candidates.sort_by(|a, b| score(a).total_cmp(&score(b)));
-    let weight = starts.get(best).and_then(|(_, start)| start.weight());
+    let weight = starts.get(best).and_then(|(_, (start, radius_pull))| Some([*radius_pull, start.weight()?]));
     Ok((candidates, weight, models.into_iter().nth(best).unwrap_or_default()))
 }
 

@@ -2,15 +2,16 @@
 //!
 //! With z the plasticity of the contact in one of the [`Variable`]s, zero at first yield, and g = 1 - (Lambda_Y/Lambda)^2,
 //! ```text
-//! F_N_slip/F_N0 = 1 - tanh(A mu) tanh(B mu^p z^q)                    fall of the normal force
-//! n             = 3/2 + N tanh(C mu^p z^q exp(-d a/R) / N), N = 8.5  exponent of f_T
+//! F_N_slip/F_N0 = 1 - tanh(A mu) tanh[B mu^p z^q exp(r mu w - d a/R)]  fall of the normal force
+//! n             = 3/2 + N tanh[C mu^p z^(q exp(-s mu)) exp(r mu w - d a/R) / N], N = 8.5  exponent of f_T
 //! delta_T_slip  = 3 mu F_N0 (2 - nu)/(16 G a) f(y),                  displacement at full slip:
-//!             f = 1 + b g a/R + S mu^p z^q                             directly, or
-//!             f = (2 n/3) (F_N_slip/F_N0) (1 + b g a/R + S z^q)        through the initial stiffness
+//!             f = 1 + b a/R + S mu^p z^q                               directly, or
+//!             f = (2 n/3) (F_N_slip/F_N0) (1 + b a/R + S z^q)          through the initial stiffness
 //! f_N           = [1 - (1 - x)^M]^N or 1 - (1 - x^M)^N               one steep exponent 1 + s + t (n - 3/2), one gentle one 1 + u mu^v
 //! ```
-//! All constants are positive. Below first yield z = g = 0, so that n = 3/2, f = 1 and F_N_slip = F_N0: Cattaneo and Mindlin's law. b is the
-//! compliance of the body between the contact and the equator, where delta_T is prescribed.
+//! w = g (2 c^2 - 1)/ln(Lambda/Lambda_Y), c^2 = a^2/(2 R h), is how fast the contact has grown since first yield: fast without hardening, slowly with
+//! it. All constants are positive. Below first yield z = w = 0, so that n = 3/2, F_N_slip = F_N0 and f = 1 + b a/R: Cattaneo and Mindlin's law for a
+//! half-space (a/R = 0), and for a sphere the compliance b of the body between the contact and the equator, where delta_T is prescribed.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -53,7 +54,7 @@ impl Variable {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SlipForm {
-    /// f = 1 + b g a/R + S mu^p z^q.
+    /// f = 1 + b a/R + S mu^p z^q.
     Direct,
     /// f from n and a correction of Mindlin's initial stiffness.
     ThroughStiffness,
@@ -137,7 +138,7 @@ impl Forms {
             SlipForm::Direct => 3 + powers,
             SlipForm::ThroughStiffness => 3,
         };
-        (3 + powers) + (3 + powers) + slip + 4
+        (5 + powers) + (5 + powers) + slip + 4
     }
 }
 
@@ -148,10 +149,10 @@ pub struct Plasticity {
     pub friction: f64,
     /// a/R.
     pub relative_radius: f64,
-    /// g in \[0, 1): zero up to first yield.
-    pub ramp: f64,
     /// z >= 0: zero up to first yield.
     pub z: f64,
+    /// w >= 0, the growth of the contact since first yield: g (2 c^2 - 1)/ln(Lambda/Lambda_Y), zero up to it.
+    pub growth: f64,
 }
 
 impl Plasticity {
@@ -165,7 +166,7 @@ impl Plasticity {
         hardness: f64,
         c_squared: f64,
     ) -> Self {
-        let elastic = Self { friction, relative_radius, ramp: 0.0, z: 0.0 };
+        let elastic = Self { friction, relative_radius, z: 0.0, growth: 0.0 };
         // Written so that a NaN is elastic.
         if !(lambda > lambda_yield) {
             return elastic;
@@ -178,7 +179,9 @@ impl Plasticity {
             Variable::Stiffness => ramp * (4.0 * lambda / (3.0 * PI * hardness)).ln(),
             Variable::Area => ramp * (2.0 * c_squared - 1.0),
         };
-        Self { z: if z > 0.0 && z.is_finite() { z } else { 0.0 }, ramp, ..elastic }
+        let growth = ramp * (2.0 * c_squared - 1.0) / ratio.ln();
+        let positive = |x: f64| if x > 0.0 && x.is_finite() { x } else { 0.0 };
+        Self { z: positive(z), growth: positive(growth), ..elastic }
     }
 }
 
@@ -186,10 +189,10 @@ impl Plasticity {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Constants {
-    /// F_N_slip/F_N0: A, B, p, q.
-    pub fall: [f64; 4],
-    /// n: C, p, q, d.
-    pub exponent: [f64; 4],
+    /// F_N_slip/F_N0: A, B, p, q, r, d.
+    pub fall: [f64; 6],
+    /// n: C, p, q, d, s, r.
+    pub exponent: [f64; 6],
     /// f: b, S, p, q; through the stiffness there is no p.
     pub slip: [f64; 4],
     /// The exponents of f_N: s, t, u, v.
@@ -199,8 +202,8 @@ pub struct Constants {
 impl Constants {
     /// Every constant of order one, from which the fits start and to which what the data leave open is drawn.
     pub const START: Self = Self {
-        fall: [1.0, 1.0, 0.5, 1.0],
-        exponent: [10.0, 1.0, 1.0, 1.0],
+        fall: [1.0, 1.0, 0.5, 1.0, 1.0, 0.5],
+        exponent: [10.0, 1.0, 2.0, 1.0, 1.0, 1.0],
         slip: [1.0, 0.3, 1.0, 1.0],
         curve: [0.5, 0.5, 0.5, 1.0],
     };
@@ -221,22 +224,25 @@ fn product(variable: Variable, p: f64, q: f64, state: &Plasticity) -> f64 {
 }
 
 /// 1 - F_N_slip/F_N0, in \[0, 1).
-pub fn fall(forms: &Forms, constants: &[f64; 4], state: &Plasticity) -> f64 {
-    let [a, b, p, q] = *constants;
-    (a * state.friction).tanh() * (b * product(forms.variable, p, q, state)).tanh()
+pub fn fall(forms: &Forms, constants: &[f64; 6], state: &Plasticity) -> f64 {
+    let [a, b, p, q, r, d] = *constants;
+    let size = (r * state.friction * state.growth - d * state.relative_radius).exp();
+    (a * state.friction).tanh() * (b * product(forms.variable, p, q, state) * size).tanh()
 }
 
 /// n of f_T.
-pub fn exponent(forms: &Forms, constants: &[f64; 4], state: &Plasticity) -> f64 {
-    let [c, p, q, d] = *constants;
-    let size = (-d * state.relative_radius).exp();
-    1.5 + EXPONENT_SPAN * (c * product(forms.variable, p, q, state) * size / EXPONENT_SPAN).tanh()
+pub fn exponent(forms: &Forms, constants: &[f64; 6], state: &Plasticity) -> f64 {
+    let [c, p, q, d, s, r] = *constants;
+    // The less friction, the later after first yield n begins to grow.
+    let power = q * (-s * state.friction).exp();
+    let size = (r * state.friction * state.growth - d * state.relative_radius).exp();
+    1.5 + EXPONENT_SPAN * (c * product(forms.variable, p, power, state) * size / EXPONENT_SPAN).tanh()
 }
 
 /// f(y) = delta_T_slip over its elastic value, given n and F_N_slip/F_N0.
 pub fn slip_factor(forms: &Forms, constants: &[f64; 4], state: &Plasticity, n: f64, slip_share: f64) -> f64 {
     let [body, rate, p, q] = *constants;
-    let body = 1.0 + body * state.ramp * state.relative_radius;
+    let body = 1.0 + body * state.relative_radius;
     match forms.slip_displacement {
         SlipForm::Direct => body + rate * product(forms.variable, p, q, state),
         SlipForm::ThroughStiffness => n / 1.5 * slip_share * (body + rate * state.z.powf(q)),

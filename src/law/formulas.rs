@@ -18,15 +18,15 @@ impl Law {
             Variable::Lambda => "ln(Lambda/Lambda_Y)",
             Variable::FrictionLambda => "ln[1 + mu (Lambda - Lambda_Y)]",
             Variable::Stiffness => "g ln[4 Lambda/(3 pi Hbar)]",
-            Variable::Area => "g (2 c2 - 1), c2 = a^2/(2 R h)",
+            Variable::Area => "g (2 c2 - 1)",
         };
-        let [fall_a, fall_b, fall_p, fall_q] = self.constants.fall;
-        let [n_c, n_p, n_q, n_d] = self.constants.exponent;
+        let [fall_a, fall_b, fall_p, fall_q, fall_r, fall_d] = self.constants.fall;
+        let [n_c, n_p, n_q, n_d, n_s, n_r] = self.constants.exponent;
         let [body, rate, slip_p, slip_q] = self.constants.slip;
         let [s, t, u, v] = self.constants.curve;
         let slip = match self.forms.slip_displacement {
-            SlipForm::Direct => format!("1 + {body:.4} g a/R + {rate:.4} {}", product(slip_p, slip_q)),
-            SlipForm::ThroughStiffness => format!("(2 n/3) (F_N_slip/F_N0) (1 + {body:.4} g a/R + {rate:.4} z^{slip_q:.4})"),
+            SlipForm::Direct => format!("1 + {body:.4} a/R + {rate:.4} {}", product(slip_p, slip_q)),
+            SlipForm::ThroughStiffness => format!("(2 n/3) (F_N_slip/F_N0) (1 + {body:.4} a/R + {rate:.4} z^{slip_q:.4})"),
         };
         let (steep, gentle, curve) = match self.forms.normal_curve {
             NormalCurve::PowerOfComplement => ("M", "N", "[1 - (1 - x)^M]^N"),
@@ -38,10 +38,17 @@ impl Law {
         };
         line("F_T", "mu F_N_slip [1 - (1 - x)^n], x = delta_T/delta_T_slip");
         line("F_N", &format!("F_N0 - (F_N0 - F_N_slip) f_N, f_N = {curve}"));
-        line("Lambda_Y", "Lambda at first yield (2.533 at nu = 0.3); g = 1 - (Lambda_Y/Lambda)^2; below it g = z = 0");
+        line("Lambda_Y", "Lambda at first yield (2.533 at nu = 0.3); g = 1 - (Lambda_Y/Lambda)^2; below it g = z = w = 0");
+        line("c2", "a^2/(2 R h)");
         line("z", z);
-        line("F_N_slip/F_N0", &format!("1 - tanh({fall_a:.4} mu) tanh({fall_b:.4} {})", product(fall_p, fall_q)));
-        line("n", &format!("1.5 + {EXPONENT_SPAN} tanh[{:.4} {} exp(-{n_d:.4} a/R)]", n_c / EXPONENT_SPAN, product(n_p, n_q)));
+        line("w", "g (2 c2 - 1)/ln(Lambda/Lambda_Y)");
+        let size = format!("exp({fall_r:.4} mu w - {fall_d:.4} a/R)");
+        line("F_N_slip/F_N0", &format!("1 - tanh({fall_a:.4} mu) tanh[{fall_b:.4} {} {size}]", product(fall_p, fall_q)));
+        // z's power is a formula itself.
+        let power = format!("{n_q:.4} exp(-{n_s:.4} mu)");
+        let friction = if variable == Variable::FrictionLambda { String::new() } else { format!("mu^{n_p:.4} ") };
+        let size = format!("exp({n_r:.4} mu w - {n_d:.4} a/R)");
+        line("n", &format!("1.5 + {EXPONENT_SPAN} tanh[{:.4} {friction}z^({power}) {size}]", n_c / EXPONENT_SPAN));
         line("delta_T_slip", &format!("3 mu F_N0 (2 - nu)/(16 G a0) f, f = {slip}"));
         line(steep, &format!("{:.4} + {t:.4} (n - 1.5)", 1.0 + s));
         line(gentle, &format!("1 + {u:.4} mu^{v:.4}"));

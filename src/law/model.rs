@@ -17,7 +17,7 @@ use crate::output::write_atomically;
 /// The first key of a law file, by which it is recognised.
 pub const FORMAT: &str = "asperity-law";
 /// Version of the file's layout.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// What a contact is before it is sheared: all that the law needs. Any one consistent system of units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -104,7 +104,7 @@ impl Interval {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Validity {
-    /// Lambda. Below first yield the law is Cattaneo and Mindlin's and holds without data.
+    /// Lambda. Below first yield the law is Cattaneo and Mindlin's with the compliance of the body, and holds without data.
     pub lambda: Interval,
     /// mu.
     pub friction: Interval,
@@ -169,8 +169,8 @@ pub struct PriorUse {
     pub study: String,
     /// Weight for the constants of the shear; `None`: they were fitted without.
     pub shear: Option<f64>,
-    /// Weight for the constants of the normal problem, likewise.
-    pub normal: Option<f64>,
+    /// Weights for the constants of a0 and of F_N0, likewise.
+    pub normal: Option<[f64; 2]>,
 }
 
 /// A fitted law.
@@ -207,7 +207,7 @@ pub struct Law {
 pub(super) const MARGIN: f64 = 0.02;
 
 impl Law {
-    /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly; a contact without force has no slip force.
+    /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly as a/R goes to 0; a contact without force has no slip force.
     pub fn contact(&self, inputs: &Axisymmetric) -> Parameters {
         contact(&self.forms, &self.constants, inputs)
     }

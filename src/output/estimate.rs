@@ -2,7 +2,7 @@
 //!
 //! Mesh and load steps are refined together, and what they leave is taken to fall as 1/n with n elements along the contact radius: the difference
 //! of two runs then tells what is missing from either (Roache, J. Fluids Eng. 116, 1994). Where the error falls faster the estimate is too large, not
-//! too small. By chance two runs may agree although both are wrong, because nodes come into contact a ring at a time and the force ripples about
+//! too small. By chance two runs may agree although both are wrong, because nodes come into contact one after another and the force ripples about
 //! its smooth curve; so the ripple's size is added.
 
 use super::{StepRecord, Summary};

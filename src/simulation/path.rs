@@ -57,6 +57,8 @@ const FRICTION_LIMIT: f64 = 0.3;
 const RELEASE_STEPS: f64 = 12.0;
 /// Where everything slips the increments of a shear of given length go on growing, up to this share of the contact radius.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
+/// Most steps after the first part of a shear of given length: where nothing touches, say, the slip displacement says nothing.
+const MOST_LATER_STEPS: f64 = 120.0;
 
 impl Start {
     /// Elastic modulus E/(1 - nu^2), scaled.
@@ -121,9 +123,11 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
 pub struct ShearSteps {
     range: f64,
     total: f64,
-    /// Steps that grow, and the increment of those after them.
-    growing: usize,
-    later: f64,
+    /// Increments of the first, growing part.
+    count: usize,
+    /// Bounds of the increments after it.
+    least: f64,
+    largest: f64,
 }
 
 impl ShearSteps {
@@ -132,17 +136,20 @@ impl ShearSteps {
         let count = resolution.shear_steps.max(1);
         let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
         let total: f64 = (1..=count).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
-        let increment = |i: usize| range * (i as f64).powf(SHEAR_GROWTH) / total;
-        let largest = LARGEST_SHEAR_STEP * start.a;
-        let growing =
-            if length.is_finite() { (count..count + 1000).find(|&i| increment(i + 1) > largest).unwrap_or(count) } else { count };
-        Self { range, total, growing, later: increment(growing) }
+        let last = range * (count as f64).powf(SHEAR_GROWTH) / total;
+        let (least, largest) = if length.is_finite() {
+            let least = last.max((length - range) / MOST_LATER_STEPS);
+            (least, least.max(LARGEST_SHEAR_STEP * start.a))
+        } else {
+            (last, last)
+        };
+        Self { range, total, count, least, largest }
     }
 
     /// Distance from the start of the segment at the end of step `i >= 1`.
     pub fn distance(&self, i: usize) -> f64 {
-        let grown: f64 = (1..=i.min(self.growing)).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
-        self.range * grown / self.total + self.later * i.saturating_sub(self.growing) as f64
+        let growing = |i: usize| self.range * (i as f64).powf(SHEAR_GROWTH) / self.total;
+        (1..=i).map(|i| if i <= self.count { growing(i) } else { growing(i).clamp(self.least, self.largest) }).sum()
     }
 
     /// A shear to full slip is given up beyond this distance.
@@ -156,5 +163,43 @@ pub fn shear_target(segment: &Segment) -> Option<(ShearTarget, bool)> {
     match segment {
         Segment::Shear { shear, hold } => Some((*shear, *hold == Hold::NormalForce)),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn start(a: f64, friction: f64) -> Start {
+        Start { h: 0.02, h_max: 0.02, delta_t: 0.0, f_n: 7e-4 * (a / 0.2).powi(2), a, friction, nu: 0.3, reversed: false }
+    }
+
+    /// Ends of the steps of a shear.
+    fn ends(start: &Start, length: f64) -> Vec<f64> {
+        let steps = ShearSteps::new(start, length, &Resolution { press_steps: 20, shear_steps: 15 });
+        (1..).map(|i| steps.distance(i)).take_while(|d| *d < length).collect()
+    }
+
+    #[test]
+    fn a_shear_of_any_length_has_a_bounded_number_of_steps() {
+        for (a, friction, length) in
+            [(0.2, 0.3, 0.03), (0.2, 0.3, 0.4), (0.2, 1e-6, 0.4), (0.2, 0.0, 0.01), (0.0, 0.3, 0.01), (0.005, 0.5, 0.3)]
+        {
+            let ends = ends(&start(a, friction), length);
+            assert!(ends.len() <= 15 + 120, "a = {a}, mu = {friction}, {length}: {} steps", ends.len());
+            assert!(ends.windows(2).all(|w| w[0] < w[1]));
+        }
+        // Where everything slips the steps go on growing.
+        let ends = ends(&start(0.2, 0.3), 0.03);
+        assert!((20..45).contains(&ends.len()), "{}", ends.len());
+        let last: Vec<f64> = ends.windows(2).map(|w| w[1] - w[0]).collect();
+        assert!(last.windows(2).all(|w| w[1] > w[0]) && last.iter().all(|d| *d <= 0.05 * 0.2 * 1.0001));
+    }
+
+    #[test]
+    fn waiting_for_full_slip_goes_on_in_equal_steps() {
+        let steps = ShearSteps::new(&start(0.2, 0.3), f64::INFINITY, &Resolution { press_steps: 20, shear_steps: 15 });
+        let increment = |i: usize| steps.distance(i + 1) - steps.distance(i);
+        assert!((increment(20) / increment(40) - 1.0).abs() < 1e-9 && increment(2) < increment(10));
     }
 }

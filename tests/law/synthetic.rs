@@ -19,8 +19,8 @@ pub const FORMS: Forms = Forms {
 
 /// Its constants, of the size that simulations give.
 pub const CONSTANTS: Constants = Constants {
-    fall: [1.2, 1.8, 0.4, 1.2],
-    exponent: [30.0, 1.3, 2.0, 1.5],
+    fall: [1.2, 1.8, 0.4, 1.2, 2.0, 0.3],
+    exponent: [30.0, 1.3, 2.0, 1.5, 0.7, 1.5],
     slip: [1.1, 0.3, 1.0, 1.0],
     curve: [0.4, 0.35, 0.5, 0.8],
 };

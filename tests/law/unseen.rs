@@ -10,8 +10,19 @@ use asperity::output::read_history;
 
 use super::{asperity, text};
 
-/// sigma_Y, mu and h0 of cases within the study's range, none of whose values occur in it; the first of a random sequence.
-const UNSEEN: [[f64; 3]; 3] = [[1125.0, 0.323, 0.0144], [2728.0, 0.322, 0.0176], [217.0, 0.24, 0.0183]];
+/// sigma_Y, mu and h0 of cases within the study's range, none of whose values occur in it, in a random sequence.
+const UNSEEN: [[f64; 3]; 10] = [
+    [1125.0, 0.323, 0.0144],
+    [2728.0, 0.322, 0.0176],
+    [217.0, 0.24, 0.0183],
+    [1209.0, 0.37, 0.0048],
+    [734.0, 0.174, 0.0096],
+    [982.0, 0.104, 0.0057],
+    [434.0, 0.375, 0.0137],
+    [311.0, 0.339, 0.005],
+    [1108.0, 0.138, 0.004],
+    [2240.0, 0.163, 0.0057],
+];
 
 /// The study's base case with other values.
 fn case_text(study: &str, [yield_stress, friction, indentation]: [f64; 3]) -> String {

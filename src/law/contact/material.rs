@@ -7,10 +7,10 @@ use crate::law::variables::{Body, yield_lambda};
 
 /// Greatest tabulated indentation over R.
 pub const LAST: f64 = 0.1;
-/// First tabulated indentation over R of a sphere that yields late or never.
-pub const ELASTIC_FIRST: f64 = 0.01;
+/// First tabulated indentation over R of a sphere that yields later or never. Below it the powers of h of a half-space hold, as a/R is 0.001.
+pub const ELASTIC_FIRST: f64 = 1e-6;
 
-/// First tabulated indentation: just below first yield, where the contact is still Hertz's.
+/// First tabulated indentation: below first yield, where the contact is still Hertz's.
 fn first_indentation(body: &Body) -> f64 {
     let radius = body.sphere.radius;
     if body.is_elastic() {
@@ -47,9 +47,7 @@ impl ContactParameters {
                 a: state.a,
                 f_n: state.f_n,
             };
-            let ratio = inputs.lambda() / yield_lambda(sphere.poissons_ratio);
-            let ramp = if ratio > 1.0 { 1.0 - 1.0 / (ratio * ratio) } else { 0.0 };
-            let compliance = 1.0 + law.constants.slip[0] * ramp * (state.a / sphere.radius);
+            let compliance = 1.0 + law.constants.slip[0] * (state.a / sphere.radius);
             let k_t = cattaneo_mindlin::initial_stiffness(&sphere, state.a) / compliance;
             Axial { a: state.a, k_t, law: law.contact(&inputs) }
         };

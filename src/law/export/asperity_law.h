@@ -322,7 +322,7 @@ static inline double asperity_product(double p, double q, double friction, doubl
 
 /* A row of the table: the law at the indentation h. */
 static inline void asperity_row(const asperity_material *m, double radius, double friction, double h, double row[ASPERITY_COLUMNS]) {
-    double a, f_n, stress, lambda, yield, ratio, ramp = 0.0, z = 0.0, n, share, body, factor, steep, gentle, mindlin;
+    double a, f_n, stress, lambda, yield, ratio, ramp, z = 0.0, growth = 0.0, n, power, size, share, body, factor, steep, gentle, mindlin;
     asperity_normal(m, radius, h, &a, &f_n);
     stress = asperity_representative_stress(m, radius, a);
     lambda = asperity_effective_modulus(m) * a / (stress * radius);
@@ -340,13 +340,17 @@ static inline void asperity_row(const asperity_material *m, double radius, doubl
             z = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0);
         }
         z = z > 0.0 ? z : 0.0;
+        growth = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0) / log(ratio);
+        growth = growth > 0.0 ? growth : 0.0;
     }
+    power = ASPERITY_EXPONENT_2 * exp(-ASPERITY_EXPONENT_4 * friction);
+    size = exp(ASPERITY_EXPONENT_5 * friction * growth - ASPERITY_EXPONENT_3 * (a / radius));
     n = 1.5
-        + ASPERITY_EXPONENT_SPAN
-              * tanh(ASPERITY_EXPONENT_0 * asperity_product(ASPERITY_EXPONENT_1, ASPERITY_EXPONENT_2, friction, z) * exp(-ASPERITY_EXPONENT_3 * (a / radius))
-                     / ASPERITY_EXPONENT_SPAN);
-    share = 1.0 - tanh(ASPERITY_FALL_0 * friction) * tanh(ASPERITY_FALL_1 * asperity_product(ASPERITY_FALL_2, ASPERITY_FALL_3, friction, z));
-    body = 1.0 + ASPERITY_SLIP_0 * ramp * (a / radius);
+        + ASPERITY_EXPONENT_SPAN * tanh(ASPERITY_EXPONENT_0 * asperity_product(ASPERITY_EXPONENT_1, power, friction, z) * size / ASPERITY_EXPONENT_SPAN);
+    size = exp(ASPERITY_FALL_4 * friction * growth - ASPERITY_FALL_5 * (a / radius));
+    share = 1.0
+        - tanh(ASPERITY_FALL_0 * friction) * tanh(ASPERITY_FALL_1 * asperity_product(ASPERITY_FALL_2, ASPERITY_FALL_3, friction, z) * size);
+    body = 1.0 + ASPERITY_SLIP_0 * (a / radius);
     if (ASPERITY_SLIP_FORM == 0) {
         factor = body + ASPERITY_SLIP_1 * asperity_product(ASPERITY_SLIP_2, ASPERITY_SLIP_3, friction, z);
     } else {
@@ -407,7 +411,7 @@ static inline void asperity_conserve(asperity_parameters *p) {
 /* The parameters of a sphere of the material `m` and the radius `radius` with Coulomb friction `friction` >= 0. Returns 0, or nonzero if
  * a number is out of its range: then `p` is not to be used. */
 static inline int asperity_setup(asperity_parameters *p, const asperity_material *m, double radius, double friction) {
-    double first = 0.01 * radius, a, h;
+    double first = 1e-6 * radius, a, h;
     int i, j;
     if (!(m->youngs_modulus > 0.0 && m->poissons_ratio >= 0.0 && m->poissons_ratio <= 0.5 && radius > 0.0 && friction >= 0.0)
         || (m->hardening == ASPERITY_TABLE && (m->point_count < 1 || !m->points)) || m->hardening < 0 || m->hardening > ASPERITY_TABLE) {

@@ -271,7 +271,7 @@ def row(m, radius, friction, h):
     stress = representative_stress(m, radius, a)
     value = effective_modulus(m) * a / (stress * radius)
     first = yield_lambda(m.poissons_ratio)
-    ramp = z = 0.0
+    z = growth = 0.0
     if value > first:
         ratio = value / first
         ramp = 1.0 - 1.0 / (ratio * ratio)
@@ -284,10 +284,14 @@ def row(m, radius, friction, h):
         else:
             z = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0)
         z = z if z > 0.0 else 0.0
-    size = math.exp(-EXPONENT_3 * (a / radius))
-    n = 1.5 + EXPONENT_SPAN * math.tanh(EXPONENT_0 * product(EXPONENT_1, EXPONENT_2, friction, z) * size / EXPONENT_SPAN)
-    share = 1.0 - math.tanh(FALL_0 * friction) * math.tanh(FALL_1 * product(FALL_2, FALL_3, friction, z))
-    body = 1.0 + SLIP_0 * ramp * (a / radius)
+        growth = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0) / math.log(ratio)
+        growth = growth if growth > 0.0 else 0.0
+    power = EXPONENT_2 * math.exp(-EXPONENT_4 * friction)
+    size = math.exp(EXPONENT_5 * friction * growth - EXPONENT_3 * (a / radius))
+    n = 1.5 + EXPONENT_SPAN * math.tanh(EXPONENT_0 * product(EXPONENT_1, power, friction, z) * size / EXPONENT_SPAN)
+    size = math.exp(FALL_4 * friction * growth - FALL_5 * (a / radius))
+    share = 1.0 - math.tanh(FALL_0 * friction) * math.tanh(FALL_1 * product(FALL_2, FALL_3, friction, z) * size)
+    body = 1.0 + SLIP_0 * (a / radius)
     if SLIP_FORM == 0:
         factor = body + SLIP_1 * product(SLIP_2, SLIP_3, friction, z)
     else:
@@ -348,7 +352,7 @@ def setup(m, radius, friction):
         raise ValueError("give E > 0, 0 <= nu <= 0.5, R > 0 and a finite friction >= 0")
     if m.hardening not in range(TABLE + 1) or (m.hardening == TABLE and len(m.points) < 1):
         raise ValueError("give one of the hardening laws, a table with its points")
-    first = 0.01 * radius
+    first = 1e-6 * radius
     if m.hardening != ELASTIC:
         if not flow_stress(m, 0.0) > 0.0:
             raise ValueError("give a yield stress > 0")

@@ -62,8 +62,8 @@ pub fn source(law: &Law, language: Language) -> String {
             constant(&format!("{name}_{i}"), values.get(i).copied().unwrap_or(0.0));
         }
     };
-    list("FALL", &law.constants.fall, 4);
-    list("EXPONENT", &law.constants.exponent, 4);
+    list("FALL", &law.constants.fall, 6);
+    list("EXPONENT", &law.constants.exponent, 6);
     list("SLIP", &law.constants.slip, 4);
     list("CURVE", &law.constants.curve, 4);
     list("NORMAL_RADIUS", &law.normal.radius, 4);

@@ -66,7 +66,7 @@ fn elements_are_positive_and_well_shaped_over_the_range() {
         let mesh = sphere_mesh(&spec).unwrap();
         let (fine, all, positive) = quality_of(&mesh, spec.contact_radius);
         assert!(positive, "{spec:?}");
-        assert!(fine > 0.59 && all > 0.59, "{spec:?}: scaled Jacobians {fine} and {all}");
+        assert!(fine > 0.58 && all > 0.58, "{spec:?}: scaled Jacobians {fine} and {all}");
         assert_eq!(mesh.elements.len(), estimated_elements(&spec).unwrap(), "{spec:?}");
     }
 }
