@@ -172,7 +172,9 @@ fn single_precision_follows_double() {
     // same, where f32 leaves residual forces that no normal force outweighs.
     let problem = problem_of("reversal.toml", "output.plots=false");
     let ((_, wide), (ending, narrow)) = (follow::<f64>(&problem), follow::<f32>(&problem));
-    assert_eq!((ending, wide.len()), (Ending::Done, narrow.len()));
+    assert_eq!(ending, Ending::Done);
+    // A release ends with the step in which nothing touches any more: one may be closer to it than the other.
+    assert!(wide.len().abs_diff(narrow.len()) <= 1, "{} and {}", wide.len(), narrow.len());
     for (a, b) in ends(&wide).iter().zip(&ends(&narrow)) {
         assert_eq!(a.contact_points == 0, b.contact_points == 0);
         assert!((b.f_n - a.f_n).abs() <= 1e-3 * a.f_n && (b.f_t - a.f_t).abs() <= 1e-3 * a.f_n, "segment {}", a.segment);
