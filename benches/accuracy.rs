@@ -6,8 +6,9 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::cli::companion::{companion, follow};
+use asperity::output::companion::{companion, follow};
 use asperity::output::{ErrorEstimate, StepRecord, Summary, SummaryInputs, ripple};
+use asperity::simulation::problem::Problem;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -90,9 +91,10 @@ fn main() -> Result<(), Failed> {
             set.extend_from_slice(more);
             Ok(Case::load(&file, &set)?)
         };
-        // The default: 10 + 1.25 n steps to the press, 15 to the first part of the shear.
-        let steps = 2 * (10.0 + 1.25 * reference_mesh as f64).ceil() as usize;
-        let exact_case = load(reference_mesh, &[format!("solver.press_steps={steps}"), "solver.shear_steps=30".to_owned()])?;
+        let usual = Problem::new(&load(reference_mesh, &[])?)?.resolution;
+        let twice =
+            [("press", usual.press_steps), ("shear", usual.shear_steps)].map(|(s, n)| format!("solver.{s}_steps={}", 2 * n));
+        let exact_case = load(reference_mesh, &twice)?;
         let (exact_rows, exact) = run(&exact_case)?;
         for &mesh in &meshes {
             let case = load(mesh, &[])?;

@@ -6,31 +6,11 @@ use std::path::Path;
 
 use asperity::case::Case;
 use asperity::compute::cpu::Cpu;
-use asperity::output::{Clock, StepRecord, Summary, SummaryInputs, Units};
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::output::{Clock, Recorder, Summary, SummaryInputs};
+use asperity::simulation::drive::{Drive, Ending};
 use asperity::simulation::problem::Problem;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
-
-struct Records {
-    units: Units,
-    rows: Vec<StepRecord>,
-}
-
-impl Observer for Records {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        self.rows.push(view.record.in_units(&self.units));
-        Ok(())
-    }
-
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
-        Ok(())
-    }
-
-    fn note(&mut self, text: &str) {
-        eprintln!("{text}");
-    }
-}
 
 fn main() -> Result<(), Failed> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
@@ -55,7 +35,7 @@ fn main() -> Result<(), Failed> {
         let mut backend = Cpu::<f64>::new(vec![problem.model.clone()])?;
         let newton = problem.newton()?;
         let unknowns = newton.free_unknowns();
-        let mut records = Records { units: Units::of(&case), rows: Vec::new() };
+        let mut records = Recorder::new(&case, None);
         let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut records)?;
         if ending != Ending::Done {
             eprintln!("{mesh} elements per radius: {ending:?}");

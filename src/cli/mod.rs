@@ -3,7 +3,6 @@
 pub mod backend;
 pub mod bench;
 pub mod check;
-pub mod companion;
 pub mod devices;
 pub mod error;
 pub mod law;

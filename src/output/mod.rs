@@ -10,6 +10,7 @@ pub mod plots;
 mod atomic;
 mod checkpoint;
 mod clock;
+pub mod companion;
 mod contact_csv;
 mod directory;
 mod error;

@@ -72,7 +72,13 @@ fn sizes_for(sum: f64, q: f64) -> f64 {
 }
 
 impl Layout {
-    /// The layout for a description.
+    /// The layout with its surface nodes moved so that they touch evenly.
+    pub fn touching_evenly(mut self) -> Self {
+        self.shifts = even_entry(&self);
+        self
+    }
+
+    /// The layout for a description, its surface nodes not moved yet.
     ///
     /// # Errors
     /// A value out of range.
@@ -120,7 +126,7 @@ impl Layout {
         }
         depths[nd] = 1.0;
 
-        let mut layout = Layout {
+        Ok(Layout {
             m,
             blocks: Butterfly { nx: 2 * m, ny: m, nr, nd },
             spacing,
@@ -134,8 +140,6 @@ impl Layout {
             shifts: Vec::new(),
             fading_rings: outer.div_ceil(2),
             fine_radius,
-        };
-        layout.shifts = even_entry(&layout);
-        Ok(layout)
+        })
     }
 }

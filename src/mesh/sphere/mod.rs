@@ -32,7 +32,7 @@ pub struct SphereSpec {
 /// # Errors
 /// A value of `spec` out of range.
 pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
-    Ok(mesh_of(&Layout::new(spec)?))
+    Ok(mesh_of(&Layout::new(spec)?.touching_evenly()))
 }
 
 /// Number of elements that [`sphere_mesh`] will make, without making them.

@@ -79,7 +79,6 @@ fn halved(layout: &Layout) -> Layout {
         fine
     };
     let mut fine = layout.clone();
-    fine.shifts.clear();
     fine.m *= 2;
     fine.blocks = Butterfly { nx: 2 * fine.blocks.nx, ny: 2 * fine.blocks.ny, nr: 2 * fine.blocks.nr, nd: 2 * fine.blocks.nd };
     fine.spacing *= 0.5;
@@ -94,7 +93,7 @@ fn halved(layout: &Layout) -> Layout {
 
 #[test]
 fn the_volume_converges_at_second_order() {
-    let coarse = Layout { shifts: Vec::new(), ..Layout::new(&spec(0.2087, 4, 1.3)).unwrap() };
+    let coarse = Layout::new(&spec(0.2087, 4, 1.3)).unwrap();
     let error = |layout: &Layout| 1.0 - quality::volume(&mesh_of(layout)) / (PI / 3.0);
     let middle = halved(&coarse);
     let errors = [error(&coarse), error(&middle), error(&halved(&middle))];
@@ -292,8 +291,8 @@ fn the_contact_area_enters_evenly() {
     for (count, all, near) in [(4, 0.05, 0.04), (5, 0.04, 0.03), (8, 0.014, 0.010), (16, 0.004, 0.003), (24, 0.002, 0.0015)] {
         let spec = spec(0.2087, count, 1.3);
         let ripple = |layout: &Layout, from: f64, to: f64| entry_ripple(&mesh_of(layout), [from * 0.2087, to * 0.2087]);
-        let chosen = Layout::new(&spec).unwrap();
-        let spread = Layout { shifts: Vec::new(), ..chosen.clone() };
+        let spread = Layout::new(&spec).unwrap();
+        let chosen = spread.clone().touching_evenly();
         let circles = Layout { spread: 0.0, ..spread.clone() };
         let (rms, largest) = ripple(&chosen, 0.5, 1.0);
         assert!(rms < all && largest < 4.0 * all, "{count}: {rms} {largest}");
@@ -306,7 +305,7 @@ fn the_contact_area_enters_evenly() {
 #[test]
 fn nodes_move_by_a_spacing_at_most_to_touch_evenly() {
     for spec in specs() {
-        let layout = Layout::new(&spec).unwrap();
+        let layout = Layout::new(&spec).unwrap().touching_evenly();
         assert!(!layout.shifts.is_empty());
         assert!(layout.shifts.iter().all(|s| s.abs() < 1.0001 * layout.spacing), "{spec:?}");
     }

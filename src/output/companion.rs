@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use super::{Recorder, StepRecord, companion_elements};
 use crate::case::Case;
 use crate::compute::cpu::Cpu;
-use crate::output::{Recorder, StepRecord, companion_elements};
 use crate::simulation::SimulationError;
 use crate::simulation::drive::{Drive, Ending};
 use crate::simulation::problem::Problem;
