@@ -7,7 +7,7 @@ use std::fmt::{Debug, Display};
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use wide::{f32x8, f64x8};
+use wide::{f32x4, f32x8, f64x4, f64x8};
 
 /// A floating-point number: `f32` or `f64`.
 pub trait Real:
@@ -91,6 +91,11 @@ pub trait Real:
     fn mul_add_eight(a: [Self; 8], b: [Self; 8], c: [Self; 8]) -> [Self; 8] {
         std::array::from_fn(|q| a[q].mul_add(b[q], c[q]))
     }
+    /// Four times `a[i] * b[i] + c[i]`, fused where the machine can.
+    #[inline(always)]
+    fn mul_add_four(a: [Self; 4], b: [Self; 4], c: [Self; 4]) -> [Self; 4] {
+        std::array::from_fn(|i| a[i].mul_add(b[i], c[i]))
+    }
     /// Eight square roots.
     #[inline(always)]
     fn sqrt_eight(a: [Self; 8]) -> [Self; 8] {
@@ -99,7 +104,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ident, $eight:ident) => {
+    ($t:ident, $four:ident, $eight:ident) => {
         impl Real for $t {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -180,6 +185,14 @@ macro_rules! real {
                 }
             }
             #[inline(always)]
+            fn mul_add_four(a: [Self; 4], b: [Self; 4], c: [Self; 4]) -> [Self; 4] {
+                if cfg!(target_feature = "fma") {
+                    $four::from(a).mul_add($four::from(b), $four::from(c)).to_array()
+                } else {
+                    std::array::from_fn(|i| $t::mul_add(a[i], b[i], c[i]))
+                }
+            }
+            #[inline(always)]
             fn sqrt_eight(a: [Self; 8]) -> [Self; 8] {
                 $eight::from(a).sqrt().to_array()
             }
@@ -187,5 +200,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, f32x8);
-real!(f64, f64x8);
+real!(f32, f32x4, f32x8);
+real!(f64, f64x4, f64x8);

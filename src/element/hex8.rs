@@ -298,12 +298,13 @@ pub fn tangent<R: Real>(
         moduli[i + 3][i + 3] += -v_p_j;
     }
     let g = &k.gradient;
+    let by_node = Quarters::new(g);
     // Volume change: h_a = sum_q V J grad N_a, the derivative of the current volume.
     let v_j = Lanes::from_fn(|q| geometry.volume.0[q] * (R::ONE + k.j_minus_1.0[q]));
-    let h: Nodal<R> = std::array::from_fn(|a| std::array::from_fn(|i| (v_j * g[a][i]).sum()));
+    let h = by_node.volume_change(&v_j);
     let bulk = dp / geometry.total_volume;
     for b in 0..NODES {
-        // D = c : grad N_b, [Voigt row][j]; and t = tau grad N_b for the geometric term.
+        // c : grad N_b, [Voigt row][j]. Where both directions are the same, tau grad N_b of the geometric term is added, [i][k].
         let mut d = [[Lanes::ZERO; 3]; 6];
         for (row, m) in d.iter_mut().zip(&moduli) {
             for j in 0..3 {
@@ -313,21 +314,65 @@ pub fn tangent<R: Real>(
         let t: [Lanes<R>; 3] = std::array::from_fn(|i| {
             (stress[VOIGT[i][0]] * g[b][0]).plus(stress[VOIGT[i][1]], g[b][1]).plus(stress[VOIGT[i][2]], g[b][2])
         });
-        for a in 0..=b {
-            let block = &mut out[pair(a, b)];
-            let geometric = (t[0] * g[a][0]).plus(t[1], g[a][1]).plus(t[2], g[a][2]);
+        let same: Tensor<R> = std::array::from_fn(|i| std::array::from_fn(|k| d[VOIGT[i][k]][i] + t[k]));
+        for half in 0..=b / 4 {
+            let mut block = [[R::ZERO; 4]; 9];
+            for q in 0..QUADRATURE_POINTS {
+                for (k, &gradient) in by_node.gradient[half][q].iter().enumerate() {
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            let factor = if i == j { same[i][k].0[q] } else { d[VOIGT[i][k]][j].0[q] };
+                            block[3 * i + j] = R::mul_add_four([factor; 4], gradient, block[3 * i + j]);
+                        }
+                    }
+                }
+            }
             for i in 0..3 {
                 for j in 0..3 {
-                    let mut s = (d[VOIGT[i][0]][j] * g[a][0]).plus(d[VOIGT[i][1]][j], g[a][1]).plus(d[VOIGT[i][2]][j], g[a][2]);
-                    if i == j {
-                        s += geometric;
-                    }
-                    block[3 * i + j] = s.sum() + bulk * h[a][i] * h[b][j];
+                    let factor = bulk * h[b / 4][j][b % 4];
+                    block[3 * i + j] = R::mul_add_four([factor; 4], h[half][i], block[3 * i + j]);
+                }
+            }
+            for a in 0..4 {
+                if 4 * half + a <= b {
+                    out[pair(4 * half + a, b)] = block.map(|of_nodes| of_nodes[a]);
                 }
             }
         }
     }
     Ok(())
+}
+
+/// Gradients of the shape functions with four nodes side by side instead of the quadrature points: sums over points are then sums of vectors.
+struct Quarters<R> {
+    /// Gradients dN_a/dx_k of the nodes 0 to 3 and 4 to 7: `[half][q][k][a % 4]`.
+    gradient: [[[[R; 4]; 3]; QUADRATURE_POINTS]; 2],
+}
+
+impl<R: Real> Quarters<R> {
+    #[inline(always)]
+    fn new(gradient: &[[Lanes<R>; 3]; NODES]) -> Self {
+        let node = |half: usize, q: usize, k: usize, a: usize| gradient[4 * half + a][k].0[q];
+        Self {
+            gradient: std::array::from_fn(|half| {
+                std::array::from_fn(|q| std::array::from_fn(|k| std::array::from_fn(|a| node(half, q, k, a))))
+            }),
+        }
+    }
+
+    /// sum_q weight grad N_a, `[half][i][a % 4]`.
+    #[inline(always)]
+    fn volume_change(&self, weight: &Lanes<R>) -> [[[R; 4]; 3]; 2] {
+        let mut sum = [[[R::ZERO; 4]; 3]; 2];
+        for (sum, gradient) in sum.iter_mut().zip(&self.gradient) {
+            for (&weight, gradient) in weight.0.iter().zip(gradient) {
+                for (sum, gradient) in sum.iter_mut().zip(gradient) {
+                    *sum = R::mul_add_four([weight; 4], *gradient, *sum);
+                }
+            }
+        }
+        sum
+    }
 }
 
 /// The state at the end of a step that went from `committed` by `increment`, and whose trial states were found from `start`; and the
