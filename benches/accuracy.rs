@@ -45,10 +45,7 @@ const CASES: [(&str, &[&str]); 10] = [
         &["material.hardening.yield_stress=800.0", "contact.friction=0.1", "path.0.indentation=0.005"],
     ),
     ("elastic, mu 0.3, h 0.005", &[r#"material.hardening={law="elastic"}"#, "path.0.indentation=0.005"]),
-    (
-        "ideal 3200, mu 0.5, h 0.01",
-        &["material.hardening.yield_stress=3200.0", "contact.friction=0.5", "path.0.indentation=0.01"],
-    ),
+    ("ideal 3200, mu 0.3, h 0.01", &["material.hardening.yield_stress=3200.0", "path.0.indentation=0.01"]),
 ];
 
 /// A run's rows, without the undeformed state, and what they sum up to.

@@ -121,7 +121,8 @@ fn reversal_unloading_and_release_keep_the_balance() {
         assert!(last.energy_elastic > 0.0 && last.h > 0.02 && last.h < 0.024, "{last:?}");
         errors.push(imbalance(&last).abs());
     }
-    assert!(errors[0] < 0.05 && errors[1] < 0.55 * errors[0], "{errors:?}");
+    // With finer steps it tends to 0.2 %, where the flow rule dissipates otherwise than the integral of sigma d alpha by the order of the elastic strain.
+    assert!(errors[0] < 0.01 && errors[1] < 0.004, "{errors:?}");
 }
 
 #[test]

@@ -41,7 +41,7 @@ pub struct Start {
 /// How finely a path is cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Steps of a press from first touch to its end: the contact front moves by less than an element a step.
+    /// Steps of a press from first touch to its end.
     pub press_steps: usize,
     /// Steps of the first, growing part of a shear.
     pub shear_steps: usize,
@@ -53,6 +53,8 @@ const SHEAR_GROWTH: f64 = 1.3;
 const SHEAR_RANGE: f64 = 4.5;
 /// Friction beyond which the yield stress in shear, not friction, limits the traction: k/p = 0.577/2.8, with a margin.
 const FRICTION_LIMIT: f64 = 0.3;
+/// First steps of a press, which grow; they are worth half as many of the others.
+const GROWING_STEPS: usize = 4;
 /// Steps of an unloading over its estimated elastic recovery.
 const RELEASE_STEPS: f64 = 12.0;
 /// Where everything slips the increments of a shear of given length go on growing, up to this share of the contact radius.
@@ -83,6 +85,19 @@ impl Start {
     }
 }
 
+/// Ends of the `n` steps of a press by `h`: first steps that grow evenly (equal steps of the contact radius after first touch), and, as soon as they are as
+/// long, equal steps.
+///
+/// The error of a step goes with its length over h, and what was wrong in a small contact is forgotten in a larger one: with equal steps of the radius throughout
+/// it is twice as large at the end, for the same number of steps.
+fn press(n: usize, h: f64) -> Vec<f64> {
+    let n = n.max(1);
+    let growing = GROWING_STEPS.min(n / 2);
+    let step = h / (n as f64 - 0.5 * growing as f64);
+    let end = |i: usize| if i <= growing { 0.5 * (i * i) as f64 / growing as f64 } else { i as f64 - 0.5 * growing as f64 };
+    (1..=n).map(|i| step * end(i)).collect()
+}
+
 /// Targets of an indentation segment from `start` to indentation `h`.
 pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Vec<Target> {
     let target = |h, extrapolate| Target { h, delta_t: start.delta_t, hold_force: false, extrapolate };
@@ -106,13 +121,16 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         from = to;
     }
     if h > from {
-        // a grows as sqrt(h): equal steps of the contact radius.
-        let (r0, r1) = (from.sqrt(), h.sqrt());
-        let n = (resolution.press_steps as f64 * (r1 - r0) / r1).ceil().max(1.0) as usize;
-        targets.extend((1..=n).map(|i| {
-            let r = r0 + (r1 - r0) * i as f64 / n as f64;
-            target(if i == n { h } else { r * r }, true)
-        }));
+        // A press that goes on has its share of the steps, and small ones first again: sheared before, it takes up the force that the shear has cost it.
+        let rest = h - from;
+        let n = match resolution.press_steps {
+            n if from > 0.0 => (n as f64 * rest / h).ceil() as usize + GROWING_STEPS / 2,
+            n => n,
+        };
+        targets.extend(press(n, rest).into_iter().map(|rise| target(from + rise, true)));
+        if let Some(last) = targets.last_mut() {
+            last.h = h;
+        }
     }
     targets
 }
@@ -178,6 +196,28 @@ mod tests {
     fn ends(start: &Start, length: f64) -> Vec<f64> {
         let steps = ShearSteps::new(start, length, &Resolution { press_steps: 20, shear_steps: 15 });
         (1..).map(|i| steps.distance(i)).take_while(|d| *d < length).collect()
+    }
+
+    #[test]
+    fn a_press_starts_with_small_steps_and_ends_with_equal_ones() {
+        let resolution = |press_steps| Resolution { press_steps, shear_steps: 15 };
+        for n in [1, 2, 3, 5, 9, 24] {
+            let first = Start { h: 0.0, h_max: 0.0, ..start(0.0, 0.3) };
+            let ends: Vec<f64> = indentation_targets(&first, 0.02, &resolution(n)).iter().map(|t| t.h).collect();
+            assert_eq!((ends.len(), ends[n - 1]), (n, 0.02));
+            let steps: Vec<f64> = std::iter::once(ends[0]).chain(ends.windows(2).map(|w| w[1] - w[0])).collect();
+            assert!(
+                steps.iter().all(|step| *step > 0.0) && steps.windows(2).all(|w| w[0] < w[1] * (1.0 + 1e-9)),
+                "{n}: {steps:?}"
+            );
+            if n >= 9 {
+                assert!(steps[0] < 0.2 * steps[n - 1] && (steps[4] / steps[n - 1] - 1.0).abs() < 1e-9, "{n}: {steps:?}");
+            }
+        }
+        // Half of the way is left: half of the steps, and small ones first again.
+        let half = Start { h: 0.01, h_max: 0.01, ..start(0.14, 0.3) };
+        let targets = indentation_targets(&half, 0.02, &resolution(24));
+        assert!(targets.len() == 14 && targets[0].h < 0.0102 && targets[13].h == 0.02, "{targets:?}");
     }
 
     #[test]
