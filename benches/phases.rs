@@ -1,4 +1,4 @@
-//! The phases of one Newton iteration at the default mesh, in the middle of the main job's press: element forces and tangents, gathering, contact,
+//! The phases of one Newton iteration at the default mesh, in the middle of the main job's press: element forces and tangents, contact,
 //! multigrid, Krylov.
 //!
 //! `cargo bench --bench phases`: processor time of the whole process, whatever else the machine does (time on the wall where the system does not
@@ -7,11 +7,10 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::compute::cpu::{Cpu, gather_tangent};
+use asperity::compute::cpu::Cpu;
 use asperity::compute::gather::GatherPlan;
 use asperity::compute::handle::{CaseHandle, Evaluate};
 use asperity::compute::{Compute, Outcome};
-use asperity::element::hex8::{PAIRS, Tangent};
 use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, SolverKind};
 use asperity::simulation::drive::{Drive, Observer, StepView};
 use asperity::simulation::problem::Problem;
@@ -107,9 +106,7 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     let mut force = vec![0.0; trial.u.len()];
     group.bench_function("force", |b| b.iter(|| handle.internal_force(&trial.u, &mut force)));
     let mut blocks = vec![[0.0; 9]; matrix.blocks.len()];
-    group.bench_function("tangent, with gather", |b| b.iter(|| handle.tangent(&trial.u, &mut blocks)));
-    let tangents: Vec<Tangent<f64>> = vec![[[0.5; 9]; PAIRS]; mesh.elements.len()];
-    group.bench_function("gather of tangents", |b| b.iter(|| gather_tangent(&plan, &mesh, &tangents, &mut blocks)));
+    group.bench_function("tangent, formed and gathered", |b| b.iter(|| handle.tangent(&trial.u, &mut blocks)));
     group.bench_function("contact, residual, merit", |b| {
         b.iter(|| trial.assess(&mut handle, &boundary, &control, &mut PhaseTimes::default()))
     });

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::gather::GatherPlan;
+use super::sweep::Sweep;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
     Outcome, TangentRequest,
@@ -43,6 +44,8 @@ pub struct Cpu<R> {
     cases: Vec<Case<R>>,
     plan: GatherPlan,
     element_force: Vec<Nodal<R>>,
+    sweep: Sweep,
+    /// Tangents of the elements within the sweep's front.
     element_tangent: Vec<Tangent<R>>,
     /// State and elastic energy of each element at the end of a step, before it is committed.
     next: Vec<(State<R>, R)>,
@@ -60,6 +63,7 @@ impl<R: Real> Cpu<R> {
                 cases: Vec::new(),
                 plan: GatherPlan { pattern: crate::mesh::pattern::Pattern::from_elements(0, &[]), offset: Vec::new() },
                 element_force: Vec::new(),
+                sweep: Sweep::default(),
                 element_tangent: Vec::new(),
                 next: Vec::new(),
             });
@@ -72,12 +76,14 @@ impl<R: Real> Cpu<R> {
             }
         }
         let cases = models.iter().map(Case::new).collect::<Result<_, _>>()?;
+        let sweep = Sweep::new(&first.mesh);
         Ok(Self {
             models,
             cases,
             plan,
             element_force: vec![[[R::ZERO; 3]; NODES]; elements],
-            element_tangent: vec![[[R::ZERO; 9]; hex8::PAIRS]; elements],
+            element_tangent: vec![[[R::ZERO; 9]; hex8::PAIRS]; sweep.slots()],
+            sweep,
             next: Vec::new(),
         })
     }
@@ -139,7 +145,8 @@ impl<R: Real> Case<R> {
         out: &mut [T],
         f: impl Fn(&Self, usize, &Nodal<R>, &Nodal<R>, &mut T) -> Result<(), Invalid> + Sync,
     ) -> Outcome {
-        out.par_chunks_mut(CHUNK)
+        let invalid = out
+            .par_chunks_mut(CHUNK)
             .enumerate()
             .map(|(chunk, out)| {
                 for (i, out) in out.iter_mut().enumerate() {
@@ -153,15 +160,32 @@ impl<R: Real> Case<R> {
                 }
                 None
             })
-            .reduce(
-                || None,
-                |a, b| match (a, b) {
-                    (Some(x), Some(y)) => Some(x.min(y)),
-                    (x, y) => x.or(y),
-                },
-            )
-            .map_or(Outcome::Valid, |(element, point)| Outcome::Inverted { element, point })
+            .reduce(|| None, earlier);
+        outcome(invalid)
     }
+
+    /// Tangents of the elements from `first` on; the first invalid one, with its point.
+    fn tangents(&self, first: usize, displacement: &[f64], out: &mut [Tangent<R>]) -> Option<(usize, usize)> {
+        out.iter_mut().zip(first..).find_map(|(out, e)| {
+            let (committed, increment) = self.nodal(e, displacement);
+            match hex8::tangent(&self.geometry[e], &self.material, &self.start[e], &committed, &increment, out) {
+                Ok(()) => None,
+                Err(Invalid::Inverted(point) | Invalid::Material(point)) => Some((e, point)),
+            }
+        })
+    }
+}
+
+/// The one of two invalid elements that comes first.
+fn earlier(a: Option<(usize, usize)>, b: Option<(usize, usize)>) -> Option<(usize, usize)> {
+    match (a, b) {
+        (Some(x), Some(y)) => Some(x.min(y)),
+        (x, y) => x.or(y),
+    }
+}
+
+fn outcome(invalid: Option<(usize, usize)>) -> Outcome {
+    invalid.map_or(Outcome::Valid, |(element, point)| Outcome::Inverted { element, point })
 }
 
 impl<R: Real> Compute for Cpu<R> {
@@ -212,11 +236,28 @@ impl<R: Real> Compute for Cpu<R> {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
-            request.outcome =
-                case.each_element(request.displacement, &mut self.element_tangent, |case, e, committed, increment, out| {
-                    hex8::tangent(&case.geometry[e], &case.material, &case.start[e], committed, increment, out)
+            let (plan, sweep, tangents) = (&self.plan, &self.sweep, &mut self.element_tangent);
+            let mut rows = block_rows(plan, request.blocks);
+            let mut invalid = None;
+            for (elements, complete) in sweep.waves() {
+                let first = sweep.slot(elements.start);
+                let found = tangents[first..first + elements.len()]
+                    .par_chunks_mut(CHUNK)
+                    .enumerate()
+                    .map(|(chunk, out)| case.tangents(elements.start + chunk * CHUNK, request.displacement, out))
+                    .reduce(|| None, earlier);
+                if found.is_some() {
+                    invalid = found;
+                    break;
+                }
+                let mut complete: Vec<_> =
+                    complete.iter().map(|&node| (node, std::mem::take(&mut rows[node as usize]))).collect();
+                let tangents = &*tangents;
+                complete.par_iter_mut().with_min_len(CHUNK).for_each(|(node, row)| {
+                    gather_row(plan, &case.mesh, *node as usize, |element| &tangents[sweep.slot(element)], row);
                 });
-            gather_tangent(&self.plan, &case.mesh, &self.element_tangent, request.blocks);
+            }
+            request.outcome = outcome(invalid);
         }
         Ok(())
     }
@@ -325,9 +366,8 @@ impl<R: Real> Compute for Cpu<R> {
     }
 }
 
-/// Sums the element tangents into block rows: `blocks` in the order of the plan's pattern, every sum in the order of the node's elements.
-pub fn gather_tangent<R: Real>(plan: &GatherPlan, mesh: &Mesh, tangents: &[Tangent<R>], blocks: &mut [[f64; 9]]) {
-    let lists = &mesh.node_elements;
+/// The blocks of each node's row; `blocks` in the order of the plan's pattern.
+fn block_rows<'a>(plan: &GatherPlan, blocks: &'a mut [[f64; 9]]) -> Vec<&'a mut [[f64; 9]]> {
     let mut rows = Vec::with_capacity(plan.pattern.rows());
     let mut rest = blocks;
     for node in 0..plan.pattern.rows() {
@@ -335,29 +375,39 @@ pub fn gather_tangent<R: Real>(plan: &GatherPlan, mesh: &Mesh, tangents: &[Tange
         rows.push(row);
         rest = tail;
     }
-    rows.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(node, row)| {
-        row.fill([0.0; 9]);
-        for entry_index in lists.start[node] as usize..lists.start[node + 1] as usize {
-            let entry = lists.entry[entry_index] as usize;
-            let (tangent, a) = (&tangents[entry / 8], entry % 8);
-            for (b, &offset) in plan.offset[entry_index].iter().enumerate() {
-                let out = &mut row[offset as usize];
-                if a <= b {
-                    let block = &tangent[pair(a, b)];
-                    for (o, k) in out.iter_mut().zip(block) {
-                        *o += k.to_f64();
-                    }
-                } else {
-                    let block = &tangent[pair(b, a)];
-                    for i in 0..3 {
-                        for j in 0..3 {
-                            out[3 * i + j] += block[3 * j + i].to_f64();
-                        }
+    rows
+}
+
+/// Sums the tangents of the elements around a node into its block row, in the order of the node's elements.
+fn gather_row<'a, R: Real>(
+    plan: &GatherPlan,
+    mesh: &Mesh,
+    node: usize,
+    tangent_of: impl Fn(usize) -> &'a Tangent<R>,
+    row: &mut [[f64; 9]],
+) {
+    let lists = &mesh.node_elements;
+    row.fill([0.0; 9]);
+    for entry_index in lists.start[node] as usize..lists.start[node + 1] as usize {
+        let entry = lists.entry[entry_index] as usize;
+        let (tangent, a) = (tangent_of(entry / 8), entry % 8);
+        for (b, &offset) in plan.offset[entry_index].iter().enumerate() {
+            let out = &mut row[offset as usize];
+            if a <= b {
+                let block = &tangent[pair(a, b)];
+                for (o, k) in out.iter_mut().zip(block) {
+                    *o += k.to_f64();
+                }
+            } else {
+                let block = &tangent[pair(b, a)];
+                for i in 0..3 {
+                    for j in 0..3 {
+                        out[3 * i + j] += block[3 * j + i].to_f64();
                     }
                 }
             }
         }
-    });
+    }
 }
 
 fn widen<R: Real>(rows: &Rows<R>) -> Rows<f64> {

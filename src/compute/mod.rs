@@ -13,6 +13,7 @@ pub mod gpu;
 pub mod handle;
 pub mod lost;
 pub mod select;
+mod sweep;
 
 #[cfg(test)]
 mod tests;

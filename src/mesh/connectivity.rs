@@ -27,6 +27,41 @@ pub fn node_elements(node_count: usize, elements: &[[u32; 8]]) -> NodeElements {
     NodeElements { start, entry }
 }
 
+/// The elements in an order in which neighbours are close: from one end of the body to the other, each layer those that share a node with the layer
+/// before (Cuthill & McKee 1969, for elements); bodies apart one after the other.
+pub fn sweep_order(node_count: usize, elements: &[[u32; 8]]) -> Vec<u32> {
+    let lists = node_elements(node_count, elements);
+    // The last layer as seen from anywhere is one end.
+    let end = layers(elements, &lists, 0).last().copied().unwrap_or(0);
+    layers(elements, &lists, end)
+}
+
+/// All elements: `first`, those that share a node with it, those that share a node with these, and so on.
+fn layers(elements: &[[u32; 8]], lists: &NodeElements, first: u32) -> Vec<u32> {
+    let mut order: Vec<u32> = Vec::with_capacity(elements.len());
+    let mut seen = vec![false; elements.len()];
+    let mut next = 0;
+    for start in std::iter::once(first).chain(0..elements.len() as u32) {
+        match seen.get_mut(start as usize) {
+            Some(seen) if !*seen => *seen = true,
+            _ => continue,
+        }
+        order.push(start);
+        while let Some(&element) = order.get(next) {
+            next += 1;
+            for node in elements[element as usize].map(|node| node as usize) {
+                for &entry in &lists.entry[lists.start[node] as usize..lists.start[node + 1] as usize] {
+                    let other = entry / 8;
+                    if !std::mem::replace(&mut seen[other as usize], true) {
+                        order.push(other);
+                    }
+                }
+            }
+        }
+    }
+    order
+}
+
 /// Faces that belong to one element only, in the order of the elements, counter-clockwise seen from outside.
 pub fn boundary_faces(elements: &[[u32; 8]]) -> Vec<[u32; 4]> {
     let mut faces: Vec<([u32; 4], usize)> = Vec::with_capacity(6 * elements.len());

@@ -7,7 +7,7 @@ mod layout;
 #[cfg(test)]
 mod tests;
 
-use super::connectivity::{contact_measures, node_elements};
+use super::connectivity::{contact_measures, node_elements, sweep_order};
 use super::hierarchy::{Blocks, hierarchy};
 use super::{Mesh, MeshError};
 use geometry::Geometry;
@@ -50,6 +50,7 @@ fn mesh_of(layout: &Layout) -> Mesh {
     let sites = blocks.sites();
     let nodes: Vec<[f64; 3]> = sites.iter().map(|&site| geometry.position(site)).collect();
     let elements = blocks.elements();
+    let elements: Vec<[u32; 8]> = sweep_order(nodes.len(), &elements).into_iter().map(|e| elements[e as usize]).collect();
 
     // Rings that can touch: the fine zone and a margin, but never the equator nor its neighbour.
     let reach = layout.radii[layout.fine_rings] * CONTACT_MARGIN;

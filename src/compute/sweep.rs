@@ -1,0 +1,91 @@
+//! How the CPU forms and sums element tangents: wave after wave of elements, each row as soon as its last element is done, so that what it is the sum of
+//! is still in the cache. The numbers of the elements sweep over the mesh (`mesh::connectivity::sweep_order`), so that the front is short.
+
+use std::ops::Range;
+
+use crate::mesh::Mesh;
+
+/// Elements of a wave: enough to share out between threads, few enough to stay in the cache with the waves before it.
+const WAVE: usize = 512;
+
+/// Waves of successive elements; after each, the rows that are complete.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Sweep {
+    elements: usize,
+    /// Nodes whose last element is in each wave.
+    rows: Vec<Vec<u32>>,
+    slots: usize,
+}
+
+impl Sweep {
+    /// Plans the sweep of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let elements = mesh.elements.len();
+        let lists = &mesh.node_elements;
+        let mut rows = vec![Vec::new(); elements.div_ceil(WAVE)];
+        let mut depth = 1;
+        for node in 0..mesh.nodes.len() {
+            let around = &lists.entry[lists.start[node] as usize..lists.start[node + 1] as usize];
+            // The lists are in increasing order.
+            if let (Some(first), Some(last)) = (around.first(), around.last()) {
+                let [first, last] = [first, last].map(|entry| *entry as usize / 8 / WAVE);
+                rows[last].push(node as u32);
+                depth = depth.max(last - first + 1);
+            }
+        }
+        Self { elements, rows, slots: elements.min(depth * WAVE) }
+    }
+
+    /// Contributions that are kept at a time.
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+
+    /// The place of an element's contribution.
+    #[inline(always)]
+    pub fn slot(&self, element: usize) -> usize {
+        element % self.slots
+    }
+
+    /// For each wave its elements, which have successive places, and the nodes that have all of their elements after it.
+    pub fn waves(&self) -> impl Iterator<Item = (Range<usize>, &[u32])> {
+        self.rows.iter().enumerate().map(|(wave, rows)| (wave * WAVE..self.elements.min((wave + 1) * WAVE), rows.as_slice()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{SphereSpec, brick, sphere_mesh};
+
+    #[test]
+    fn every_row_finds_the_contributions_of_its_elements() {
+        let sphere = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 8, fine_zone: 1.3 }).unwrap();
+        for mesh in [brick(4, 3, 5, [1.0; 3]).unwrap(), brick(40, 3, 30, [1.0; 3]).unwrap(), sphere] {
+            let sweep = Sweep::new(&mesh);
+            let mut kept = vec![usize::MAX; sweep.slots()];
+            let mut summed = vec![0; mesh.nodes.len()];
+            for (elements, rows) in sweep.waves() {
+                let first = sweep.slot(elements.start);
+                for (i, element) in elements.enumerate() {
+                    assert_eq!(sweep.slot(element), first + i);
+                    kept[first + i] = element;
+                }
+                for &row in rows {
+                    summed[row as usize] += 1;
+                    let lists = &mesh.node_elements;
+                    let around = &lists.entry[lists.start[row as usize] as usize..lists.start[row as usize + 1] as usize];
+                    assert!(around.iter().map(|entry| *entry as usize / 8).all(|element| kept[sweep.slot(element)] == element));
+                }
+            }
+            assert!(summed.iter().all(|&times| times == 1));
+        }
+    }
+
+    #[test]
+    fn the_front_is_short() {
+        let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 16, fine_zone: 1.3 }).unwrap();
+        let sweep = Sweep::new(&mesh);
+        assert!(4 * sweep.slots() < mesh.elements.len(), "{} of {}", sweep.slots(), mesh.elements.len());
+    }
+}
