@@ -18,8 +18,9 @@ use crate::simulation::checkpoint::Snapshot;
 
 /// First words of the file.
 const NAME: &str = "asperity checkpoint";
-/// To be raised with every change of what is stored. The version of the program is compared as well.
-const FORMAT: u32 = 1;
+/// To be raised with every change of what is stored, and of the order and the steps in which a run goes on from it. The version of the program is compared
+/// as well.
+const FORMAT: u32 = 2;
 
 /// An unfinished run: its case, what it depends on, and what it has written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
