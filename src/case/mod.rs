@@ -98,10 +98,10 @@ pub struct Solver {
     pub linear: Linear,
     /// Contact merit at which a step is accepted, relative to the sum of normal forces; in (1e-12, 1e-2].
     pub tolerance: f64,
-    /// Steps of a press or release segment; by default as many as the mesh asks for.
+    /// Steps of a press from first touch; one that goes on takes its share and two more. By default as many as the mesh asks for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub press_steps: Option<usize>,
-    /// Steps of a shear segment; by default as many as the mesh asks for.
+    /// Steps of the first part of a shear segment, in which points come to slip; by default 15.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear_steps: Option<usize>,
     /// Newton iterations of a step before it is cut in half.

@@ -20,6 +20,8 @@ use crate::real::Real;
 
 /// Elements handed to a thread at a time: enough work to outweigh the handing.
 const CHUNK: usize = 64;
+/// The same for tangents and block rows, which take longer and of which a wave has few: enough of them for many threads.
+const WAVE_CHUNK: usize = 16;
 
 /// One case as the CPU holds it.
 struct Case<R> {
@@ -242,9 +244,9 @@ impl<R: Real> Compute for Cpu<R> {
             for (elements, complete) in sweep.waves() {
                 let first = sweep.slot(elements.start);
                 let found = tangents[first..first + elements.len()]
-                    .par_chunks_mut(CHUNK)
+                    .par_chunks_mut(WAVE_CHUNK)
                     .enumerate()
-                    .map(|(chunk, out)| case.tangents(elements.start + chunk * CHUNK, request.displacement, out))
+                    .map(|(chunk, out)| case.tangents(elements.start + chunk * WAVE_CHUNK, request.displacement, out))
                     .reduce(|| None, earlier);
                 if found.is_some() {
                     invalid = found;
@@ -253,7 +255,7 @@ impl<R: Real> Compute for Cpu<R> {
                 let mut complete: Vec<_> =
                     complete.iter().map(|&node| (node, std::mem::take(&mut rows[node as usize]))).collect();
                 let tangents = &*tangents;
-                complete.par_iter_mut().with_min_len(CHUNK).for_each(|(node, row)| {
+                complete.par_iter_mut().with_min_len(WAVE_CHUNK).for_each(|(node, row)| {
                     gather_row(plan, &case.mesh, *node as usize, |element| &tangents[sweep.slot(element)], row);
                 });
             }

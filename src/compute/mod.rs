@@ -73,7 +73,7 @@ pub struct TangentRequest<'a> {
     pub case: usize,
     /// Trial displacement, three a node.
     pub displacement: &'a [f64],
-    /// Receives the blocks, row-major.
+    /// Receives the blocks, row-major; they mean nothing if the outcome is not [`Outcome::Valid`].
     pub blocks: &'a mut [[f64; 9]],
     /// Receives how it went.
     pub outcome: Outcome,

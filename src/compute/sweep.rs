@@ -1,5 +1,5 @@
 //! How the CPU forms and sums element tangents: wave after wave of elements, each row as soon as its last element is done, so that what it is the sum of
-//! is still in the cache. The numbers of the elements sweep over the mesh (`mesh::connectivity::sweep_order`), so that the front is short.
+//! is still in the cache. The numbers of the sphere's elements sweep over the mesh (`mesh::connectivity::sweep_order`), so that the front is short.
 
 use std::ops::Range;
 
@@ -27,11 +27,12 @@ impl Sweep {
         for node in 0..mesh.nodes.len() {
             let around = &lists.entry[lists.start[node] as usize..lists.start[node + 1] as usize];
             // The lists are in increasing order.
-            if let (Some(first), Some(last)) = (around.first(), around.last()) {
-                let [first, last] = [first, last].map(|entry| *entry as usize / 8 / WAVE);
-                rows[last].push(node as u32);
-                depth = depth.max(last - first + 1);
+            // The row of a node without elements is complete at once: it is empty.
+            let [first, last] = [around.first(), around.last()].map(|entry| entry.map_or(0, |entry| *entry as usize / 8 / WAVE));
+            if let Some(rows) = rows.get_mut(last) {
+                rows.push(node as u32);
             }
+            depth = depth.max(last - first + 1);
         }
         Self { elements, rows, slots: elements.min(depth * WAVE) }
     }

@@ -49,8 +49,8 @@ impl PathShare {
     fn within(&self, segment: &Segment, record: &StepRecord) -> f64 {
         let part = |from: f64, now: f64, to: f64| if from == to { 1.0 } else { (now - from) / (to - from) };
         match *segment {
-            // Steps are equal in the contact radius, which grows as the root of h.
-            Segment::Indentation { indentation } => part(self.start.h.sqrt(), record.h.sqrt(), indentation.sqrt()),
+            // All but the first steps are equal.
+            Segment::Indentation { indentation } => part(self.start.h, record.h, indentation),
             Segment::Release => part(self.start.f_n, record.f_n, 0.0),
             Segment::Shear { shear: ShearTarget::Displacement(target), .. } => {
                 part(self.start.delta_t, record.delta_t, target).max(0.0).powf(SHEAR_POWER)
@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(share.segments(), 5);
         let mut last = 0.0;
         for (record, expected) in [
-            (record(0, 0.01, 0.0, 5.0), Some(0.1)),
+            (record(0, 0.01, 0.0, 5.0), Some(0.05)),
             (record(0, 0.04, 0.0, 10.0), Some(0.2)),
             (record(1, 0.04, 0.1, 10.0), None),
             (record(1, 0.04, 0.5, 10.0), None),

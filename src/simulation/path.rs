@@ -124,6 +124,7 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         // A press that goes on has its share of the steps, and small ones first again: sheared before, it takes up the force that the shear has cost it.
         let rest = h - from;
         let n = match resolution.press_steps {
+            _ if rest < 1e-9 * h => 1,
             n if from > 0.0 => (n as f64 * rest / h).ceil() as usize + GROWING_STEPS / 2,
             n => n,
         };

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use crate::case::{Case, Friction, Segment, estimated_elements};
+use crate::simulation::problem::default_press_steps;
 
 /// One of some shares of a study, `1/4` to `4/4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,8 +56,6 @@ pub fn dearest_first(costs: &[f64]) -> Vec<usize> {
     order
 }
 
-/// Press steps for each element along the contact radius, as the simulation takes them by default.
-const PRESS_STEPS_PER_ELEMENT: f64 = 2.5;
 /// Steps of a shear to full slip, typically.
 const SHEAR_STEPS: f64 = 22.0;
 
@@ -70,9 +69,7 @@ pub fn cost(case: &Case) -> f64 {
         steps += match segment {
             Segment::Indentation { indentation } => {
                 deepest = deepest.max(indentation / radius);
-                case.solver
-                    .press_steps
-                    .map_or(PRESS_STEPS_PER_ELEMENT * case.mesh.elements_per_contact_radius as f64, |n| n as f64)
+                case.solver.press_steps.unwrap_or_else(|| default_press_steps(case.mesh.elements_per_contact_radius)) as f64
             }
             Segment::Shear { .. } => SHEAR_STEPS,
             Segment::Release => 12.0,

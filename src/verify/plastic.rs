@@ -119,8 +119,7 @@ fn imbalance(row: &StepRecord) -> f64 {
 
 fn energy(history: &History) -> Vec<Check> {
     let check = |what: &str, row: StepRecord| {
-        let because =
-            "trapezoidal rule; with 10 to 20 steps the missing work was 2.6 to 1 % and halves with the steps (next row)";
+        let because = "trapezoidal rule over the steps; shrinks with them (next row)";
         Check::relative("energy", what, imbalance(&row), 0.0, 0.02, because).by(1.0)
     };
     vec![check("missing work, pressed", history.end(0)), check("missing work, sheared", history.last())]
