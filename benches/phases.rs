@@ -8,10 +8,9 @@ use std::path::Path;
 
 use asperity::case::Case;
 use asperity::compute::cpu::Cpu;
-use asperity::compute::gather::GatherPlan;
 use asperity::compute::handle::{CaseHandle, Evaluate};
 use asperity::compute::{Compute, Outcome};
-use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, SolverKind};
+use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
 use asperity::simulation::drive::{Drive, Observer, StepView};
 use asperity::simulation::problem::Problem;
 use asperity::solver::Control;
@@ -89,8 +88,8 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     backend.begin_step(0, 0.0)?;
     let mut handle = CaseHandle { backend: &mut backend, case: 0 };
     let outcome = trial.evaluate(&mut handle, &boundary, &control, &mut PhaseTimes::default())?;
-    let plan = GatherPlan::new(&mesh);
-    let mut matrix = BlockMatrix::<f64>::zeros(plan.pattern.clone());
+    let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
+    let mut matrix = BlockMatrix::<f64>::zeros(pattern.clone());
     handle.tangent(&trial.u, &mut matrix.blocks)?;
     let raw = matrix.clone();
     let mut fixed = vec![false; trial.u.len()];
@@ -120,10 +119,10 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
             BatchSize::LargeInput,
         )
     });
-    let mut solver = LinearSolver::new(SolverKind::Multigrid, &plan.pattern, &mesh.hierarchy)?;
+    let mut solver = LinearSolver::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy)?;
     group.bench_function("multigrid update", |b| b.iter(|| solver.update(&matrix, &fixed)));
     solver.update(&matrix, &fixed)?;
-    let mut hierarchy = Hierarchy::new(&plan.pattern, &mesh.hierarchy)?;
+    let mut hierarchy = Hierarchy::new(&pattern, &mesh.hierarchy)?;
     hierarchy.update(&matrix, &fixed)?;
     let free: Vec<f64> = rhs.iter().zip(&fixed).map(|(b, fixed)| if *fixed { 0.0 } else { *b }).collect();
     let mut correction = vec![0.0_f32; free.len()];

@@ -140,19 +140,20 @@ impl<R: Real> Case<R> {
         (committed, increment)
     }
 
-    /// Evaluates `f` on every element into `out`; the first invalid element by index is reported.
+    /// Evaluates `f` on the elements from `first` on into `out`, so many at a time in each thread; the first invalid element by index is reported.
     fn each_element<T: Send>(
         &self,
+        first: usize,
+        at_a_time: usize,
         displacement: &[f64],
         out: &mut [T],
         f: impl Fn(&Self, usize, &Nodal<R>, &Nodal<R>, &mut T) -> Result<(), Invalid> + Sync,
     ) -> Outcome {
-        let invalid = out
-            .par_chunks_mut(CHUNK)
+        out.par_chunks_mut(at_a_time)
             .enumerate()
             .map(|(chunk, out)| {
                 for (i, out) in out.iter_mut().enumerate() {
-                    let element = chunk * CHUNK + i;
+                    let element = first + chunk * at_a_time + i;
                     let (committed, increment) = self.nodal(element, displacement);
                     if let Err(Invalid::Inverted(point) | Invalid::Material(point)) =
                         f(self, element, &committed, &increment, out)
@@ -162,32 +163,15 @@ impl<R: Real> Case<R> {
                 }
                 None
             })
-            .reduce(|| None, earlier);
-        outcome(invalid)
+            .reduce(
+                || None,
+                |a, b| match (a, b) {
+                    (Some(x), Some(y)) => Some(x.min(y)),
+                    (x, y) => x.or(y),
+                },
+            )
+            .map_or(Outcome::Valid, |(element, point)| Outcome::Inverted { element, point })
     }
-
-    /// Tangents of the elements from `first` on; the first invalid one, with its point.
-    fn tangents(&self, first: usize, displacement: &[f64], out: &mut [Tangent<R>]) -> Option<(usize, usize)> {
-        out.iter_mut().zip(first..).find_map(|(out, e)| {
-            let (committed, increment) = self.nodal(e, displacement);
-            match hex8::tangent(&self.geometry[e], &self.material, &self.start[e], &committed, &increment, out) {
-                Ok(()) => None,
-                Err(Invalid::Inverted(point) | Invalid::Material(point)) => Some((e, point)),
-            }
-        })
-    }
-}
-
-/// The one of two invalid elements that comes first.
-fn earlier(a: Option<(usize, usize)>, b: Option<(usize, usize)>) -> Option<(usize, usize)> {
-    match (a, b) {
-        (Some(x), Some(y)) => Some(x.min(y)),
-        (x, y) => x.or(y),
-    }
-}
-
-fn outcome(invalid: Option<(usize, usize)>) -> Outcome {
-    invalid.map_or(Outcome::Valid, |(element, point)| Outcome::Inverted { element, point })
 }
 
 impl<R: Real> Compute for Cpu<R> {
@@ -210,17 +194,22 @@ impl<R: Real> Compute for Cpu<R> {
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
-            request.outcome =
-                case.each_element(request.displacement, &mut self.element_force, |case, e, committed, increment, out| {
+            request.outcome = case.each_element(
+                0,
+                CHUNK,
+                request.displacement,
+                &mut self.element_force,
+                |case, e, committed, increment, out| {
                     *out = hex8::internal_force(&case.geometry[e], &case.material, &case.start[e], committed, increment)?;
                     Ok(())
-                });
+                },
+            );
             let (lists, element_force) = (&case.mesh.node_elements, &self.element_force);
             request.force.par_chunks_mut(3 * CHUNK).enumerate().for_each(|(chunk, out)| {
                 for (i, out) in out.chunks_exact_mut(3).enumerate() {
                     let node = chunk * CHUNK + i;
                     let mut sum = [R::ZERO; 3];
-                    for &entry in &lists.entry[lists.start[node] as usize..lists.start[node + 1] as usize] {
+                    for &entry in &lists.entry[lists.list(node)] {
                         let f = &element_force[entry as usize / 8][entry as usize % 8];
                         for (s, &f) in sum.iter_mut().zip(f) {
                             *s += f;
@@ -240,16 +229,20 @@ impl<R: Real> Compute for Cpu<R> {
             let case = &self.cases[request.case];
             let (plan, sweep, tangents) = (&self.plan, &self.sweep, &mut self.element_tangent);
             let mut rows = block_rows(plan, request.blocks);
-            let mut invalid = None;
+            request.outcome = Outcome::Valid;
             for (elements, complete) in sweep.waves() {
-                let first = sweep.slot(elements.start);
-                let found = tangents[first..first + elements.len()]
-                    .par_chunks_mut(WAVE_CHUNK)
-                    .enumerate()
-                    .map(|(chunk, out)| case.tangents(elements.start + chunk * WAVE_CHUNK, request.displacement, out))
-                    .reduce(|| None, earlier);
-                if found.is_some() {
-                    invalid = found;
+                let slot = sweep.slot(elements.start);
+                let out = &mut tangents[slot..slot + elements.len()];
+                request.outcome = case.each_element(
+                    elements.start,
+                    WAVE_CHUNK,
+                    request.displacement,
+                    out,
+                    |case, e, committed, increment, out| {
+                        hex8::tangent(&case.geometry[e], &case.material, &case.start[e], committed, increment, out)
+                    },
+                );
+                if request.outcome != Outcome::Valid {
                     break;
                 }
                 let mut complete: Vec<_> =
@@ -259,7 +252,6 @@ impl<R: Real> Compute for Cpu<R> {
                     gather_row(plan, &case.mesh, *node as usize, |element| &tangents[sweep.slot(element)], row);
                 });
             }
-            request.outcome = outcome(invalid);
         }
         Ok(())
     }
@@ -288,11 +280,12 @@ impl<R: Real> Compute for Cpu<R> {
         for request in requests {
             let case = &self.cases[request.case];
             self.next.resize(case.state.len(), (State::default(), R::ZERO));
-            request.outcome = case.each_element(request.displacement, &mut self.next, |case, e, committed, increment, out| {
-                let (state, start) = (&case.state[e], &case.start[e]);
-                *out = hex8::update(&case.geometry[e], &case.material, state, start, committed, increment)?;
-                Ok(())
-            });
+            request.outcome =
+                case.each_element(0, CHUNK, request.displacement, &mut self.next, |case, e, committed, increment, out| {
+                    let (state, start) = (&case.state[e], &case.start[e]);
+                    *out = hex8::update(&case.geometry[e], &case.material, state, start, committed, increment)?;
+                    Ok(())
+                });
             if request.outcome == Outcome::Valid {
                 let case = &mut self.cases[request.case];
                 let mut energies = Energies::default();
@@ -313,7 +306,7 @@ impl<R: Real> Compute for Cpu<R> {
     fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
         let case = &self.cases[case];
         let mut out = vec![([0.0; 6], 0.0, 0.0_f64); case.state.len()];
-        let outcome = case.each_element(&case.committed, &mut out, |case, e, committed, _, out| {
+        let outcome = case.each_element(0, CHUNK, &case.committed, &mut out, |case, e, committed, _, out| {
             let geometry = &case.geometry[e];
             let fields = hex8::fields(geometry, &case.material, &case.state[e].points, committed)?;
             for q in 0..hex8::QUADRATURE_POINTS {
@@ -390,7 +383,7 @@ fn gather_row<'a, R: Real>(
 ) {
     let lists = &mesh.node_elements;
     row.fill([0.0; 9]);
-    for entry_index in lists.start[node] as usize..lists.start[node + 1] as usize {
+    for entry_index in lists.list(node) {
         let entry = lists.entry[entry_index] as usize;
         let (tangent, a) = (tangent_of(entry / 8), entry % 8);
         for (b, &offset) in plan.offset[entry_index].iter().enumerate() {

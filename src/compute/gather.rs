@@ -19,8 +19,7 @@ impl GatherPlan {
         let mut offset = Vec::with_capacity(mesh.node_elements.entry.len());
         for node in 0..mesh.nodes.len() {
             let row = &pattern.column[pattern.row(node)];
-            let entries = mesh.node_elements.start[node] as usize..mesh.node_elements.start[node + 1] as usize;
-            for &entry in &mesh.node_elements.entry[entries] {
+            for &entry in &mesh.node_elements.entry[mesh.node_elements.list(node)] {
                 let element = &mesh.elements[entry as usize / 8];
                 // The pattern was made from these very elements: every column is there.
                 offset.push(element.map(|b| row.partition_point(|&c| c < b) as u16));

@@ -25,9 +25,8 @@ impl Sweep {
         let mut rows = vec![Vec::new(); elements.div_ceil(WAVE)];
         let mut depth = 1;
         for node in 0..mesh.nodes.len() {
-            let around = &lists.entry[lists.start[node] as usize..lists.start[node + 1] as usize];
-            // The lists are in increasing order.
-            // The row of a node without elements is complete at once: it is empty.
+            let around = &lists.entry[lists.list(node)];
+            // The lists are in increasing order. The row of a node without elements is empty and so complete at once.
             let [first, last] = [around.first(), around.last()].map(|entry| entry.map_or(0, |entry| *entry as usize / 8 / WAVE));
             if let Some(rows) = rows.get_mut(last) {
                 rows.push(node as u32);
@@ -75,7 +74,7 @@ mod tests {
                 for &row in rows {
                     summed[row as usize] += 1;
                     let lists = &mesh.node_elements;
-                    let around = &lists.entry[lists.start[row as usize] as usize..lists.start[row as usize + 1] as usize];
+                    let around = &lists.entry[lists.list(row as usize)];
                     assert!(around.iter().map(|entry| *entry as usize / 8).all(|element| kept[sweep.slot(element)] == element));
                 }
             }

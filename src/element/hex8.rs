@@ -298,7 +298,7 @@ pub fn tangent<R: Real>(
         moduli[i + 3][i + 3] += -v_p_j;
     }
     let g = &k.gradient;
-    let by_node = Quarters::new(g);
+    let by_node = FourNodes::new(g);
     // Volume change: h_a = sum_q V J grad N_a, the derivative of the current volume.
     let v_j = Lanes::from_fn(|q| geometry.volume.0[q] * (R::ONE + k.j_minus_1.0[q]));
     let h = by_node.volume_change(&v_j);
@@ -344,12 +344,12 @@ pub fn tangent<R: Real>(
 }
 
 /// Gradients of the shape functions with four nodes side by side instead of the quadrature points: sums over points are then sums of vectors.
-struct Quarters<R> {
+struct FourNodes<R> {
     /// Gradients dN_a/dx_k of the nodes 0 to 3 and 4 to 7: `[half][q][k][a % 4]`.
     gradient: [[[[R; 4]; 3]; QUADRATURE_POINTS]; 2],
 }
 
-impl<R: Real> Quarters<R> {
+impl<R: Real> FourNodes<R> {
     #[inline(always)]
     fn new(gradient: &[[Lanes<R>; 3]; NODES]) -> Self {
         let node = |half: usize, q: usize, k: usize, a: usize| gradient[4 * half + a][k].0[q];

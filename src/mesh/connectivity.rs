@@ -50,7 +50,7 @@ fn layers(elements: &[[u32; 8]], lists: &NodeElements, first: u32) -> Vec<u32> {
         while let Some(&element) = order.get(next) {
             next += 1;
             for node in elements[element as usize].map(|node| node as usize) {
-                for &entry in &lists.entry[lists.start[node] as usize..lists.start[node + 1] as usize] {
+                for &entry in &lists.entry[lists.list(node)] {
                     let other = entry / 8;
                     if !std::mem::replace(&mut seen[other as usize], true) {
                         order.push(other);

@@ -64,6 +64,14 @@ pub struct NodeElements {
     pub entry: Vec<u32>,
 }
 
+impl NodeElements {
+    /// Where the list of a node is among the entries.
+    #[inline(always)]
+    pub fn list(&self, node: usize) -> std::ops::Range<usize> {
+        self.start[node] as usize..self.start[node + 1] as usize
+    }
+}
+
 /// A hex8 mesh with what the solver needs to know of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {

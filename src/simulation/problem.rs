@@ -39,11 +39,6 @@ pub struct Problem {
 /// main job at 16 elements F_N(h) at the end, half-way and at a quarter lacks 0.2, 0.5 and 2 % at these 26 steps (of which the steps 0.1, 0.3 and 1 %).
 const PRESS_STEPS: f64 = 14.0;
 const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
-
-/// Steps of a press with so many elements along the contact radius, unless the case says.
-pub fn default_press_steps(elements_per_contact_radius: usize) -> usize {
-    (PRESS_STEPS + PRESS_STEPS_PER_ELEMENT * elements_per_contact_radius as f64).ceil() as usize
-}
 /// Growing steps of a shear.
 const SHEAR_STEPS: usize = 15;
 /// Smallest contact radius that is meshed for: below it the sphere is a half-space anyway.
@@ -57,6 +52,11 @@ fn largest_indentation(case: &Case) -> f64 {
         Segment::Indentation { indentation } => h.max(*indentation),
         _ => h,
     })
+}
+
+/// Steps of a press with so many elements along the contact radius, unless the case says.
+pub fn default_press_steps(elements_per_contact_radius: usize) -> usize {
+    (PRESS_STEPS + PRESS_STEPS_PER_ELEMENT * elements_per_contact_radius as f64).ceil() as usize
 }
 
 impl Problem {

@@ -26,7 +26,7 @@ impl BlockPlan {
             let positions = pattern.row(node);
             row.iter_mut().for_each(Vec::clear);
             row.resize(row.len().max(positions.len()), Vec::new());
-            for at in lists.start[node] as usize..lists.start[node + 1] as usize {
+            for at in lists.list(node) {
                 for (b, &offset) in (0..).zip(&plan.offset[at]) {
                     row[offset as usize].push(8 * lists.entry[at] + b);
                 }

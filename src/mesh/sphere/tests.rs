@@ -168,7 +168,7 @@ fn inner_faces_are_shared_by_two_elements_and_lists_agree() {
     let lists = &mesh.node_elements;
     assert_eq!(lists.entry.len(), 8 * mesh.elements.len());
     for n in 0..mesh.nodes.len() {
-        let list = &lists.entry[lists.start[n] as usize..lists.start[n + 1] as usize];
+        let list = &lists.entry[lists.list(n)];
         assert!(!list.is_empty() && list.is_sorted());
         assert!(list.iter().all(|&entry| mesh.elements[entry as usize / 8][entry as usize % 8] == n as u32));
     }
