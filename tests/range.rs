@@ -92,6 +92,17 @@ const CASES: &[(&str, f64, &str, f64, &str)] = &[
     ("table",    1000.0, "0.3",       1e-2, "full-slip"),
 ];
 
+/// Follows the path of a case file's text.
+fn drive(text: &str) -> (Ending, Watch) {
+    let case = Case::parse(text, "case.toml", &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let problem = Problem::new(&case).expect("a problem");
+    let newton = problem.newton().expect("a solver");
+    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
+    let mut watch = Watch::default();
+    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut watch).expect("no failure of the program");
+    (ending, watch)
+}
+
 /// One case: its line of the table, and what is wrong with it.
 fn follow(&(law, stiffness, friction, h, shear): &(&str, f64, &str, f64, &str)) -> (String, Option<String>) {
     let shear_toml = if shear == "full-slip" { "\"full-slip\"" } else { shear };
@@ -101,12 +112,7 @@ fn follow(&(law, stiffness, friction, h, shear): &(&str, f64, &str, f64, &str)) 
          shear = {shear_toml}\n",
         hardening(law, 1.0 / stiffness)
     );
-    let case = Case::parse(&text, "case.toml", &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let problem = Problem::new(&case).expect("a problem");
-    let newton = problem.newton().expect("a solver");
-    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
-    let mut watch = Watch::default();
-    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut watch).expect("no failure of the program");
+    let (ending, watch) = drive(&text);
     let last = watch.rows.last().copied().unwrap_or_default();
     let sum = |of: fn(&StepRecord) -> usize| watch.rows.iter().map(of).sum::<usize>();
     let line = format!(
@@ -154,4 +160,62 @@ fn every_corner_of_the_range_is_followed_to_its_end() {
         failures.extend(wrong.map(|wrong| format!("{case:?}: {wrong}")));
     }
     assert!(failures.is_empty(), "{} of {} cases:\n{}", failures.len(), CASES.len(), failures.join("\n"));
+}
+
+/// What, nu, hardening (E = 200e3), friction, elements along the contact radius, path.
+type Hard = (&'static str, f64, &'static str, &'static str, usize, &'static [&'static str]);
+
+const HARD: &[Hard] = &[
+    // Points that come off hold tangential forces to which no equilibrium belongs.
+    (
+        "release under full stick",
+        0.3,
+        "law = \"linear\"\nyield_stress = 200.0\nmodulus = 2000.0",
+        "\"stick\"",
+        6,
+        &["indentation = 0.06", "release = true"],
+    ),
+    (
+        "shear and release under full stick",
+        0.3,
+        "law = \"ideal\"\nyield_stress = 400.0",
+        "\"stick\"",
+        5,
+        &["indentation = 0.02", "shear = 0.004", "release = true"],
+    ),
+    // A change of volume is fifty times as stiff as one of shape.
+    (
+        "nearly incompressible",
+        0.49,
+        "law = \"ideal\"\nyield_stress = 3700.0",
+        "0.2",
+        5,
+        &["indentation = 4e-4", "indentation = 3.6e-4", "shear = 3e-5", "release = true"],
+    ),
+];
+
+#[test]
+fn what_used_to_be_hard_is_followed_without_a_cutback() {
+    let follow = |&(what, nu, law, friction, elements, path): &Hard| {
+        let path: String = path.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
+        let text = format!(
+            "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = {E}\npoissons_ratio = {nu}\n[material.hardening]\n{law}\n[contact]\n\
+             friction = {friction}\n[mesh]\nelements_per_contact_radius = {elements}\n{path}"
+        );
+        (what, path.ends_with("release = true\n"), drive(&text))
+    };
+    let followed: Vec<_> = HARD.par_iter().map(follow).collect();
+    for (what, released, (ending, watch)) in followed {
+        let cutbacks: usize = watch.rows.iter().map(|row| row.cutbacks).sum();
+        let iterations: usize = watch.rows.iter().map(|row| row.newton_iterations).sum();
+        println!("{what}: {} steps, {iterations} iterations, {cutbacks} cut-backs", watch.rows.len() - 1);
+        assert_eq!(ending, Ending::Done, "{what}");
+        let last = watch.rows[watch.rows.len() - 1];
+        assert!(!released || last.f_n == 0.0, "{what}: F_N = {} is left", last.f_n);
+        assert_eq!(cutbacks, 0, "{what}");
+        // What was done on the body is in it, or gone by plastic work and friction.
+        let most = watch.rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external));
+        let found = last.energy_elastic + last.work_plastic + last.work_friction;
+        assert!((last.work_external - found).abs() < 0.02 * most, "{what}: work {} against {found}", last.work_external);
+    }
 }

@@ -8,14 +8,15 @@ use crate::case::Case;
 use crate::compute::cpu::Cpu;
 use crate::simulation::SimulationError;
 use crate::simulation::drive::{Drive, Ending};
-use crate::simulation::problem::Problem;
+use crate::simulation::problem::{Problem, press_steps, shear_steps};
 
-/// The case on its companion's mesh, with as many steps, where the case says how many, as go with that mesh.
+/// The case on its companion's mesh, with steps longer in the ratio of the elements: the estimate takes the errors of mesh and steps to fall together.
 pub fn companion(case: &Case) -> Case {
     let (from, to) = (case.mesh.elements_per_contact_radius, companion_elements(case.mesh.elements_per_contact_radius));
     let mut companion = case.clone();
     companion.mesh.elements_per_contact_radius = to;
-    companion.solver.press_steps = case.solver.press_steps.map(|steps| (steps * to).div_ceil(from));
+    companion.solver.press_steps = Some((press_steps(case) * to).div_ceil(from));
+    companion.solver.shear_steps = Some((shear_steps(case) * to).div_ceil(from));
     companion
 }
 

@@ -96,6 +96,10 @@ pub struct Drive<'a> {
 const STICK_SHARE: f64 = 2e-3;
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a third fewer than none.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
+/// Under full stick a step that fails is tried again with some points sliding without friction in it: the open ones, because a point that comes down has no
+/// place to stick to before the step's end, and then those too whose tangential force exceeds so many times the normal one. They are about to come off: where
+/// such a force is held there may be no equilibrium, neither with the point nor without. Under friction, however high, they would slide.
+const SLIDING_RATIOS: [f64; 4] = [f64::INFINITY, 10.0, 3.0, 1.0];
 /// F_T has stopped rising when it grows by less than this share over a step.
 const PLATEAU: f64 = 1e-3;
 
@@ -335,18 +339,19 @@ impl<'a> Drive<'a> {
                 return Ok(Ending::Interrupted);
             }
             let mut attempted = self.attempt(&next)?;
-            if let (Err(failure), Friction::Stick) = (&attempted, self.problem.model.friction) {
-                // Points that come down within the step may have no place to stick to: they slide in it, and stick from the next step on.
-                log::info!(
-                    "step to h = {:.5}, delta_T = {:.5} failed, new contact slides in it: {failure}",
-                    next.h,
-                    next.delta_t
-                );
-                self.place.wasted += failure.iterations();
-                let open: Vec<bool> = self.state.statuses.iter().map(|status| *status == Status::Open).collect();
-                self.newton.let_slide(&open);
-                attempted = self.attempt(&next)?;
-                self.newton.let_slide(&[]);
+            if self.problem.model.friction == Friction::Stick {
+                for ratio in SLIDING_RATIOS {
+                    let Err(failure) = &attempted else { break };
+                    log::info!(
+                        "step to h = {:.5}, delta_T = {:.5} failed, points sheared beyond {ratio} of their normal force slide in it: {failure}",
+                        next.h,
+                        next.delta_t
+                    );
+                    self.place.wasted += failure.iterations();
+                    self.newton.let_slide(&self.sheared_beyond(ratio));
+                    attempted = self.attempt(&next)?;
+                    self.newton.let_slide(&[]);
+                }
             }
             match attempted {
                 Ok(report) => {
@@ -384,6 +389,12 @@ impl<'a> Drive<'a> {
         self.place.under_way = false;
         self.place.reached += 1;
         Ok(Ending::Done)
+    }
+
+    /// Which contact points carry a tangential force of more than `ratio` times their normal one, the open ones among them.
+    fn sheared_beyond(&self, ratio: f64) -> Vec<bool> {
+        let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
+        self.state.points.iter().map(beyond).collect()
     }
 
     /// One Newton solve towards a target; commits nothing.

@@ -14,7 +14,7 @@ use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::solver::newton::Newton;
-use crate::solver::{Settings, SolverError};
+use crate::solver::{Settings, SolverError, loosest_linear};
 
 /// A case ready to be simulated.
 #[derive(Clone, Debug)]
@@ -39,7 +39,6 @@ pub struct Problem {
 /// main job at 16 elements F_N(h) at the end, half-way and at a quarter lacks 0.2, 0.5 and 2 % at these 26 steps (of which the steps 0.1, 0.3 and 1 %).
 const PRESS_STEPS: f64 = 14.0;
 const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
-/// Growing steps of a shear.
 const SHEAR_STEPS: usize = 15;
 /// Smallest contact radius that is meshed for: below it the sphere is a half-space anyway.
 const SMALLEST_CONTACT: f64 = 0.005;
@@ -54,9 +53,15 @@ fn largest_indentation(case: &Case) -> f64 {
     })
 }
 
-/// Steps of a press with so many elements along the contact radius, unless the case says.
-pub fn default_press_steps(elements_per_contact_radius: usize) -> usize {
-    (PRESS_STEPS + PRESS_STEPS_PER_ELEMENT * elements_per_contact_radius as f64).ceil() as usize
+/// Steps of a first press: as many as the case says, or else as go with its elements along the contact radius.
+pub fn press_steps(case: &Case) -> usize {
+    let elements = case.mesh.elements_per_contact_radius as f64;
+    case.solver.press_steps.unwrap_or_else(|| (PRESS_STEPS + PRESS_STEPS_PER_ELEMENT * elements).ceil() as usize)
+}
+
+/// Growing steps of a shear: as many as the case says, or else the default.
+pub fn shear_steps(case: &Case) -> usize {
+    case.solver.shear_steps.unwrap_or(SHEAR_STEPS)
 }
 
 impl Problem {
@@ -84,11 +89,12 @@ impl Problem {
         let epr = case.mesh.elements_per_contact_radius;
         let spacing = meshed / epr as f64;
         Ok(Self {
-            resolution: Resolution {
-                press_steps: case.solver.press_steps.unwrap_or_else(|| default_press_steps(epr)),
-                shear_steps: case.solver.shear_steps.unwrap_or(SHEAR_STEPS),
+            resolution: Resolution { press_steps: press_steps(&case), shear_steps: shear_steps(&case) },
+            settings: Settings {
+                tolerance: case.solver.tolerance,
+                max_iterations: case.solver.max_iterations,
+                loosest_linear: loosest_linear(nu),
             },
-            settings: Settings { tolerance: case.solver.tolerance, max_iterations: case.solver.max_iterations },
             max_cutbacks: case.solver.max_cutbacks,
             spacing,
             predicted_contact_radius: meshed,

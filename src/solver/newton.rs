@@ -11,17 +11,17 @@ use crate::mesh::Mesh;
 
 /// Step lengths of the line search, longest first.
 const STEP_LENGTHS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
-/// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Solving more tightly (gamma 0.9, the first system to 0.01) takes a sixth more
+/// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance of the step asks for, and at the
+/// loosest to [`Settings::loosest_linear`]. Solving more tightly (gamma 0.9, the first system to 0.01) takes a sixth more
 /// processor time for 3 % fewer iterations: it is plastic loading and unloading that the iteration has to find.
 const FORCING_GAMMA: f64 = 2.0;
-/// Loosest linear tolerance.
-const FORCING_MAX: f64 = 0.1;
-/// Linear tolerance of a step's first system, whose merit says nothing about the size of what is to be found.
-const FORCING_FIRST: f64 = 0.1;
 /// From this iteration on the line search compares with the last iterate alone; before, with the largest merit so far, because the first
 /// changes of contact status raise the merit on the way down. In deep plasticity the merit must not rise for long: at E/sigma_Y = 5000 a press of
 /// 20 steps took 375 iterations and 7 cuts from the fifth iteration on, 166 and none from the second or third.
 const MONOTONE_FROM: usize = 2;
+/// At a kink of the merit, where a point at the edge changes its status whatever the step length, no step lowers it, and the iteration would go round in
+/// circles until the step is given up. An iterate so many tolerances away is then taken as it is.
+const KINK: f64 = 3.0;
 
 /// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
 const ROUNDING: f64 = 1e-14;
@@ -178,11 +178,22 @@ impl Newton {
             };
             let before = self.current.merit / scale;
             previous = self.current.merit;
+            let may_stay =
+                iteration >= MONOTONE_FROM && self.plate_is_placed(control) && previous <= KINK * self.settings.tolerance * scale;
             let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
                 Ok(found) => found,
                 Err(Outcome::Inverted { element, point }) => return Ok(Err(StepFailure::Inverted { element, point })),
                 Err(Outcome::Valid) => return Ok(Err(self.exhausted(&mesh, iteration + 1))),
             };
+            if may_stay && self.current.merit >= previous {
+                // The line search has left the iterate that it started from in `best`.
+                std::mem::swap(&mut self.current, &mut self.best);
+                report.iterations.push(Iteration { merit: before, step_length: 0.0, krylov, changed: 0 });
+                log::debug!("  iteration {:2}: merit {before:.2e}, which no step length lowers: accepted", iteration + 1);
+                report.merit = before;
+                report.times = std::mem::take(&mut self.times);
+                return Ok(Ok(report));
+            }
             if moves_plate {
                 highest = 0.0;
                 previous = f64::INFINITY;
@@ -244,17 +255,14 @@ impl Newton {
     }
 
     fn forcing(&self, previous: f64) -> f64 {
-        let merit = self.current.merit;
-        if merit == 0.0 {
-            return FORCING_MAX;
-        }
-        if !previous.is_finite() {
-            // The first system carries the whole increment: its merit says nothing about the size of what is to be found.
-            return FORCING_FIRST;
+        let (merit, loosest) = (self.current.merit, self.settings.loosest_linear);
+        // A step's first system carries the whole increment: its merit says nothing about the size of what is to be found.
+        if merit == 0.0 || !previous.is_finite() {
+            return loosest;
         }
         let floor = 0.3 * self.settings.tolerance * self.scale() / merit;
         let ratio = merit / previous;
-        (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, FORCING_MAX)
+        (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, loosest)
     }
 
     /// Forms and solves the linear system: the correction is in `self.delta`; returns Krylov iterations, fallback and the change of h.

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use crate::case::{Case, Friction, Segment, estimated_elements};
-use crate::simulation::problem::default_press_steps;
+use crate::simulation::problem::press_steps;
 
 /// One of some shares of a study, `1/4` to `4/4`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub fn cost(case: &Case) -> f64 {
         steps += match segment {
             Segment::Indentation { indentation } => {
                 deepest = deepest.max(indentation / radius);
-                case.solver.press_steps.unwrap_or_else(|| default_press_steps(case.mesh.elements_per_contact_radius)) as f64
+                press_steps(case) as f64
             }
             Segment::Shear { .. } => SHEAR_STEPS,
             Segment::Release => 12.0,

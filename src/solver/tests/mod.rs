@@ -32,7 +32,7 @@ pub struct Rig {
     pub energies: Energies,
 }
 
-pub const TIGHT: Settings = Settings { tolerance: 1e-12, max_iterations: 30 };
+pub const TIGHT: Settings = Settings { tolerance: 1e-12, max_iterations: 30, loosest_linear: 0.1 };
 
 impl Rig {
     pub fn new(mesh: Mesh, material: Material<f64>, friction: Friction<f64>, settings: Settings) -> Self {
