@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::mesh::brick;
+use crate::solver::loosest_linear;
 use crate::solver::phases::{Phase, PhaseTimes};
 
 fn plastic() -> Material<f64> {
@@ -99,4 +100,13 @@ fn a_normal_force_that_nothing_carries_is_a_failure() {
     rig.to(-0.1, 0.0);
     let failure = rig.attempt(&Control { h: -0.1, delta_t: 0.0, normal_force: Some(0.01) }).expect_err("nothing touches");
     assert!(!failure.to_string().is_empty(), "{failure}");
+}
+
+#[test]
+fn linear_systems_are_solved_more_tightly_where_volume_is_stiff() {
+    for poissons_ratio in [-0.9, 0.0, 0.2, 0.3] {
+        assert_eq!(loosest_linear(poissons_ratio), 0.1);
+    }
+    assert!((loosest_linear(0.49) - 0.1 * (2.6 / 1.2) / (2.98 / 0.06)).abs() < 1e-15);
+    assert!((1e-6..1e-5).contains(&loosest_linear(0.5 - 1e-16_f64.sqrt())));
 }
