@@ -92,6 +92,14 @@ const CASES: &[(&str, f64, &str, f64, &str)] = &[
     ("table",    1000.0, "0.3",       1e-2, "full-slip"),
 ];
 
+/// A case file of a sphere of radius 1 with this modulus, the rest as given.
+fn case_text(poissons_ratio: f64, hardening: &str, friction: &str, mesh: &str, path: &str) -> String {
+    format!(
+        "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = {E}\npoissons_ratio = {poissons_ratio}\n[material.hardening]\n{hardening}\n\
+         [contact]\nfriction = {friction}\n[mesh]\n{mesh}\n{path}"
+    )
+}
+
 /// Follows the path of a case file's text.
 fn drive(text: &str) -> (Ending, Watch) {
     let case = Case::parse(text, "case.toml", &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -106,12 +114,9 @@ fn drive(text: &str) -> (Ending, Watch) {
 /// One case: its line of the table, and what is wrong with it.
 fn follow(&(law, stiffness, friction, h, shear): &(&str, f64, &str, f64, &str)) -> (String, Option<String>) {
     let shear_toml = if shear == "full-slip" { "\"full-slip\"" } else { shear };
-    let text = format!(
-        "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = {E}\npoissons_ratio = 0.3\n[material.hardening]\n{}\n[contact]\n\
-         friction = {friction}\n[mesh]\nelements_per_contact_radius = 4\nfine_zone = 1.8\n[[path]]\nindentation = {h:e}\n[[path]]\n\
-         shear = {shear_toml}\n",
-        hardening(law, 1.0 / stiffness)
-    );
+    let mesh = "elements_per_contact_radius = 4\nfine_zone = 1.8";
+    let path = format!("[[path]]\nindentation = {h:e}\n[[path]]\nshear = {shear_toml}\n");
+    let text = case_text(0.3, &hardening(law, 1.0 / stiffness), friction, mesh, &path);
     let (ending, watch) = drive(&text);
     let last = watch.rows.last().copied().unwrap_or_default();
     let sum = |of: fn(&StepRecord) -> usize| watch.rows.iter().map(of).sum::<usize>();
@@ -198,10 +203,7 @@ const HARD: &[Hard] = &[
 fn what_used_to_be_hard_is_followed_without_a_cutback() {
     let follow = |&(what, nu, law, friction, elements, path): &Hard| {
         let path: String = path.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
-        let text = format!(
-            "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = {E}\npoissons_ratio = {nu}\n[material.hardening]\n{law}\n[contact]\n\
-             friction = {friction}\n[mesh]\nelements_per_contact_radius = {elements}\n{path}"
-        );
+        let text = case_text(nu, law, friction, &format!("elements_per_contact_radius = {elements}"), &path);
         (what, path.ends_with("release = true\n"), drive(&text))
     };
     let followed: Vec<_> = HARD.par_iter().map(follow).collect();

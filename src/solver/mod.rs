@@ -12,6 +12,7 @@ mod tests;
 
 use crate::compute::ComputeError;
 use crate::linalg::LinalgError;
+use crate::material::Elasticity;
 
 /// How a step is to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +25,14 @@ pub struct Settings {
     pub loosest_linear: f64,
 }
 
-/// Loosest linear tolerance for a Poisson's ratio: 0.1 up to 0.3, and above less as the ratio of bulk to shear modulus, 2 (1 + nu)/(3 (1 - 2 nu)), grows.
+/// Loosest linear tolerance for a Poisson's ratio: 0.1 up to 0.3, and above less as the ratio of bulk to shear modulus grows.
 /// A change of volume makes a residual that is so much greater than that of a change of shape, and hides what is missing of the latter: at
 /// nu = 0.49 systems solved to 0.1 made presses take five times the iterations and cut-backs, or fail; to 0.0044 none was needed.
 pub fn loosest_linear(poissons_ratio: f64) -> f64 {
-    let bulk_to_shear = |nu: f64| 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu));
+    let bulk_to_shear = |nu: f64| {
+        let moduli = Elasticity::<f64>::new(1.0, nu);
+        moduli.bulk / moduli.shear
+    };
     // Not below what a cycle in f32 reaches without restarts.
     (0.1 * (bulk_to_shear(0.3) / bulk_to_shear(poissons_ratio)).min(1.0)).max(1e-6)
 }

@@ -151,10 +151,11 @@ impl Newton {
         let mut report = StepReport::default();
         let mut previous = f64::INFINITY;
         let mut highest = 0.0_f64;
+        let mut at_kink = false;
         for iteration in 0..=self.settings.max_iterations {
             let scale = self.scale();
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
-            if self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
+            if at_kink || self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
                 report.times = std::mem::take(&mut self.times);
                 return Ok(Ok(report));
@@ -190,9 +191,8 @@ impl Newton {
                 std::mem::swap(&mut self.current, &mut self.best);
                 report.iterations.push(Iteration { merit: before, step_length: 0.0, krylov, changed: 0 });
                 log::debug!("  iteration {:2}: merit {before:.2e}, which no step length lowers: accepted", iteration + 1);
-                report.merit = before;
-                report.times = std::mem::take(&mut self.times);
-                return Ok(Ok(report));
+                at_kink = true;
+                continue;
             }
             if moves_plate {
                 highest = 0.0;
