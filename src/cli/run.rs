@@ -2,7 +2,6 @@
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use clap::Args;
@@ -12,13 +11,18 @@ use super::options::{DeviceArgs, Verbosity};
 use super::resume::{Standing, refused, standing};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, out};
-use crate::case::Case;
+use crate::case::{BYTES_PER_ELEMENT, Case};
 use crate::compute::ComputeError;
-use crate::output::companion;
+use crate::compute::select::Selected;
 use crate::output::{Checkpoint, Clock, OutputDirectory, ResultWriter, Setting, Status, Summary, progress};
 use crate::simulation::SimulationError;
-use crate::simulation::drive::{Drive, Ending, Observer};
+use crate::simulation::drive::{Ending, Observer};
+use crate::simulation::follow::{follow, seats};
 use crate::simulation::problem::Problem;
+use crate::simulation::scout::{Scout, scout};
+
+/// The cost of a Newton iteration grows with this power of the number of elements.
+const COST_EXPONENT: f64 = 1.1;
 
 /// Simulate one case.
 #[derive(Clone, Debug, Args)]
@@ -56,58 +60,78 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         Some(Standing::NotBegun) | None => None,
     };
     let bad_case = |source: SimulationError| CliError::Problem { file: args.case.clone(), source };
-    let problem = Problem::new(&case).map_err(bad_case)?;
-    let selected = choose_backend(&args.device, vec![problem.model.clone()]).map_err(|error| match error {
+    let open = |problem: &Problem| choose_backend(&args.device, vec![problem.model.clone()]);
+    let mut problem = Problem::on(&case, checkpoint.as_ref().and_then(Checkpoint::zone)).map_err(bad_case)?;
+    let Selected { backend, notes } = open(&problem).map_err(|error| match error {
         ComputeError::Device(what) => CliError::Device { what },
         error => bad_case(error.into()),
     })?;
-    let mut backend = selected.backend;
-    let newton = problem.newton().map_err(bad_case)?;
     let stop = stop_flag()?;
-    let setting = Setting {
-        computed_on: backend.description(),
-        elements: problem.model.mesh.elements.len(),
-        unknowns: newton.free_unknowns(),
-    };
-    let mut drive = Drive::new(&problem, backend.as_mut(), 0, newton);
+    let computed_on = backend.description();
+    let mut seat = seats((backend, 0), problem.zone, open);
     match &checkpoint {
         Some(checkpoint) => {
-            checkpoint.check_precision(&OutputDirectory::existing(&args.out).checkpoint(), setting.computed_on.precision)?;
-            drive.resume(checkpoint.snapshot()).map_err(|error| refused(&args.out, &error.to_string()))?;
+            checkpoint.check_precision(&OutputDirectory::existing(&args.out).checkpoint(), computed_on.precision)?;
+            checkpoint.snapshot().check(&problem.model.mesh).map_err(|error| refused(&args.out, &error.to_string()))?;
         }
         None => out::prepare(&args.out, &case)?,
     }
-    let progress = progress(args.verbosity.quiet);
+    let mut progress = progress(args.verbosity.quiet);
+    let begun = Instant::now();
+    let scout = match checkpoint.is_none() && case.solver.error_estimate {
+        true => scout(&case, &stop).map_err(bad_case)?,
+        false => None,
+    };
+    let scout_took = begun.elapsed().as_secs_f64();
+    if let Some(scout) = &scout {
+        let zone = scout.zone(problem.zone, problem.spacing);
+        if zone != problem.zone {
+            problem = Problem::on(&case, Some(zone)).map_err(bad_case)?;
+        }
+        progress.message(&forecast(scout, &problem, scout_took));
+    }
+    let setting =
+        Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
     let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress, stop.clone(), checkpoint.as_ref())?;
+    results.meshed(&problem);
     match &checkpoint {
         Some(checkpoint) => results.tell(&resumed(checkpoint, args)),
         None if args.resume => results.tell(&format!("nothing to resume in {}: from the beginning", args.out.display())),
         None => {}
     }
     // A resumed run has noted them before.
-    selected.notes.iter().filter(|_| checkpoint.is_none()).for_each(|note| results.note(note));
-    let mut followed = drive.run(&mut results);
-    let estimates = matches!(followed, Ok(Ending::Done)) && case.solver.error_estimate;
-    if estimates {
-        // Whatever becomes of the companion, the path has not to be followed again.
-        drive.checkpoint(true, &mut results);
-    }
-    // Not where it began, if the device failed on the way.
-    results.computed_on(backend.description());
-    drop(backend);
-    if estimates {
-        let begun = Instant::now();
-        let companion = companion::companion(&case);
-        let elements = [&case, &companion].map(|c| c.mesh.elements_per_contact_radius);
-        log::info!("error estimate: the same path on {} elements per contact radius", elements[1]);
-        match companion::follow(&companion, stop.clone()) {
-            Ok(rows) => results.compare(elements[0], &rows, elements[1]),
-            Err(_) if stop.load(Ordering::Relaxed) => followed = Ok(Ending::Interrupted),
-            Err(reason) => results.note(&format!("no error estimate, the run on {} elements ended: {reason}", elements[1])),
+    notes.iter().filter(|_| checkpoint.is_none()).for_each(|note| results.note(note));
+    if let Some(scout) = scout {
+        let asked = Problem::zone_of(&case).map_err(bad_case)?;
+        if problem.zone != asked {
+            results.note(&format!(
+                "the contact leaves the zone of {:.4} R around the pole that would be meshed finely: meshed to {:.4} R, with elements of {:.5} R",
+                asked.radius(),
+                problem.zone.radius(),
+                problem.spacing
+            ));
         }
-        results.estimate_took(begun.elapsed().as_secs_f64());
+        results.scouted(scout, scout_took);
     }
-    conclude(followed, results, args)
+    let followed = follow(problem, checkpoint.as_ref().map(Checkpoint::snapshot), &mut seat, &mut results);
+    let ending = followed.map(|followed| {
+        // Not where it began, if the device failed on the way.
+        results.computed_on(followed.computed_on);
+        followed.ending
+    });
+    conclude(ending, results, args)
+}
+
+/// What the coarse run tells of the run: its size, and about how long it will take in the same place.
+fn forecast(scout: &Scout, problem: &Problem, scout_seconds: f64) -> String {
+    let elements = problem.model.mesh.elements.len();
+    let refinement = scout.spacing / problem.spacing;
+    let seconds = scout_seconds * refinement * (elements as f64 / scout.mesh_elements.max(1) as f64).powf(COST_EXPONENT);
+    format!(
+        "{elements} elements; about {:.1} GiB and, if the coarse run on {} elements is a measure, {seconds:.0} s",
+        elements as f64 * BYTES_PER_ELEMENT / f64::from(1 << 30),
+        scout.mesh_elements
+    )
 }
 
 /// Says that a run that was to go on has ended before: as it did then.
@@ -142,7 +166,10 @@ fn conclude(followed: Result<Ending, SimulationError>, results: ResultWriter, ar
         Ok(Ending::NotConverged(reason)) => {
             (Status::NotConverged, Outcome::NotConverged, Some(format!("no convergence: {reason}")))
         }
-        Ok(Ending::Outgrown(reason)) => (Status::ContactOutgrewMesh, Outcome::NotConverged, Some(reason)),
+        Ok(Ending::Outgrown(outgrowth)) => {
+            let reason = format!("{outgrowth}; there is no larger mesh");
+            (Status::ContactOutgrewMesh, Outcome::NotConverged, Some(reason))
+        }
         Ok(Ending::Interrupted) => {
             let reason = format!("interrupted by a signal after step {steps}; to go on, run the same command with --resume");
             (Status::Interrupted, Outcome::Interrupted, Some(reason))

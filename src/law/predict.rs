@@ -150,7 +150,8 @@ fn press(case: &Case) -> Result<NormalState, LawError> {
     let mut last = Last(StepRecord::default());
     match Drive::new(&problem, selected.backend.as_mut(), 0, newton).run(&mut last)? {
         Ending::Done => {}
-        Ending::NotConverged(reason) | Ending::Outgrown(reason) => return Err(LawError::Press(reason)),
+        Ending::NotConverged(reason) => return Err(LawError::Press(reason)),
+        Ending::Outgrown(outgrowth) => return Err(LawError::Press(outgrowth.to_string())),
         Ending::Interrupted => return Err(LawError::Press("it was interrupted".to_owned())),
     }
     let (radius, modulus) = (case.sphere.radius, case.material.youngs_modulus);

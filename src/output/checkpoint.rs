@@ -15,12 +15,13 @@ use super::{OutputError, write_atomically};
 use crate::case::Case;
 use crate::compute::Description;
 use crate::simulation::checkpoint::Snapshot;
+use crate::simulation::zone::Zone;
 
 /// First words of the file.
 const NAME: &str = "asperity checkpoint";
 /// To be raised with every change of what is stored, and of the order and the steps in which a run goes on from it. The version of the program is compared
 /// as well.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// An unfinished run: its case, what it depends on, and what it has written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,6 +51,11 @@ impl Checkpoint {
     /// The state that [`crate::simulation::drive::Drive::resume`] takes.
     pub fn snapshot(&self) -> Snapshot {
         self.run.clone()
+    }
+
+    /// The finely meshed zone of the run.
+    pub fn zone(&self) -> Option<Zone> {
+        self.ledger.zone
     }
 
     /// Writes it, whole or not at all.

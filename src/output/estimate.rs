@@ -1,4 +1,4 @@
-//! The discretisation error of a run, estimated from the same case on another mesh and from the ripple of its own press curve.
+//! The discretisation error of a run, estimated from the same case on its scout's coarser mesh and from the ripple of its own press curve.
 //!
 //! Mesh and load steps are refined together, and what they leave is taken to fall as 1/n with n elements along the contact radius: the difference
 //! of two runs then tells what is missing from either (Roache, J. Fluids Eng. 116, 1994). Where the error falls faster the estimate is too large, not
@@ -12,17 +12,11 @@ const RIPPLE_FROM: f64 = 0.25;
 /// Fewest steps by which a ripple is told from a trend.
 const RIPPLE_STEPS: usize = 6;
 
-/// Elements along the contact radius of the run with which a run on `elements` is compared: 0.4 of them, a tenth of the work, but at least 4; the
-/// coarsest meshes are compared with a finer one.
-pub fn companion_elements(elements: usize) -> usize {
-    if elements <= 4 { 6 } else { ((0.4 * elements as f64).round() as usize).max(4) }
-}
-
 /// Estimated errors, sizes, in the units of the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
-    /// Elements along the contact radius of the run that was compared with.
-    pub companion_elements: usize,
+    /// Elements along the contact radius of the coarse run that was compared with.
+    pub coarse_elements: usize,
     /// Of F_N0.
     pub f_n0: Option<f64>,
     /// Of a0.
@@ -32,18 +26,17 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// Compares a run on `elements` along the contact radius with its companion on `companion_elements`.
-    pub fn new(rows: &[StepRecord], run: &Summary, elements: usize, companion: &Summary, companion_elements: usize) -> Self {
-        let (n, m) = (elements as f64, companion_elements as f64);
-        // e_n = C/n and e_m = C/m give e_n from q_n - q_m.
-        let factor = m / (n - m).abs();
+    /// Compares a run whose elements are of size `spacing` with one on `coarse_spacing`, for which `coarse_elements` along the contact radius were asked.
+    pub fn new(rows: &[StepRecord], run: &Summary, spacing: f64, coarse: &Summary, coarse_spacing: f64, coarse_elements: usize) -> Self {
+        // e = C spacing on either mesh gives e of the fine one from the difference.
+        let factor = spacing / (coarse_spacing - spacing).abs();
         let ripple = ripple(rows).unwrap_or(0.0);
         let error = |q: fn(&Summary) -> Option<f64>, ripple: f64| {
-            let (fine, coarse) = (q(run)?, q(companion)?);
+            let (fine, coarse) = (q(run)?, q(coarse)?);
             Some(factor * (fine - coarse).abs() + ripple * fine.abs())
         };
         Self {
-            companion_elements,
+            coarse_elements,
             f_n0: error(|s| s.f_n0, ripple),
             // F_N goes as a^2 where the pressure is given.
             a0: error(|s| s.a0, 0.5 * ripple),
@@ -122,12 +115,11 @@ mod tests {
     #[test]
     fn an_error_of_first_order_is_told_exactly() {
         let at = |n: f64| Summary { f_n0: Some(150.0 + 8.0 / n), a0: Some(0.2 - 0.1 / n), f_t_max: None, ..Summary::default() };
-        for (n, m) in [(16, companion_elements(16)), (8, companion_elements(8)), (4, companion_elements(4)), (5, 4), (6, 4)] {
-            let estimate = ErrorEstimate::new(&[], &at(n as f64), n, &at(m as f64), m);
+        for (n, m) in [(16, 6), (8, 4), (4, 2), (5, 2), (6, 3)] {
+            let estimate = ErrorEstimate::new(&[], &at(n as f64), 0.2 / n as f64, &at(m as f64), 0.2 / m as f64, m);
             assert!((estimate.f_n0.unwrap() - 8.0 / n as f64).abs() < 1e-12, "{n} {m}");
             assert!((estimate.a0.unwrap() - 0.1 / n as f64).abs() < 1e-12);
             assert_eq!(estimate.f_t_max, None);
         }
-        assert_eq!([4, 5, 6, 8, 12, 16, 32].map(companion_elements), [6, 4, 4, 4, 5, 6, 13]);
     }
 }

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::plots::Tables;
 use super::{OutsideSteps, StepRecord};
+use crate::simulation::scout::Scout;
+use crate::simulation::zone::Zone;
 use crate::solver::phases::PhaseTimes;
 
 /// The results so far, in the user's units.
@@ -23,6 +25,12 @@ pub struct Ledger {
     pub outside: OutsideSteps,
     /// Notes for the summary.
     pub messages: Vec<String>,
+    /// The finely meshed zone, as far as it is known.
+    pub zone: Option<Zone>,
+    /// How often the run started over on a larger zone.
+    pub remeshed: usize,
+    /// What the coarse run before it has found.
+    pub scout: Option<Scout>,
     /// Seconds on the wall that earlier parts of a resumed run took.
     pub wall_before: f64,
     /// Their processor time, `None` where the system does not tell.

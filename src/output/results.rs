@@ -13,10 +13,12 @@ use super::{
     Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
     StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
 };
-use crate::case::{Case, Fields};
+use crate::case::{Case, Fields, Segment};
 use crate::compute::{ComputeError, Description};
 use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::problem::Problem;
+use crate::simulation::scout::Scout;
 
 /// What the summary has to know beside the history.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,10 +52,12 @@ pub struct ResultWriter {
     progress: Box<dyn Progress>,
     stop: Arc<AtomicBool>,
     share: PathShare,
+    path: Vec<Segment>,
     history: HistoryWriter,
     collection: Collection,
     ledger: Ledger,
-    estimate: Option<ErrorEstimate>,
+    /// Size of the elements in the contact, scaled.
+    spacing: f64,
     /// The resolved case, for checkpoints.
     case: String,
     /// Where the run began, as `setting` may not say any more.
@@ -112,7 +116,8 @@ impl ResultWriter {
             history,
             collection,
             ledger,
-            estimate: None,
+            spacing: 0.0,
+            path: case.path.clone(),
             case: case.to_toml(),
             checkpoint_interval: CHECKPOINT_INTERVAL,
             next_checkpoint: Instant::now() + CHECKPOINT_INTERVAL,
@@ -145,16 +150,28 @@ impl ResultWriter {
         self.setting.computed_on = description;
     }
 
-    /// Estimates the errors of the run on `elements` along the contact radius from the history of its companion, in the same units.
-    pub fn compare(&mut self, elements: usize, companion: &[StepRecord], companion_elements: usize) {
-        let run = Summary::from_history(&self.ledger.rows, &self.inputs);
-        let other = Summary::from_history(companion, &self.inputs);
-        self.estimate = Some(ErrorEstimate::new(&self.ledger.rows, &run, elements, &other, companion_elements));
+    /// Takes what the coarse run before this one has found in so many seconds on the wall, which have gone by already.
+    pub fn scouted(&mut self, scout: Scout, seconds: f64) {
+        self.ledger.outside.error_estimate = seconds;
+        self.ledger.outside.setup -= seconds;
+        if let Some(reason) = &scout.failure {
+            self.note(&format!("no error estimate: the coarse run before this one ended early: {reason}"));
+        }
+        self.ledger.scout = Some(scout);
     }
 
-    /// Says how many seconds on the wall the error estimate took.
-    pub fn estimate_took(&mut self, seconds: f64) {
-        self.ledger.outside.error_estimate = seconds;
+    /// Says on what mesh the run is.
+    pub fn meshed(&mut self, problem: &Problem) {
+        self.spacing = problem.spacing;
+        self.ledger.zone = Some(problem.zone);
+    }
+
+    /// Estimates the errors of the run from what the scout has found, if it got to its end.
+    fn estimate(&self) -> Option<ErrorEstimate> {
+        let scout = self.ledger.scout.as_ref().filter(|scout| scout.failure.is_none())?;
+        let rows: Vec<StepRecord> = scout.rows.iter().map(|row| row.in_units(&self.units)).collect();
+        let [run, coarse] = [&self.ledger.rows, &rows].map(|rows| Summary::from_history(rows, &self.inputs));
+        Some(ErrorEstimate::new(&self.ledger.rows, &run, self.spacing, &coarse, scout.spacing, scout.elements))
     }
 
     /// Steps written so far.
@@ -177,12 +194,15 @@ impl ResultWriter {
         }
         self.ledger.outside.output += begun.elapsed().as_secs_f64();
         let (wall_s, cpu_s) = self.spent();
-        let estimate = self.estimate.unwrap_or_default();
+        // Of a run that did not get to its end there is nothing to compare.
+        let estimate = self.estimate().filter(|_| status == Status::Done);
+        let errors = estimate.unwrap_or_default();
         let summary = Summary {
-            f_n0_error: estimate.f_n0,
-            a0_error: estimate.a0,
-            f_t_max_error: estimate.f_t_max,
-            error_companion_elements: self.estimate.map(|e| e.companion_elements),
+            f_n0_error: errors.f_n0,
+            a0_error: errors.a0,
+            f_t_max_error: errors.f_t_max,
+            error_companion_elements: estimate.map(|e| e.coarse_elements),
+            remeshed: self.ledger.remeshed,
             status,
             elements: self.setting.elements,
             unknowns: self.setting.unknowns,
@@ -288,6 +308,21 @@ impl Observer for ResultWriter {
             self.ledger.tables.add(&self.ledger.rows, contact);
         }
         self.ledger.outside.output += begun.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Failed> {
+        self.out.cut_back(&[])?;
+        self.history = HistoryWriter::create(&self.out.history())?;
+        self.collection = Collection::new(&self.out.collection());
+        self.share = PathShare::new(&self.path);
+        self.setting.elements = problem.model.mesh.elements.len();
+        self.setting.unknowns = unknowns;
+        let ledger = &mut self.ledger;
+        (ledger.rows, ledger.saved, ledger.tables) = Default::default();
+        ledger.fallbacks = 0;
+        ledger.remeshed += 1;
+        self.meshed(problem);
         Ok(())
     }
 

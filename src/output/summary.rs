@@ -108,8 +108,10 @@ pub struct Summary {
     /// Root mean square of ln F_N about a smooth curve through the first press: the ripple of nodes coming into contact, part of the errors.
     #[serde(rename = "F_N_ripple")]
     pub f_n_ripple: Option<f64>,
-    /// Elements along the contact radius of the run from which the errors were estimated.
+    /// Elements along the contact radius of the coarse run from which the errors were estimated.
     pub error_companion_elements: Option<usize>,
+    /// How often the contact left the finely meshed zone and the run started over on a larger one.
+    pub remeshed: usize,
     /// |F_T|/F_N at the end of the shear.
     pub mu_at_slip: Option<f64>,
     /// Whether the shear got to full slip.
@@ -450,6 +452,7 @@ mod tests {
             "normalized",
             "mu_at_slip",
             "full_slip_reached",
+            "remeshed",
             "messages",
         ] {
             assert!(json.get(key).is_some(), "{key} is missing");

@@ -48,6 +48,7 @@ impl StepRecord {
             a: self.a * length,
             stick_radius: self.stick_radius * length,
             a_gap: self.a_gap * length,
+            reach: self.reach * length,
             work_external: self.work_external * energy,
             energy_elastic: self.energy_elastic * energy,
             work_plastic: self.work_plastic * energy,

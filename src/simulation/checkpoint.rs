@@ -50,6 +50,12 @@ impl Committed {
         (radius(h) - radius(self.record.h)).abs() + (delta_t - self.record.delta_t).abs()
     }
 
+    /// Distance from the axis to the outermost closed point, in the undeformed body; zero without contact.
+    pub fn reach(&self) -> f64 {
+        let closed = self.points.iter().filter(|p| p.status != Status::Open);
+        closed.map(|p| p.reference[0].hypot(p.reference[1])).fold(0.0, f64::max)
+    }
+
     /// Forms the contact points from displacement, force and status.
     pub fn place_points(&mut self, mesh: &Mesh) {
         let Self { u, force, statuses, points, .. } = self;
@@ -122,7 +128,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`SimulationError::Snapshot`] with the sizes that differ.
-    pub(super) fn check(&self, mesh: &Mesh) -> Result<(), SimulationError> {
+    pub fn check(&self, mesh: &Mesh) -> Result<(), SimulationError> {
         let Self { state, case, .. } = self;
         let (unknowns, elements) = (3 * mesh.nodes.len(), mesh.elements.len());
         for (what, found, expected) in [

@@ -27,6 +27,11 @@ pub trait Observer {
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
     /// Something that the user should know and the summary should keep.
     fn note(&mut self, text: &str);
+    /// The contact left the finely meshed zone: the run starts over from the undeformed state on the mesh of `problem`, which has so many unknowns.
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        let _ = (problem, unknowns);
+        Ok(())
+    }
     /// Asks the run to end after the present step.
     fn stop_requested(&self) -> bool {
         false
@@ -71,9 +76,34 @@ pub enum Ending {
     /// A step did not converge, however short.
     NotConverged(String),
     /// The contact outgrew the finely meshed zone.
-    Outgrown(String),
+    Outgrown(Outgrowth),
     /// The observer asked to stop.
     Interrupted,
+}
+
+/// How far a contact reached when it left the finely meshed zone, scaled by R.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outgrowth {
+    /// Largest distance of a closed point from the axis, in the undeformed body.
+    pub reach: f64,
+    /// Contact radius.
+    pub contact_radius: f64,
+    /// Radius of the finely meshed zone.
+    pub fine_radius: f64,
+    /// Indentation.
+    pub h: f64,
+    /// Tangential displacement.
+    pub delta_t: f64,
+}
+
+impl std::fmt::Display for Outgrowth {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { reach, fine_radius, h, delta_t, .. } = self;
+        write!(
+            f,
+            "the contact reaches {reach:.4} R at h = {h:.5} R, delta_T = {delta_t:.5} R, and the finely meshed zone ends at {fine_radius:.4} R"
+        )
+    }
 }
 
 /// Follows a path.
@@ -490,9 +520,9 @@ impl<'a> Drive<'a> {
             work_friction: before.work_friction + 2.0 * friction_work,
             contact_points,
             slipping_points,
-            max_alpha: 0.0,
+            max_alpha: energies.max_alpha,
+            reach: self.state.reach(),
         };
-        self.state.record.max_alpha = energies.max_alpha;
         log::info!(
             "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
              contact {:.2}, linear update {:.2}, linear solve {:.2}, commit {:.2})",
@@ -542,21 +572,9 @@ impl<'a> Drive<'a> {
     }
 
     /// The contact has come within half an element of the edge of the fine zone.
-    fn outgrown(&self) -> Option<String> {
+    fn outgrown(&self) -> Option<Outgrowth> {
         let limit = self.mesh.fine_radius - 0.5 * self.problem.spacing;
-        let reach = self
-            .state
-            .points
-            .iter()
-            .filter(|p| p.status != Status::Open)
-            .map(|p| p.reference[0].hypot(p.reference[1]))
-            .fold(0.0, f64::max);
-        (reach > limit).then(|| {
-            format!(
-                "the contact reaches {reach:.4} R at h = {:.5} R, delta_T = {:.5} R, and the finely meshed zone ends at {:.4} R; set [mesh] contact_radius to a \
-                 larger value than the predicted {:.4} R, or raise fine_zone",
-                self.state.record.h, self.state.record.delta_t, self.mesh.fine_radius, self.problem.predicted_contact_radius
-            )
-        })
+        let StepRecord { h, delta_t, reach, a: contact_radius, .. } = self.state.record;
+        (reach > limit).then_some(Outgrowth { reach, contact_radius, fine_radius: self.mesh.fine_radius, h, delta_t })
     }
 }

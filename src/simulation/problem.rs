@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::SimulationError;
 use super::path::Resolution;
+use super::zone::Zone;
 use crate::analytical::predicted_contact_radius;
 use crate::case::{self, Case, Segment};
 use crate::compute::CaseModel;
@@ -14,6 +15,7 @@ use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::solver::newton::Newton;
+use crate::solver::system::Boundary;
 use crate::solver::{Settings, SolverError, loosest_linear};
 
 /// A case ready to be simulated.
@@ -31,8 +33,8 @@ pub struct Problem {
     pub max_cutbacks: usize,
     /// Typical distance of contact points.
     pub spacing: f64,
-    /// Contact radius for which the mesh was made.
-    pub predicted_contact_radius: f64,
+    /// The part of the surface that is finely meshed.
+    pub zone: Zone,
 }
 
 /// Steps of a press: so many and so many more for each element along the contact radius; the front moves by a third of an element in the last ones. In the
@@ -40,11 +42,6 @@ pub struct Problem {
 const PRESS_STEPS: f64 = 14.0;
 const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
 const SHEAR_STEPS: usize = 15;
-/// Smallest contact radius that is meshed for: below it the sphere is a half-space anyway.
-const SMALLEST_CONTACT: f64 = 0.005;
-/// Largest contact radius that the mesh can resolve on a half ball.
-const LARGEST_CONTACT: f64 = 0.65;
-
 /// Largest indentation of the path, scaled.
 fn largest_indentation(case: &Case) -> f64 {
     case.path.iter().fold(0.0, |h, s| match s {
@@ -64,30 +61,37 @@ pub fn shear_steps(case: &Case) -> usize {
     case.solver.shear_steps.unwrap_or(SHEAR_STEPS)
 }
 
+/// The fine zone that a scaled case asks for: its own contact radius, or else the predicted one.
+fn asked_zone(case: &Case, law: &Hardening<f64>) -> Zone {
+    let flow_stress = |alpha| if matches!(law, Hardening::Elastic) { f64::INFINITY } else { law.flow_stress(alpha) };
+    let predicted = || predicted_contact_radius(1.0, case.material.poissons_ratio, flow_stress, largest_indentation(case));
+    Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone)
+}
+
 impl Problem {
-    /// Scales a case (in the user's units) and makes its mesh.
+    /// Scales a case (in the user's units) and makes the mesh that it asks for.
+    ///
+    /// # Errors
+    /// [`SimulationError::Hardening`], [`SimulationError::Mesh`].
     pub fn new(case: &Case) -> Result<Self, SimulationError> {
+        Self::on(case, None)
+    }
+
+    /// The same on a mesh with this fine zone, in place of the one that the case asks for.
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn on(case: &Case, zone: Option<Zone>) -> Result<Self, SimulationError> {
         let case = case.scaled();
         let nu = case.material.poissons_ratio;
         let material = Material::<f64>::from_case(&case.material)?;
-        let law = &material.hardening;
-        let predicted = match case.mesh.contact_radius {
-            Some(a) => a,
-            None => predicted_contact_radius(
-                1.0,
-                nu,
-                |alpha| if matches!(law, Hardening::Elastic) { f64::INFINITY } else { law.flow_stress(alpha) },
-                largest_indentation(&case),
-            ),
-        };
-        let meshed = predicted.clamp(SMALLEST_CONTACT, LARGEST_CONTACT);
+        let zone = zone.unwrap_or_else(|| asked_zone(&case, &material.hardening));
+        let elements = case.mesh.elements_per_contact_radius;
         let mesh = sphere_mesh(&SphereSpec {
-            contact_radius: meshed,
-            elements_per_contact_radius: case.mesh.elements_per_contact_radius,
-            fine_zone: case.mesh.fine_zone,
+            contact_radius: zone.contact_radius,
+            elements_per_contact_radius: elements,
+            fine_zone: zone.fine_zone,
         })?;
-        let epr = case.mesh.elements_per_contact_radius;
-        let spacing = meshed / epr as f64;
         Ok(Self {
             resolution: Resolution { press_steps: press_steps(&case), shear_steps: shear_steps(&case) },
             settings: Settings {
@@ -96,8 +100,8 @@ impl Problem {
                 loosest_linear: loosest_linear(nu),
             },
             max_cutbacks: case.solver.max_cutbacks,
-            spacing,
-            predicted_contact_radius: meshed,
+            spacing: zone.contact_radius / elements as f64,
+            zone,
             model: CaseModel {
                 mesh: Arc::new(mesh),
                 material,
@@ -108,6 +112,20 @@ impl Problem {
             },
             case,
         })
+    }
+
+    /// The fine zone that a case (in the user's units) asks for.
+    ///
+    /// # Errors
+    /// [`SimulationError::Hardening`].
+    pub fn zone_of(case: &Case) -> Result<Zone, SimulationError> {
+        let case = case.scaled();
+        Ok(asked_zone(&case, &Material::<f64>::from_case(&case.material)?.hardening))
+    }
+
+    /// Number of displacements that are not prescribed.
+    pub fn free_unknowns(&self) -> usize {
+        Boundary::new(&self.model.mesh).prescribed.iter().filter(|p| !**p).count()
     }
 
     /// The Newton iteration for this problem.

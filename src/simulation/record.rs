@@ -59,6 +59,9 @@ pub struct StepRecord {
     /// Largest equivalent plastic strain of any quadrature point.
     #[serde(default)]
     pub max_alpha: f64,
+    /// Distance from the sphere's axis to the outermost point in contact, in the undeformed sphere.
+    #[serde(default)]
+    pub reach: f64,
 }
 
 /// A contact point of a committed state, scaled.

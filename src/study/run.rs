@@ -21,9 +21,10 @@ use super::shard::{Shard, cost, dearest_first};
 use super::simulate::Simulator;
 use crate::compute::gpu::{DeviceRequest, GpuContext, GpuError};
 use crate::compute::select::{DeviceWish, PrecisionWish, Selected, select};
-use crate::compute::{CaseModel, ComputeError};
+use crate::compute::{CaseModel, Compute, ComputeError};
 use crate::mesh::Mesh;
 use crate::output::Summary;
+use crate::simulation::follow::seats;
 use crate::simulation::problem::Problem;
 
 /// How a study is to be computed.
@@ -226,9 +227,12 @@ fn on_cores(
 ) -> Result<(), StudyError> {
     let compute = |case: usize| -> Result<Summary, StudyError> {
         simulator.begin(case)?;
-        let problem = Problem::new(&simulator.cases[case].case)?;
-        let Selected { mut backend, notes } = select(DeviceWish::Cpu, precision, vec![problem.model.clone()])?;
-        simulator.follow(case, &problem, backend.as_mut(), 0, &notes)
+        let problem = simulator.problem(case)?;
+        let open = |problem: &Problem| select(DeviceWish::Cpu, precision, vec![problem.model.clone()]);
+        let Selected { backend, notes } = open(&problem)?;
+        let computed_on = backend.description();
+        let mut seat = seats((backend, 0), problem.zone, open);
+        simulator.follow(case, problem, &mut seat, computed_on, &notes)
     };
     let work = |case: usize| {
         simulator.progress.started();
@@ -256,7 +260,7 @@ fn on_device(
         }
         let mut problems: Vec<(usize, Problem)> = Vec::new();
         for &case in &batch {
-            let begun = simulator.begin(case).and_then(|_| Ok(Problem::new(&simulator.cases[case].case)?));
+            let begun = simulator.begin(case).and_then(|_| simulator.problem(case));
             match begun {
                 Ok(problem) => problems.push((case, problem)),
                 Err(error) => {
@@ -267,7 +271,7 @@ fn on_device(
         }
         let models: Vec<CaseModel> = problems.iter().map(|(_, problem)| problem.model.clone()).collect();
         match select(options.device, options.precision, models) {
-            Ok(selected) => on_one_device(simulator, selected, pools, &problems, finished)?,
+            Ok(selected) => on_one_device(simulator, options, selected, pools, &problems, finished)?,
             // Too large for the device, perhaps: halves may not be.
             Err(ComputeError::Device(_)) if problems.len() > 1 => {
                 let cases: Vec<usize> = problems.iter().map(|(case, _)| *case).collect();
@@ -288,6 +292,7 @@ fn on_device(
 /// One batch: its cases are the guests of one backend, which this thread's scope serves.
 fn on_one_device(
     simulator: &Simulator<'_>,
+    options: &Options,
     selected: Selected,
     pools: &[ThreadPool],
     problems: &[(usize, Problem)],
@@ -301,8 +306,14 @@ fn on_one_device(
         simulator.progress.started();
         // Each job is done once, so that its guest is there.
         let guest = guests[slot].lock().unwrap_or_else(PoisonError::into_inner).take();
+        // A case that starts over on another mesh leaves the batch.
+        let open = |problem: &Problem| select(options.device, options.precision, vec![problem.model.clone()]);
         let followed = match guest {
-            Some(mut guest) => simulator.follow(*case, problem, &mut guest, slot, &notes),
+            Some(guest) => {
+                let computed_on = guest.description();
+                let mut seat = seats((Box::new(guest), slot), problem.zone, open);
+                simulator.follow(*case, problem.clone(), &mut seat, computed_on, &notes)
+            }
             None => Err(ComputeError::Device("the case was begun twice".to_owned()).into()),
         };
         followed.unwrap_or_else(|error| simulator.broke_off(*case, &error.to_string()))
@@ -322,7 +333,7 @@ fn on_one_device(
 
 /// The cases of `order` in groups of one mesh connectivity; groups and cases in the order in which they come. A case that has no mesh is a group of its own.
 fn by_connectivity(simulator: &Simulator<'_>, order: &[usize]) -> Vec<Vec<usize>> {
-    let key = |&case: &usize| match Problem::new(&simulator.cases[case].case) {
+    let key = |&case: &usize| match simulator.problem(case) {
         Ok(problem) => connectivity(&problem.model.mesh),
         Err(_) => (0, case as u64),
     };

@@ -7,11 +7,13 @@ use super::StudyError;
 use super::directory::StudyDirectory;
 use super::file::StudyCase;
 use super::progress::{CaseProgress, StudyProgress};
-use crate::compute::Compute;
+use crate::compute::Description;
 use crate::output::{
     Checkpoint, Clock, OutputDirectory, OutputError, ResultWriter, Setting, Status, Summary, SummaryInputs, read_history,
 };
-use crate::simulation::drive::{Drive, Ending};
+use crate::simulation::SimulationError;
+use crate::simulation::drive::{Ending, Observer};
+use crate::simulation::follow::{Seat, follow};
 use crate::simulation::problem::Problem;
 
 /// What all cases have in common.
@@ -63,51 +65,59 @@ impl Simulator<'_> {
         })
     }
 
-    /// Follows the path of a case that has begun, from its checkpoint if there is one, on case number `slot` of `backend`, which is `problem`'s model in its virgin state; writes its results.
-    /// `notes` are on how the backend was chosen.
+    /// The mesh that a case asks for, or that of the checkpoint from which it will go on, with the model on it.
+    ///
+    /// # Errors
+    /// [`StudyError::Simulation`].
+    pub fn problem(&self, case: usize) -> Result<Problem, StudyError> {
+        Ok(Problem::on(&self.cases[case].case, self.checkpoint(case).and_then(|checkpoint| checkpoint.zone()))?)
+    }
+
+    /// Follows the path of a case that has begun, from its checkpoint if there is one. `seat` has backends for its problem, the first of which computes on
+    /// `computed_on`; `notes` are on how it was chosen.
     ///
     /// # Errors
     /// [`StudyError::Simulation`], [`StudyError::Output`]; a step that does not converge is none, but the summary's status.
-    pub fn follow(
+    pub fn follow<'a>(
         &self,
         case: usize,
-        problem: &Problem,
-        backend: &mut dyn Compute,
-        slot: usize,
+        mut problem: Problem,
+        seat: &mut dyn FnMut(&Problem) -> Result<Seat<'a>, SimulationError>,
+        computed_on: Description,
         notes: &[String],
     ) -> Result<Summary, StudyError> {
         let clock = Clock::start_for_thread();
         let StudyCase { id, case: in_units, .. } = &self.cases[case];
         let out = self.directory.case(id);
-        let newton = problem.newton()?;
-        let computed_on = backend.description();
-        let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: newton.free_unknowns() };
-        let mut drive = Drive::new(problem, backend, slot, newton);
         let same_precision =
-            |checkpoint: &Checkpoint| checkpoint.check_precision(&out.checkpoint(), setting.computed_on.precision).is_ok();
+            |checkpoint: &Checkpoint| checkpoint.check_precision(&out.checkpoint(), computed_on.precision).is_ok();
         let checkpoint = self.checkpoint(case).filter(same_precision);
         match &checkpoint {
             Some(checkpoint) => {
-                drive.resume(checkpoint.snapshot())?;
+                checkpoint.snapshot().check(&problem.model.mesh)?;
                 log::info!("case {id}: resumed after step {}", checkpoint.step());
             }
             // There may be one in another precision.
-            None => out.clear()?,
+            None => {
+                out.clear()?;
+                if problem.zone != Problem::zone_of(in_units)? {
+                    problem = Problem::new(in_units)?;
+                }
+            }
         }
+        let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
         let progress = Box::new(CaseProgress { study: self.progress.clone(), case, id: id.clone() });
         let results =
             ResultWriter::create(in_units, out.root(), setting, clock, progress, self.stop.clone(), checkpoint.as_ref())?;
         let mut results = results.with_contact_tables();
-        notes
-            .iter()
-            .filter(|_| checkpoint.is_none())
-            .for_each(|note| crate::simulation::drive::Observer::note(&mut results, note));
-        let ending = drive.run(&mut results)?;
-        results.computed_on(backend.description());
-        let (status, message) = match ending {
+        results.meshed(&problem);
+        notes.iter().filter(|_| checkpoint.is_none()).for_each(|note| results.note(note));
+        let followed = follow(problem, checkpoint.as_ref().map(Checkpoint::snapshot), seat, &mut results)?;
+        results.computed_on(followed.computed_on);
+        let (status, message) = match followed.ending {
             Ending::Done => (Status::Done, None),
             Ending::NotConverged(reason) => (Status::NotConverged, Some(format!("no convergence: {reason}"))),
-            Ending::Outgrown(reason) => (Status::ContactOutgrewMesh, Some(reason)),
+            Ending::Outgrown(outgrowth) => (Status::ContactOutgrewMesh, Some(format!("{outgrowth}; there is no larger mesh"))),
             Ending::Interrupted => (Status::Interrupted, Some(format!("interrupted after step {}", results.steps()))),
         };
         Ok(results.finish(status, message.as_deref())?)

@@ -87,7 +87,8 @@ impl<'a> Runner<'a> {
         self.computed_on = Some(backend.description());
         match ending? {
             Ending::Done => Ok(History { rows: recorder.rows }),
-            Ending::NotConverged(reason) | Ending::Outgrown(reason) => Err(VerifyError::Stopped(reason)),
+            Ending::NotConverged(reason) => Err(VerifyError::Stopped(reason)),
+            Ending::Outgrown(outgrowth) => Err(VerifyError::Stopped(outgrowth.to_string())),
             Ending::Interrupted => Err(VerifyError::Stopped("interrupted".to_owned())),
         }
     }

@@ -87,7 +87,7 @@ impl Layout {
         if !(0.005..=0.65).contains(&contact_radius) {
             return Err(MeshError::ContactRadius(contact_radius));
         }
-        if !(4..=32).contains(&count) {
+        if !(2..=32).contains(&count) {
             return Err(MeshError::ElementsPerContactRadius(count));
         }
         if !(1.1..=3.0).contains(&fine_zone) {

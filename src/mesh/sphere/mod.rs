@@ -21,7 +21,7 @@ const CONTACT_MARGIN: f64 = 1.3;
 pub struct SphereSpec {
     /// Predicted contact radius a/R, 0.005 to 0.65.
     pub contact_radius: f64,
-    /// Elements from the pole to the contact radius, 4 to 32.
+    /// Elements from the pole to the contact radius, 2 to 32.
     pub elements_per_contact_radius: usize,
     /// Radius of the finely meshed surface in contact radii, 1.1 to 3; capped at 0.85 sphere radii.
     pub fine_zone: f64,

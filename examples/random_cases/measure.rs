@@ -1,0 +1,233 @@
+//! Runs one case and measures how it went.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use asperity::case::{Case, Friction};
+use asperity::simulation::drive::{Ending, Observer, StepView};
+use asperity::simulation::follow::{follow, on_cpu};
+use asperity::simulation::problem::Problem;
+use asperity::simulation::record::StepRecord;
+use asperity::simulation::scout::scout;
+use serde::Serialize;
+
+use crate::generator::case_text;
+
+/// How a case went.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Measured {
+    pub seed: u64,
+    pub index: usize,
+    /// "done", or why not.
+    pub ending: String,
+    pub steps: usize,
+    pub iterations: usize,
+    pub cuts: usize,
+    /// Steps whose conditions were relaxed to get on.
+    pub relaxed_steps: usize,
+    pub remeshed: usize,
+    /// Largest F_T/(mu F_N) of any row; none for full stick and without friction.
+    pub worst_friction: Option<f64>,
+    /// |work of the plate - stored - dissipated| at the end over the largest work on the way.
+    pub energy_gap: f64,
+    /// Largest |F_N - held|/held of the rows that hold the normal force.
+    pub held_gap: Option<f64>,
+    pub seconds: f64,
+    /// Of them those of the scout.
+    pub scout_seconds: f64,
+    /// Why the scout did not get to its end.
+    pub scout_failure: Option<String>,
+    /// What the case is.
+    pub what: String,
+}
+
+#[derive(Default)]
+struct Watch {
+    rows: Vec<StepRecord>,
+    remeshed: usize,
+}
+
+type Failed = Box<dyn std::error::Error + Send + Sync>;
+
+impl Observer for Watch {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        self.rows.push(view.record);
+        Ok(())
+    }
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
+        Ok(())
+    }
+    fn note(&mut self, text: &str) {
+        log::info!("{text}");
+    }
+    fn starts_over(&mut self, _: &Problem, _: usize) -> Result<(), Failed> {
+        self.rows.clear();
+        self.remeshed += 1;
+        Ok(())
+    }
+}
+
+/// Runs case `index` of `seed`.
+pub fn measure(seed: u64, index: usize, elements: usize) -> Measured {
+    let text = case_text(seed, index, elements);
+    let mut measured = Measured { seed, index, ..Measured::default() };
+    let begun = Instant::now();
+    let mut watch = Watch::default();
+    let outcome = (|| -> Result<(Case, Ending), Failed> {
+        let case = Case::parse(&text, "case.toml", &[])?;
+        let mut problem = Problem::new(&case)?;
+        if let Some(scout) = scout(&case, &Arc::new(AtomicBool::new(false)))? {
+            let zone = scout.zone(problem.zone, problem.spacing);
+            if zone != problem.zone {
+                problem = Problem::on(&case, Some(zone))?;
+            }
+            measured.scout_failure = scout.failure;
+        }
+        measured.scout_seconds = begun.elapsed().as_secs_f64();
+        let followed = follow(problem, None, &mut |problem| on_cpu(problem), &mut watch)?;
+        Ok((case, followed.ending))
+    })();
+    measured.seconds = begun.elapsed().as_secs_f64();
+    let rows = watch.rows.get(1..).unwrap_or_default();
+    measured.remeshed = watch.remeshed;
+    measured.steps = rows.len();
+    measured.iterations = rows.iter().map(|row| row.newton_iterations).sum();
+    measured.cuts = rows.iter().map(|row| row.cutbacks).sum();
+    measured.relaxed_steps = 0;
+    let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external.abs()));
+    if let Some(last) = rows.last().filter(|_| most > 0.0) {
+        let kept = last.energy_elastic + last.work_plastic + last.work_friction;
+        measured.energy_gap = (last.work_external - kept).abs() / most;
+    }
+    match outcome {
+        Ok((case, ending)) => {
+            measured.ending = match ending {
+                Ending::Done => "done".to_owned(),
+                Ending::NotConverged(reason) => format!("not converged: {reason}"),
+                Ending::Outgrown(outgrowth) => outgrowth.to_string(),
+                Ending::Interrupted => "interrupted".to_owned(),
+            };
+            measured.what = describe(&case);
+            if let Friction::Coefficient(mu) = case.contact.friction
+                && mu > 0.0
+            {
+                let loaded = rows.iter().filter(|row| row.f_n > 0.0);
+                measured.worst_friction = Some(loaded.map(|row| row.f_t.abs() / (mu * row.f_n)).fold(0.0, f64::max));
+            }
+            measured.held_gap = held_gap(&case, rows);
+        }
+        Err(error) => measured.ending = format!("failed: {error}"),
+    }
+    measured
+}
+
+/// Largest departure of F_N from what is held.
+fn held_gap(case: &Case, rows: &[StepRecord]) -> Option<f64> {
+    let mut worst: Option<f64> = None;
+    for (i, segment) in case.path.iter().enumerate() {
+        let asperity::case::Segment::Shear { hold: asperity::case::Hold::NormalForce, .. } = segment else { continue };
+        let held = rows.iter().rfind(|row| row.segment < i)?.f_n;
+        for row in rows.iter().filter(|row| row.segment == i && held > 0.0) {
+            worst = Some(worst.unwrap_or(0.0).max((row.f_n / held - 1.0).abs()));
+        }
+    }
+    worst
+}
+
+/// A case in few words.
+fn describe(case: &Case) -> String {
+    let scaled = case.scaled();
+    let path: Vec<String> = scaled
+        .path
+        .iter()
+        .map(|segment| match segment {
+            asperity::case::Segment::Indentation { indentation } => format!("h {indentation:.1e}"),
+            asperity::case::Segment::Release => "release".to_owned(),
+            asperity::case::Segment::Shear { shear, hold } => {
+                let held = if *hold == asperity::case::Hold::NormalForce { " held" } else { "" };
+                match shear {
+                    asperity::case::ShearTarget::FullSlip => format!("slip{held}"),
+                    asperity::case::ShearTarget::Displacement(d) => format!("{d:.1e}{held}"),
+                }
+            }
+        })
+        .collect();
+    let friction = match case.contact.friction {
+        Friction::Coefficient(mu) => format!("{mu:.2}"),
+        Friction::Stick => "stick".to_owned(),
+    };
+    let hardening = format!("{:?}", scaled.material.hardening).replace(['{', '}'], "");
+    let law: String = hardening.chars().take(60).collect();
+    format!("nu {:.2}, mu {friction}, {}; {}", case.material.poissons_ratio, path.join(", "), law.trim())
+}
+
+impl Measured {
+    /// Column names of its row.
+    pub const HEAD: &'static str =
+        " case  steps  iter it/step cuts relaxed remesh  F_T/mu F_N  F_N held   energy       s  scout  ending; what";
+
+    /// Iterations a step.
+    pub fn per_step(&self) -> f64 {
+        self.iterations as f64 / self.steps.max(1) as f64
+    }
+}
+
+impl fmt::Display for Measured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ratio = self.worst_friction.map_or_else(|| "-".to_owned(), |x| format!("{x:.5}"));
+        let held = self.held_gap.map_or_else(|| "-".to_owned(), |x| format!("{x:.1e}"));
+        let scout = self.scout_failure.as_ref().map_or(String::new(), |reason| format!(" [scout: {reason}]"));
+        write!(
+            f,
+            "{:>5} {:>6} {:>5} {:>7.2} {:>4} {:>7} {:>6} {:>11} {:>9} {:>8.1e} {:>7.2} {:>6.2}  {}{scout}; {}",
+            self.index,
+            self.steps,
+            self.iterations,
+            self.per_step(),
+            self.cuts,
+            self.relaxed_steps,
+            self.remeshed,
+            ratio,
+            held,
+            self.energy_gap,
+            self.seconds,
+            self.scout_seconds,
+            self.ending,
+            self.what
+        )
+    }
+}
+
+/// All cases in some numbers.
+pub fn summary(all: &[Measured]) -> String {
+    let done = all.iter().filter(|one| one.ending == "done").count();
+    let mut per_step: Vec<f64> = all.iter().map(Measured::per_step).collect();
+    per_step.sort_by(f64::total_cmp);
+    let at = |share: f64| per_step.get(((all.len() as f64 * share).ceil() as usize).saturating_sub(1)).copied().unwrap_or(0.0);
+    let sum = |of: fn(&Measured) -> usize| all.iter().map(of).sum::<usize>();
+    let worst = |of: fn(&Measured) -> f64| all.iter().map(of).fold(0.0, f64::max);
+    let steps = sum(|one| one.steps);
+    format!(
+        "{done} of {} done; iterations a step: median {:.2}, 95 % below {:.2}, worst {:.2}; {} iterations in {steps} steps; {} cuts in {} cases; \
+         {} relaxed steps ({:.2} %); {} remeshed; {} scouts failed\nF_T/(mu F_N) up to {:.5}; F_N held to {:.1e}; energy balance to {:.1e}; {:.0} s, {:.0} % of \
+         them for the scouts",
+        all.len(),
+        at(0.5),
+        at(0.95),
+        at(1.0),
+        sum(|one| one.iterations),
+        sum(|one| one.cuts),
+        all.iter().filter(|one| one.cuts > 0).count(),
+        sum(|one| one.relaxed_steps),
+        100.0 * sum(|one| one.relaxed_steps) as f64 / steps.max(1) as f64,
+        all.iter().filter(|one| one.remeshed > 0).count(),
+        all.iter().filter(|one| one.scout_failure.is_some()).count(),
+        worst(|one| one.worst_friction.unwrap_or(0.0)),
+        worst(|one| one.held_gap.unwrap_or(0.0)),
+        worst(|one| one.energy_gap),
+        all.iter().map(|one| one.seconds).sum::<f64>(),
+        100.0 * all.iter().map(|one| one.scout_seconds).sum::<f64>() / all.iter().map(|one| one.seconds).sum::<f64>().max(1e-9),
+    )
+}
