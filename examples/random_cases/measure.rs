@@ -27,6 +27,8 @@ pub struct Measured {
     pub cuts: usize,
     /// Steps whose conditions were relaxed to get on.
     pub relaxed_steps: usize,
+    /// Steps in which points under full stick came off and down again.
+    pub landed_again: usize,
     pub remeshed: usize,
     /// Largest F_T/(mu F_N) of any row; none for full stick and without friction.
     pub worst_friction: Option<f64>,
@@ -95,7 +97,8 @@ pub fn measure(seed: u64, index: usize, elements: usize) -> Measured {
     measured.steps = rows.len();
     measured.iterations = rows.iter().map(|row| row.newton_iterations).sum();
     measured.cuts = rows.iter().map(|row| row.cutbacks).sum();
-    measured.relaxed_steps = 0;
+    measured.relaxed_steps = rows.iter().filter(|row| row.relaxed > 0).count();
+    measured.landed_again = rows.iter().filter(|row| row.landed_again > 0).count();
     let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external.abs()));
     if let Some(last) = rows.last().filter(|_| most > 0.0) {
         let kept = last.energy_elastic + last.work_plastic + last.work_friction;
@@ -166,7 +169,7 @@ fn describe(case: &Case) -> String {
 impl Measured {
     /// Column names of its row.
     pub const HEAD: &'static str =
-        " case  steps  iter it/step cuts relaxed remesh  F_T/mu F_N  F_N held   energy       s  scout  ending; what";
+        " case  steps  iter it/step cuts relaxed landed remesh  F_T/mu F_N  F_N held   energy       s  scout  ending; what";
 
     /// Iterations a step.
     pub fn per_step(&self) -> f64 {
@@ -181,13 +184,14 @@ impl fmt::Display for Measured {
         let scout = self.scout_failure.as_ref().map_or(String::new(), |reason| format!(" [scout: {reason}]"));
         write!(
             f,
-            "{:>5} {:>6} {:>5} {:>7.2} {:>4} {:>7} {:>6} {:>11} {:>9} {:>8.1e} {:>7.2} {:>6.2}  {}{scout}; {}",
+            "{:>5} {:>6} {:>5} {:>7.2} {:>4} {:>7} {:>6} {:>6} {:>11} {:>9} {:>8.1e} {:>7.2} {:>6.2}  {}{scout}; {}",
             self.index,
             self.steps,
             self.iterations,
             self.per_step(),
             self.cuts,
             self.relaxed_steps,
+            self.landed_again,
             self.remeshed,
             ratio,
             held,

@@ -93,6 +93,10 @@ pub(super) struct Place {
     /// Iterations of failed attempts and bisections since the last accepted step.
     pub wasted: usize,
     pub cutbacks: usize,
+    /// Bisections that are not made up for by accepted steps.
+    pub depth: usize,
+    /// Targets are taken in 2^pace parts.
+    pub pace: u32,
 }
 
 impl Place {
@@ -103,7 +107,7 @@ impl Place {
 
     /// At the start of the next segment.
     pub fn next_segment(&self) -> Self {
-        Self { begun: self.begun, segment: self.segment + 1, ..Self::default() }
+        Self { begun: self.begun, segment: self.segment + 1, pace: self.pace, ..Self::default() }
     }
 }
 

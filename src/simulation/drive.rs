@@ -126,10 +126,12 @@ pub struct Drive<'a> {
 const STICK_SHARE: f64 = 2e-3;
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a third fewer than none.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
-/// Under full stick a step that fails is tried again with some points sliding without friction in it: the open ones, because a point that comes down has no
-/// place to stick to before the step's end, and then those too whose tangential force exceeds so many times the normal one. They are about to come off: where
-/// such a force is held there may be no equilibrium, neither with the point nor without. Under friction, however high, they would slide.
-const SLIDING_RATIOS: [f64; 4] = [f64::INFINITY, 10.0, 3.0, 1.0];
+/// A step of so many iterations is hard: the next ones are taken in half as long parts.
+const HARD: usize = 12;
+/// After a step of no more iterations they are taken in twice as long ones again.
+const EASY: usize = 5;
+/// Targets are taken in 2^2 parts at most.
+const FINEST: u32 = 2;
 /// F_T has stopped rising when it grows by less than this share over a step.
 const PLATEAU: f64 = 1e-3;
 
@@ -294,7 +296,7 @@ impl<'a> Drive<'a> {
             ShearTarget::Displacement(d) => (d - start.delta_t).abs(),
             ShearTarget::FullSlip => f64::INFINITY,
         };
-        let steps = ShearSteps::new(start, length, &self.resolution());
+        let steps = ShearSteps::new(start, length, hold == Hold::NormalForce, &self.resolution());
         let bound = steps.bound(start.a);
         self.held_force = (hold == Hold::NormalForce).then_some(0.5 * start.f_n);
         loop {
@@ -356,7 +358,7 @@ impl<'a> Drive<'a> {
     fn advance(&mut self, target: &Target, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         if !self.place.under_way {
             self.place.under_way = true;
-            self.place.waiting.push(*target);
+            self.set_out(target);
             self.place.force_before = self.state.record.f_t;
         }
         loop {
@@ -368,24 +370,21 @@ impl<'a> Drive<'a> {
                 self.checkpoint(true, observer);
                 return Ok(Ending::Interrupted);
             }
-            let mut attempted = self.attempt(&next)?;
             if self.problem.model.friction == Friction::Stick {
-                for ratio in SLIDING_RATIOS {
-                    let Err(failure) = &attempted else { break };
-                    log::info!(
-                        "step to h = {:.5}, delta_T = {:.5} failed, points sheared beyond {ratio} of their normal force slide in it: {failure}",
-                        next.h,
-                        next.delta_t
-                    );
-                    self.place.wasted += failure.iterations();
-                    self.newton.let_slide(&self.sheared_beyond(ratio));
-                    attempted = self.attempt(&next)?;
-                    self.newton.let_slide(&[]);
-                }
+                // A point that comes down within the step has no place to stick to before its end.
+                let open: Vec<bool> = self.state.points.iter().map(|p| p.status == Status::Open).collect();
+                self.newton.let_slide(&open);
             }
+            let attempted = self.attempt(&next)?;
             match attempted {
                 Ok(report) => {
                     self.place.waiting.pop();
+                    self.place.depth = self.place.depth.saturating_sub(1);
+                    self.place.pace = match report.iterations.len() {
+                        n if n >= HARD => (self.place.pace + 1).min(FINEST),
+                        n if n <= EASY => self.place.pace.saturating_sub(1),
+                        _ => self.place.pace,
+                    };
                     self.accept(&next, report, observer)?;
                     self.checkpoint(false, observer);
                 }
@@ -394,7 +393,9 @@ impl<'a> Drive<'a> {
                     log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
                     self.place.cutbacks += 1;
                     self.place.wasted += failure.iterations();
-                    if self.place.waiting.len() > self.problem.max_cutbacks {
+                    self.place.pace = (self.place.pace + 1).min(FINEST);
+                    self.place.depth += 1;
+                    if self.place.depth > self.problem.max_cutbacks {
                         return Ok(Ending::NotConverged(format!(
                             "step {} of segment {} (from h = {:.6} R, delta_T = {:.6} R to h = {:.6} R, delta_T = {:.6} R): {failure}; \
                              the step was bisected {} times. A finer mesh ([mesh] elements_per_contact_radius) or more steps ([solver] press_steps, \
@@ -421,10 +422,15 @@ impl<'a> Drive<'a> {
         Ok(Ending::Done)
     }
 
-    /// Which contact points carry a tangential force of more than `ratio` times their normal one, the open ones among them.
-    fn sheared_beyond(&self, ratio: f64) -> Vec<bool> {
-        let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
-        self.state.points.iter().map(beyond).collect()
+    /// Makes `target` the next one, in as many equal parts as hard steps before it ask for.
+    fn set_out(&mut self, target: &Target) {
+        let StepRecord { h, delta_t, .. } = self.state.record;
+        let parts = 1usize << self.place.pace;
+        self.place.waiting.push(*target);
+        self.place.waiting.extend((1..parts).rev().map(|i| {
+            let share = i as f64 / parts as f64;
+            Target { h: h + share * (target.h - h), delta_t: delta_t + share * (target.delta_t - delta_t), ..*target }
+        }));
     }
 
     /// One Newton solve towards a target; commits nothing.
@@ -484,10 +490,14 @@ impl<'a> Drive<'a> {
             (accepted.h, closed, slipping)
         };
         let length = self.state.length_to(target.h, target.delta_t);
-        let friction_work = self.friction_work(&accepted.u, &accepted.force);
+        let forces: Vec<[f64; 3]> = (0..self.mesh.contact_nodes.len()).map(|i| accepted.point_force(&self.mesh, i)).collect();
+        let friction_work = self.friction_work(&accepted.u, &forces);
         self.state.u_before.copy_from_slice(&self.state.u);
         self.state.u.copy_from_slice(&accepted.u);
         self.state.force.copy_from_slice(&accepted.force);
+        for (force, &node) in forces.iter().zip(&self.mesh.contact_nodes) {
+            self.state.force[3 * node as usize..][..3].copy_from_slice(force);
+        }
         self.state.statuses.clear();
         self.state.statuses.extend(accepted.rows.iter().map(|rows| rows.status));
         self.newton.committed();
@@ -522,6 +532,8 @@ impl<'a> Drive<'a> {
             slipping_points,
             max_alpha: energies.max_alpha,
             reach: self.state.reach(),
+            relaxed: usize::from(report.relaxed),
+            landed_again: report.landed_again,
         };
         log::info!(
             "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
@@ -560,12 +572,12 @@ impl<'a> Drive<'a> {
     }
 
     /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over the points of the meshed half.
-    fn friction_work(&self, u: &[f64], force: &[f64]) -> f64 {
+    fn friction_work(&self, u: &[f64], forces: &[[f64; 3]]) -> f64 {
         let mut work = 0.0;
-        for (point, &node) in self.state.points.iter().zip(&self.mesh.contact_nodes) {
+        for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {
             let base = 3 * node as usize;
             for i in 0..2 {
-                work -= 0.5 * (point.force[i] + force[base + i]) * (u[base + i] - self.state.u[base + i]);
+                work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
             }
         }
         work

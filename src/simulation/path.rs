@@ -150,8 +150,8 @@ pub struct ShearSteps {
 }
 
 impl ShearSteps {
-    /// Steps for a segment of given length (infinite for `"full-slip"`).
-    pub fn new(start: &Start, length: f64, resolution: &Resolution) -> Self {
+    /// Steps for a segment of given length (infinite for `"full-slip"`) which holds the normal force or not.
+    pub fn new(start: &Start, length: f64, held: bool, resolution: &Resolution) -> Self {
         let count = resolution.shear_steps.max(1);
         let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
         let total: f64 = (1..=count).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
@@ -159,6 +159,9 @@ impl ShearSteps {
         let (least, largest) = if length.is_finite() {
             let least = last.max((length - range) / MOST_LATER_STEPS);
             (least, least.max(LARGEST_SHEAR_STEP * start.a))
+        } else if held {
+            // The contact grows until it bears the friction: that is far away where the normal force does not fall.
+            (last, last.max(LARGEST_SHEAR_STEP * start.a))
         } else {
             (last, last)
         };
@@ -195,7 +198,7 @@ mod tests {
 
     /// Ends of the steps of a shear.
     fn ends(start: &Start, length: f64) -> Vec<f64> {
-        let steps = ShearSteps::new(start, length, &Resolution { press_steps: 20, shear_steps: 15 });
+        let steps = ShearSteps::new(start, length, false, &Resolution { press_steps: 20, shear_steps: 15 });
         (1..).map(|i| steps.distance(i)).take_while(|d| *d < length).collect()
     }
 
@@ -239,7 +242,7 @@ mod tests {
 
     #[test]
     fn waiting_for_full_slip_goes_on_in_equal_steps() {
-        let steps = ShearSteps::new(&start(0.2, 0.3), f64::INFINITY, &Resolution { press_steps: 20, shear_steps: 15 });
+        let steps = ShearSteps::new(&start(0.2, 0.3), f64::INFINITY, false, &Resolution { press_steps: 20, shear_steps: 15 });
         let increment = |i: usize| steps.distance(i + 1) - steps.distance(i);
         assert!((increment(20) / increment(40) - 1.0).abs() < 1e-9 && increment(2) < increment(10));
     }

@@ -16,7 +16,7 @@ use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::solver::newton::Newton;
 use crate::solver::system::Boundary;
-use crate::solver::{Settings, SolverError, loosest_linear};
+use crate::solver::{Settings, SolverError, first_linear, loosest_linear};
 
 /// A case ready to be simulated.
 #[derive(Clone, Debug)]
@@ -68,6 +68,15 @@ fn asked_zone(case: &Case, law: &Hardening<f64>) -> Zone {
     Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone)
 }
 
+/// Johnson's parameter of a contact of radius `a`, Lambda = E a/((1 - nu^2) sigma_rep R), with sigma_rep at the plastic strain 0.2 a/R (Tabor 1951); zero where
+/// there is no yield.
+fn johnson_parameter(law: &Hardening<f64>, nu: f64, a: f64) -> f64 {
+    match law {
+        Hardening::Elastic => 0.0,
+        law => a / ((1.0 - nu * nu) * law.flow_stress(0.2 * a)),
+    }
+}
+
 impl Problem {
     /// Scales a case (in the user's units) and makes the mesh that it asks for.
     ///
@@ -98,6 +107,7 @@ impl Problem {
                 tolerance: case.solver.tolerance,
                 max_iterations: case.solver.max_iterations,
                 loosest_linear: loosest_linear(nu),
+                first_linear: first_linear(johnson_parameter(&material.hardening, nu, zone.contact_radius)),
             },
             max_cutbacks: case.solver.max_cutbacks,
             spacing: zone.contact_radius / elements as f64,

@@ -62,6 +62,12 @@ pub struct StepRecord {
     /// Distance from the sphere's axis to the outermost point in contact, in the undeformed sphere.
     #[serde(default)]
     pub reach: f64,
+    /// 1 where the step was accepted above its tolerance, because no step length lowered its merit any more.
+    #[serde(default)]
+    pub relaxed: usize,
+    /// Under full stick: points that came off in the step and came down again, to carry no tangential force up to its end.
+    #[serde(default)]
+    pub landed_again: usize,
 }
 
 /// A contact point of a committed state, scaled.

@@ -23,6 +23,21 @@ pub struct Settings {
     pub max_iterations: usize,
     /// Loosest relative residual to which a linear system is solved (see [`loosest_linear`]).
     pub loosest_linear: f64,
+    /// Share of the sum of the normal contact forces down to which the first linear system of a step is solved (see [`first_linear`]); infinite if
+    /// the loosest tolerance does.
+    pub first_linear: f64,
+}
+
+/// From this Johnson parameter E a/((1 - nu^2) sigma_rep R) on a contact is fully plastic (Olsson & Larsson 2016).
+const FULLY_PLASTIC: f64 = 160.0;
+
+/// How far the first linear system of a step is solved, for a contact whose Johnson parameter grows to `lambda`.
+///
+/// In a fully plastic contact an increment is many yield strains: its first residual is tens of times the normal force, and a tenth of it left in the
+/// correction throws points back from flow that then do not find to it again. At E/sigma_Y = 7500 a press took 428 iterations with 5 cut-backs so,
+/// and takes 134 with none. Below full plasticity it makes no difference.
+pub fn first_linear(lambda: f64) -> f64 {
+    if lambda >= FULLY_PLASTIC { 0.01 } else { f64::INFINITY }
 }
 
 /// Loosest linear tolerance for a Poisson's ratio: 0.1 up to 0.3, and above less as the ratio of bulk to shear modulus grows.

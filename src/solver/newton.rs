@@ -5,7 +5,7 @@ use super::system::{Boundary, Trial, apply_contact, plate_functional, right_hand
 use super::{Control, Iteration, Settings, SolverError, StepFailure};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
-use crate::contact::coulomb::Status;
+use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::LinearSolver;
 use crate::mesh::Mesh;
 
@@ -19,6 +19,14 @@ const FORCING_GAMMA: f64 = 2.0;
 /// changes of contact status raise the merit on the way down. In deep plasticity the merit must not rise for long: at E/sigma_Y = 5000 a press of
 /// 20 steps took 375 iterations and 7 cuts from the fifth iteration on, 166 and none from the second or third.
 const MONOTONE_FROM: usize = 2;
+/// The first linear system of a step is solved no further than this.
+const TIGHTEST_FIRST: f64 = 1e-4;
+/// A held normal force is met to this share of it.
+const HELD_TOLERANCE: f64 = 5e-5;
+/// Relative residual to which the response to a unit indentation is solved, which gives the change of h that a missing normal force asks for.
+const UNIT_RESPONSE: f64 = 0.03;
+/// Tangential residuals of points in contact against the friction that the normal force can bear. At mu = 0.3 the tolerance of the merit is the same.
+const TANGENTIAL: f64 = 10.0 / 3.0;
 /// At a kink of the merit, where a point at the edge changes its status whatever the step length, no step lowers it, and the iteration would go round in
 /// circles until the step is given up. An iterate so many tolerances away is then taken as it is.
 const KINK: f64 = 3.0;
@@ -41,6 +49,8 @@ pub struct Newton {
     current: Trial,
     candidate: Trial,
     best: Trial,
+    /// Per contact point under full stick: it has come off in the iteration of the present step.
+    came_off: Vec<bool>,
     fixed: Vec<bool>,
     rhs: Vec<f64>,
     delta: Vec<f64>,
@@ -60,6 +70,10 @@ pub struct StepReport {
     pub merit: f64,
     /// Times the linear solver fell back to the direct one.
     pub fallbacks: usize,
+    /// Accepted above the tolerance, at a kink of the merit.
+    pub relaxed: bool,
+    /// Under full stick: points that stuck when the step began, came off in it and came down again.
+    pub landed_again: usize,
     /// Time by phase, that of failed attempts since the last converged step included.
     pub times: PhaseTimes,
 }
@@ -84,6 +98,7 @@ impl Newton {
             current: Trial::new(mesh),
             candidate: Trial::new(mesh),
             best: Trial::new(mesh),
+            came_off: vec![false; mesh.contact_nodes.len()],
             fixed: vec![false; n],
             rhs: vec![0.0; n],
             delta: vec![0.0; n],
@@ -147,6 +162,7 @@ impl Newton {
         control: &Control,
     ) -> Result<Result<StepReport, StepFailure>, SolverError> {
         let mesh = case.model().mesh.clone();
+        self.came_off.fill(false);
         self.begin(case, start, start_h, guess, control)?;
         let mut report = StepReport::default();
         let mut previous = f64::INFINITY;
@@ -155,7 +171,8 @@ impl Newton {
         for iteration in 0..=self.settings.max_iterations {
             let scale = self.scale();
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
-            if at_kink || self.current.merit <= (self.settings.tolerance * scale).max(ROUNDING) && self.plate_is_placed(control) {
+            if at_kink || self.has_converged(case, control) {
+                report.relaxed = at_kink;
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
                 report.times = std::mem::take(&mut self.times);
                 return Ok(Ok(report));
@@ -193,6 +210,13 @@ impl Newton {
                 log::debug!("  iteration {:2}: merit {before:.2e}, which no step length lowers: accepted", iteration + 1);
                 at_kink = true;
                 continue;
+            }
+            if case.model().friction == Friction::Stick {
+                let landed = self.land_again();
+                if landed > 0 {
+                    report.landed_again += landed;
+                    self.current.assess(case, &self.boundary, control, &mut self.times)?;
+                }
             }
             if moves_plate {
                 highest = 0.0;
@@ -246,6 +270,38 @@ impl Newton {
         Ok(())
     }
 
+    /// The merit is below the tolerance, the tangential residuals of the contact are against the friction that there can be, and a held normal force is met.
+    fn has_converged(&self, case: &mut dyn Evaluate, control: &Control) -> bool {
+        let bound = (self.settings.tolerance * self.scale()).max(ROUNDING);
+        if self.current.merit > bound || !self.plate_is_placed(control) {
+            return false;
+        }
+        let friction = match case.model().friction {
+            Friction::Coulomb(mu) if mu > 0.0 => (TANGENTIAL * mu).min(1.0),
+            _ => 1.0,
+        };
+        let held = |force: f64| (self.current.contact_force(&case.model().mesh)[2] - force).abs() <= (HELD_TOLERANCE * force).max(ROUNDING);
+        (friction == 1.0 || self.current.tangential_residual() <= (friction * bound).max(ROUNDING)) && control.normal_force.is_none_or(held)
+    }
+
+    /// Under full stick a point that came off within the step and comes down again has let go of its tangential force, and carries none up to the step's
+    /// end: held to where it stuck before, or open, there may be no equilibrium for it. After a line search `best` is the iterate before. Returns how
+    /// many points are new.
+    fn land_again(&mut self) -> usize {
+        let mut landed = 0;
+        for (i, (before, after)) in self.best.rows.iter().zip(&self.current.rows).enumerate() {
+            if self.boundary.frictionless[i] {
+                continue;
+            }
+            self.came_off[i] |= before.status == Status::Stick && after.status == Status::Open;
+            if self.came_off[i] && after.status == Status::Stick {
+                self.boundary.frictionless[i] = true;
+                landed += 1;
+            }
+        }
+        landed
+    }
+
     fn plate_is_placed(&self, control: &Control) -> bool {
         self.boundary.plate.iter().all(|&n| {
             let base = 3 * n as usize;
@@ -257,8 +313,11 @@ impl Newton {
     fn forcing(&self, previous: f64) -> f64 {
         let (merit, loosest) = (self.current.merit, self.settings.loosest_linear);
         // A step's first system carries the whole increment: its merit says nothing about the size of what is to be found.
-        if merit == 0.0 || !previous.is_finite() {
+        if merit == 0.0 {
             return loosest;
+        }
+        if !previous.is_finite() {
+            return loosest.min((self.settings.first_linear * self.scale() / merit).max(TIGHTEST_FIRST));
         }
         let floor = 0.3 * self.settings.tolerance * self.scale() / merit;
         let ratio = merit / previous;
@@ -300,8 +359,8 @@ impl Newton {
             for &n in &self.boundary.plate {
                 self.unit_rhs[3 * n as usize + 2] = -1.0;
             }
-            self.unit_response.fill(0.0);
-            match self.linear.solve(&self.unit_rhs, (0.1 * eta).max(1e-12), &mut self.unit_response) {
+            // That of the iteration before is the guess; where the body has hardly changed it is good enough as it is.
+            match self.linear.solve(&self.unit_rhs, eta.min(UNIT_RESPONSE), &mut self.unit_response) {
                 Ok(report) => {
                     krylov += report.iterations;
                     fallback |= report.fallback;

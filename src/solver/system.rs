@@ -165,17 +165,34 @@ impl Trial {
         Ok(if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } })
     }
 
-    /// Normal force, tangential force and its y-component on the meshed half: the sums of the contact forces.
+    /// Force of the plane on a contact point, as the contact's conditions have it: normal to the plane the internal force; along it xi_t projected onto the
+    /// friction cone (see [`crate::contact::coulomb`]), which is the internal force less the row's residual. In equilibrium that is nothing; what the
+    /// tolerance leaves of it is a force that is missing in the body, not friction beyond Coulomb's bound. The symmetry plane's force is not the contact's.
+    pub fn point_force(&self, mesh: &Mesh, point: usize) -> [f64; 3] {
+        let (rows, node) = (&self.rows[point], mesh.contact_nodes[point] as usize);
+        if rows.status == Status::Open {
+            return [0.0; 3];
+        }
+        let tangential = |i: usize| self.force[3 * node + i] - rows.residual[i];
+        let across = if mesh.nodes[node][1] == 0.0 { 0.0 } else { tangential(1) };
+        [tangential(0), across, self.force[3 * node + 2].max(0.0)]
+    }
+
+    /// Tangential and normal force of the contact on the meshed half, [x, y, z].
     pub fn contact_force(&self, mesh: &Mesh) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for (rows, &n) in self.rows.iter().zip(&mesh.contact_nodes) {
-            if rows.status != Status::Open {
-                for (s, f) in sum.iter_mut().zip(&self.force[3 * n as usize..3 * n as usize + 3]) {
-                    *s += f;
-                }
+        for point in 0..self.rows.len() {
+            for (s, f) in sum.iter_mut().zip(self.point_force(mesh, point)) {
+                *s += f;
             }
         }
         sum
+    }
+
+    /// Norm of the tangential residuals of the points in contact.
+    pub fn tangential_residual(&self) -> f64 {
+        let closed = self.rows.iter().filter(|rows| rows.status != Status::Open);
+        closed.map(|rows| rows.residual[0].powi(2) + rows.residual[1].powi(2)).sum::<f64>().sqrt()
     }
 
     /// The unknown with the largest residual, over the force `scale`.

@@ -32,7 +32,7 @@ pub struct Rig {
     pub energies: Energies,
 }
 
-pub const TIGHT: Settings = Settings { tolerance: 1e-12, max_iterations: 30, loosest_linear: 0.1 };
+pub const TIGHT: Settings = Settings { tolerance: 1e-12, max_iterations: 30, loosest_linear: 0.1, first_linear: f64::INFINITY };
 
 impl Rig {
     pub fn new(mesh: Mesh, material: Material<f64>, friction: Friction<f64>, settings: Settings) -> Self {
