@@ -90,8 +90,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         }
         progress.message(&forecast(scout, &problem, scout_took));
     }
-    let setting =
-        Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
+    let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
     let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress, stop.clone(), checkpoint.as_ref())?;
     results.meshed(&problem);
     match &checkpoint {

@@ -26,11 +26,12 @@ pub use multigrid::Hierarchy;
 use crate::mesh::Prolongation;
 use fgmres::{Fgmres, System};
 use fixed::Fixed;
+use vector::norm;
 
 /// Iterations after which FGMRES starts over.
 const RESTART: usize = 60;
 /// Memory that the direct fallback may take unless told otherwise, bytes.
-const DEFAULT_FALLBACK_LIMIT: usize = 2 << 30;
+pub const DEFAULT_FALLBACK_LIMIT: usize = 2 << 30;
 /// Iterations after which FGMRES gives up.
 const MAX_ITERATIONS: usize = 120;
 
@@ -256,6 +257,24 @@ impl LinearSolver {
             }
         }
         in_pool(|| self.solve_free(rhs, tolerance, x))
+    }
+
+    /// |rhs - A x| over the free unknowns, the fixed ones at their values in `rhs`.
+    ///
+    /// # Errors
+    /// [`LinalgError::NotUpdated`], [`LinalgError::Size`].
+    pub fn residual_norm(&mut self, rhs: &[f64], x: &[f64]) -> Result<f64, LinalgError> {
+        if !self.updated {
+            return Err(LinalgError::NotUpdated);
+        }
+        size("the right-hand side", rhs.len(), self.matrix.unknowns())?;
+        size("the solution", x.len(), self.matrix.unknowns())?;
+        let Self { matrix, fixed, reduced, free, .. } = self;
+        free.copy_from_slice(x);
+        fixed.copy(rhs, free);
+        matrix.residual(free, rhs, reduced);
+        fixed.clear(reduced);
+        Ok(norm(reduced))
     }
 
     fn solve_free(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64]) -> Result<SolveReport, LinalgError> {

@@ -27,7 +27,14 @@ pub struct ErrorEstimate {
 
 impl ErrorEstimate {
     /// Compares a run whose elements are of size `spacing` with one on `coarse_spacing`, for which `coarse_elements` along the contact radius were asked.
-    pub fn new(rows: &[StepRecord], run: &Summary, spacing: f64, coarse: &Summary, coarse_spacing: f64, coarse_elements: usize) -> Self {
+    pub fn new(
+        rows: &[StepRecord],
+        run: &Summary,
+        spacing: f64,
+        coarse: &Summary,
+        coarse_spacing: f64,
+        coarse_elements: usize,
+    ) -> Self {
         // e = C spacing on either mesh gives e of the fine one from the difference.
         let factor = spacing / (coarse_spacing - spacing).abs();
         let ripple = ripple(rows).unwrap_or(0.0);

@@ -126,10 +126,10 @@ pub struct Drive<'a> {
 const STICK_SHARE: f64 = 2e-3;
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a third fewer than none.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
-/// A step of so many iterations is hard: the next ones are taken in half as long parts.
-const HARD: usize = 12;
-/// After a step of no more iterations they are taken in twice as long ones again.
-const EASY: usize = 5;
+/// See [`Drive::attempt_stuck`].
+const SLIDING_RATIO: f64 = 3.0;
+/// After a step that failed the targets are taken in half as long parts, until a step takes no more iterations than this.
+const EASY: usize = 6;
 /// Targets are taken in 2^2 parts at most.
 const FINEST: u32 = 2;
 /// F_T has stopped rising when it grows by less than this share over a step.
@@ -370,21 +370,17 @@ impl<'a> Drive<'a> {
                 self.checkpoint(true, observer);
                 return Ok(Ending::Interrupted);
             }
-            if self.problem.model.friction == Friction::Stick {
-                // A point that comes down within the step has no place to stick to before its end.
-                let open: Vec<bool> = self.state.points.iter().map(|p| p.status == Status::Open).collect();
-                self.newton.let_slide(&open);
-            }
-            let attempted = self.attempt(&next)?;
+            let attempted = match self.problem.model.friction {
+                Friction::Stick => self.attempt_stuck(&next)?,
+                Friction::Coulomb(_) => self.attempt(&next)?,
+            };
             match attempted {
                 Ok(report) => {
                     self.place.waiting.pop();
                     self.place.depth = self.place.depth.saturating_sub(1);
-                    self.place.pace = match report.iterations.len() {
-                        n if n >= HARD => (self.place.pace + 1).min(FINEST),
-                        n if n <= EASY => self.place.pace.saturating_sub(1),
-                        _ => self.place.pace,
-                    };
+                    if report.iterations.len() <= EASY {
+                        self.place.pace = self.place.pace.saturating_sub(1);
+                    }
                     self.accept(&next, report, observer)?;
                     self.checkpoint(false, observer);
                 }
@@ -431,6 +427,31 @@ impl<'a> Drive<'a> {
             let share = i as f64 / parts as f64;
             Target { h: h + share * (target.h - h), delta_t: delta_t + share * (target.delta_t - delta_t), ..*target }
         }));
+    }
+
+    /// One Newton solve under full stick. A point that comes down within the step has no place to stick to before its end, and carries no tangential force in
+    /// it. If the step fails so, those slide too that hold a large tangential force under little normal one: they are about to come off, and there may be no
+    /// equilibrium with them nor without.
+    fn attempt_stuck(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+        let mut attempted = self.slide_beyond(f64::INFINITY, target)?;
+        if let Err(failure) = &attempted {
+            log::info!(
+                "points sheared beyond {SLIDING_RATIO} of their normal force slide in the step to delta_T = {:.5}: {failure}",
+                target.delta_t
+            );
+            self.place.wasted += failure.iterations();
+            attempted = self.slide_beyond(SLIDING_RATIO, target)?.map(|report| StepReport { relaxed: true, ..report });
+        }
+        self.newton.let_slide(&[]);
+        Ok(attempted)
+    }
+
+    /// One Newton solve in which open points and those slide whose tangential force exceeds `ratio` times their normal one.
+    fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+        let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
+        let sliding: Vec<bool> = self.state.points.iter().map(beyond).collect();
+        self.newton.let_slide(&sliding);
+        self.attempt(target)
     }
 
     /// One Newton solve towards a target; commits nothing.

@@ -40,7 +40,9 @@ pub fn follow<'a>(
         }
         let ending = drive.run(observer)?;
         let grown = match &ending {
-            Ending::Outgrown(outgrowth) => problem.zone.grown(outgrowth.reach, outgrowth.contact_radius).map(|zone| (zone, *outgrowth)),
+            Ending::Outgrown(outgrowth) => {
+                problem.zone.grown(outgrowth.reach, outgrowth.contact_radius).map(|zone| (zone, *outgrowth))
+            }
             _ => None,
         };
         let Some((zone, outgrowth)) = grown else {

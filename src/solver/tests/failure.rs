@@ -11,7 +11,12 @@ fn plastic() -> Material<f64> {
 
 fn rig(max_iterations: usize) -> Rig {
     let mesh = brick(4, 3, 3, [1.0, 0.8, 0.6]).unwrap();
-    Rig::new(mesh, plastic(), Friction::Coulomb(0.3), Settings { tolerance: 1e-10, max_iterations, loosest_linear: 0.1, first_linear: f64::INFINITY })
+    Rig::new(
+        mesh,
+        plastic(),
+        Friction::Coulomb(0.3),
+        Settings { tolerance: 1e-10, max_iterations, loosest_linear: 0.1, first_linear: f64::INFINITY },
+    )
 }
 
 fn control(h: f64, delta_t: f64) -> Control {
