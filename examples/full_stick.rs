@@ -236,3 +236,40 @@ fn run() -> Result<(), Failed> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pressed_to_42(elements: usize, tangent: f64) -> Outcome {
+        let setup = Setup { elements, stiffness: 500.0, tangent, indentation: 2.8e-4, shear: 0.04, shear_steps: 15 };
+        let outcome = shear(&setup).expect("the path is followed to its end");
+        println!("{elements} elements, E_t = {tangent} E: {outcome:?}");
+        outcome
+    }
+
+    /// Limit analysis: no more than k A can be carried once everything flows in shear. On a mesh the points at the edge carry more, in proportion to their spacing;
+    /// the inner ones do not.
+    #[test]
+    fn the_traction_tends_to_the_flow_stress_in_shear() {
+        let [coarse, fine] = [4, 8].map(|elements| pressed_to_42(elements, 0.0));
+        let excess = [&coarse, &fine].map(|o| o.traction.all - 1.0);
+        // Half as large on a mesh of half the spacing, if k A is the limit; 0.52 and 0.23 measured.
+        assert!(excess[1] > 0.1 && (0.35..0.6).contains(&(excess[1] / excess[0])), "{excess:?}");
+        assert!((0.96..1.005).contains(&fine.traction.inner), "{}", fine.traction.inner);
+        // Without hardening the stiffness does fall to a tenth. Where it does comes down with the mesh.
+        let [coarse, fine] = [coarse, fine].map(|o| o.friction[3].expect("a tenth is reached"));
+        assert!(fine < 0.85 * coarse, "{coarse} {fine}");
+    }
+
+    /// With E_t = 0.02 E the stiffness levels off near a tenth instead of vanishing: where it crosses a tenth is no property of the contact.
+    #[test]
+    fn hardening_keeps_the_stiffness_near_a_tenth() {
+        let [ideal, hardening] = [0.0, 0.02].map(|tangent| pressed_to_42(4, tangent));
+        assert!(ideal.least_stiffness < 0.05, "{}", ideal.least_stiffness);
+        assert!((0.07..0.13).contains(&hardening.least_stiffness), "{}", hardening.least_stiffness);
+        // And yet the inner points carry no more than the flow stress that the strain has left behind.
+        assert!((0.9..1.03).contains(&hardening.traction.inner), "{}", hardening.traction.inner);
+        assert!(hardening.last_friction > 1.2 * ideal.last_friction);
+    }
+}
