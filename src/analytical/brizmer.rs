@@ -10,7 +10,8 @@ use super::{ElasticSphere, yielding};
 /// Share of the first stiffness at which the sphere is said to slide.
 pub const SLIDING_STIFFNESS: f64 = 0.1;
 
-/// First yield of a frictionless contact in their fit, p_0/sigma_Y = 1.234 + 1.256 nu; within 0.6 % of [`yielding::first_yield`] for nu from 0.2 to 0.4.
+/// First yield of a frictionless contact in their fit, p_0/sigma_Y = 1.234 + 1.256 nu; against [`yielding::first_yield`] 0.9 % low
+/// at nu = 0.2, 0.4 % at 0.25, 0.1 % at 0.3 and 0.4, 0.8 % at 0.5.
 pub fn slip_constant(nu: f64) -> f64 {
     1.234 + 1.256 * nu
 }
@@ -37,9 +38,10 @@ mod tests {
 
     #[test]
     fn the_constants_meet_what_is_known_otherwise() {
-        for nu in [0.2, 0.25, 0.3, 0.35, 0.4] {
+        // A fit, with its measured departures from Mises' criterion.
+        for (nu, departure) in [(0.2, -0.0089), (0.25, -0.0041), (0.3, -0.0012), (0.4, -0.0012), (0.5, -0.0081)] {
             let exact = yielding::first_yield(nu).pressure_ratio;
-            assert!((slip_constant(nu) / exact - 1.0).abs() < 6e-3, "nu = {nu}: {} and {exact}", slip_constant(nu));
+            assert!((slip_constant(nu) / exact - 1.0 - departure).abs() < 2e-4, "nu = {nu}: {} and {exact}", slip_constant(nu));
         }
         // Incompressible material does not move along a rigid plane when it is pressed: stick changes nothing.
         assert!((critical_force_ratio(0.5) - 1.0).abs() < 0.01);
