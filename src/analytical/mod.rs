@@ -16,6 +16,7 @@ mod contact_size;
 mod sphere;
 
 pub mod biwa_storakers;
+pub mod brizmer;
 pub mod cattaneo_mindlin;
 pub mod hertz;
 pub mod jackson_green;
