@@ -45,9 +45,7 @@ impl HistoryWriter {
         let row = encode(record).map_err(OutputError::writing(&self.path))?;
         self.file.write_all(&row).and_then(|()| self.file.flush()).map_err(OutputError::writing(&self.path))
     }
-}
 
-impl HistoryWriter {
     /// Whether the file still stands where it was made: somebody may have removed the directory, or moved it.
     ///
     /// # Errors

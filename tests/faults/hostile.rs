@@ -369,11 +369,11 @@ fn long_values_are_shortened_in_messages() {
         assert_eq!(output.status.code(), Some(2));
         assert!(super::program::stderr(&output).len() < 1500, "{}", super::program::stderr(&output));
     }
-    for (name, value, part) in [("ASPERITY_GPU_MEMORY", "abc", "ASPERITY_GPU_MEMORY=abc: is not a whole number of MiB")] {
-        let output = std::process::Command::new(program()).arg("devices").env(name, value).output().expect("it runs");
-        assert_eq!(output.status.code(), Some(2));
-        assert!(super::program::stderr(&output).contains(part));
-    }
+    let output =
+        std::process::Command::new(program()).arg("devices").env("ASPERITY_GPU_MEMORY", "abc").output().expect("it runs");
+    assert_eq!(output.status.code(), Some(2));
+    let message = super::program::stderr(&output);
+    assert!(message.contains("ASPERITY_GPU_MEMORY=abc: is not a whole number of MiB"), "{message}");
     let mut args = scratch.args(&scratch.path("out"), &[]);
     args.iter_mut().filter(|arg| *arg == "1").for_each(|arg| *arg = "100000".to_owned());
     let output = std::process::Command::new(program()).args(args).output().expect("it runs");
