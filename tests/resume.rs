@@ -158,7 +158,7 @@ fn whole() -> &'static Path {
         let scratch = Scratch::new();
         let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("resume-whole");
         let output = program()
-            .args(["run", &scratch.out("case.toml").display().to_string(), "--device", "cpu", "--out"])
+            .args(["run", &scratch.out("case.toml").display().to_string(), "--device", "cpu", "--force", "--out"])
             .arg(&dir)
             .output()
             .expect("the program runs");
