@@ -6,6 +6,7 @@
 
 pub mod analytical;
 pub mod bench;
+pub mod bounded;
 pub mod case;
 pub mod cli;
 pub mod compute;

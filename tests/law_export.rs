@@ -386,3 +386,75 @@ fn the_command_writes_what_the_library_makes() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(refused.stdout.is_empty() && text(&refused).contains("law.json"), "{}", text(&refused));
 }
+
+/// Beside the vectors, which are all finite: what is no number gives none and leaves the contact as it was, also where the compiler was told that every number
+/// is one; an increment beyond all bounds is full slip.
+const HOSTILE_C: &str = r#"
+#include "asperity_law.h"
+#include <stdio.h>
+static int same(double a, double b) { return fabs(a - b) <= 1e-9 * fabs(b); }
+int main(int argc, char **argv) {
+    static asperity_parameters pair;
+    asperity_material m;
+    asperity_state state, next;
+    asperity_response good, out, far;
+    double still[2] = {0.0, 0.0}, slip[2] = {3.0, 4.0}, huge[2], bad = strtod(argc > 1 ? argv[1] : "nan", NULL);
+    int i;
+    memset(&m, 0, sizeof m);
+    memset(&state, 0, sizeof state);
+    m.youngs_modulus = 200e3;
+    m.poissons_ratio = 0.3;
+    m.hardening = ASPERITY_IDEAL;
+    m.hardening_numbers[0] = 400.0;
+    if (asperity_setup(&pair, &m, 1.0, 0.3) != 0) return 2;
+    for (i = 1; i <= 20; i++) asperity_update(&pair, &state, 0.001 * i, still, &state, &good);
+    asperity_update(&pair, &state, bad, still, &next, &out);
+    if (asperity_is_finite(out.f_n) || asperity_is_finite(out.a) || memcmp(&state, &next, sizeof state) != 0) return 3;
+    slip[0] = bad;
+    asperity_update(&pair, &state, 0.02, slip, &next, &out);
+    if (asperity_is_finite(out.f_t[0]) || memcmp(&state, &next, sizeof state) != 0) return 4;
+    asperity_update(&pair, &next, 0.02, still, &next, &out);
+    if (!same(out.f_n, good.f_n)) return 5;
+    slip[0] = 3.0;
+    asperity_update(&pair, &state, 0.02, slip, &next, &far);
+    huge[0] = 0.6e200;
+    huge[1] = 0.8e200;
+    asperity_update(&pair, &state, 0.02, huge, &next, &out);
+    if (!same(out.f_t[0], far.f_t[0]) || !same(out.f_t[1], far.f_t[1]) || !same(hypot(out.f_t[0], out.f_t[1]), 0.3 * out.f_n)) return 6;
+    printf("%g %g\n", good.f_n, out.f_t[1]);
+    return 0;
+}
+"#;
+
+#[test]
+fn no_number_in_gives_no_number_out() {
+    let dir = tempfile::tempdir().unwrap();
+    if has("gcc", "no_number_in_gives_no_number_out") {
+        write_files(dir.path(), &laws()[0], Language::C);
+        let source = HOSTILE_C.replacen("#include <stdio.h>", "#include <stdio.h>\n#include <stdlib.h>", 1);
+        fs::write(dir.path().join("hostile.c"), source).unwrap();
+        for flags in [&["-O0"][..], &["-O3"], &["-O3", "-ffast-math"]] {
+            let all = [&["-std=c99", "-Wall", "-Wextra", "-Werror", "-o", "hostile", "hostile.c", "-lm"][..], flags].concat();
+            let built = Command::new("gcc").args(all).current_dir(dir.path()).output().unwrap();
+            assert!(built.status.success(), "{}", text(&built));
+            for value in ["nan", "inf", "-inf"] {
+                let run = Command::new(dir.path().join("hostile")).arg(value).output().unwrap();
+                assert!(run.status.success(), "{flags:?} {value}: {:?} {}", run.status, text(&run));
+            }
+        }
+    }
+    if has("python3", "no_number_in_gives_no_number_out") {
+        write_files(dir.path(), &laws()[0], Language::Python);
+        let program = "import math, asperity_law as a\n\
+            p = a.setup(a.Material(200e3, 0.3, a.IDEAL, (400.0, 0.0, 0.0)), 1.0, 0.3)\n\
+            s = a.State()\n\
+            for i in range(1, 21): s, good = a.update(p, s, 0.001 * i, (0.0, 0.0))\n\
+            for h, d in ((math.nan, (0.0, 0.0)), (math.inf, (0.0, 0.0)), (0.02, (math.nan, 0.0)), (0.02, (0.0, -math.inf))):\n\
+            \x20   n, out = a.update(p, s, h, d)\n\
+            \x20   assert math.isnan(out.f_n) and math.isnan(out.f_t[0]) and n.to_bytes() == s.to_bytes()\n\
+            far, out = a.update(p, s, 0.02, (3.0, 4.0))[1], a.update(p, s, 0.02, (0.6e200, 0.8e200))[1]\n\
+            assert abs(out.f_t[1] / far.f_t[1] - 1) < 1e-9 and abs(math.hypot(*out.f_t) / (0.3 * out.f_n) - 1) < 1e-9\n";
+        let run = Command::new("python3").args(["-c", program]).current_dir(dir.path()).output().unwrap();
+        assert!(run.status.success(), "{}", text(&run));
+    }
+}

@@ -158,7 +158,7 @@ fn whole() -> &'static Path {
         let scratch = Scratch::new();
         let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("resume-whole");
         let output = program()
-            .args(["run", &scratch.out("case.toml").display().to_string(), "--device", "cpu", "--out"])
+            .args(["run", &scratch.out("case.toml").display().to_string(), "--device", "cpu", "--force", "--out"])
             .arg(&dir)
             .output()
             .expect("the program runs");
@@ -375,10 +375,24 @@ fn a_checkpoint_that_does_not_fit_is_refused_with_its_name_and_a_remedy() {
 }
 
 #[test]
-fn without_resume_a_run_begins_anew() {
+fn without_resume_a_run_begins_anew_only_by_force() {
     let scratch = Scratch::new();
     scratch.interrupted("out");
+    let before = files(&scratch.out("out"));
+    // Only if it is said: what was computed would be lost.
     let output = scratch.run("out", &["-q"]);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    let parts = [
+        "holds an unfinished run, of this very case, ",
+        " s ago",
+        "--resume goes on",
+        "--force replaces it",
+        "nothing was changed",
+    ];
+    assert!(parts.iter().all(|part| message.contains(part)) && message.lines().count() == 1, "{message}");
+    assert!(files(&scratch.out("out")) == before);
+    let output = scratch.run("out", &["-q", "--force"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_same(&scratch.out("out"), whole());
 }
@@ -401,7 +415,7 @@ fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() 
             args
         };
         let whole = scratch.out("whole");
-        let args = run(&[], "gpu")
+        let args = run(&["--force"], "gpu")
             .into_iter()
             .map(|arg| if Path::new(&arg) == scratch.out(precision) { whole.display().to_string() } else { arg });
         assert_eq!(program().args(args).output().expect("it runs").status.code(), Some(0));

@@ -197,7 +197,18 @@ fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
     assert_eq!(names(&dir.join("fields")), ["case.pvd", "step_0001.vtu", "step_0002.vtu", "step_0003.vtu"]);
     assert_eq!(names(&dir.join("contact")).len(), 3);
     fs::write(dir.join("notes.txt"), "mine").expect("a file");
-    scratch.done("out", &["--set", "solver.press_steps=2", "--set", "output.fields=\"none\"", "--set", "output.plots=false"]);
+    let fewer = ["--set", "solver.press_steps=2", "--set", "output.fields=\"none\"", "--set", "output.plots=false"];
+    // Not without a word.
+    let output = scratch.run("out", &fewer);
+    assert_eq!(output.status.code(), Some(2));
+    let message = stderr(&output);
+    for part in
+        ["a run that is done, of another case (output.fields is \"all\" there and \"none\" here), 3 steps, written ", "--force"]
+    {
+        assert!(message.contains(part), "{message}");
+    }
+    assert_eq!(names(&dir.join("contact")).len(), 3);
+    scratch.done("out", &[&fewer[..], &["--force"]].concat());
     assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "notes.txt", "plots", "summary.json"]);
     for folder in ["fields", "contact", "plots"] {
         assert!(names(&dir.join(folder)).is_empty(), "{folder}: {:?}", names(&dir.join(folder)));
@@ -434,7 +445,9 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
     use std::time::{Duration, Instant};
 
     let scratch = Scratch::new("[[path]]\nshear = 0.01\n");
-    for (name, signal) in [("terminated", Signal::TERM), ("interrupted", Signal::INT)] {
+    for (name, signal) in
+        [("terminated", Signal::TERM), ("interrupted", Signal::INT), ("warned", Signal::USR1), ("hung-up", Signal::HUP)]
+    {
         let mut command = scratch.command(name, &["--set", "mesh.elements_per_contact_radius=8"]);
         let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("a run");
         let history = scratch.out(name).join("history.csv");

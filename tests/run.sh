@@ -11,7 +11,7 @@ begin() {
     echo "== $step"
 }
 
-# A Vulkan driver that runs on the CPU, for the GPU tests, spirv-val, and what compiles and runs the exported laws. Only where apt-get is
+# A Vulkan driver that runs on the CPU, for the GPU tests, spirv-val, strace, which kills at chosen system calls, and what compiles and runs the exported laws. Only where apt-get is
 # there and something is missing.
 install_packages() {
     local package missing=()
@@ -19,7 +19,7 @@ install_packages() {
     command -v gcc >/dev/null || missing+=(gcc)
     command -v g++ >/dev/null || missing+=(g++)
     command -v python3 >/dev/null || missing+=(python3 python3-venv)
-    for package in libvulkan1 mesa-vulkan-drivers spirv-tools; do
+    for package in libvulkan1 mesa-vulkan-drivers spirv-tools strace; do
         dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
     done
     [ "${#missing[@]}" -gt 0 ] || return 0
@@ -65,10 +65,33 @@ cargo clippy --all-targets -- -D warnings
 begin "cargo doc"
 RUSTDOCFLAGS="-Dwarnings" cargo doc --no-deps
 
+# Licences, versions, sources, and known faults where their database can be had. To build cargo-deny takes longer than all tests: only where it is, or with
+# ASPERITY_DENY=install.
+begin "cargo deny"
+if [ "${ASPERITY_DENY:-}" = install ] && ! command -v cargo-deny >/dev/null; then
+    cargo install cargo-deny --locked --debug --root target/tools
+fi
+PATH="$PATH:$PWD/target/tools/bin"
+if command -v cargo-deny >/dev/null; then
+    cargo deny check licenses bans sources
+    if timeout 120 cargo deny fetch db >/dev/null 2>&1; then
+        cargo deny check advisories
+    else
+        echo "SKIPPED cargo deny check advisories: their database cannot be had" >&2
+    fi
+else
+    echo "SKIPPED cargo deny: it is not installed (ASPERITY_DENY=install does, in some ten minutes)" >&2
+fi
+
 if compgen -G "benches/*.rs" >/dev/null; then
     begin "benches, once each"
     cargo bench --benches -- --test
 fi
+
+# A real Slurm on this machine; says so where it cannot be had.
+begin "cluster"
+cargo build --quiet
+bash tests/cluster/run.sh target/debug/asperity
 
 # Every test target runs, whatever failed before it: one run tells all.
 begin "cargo test"

@@ -40,7 +40,7 @@ fn run(dir: &Path, options: &[&str], environment: &[(&str, &str)]) -> Output {
 fn run_case(dir: &Path, case: &str, options: &[&str], environment: &[(&str, &str)]) -> Output {
     fs::write(dir.join("case.toml"), case).unwrap();
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
-    command.arg("run").arg(dir.join("case.toml")).arg("--out").arg(dir.join("out")).args(options);
+    command.arg("run").arg(dir.join("case.toml")).arg("--out").arg(dir.join("out")).arg("--force").args(options);
     command
         .env_remove("ASPERITY_ADAPTER")
         .env_remove("ASPERITY_GPU_MEMORY")

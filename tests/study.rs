@@ -285,20 +285,144 @@ fn going_on_computes_what_is_not_the_very_case_or_has_no_summary() {
     assert_eq!(timeless(rows(&scratch.out("out"))), whole);
     assert_eq!(fs::read_to_string(&case).expect("a case"), text);
 
-    // Another study has no business there, and without --resume it takes the place.
-    let changed = format!("{BASE}{}", GRID.replace("0.1", "0.2"));
+    // Another study has no business there, and only by force it takes the place.
+    let changed = format!("{}{GRID}", BASE.replace("poissons_ratio = 0.3", "poissons_ratio = 0.29"));
     fs::write(scratch.out("study.toml"), changed).expect("the study");
     for options in [&["--resume"][..], &["--shard", "1/2"]] {
         let output = scratch.ends_with(2, "out", options);
         let message = stderr(&output);
         assert!(
-            message.contains("holds another study") && message.contains("contact.friction = 0.1, where this one has"),
+            message.contains("holds another study") && message.contains("none of its results is of a case of this one"),
             "{message}"
         );
     }
+    let output = scratch.ends_with(2, "out", &[]);
+    let message = stderr(&output);
+    assert!(message.contains("holds a study of which 4 cases are done") && message.contains("--force replaces it"), "{message}");
     assert_eq!(timeless(rows(&scratch.out("out"))), whole);
+    scratch.ends_with(0, "out", &["-q", "--force"]);
+    assert_eq!(rows(&scratch.out("out"))[0]["nu"], "0.29");
+}
+
+#[test]
+fn a_grid_that_has_grown_keeps_what_it_has() {
+    let scratch = Scratch::new(GRID);
     scratch.ends_with(0, "out", &["-q"]);
-    assert_eq!(rows(&scratch.out("out"))[0]["contact.friction"], "0.2");
+    let before = rows(&scratch.out("out"));
+    let written = |id: &str| fs::metadata(scratch.case("out", id).summary()).and_then(|file| file.modified()).expect("a summary");
+    let times: Vec<_> = ["0001", "0002", "0003", "0004"].map(written).into();
+    // Two values more: the numbers of the grid are others now.
+    let grown = GRID.replace("[0.1, \"stick\"]", "[0.05, 0.1, \"stick\"]").replace("[400.0, 1600.0]", "[400.0, 800.0, 1600.0]");
+    fs::write(scratch.out("study.toml"), format!("{BASE}{grown}")).expect("the study");
+    let output = scratch.ends_with(0, "out", &["--resume"]);
+    assert!(stderr(&output).contains("; 4 done and 0 failed before; 5 to compute"), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("do not belong"), "{}", stderr(&output));
+    let after = rows(&scratch.out("out"));
+    assert_eq!(after.len(), 9);
+    for row in &after {
+        let (stress, friction) = (&row["material.hardening.yield_stress"], &row["contact.friction"]);
+        let old =
+            before.iter().find(|old| (&old["material.hardening.yield_stress"], &old["contact.friction"]) == (stress, friction));
+        // The very row, times and all.
+        assert!(old.is_none_or(|old| old == row), "{old:?} {row:?}");
+        let case = Case::load(&scratch.out("out").join(&row["directory"]).join("case.toml"), &[]).expect("a case");
+        assert_eq!(case.material.hardening.yield_stress(200e3), stress.parse().ok());
+        assert_eq!((row["status"].as_str(), row["case"].len()), ("done", 4));
+    }
+    assert_eq!(["0001", "0002", "0003", "0004"].map(written).to_vec(), times);
+    let output = scratch.ends_with(0, "out", &["--resume"]);
+    assert!(stderr(&output).contains("; 9 done and 0 failed before; 0 to compute"), "{}", stderr(&output));
+    assert_eq!(rows(&scratch.out("out")), after);
+
+    // A value less: what belongs to the study no more is named and stays.
+    fs::write(scratch.out("study.toml"), format!("{BASE}{}", grown.replace("0.05, ", "").replace("1600.0", "3200.0")))
+        .expect("the study");
+    let kept = after.iter().filter(|row| row["contact.friction"] == "0.05" || row["material.hardening.yield_stress"] == "1600.0");
+    let kept: Vec<PathBuf> = kept.map(|row| scratch.out("out").join(&row["directory"]).join("history.csv")).collect();
+    assert_eq!(kept.len(), 5);
+    let output = scratch.ends_with(0, "out", &["--resume"]);
+    let message = stderr(&output);
+    assert!(message.contains("; 4 done and 0 failed before; 2 to compute"), "{message}");
+    assert!(message.contains("5 of the cases in ") && message.contains("are left as they are: cases/000"), "{message}");
+    assert!(kept.iter().all(|path| path.exists()) && rows(&scratch.out("out")).len() == 6);
+}
+
+#[test]
+fn what_a_study_leaves_that_was_killed_at_its_first_file_is_no_hindrance() {
+    let scratch = Scratch::new(GRID);
+    fs::create_dir(scratch.out("out")).expect("a directory");
+    fs::write(scratch.out("out").join(".study.csv.4711.tmp"), "").expect("a draft");
+    fs::write(scratch.out("out").join(".asperity.lock"), "process 4711 on node7\n").expect("a lock");
+    scratch.ends_with(0, "out", &["-q", "--resume"]);
+    assert_eq!(statuses(&scratch.out("out")), ["done"; 4]);
+}
+
+#[test]
+fn directories_of_shares_are_merged_and_what_is_missing_is_said() {
+    let scratch = Scratch::new(GRID);
+    scratch.ends_with(0, "whole", &["-q"]);
+    scratch.ends_with(0, "a", &["-q", "--shard", "1/3"]);
+    scratch.ends_with(0, "b", &["-q", "--shard", "2/3"]);
+    let merge = |sources: &[&str], out: &str| {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
+        command.arg("study").arg("--merge").args(sources.iter().map(|name| scratch.out(name))).arg("--out").arg(scratch.out(out));
+        command.output().expect("the program runs")
+    };
+    let output = merge(&["a", "b"], "all");
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(75), "{message}");
+    let missing: Vec<String> =
+        rows(&scratch.out("all")).iter().filter(|row| row["status"] == "pending").map(|row| row["case"].clone()).collect();
+    assert!(!missing.is_empty() && missing.len() < 4);
+    assert!(message.contains(&format!("error: {} of 4 cases are missing: {} (material", missing.len(), missing[0])), "{message}");
+    scratch.ends_with(0, "c", &["-q", "--shard", "3/3"]);
+    let output = merge(&["all", "c"], "all");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(
+        stdout(&output).starts_with(&format!("4 done, 0 failed, 0 missing; {} cases copied", missing.len())),
+        "{}",
+        stdout(&output)
+    );
+    assert_eq!(timeless(rows(&scratch.out("all"))), timeless(rows(&scratch.out("whole"))));
+    for id in ["0001", "0002", "0003", "0004"] {
+        assert_eq!(history(&scratch.case("all", id)), history(&scratch.case("whole", id)), "{id}");
+        assert_eq!(scratch.case("all", id).contact_steps().expect("tables").len(), 2);
+    }
+    // Another study, and what is none.
+    fs::write(scratch.out("study.toml"), format!("{BASE}{}", GRID.replace("0.1", "0.2"))).expect("the study");
+    scratch.ends_with(0, "other", &["-q"]);
+    fs::create_dir(scratch.out("none")).expect("a directory");
+    for (wrong, part) in [("other", "merge directories of one study"), ("none", "is not a study")] {
+        let output = merge(&["a", wrong], "new");
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(part) && !scratch.out("new").exists(), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn scripts_for_slurm_are_written_and_nothing_is_computed() {
+    let scratch = Scratch::new(GRID);
+    let output = scratch.ends_with(0, "out", &["--slurm", "tasks=2", "time=00:10:00"]);
+    assert!(stdout(&output).contains("2 tasks; to submit them: bash "), "{}", stdout(&output));
+    let tasks = fs::read_to_string(scratch.out("out/slurm/tasks.sh")).expect("a script");
+    for part in ["#SBATCH --array=1-2\n", "#SBATCH --time=00:10:00\n", "--device=cpu", "--shard \"$share\" --resume"] {
+        assert!(tasks.contains(part), "{part}: {tasks}");
+    }
+    assert_eq!(statuses(&scratch.out("out")), ["pending"; 4]);
+    let output = scratch.ends_with(2, "out", &["--slurm", "array=1-2"]);
+    assert!(stderr(&output).starts_with("error: --slurm array=1-2: is unknown"), "{}", stderr(&output));
+    // A task as Slurm runs it, with a scheduler that has nothing to do.
+    for task in ["1", "2"] {
+        let output = Command::new("bash")
+            .arg(scratch.out("out/slurm/tasks.sh"))
+            .env("SLURM_ARRAY_TASK_ID", task)
+            .output()
+            .expect("bash runs");
+        assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    }
+    let output = Command::new("bash").arg(scratch.out("out/slurm/table.sh")).output().expect("bash runs");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(statuses(&scratch.out("out")), ["done"; 4]);
 }
 
 #[test]

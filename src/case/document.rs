@@ -65,7 +65,11 @@ pub struct Document {
 impl Document {
     /// Parses TOML; `file` is the name that errors give.
     pub fn parse(text: &str, file: &str) -> Result<Self, CaseError> {
-        let lines = Lines { file: file.into(), text };
+        let lines = Lines::of(text, file);
+        if let Some(offset) = too_deep(text) {
+            let what = format!("tables within tables, more than {DEEPEST} deep");
+            return Err(CaseError::Syntax { place: lines.place(offset), what });
+        }
         let table = DeTable::parse(text).map_err(|error| CaseError::Syntax {
             place: lines.place(error.span().map_or(0, |span| span.start)),
             what: one_line(error.message()),
@@ -93,6 +97,9 @@ impl Document {
     /// Puts `entry` at a dotted key; digits index an array, and the index after the last appends. Tables on the way are made if
     /// they are not there. The error says what stands in the way.
     pub fn set(&mut self, key: &str, entry: Entry) -> Result<(), String> {
+        if key.split('.').count() > DEEPEST {
+            return Err(format!("the key has more than {DEEPEST} parts"));
+        }
         let mut at = &mut self.root;
         let mut walked = String::new();
         for part in key.split('.') {
@@ -140,16 +147,43 @@ impl Document {
     }
 }
 
-/// Turns byte offsets into line numbers.
-struct Lines<'t> {
-    file: Arc<str>,
-    text: &'t str,
+/// Most parts of a dotted key. A case has four; thousands would overflow the stack, here and in the TOML parser, which bounds brackets alone.
+const DEEPEST: usize = 64;
+
+/// Where something stands that has more parts between single dots than a key may have. Seen without parsing, as it is the parser that has to be spared;
+/// so a string like that counts too.
+fn too_deep(text: &str) -> Option<usize> {
+    let (mut parts, mut after_dot) = (0, false);
+    for (offset, byte) in text.bytes().enumerate() {
+        match byte {
+            b'.' if after_dot => parts = 0,
+            b'.' => (parts, after_dot) = (parts + 1, true),
+            b' ' | b'\t' => {}
+            b',' | b'=' | b'[' | b']' | b'{' | b'}' | b'#' | b'\n' => (parts, after_dot) = (0, false),
+            _ => after_dot = false,
+        }
+        if parts >= DEEPEST {
+            return Some(offset);
+        }
+    }
+    None
 }
 
-impl Lines<'_> {
+/// Turns byte offsets into line numbers.
+struct Lines {
+    file: Arc<str>,
+    /// Offsets of the line ends, increasing: looked up by halving, as every value has a place.
+    ends: Vec<usize>,
+}
+
+impl Lines {
+    fn of(text: &str, file: &str) -> Self {
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(offset, _)| offset).collect();
+        Self { file: file.into(), ends }
+    }
+
     fn place(&self, offset: usize) -> Place {
-        let before = &self.text.as_bytes()[..offset.min(self.text.len())];
-        Place::Line { file: self.file.clone(), line: 1 + before.iter().filter(|byte| **byte == b'\n').count() }
+        Place::Line { file: self.file.clone(), line: 1 + self.ends.partition_point(|end| *end < offset) }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What can be wrong with a case file, and where.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
@@ -20,8 +21,8 @@ pub enum Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Line { file, line } => write!(f, "{file}:{line}"),
-            Place::Set(key) => write!(f, "--set {key}"),
+            Place::Line { file, line } => write!(f, "{}:{line}", short(file)),
+            Place::Set(key) => write!(f, "--set {}", short(key)),
         }
     }
 }
@@ -30,7 +31,7 @@ impl fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 pub enum CaseError {
     /// The file cannot be read.
-    #[error("{file}: cannot be read: {source}. give the path of a readable case file")]
+    #[error("{}: cannot be read: {source}. give the path of a readable case file", short(.file))]
     Unreadable {
         /// The file as the user named it.
         file: String,
@@ -38,7 +39,7 @@ pub enum CaseError {
         source: std::io::Error,
     },
     /// The text is not TOML.
-    #[error("{place}: not valid TOML: {what}")]
+    #[error("{place}: not valid TOML: {}", short(.what))]
     Syntax {
         /// Where the parser stopped.
         place: Place,
@@ -46,7 +47,7 @@ pub enum CaseError {
         what: String,
     },
     /// A key that no case has.
-    #[error("{place}: {key}: unknown key{} allowed: {allowed}", did_you_mean(.nearest))]
+    #[error("{place}: {}: unknown key{} allowed: {allowed}", short(.key), did_you_mean(.nearest))]
     UnknownKey {
         /// Where the key stands.
         place: Place,
@@ -58,7 +59,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A key without which there is no case.
-    #[error("{place}: {key}: missing. allowed: {allowed}")]
+    #[error("{place}: {}: missing. allowed: {allowed}", short(.key))]
     Missing {
         /// The table that lacks the key.
         place: Place,
@@ -68,7 +69,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A value of another type than the key takes.
-    #[error("{place}: {key}: is {found}, which is the wrong type. allowed: {allowed}")]
+    #[error("{place}: {}: is {}, which is the wrong type. allowed: {allowed}", short(.key), short(.found))]
     WrongType {
         /// Where the value stands.
         place: Place,
@@ -80,7 +81,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A value out of range, or one that does not go with the rest of the case.
-    #[error("{place}: {key}: {what}. allowed: {allowed}")]
+    #[error("{place}: {}: {}. allowed: {allowed}", short(.key), short(.what))]
     NotAllowed {
         /// Where the value stands.
         place: Place,
@@ -93,7 +94,9 @@ pub enum CaseError {
     },
     /// A `--set` argument that cannot be applied.
     #[error(
-        "--set {argument}: {what}. allowed: KEY=VALUE with a dotted key, as in contact.friction=0.1 or path.0.indentation=0.01"
+        "--set {}: {}. allowed: KEY=VALUE with a dotted key, as in contact.friction=0.1 or path.0.indentation=0.01",
+        short(.argument),
+        short(.what)
     )]
     Set {
         /// The argument.
@@ -101,6 +104,17 @@ pub enum CaseError {
         /// What is wrong with it.
         what: String,
     },
+}
+
+/// A text as a message gives it: whole, or if it is long its beginning, its end and how much is left out.
+pub fn short(text: &str) -> Cow<'_, str> {
+    const MOST: usize = 240;
+    let count = text.chars().count();
+    if count <= MOST {
+        return Cow::Borrowed(text);
+    }
+    let (head, tail): (String, String) = (text.chars().take(MOST / 2).collect(), text.chars().skip(count - MOST / 4).collect());
+    Cow::Owned(format!("{head} [... {} characters ...] {tail}", count - MOST / 2 - MOST / 4))
 }
 
 fn did_you_mean(nearest: &Option<String>) -> String {

@@ -60,6 +60,8 @@ pub enum Hardening {
 /// Largest yield stress over Young's modulus that is taken for a material: beyond it the first yield is at strains where the
 /// elastic law itself is in doubt.
 const MAX_YIELD_STRAIN: f64 = 0.2;
+/// Smallest one: an indentation is then a million times that of first yield, and forces are lost in rounding.
+const MIN_YIELD_STRAIN: f64 = 1e-7;
 
 impl Hardening {
     /// The stress at first yield, a stress > 0; `None` for a law that never yields.
@@ -183,11 +185,12 @@ impl Law {
 
 fn yields(stress: f64, youngs_modulus: f64) -> bool {
     let strain = stress / youngs_modulus;
-    strain > 0.0 && strain < MAX_YIELD_STRAIN
+    (MIN_YIELD_STRAIN..MAX_YIELD_STRAIN).contains(&strain)
 }
 
 fn yield_range(youngs_modulus: f64) -> String {
-    format!("a stress > 0 and < {MAX_YIELD_STRAIN} E = {:?}", MAX_YIELD_STRAIN * youngs_modulus)
+    let [least, most] = [MIN_YIELD_STRAIN, MAX_YIELD_STRAIN].map(|strain| strain * youngs_modulus);
+    format!("a stress > 0, from {MIN_YIELD_STRAIN:e} E = {least:e} and < {MAX_YIELD_STRAIN} E = {most:?}")
 }
 
 /// `points`, completed by (0, yield_stress) when they do not begin at alpha = 0.

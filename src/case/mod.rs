@@ -18,7 +18,7 @@ mod write;
 mod tests;
 
 pub use document::{Document, Entry, Value};
-pub use error::{CaseError, Place};
+pub use error::{CaseError, Place, short};
 pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
 pub use hardening::Hardening;
 pub use path::{Hold, Segment, ShearTarget};

@@ -6,7 +6,10 @@ use super::document::Document;
 use super::error::CaseError;
 use super::reader::Reader;
 use super::{Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Output, Solver, Sphere, estimate, path};
+use crate::bounded;
 
+/// Radius and Young's modulus, in the units of the case: between these energies, of the order of E R^3, are neither infinite nor nothing.
+const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
 /// Smallest and largest a/R that the sphere is meshed for.
 const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
 
@@ -14,7 +17,8 @@ impl Case {
     /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the result.
     pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(file).map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
+        let text = bounded::read_to_string(file, bounded::CASE)
+            .map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
         Self::parse(&text, &name, settings)
     }
 
@@ -53,7 +57,8 @@ impl Material {
     /// tables are not looked at.
     pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(file).map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
+        let text = bounded::read_to_string(file, bounded::CASE)
+            .map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
         let mut document = Document::parse(&text, &name)?;
         for argument in settings {
             document.set_argument(argument)?;
@@ -68,13 +73,14 @@ fn read_material_of(root: &Reader<'_>) -> Result<Material, CaseError> {
 
 fn read_sphere(table: &Reader<'_>) -> Result<Sphere, CaseError> {
     table.only(&["radius"])?;
-    Ok(Sphere { radius: table.require("radius", "a length > 0")?.number("a length > 0", |radius| radius > 0.0)? })
+    let length = "a length > 0 (from 1e-75 to 1e75)";
+    Ok(Sphere { radius: table.require("radius", length)?.number(length, |radius| MAGNITUDES.contains(&radius))? })
 }
 
 fn read_material(table: &Reader<'_>) -> Result<Material, CaseError> {
     table.only(&["youngs_modulus", "poissons_ratio", "hardening"])?;
-    let (stress, ratio) = ("a stress > 0", "a number > -1 and < 0.5");
-    let youngs_modulus = table.require("youngs_modulus", stress)?.number(stress, |e| e > 0.0)?;
+    let (stress, ratio) = ("a stress > 0 (from 1e-75 to 1e75)", "a number > -1 and < 0.5");
+    let youngs_modulus = table.require("youngs_modulus", stress)?.number(stress, |e| MAGNITUDES.contains(&e))?;
     let poissons_ratio = table.require("poissons_ratio", ratio)?.number(ratio, |nu| nu > -1.0 && nu < 0.5)?;
     let hardening = Hardening::read(&table.require_table("hardening", "a table with law")?, youngs_modulus)?;
     Ok(Material { youngs_modulus, poissons_ratio, hardening })

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{CliError, Outcome};
+use crate::bounded;
 use crate::case::{Case, Document};
 use crate::study::Study;
 
@@ -37,7 +38,7 @@ pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
 /// The study, if the file is one. What cannot be read as TOML is left to the case's own check.
 fn study(args: &CheckArgs) -> Result<Option<Study>, CliError> {
     let name = args.case.display().to_string();
-    let text = std::fs::read_to_string(&args.case).unwrap_or_default();
+    let text = bounded::read_to_string(&args.case, bounded::CASE).unwrap_or_default();
     if !Document::parse(&text, &name).is_ok_and(|document| Study::is_study(&document)) {
         return Ok(None);
     }

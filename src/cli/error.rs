@@ -1,7 +1,7 @@
 //! What can go wrong in front of the simulation.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::bench::BenchError;
 use crate::case::CaseError;
@@ -46,6 +46,35 @@ pub enum CliError {
         what: &'static str,
         /// What the system says.
         source: io::Error,
+    },
+    /// The directory of `--out` holds an earlier result, and it was not said what is to become of it.
+    #[error(
+        "--out {}: holds {found}. --resume goes on with it (if it is done, it stays), --force replaces it; or give another directory (nothing was changed)",
+        .dir.display()
+    )]
+    Earlier {
+        /// The directory.
+        dir: PathBuf,
+        /// What is there.
+        found: String,
+    },
+    /// Scripts that cannot be submitted.
+    #[error("--submit: {what}. the scripts are written; submit them with `bash {}` where sbatch is", .script.display())]
+    Submit {
+        /// The script that submits.
+        script: PathBuf,
+        /// What went wrong.
+        what: String,
+    },
+    /// An environment variable.
+    #[error("{name}={value}: {what}. unset it, or correct it")]
+    Variable {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: String,
+        /// What is wrong.
+        what: &'static str,
     },
     /// The hardening law of a case.
     #[error("{}: {source}", .file.display())]
@@ -93,7 +122,7 @@ pub enum CliError {
     #[error("bench: {0}")]
     Bench(#[from] BenchError),
     /// The signals cannot be caught.
-    #[error("cannot listen for SIGINT and SIGTERM: {source}. this system allows no signal handlers, which a run needs")]
+    #[error("cannot listen for signals: {source}. this system allows no signal handlers, which a run needs")]
     Signals {
         /// What the system says.
         source: io::Error,
@@ -127,8 +156,8 @@ pub enum CliError {
     },
     /// `--resume` where another case has been computed.
     #[error(
-        "--out {}: holds the results of another case: {difference}. restore the case file or --set, give another directory, or run without --resume to \
-         replace them",
+        "--out {}: holds the results of another case: {difference}. restore the case file or --set, give another directory, or run with --force and without \
+         --resume to replace them",
         .dir.display()
     )]
     OtherRun {
@@ -141,7 +170,7 @@ pub enum CliError {
     #[error(transparent)]
     Output(#[from] OutputError),
     /// A run broke off: results cannot be written, or the device failed.
-    #[error("the run broke off after {steps} steps: {what}. what was computed until then is kept in {}; to go on, run the same command with --resume", .dir.display())]
+    #[error("the run broke off after {steps} steps: {what}. {}", kept(.dir))]
     BrokeOff {
         /// Steps that are kept.
         steps: usize,
@@ -169,6 +198,15 @@ pub enum CliError {
         /// What went wrong.
         source: VerifyError,
     },
+}
+
+/// What became of the results of a run that broke off, and what to do.
+fn kept(dir: &Path) -> String {
+    let dir_name = dir.display();
+    if super::force::is_absent(&dir.join("case.toml")) {
+        return format!("nothing of it is left in {dir_name}; run it again from the beginning");
+    }
+    format!("what was computed until then is kept in {dir_name}; to go on, run the same command with --resume")
 }
 
 impl CliError {

@@ -3,8 +3,11 @@
 pub mod backend;
 pub mod bench;
 pub mod check;
+pub mod cluster;
 pub mod devices;
+pub mod environment;
 pub mod error;
+pub mod force;
 pub mod law;
 pub mod options;
 pub mod out;
@@ -91,11 +94,15 @@ impl From<Outcome> for ExitCode {
 
 /// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with its exit code.
 pub fn main() -> ExitCode {
-    let outcome = processor::check().and_then(|()| match Cli::try_parse() {
+    let checked = processor::check().and_then(|()| environment::check());
+    let outcome = checked.and_then(|()| match Cli::try_parse() {
         Ok(cli) => cli.command.run().map(ExitCode::from),
         Err(usage) => {
             // Help and version come this way too, with exit code 0.
-            let _ = usage.print();
+            let _ = match environment::shortened(&usage.to_string()) {
+                None => usage.print(),
+                Some(text) => write!(std::io::stderr(), "{text}"),
+            };
             Ok(ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(error::BAD_INPUT)))
         }
     });

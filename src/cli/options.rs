@@ -41,7 +41,7 @@ pub struct DeviceArgs {
     #[arg(long, value_enum, default_value_t, value_name = "PRECISION")]
     pub precision: Precision,
     /// Threads to use; by default all of the machine's.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
 }
 
@@ -54,6 +54,16 @@ pub struct Verbosity {
     /// Say more; twice for every Newton iteration.
     #[arg(short, long, action = ArgAction::Count)]
     pub verbose: u8,
+}
+
+/// Most threads that are taken for meant, unless the machine has more: beyond it, it is their number that takes the time.
+const MOST_THREADS: usize = 256;
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let machine = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let most = MOST_THREADS.max(machine);
+    let number = text.parse::<NonZeroUsize>().ok().filter(|number| number.get() <= most);
+    number.ok_or_else(|| format!("a number of threads is from 1 to {most}; this machine runs {machine} at a time"))
 }
 
 impl DeviceArgs {

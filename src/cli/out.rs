@@ -8,26 +8,35 @@ use super::CliError;
 use crate::case::Case;
 use crate::output::OutputDirectory;
 
+/// Refuses a directory that is neither absent nor empty nor a result. Drafts and the lock of runs do not count: a run that was killed before its first file
+/// had its name leaves those alone.
+///
+/// # Errors
+/// [`CliError::NotAResult`], [`CliError::NotADirectory`], [`CliError::Out`], [`CliError::Output`] for a folder of results that is a link.
+pub fn recognise(dir: &Path) -> Result<(), CliError> {
+    let failed = |what: &'static str| move |source: io::Error| CliError::Out { dir: dir.to_owned(), what, source };
+    match fs::metadata(dir) {
+        Ok(found) if !found.is_dir() => return Err(CliError::NotADirectory { dir: dir.to_owned() }),
+        Ok(_) => {}
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(failed("be read")(error)),
+    }
+    let out = OutputDirectory::existing(dir);
+    let found = out.names().map_err(failed("be read"))?.into_iter().next();
+    match found.filter(|_| !out.holds_result()) {
+        Some(found) => Err(CliError::NotAResult { dir: dir.to_owned(), found }),
+        None => Ok(out.refuse_links()?),
+    }
+}
+
 /// Prepares `dir` for the results of `case` and writes the resolved case to `case.toml` there.
 ///
 /// A directory that does not exist is made, an empty one is used. In one that holds an earlier result, what that
 /// run wrote is removed and everything else stays. Anything else is refused, untouched.
 pub fn prepare(dir: &Path, case: &Case) -> Result<(), CliError> {
-    let failed = |what: &'static str| move |source: io::Error| CliError::Out { dir: dir.to_owned(), what, source };
-    match fs::metadata(dir) {
-        Ok(found) if !found.is_dir() => return Err(CliError::NotADirectory { dir: dir.to_owned() }),
-        Ok(_) => {}
-        Err(error) if error.kind() == ErrorKind::NotFound => fs::create_dir_all(dir).map_err(failed("be created"))?,
-        Err(error) => return Err(failed("be read")(error)),
-    }
-    let mut names = Vec::new();
-    for entry in fs::read_dir(dir).map_err(failed("be read"))? {
-        names.push(entry.map_err(failed("be read"))?.file_name().to_string_lossy().into_owned());
-    }
+    recognise(dir)?;
+    fs::create_dir_all(dir).map_err(|source| CliError::Out { dir: dir.to_owned(), what: "be created", source })?;
     let out = OutputDirectory::existing(dir);
-    if let Some(found) = names.iter().min().filter(|_| !out.holds_result()) {
-        return Err(CliError::NotAResult { dir: dir.to_owned(), found: found.clone() });
-    }
     out.clear()?;
     Ok(out.write_case(&case.to_toml())?)
 }
@@ -61,6 +70,20 @@ mod tests {
         assert!(!scratch.path().join("history.csv").exists());
         assert!(!scratch.path().join("summary.json").exists());
         assert_eq!(fs::read_to_string(scratch.path().join("notes.txt")).expect("the user's file"), "earlier");
+    }
+
+    #[test]
+    fn what_a_run_leaves_that_was_killed_at_its_first_file_is_no_hindrance() {
+        let scratch = tempfile::tempdir().expect("a scratch directory");
+        for name in [".case.toml.4711.tmp", ".asperity.lock"] {
+            fs::write(scratch.path().join(name), "").expect("a file");
+        }
+        prepare(scratch.path(), &case()).expect("as good as empty");
+        assert!(!scratch.path().join(".case.toml.4711.tmp").exists());
+        // A draft of something else is the user's.
+        let mine = tempfile::tempdir().expect("a scratch directory");
+        fs::write(mine.path().join(".thesis.tex.4711.tmp"), "mine").expect("a file");
+        assert!(matches!(prepare(mine.path(), &case()), Err(CliError::NotAResult { .. })));
     }
 
     #[test]

@@ -39,6 +39,7 @@ pub fn standing(dir: &Path, case: &Case) -> Result<Standing, CliError> {
     let path = out.checkpoint();
     let Some(checkpoint) = Checkpoint::read(&path)? else { return Ok(Standing::NotBegun) };
     checkpoint.check_case(&path, case)?;
+    checkpoint.check_files(&out, case)?;
     Ok(Standing::Unfinished(Box::new(checkpoint)))
 }
 
@@ -46,7 +47,7 @@ pub fn standing(dir: &Path, case: &Case) -> Result<Standing, CliError> {
 pub fn refused(dir: &Path, problem: &str) -> CliError {
     OutputError::Checkpoint {
         path: OutputDirectory::existing(dir).checkpoint(),
-        problem: format!("{problem}; run without --resume to begin anew"),
+        problem: format!("{problem}; run with --force and without --resume to begin anew"),
     }
     .into()
 }

@@ -2,11 +2,12 @@
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
 use super::backend::choose_backend;
+use super::force::{Earlier, claim, tidy};
 use super::options::{DeviceArgs, Verbosity};
 use super::resume::{Standing, refused, standing};
 use super::signals::stop_flag;
@@ -30,7 +31,7 @@ pub struct RunArgs {
     /// The case file.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Directory for the results: a new one, an empty one, or one that holds an earlier result, which is replaced.
+    /// Directory for the results: a new one, an empty one, or with --resume or --force one that holds an earlier result.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01; may be repeated.
@@ -40,6 +41,12 @@ pub struct RunArgs {
     /// the run starts from its beginning; one that is done stays as it is. So batch scripts may always give it.
     #[arg(long)]
     pub resume: bool,
+    /// Replace an earlier result in DIR, whatever it is of and however far it is.
+    #[arg(long, conflicts_with = "resume")]
+    pub force: bool,
+    /// Seconds between checkpoints, for tests.
+    #[arg(long, value_name = "SECONDS", hide = true, value_parser = clap::value_parser!(u16))]
+    pub checkpoint_every: Option<u16>,
     /// Device, precision, threads.
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -54,6 +61,13 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let case = Case::load(&args.case, &args.set)?;
+    let earlier = match (args.force, args.resume) {
+        (true, _) => Earlier::Replace,
+        (_, true) => Earlier::Resume,
+        _ => Earlier::Keep,
+    };
+    // Kept until the end: nobody else writes there.
+    let _lock = claim(&args.out, &case, earlier, args.verbosity.quiet)?;
     let checkpoint = match args.resume.then(|| standing(&args.out, &case)).transpose()? {
         Some(Standing::Ended(summary)) => return ended(&summary, args),
         Some(Standing::Unfinished(checkpoint)) => Some(*checkpoint),
@@ -93,6 +107,9 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
     let mut results = ResultWriter::create(&case, &args.out, setting, clock, progress, stop.clone(), checkpoint.as_ref())?;
     results.meshed(&problem);
+    if let Some(seconds) = args.checkpoint_every {
+        results = results.with_checkpoints_every(Duration::from_secs(seconds.into()));
+    }
     match &checkpoint {
         Some(checkpoint) => results.tell(&resumed(checkpoint, args)),
         None if args.resume => results.tell(&format!("nothing to resume in {}: from the beginning", args.out.display())),
@@ -136,6 +153,7 @@ fn forecast(scout: &Scout, problem: &Problem, scout_seconds: f64) -> String {
 /// Says that a run that was to go on has ended before: as it did then.
 fn ended(summary: &Summary, args: &RunArgs) -> Result<Outcome, CliError> {
     let (steps, dir) = (summary.steps, args.out.display());
+    tidy(&args.out);
     if summary.status == Status::Done {
         if !args.verbosity.quiet {
             super::print(&format!("already done: {steps} steps on {}; results in {dir}\n", summary.device))?;
@@ -146,7 +164,7 @@ fn ended(summary: &Summary, args: &RunArgs) -> Result<Outcome, CliError> {
     // A closed stderr does not change how the run went.
     let _ = writeln!(
         std::io::stderr(),
-        "error: ended before: {reason}. what was computed is kept in {dir} ({steps} steps); to compute it again, run without --resume"
+        "error: ended before: {reason}. what was computed is kept in {dir} ({steps} steps); to compute it again, run with --force and without --resume"
     );
     Ok(Outcome::NotConverged)
 }

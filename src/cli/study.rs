@@ -2,15 +2,16 @@
 
 use std::io::Write;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 
 use super::backend::{device_wish, precision_wish};
 use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
-use super::{CliError, Outcome};
+use super::{CliError, Outcome, cluster};
 use crate::compute::ComputeError;
 use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgress};
 
@@ -20,9 +21,9 @@ use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgres
 #[derive(Clone, Debug, Args)]
 pub struct StudyArgs {
     /// The study file: a case under base, and a grid of dotted keys with lists of values.
-    #[arg(value_name = "STUDY.toml")]
-    pub study: PathBuf,
-    /// Directory for the results: a new one, an empty one, or one that holds an earlier study, which is replaced (not with --resume or --shard).
+    #[arg(value_name = "STUDY.toml", required_unless_present = "merge", conflicts_with = "merge")]
+    pub study: Option<PathBuf>,
+    /// Directory for the results: a new one, an empty one, or with --resume, --shard or --force one that holds an earlier study.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Only the I-th of N shares of about the same size; several machines may work into one directory, a share each. `--resume` without a share then
@@ -30,12 +31,25 @@ pub struct StudyArgs {
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
     /// Go on in a directory with results of this study: cases that are done stay, interrupted ones and those that broke off go on from their checkpoints
-    /// (from their beginning where there is none).
+    /// (from their beginning where there is none). A study whose grid has grown keeps what it has; cases that belong to it no more are named, and stay.
     #[arg(long)]
     pub resume: bool,
+    /// Replace an earlier study in DIR, whatever it is of and however far it is.
+    #[arg(long, conflicts_with = "resume")]
+    pub force: bool,
     /// With --resume: compute also those cases again that did not converge or outgrew their mesh.
     #[arg(long, requires = "resume")]
     pub retry: bool,
+    /// Do not compute, but write scripts for Slurm into DIR/slurm: a job array of shares, and a job after it for the table. tasks=N (4) shares, at-once=N of
+    /// them at a time, warning=SECONDS (60) before the time limit, and options of sbatch, as in time=02:00:00 partition=long mem=4G cpus-per-task=2.
+    #[arg(long, value_name = "KEY=VALUE", num_args = 0.., conflicts_with_all = ["shard", "force", "merge"])]
+    pub slurm: Option<Vec<String>>,
+    /// With --slurm: submit the scripts.
+    #[arg(long, requires = "slurm")]
+    pub submit: bool,
+    /// Do not compute, but join these directories, in which shares of one study were computed, in --out (which may be one of them): the cases and study.csv.
+    #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["shard", "force", "resume"])]
+    pub merge: Option<Vec<PathBuf>>,
     /// Device, precision, threads.
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -47,8 +61,15 @@ pub struct StudyArgs {
 /// Reads and checks the study, computes what there is to compute, and reports.
 pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
+    if let Some(sources) = &args.merge {
+        return cluster::merge(sources, &args.out, args.verbosity.quiet);
+    }
     args.device.start_threads()?;
-    let study = Study::load(&args.study)?;
+    // Clap lets no study pass without its file.
+    let study = Study::load(args.study.as_deref().unwrap_or(Path::new("")))?;
+    if let Some(arguments) = &args.slurm {
+        return cluster::slurm(&study, arguments, args);
+    }
     let all_cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let options = Options {
         device: device_wish(&args.device),
@@ -57,18 +78,19 @@ pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
         shard: args.shard,
         resume: args.resume,
         retry: args.retry,
+        force: args.force,
     };
     let progress = Arc::new(StudyProgress::new(args.verbosity.quiet));
     let stop = stop_flag()?;
-    let report = study::run(&study, &args.out, &options, progress, stop).map_err(|error| match error {
+    let report = study::run(&study, &args.out, &options, progress, stop.clone()).map_err(|error| match error {
         StudyError::Compute(ComputeError::Device(what)) => CliError::Device { what },
         error => error.into(),
     })?;
-    conclude(&report, args)
+    conclude(&report, stop.load(Ordering::Relaxed), args)
 }
 
 /// Says how it went and gives the exit code.
-fn conclude(report: &Report, args: &StudyArgs) -> Result<Outcome, CliError> {
+fn conclude(report: &Report, interrupted: bool, args: &StudyArgs) -> Result<Outcome, CliError> {
     let (dir, Report { done, failed, pending, .. }) = (args.out.display(), report);
     if !args.verbosity.quiet {
         let elsewhere = match report.pending_elsewhere {
@@ -79,9 +101,11 @@ fn conclude(report: &Report, args: &StudyArgs) -> Result<Outcome, CliError> {
     }
     // A closed stderr does not change how the study went.
     if *pending > 0 {
+        let busy = report.pending_reason.as_ref().filter(|_| !interrupted);
+        let why = busy.map_or("interrupted by a signal".to_owned(), |reason| format!("ended ({reason})"));
         let _ = writeln!(
             std::io::stderr(),
-            "error: interrupted by a signal with {pending} cases to go. what was computed is kept in {dir}; to go on, run the same command with --resume"
+            "error: {why} with {pending} cases to go. what was computed is kept in {dir}; to go on, run the same command with --resume"
         );
         return Ok(Outcome::Interrupted);
     }

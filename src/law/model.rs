@@ -1,6 +1,5 @@
 //! The law: forms, constants, where they come from, where they hold and how well, as `law.json` has them.
 
-use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -12,6 +11,7 @@ use super::normal::NormalModel;
 use super::report::{Candidate, FittedCase, NormalCandidate, RegionError};
 use super::variables::{c_squared, yield_lambda};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
+use crate::bounded;
 use crate::output::write_atomically;
 
 /// The first key of a law file, by which it is recognised.
@@ -258,7 +258,7 @@ impl Law {
     /// [`LawError::BadLaw`]: no such file, not a law, another version, constants that are none.
     pub fn read(path: &Path) -> Result<Self, LawError> {
         let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
-        let text = fs::read_to_string(path).map_err(|error| bad(format!("cannot be read: {error}")))?;
+        let text = bounded::read_to_string(path, bounded::RESULT).map_err(|error| bad(format!("cannot be read: {error}")))?;
         Self::from_json(&text).map_err(bad)
     }
 

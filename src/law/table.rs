@@ -1,9 +1,9 @@
 //! `study.csv` as it stands: a header and cells, by name.
 
-use std::fs;
 use std::path::Path;
 
 use super::LawError;
+use crate::bounded;
 
 /// The table of a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +32,8 @@ impl StudyTable {
     /// # Errors
     /// [`LawError::NoStudy`] if it is not there, [`LawError::Table`] if it is no table or lacks `case`, `directory` or `status`.
     pub fn read(path: &Path) -> Result<Self, LawError> {
-        let text = fs::read_to_string(path).map_err(|source| LawError::NoStudy { path: path.to_owned(), source })?;
+        let text = bounded::read_to_string(path, bounded::RESULT)
+            .map_err(|source| LawError::NoStudy { path: path.to_owned(), source })?;
         let malformed = |line: u64, problem: String| LawError::Table { path: path.to_owned(), line, problem };
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let header = reader.headers().map_err(|error| malformed(1, error.to_string()))?.clone();

@@ -1,22 +1,26 @@
 //! Whole files or none.
 
 use super::OutputError;
-use std::fs::{self, File};
+use std::fs::{self, File, OpenOptions};
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Writes `path` through `fill`: into a hidden file beside it, which takes the name only when it is complete and on the disk. Folders
-/// above it are made. On an error the hidden file is removed and what stood under the name before stays.
+/// Writes `path` through `fill`: into a hidden file beside it, which takes the name only when it is complete and on the disk; then the folder is brought to
+/// the disk too, so that a power cut does not take the name back. Folders above it are made. On an error the hidden file is removed and what stood under the
+/// name before stays.
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
     let name = path.file_name().ok_or_else(|| OutputError::Write {
         path: path.to_path_buf(),
         source: io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"),
     })?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(OutputError::writing(folder))?;
-    let draft = folder.join(format!(".{}.{}.tmp", name.to_string_lossy(), std::process::id()));
+    make_folder(folder).map_err(OutputError::writing(folder))?;
+    // A name that nobody can have laid a link under, and a file that was not there.
+    let number = RandomState::new().build_hasher().finish();
+    let draft = folder.join(format!(".{}.{number}.tmp", name.to_string_lossy()));
     let written = (|| {
-        let mut file = BufWriter::with_capacity(1 << 16, File::create(&draft)?);
+        let mut file = BufWriter::with_capacity(1 << 16, OpenOptions::new().write(true).create_new(true).open(&draft)?);
         fill(&mut file)?;
         file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_data()?;
         fs::rename(&draft, path)
@@ -25,7 +29,34 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Re
         // The first error is the one to report; a draft that cannot be removed either is hidden and harmless.
         let _ = fs::remove_file(&draft);
         OutputError::Write { path: path.to_path_buf(), source }
-    })
+    })?;
+    sync_folder(folder);
+    Ok(())
+}
+
+/// The name of the file for which a name is that of a draft; `None` if it is none.
+pub fn draft_of(name: &str) -> Option<&str> {
+    let (name, number) = name.strip_prefix('.')?.strip_suffix(".tmp")?.rsplit_once('.')?;
+    number.bytes().all(|byte| byte.is_ascii_digit()).then_some(name)
+}
+
+/// Makes a folder and those above it, and brings their names to the disk.
+fn make_folder(folder: &Path) -> io::Result<()> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    fs::create_dir_all(folder)?;
+    if let Some(above) = folder.parent() {
+        sync_folder(if above.as_os_str().is_empty() { Path::new(".") } else { above });
+    }
+    Ok(())
+}
+
+/// Brings the names in a folder to the disk. Not every system and file system can, and then there is nothing to be done about it.
+fn sync_folder(folder: &Path) {
+    if cfg!(unix) {
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
 }
 
 #[cfg(test)]
@@ -62,6 +93,30 @@ mod tests {
         assert!(error.to_string().contains("free space"), "{error}");
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(names(folder.path()), ["file.txt"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_draft_has_a_name_that_nobody_knows_and_a_link_under_the_name_itself_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mine, path) = (folder.path().join("mine.txt"), folder.path().join("out/file.txt"));
+        fs::write(&mine, "mine").unwrap();
+        fs::create_dir(folder.path().join("out")).unwrap();
+        std::os::unix::fs::symlink(&mine, &path).unwrap();
+        let mut drafts = Vec::new();
+        for _ in 0..2 {
+            write_atomically(&path, |_| {
+                drafts.extend(names(path.parent().unwrap()).into_iter().filter(|name| draft_of(name) == Some("file.txt")));
+                Ok(())
+            })
+            .unwrap();
+        }
+        assert!(
+            drafts.len() == 2 && drafts[0] != drafts[1] && !drafts[0].contains(&std::process::id().to_string()),
+            "{drafts:?}"
+        );
+        assert_eq!(fs::read_to_string(&mine).unwrap(), "mine");
+        assert!(!path.is_symlink());
     }
 
     #[test]

@@ -4,15 +4,15 @@
 //! that, four bytes, little-endian. It is replaced whole or not at all, and removed when the run has ended.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::ledger::Ledger;
-use super::{OutputError, write_atomically};
-use crate::case::Case;
+use super::{OutputDirectory, OutputError, write_atomically};
+use crate::bounded;
+use crate::case::{Case, Fields};
 use crate::compute::Description;
 use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::zone::Zone;
@@ -79,17 +79,17 @@ impl Checkpoint {
     /// # Errors
     /// [`OutputError::Read`]; [`OutputError::Checkpoint`] if it is damaged or of another version.
     pub fn read(path: &Path) -> Result<Option<Self>, OutputError> {
-        let bytes = match fs::read(path) {
+        let bytes = match bounded::read(path, bounded::CHECKPOINT) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             read => read.map_err(OutputError::reading(path))?,
         };
         let refused = |problem: String| OutputError::Checkpoint { path: path.to_path_buf(), problem };
-        let damaged = || refused("it is incomplete or damaged; run without --resume to begin anew".to_owned());
+        let damaged = || refused("it is incomplete or damaged; run with --force and without --resume to begin anew".to_owned());
         let line = bytes.iter().position(|&byte| byte == b'\n').and_then(|end| bytes.get(..=end)).ok_or_else(damaged)?;
         if line != head().as_bytes() {
             let version = std::str::from_utf8(line).ok().and_then(|line| line.strip_prefix(NAME)).ok_or_else(damaged)?;
             return Err(refused(format!(
-                "it was written by another version ({}, this is {}); go on with that one, or run without --resume to begin anew",
+                "it was written by another version ({}, this is {}); go on with that one, or run with --force and without --resume to begin anew",
                 version.trim(),
                 head().trim_start_matches(NAME).trim()
             )));
@@ -111,10 +111,23 @@ impl Checkpoint {
             Some(difference) => Err(OutputError::Checkpoint {
                 path: path.to_path_buf(),
                 problem: format!(
-                    "it is of another case: {difference}; restore the case file or --set, choose another --out, or run without --resume to begin anew"
+                    "it is of another case: {difference}; restore the case file or --set, choose another --out, or run with --force and without --resume to begin anew"
                 ),
             }),
         }
+    }
+
+    /// Refuses a checkpoint that tells of files which are gone: the run would end without them.
+    ///
+    /// # Errors
+    /// [`OutputError::Checkpoint`] with the file.
+    pub fn check_files(&self, out: &OutputDirectory, case: &Case) -> Result<(), OutputError> {
+        let Some(missing) = out.missing(&self.ledger.saved, case.output.fields != Fields::None) else { return Ok(()) };
+        let problem = format!(
+            "{} was written before it and is gone or empty; restore the file, or run with --force and without --resume to begin anew",
+            missing.display()
+        );
+        Err(OutputError::Checkpoint { path: out.checkpoint(), problem })
     }
 
     /// Refuses a checkpoint of a run in another precision.
@@ -126,7 +139,7 @@ impl Checkpoint {
             return Ok(());
         }
         let problem = format!(
-            "it is of a run in {}, and this one would be in {precision}; give --precision {} and the device of that run, or run without --resume to begin anew",
+            "it is of a run in {}, and this one would be in {precision}; give --precision {} and the device of that run, or run with --force and without --resume to begin anew",
             self.precision, self.precision
         );
         Err(OutputError::Checkpoint { path: path.to_path_buf(), problem })

@@ -2,8 +2,8 @@
 
 use super::history::row_problem;
 use super::{OutputError, write_atomically};
+use crate::bounded;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -65,7 +65,7 @@ pub fn write_contact(path: &Path, points: &[ContactPoint]) -> Result<(), OutputE
 
 /// Reads the table back; errors name the line and the column.
 pub fn read_contact(path: &Path) -> Result<Vec<ContactPoint>, OutputError> {
-    let text = fs::read_to_string(path).map_err(OutputError::reading(path))?;
+    let text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
     let malformed = |(line, problem): (u64, String)| OutputError::Malformed { path: path.to_path_buf(), line, problem };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let columns = reader.headers().map_err(|error| malformed((1, error.to_string())))?.clone();
@@ -75,6 +75,7 @@ pub fn read_contact(path: &Path) -> Result<Vec<ContactPoint>, OutputError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn point(point: usize, status: ContactStatus) -> ContactPoint {
         ContactPoint {

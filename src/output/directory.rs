@@ -1,9 +1,12 @@
 //! Where each result of a run lies in its folder.
 
+use super::atomic::draft_of;
+use super::lock::LOCK_NAME;
 use super::plots::RUN_PICTURES;
 use super::{OutputError, write_atomically};
+use crate::bounded;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a result that may be replaced.
@@ -108,7 +111,44 @@ impl OutputDirectory {
         })
     }
 
+    /// Refuses a directory in which a folder of results is a link: what it leads to is not ours to write to or to clear.
+    ///
+    /// # Errors
+    /// [`OutputError::Link`].
+    pub fn refuse_links(&self) -> Result<(), OutputError> {
+        let links =
+            ["fields", "contact", "plots"].map(|folder| self.root.join(folder)).into_iter().find(|path| path.is_symlink());
+        links.map_or(Ok(()), |path| Err(OutputError::Link { path }))
+    }
+
+    /// A file that there should be, as a checkpoint tells, and that is gone or empty: fields (where the case has them written) and contact tables of the
+    /// steps `saved`.
+    pub fn missing(&self, saved: &[usize], fields: bool) -> Option<PathBuf> {
+        let files = saved.iter().flat_map(|&step| [Some(self.contact(step)), fields.then(|| self.fields(step))]).flatten();
+        files.into_iter().find(|path| !fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0))
+    }
+
+    /// Names in the folder that are no run's drafts nor its lock, the least first: what one has to look at who wants to know whose it is.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn names(&self) -> std::io::Result<Vec<String>> {
+        let mut names = Vec::new();
+        for entry in fs::read_dir(&self.root)? {
+            names.push(entry?.file_name().to_string_lossy().into_owned());
+        }
+        names.retain(|name| name != LOCK_NAME && !(draft_of(name).is_some() && ours("", name)));
+        names.sort();
+        Ok(names)
+    }
+
+    /// Removes what a run leaves that was killed between its last files: drafts, and the checkpoint of a run that has ended.
+    pub fn tidy(&self) -> Result<(), OutputError> {
+        self.clear_but(|_, name| draft_of(name).is_none() && name != "checkpoint.bin")
+    }
+
     fn clear_but(&self, keep: impl Fn(&str, &str) -> bool) -> Result<(), OutputError> {
+        self.refuse_links()?;
         for folder in ["", "fields", "contact", "plots"] {
             let path = if folder.is_empty() { self.root.clone() } else { self.root.join(folder) };
             if !path.is_dir() {
@@ -132,16 +172,18 @@ impl OutputDirectory {
 
     /// The text of `case.toml` without the [`RESULT_MARKER`]; `None` if the folder holds no result.
     pub fn read_case(&self) -> Option<String> {
-        let text = fs::read_to_string(self.case()).ok()?;
+        let text = bounded::read_to_string(&self.case(), bounded::CASE).ok()?;
         let (first, toml) = text.split_once('\n')?;
         (first.trim_end() == RESULT_MARKER).then(|| toml.to_owned())
     }
 
     /// Whether the folder holds a result: its `case.toml` begins with [`RESULT_MARKER`].
     pub fn holds_result(&self) -> bool {
-        let mut first = String::new();
-        let read = fs::File::open(self.case()).and_then(|file| BufReader::new(file).read_line(&mut first));
-        read.is_ok() && first.trim_end() == RESULT_MARKER
+        let mut first = Vec::new();
+        let length = RESULT_MARKER.len() as u64 + 2;
+        let read = fs::File::open(self.case()).and_then(|file| file.take(length).read_to_end(&mut first));
+        read.is_ok()
+            && first.split(|byte| *byte == b'\n').next().is_some_and(|line| line.trim_ascii_end() == RESULT_MARKER.as_bytes())
     }
 }
 
@@ -155,12 +197,7 @@ fn ours(folder: &str, name: &str) -> bool {
         let number = name.strip_prefix("step_").and_then(|name| name.strip_suffix(suffix));
         number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|byte| byte.is_ascii_digit()))
     };
-    // `write_atomically` calls its drafts .NAME.PID.tmp.
-    let draft = || {
-        let final_name = name.strip_prefix('.').and_then(|name| name.strip_suffix(".tmp")).and_then(|name| name.rsplit_once('.'));
-        final_name
-            .is_some_and(|(name, id)| id.bytes().all(|byte| byte.is_ascii_digit()) && (name == "case.toml" || ours(folder, name)))
-    };
+    let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || ours(folder, name));
     let named = match folder {
         "" => matches!(name, "history.csv" | "summary.json" | "checkpoint.bin"),
         "fields" => name == "case.pvd" || step(".vtu"),
@@ -224,6 +261,35 @@ mod tests {
         out.clear().unwrap();
         assert!(gone.iter().all(|name| !folder.path().join(name).exists()));
         assert!(kept.iter().all(|name| folder.path().join(name).exists()));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_that_is_a_link_is_refused_and_what_it_leads_to_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDirectory::create(folder.path().join("out")).unwrap();
+        let foreign = folder.path().join("foreign");
+        fs::create_dir(&foreign).unwrap();
+        fs::write(foreign.join("step_0001.vtu"), "mine").unwrap();
+        std::os::unix::fs::symlink(&foreign, out.root().join("fields")).unwrap();
+        for refused in [out.clear(), out.cut_back(&[]), out.tidy()] {
+            let message = refused.unwrap_err().to_string();
+            assert!(message.contains("out/fields") && message.contains("is a link"), "{message}");
+        }
+        assert_eq!(fs::read_to_string(foreign.join("step_0001.vtu")).unwrap(), "mine");
+    }
+
+    #[test]
+    fn what_a_checkpoint_tells_of_is_looked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDirectory::create(folder.path()).unwrap();
+        for path in [out.contact(3), out.fields(3), out.contact(4)] {
+            write_atomically(&path, |out| out.write_all(b"x")).unwrap();
+        }
+        assert_eq!((out.missing(&[3], true), out.missing(&[3, 4], false)), (None, None));
+        assert_eq!(out.missing(&[3, 4], true), Some(out.fields(4)));
+        fs::write(out.contact(3), "").unwrap();
+        assert_eq!(out.missing(&[3, 4], true), Some(out.contact(3)));
     }
 
     #[test]

@@ -40,6 +40,45 @@ pub enum OutputError {
         /// Why, and what to do.
         problem: String,
     },
+    /// Somebody else writes there.
+    #[error(
+        "--out {}: is being written by {}. wait for it to end, or give another directory (nothing was changed)",
+        dir.display(),
+        holder.as_deref().unwrap_or("another process")
+    )]
+    Locked {
+        /// The directory.
+        dir: PathBuf,
+        /// Process and host, if they are known.
+        holder: Option<String>,
+    },
+    /// A folder of results is a link to somewhere else.
+    #[error("{}: is a link, and results are only written to folders of their own; remove it, or choose another --out", path.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+    },
+    /// What is being written was removed or replaced.
+    #[error("{}: was removed or replaced while the run went on; leave the directory alone until the run has ended, and run again", path.display())]
+    Gone {
+        /// The file that is not there any more.
+        path: PathBuf,
+    },
+    /// A result that is no number.
+    #[error(
+        "step {step}: {column} is {value}; the numbers of the case are too large or too small, or this is a fault of the program: choose other units, or \
+         report it"
+    )]
+    NotFinite {
+        /// The file that it would have been written to.
+        path: PathBuf,
+        /// The step.
+        step: usize,
+        /// What is not finite.
+        column: String,
+        /// Infinite, or not a number.
+        value: f64,
+    },
     /// Data handed to a writer do not fit each other.
     #[error("cannot write {}: {problem}; this is a fault of the program, please report it", path.display())]
     Inconsistent {
@@ -68,7 +107,11 @@ impl OutputError {
             | Self::Read { path, .. }
             | Self::Malformed { path, .. }
             | Self::Checkpoint { path, .. }
+            | Self::Link { path }
+            | Self::Gone { path }
+            | Self::NotFinite { path, .. }
             | Self::Inconsistent { path, .. } => path,
+            Self::Locked { dir, .. } => dir,
         }
     }
 }

@@ -1,8 +1,11 @@
 //! `history.csv`: one row for every accepted step, in the user's units, appended as the run goes.
 
+use super::finite::check_row;
+use super::lock::same_file;
 use super::{OutputError, write_atomically};
+use crate::bounded;
 use crate::simulation::record::StepRecord;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -35,9 +38,20 @@ impl HistoryWriter {
     }
 
     /// Appends a row and hands it to the system.
+    /// A number that is none is refused, and so is a file that is not there any more.
     pub fn append(&mut self, record: &StepRecord) -> Result<(), OutputError> {
+        check_row(&self.path, record)?;
+        self.check_there()?;
         let row = encode(record).map_err(OutputError::writing(&self.path))?;
         self.file.write_all(&row).and_then(|()| self.file.flush()).map_err(OutputError::writing(&self.path))
+    }
+
+    /// Whether the file still stands where it was made: somebody may have removed the directory, or moved it.
+    ///
+    /// # Errors
+    /// [`OutputError::Gone`].
+    pub fn check_there(&self) -> Result<(), OutputError> {
+        if same_file(&self.file, &self.path) { Ok(()) } else { Err(OutputError::Gone { path: self.path.clone() }) }
     }
 }
 
@@ -60,7 +74,7 @@ fn header() -> io::Result<String> {
 /// Reads a `history.csv`. A last row without its line end, left by a killed job, is not counted; columns after the first ten may be missing or
 /// unknown. Errors name the line and the column.
 pub fn read_history(path: &Path) -> Result<Vec<StepRecord>, OutputError> {
-    let mut text = fs::read_to_string(path).map_err(OutputError::reading(path))?;
+    let mut text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
     text.truncate(text.rfind('\n').map_or(0, |end| end + 1));
     let malformed = |line: u64, problem: String| OutputError::Malformed { path: path.to_path_buf(), line, problem };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
@@ -94,6 +108,7 @@ pub(super) fn row_problem(error: &csv::Error, columns: &csv::StringRecord) -> (u
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn record(step: usize) -> StepRecord {
         StepRecord {
@@ -183,11 +198,24 @@ mod tests {
         assert!(error.contains("none.csv") && error.contains("check the path"), "{error}");
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_history_that_was_removed_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let mut writer = HistoryWriter::create(&path).unwrap();
+        writer.append(&record(1)).unwrap();
+        fs::remove_file(&path).unwrap();
+        assert!(matches!(writer.append(&record(2)), Err(OutputError::Gone { .. })));
+        fs::write(&path, "another").unwrap();
+        assert!(matches!(writer.check_there(), Err(OutputError::Gone { .. })));
+    }
+
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_is_an_error_with_a_remedy() {
         let file = OpenOptions::new().append(true).open("/dev/full").unwrap();
-        let error = HistoryWriter { path: PathBuf::from("out/history.csv"), file }.append(&record(1)).unwrap_err().to_string();
-        assert!(error.contains("out/history.csv") && error.contains("free space"), "{error}");
+        let error = HistoryWriter { path: PathBuf::from("/dev/full"), file }.append(&record(1)).unwrap_err().to_string();
+        assert!(error.contains("/dev/full") && error.contains("free space"), "{error}");
     }
 }

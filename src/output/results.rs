@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::checkpoint::Checkpoint;
 use super::clock::Clock;
+use super::finite::check_summary;
 use super::ledger::Ledger;
 use super::path_share::PathShare;
 use super::{
@@ -66,6 +67,8 @@ pub struct ResultWriter {
     next_checkpoint: Instant,
     /// The last checkpoint could not be written, and that has been told.
     checkpoint_failed: bool,
+    /// A result was no number: to compute it again would be in vain.
+    failed: bool,
 }
 
 impl ResultWriter {
@@ -122,6 +125,7 @@ impl ResultWriter {
             checkpoint_interval: CHECKPOINT_INTERVAL,
             next_checkpoint: Instant::now() + CHECKPOINT_INTERVAL,
             checkpoint_failed: false,
+            failed: false,
             out,
         };
         moved.iter().for_each(|text| results.note(text));
@@ -182,6 +186,7 @@ impl ResultWriter {
     /// Draws the plots and writes the summary of a run that ended as `status` for the reason `message`. The summary is written even if a plot
     /// fails, whose error is then returned. Of a run that has ended for good the checkpoint is removed.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
+        self.history.check_there()?;
         self.progress.finish(&format!("{status}: {} steps", self.ledger.rows.len()));
         self.ledger.messages.extend(message.map(str::to_owned));
         let begun = Instant::now();
@@ -189,15 +194,18 @@ impl ResultWriter {
             Some(inputs) => write_plots(&self.out, &self.ledger.rows, &self.ledger.tables, inputs).map(drop),
             None => Ok(()),
         };
+        let mut status = if self.failed { Status::Failed } else { status };
         if let Err(error) = &plots {
             self.ledger.messages.push(error.to_string());
+            // Not done: who goes on from the checkpoint comes here again, and draws them.
+            status = Status::Interrupted;
         }
         self.ledger.outside.output += begun.elapsed().as_secs_f64();
         let (wall_s, cpu_s) = self.spent();
         // Of a run that did not get to its end there is nothing to compare.
         let estimate = self.estimate().filter(|_| status == Status::Done);
         let errors = estimate.unwrap_or_default();
-        let summary = Summary {
+        let mut summary = Summary {
             f_n0_error: errors.f_n0,
             a0_error: errors.a0,
             f_t_max_error: errors.f_t_max,
@@ -215,7 +223,13 @@ impl ResultWriter {
             messages: self.ledger.messages,
             ..Summary::from_history(&self.ledger.rows, &self.inputs)
         };
+        let finite = check_summary(&self.out.summary(), &summary);
+        if let Err(error) = &finite {
+            summary.status = Status::Failed;
+            summary.messages.push(error.to_string());
+        }
         summary.write(&self.out.summary())?;
+        finite?;
         if status != Status::Interrupted {
             // The summary says that the run has ended, so that one which cannot be removed does no harm.
             let _ = std::fs::remove_file(self.out.checkpoint());
@@ -271,7 +285,10 @@ impl Observer for ResultWriter {
         }
         let begun = Instant::now();
         let row = view.record.in_units(&self.units);
-        self.history.append(&row)?;
+        if let Err(error) = self.history.append(&row) {
+            self.failed = matches!(error, OutputError::NotFinite { .. });
+            return Err(error.into());
+        }
         self.ledger.rows.push(row);
         self.ledger.fallbacks += view.report.fallbacks;
         self.ledger.times += view.report.times;

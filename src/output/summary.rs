@@ -1,8 +1,8 @@
 //! `summary.json`: one run in some numbers, and how they are read off its history.
 
 use super::{OutputError, StepRecord, TimeByPhase, write_atomically};
+use crate::bounded;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -210,7 +210,7 @@ impl Summary {
 
     /// Reads it back; keys that are missing get their defaults.
     pub fn read(path: &Path) -> Result<Self, OutputError> {
-        let text = fs::read_to_string(path).map_err(OutputError::reading(path))?;
+        let text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
         serde_json::from_str(&text).map_err(|error| OutputError::Malformed {
             path: path.to_path_buf(),
             line: error.line() as u64,
@@ -292,6 +292,7 @@ mod tests {
     use super::*;
     use crate::analytical::ElasticSphere;
     use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
+    use std::fs;
 
     const MU: f64 = 0.3;
     const INPUTS: SummaryInputs = SummaryInputs { radius: 2.0, youngs_modulus: 200e3, friction: Some(MU) };

@@ -2,14 +2,16 @@
 //! `asperity plot`.
 
 use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use super::StudyError;
 use super::file::Study;
+use super::place::{Placed, place};
 use super::row::FIRST_COLUMNS;
 use crate::law::plots::STUDY_PICTURES;
-use crate::output::{OutputDirectory, write_atomically};
+use crate::law::table::StudyTable;
+use crate::output::{DirectoryLock, LOCK_NAME, OutputDirectory, draft_of, write_atomically};
 
 /// The folder of one study.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,57 +62,56 @@ impl StudyDirectory {
 
     /// Whether there is a study: by the header of `study.csv`, and only by it, a directory is recognised as one that may be replaced.
     pub fn holds_study(&self) -> bool {
-        let table = fs::read_to_string(self.table());
-        table.is_ok_and(|text| text.starts_with(&format!("{},", FIRST_COLUMNS.join(","))))
+        let expected = format!("{},", FIRST_COLUMNS.join(","));
+        let mut head = Vec::new();
+        let read = fs::File::open(self.table()).and_then(|file| file.take(expected.len() as u64).read_to_end(&mut head));
+        read.is_ok() && head == expected.as_bytes()
     }
 
-    /// Prepares the folder. One that does not exist is made, an empty one is used. In one that holds a study, `keep` tells whether its results
-    /// stay, which takes that it is this very study (comments and spaces apart); if they do not, what studies wrote is removed and everything else
-    /// stays. Anything else is refused, untouched.
+    /// Prepares the folder, and says where the results of the study's cases are. One that does not exist is made, an empty one is used. In one that holds a
+    /// study, results stay that are of this study if it is to be kept, which takes that there are some, or none at all; if they are to be replaced, what studies
+    /// wrote is removed and everything else stays. Anything else is refused, untouched.
     ///
     /// # Errors
-    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`], [`StudyError::Directory`].
-    pub fn prepare(&self, study: &Study, keep: bool) -> Result<(), StudyError> {
+    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`], [`StudyError::Earlier`], [`StudyError::Directory`],
+    /// [`StudyError::Output`] where somebody else computes one of the cases that are to be replaced.
+    pub fn prepare(&self, study: &Study, earlier: Earlier) -> Result<Placed, StudyError> {
         let dir = &self.root;
-        let failed = |what: &'static str| move |source: io::Error| StudyError::Directory { dir: dir.clone(), what, source };
+        self.recognise()?;
+        match earlier {
+            Earlier::Keep => {}
+            Earlier::Replace => self.clear()?,
+            Earlier::Refuse => {
+                let done =
+                    StudyTable::read(&self.table()).map_or(0, |table| table.rows.iter().filter(|row| row.is_done()).count());
+                if done > 0 {
+                    return Err(StudyError::Earlier { dir: dir.clone(), done });
+                }
+                self.clear()?;
+            }
+        }
+        place(self, study)
+    }
+
+    /// Refuses a folder that is neither absent nor empty nor a study's.
+    ///
+    /// # Errors
+    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::Directory`].
+    pub fn recognise(&self) -> Result<(), StudyError> {
+        let dir = &self.root;
+        let failed = |source: io::Error| StudyError::Directory { dir: dir.clone(), what: "be read", source };
         match fs::metadata(dir) {
             Ok(found) if !found.is_dir() => return Err(StudyError::NotADirectory { dir: dir.clone() }),
             Ok(_) => {}
-            Err(error) if error.kind() == ErrorKind::NotFound => fs::create_dir_all(dir).map_err(failed("be created"))?,
-            Err(error) => return Err(failed("be read")(error)),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+            Err(error) => return Err(failed(error)),
         }
-        let names = names(dir).map_err(failed("be read"))?;
-        if !self.holds_study() {
-            return match names.into_iter().min() {
-                Some(found) => Err(StudyError::NotAStudy { dir: dir.clone(), found }),
-                None => Ok(()),
-            };
-        }
-        if keep { self.same_study(study) } else { self.clear() }
-    }
-
-    /// Refuses a folder that was begun with another study.
-    fn same_study(&self, study: &Study) -> Result<(), StudyError> {
-        let other = |what: String| StudyError::OtherStudy { dir: self.root.clone(), what };
-        if !self.study().exists() {
-            // Killed before anything was computed.
+        if self.holds_study() {
             return Ok(());
         }
-        let found = Study::load(&self.study()).map_err(|error| other(error.to_string()))?;
-        if found.keys != study.keys {
-            return Err(other(format!("its grid is {}, not {}", found.size(), study.size())));
-        }
-        if found.cases.len() != study.cases.len() {
-            return Err(other(format!("it has {}, not {}", found.size(), study.size())));
-        }
-        match found.cases.iter().zip(&study.cases).find(|(there, here)| there.case != here.case) {
-            Some((there, here)) if there.values != here.values => {
-                let (there, here) = (found.combination(there), study.combination(here));
-                Err(other(format!("a case of it is {there}, where this one has {here}")))
-            }
-            Some((there, _)) => Err(other(format!("its base gives another case {} than this one's", there.id))),
-            None => Ok(()),
-        }
+        // What a study leaves that was killed before its first file had its name is no hindrance.
+        let foreign = names(dir).map_err(failed)?.into_iter().filter(|name| name != LOCK_NAME && !own_draft(name)).min();
+        foreign.map_or(Ok(()), |found| Err(StudyError::NotAStudy { dir: dir.clone(), found }))
     }
 
     /// Removes what earlier studies wrote.
@@ -121,14 +122,20 @@ impl StudyDirectory {
             for name in names(&cases).map_err(failed)? {
                 let out = OutputDirectory::existing(cases.join(&name));
                 if name.bytes().all(|byte| byte.is_ascii_digit()) && out.holds_result() {
+                    let lock = DirectoryLock::take(out.root())?;
                     out.clear()?;
                     fs::remove_file(out.case()).map_err(failed)?;
-                    for folder in ["fields", "contact", "plots", ""] {
+                    for folder in ["fields", "contact", "plots"] {
                         remove_if_empty(&out.root().join(folder)).map_err(failed)?;
                     }
+                    drop(lock);
+                    remove_if_empty(out.root()).map_err(failed)?;
                 }
             }
             remove_if_empty(&cases).map_err(failed)?;
+        }
+        for name in names(&self.root).map_err(failed)?.iter().filter(|name| own_draft(name)) {
+            fs::remove_file(self.root.join(name)).map_err(failed)?;
         }
         let pictures = STUDY_PICTURES.into_iter().map(|name| self.plot(name));
         for file in pictures.chain([self.report(), self.study(), self.table()]) {
@@ -147,6 +154,22 @@ impl StudyDirectory {
     pub fn write_study(&self, study: &Study) -> Result<(), StudyError> {
         Ok(write_atomically(&self.study(), |out| out.write_all(study.text.as_bytes()))?)
     }
+}
+
+/// What is to become of an earlier study in the folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Earlier {
+    /// It is gone on with.
+    Keep,
+    /// It is replaced.
+    Replace,
+    /// It is replaced only if none of it is done.
+    Refuse,
+}
+
+/// Whether a name is that of a draft of the study's own files.
+fn own_draft(name: &str) -> bool {
+    draft_of(name).is_some_and(|name| matches!(name, "study.csv" | "study.toml" | "report.html"))
 }
 
 fn names(dir: &Path) -> io::Result<Vec<String>> {

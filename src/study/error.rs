@@ -63,6 +63,33 @@ pub enum StudyError {
         /// In what it differs.
         what: String,
     },
+    /// The directory holds results, and it was not said what is to become of them.
+    #[error(
+        "--out {}: holds a study of which {done} cases are done. --resume goes on with it, --force replaces it; or give another directory (nothing was changed)",
+        .dir.display()
+    )]
+    Earlier {
+        /// The directory.
+        dir: PathBuf,
+        /// How many of its cases are done.
+        done: usize,
+    },
+    /// What cannot be merged.
+    #[error("--merge {}: {what} (nothing was changed)", .dir.display())]
+    Merge {
+        /// The directory.
+        dir: PathBuf,
+        /// What is wrong, and what to do.
+        what: String,
+    },
+    /// What cannot be handed to Slurm.
+    #[error("--slurm {argument}: {what}")]
+    Slurm {
+        /// The argument.
+        argument: String,
+        /// What is wrong, and what to do.
+        what: String,
+    },
     /// The directory cannot be made or read.
     #[error("--out {}: cannot {what}: {source}. give a directory that you may write to", .dir.display())]
     Directory {

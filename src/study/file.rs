@@ -15,11 +15,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::StudyError;
-use crate::case::{Case, CaseError, Document, Entry, Place, Reader, Value};
+use crate::bounded;
+use crate::case::{Case, CaseError, Document, Entry, Place, Reader, Value, short};
 use crate::material::Material;
 
 /// Most combinations that a grid may have.
 const MOST_CASES: usize = 100_000;
+/// Most values of all cases together, those of the base counted once for each: every case is a copy of it.
+const MOST_VALUES: usize = 20_000_000;
 
 const BASE: &str = "the case's own tables under base, as in [base.sphere]";
 const GRID: &str = "dotted keys of the case with lists of values, as in \"contact.friction\" = [0.1, 0.3]";
@@ -61,7 +64,8 @@ impl Study {
     /// [`StudyError::File`] and [`StudyError::Combination`] with file, line, key and what is allowed; [`StudyError::Hardening`].
     pub fn load(file: &Path) -> Result<Self, StudyError> {
         let name = file.display().to_string();
-        let text = std::fs::read_to_string(file).map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
+        let text = bounded::read_to_string(file, bounded::CASE)
+            .map_err(|source| CaseError::Unreadable { file: name.clone(), source })?;
         Self::parse(&text, &name)
     }
 
@@ -84,6 +88,12 @@ impl Study {
                 not_allowed(&grid[0].place, "grid", &format!("has more than {MOST_CASES} combinations"), "fewer values");
             return Err(refused.into());
         };
+        let values = values_of(&base.root.value)
+            + grid.iter().map(|key| key.values.iter().map(|v| values_of(&v.value)).max().unwrap_or(0)).sum::<usize>();
+        if values.saturating_mul(count) > MOST_VALUES {
+            let what = format!("has {count} combinations of about {values} values each, more than {MOST_VALUES} together");
+            return Err(not_allowed(&grid[0].place, "grid", &what, "fewer combinations, or a shorter path or table").into());
+        }
         let cases = check_all(&base, &grid, count, file)?;
         Ok(Self {
             text: text.to_owned(),
@@ -91,6 +101,12 @@ impl Study {
             counts: grid.iter().map(|key| key.values.len()).collect(),
             cases,
         })
+    }
+
+    /// Whether another study has the same cases under the same values, in the same order.
+    pub fn cases_are(&self, other: &Self) -> bool {
+        let same = |(ours, theirs): (&StudyCase, &StudyCase)| ours.values == theirs.values && ours.case == theirs.case;
+        self.keys == other.keys && self.cases.len() == other.cases.len() && self.cases.iter().zip(&other.cases).all(same)
     }
 
     /// The values of a case as `key = value, ...`.
@@ -146,9 +162,11 @@ fn collect(table: &BTreeMap<String, Entry>, above: &str, keys: &mut Vec<GridKey>
                 return Err(not_allowed(&entry.place, &grid_key(&name), "is an empty list", LIST));
             }
             Value::Array(values) => {
-                for (index, value) in values.iter().enumerate() {
-                    if values[..index].iter().any(|before| plain(&before.value) == plain(&value.value)) {
-                        let what = format!("has the value {} twice", plain(&value.value));
+                let mut seen = BTreeSet::new();
+                for value in values {
+                    let text = plain(&value.value);
+                    let what = format!("has the value {text} twice");
+                    if !seen.insert(text) {
                         return Err(not_allowed(&value.place, &grid_key(&name), &what, "each value once"));
                     }
                 }
@@ -165,6 +183,15 @@ fn collect(table: &BTreeMap<String, Entry>, above: &str, keys: &mut Vec<GridKey>
         }
     }
     Ok(())
+}
+
+/// How many values there are, in tables and arrays too.
+fn values_of(value: &Value) -> usize {
+    match value {
+        Value::Array(items) => 1 + items.iter().map(|item| values_of(&item.value)).sum::<usize>(),
+        Value::Table(table) => 1 + table.values().map(|entry| values_of(&entry.value)).sum::<usize>(),
+        _ => 1,
+    }
 }
 
 fn grid_key(name: &str) -> String {
@@ -244,7 +271,8 @@ fn choice(grid: &[GridKey], mut number: usize) -> Vec<&Entry> {
 }
 
 fn describe<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>) -> String {
-    pairs.map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
+    let text = pairs.map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ");
+    short(&text).into_owned()
 }
 
 /// A value as text: a string bare, everything else as TOML on one line.

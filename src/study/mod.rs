@@ -2,12 +2,14 @@
 //!
 //! `file` reads a base case and a grid into cases; `shard` deals them out; `run` decides which there are to compute and on what; `schedule` gives each a core
 //! of its own, or `batch` lets them share a device; `simulate` takes one from its directory to its summary; `row` makes `study.csv` of the
-//! summaries; `report` draws them and writes `report.html`. What can go wrong with one case is a row; what can go wrong with all of them is a [`StudyError`].
+//! summaries; `place` knows the directory of each case; `slurm` writes the scripts of a cluster; `merge` joins directories; `report` draws them and writes `report.html`. What can go wrong with one case is a row; what can go wrong with all of them is a [`StudyError`].
 
 mod batch;
 mod directory;
 mod error;
 mod file;
+mod merge;
+mod place;
 mod progress;
 pub mod report;
 mod row;
@@ -15,14 +17,17 @@ mod run;
 mod schedule;
 mod shard;
 mod simulate;
+pub mod slurm;
 
 #[cfg(test)]
 mod tests;
 
-pub use directory::StudyDirectory;
+pub use directory::{Earlier, StudyDirectory};
 pub use error::StudyError;
 pub use file::{Study, StudyCase};
+pub use merge::{Merged, merge};
+pub use place::{Placed, alone};
 pub use progress::StudyProgress;
 pub use row::{FIRST_COLUMNS, NUMBERS, Row, RowStatus};
-pub use run::{Options, Report, run};
+pub use run::{Options, Report, prepare, run};
 pub use shard::{Shard, cost};

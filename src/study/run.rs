@@ -1,6 +1,7 @@
 //! From a checked study to its directory: which cases there are to compute, on what, and their rows.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,8 +13,9 @@ use rayon::prelude::*;
 
 use super::StudyError;
 use super::batch::{Guest, share};
-use super::directory::StudyDirectory;
+use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
+use super::place::{Placed, alone};
 use super::progress::StudyProgress;
 use super::row::{Row, RowStatus, write_table};
 use super::schedule::{pools, side_by_side};
@@ -43,6 +45,8 @@ pub struct Options {
     /// When going on, compute also those cases again that did not converge or outgrew their mesh: the same program would do the same again, another
     /// version may not.
     pub retry: bool,
+    /// Replace results that are there.
+    pub force: bool,
 }
 
 /// What became of the cases that were asked for: all, or those of the share.
@@ -56,6 +60,8 @@ pub struct Report {
     pub pending: usize,
     /// Of the other shares, still to be computed.
     pub pending_elsewhere: usize,
+    /// Why the first of those is that has something to say, that somebody else computes it for instance.
+    pub pending_reason: Option<String>,
     /// Number of the first case that failed, and why.
     pub first_failure: Option<(String, String)>,
 }
@@ -83,16 +89,30 @@ pub fn run(
 ) -> Result<Report, StudyError> {
     let device = device(options.device)?;
     let slots = if device { (2 * options.threads).clamp(1, LARGEST_BATCH) } else { options.threads.max(1) };
-    let directory = StudyDirectory::new(dir);
+    let directory = &StudyDirectory::new(dir);
     let costs: Vec<f64> = study.cases.iter().map(|case| cost(&case.case)).collect();
     let share = options.shard.map_or_else(|| (0..study.cases.len()).collect(), |shard| shard.of(&costs));
     let pools = pools(slots.min(share.len()))?;
-    // Shares run into one directory one after the other: what the others left stays.
-    directory.prepare(study, options.resume || options.shard.is_some())?;
-
-    let mut rows = read_rows(study, &directory);
-    if !options.resume {
-        share.iter().for_each(|&case| rows[case] = Row::pending());
+    let earlier = match (options.resume || options.shard.is_some(), options.force) {
+        // Shares run into one directory, side by side or one after the other: what the others left stays.
+        (true, _) => Earlier::Keep,
+        (false, true) => Earlier::Replace,
+        (false, false) => Earlier::Refuse,
+    };
+    let (study, mut rows) = begin(directory, study, earlier, |rows| {
+        let done = share.iter().filter(|&&case| rows[case].status == RowStatus::Done).count();
+        if !options.resume && !options.force && done > 0 {
+            return Err(StudyError::Earlier { dir: dir.to_owned(), done });
+        }
+        if !options.resume {
+            share.iter().for_each(|&case| rows[case] = Row::pending());
+        }
+        Ok(())
+    })?;
+    let study = &study;
+    for &case in share.iter().filter(|&&case| rows[case].status == RowStatus::Done) {
+        // Killed just before its checkpoint was removed; what cannot be removed does no harm.
+        let _ = directory.case(&study.cases[case].id).tidy();
     }
     let open = |row: &Row| match row.status {
         RowStatus::Done => false,
@@ -101,8 +121,6 @@ pub fn run(
     };
     let to_compute: Vec<usize> = share.iter().copied().filter(|&case| open(&rows[case])).collect();
     to_compute.iter().for_each(|&case| rows[case] = Row::pending());
-    write_table(&directory, study, &rows)?;
-    directory.write_study(study)?;
 
     let before = Report::of(study, &rows, &share);
     progress.begin(
@@ -115,15 +133,17 @@ pub fn run(
     let order: Vec<usize> = dearest_first(&costs).into_iter().filter(|case| to_compute.binary_search(case).is_ok()).collect();
     let simulator = Simulator {
         cases: &study.cases,
-        directory: &directory,
+        directory,
         progress: progress.clone(),
         stop: stop.clone(),
         resume: options.resume,
+        locks: Mutex::default(),
     };
-    let mut table = Table { study, directory: &directory, rows, written: Instant::now(), took: Duration::ZERO };
+    let mut table = Table { study, directory, rows, written: Instant::now(), took: Duration::ZERO };
     let mut finished = |case: usize, result: Result<Summary, String>| {
         let fault = |what| format!("the program panicked: {what}. this is a fault of the program, please report it");
         let row = Row::of(result.unwrap_or_else(|what| simulator.broke_off(case, &fault(what))));
+        simulator.release(case);
         progress.finished(case, &study.cases[case].id, &row);
         table.rows[case] = row;
         table.write_if_due()
@@ -134,20 +154,69 @@ pub fn run(
         on_cores(&simulator, options.precision, &pools, &order, &mut finished)
     };
     progress.end();
-    let mut rows = table.rows;
     // Another process may have computed other shares in the meantime.
-    for (case, found) in read_rows(study, &directory).into_iter().enumerate() {
+    for (case, found) in read_rows(study, directory).into_iter().enumerate() {
         if share.binary_search(&case).is_err() {
-            rows[case] = found;
+            table.rows[case] = found;
         }
     }
     let broke_off = |source| StudyError::BrokeOff { source: Box::new(source), dir: dir.to_owned() };
-    computed.and_then(|()| write_table(&directory, study, &rows)).map_err(broke_off)?;
-    Ok(Report::of(study, &rows, &share))
+    computed.and_then(|()| table.write()).map_err(broke_off)?;
+    Ok(Report::of(study, &table.rows, &share))
+}
+
+/// Prepares the folder of a study, several processes one after the other: where its cases are, how they stand, what `adjust` makes of that, and the table
+/// and the study's copy, from which the others know it too.
+pub(super) fn begin(
+    directory: &StudyDirectory,
+    study: &Study,
+    earlier: Earlier,
+    adjust: impl FnOnce(&mut Vec<Row>) -> Result<(), StudyError>,
+) -> Result<(Study, Vec<Row>), StudyError> {
+    let mut made = None;
+    if !directory.root().exists() {
+        let failed = |source| StudyError::Directory { dir: directory.root().to_owned(), what: "be created", source };
+        std::fs::create_dir_all(directory.root()).map_err(failed)?;
+        made = Some(directory.root());
+    }
+    let begun = (|| {
+        // A folder of the user's own is refused before anything is written to it.
+        directory.recognise()?;
+        let _alone = alone(directory)?;
+        let Placed { study, strangers, begun } = directory.prepare(study, earlier)?;
+        let mut rows = read_rows(&study, directory);
+        adjust(&mut rows)?;
+        write_table(directory, &study, &rows)?;
+        directory.write_study(&study)?;
+        if !strangers.is_empty() {
+            let names: Vec<String> = strangers.iter().take(10).map(|id| StudyDirectory::relative(id)).collect();
+            let more = if strangers.len() > names.len() { ", ..." } else { "" };
+            log::warn!(
+                "{} of the cases in {} do not belong to this study any more and are left as they are: {}{more}; {begun} do",
+                strangers.len(),
+                directory.root().display(),
+                names.join(", ")
+            );
+        }
+        Ok((study, rows))
+    })();
+    if let (Err(_), Some(root)) = (&begun, made) {
+        // A folder in which there is something is not removed.
+        let _ = std::fs::remove_dir(root);
+    }
+    begun
+}
+
+/// Prepares the folder of a study that others will compute: its table, and its copy.
+///
+/// # Errors
+/// As [`run`], before anything is computed.
+pub fn prepare(study: &Study, dir: &Path) -> Result<(), StudyError> {
+    begin(&StudyDirectory::new(dir), study, Earlier::Keep, |_| Ok(())).map(drop)
 }
 
 impl Report {
-    fn of(study: &Study, rows: &[Row], share: &[usize]) -> Self {
+    pub(super) fn of(study: &Study, rows: &[Row], share: &[usize]) -> Self {
         let count = |wanted: &dyn Fn(&Row) -> bool| share.iter().filter(|&&case| wanted(&rows[case])).count();
         let pending = count(&|row| row.status == RowStatus::Pending);
         let failure = share.iter().find(|&&case| rows[case].has_failed());
@@ -156,6 +225,10 @@ impl Report {
             failed: count(&Row::has_failed),
             pending,
             pending_elsewhere: rows.iter().filter(|row| row.status == RowStatus::Pending).count() - pending,
+            pending_reason: share
+                .iter()
+                .filter(|&&case| rows[case].status == RowStatus::Pending)
+                .find_map(|&case| Some(rows[case].reason.clone()).filter(|reason| !reason.is_empty())),
             first_failure: failure.map(|&case| (study.cases[case].id.clone(), rows[case].reason.clone())),
         }
     }
@@ -172,7 +245,7 @@ fn headline(study: &Study, options: &Options, to_compute: usize, before: &Report
     text + &format!("; {to_compute} to compute, {side_by_side} at a time")
 }
 
-fn read_rows(study: &Study, directory: &StudyDirectory) -> Vec<Row> {
+pub(super) fn read_rows(study: &Study, directory: &StudyDirectory) -> Vec<Row> {
     study.cases.iter().map(|case| Row::read(&case.case, &directory.case(&case.id))).collect()
 }
 
@@ -186,10 +259,17 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
+    /// Not where the folder was removed in the meantime: a table without its cases would be of no use.
+    fn write(&self) -> Result<(), StudyError> {
+        let gone = || io::Error::new(io::ErrorKind::NotFound, "it was removed while the study went on");
+        let failed = |source| StudyError::Directory { dir: self.directory.root().to_owned(), what: "be found", source };
+        if self.directory.root().is_dir() { write_table(self.directory, self.study, &self.rows) } else { Err(failed(gone())) }
+    }
+
     fn write_if_due(&mut self) -> Result<(), StudyError> {
         if self.written.elapsed() >= 20 * self.took {
             let begun = Instant::now();
-            write_table(self.directory, self.study, &self.rows)?;
+            self.write()?;
             (self.written, self.took) = (Instant::now(), begun.elapsed());
         }
         Ok(())
@@ -227,6 +307,9 @@ fn on_cores(
 ) -> Result<(), StudyError> {
     let compute = |case: usize| -> Result<Summary, StudyError> {
         simulator.begin(case)?;
+        if let Some(summary) = simulator.done_meanwhile(case) {
+            return Ok(summary);
+        }
         let problem = simulator.problem(case)?;
         let open = |problem: &Problem| select(DeviceWish::Cpu, precision, vec![problem.model.clone()]);
         let Selected { backend, notes } = open(&problem)?;

@@ -1,15 +1,18 @@
 //! One case of a study, from its directory to its summary.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::StudyError;
 use super::directory::StudyDirectory;
 use super::file::StudyCase;
 use super::progress::{CaseProgress, StudyProgress};
+use super::row::{Row, RowStatus};
 use crate::compute::Description;
 use crate::output::{
-    Checkpoint, Clock, OutputDirectory, OutputError, ResultWriter, Setting, Status, Summary, SummaryInputs, read_history,
+    Checkpoint, Clock, DirectoryLock, OutputDirectory, OutputError, ResultWriter, Setting, Status, Summary, SummaryInputs,
+    read_history,
 };
 use crate::simulation::SimulationError;
 use crate::simulation::drive::{Ending, Observer};
@@ -28,6 +31,8 @@ pub struct Simulator<'a> {
     pub stop: Arc<AtomicBool>,
     /// Go on from checkpoints.
     pub resume: bool,
+    /// The directories of the cases that are being computed.
+    pub locks: Mutex<BTreeMap<usize, DirectoryLock>>,
 }
 
 impl Simulator<'_> {
@@ -39,11 +44,29 @@ impl Simulator<'_> {
     pub fn begin(&self, case: usize) -> Result<OutputDirectory, StudyError> {
         let StudyCase { id, case: in_units, .. } = &self.cases[case];
         let out = OutputDirectory::create(self.directory.case(id).root())?;
+        let lock = DirectoryLock::take(out.root())?;
+        lock.note().into_iter().for_each(|note| self.progress.message(id, &format!("note: {note}")));
+        self.locks.lock().unwrap_or_else(PoisonError::into_inner).insert(case, lock);
+        if self.done_meanwhile(case).is_some() {
+            return Ok(out);
+        }
         if self.checkpoint(case).is_none() {
             out.clear()?;
             out.write_case(&in_units.to_toml())?;
         }
         Ok(out)
+    }
+
+    /// Gives back the directory of a case.
+    pub fn release(&self, case: usize) {
+        self.locks.lock().unwrap_or_else(PoisonError::into_inner).remove(&case);
+    }
+
+    /// The summary of a case that is to go on, if another process has done it since the study was begun.
+    pub fn done_meanwhile(&self, case: usize) -> Option<Summary> {
+        let StudyCase { id, case, .. } = self.resume.then(|| &self.cases[case])?;
+        let row = Row::read(case, &self.directory.case(id));
+        row.summary.filter(|_| row.status == RowStatus::Done)
     }
 
     /// The checkpoint of a case that is to go on. One that is of another case or version, or damaged, is none: the case is computed from its beginning.
@@ -57,6 +80,7 @@ impl Simulator<'_> {
         let usable = || -> Result<Option<Checkpoint>, OutputError> {
             let checkpoint = Checkpoint::read(&path)?.filter(|_| out.holds_result());
             checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.check_case(&path, case))?;
+            checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.check_files(&out, case))?;
             Ok(checkpoint)
         };
         usable().unwrap_or_else(|error| {
@@ -126,8 +150,14 @@ impl Simulator<'_> {
     /// The summary of a case that broke off for `reason`, with the numbers of what was computed until then; also written to its directory, as far as
     /// that can be written.
     pub fn broke_off(&self, case: usize, reason: &str) -> Summary {
+        let ours = self.locks.lock().unwrap_or_else(PoisonError::into_inner).contains_key(&case);
         let StudyCase { id, case, .. } = &self.cases[case];
         let out = self.directory.case(id);
+        if !ours || !out.holds_result() {
+            // Somebody else computes it, or its directory was removed: nothing is written there.
+            let status = if ours { Status::Failed } else { Status::Interrupted };
+            return Summary { status, messages: vec![reason.to_owned()], ..Summary::default() };
+        }
         let history = read_history(&out.history()).unwrap_or_default();
         let summary = Summary {
             status: Status::Failed,

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use super::batch::share;
-use super::directory::StudyDirectory;
+use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::row::{Row, RowStatus, write_table};
 use crate::compute::cpu::Cpu;
@@ -267,41 +267,52 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     let scratch = tempfile::tempdir().expect("a scratch directory");
     let directory = StudyDirectory::new(scratch.path().join("a/b"));
     let study = study();
-    directory.prepare(&study, false).expect("a new directory");
-    directory.prepare(&study, true).expect("an empty directory");
+    std::fs::create_dir_all(directory.root()).expect("a directory");
+    directory.prepare(&study, Earlier::Refuse).expect("a new directory");
+    directory.prepare(&study, Earlier::Keep).expect("an empty directory");
     write_table(&directory, &study, &vec![Row::pending(); 4]).expect("a table");
-    directory.prepare(&study, true).expect("killed early");
+    directory.prepare(&study, Earlier::Keep).expect("killed early");
     directory.write_study(&study).expect("a copy");
     let spaced = Study::parse(&format!("# the same\n{STUDY}"), "study.toml").expect("a study");
-    directory.prepare(&spaced, true).expect("the same study");
+    directory.prepare(&spaced, Earlier::Keep).expect("the same study");
+    // Results of a case that another study does not have: it is refused, whatever it is that differs.
+    let first = OutputDirectory::create(directory.case("0001").root()).expect("a directory");
+    first.write_case(&study.cases[0].case.to_toml()).expect("a case");
     let friction = "\"contact.friction\" = [0.1, \"stick\"]";
-    let ratio = "\"material.poissons_ratio\" = [0.1, 0.3]";
+    let ratio = "\"material.poissons_ratio\" = [0.1, 0.2]";
     for (from, to, difference) in [
         (
             friction,
             "\"contact.friction\" = [0.2, \"stick\"]",
             "a case of it is material.hardening.yield_stress = 400.0, contact.friction = 0.1,",
         ),
-        (friction, "\"contact.friction\" = [0.1]", "it has 4 cases"),
         (friction, ratio, "its grid is 4 cases"),
-        ("poissons_ratio = 0.3", "poissons_ratio = 0.2", "its base gives another case 0001"),
+        ("poissons_ratio = 0.3", "poissons_ratio = 0.2", "its base gives other cases"),
     ] {
         let other = Study::parse(&STUDY.replace(from, to), "study.toml").expect("a study");
-        let error = directory.prepare(&other, true).expect_err("another study").to_string();
+        let error = directory.prepare(&other, Earlier::Keep).expect_err("another study").to_string();
         assert!(error.contains("holds another study") && error.contains("nothing was changed"), "{error}");
         assert!(error.contains(difference), "{error}");
     }
+    // One that has it keeps it, under its number; who has it no more is named.
+    let grown = STUDY.replace("[0.1, \"stick\"]", "[0.05, 0.1]").replace("[400.0, 800.0]", "[200.0, 400.0]");
+    let grown = Study::parse(&grown, "study.toml").expect("a study");
+    let second = OutputDirectory::create(directory.case("0002").root()).expect("a directory");
+    second.write_case(&study.cases[1].case.to_toml()).expect("a case");
+    let placed = directory.prepare(&grown, Earlier::Keep).expect("a study that has grown");
+    let ids: Vec<&str> = placed.study.cases.iter().map(|case| case.id.as_str()).collect();
+    assert_eq!((ids, placed.strangers, placed.begun), (vec!["0005", "0006", "0003", "0001"], vec!["0002".to_owned()], 1));
     // A case of ours, with a file of the user's beside it, and a directory of the user's.
     let out = OutputDirectory::create(directory.case("0003").root()).expect("a directory");
     out.write_case(&study.cases[2].case.to_toml()).expect("a case");
     std::fs::write(directory.root().join("notes.txt"), "mine").expect("a file");
     std::fs::create_dir_all(directory.case("0004").root()).expect("a directory");
     std::fs::write(directory.case("0004").root().join("notes.txt"), "mine").expect("a file");
-    directory.prepare(&study, false).expect("replaced");
+    directory.prepare(&study, Earlier::Replace).expect("replaced");
     assert!(!directory.holds_study() && !out.root().exists());
     assert!(directory.root().join("notes.txt").exists() && directory.case("0004").root().join("notes.txt").exists());
-    let error = directory.prepare(&study, false).expect_err("not a study").to_string();
+    let error = directory.prepare(&study, Earlier::Refuse).expect_err("not a study").to_string();
     assert!(error.contains("is not an Asperity study") && error.contains("nothing was changed"), "{error}");
     let file = StudyDirectory::new(directory.root().join("notes.txt"));
-    assert!(file.prepare(&study, true).expect_err("a file").to_string().contains("is not a directory"));
+    assert!(file.prepare(&study, Earlier::Keep).expect_err("a file").to_string().contains("is not a directory"));
 }

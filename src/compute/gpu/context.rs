@@ -13,6 +13,11 @@ use std::time::Duration;
 /// minute at a kernel's first dispatch.
 const PATIENCE_S: u64 = 300;
 
+/// The words of wgpu and of drivers, which come in indented lines, as a part of one message.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// An open device with its queue, its compiled kernels and its memory budget.
 ///
 /// May be shared between threads. Results are identical bits for identical input: kernels gather in fixed order and use no atomics.
@@ -71,10 +76,12 @@ impl GpuContext {
             .map_err(|e| GpuError::NoDevice { adapter: description.name.clone(), reason: e.to_string() })?;
         let health = Arc::new(DeviceHealth::default());
         let on_error = Arc::clone(&health);
-        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| on_error.fail(GpuError::Lost { reason: e.to_string() })));
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
+            on_error.fail(GpuError::Lost { reason: one_line(&e.to_string()) })
+        }));
         let on_loss = Arc::clone(&health);
         device.set_device_lost_callback(move |reason, message| {
-            on_loss.fail(GpuError::Lost { reason: format!("device lost ({reason:?}) {message}").trim().to_owned() });
+            on_loss.fail(GpuError::Lost { reason: one_line(&format!("device lost ({reason:?}) {message}")) });
         });
         let budget = Arc::new(MemoryBudget::for_adapter(description.kind));
         let (pipelines, staging, checked) = (PipelineCache::default(), Mutex::new(None), cfg!(debug_assertions));
@@ -150,7 +157,7 @@ impl GpuContext {
                 // A lost device refuses everything; it says that it is lost when it is polled.
                 let _ = self.device.poll(wgpu::PollType::Poll);
                 self.check()?;
-                Err(GpuError::Rejected { what: what.to_owned(), message: e.to_string().trim().to_owned() })
+                Err(GpuError::Rejected { what: what.to_owned(), message: one_line(&e.to_string()) })
             }
         }
     }
@@ -163,7 +170,7 @@ impl GpuContext {
         match waited {
             Ok(_) => Ok(()),
             Err(wgpu::PollError::Timeout) => Err(self.fault(GpuError::Timeout { what: what.to_owned(), seconds: PATIENCE_S })),
-            Err(e) => Err(self.fault(GpuError::Lost { reason: e.to_string() })),
+            Err(e) => Err(self.fault(GpuError::Lost { reason: one_line(&e.to_string()) })),
         }
     }
 

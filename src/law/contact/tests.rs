@@ -411,3 +411,40 @@ fn cycles_of_the_simulation_are_followed() {
         }
     }
 }
+
+#[test]
+fn what_is_no_number_gives_none_and_leaves_the_contact_as_it_was() {
+    for p in pairs() {
+        let (state, good) = pressed(&p, 0.02, 20);
+        assert!(good.f_n > 0.0);
+        for (h, increment) in [
+            (f64::NAN, [0.0, 0.0]),
+            (f64::INFINITY, [0.0, 0.0]),
+            (0.02, [f64::NAN, 0.0]),
+            (0.02, [0.0, f64::NEG_INFINITY]),
+            (0.02, [f64::INFINITY, f64::NEG_INFINITY]),
+        ] {
+            let (next, out) = p.update(&state, h, increment);
+            assert_eq!(next, state);
+            let numbers: &[f64] = bytemuck::cast_slice(std::slice::from_ref(&out));
+            assert!(numbers.iter().all(|x| x.is_nan()), "{h} {increment:?}: {out:?}");
+            assert_eq!(p.update(&next, 0.02, [0.0, 0.0]), p.update(&state, 0.02, [0.0, 0.0]));
+        }
+    }
+}
+
+#[test]
+fn an_increment_beyond_all_bounds_is_full_slip_in_its_direction() {
+    for p in pairs() {
+        let (state, _) = pressed(&p, 0.02, 20);
+        let (_, far) = p.update(&state, 0.02, [3.0, 4.0]);
+        for size in [1e100, 1e153, 1e160, 1e200, 3e307] {
+            let (next, out) = p.update(&state, 0.02, [0.6 * size, 0.8 * size]);
+            assert!((out.f_n / far.f_n - 1.0).abs() < 1e-9, "{size}: {out:?}, {far:?}");
+            assert!((0..2).all(|i| (out.f_t[i] / far.f_t[i] - 1.0).abs() < 1e-9), "{size}: {out:?}, {far:?}");
+            let size = (out.f_t[0].powi(2) + out.f_t[1].powi(2)).sqrt();
+            assert!((size / (FRICTION * out.f_n) - 1.0).abs() < 1e-6);
+            assert!(p.update(&next, 0.02, [0.0, 0.0]).1.f_n.is_finite());
+        }
+    }
+}

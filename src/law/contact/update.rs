@@ -148,6 +148,12 @@ fn slider_limits(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> [f64; SLID
     limit
 }
 
+/// An increment in the same direction, of at most 1e150: far beyond full slip, and its square is still finite.
+fn bounded(increment: [f64; 2]) -> [f64; 2] {
+    let size = if increment[0].abs() > increment[1].abs() { increment[0].abs() } else { increment[1].abs() };
+    if size > 1e150 { [increment[0] / size * 1e150, increment[1] / size * 1e150] } else { increment }
+}
+
 /// Moves the sliders by `increment` and holds each to its limit.
 fn slide(deflection: &mut [[f64; 2]; SLIDERS], limit: &[f64; SLIDERS], increment: [f64; 2]) {
     for i in 0..SLIDERS {
@@ -277,10 +283,23 @@ impl ContactState {
 
 impl ContactParameters {
     /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in the tangent frame), the press
-    /// first. A pure function of the state before; `h` or the increment not finite gives an answer that is not finite, no panic.
+    /// first. A pure function of the state before. Where `h` or the increment is not finite, nothing in the answer is a number and the state stays as it was.
     pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
         let mut next = *state;
         let mut out = ContactResponse::default();
+        if !(h.is_finite() && increment[0].is_finite() && increment[1].is_finite()) {
+            let nan = f64::NAN;
+            out = ContactResponse {
+                f_n: nan,
+                f_t: [nan; 2],
+                df_t_ddelta: [[nan; 2]; 2],
+                df_n_dh: nan,
+                df_n_ddelta: [nan; 2],
+                a: nan,
+            };
+            return (next, out);
+        }
+        let increment = bounded(increment);
         let greatest = if h > state.h_max { h } else { state.h_max };
         if !(greatest > 0.0) {
             next.h = h;

@@ -36,6 +36,8 @@
 #define ASPERITY_LAW_H
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -695,6 +697,22 @@ static inline void asperity_slider_limits(const asperity_parameters *p, const as
     }
 }
 
+/* Whether x is neither infinite nor NaN; from its bits, as compilers that are told to take every number for finite leave out isfinite. */
+static inline int asperity_is_finite(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return ((bits >> 52) & 0x7ff) != 0x7ff;
+}
+
+/* An increment in the same direction, of at most 1e150: far beyond full slip, and its square is still finite. */
+static inline void asperity_bound(double *d0, double *d1) {
+    double a = fabs(*d0), b = fabs(*d1), size = a > b ? a : b;
+    if (size > 1e150) {
+        *d0 = *d0 / size * 1e150;
+        *d1 = *d1 / size * 1e150;
+    }
+}
+
 /* Moves the sliders and holds each to its limit. */
 static inline void asperity_slide(double deflection[ASPERITY_SLIDERS][2], const double limit[ASPERITY_SLIDERS], double d0, double d1) {
     double q0, q1, size, keep;
@@ -908,7 +926,8 @@ static inline void asperity_rotate(asperity_state *state, double cosine, double 
     }
 }
 
-/* Moves a contact to the indentation h and along the plane by `increment`, the press first. `next` may be `state`. */
+/* Moves a contact to the indentation h and along the plane by `increment`, the press first. `next` may be `state`. Where h or the
+ * increment is not finite, nothing in the answer is a number and the state stays as it was. */
 static inline void asperity_update(
     const asperity_parameters *p, const asperity_state *state, double h, const double increment[2], asperity_state *next, asperity_response *out) {
     asperity_state s = *state;
@@ -916,6 +935,13 @@ static inline void asperity_update(
     double greatest = h > state->h_max ? h : state->h_max, h_before = state->h, f_n, x, df_n_dh;
     double d0 = increment[0], d1 = increment[1];
     int i;
+    if (!asperity_is_finite(h) || !asperity_is_finite(d0) || !asperity_is_finite(d1)) {
+        out->f_n = out->f_t[0] = out->f_t[1] = out->df_n_dh = out->df_n_ddelta[0] = out->df_n_ddelta[1] = out->a = NAN;
+        out->df_t_ddelta[0][0] = out->df_t_ddelta[0][1] = out->df_t_ddelta[1][0] = out->df_t_ddelta[1][1] = NAN;
+        *next = s;
+        return;
+    }
+    asperity_bound(&d0, &d1);
     out->f_n = out->f_t[0] = out->f_t[1] = out->df_n_dh = out->df_n_ddelta[0] = out->df_n_ddelta[1] = out->a = 0.0;
     out->df_t_ddelta[0][0] = out->df_t_ddelta[0][1] = out->df_t_ddelta[1][0] = out->df_t_ddelta[1][1] = 0.0;
     if (!(greatest > 0.0)) {

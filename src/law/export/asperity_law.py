@@ -585,6 +585,12 @@ def slider_limits(p, v, f_n):
     return [scale * value for value in limit]
 
 
+def bounded(increment):
+    """An increment in the same direction, of at most 1e150: far beyond full slip, and its square is still finite."""
+    size = max(abs(increment[0]), abs(increment[1]))
+    return (increment[0] / size * 1e150, increment[1] / size * 1e150) if size > 1e150 else increment
+
+
 def slide(deflection, limit, increment):
     """Moves the sliders and holds each to its limit."""
     moved = []
@@ -739,9 +745,17 @@ def rotate(state, cosine, sine):
 
 
 def update(p, state, h, increment):
-    """Moves a contact to the indentation h and along the plane by `increment`, the press first. Returns the new state and the response."""
+    """Moves a contact to the indentation h and along the plane by `increment`, the press first. Returns the new state and the response.
+
+    Where h or the increment is not finite, nothing in the response is a number and the state stays as it was."""
     s = state.copy()
     out = Response()
+    if not (math.isfinite(h) and math.isfinite(increment[0]) and math.isfinite(increment[1])):
+        nan = math.nan
+        out.f_n, out.f_t, out.df_n_dh, out.df_n_ddelta, out.a = nan, [nan, nan], nan, [nan, nan], nan
+        out.df_t_ddelta = [[nan, nan], [nan, nan]]
+        return s, out
+    increment = bounded(increment)
     greatest = h if h > state.h_max else state.h_max
     if not greatest > 0.0:
         s.h = h

@@ -40,7 +40,12 @@ impl Axis {
         let (low, high) = self.range;
         if !self.logarithmic {
             let step = nice_step((high - low) / 6.0);
-            let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+            let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
+            // Among denormal numbers steps are no longer even, or nothing; a chart without ticks is still one.
+            if !step.is_normal() || !(last - first <= 20.0) {
+                return Vec::new();
+            }
+            let (first, last) = (first as i64, last as i64);
             return (first..=last).map(|i| i as f64 * step).map(|value| (value, Some(tick(value)))).collect();
         }
         let decades = (high / low).log10();
@@ -444,5 +449,16 @@ mod tests {
         assert_eq!((places.len(), lines), (3, 2));
         assert_eq!((places[1].1, places[1].2), (0, 1));
         assert!(places[2].1 > SAMPLE + text_width("Olsson & Larsson 2016", LEGEND_SIZE));
+    }
+
+    /// Steps between denormal numbers are nothing, or not even: there were once 2^64 ticks to make room for.
+    #[test]
+    fn an_axis_over_the_least_numbers_has_few_ticks_or_none() {
+        for (low, high) in
+            [(0.0, 5e-324), (0.0, 1e-322), (5e-324, 1e-320), (-1e-310, 1e-308), (0.0, f64::MAX), (-f64::MAX, f64::MAX)]
+        {
+            assert!(Axis::linear("F", low, high).ticks().len() <= 21, "{low:e} {high:e}");
+        }
+        assert!(Axis::linear("F", 0.0, 1e-300).ticks().len() > 3);
     }
 }

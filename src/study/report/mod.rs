@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use self::html::{Table, escape, grid_value, number, percent};
 use super::row::{FIRST_COLUMNS, NUMBERS};
 use super::{StudyDirectory, StudyError};
+use crate::bounded;
 use crate::law::Law;
 use crate::law::data::StudyData;
 use crate::law::plots::{NormalContact, greatest_errors, study_pictures};
@@ -80,7 +81,7 @@ impl Report<'_> {
         html.push_str(&self.not_done());
         html.push_str("<h2>Cases</h2>\n");
         html.push_str(&self.cases());
-        if let Ok(text) = fs::read_to_string(self.directory.study()) {
+        if let Ok(text) = bounded::read_to_string(&self.directory.study(), bounded::CASE) {
             html.push_str(&format!("<h2>The study file</h2>\n<pre>{}</pre>\n", escape(&text)));
         }
         html + "</body>\n</html>\n"

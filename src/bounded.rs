@@ -1,0 +1,65 @@
+//! Files read whole, but never more of one than it may have: what is given may be a device or a file of another kind that has no end.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+const MIB: u64 = 1 << 20;
+/// Most bytes of a case or study file.
+pub const CASE: u64 = 16 * MIB;
+/// Most bytes of a law, and of what a run or a study wrote as text.
+pub const RESULT: u64 = 256 * MIB;
+/// Most bytes of a checkpoint: several times that of the finest mesh.
+pub const CHECKPOINT: u64 = 4096 * MIB;
+
+/// The bytes of a file that has `most` at most.
+///
+/// # Errors
+/// Those of the system; [`ErrorKind::FileTooLarge`] for a file that has more, of which no more than `most` is read.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let told = file.metadata()?.len();
+    if told > most {
+        return Err(too_large(most));
+    }
+    let mut bytes = Vec::with_capacity(usize::try_from(told).unwrap_or(0));
+    // What a device or a pipe has is not told beforehand.
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
+}
+
+/// [`read`] for text.
+///
+/// # Errors
+/// As [`read`]; [`ErrorKind::InvalidData`] for what is not UTF-8.
+pub fn read_to_string(path: &Path, most: u64) -> io::Result<String> {
+    String::from_utf8(read(path, most)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not text in UTF-8"))
+}
+
+fn too_large(most: u64) -> io::Error {
+    io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MiB, the most that such a file may have", most / MIB))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_much_as_allowed_and_no_more() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        std::fs::write(&path, "12345678").unwrap();
+        assert_eq!(read_to_string(&path, 8).unwrap(), "12345678");
+        assert_eq!(read(&path, 7).unwrap_err().kind(), ErrorKind::FileTooLarge);
+        std::fs::write(&path, b"\xff\xfe").unwrap();
+        assert!(read_to_string(&path, 8).unwrap_err().to_string().contains("UTF-8"));
+        assert_eq!(read(&folder.path().join("none"), 8).unwrap_err().kind(), ErrorKind::NotFound);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_device_without_an_end_is_refused() {
+        let error = read(Path::new("/dev/zero"), MIB).unwrap_err();
+        assert!(error.to_string().contains("more than 1 MiB"), "{error}");
+    }
+}

@@ -1,0 +1,82 @@
+//! `asperity study --slurm` and `--merge`: a study that other processes compute.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use clap::ValueEnum;
+
+use super::options::{Device, Precision};
+use super::study::StudyArgs;
+use super::{CliError, Outcome};
+use crate::study::slurm::{self, Slurm};
+use crate::study::{self, Merged, Study, StudyDirectory};
+
+/// Writes the scripts, and submits them if that is wanted.
+pub fn slurm(study: &Study, arguments: &[String], args: &StudyArgs) -> Result<Outcome, CliError> {
+    let slurm = Slurm::parse(arguments)?;
+    let program =
+        std::env::current_exe().map_err(|source| CliError::Out { dir: args.out.clone(), what: "find this program", source })?;
+    study::prepare(study, &args.out)?;
+    let scripts = slurm::write(&StudyDirectory::new(&args.out), &slurm, &program, &options(args))?;
+    let script = scripts.submit.display();
+    if !args.submit {
+        super::print(&format!("{}, {} tasks; to submit them: bash {script}\n", study.size(), slurm.tasks))?;
+        return Ok(Outcome::Done);
+    }
+    let failed = |what: String| CliError::Submit { script: scripts.submit.clone(), what };
+    let output =
+        Command::new("bash").arg(&scripts.submit).output().map_err(|error| failed(format!("bash cannot be started: {error}")))?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(failed(format!("sbatch did not take them: {}", said.split_whitespace().collect::<Vec<_>>().join(" "))));
+    }
+    super::print(&format!("{}: {}", study.size(), String::from_utf8_lossy(&output.stdout)))?;
+    Ok(Outcome::Done)
+}
+
+/// The options of this command that the tasks are to have too.
+fn options(args: &StudyArgs) -> Vec<String> {
+    let mut options = Vec::new();
+    if args.device.device != Device::default() {
+        options.extend(args.device.device.to_possible_value().map(|value| format!("--device={}", value.get_name())));
+    }
+    if args.device.precision != Precision::default() {
+        options.extend(args.device.precision.to_possible_value().map(|value| format!("--precision={}", value.get_name())));
+    }
+    if args.retry {
+        options.push("--retry".to_owned());
+    }
+    options
+}
+
+/// Joins directories and says what is missing.
+pub fn merge(sources: &[PathBuf], out: &Path, quiet: bool) -> Result<Outcome, CliError> {
+    const MOST: usize = 20;
+    let Merged { report, copied, missing, busy } = study::merge(sources, out)?;
+    let dir = out.display();
+    if !quiet {
+        let (done, failed, pending) = (report.done, report.failed, report.pending);
+        super::print(&format!(
+            "{done} done, {failed} failed, {pending} missing; {copied} cases copied; a row each in {dir}/study.csv\n"
+        ))?;
+    }
+    // A closed stderr does not change how it went.
+    if !missing.is_empty() {
+        let more = if missing.len() > MOST { ", ..." } else { "" };
+        let busy = if busy.is_empty() { String::new() } else { format!(" ({} are being computed)", busy.len()) };
+        let _ = writeln!(
+            std::io::stderr(),
+            "error: {} of {} cases are missing{busy}: {}{more}. `asperity study {dir}/study.toml --out {dir} --resume` computes them",
+            missing.len(),
+            report.done + report.failed + report.pending,
+            missing[..missing.len().min(MOST)].join(", ")
+        );
+        return Ok(Outcome::Interrupted);
+    }
+    if let Some((id, reason)) = &report.first_failure {
+        let _ = writeln!(std::io::stderr(), "error: {} cases failed, the first in {dir}/cases/{id}: {reason}", report.failed);
+        return Ok(Outcome::CasesFailed);
+    }
+    Ok(Outcome::Done)
+}

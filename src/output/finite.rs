@@ -1,0 +1,98 @@
+//! Results are numbers: what is infinite, or none, is a failure and never a result.
+
+use std::path::Path;
+
+use super::{OutputError, StepRecord, Summary};
+
+/// Refuses a row of the history with such a number.
+///
+/// # Errors
+/// [`OutputError::NotFinite`] with step and column.
+pub fn check_row(path: &Path, row: &StepRecord) -> Result<(), OutputError> {
+    let numbers = [
+        ("h", row.h),
+        ("delta_T", row.delta_t),
+        ("F_N", row.f_n),
+        ("F_T", row.f_t),
+        ("a", row.a),
+        ("stick_radius", row.stick_radius),
+        ("a_gap", row.a_gap),
+        ("merit", row.merit),
+        ("work_external", row.work_external),
+        ("energy_elastic", row.energy_elastic),
+        ("work_plastic", row.work_plastic),
+        ("work_friction", row.work_friction),
+        ("max_alpha", row.max_alpha),
+    ];
+    refuse(path, row.step, numbers.map(|(name, value)| (name, Some(value))))
+}
+
+/// Refuses a summary with such a number, which would be null in the file.
+///
+/// # Errors
+/// [`OutputError::NotFinite`] with the last step and the key.
+pub fn check_summary(path: &Path, summary: &Summary) -> Result<(), OutputError> {
+    let normalized = &summary.normalized;
+    let numbers = [
+        ("F_N0", summary.f_n0),
+        ("a0", summary.a0),
+        ("h0", summary.h0),
+        ("F_N_slip", summary.f_n_slip),
+        ("F_T_max", summary.f_t_max),
+        ("delta_T_slip", summary.delta_t_slip),
+        ("k_T0", summary.k_t0),
+        ("mu_at_slip", summary.mu_at_slip),
+        ("max_alpha", summary.max_alpha),
+        ("normalized.F_N0", normalized.f_n0),
+        ("normalized.F_T_max", normalized.f_t_max),
+        ("normalized.k_T0", normalized.k_t0),
+    ];
+    refuse(path, summary.steps, numbers)
+}
+
+fn refuse<const N: usize>(path: &Path, step: usize, numbers: [(&str, Option<f64>); N]) -> Result<(), OutputError> {
+    let bad = numbers.into_iter().find_map(|(name, value)| Some((name, value.filter(|value| !value.is_finite())?)));
+    bad.map_or(Ok(()), |(column, value)| {
+        Err(OutputError::NotFinite { path: path.to_path_buf(), step, column: column.to_owned(), value })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_a_row_is_looked_at() {
+        let path = Path::new("out/history.csv");
+        let row = StepRecord { step: 3, f_n: 1.0, ..StepRecord::default() };
+        assert!(check_row(path, &row).is_ok());
+        let serde_json::Value::Object(columns) = serde_json::to_value(row).unwrap() else { panic!("a struct is an object") };
+        let mut refused = 0;
+        for column in columns.iter().filter(|(_, value)| value.is_f64()).map(|(name, _)| name) {
+            // Through CSV, which has infinities: whoever adds a column finds it here.
+            let mut writer = csv::Writer::from_writer(Vec::new());
+            writer.serialize(row).unwrap();
+            let text = String::from_utf8(writer.into_inner().unwrap()).unwrap();
+            let (header, values) = text.trim_end().split_once('\n').unwrap();
+            let place = header.split(',').position(|name| name == column).unwrap();
+            let values: Vec<&str> = values.split(',').enumerate().map(|(i, v)| if i == place { "inf" } else { v }).collect();
+            let text = format!("{header}\n{}\n", values.join(","));
+            let bad: StepRecord = csv::Reader::from_reader(text.as_bytes()).deserialize().next().unwrap().unwrap();
+            let message = check_row(path, &bad).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("step 3: {column} is inf")), "{message}");
+            refused += 1;
+        }
+        assert_eq!(refused, 13);
+        let message = check_row(path, &StepRecord { f_n: f64::NAN, ..row }).unwrap_err().to_string();
+        assert!(message.starts_with("step 3: F_N is NaN"), "{message}");
+    }
+
+    #[test]
+    fn a_summary_without_a_number_is_refused_and_one_that_lacks_it_is_not() {
+        let path = Path::new("out/summary.json");
+        let good = Summary { f_n0: Some(1.0), steps: 7, ..Summary::default() };
+        assert!(check_summary(path, &good).is_ok());
+        let message = check_summary(path, &Summary { k_t0: Some(f64::INFINITY), ..good }).unwrap_err().to_string();
+        assert!(message.starts_with("step 7: k_T0 is inf"), "{message}");
+    }
+}

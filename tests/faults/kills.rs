@@ -1,0 +1,99 @@
+//! Killed at every system call that changes a file, a run goes on to the bits of one that was left in peace.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use super::program::{Scratch, difference, program, skipped, stderr, whole};
+
+/// Those that change a file, or hold on to one; the question mark lets one be unknown to the system.
+const CALLS: &str = "?open,openat,write,?pwrite64,?rename,?renameat,renameat2,?unlink,unlinkat,?mkdir,mkdirat,?rmdir,fsync,fdatasync,ftruncate,flock";
+
+fn strace(scratch: &Scratch, out: &Path, options: &[&str], tracing: &[&str]) -> Output {
+    let mut command = Command::new("strace");
+    command.args(["-f", "-qq", "-y"]).args(tracing).arg(program()).args(scratch.args(out, options));
+    command.output().expect("strace runs")
+}
+
+fn can_trace() -> bool {
+    Command::new("strace").args(["-f", "-qq", "-e", "trace=none", "true"]).output().is_ok_and(|output| output.status.success())
+}
+
+/// The calls of the main thread that touch the directory: the name, and the how many-eth of that name it is, counting all.
+fn calls(log: &str, out: &Path) -> Vec<(String, usize)> {
+    let main = log.split_whitespace().next().expect("a traced call").to_owned();
+    let out = out.display().to_string();
+    let (mut counts, mut found) = (BTreeMap::new(), Vec::new());
+    for line in log.lines().filter_map(|line| line.strip_prefix(&main)) {
+        let Some((name, _)) = line.trim_start().split_once('(') else { continue };
+        let count: &mut usize = counts.entry(name.to_owned()).or_default();
+        *count += 1;
+        let reads = name.starts_with("open") && !line.contains("O_WRONLY") && !line.contains("O_RDWR");
+        if line.contains(&out) && !reads {
+            found.push((name.to_owned(), *count));
+        }
+    }
+    found
+}
+
+#[test]
+fn a_run_killed_at_any_call_that_changes_a_file_goes_on_to_the_same_bits() {
+    if !can_trace() {
+        return skipped("kills", "strace is not there, or may not trace");
+    }
+    let scratch = Scratch::new();
+    let traced = scratch.path("traced");
+    let log = scratch.path("log").display().to_string();
+    let output = strace(&scratch, &traced, &["-q"], &["-e", &format!("trace={CALLS}"), "-o", &log]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(difference(&traced, whole()), None);
+    let calls = calls(&fs::read_to_string(&log).expect("a log"), &traced);
+    let kinds: std::collections::BTreeSet<&str> = calls.iter().map(|(name, _)| name.as_str()).collect();
+    assert!(calls.len() > 100 && kinds.len() >= 6, "{} calls: {kinds:?}", calls.len());
+
+    // All, or the first and the last ones and some between.
+    let share = if super::all() { 1 } else { calls.len() / 16 };
+    let chosen: Vec<_> =
+        calls.iter().enumerate().filter(|(i, _)| i % share == 0 || *i + 4 >= calls.len()).map(|(_, call)| call).collect();
+    let mut killed = 0;
+    for (name, count) in &chosen {
+        let out = scratch.path("out");
+        let inject = format!("inject={name}:signal=KILL:when={count}");
+        let output = strace(&scratch, &out, &["-q"], &["-e", &format!("trace={name}"), "-e", &inject, "-o", "/dev/null"]);
+        // Times decide how many checkpoints there are, so that the last calls may not come.
+        killed += usize::from(output.status.signal() == Some(9) || output.status.code() == Some(137));
+        let output = scratch.run(&out, &["-q", "--resume"]);
+        assert_eq!(output.status.code(), Some(0), "killed at {name} {count}: {}", stderr(&output));
+        assert_eq!(difference(&out, whole()), None, "killed at {name} {count}");
+        fs::remove_dir_all(&out).expect("removed");
+    }
+    println!("{killed} kills at {} calls of {}, of {kinds:?}; all went on to the same bits", chosen.len(), calls.len());
+    assert!(4 * killed >= 3 * chosen.len(), "{killed} of {}", chosen.len());
+}
+
+/// Many kills of one and the same run, wherever it stands.
+#[test]
+fn a_run_that_is_killed_again_and_again_comes_to_its_end() {
+    let scratch = Scratch::new();
+    let out = scratch.path("out");
+    let many = if super::all() { 200 } else { 12 };
+    let mut kills = 0;
+    for attempt in 0..many {
+        let mut child = Command::new(program()).args(scratch.args(&out, &["-q", "--resume"])).spawn().expect("the program runs");
+        // Over the whole of a start, early and late.
+        std::thread::sleep(std::time::Duration::from_millis(7 + 13 * (attempt % 17)));
+        kills += usize::from(child.try_wait().expect("its state").is_none());
+        let _ = child.kill();
+        child.wait().expect("it ends");
+        if out.join("summary.json").exists() && attempt % 3 == 0 {
+            fs::remove_dir_all(&out).expect("removed");
+        }
+    }
+    let output = scratch.run(&out, &["-q", "--resume"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(difference(&out, whole()), None);
+    println!("{kills} kills of {many} starts");
+    assert!(kills > 0);
+}

@@ -1,0 +1,16 @@
+//! What may happen to a run beside mechanics: it is killed at any system call that changes a file, the disk fills, its directory is removed, linked or written by
+//! another run, and what it is given is hostile.
+//!
+//! A share of the kills and of the hostile inputs runs by default; ASPERITY_FAULTS=all runs every kill and a million inputs.
+#![cfg(target_os = "linux")]
+
+mod directory;
+mod full_disk;
+mod hostile;
+mod kills;
+mod program;
+
+/// Whether all is to be run and not a share.
+fn all() -> bool {
+    std::env::var_os("ASPERITY_FAULTS").is_some_and(|value| value == "all")
+}
