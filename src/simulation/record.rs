@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct StepRecord {
     /// Counts accepted steps; 0 is the undeformed state.
     pub step: usize,
-    /// Index of the path's segment.
+    /// Index of the path's segment, from 0: the key of its case is `path.0`.
     pub segment: usize,
     /// Indentation h.
     pub h: f64,
@@ -70,10 +70,12 @@ pub struct ContactPoint {
     pub reference: [f64; 3],
     /// Current position.
     pub position: [f64; 3],
-    /// Force of the plane on the point, of the meshed half.
+    /// Force of the plane on the point, of the meshed half: what contact exerts, without the pull of the other half.
     pub force: [f64; 3],
     /// Tributary reference area on the meshed half.
     pub area: f64,
+    /// The point lies on the symmetry plane: half of it is meshed.
+    pub on_symmetry_plane: bool,
     /// Open, sticking or slipping.
     pub status: crate::contact::coulomb::Status,
 }

@@ -165,14 +165,16 @@ impl Trial {
         Ok(if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } })
     }
 
-    /// Normal force, tangential force and its y-component on the meshed half: the sums of the contact forces.
+    /// Force of the plane on the meshed half, \[x, y, z\]: the sum over the closed points. Along y those on the symmetry plane are left out, whose internal
+    /// force balances the other half of the body.
     pub fn contact_force(&self, mesh: &Mesh) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (rows, &n) in self.rows.iter().zip(&mesh.contact_nodes) {
             if rows.status != Status::Open {
-                for (s, f) in sum.iter_mut().zip(&self.force[3 * n as usize..3 * n as usize + 3]) {
-                    *s += f;
-                }
+                let base = 3 * n as usize;
+                sum[0] += self.force[base];
+                sum[1] += if mesh.symmetry_nodes.binary_search(&n).is_ok() { 0.0 } else { self.force[base + 1] };
+                sum[2] += self.force[base + 2];
             }
         }
         sum

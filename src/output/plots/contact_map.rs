@@ -1,6 +1,6 @@
-//! The contact surface seen along its normal: status above the symmetry line, pressure mirrored below it.
+//! The contact surface seen along its normal: status above the symmetry line, pressure below it.
 
-use super::super::{ContactPoint, ContactStatus, OutputError};
+use super::super::{ContactPoint, ContactStatus, Half, OutputError};
 use super::chart::nice_step;
 use super::style::{Area, BLUE, Drawn, FONT, INK, ORANGE, Picture, rounded, tick, viridis};
 use plotters::prelude::*;
@@ -11,7 +11,8 @@ const OPEN: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
 /// The map of one step at current positions: open, stick and slip in the upper half, the pressure in the lower one. The shear runs to the right.
 pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
-    let caption = "The contact surface at the last saved step in contact, at current positions; the shear runs to the right.";
+    let caption = "The contact surface at the last saved step in contact, at current positions, with the numbers of its points on both halves; the shear runs to the \
+                   right.";
     Picture::draw("contact", caption, (780, 640), |root| {
         let map = Map { view: View::of(points), highest: highest(points), square: Square { left: 88, top: 52, side: 520 } };
         map.draw(root, points)?;
@@ -20,7 +21,7 @@ pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
         map.axes(root, true)?;
         root.draw(&Text::new("status", (map.square.left + 10, map.square.top + 16), text(14, HPos::Left)))?;
         let below = map.square.top + map.square.side - 16;
-        root.draw(&Text::new("pressure (mirrored)", (map.square.left + 10, below), text(14, HPos::Left)))?;
+        root.draw(&Text::new("pressure", (map.square.left + 10, below), text(14, HPos::Left)))?;
         status_names(root, points, 640, map.square.top + 14, true)?;
         pressure_bar(root, map.highest, 640, middle + 8, map.square.top + map.square.side)
     })
@@ -47,7 +48,7 @@ pub fn plot_slip(panels: &[SlipPanel]) -> Result<Picture, OutputError> {
     };
     let rows = (panels.len() as i32 + columns - 1) / columns;
     let size = ((columns * PANEL.0 + 196) as u32, (HEAD + rows.max(1) * PANEL.1 + 8) as u32);
-    let caption = "Stick and slip (upper halves) and pressure (lower halves, mirrored) at saved steps of the shear, to one scale; \
+    let caption = "Stick and slip (upper halves) and pressure (lower halves) at saved steps of the shear, to one scale; \
                    the shear runs to the right.";
     Picture::draw("slip", caption, size, |root| {
         let all: Vec<ContactPoint> = panels.iter().flat_map(|panel| panel.points.iter().cloned()).collect();
@@ -139,17 +140,21 @@ impl Map {
             if !((point.current_x - self.view.centre).abs() <= reach && point.current_y.abs() <= reach) {
                 continue;
             }
-            // Discs that just overlap; the nodes on the symmetry line stand for half a cell.
-            let radius = (0.6 * point.area.max(0.0).sqrt() * self.scale()).clamp(1.5, 14.0) as i32;
+            // Discs that just overlap; each half shows half of a point on the symmetry line.
+            let area_shown = if point.half == Half::Both { 0.5 * point.area } else { point.area };
+            let radius = (0.6 * area_shown.max(0.0).sqrt() * self.scale()).clamp(1.5, 14.0) as i32;
             let pressure = match point.status {
                 ContactStatus::Open => OPEN,
                 _ if self.highest > 0.0 => viridis(point.pressure / self.highest),
                 _ => viridis(0.0),
             };
-            let (x, upper) = self.pixel(point.current_x, point.current_y);
-            let lower = self.pixel(point.current_x, -point.current_y).1;
-            area.draw(&Circle::new((x, upper.min(middle - radius)), radius, status_colour(point.status).filled()))?;
-            area.draw(&Circle::new((x, lower.max(middle + radius)), radius, pressure.filled()))?;
+            let (x, y) = self.pixel(point.current_x, point.current_y);
+            if point.half != Half::Mirrored {
+                area.draw(&Circle::new((x, y.min(middle - radius)), radius, status_colour(point.status).filled()))?;
+            }
+            if point.half != Half::Meshed {
+                area.draw(&Circle::new((x, y.max(middle + radius)), radius, pressure.filled()))?;
+            }
         }
         let Square { left, top, side } = self.square;
         let (width, height) = area.dim_in_pixel();

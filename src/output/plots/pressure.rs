@@ -1,6 +1,6 @@
 //! The pressure over the radius at the end of the press.
 
-use super::super::{ContactPoint, ContactStatus, OutputError, StepRecord};
+use super::super::{ContactPoint, ContactStatus, Half, OutputError, StepRecord};
 use super::chart::{Axis, Chart, Mark, Series, draw_chart, extent};
 use super::curves::from_zero;
 use super::style::{BLUE, GREEN, GREY, INK, Picture, rounded, tick};
@@ -13,7 +13,9 @@ const OFF_SCALE: f64 = 4.0;
 /// p(r) of every contact point of one step of the press, `record`, with Hertz's of an elastic sphere at the same h, unless that is far beyond the
 /// computed ones, and a Hertz pressure of the same force over the same circle.
 pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, sphere: &ElasticSphere) -> Result<Picture, OutputError> {
-    let ours: Vec<(f64, f64)> = points.iter().map(|p| (p.current_x.hypot(p.current_y), p.pressure)).collect();
+    // An image has the pressure and the distance of its point.
+    let meshed = points.iter().filter(|p| p.half != Half::Mirrored);
+    let ours: Vec<(f64, f64)> = meshed.map(|p| (p.current_x.hypot(p.current_y), p.pressure)).collect();
     let closed = points.iter().filter(|p| p.status != ContactStatus::Open).map(|p| p.current_x.hypot(p.current_y));
     let reach = 1.2 * closed.fold(record.a, f64::max).max(f64::MIN_POSITIVE);
     let computed = extent(ours.iter().map(|point| point.1)).1;
@@ -44,6 +46,7 @@ pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, sphere: &Elas
     let x = Axis::linear("distance r from the axis (case's unit of length)", 0.0, reach);
     let chart = Chart { title: "Pressure at the end of the press".into(), x, y, series, bar: None };
     let caption = "Pressure of every contact point over its distance from the axis, before the shear. Plastic flow levels it: an elastic \
-                   sphere at the same h would press harder, and Hertz's shape at the same force and radius is higher in the middle.";
+                   sphere at the same h would press harder, and Hertz's shape at the same force and radius is higher in the middle. Where it dips on the \
+                   axis friction does that: the surface sticks where it first touched, and does not spread as it would without.";
     Picture::draw("pressure", caption, (760, 480), |root| draw_chart(root, &chart))
 }
