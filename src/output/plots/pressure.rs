@@ -28,7 +28,7 @@ pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, sphere: &Elas
     if record.a > 0.0 && record.f_n > 0.0 {
         let greatest = 1.5 * record.f_n / (PI * record.a * record.a);
         let shape = over(record.a, &|r| greatest * (1.0 - (r / record.a).powi(2)).max(0.0).sqrt());
-        series.push(Series::dashed("Hertz's shape, same F_N and a", GREEN, 8, shape));
+        series.push(Series::dashed("Hertz's shape, same F_N and a", GREEN, 8.0, shape));
     }
     let a_hertz = hertz::contact_radius(sphere, record.h);
     let p_hertz = hertz::maximum_pressure(sphere, a_hertz);
@@ -36,13 +36,13 @@ pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, sphere: &Elas
     if p_hertz < OFF_SCALE * computed {
         top = top.max(p_hertz);
         let elastic = over(a_hertz, &|r| hertz::pressure(sphere, a_hertz, r));
-        series.push(Series::dashed("Hertz, elastic at the same h", GREY, 3, elastic));
+        series.push(Series::dashed("Hertz, elastic at the same h", GREY, 3.0, elastic));
     } else {
         let label = format!("Hertz, elastic at the same h: up to {}, off the scale", tick(rounded(p_hertz)));
-        series.push(Series::dashed(label, GREY, 3, Vec::new()));
+        series.push(Series::dashed(label, GREY, 3.0, Vec::new()));
     }
     let y = from_zero("contact pressure p (case's unit of stress)", [top]);
-    series.insert(0, Series::dashed("contact radius a", INK, 2, vec![(record.a, 0.0), (record.a, y.range.1)]));
+    series.insert(0, Series::dashed("contact radius a", INK, 2.0, vec![(record.a, 0.0), (record.a, y.range.1)]));
     let x = Axis::linear("distance r from the axis (case's unit of length)", 0.0, reach);
     let chart = Chart { title: "Pressure at the end of the press".into(), x, y, series, bar: None };
     let caption = "Pressure of every contact point over its distance from the axis, before the shear. Plastic flow levels it: an elastic \
