@@ -6,9 +6,11 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::output::companion::{companion, follow};
-use asperity::output::{ErrorEstimate, StepRecord, Summary, SummaryInputs, ripple};
+use asperity::output::{ErrorEstimate, Recorder, StepRecord, Summary, SummaryInputs, ripple};
+use asperity::simulation::drive::Ending;
+use asperity::simulation::follow::{follow, on_cpu};
 use asperity::simulation::problem::Problem;
+use asperity::simulation::scout::scout_case;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -50,7 +52,12 @@ const CASES: [(&str, &[&str]); 10] = [
 
 /// A run's rows, without the undeformed state, and what they sum up to.
 fn run(case: &Case) -> Result<(Vec<StepRecord>, Summary), Failed> {
-    let rows = follow(case, Default::default())?;
+    let mut recorder = Recorder::new(case, None);
+    let followed = follow(Problem::new(case)?, None, &mut |problem| on_cpu(problem), &mut recorder)?;
+    if followed.ending != Ending::Done {
+        return Err(format!("{:?}", followed.ending).into());
+    }
+    let rows: Vec<StepRecord> = recorder.rows.into_iter().filter(|row| row.step > 0).collect();
     let summary = Summary::from_history(&rows, &SummaryInputs::of(case));
     Ok((rows, summary))
 }
@@ -96,9 +103,11 @@ fn main() -> Result<(), Failed> {
         for &mesh in &meshes {
             let case = load(mesh, &[])?;
             let (rows, summary) = run(&case)?;
-            let other = companion(&case);
+            let other = scout_case(&case);
             let (_, other_summary) = run(&other)?;
-            let estimate = ErrorEstimate::new(&rows, &summary, mesh, &other_summary, other.mesh.elements_per_contact_radius);
+            let elements = other.mesh.elements_per_contact_radius;
+            let [fine, coarse] = [mesh, elements].map(|n| 1.0 / n as f64);
+            let estimate = ErrorEstimate::new(&rows, &summary, fine, &other_summary, coarse, elements);
             let mut cell = |value: Option<f64>, exact: Option<f64>, estimated: Option<f64>| match (value, exact, estimated) {
                 (Some(value), Some(exact), Some(estimated)) => {
                     all += 1;

@@ -1,4 +1,5 @@
-//! Asperity: force-displacement laws for elastic-plastic spheres sheared along a rigid plane.
+//! Asperity: force-displacement laws for elastic-plastic spheres sheared along a rigid plane. The plane stands for a second, equal sphere only without
+//! friction.
 //!
 //! The rooms, from the kernels up; each knows only those named before it:
 //! `analytical` (closed forms), `case` (the case file), `mesh`, `material`, `element`, `contact`, `compute` (one trait, CPU and

@@ -150,12 +150,21 @@ fn leaves_every_file_of_the_contract() {
         assert!(json[key].is_number(), "{key}: {}", json[key]);
     }
 
-    // The contact table adds up to the forces of its step.
+    // The contact table adds up to the forces of its step, over both halves.
     let points = read_contact(&dir.join("contact").join(ends[1].clone() + ".csv")).expect("a contact table");
-    let sum =
-        |of: fn(&asperity::output::ContactPoint) -> f64| 2.0 * points.iter().map(|point| of(point) * point.area).sum::<f64>();
+    let sum = |of: fn(&asperity::output::ContactPoint) -> f64| points.iter().map(|point| of(point) * point.area).sum::<f64>();
     assert!((sum(|point| point.pressure) / last.f_n - 1.0).abs() < 1e-12);
     assert!((sum(|point| -point.traction_x) / last.f_t - 1.0).abs() < 1e-12);
+    assert!((sum(|point| point.traction_y) / last.f_t).abs() < 1e-12);
+
+    // The time of the fields is how far the sphere has been moved.
+    let collection = fs::read_to_string(dir.join("fields/case.pvd")).expect("a collection");
+    let times: Vec<f64> = collection
+        .split("timestep=\"")
+        .skip(1)
+        .map(|rest| rest.split('"').next().expect("an end").parse().expect("a number"))
+        .collect();
+    assert!(times.len() == 2 && (times[0] - 0.02).abs() < 1e-12 && (times[1] - 0.02 - last.delta_t).abs() < 1e-12, "{times:?}");
 
     // A person is told what came out, and where it is.
     let told = stdout(&output);
@@ -174,7 +183,11 @@ fn leaves_every_file_of_the_contract() {
         assert!(told.contains(word), "{word}: {told}");
     }
     // Not a terminal: plain lines.
-    assert!(stderr(&output).contains(" %  step 1  segment 1/2  ") && !stderr(&output).contains('\u{1b}'), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains(" %  step 1  segment 0 (last 1)  ") && !stderr(&output).contains('\u{1b}'),
+        "{}",
+        stderr(&output)
+    );
 
     // The resolved case runs to the same result.
     let again = Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
@@ -327,18 +340,12 @@ fn without_friction_there_is_no_tangential_force() {
 }
 
 #[test]
-fn full_stick_never_slips() {
+fn full_stick_has_no_full_slip() {
     let scratch = Scratch::new(SHEAR);
-    // The default. With other numbers of steps (12, 16, 20, 24) a few points that come down on this coarse mesh find no place to stick to before the end
-    // of theirs and slide in it.
-    let (history, summary) = scratch.done("out", &["--set", "contact.friction=\"stick\"", "--set", "solver.press_steps=17"]);
+    let (history, summary) = scratch.done("out", &["--set", "contact.friction=\"stick\""]);
     let last = history[history.len() - 1];
-    // Nothing slips and nothing is dissipated but for the residual at which a step is accepted.
-    for row in &history {
-        assert!(row.slipping_points == 0 && row.work_friction.abs() < 1e-5 * last.work_external, "{row:?}");
-    }
-    // More than the coefficient of the other cases: only the yield stress in shear limits it.
-    assert!(last.f_t / last.f_n > 0.32, "{last:?}");
+    // More than the coefficient of the other cases: only the yield stress in shear limits it. What the points do is in contact_points.rs.
+    assert!(last.f_t / last.f_n > 0.4 && last.slipping_points == 0, "{last:?}");
     assert!(!summary.full_slip_reached && summary.f_n_slip.is_none() && summary.delta_t_slip.is_none());
 }
 
@@ -390,11 +397,13 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
     let output = scratch.run("out", &["--set", "solver.max_iterations=4", "--set", "solver.max_cutbacks=0", "-q"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let message = stderr(&output);
-    for word in ["error: no convergence: step ", " of segment 0", "merit ", "node ", "[solver] press_steps", "is kept in "] {
+    let (history, summary) = results(&scratch.out("out"));
+    // The step that failed is the one after the last row, and both are counted alike.
+    let failed = format!("error: no convergence: step {} of segment 0 (", history.last().map_or(1, |row| row.step + 1));
+    for word in [&failed, "merit ", "node ", "[solver] press_steps", "is kept in "] {
         assert!(message.contains(word), "{word}: {message}");
     }
     assert_eq!(message.lines().count(), 1, "{message}");
-    let (history, summary) = results(&scratch.out("out"));
     assert_eq!((summary.status, summary.steps), (Status::NotConverged, history.len()));
     assert!(summary.messages[0].contains("no convergence: step "), "{:?}", summary.messages);
     // Not one step: still a history with its columns, and a summary whose numbers do not exist.

@@ -53,6 +53,7 @@ fn every_check_passes_on_the_cpu() {
         "olsson-larsson, jackson-green",
         "unloading",
         "plastic press",
+        "pressure",
         "plastic shear",
         "energy",
         "jaeger-ciavarella",

@@ -1,4 +1,7 @@
-//! `contact/step_0020.csv`: the contact surface of one step, a row a node, in the user's units.
+//! `contact/step_0020.csv`: the contact surface of one step, in the user's units.
+//!
+//! The table holds the whole contact: a node on the symmetry plane once, with the area that it has on both halves, every other node twice, as it was computed
+//! and, after all of those, mirrored. Sums over all rows are therefore of the whole sphere: F_N of pressure times area, -F_T of traction_x times area.
 
 use super::history::row_problem;
 use super::{OutputError, write_atomically};
@@ -19,10 +22,23 @@ pub enum ContactStatus {
     Slip,
 }
 
-/// One node of the surface that can touch the plane.
+/// On which half of the contact a point lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Half {
+    /// The meshed one, Y > 0.
+    #[default]
+    Meshed,
+    /// The symmetry plane between them, Y = 0.
+    Both,
+    /// The other one, Y < 0: the mirror image of the meshed node of the same number.
+    Mirrored,
+}
+
+/// One point of the surface that can touch the plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint {
-    /// Number of the mesh node.
+    /// Number of the mesh node, for a mirrored point that of the node whose image it is.
     pub point: usize,
     /// Reference position X, along the shear.
     #[serde(rename = "X")]
@@ -44,18 +60,39 @@ pub struct ContactPoint {
     pub traction_x: f64,
     /// Shear traction on the sphere along y.
     pub traction_y: f64,
-    /// Area that the node stands for, on the meshed half.
+    /// Reference area that the point stands for.
     pub area: f64,
     /// What it does.
     pub status: ContactStatus,
+    /// On which half it lies.
+    pub half: Half,
+}
+
+/// The columns, in this order.
+const COLUMNS: [&str; 12] =
+    ["point", "X", "Y", "x", "y", "gap", "pressure", "traction_x", "traction_y", "area", "status", "half"];
+
+impl ContactPoint {
+    /// The point's image on the other half.
+    fn mirrored(&self) -> Self {
+        // 0 - y, not -y: no traction is 0, not -0.
+        let [reference_y, current_y, traction_y] = [self.reference_y, self.current_y, self.traction_y].map(|y| 0.0 - y);
+        Self { reference_y, current_y, traction_y, half: Half::Mirrored, ..self.clone() }
+    }
+
+    /// The whole contact of the points of the meshed half: these, and then the images of those beside the symmetry plane.
+    pub fn whole(mut points: Vec<Self>) -> Vec<Self> {
+        let images: Vec<Self> = points.iter().filter(|point| point.half == Half::Meshed).map(Self::mirrored).collect();
+        points.extend(images);
+        points
+    }
 }
 
 /// Writes the table; header only if there are no points.
 pub fn write_contact(path: &Path, points: &[ContactPoint]) -> Result<(), OutputError> {
     write_atomically(path, |out| {
         let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
-        let header = ["point", "X", "Y", "x", "y", "gap", "pressure", "traction_x", "traction_y", "area", "status"];
-        writer.write_record(header).map_err(io::Error::other)?;
+        writer.write_record(COLUMNS).map_err(io::Error::other)?;
         for point in points {
             writer.serialize(point).map_err(io::Error::other)?;
         }
@@ -63,12 +100,16 @@ pub fn write_contact(path: &Path, points: &[ContactPoint]) -> Result<(), OutputE
     })
 }
 
-/// Reads the table back; errors name the line and the column.
+/// Reads the table back; errors name the line and the column. Columns that are not its own are left out.
 pub fn read_contact(path: &Path) -> Result<Vec<ContactPoint>, OutputError> {
     let text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
     let malformed = |(line, problem): (u64, String)| OutputError::Malformed { path: path.to_path_buf(), line, problem };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let columns = reader.headers().map_err(|error| malformed((1, error.to_string())))?.clone();
+    if let Some(missing) = COLUMNS.iter().find(|&&name| !columns.iter().any(|column| column == name)) {
+        // Without `half` it is a table of the meshed half alone, whose sums are half of the forces.
+        return Err(malformed((1, format!("no column {missing}: a table of another version; run the case again"))));
+    }
     reader.deserialize().map(|row| row.map_err(|error| malformed(row_problem(&error, &columns)))).collect()
 }
 
@@ -90,6 +131,7 @@ mod tests {
             traction_y: 2.5,
             area: 1.25e-4,
             status,
+            half: Half::Meshed,
         }
     }
 
@@ -101,10 +143,34 @@ mod tests {
         write_contact(&path, &points).unwrap();
         assert_eq!(read_contact(&path).unwrap(), points);
         let text = fs::read_to_string(&path).unwrap();
-        assert!(text.starts_with("point,X,Y,x,y,gap,pressure,traction_x,traction_y,area,status\n7,0.1,"), "{text}");
-        assert!(text.contains(",stick\n") && text.trim_end().ends_with(",slip"));
+        assert!(text.starts_with("point,X,Y,x,y,gap,pressure,traction_x,traction_y,area,status,half\n7,0.1,"), "{text}");
+        assert!(text.contains(",stick,meshed\n") && text.trim_end().ends_with(",slip,meshed"));
         write_contact(&path, &[]).unwrap();
         assert!(read_contact(&path).unwrap().is_empty());
+    }
+
+    #[test]
+    fn the_whole_has_an_image_of_every_point_beside_the_symmetry_plane() {
+        let beside = ContactPoint { traction_y: 0.0, ..point(7, ContactStatus::Slip) };
+        let on = ContactPoint { reference_y: 0.0, current_y: 0.0, half: Half::Both, ..point(8, ContactStatus::Stick) };
+        let whole = ContactPoint::whole(vec![beside.clone(), on.clone(), point(9, ContactStatus::Open)]);
+        let rows: Vec<(usize, Half)> = whole.iter().map(|p| (p.point, p.half)).collect();
+        let (meshed, mirrored) = (Half::Meshed, Half::Mirrored);
+        assert_eq!(rows, [(7, meshed), (8, Half::Both), (9, meshed), (7, mirrored), (9, mirrored)]);
+        assert_eq!(whole[..2], [beside.clone(), on]);
+        let image = ContactPoint { reference_y: -1.0 / 3.0, current_y: -0.33, half: mirrored, ..beside };
+        assert_eq!(whole[3], image);
+        assert!(whole[3].traction_y.is_sign_positive());
+        assert_eq!((whole[4].traction_y, whole[4].traction_x), (-2.5, -300.0));
+    }
+
+    #[test]
+    fn a_table_of_half_a_contact_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("step.csv");
+        fs::write(&path, "point,X,Y,x,y,gap,pressure,traction_x,traction_y,area,status\n").unwrap();
+        let error = read_contact(&path).unwrap_err().to_string();
+        assert!(error.contains("line 1") && error.contains("no column half") && error.contains("run the case again"), "{error}");
     }
 
     #[test]

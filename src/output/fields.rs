@@ -1,11 +1,11 @@
 //! The fields of one step: what `fields/step_0020.vtu` shows.
 
-use super::{ContactPoint, ContactStatus, Field, Grid, OutputError, Units, write_vtu};
+use super::{ContactPoint, ContactStatus, Field, Grid, Half, OutputError, Units, write_vtu};
 use crate::compute::CaseFields;
 use crate::mesh::Mesh;
 use std::path::Path;
 
-/// Writes the mesh at its reference positions with, on the nodes, `displacement`, `contact_pressure`, `contact_traction`, `gap` and `contact_status`
+/// Writes the meshed half (y >= 0; the other is its mirror image, which the file says) at its reference positions with, on the nodes, `displacement`, `contact_pressure`, `contact_traction`, `gap` and `contact_status`
 /// (0 open or away from the contact surface, 1 stick, 2 slip; the gap is -1 away from it) and, on the elements, `stress` (Cauchy), `mises`,
 /// `alpha` and `plastic` (1 where the element has yielded), in the user's units. `displacement` and `fields` are scaled, `points` are in the
 /// user's units.
@@ -26,7 +26,7 @@ pub fn write_fields(
     let mut traction = vec![[0.0; 3]; nodes];
     let mut gap = vec![-1.0; nodes];
     let mut status = vec![0; nodes];
-    for point in points {
+    for point in points.iter().filter(|point| point.half != Half::Mirrored) {
         let node = point.point;
         if node >= nodes {
             let problem = format!("a contact point names node {node} of {nodes}");
@@ -56,7 +56,7 @@ pub fn write_fields(
         Field::scalar("alpha", fields.alpha.clone()),
         Field::integer("plastic", fields.alpha.iter().map(|&alpha| i32::from(alpha > 0.0)).collect()),
     ];
-    write_vtu(path, &Grid { points: &positions, cells: &mesh.elements }, &point_fields, &cell_fields)
+    write_vtu(path, &Grid { points: &positions, cells: &mesh.elements, symmetry_plane: Some(0.0) }, &point_fields, &cell_fields)
 }
 
 /// Mises' equivalent stress sqrt(3/2 s:s) of xx, yy, zz, xy, yz, zx.
@@ -91,6 +91,7 @@ mod tests {
             traction_y: 0.0,
             area: 0.1,
             status: ContactStatus::Slip,
+            half: Half::Meshed,
         };
         write_fields(&path, &mesh, &displacement, &fields, std::slice::from_ref(&point), &units).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
@@ -107,6 +108,11 @@ mod tests {
         ];
         assert!(names.iter().all(|name| text.contains(&format!("Name=\"{name}\""))), "{text}");
         assert!(text.contains("NumberOfPoints=\"12\" NumberOfCells=\"2\""), "{text}");
+        assert!(text.contains("Half of the body"), "{text}");
+        // The images of its points are on no node.
+        let images = ContactPoint::whole(vec![point.clone()]);
+        write_fields(&path, &mesh, &displacement, &fields, &images, &units).unwrap();
+        assert_eq!((images.len(), std::fs::read_to_string(&path).unwrap()), (2, text));
 
         point.point = 12;
         let error = write_fields(&path, &mesh, &displacement, &fields, std::slice::from_ref(&point), &units).unwrap_err();

@@ -36,3 +36,31 @@ pub struct Ledger {
     /// Their processor time, `None` where the system does not tell.
     pub cpu_before: Option<f64>,
 }
+
+impl Ledger {
+    /// How far the sphere has been moved up to the end of a step: the sum of |change of h| + |change of delta_T| over its steps. It grows with every step, is a
+    /// length, and does not depend on how a path is cut into steps: the time of the fields in ParaView.
+    pub fn path_length(&self, step: usize) -> f64 {
+        let (mut h, mut delta_t, mut length) = (0.0, 0.0, 0.0);
+        for row in self.rows.iter().take_while(|row| row.step <= step) {
+            length += (row.h - h).abs() + (row.delta_t - delta_t).abs();
+            (h, delta_t) = (row.h, row.delta_t);
+        }
+        length
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_path_is_as_long_there_and_back_however_it_is_cut() {
+        let row = |step, h, delta_t| StepRecord { step, h, delta_t, ..StepRecord::default() };
+        let ledger = |rows: Vec<StepRecord>| Ledger { rows, ..Ledger::default() };
+        let fine = ledger(vec![row(1, 1.0, 0.0), row(2, 2.0, 0.0), row(3, 2.0, 0.5), row(4, 2.0, -0.5), row(5, 0.0, -0.5)]);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|step| fine.path_length(step)), [0.0, 1.0, 2.0, 2.5, 3.5, 5.5]);
+        let coarse = ledger(vec![row(1, 2.0, 0.0), row(2, 2.0, 0.5), row(3, 2.0, -0.5), row(4, 0.0, -0.5)]);
+        assert_eq!(coarse.path_length(4), 5.5);
+    }
+}

@@ -33,7 +33,7 @@ pub use crate::simulation::record::StepRecord;
 pub use atomic::{draft_of, write_atomically};
 pub use checkpoint::{Checkpoint, case_difference};
 pub use clock::Clock;
-pub use contact_csv::{ContactPoint, ContactStatus, read_contact, write_contact};
+pub use contact_csv::{ContactPoint, ContactStatus, Half, read_contact, write_contact};
 pub use directory::{OutputDirectory, RESULT_MARKER};
 pub use error::OutputError;
 pub use estimate::{ErrorEstimate, ripple};

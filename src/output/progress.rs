@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 pub struct Position {
     /// Steps accepted so far.
     pub step: usize,
-    /// Segment of the path, from 0.
+    /// Segment of the path, from 0 as in `history.csv` and in the key `path.0`.
     pub segment: usize,
     /// Segments of the path.
     pub segments: usize,
@@ -17,6 +17,13 @@ pub struct Position {
     pub fraction: f64,
     /// What there is to say of the step, such as `h 0.0100  F_N 72.6  5 iterations`.
     pub detail: String,
+}
+
+impl Position {
+    /// The segment and the number of the last one.
+    fn place(&self) -> String {
+        format!("segment {} (last {})", self.segment, self.segments.saturating_sub(1))
+    }
 }
 
 /// Told about every accepted step.
@@ -83,7 +90,7 @@ impl Default for BarProgress {
 
 impl Progress for BarProgress {
     fn step(&mut self, position: &Position) {
-        self.bar.set_message(format!("segment {}/{}  {}", position.segment + 1, position.segments, position.detail));
+        self.bar.set_message(format!("{}  {}", position.place(), position.detail));
         self.bar.set_position((position.fraction.clamp(0.0, 1.0) * BAR_PARTS as f64) as u64);
     }
 
@@ -126,8 +133,7 @@ impl<W: Write + Send> Progress for PlainProgress<W> {
         if due || position.fraction >= 1.0 {
             self.last = Some(Instant::now());
             let percent = 100.0 * position.fraction.clamp(0.0, 1.0);
-            let Position { step, segment, segments, detail, .. } = position;
-            self.line(&format!("{percent:5.1} %  step {step}  segment {}/{segments}  {detail}", segment + 1));
+            self.line(&format!("{percent:5.1} %  step {}  {}  {}", position.step, position.place(), position.detail));
         }
     }
 
@@ -155,7 +161,7 @@ mod tests {
         plain.step(&position(3, 0.25));
         plain.message("note");
         plain.finish("done");
-        assert_eq!(String::from_utf8(text).unwrap(), " 25.0 %  step 3  segment 2/2  F_N 72.6\nnote\ndone\n");
+        assert_eq!(String::from_utf8(text).unwrap(), " 25.0 %  step 3  segment 1 (last 1)  F_N 72.6\nnote\ndone\n");
     }
 
     #[test]
@@ -191,7 +197,7 @@ mod tests {
         assert_eq!(bar.bar.position(), BAR_PARTS / 2);
         bar.step(&position(2, 1.5));
         assert_eq!(bar.bar.position(), BAR_PARTS);
-        assert_eq!(bar.bar.message(), "segment 2/2  F_N 72.6");
+        assert_eq!(bar.bar.message(), "segment 1 (last 1)  F_N 72.6");
         bar.bar.finish_and_clear();
         assert!(bar.bar.is_finished());
     }

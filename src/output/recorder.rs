@@ -3,22 +3,25 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{StepRecord, Units};
+use super::{ContactPoint, StepRecord, Units};
 use crate::case::Case;
 use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::problem::Problem;
 
-/// The history of a run, in the case's units, the undeformed state first.
+/// The history of a run, in the case's units, the undeformed state first, and the contact at its end.
 pub struct Recorder {
     units: Units,
     stop: Option<Arc<AtomicBool>>,
     /// The rows.
     pub rows: Vec<StepRecord>,
+    /// The whole contact at the end of the last segment.
+    pub contact: Vec<ContactPoint>,
 }
 
 impl Recorder {
     /// For a run of `case`, which ends early when `stop` is set.
     pub fn new(case: &Case, stop: Option<Arc<AtomicBool>>) -> Self {
-        Self { units: Units::of(case), stop, rows: Vec::new() }
+        Self { units: Units::of(case), stop, rows: Vec::new(), contact: Vec::new() }
     }
 }
 
@@ -28,7 +31,13 @@ impl Observer for Recorder {
         Ok(())
     }
 
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.contact = ContactPoint::whole_of(view.points, &self.units);
+        Ok(())
+    }
+
+    fn starts_over(&mut self, _: &Problem, _: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.rows.clear();
         Ok(())
     }
 

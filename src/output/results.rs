@@ -98,7 +98,8 @@ impl ResultWriter {
                 }
                 out.cut_back(&ledger.saved)?;
                 let saved = ledger.saved.iter().filter(|_| case.output.fields != Fields::None);
-                let collection = Collection::resume(&out.collection(), saved.map(|&step| (step as f64, out.fields(step))))?;
+                let collection =
+                    Collection::resume(&out.collection(), saved.map(|&step| (ledger.path_length(step), out.fields(step))))?;
                 (HistoryWriter::resume(&out.history(), &ledger.rows)?, collection)
             }
         };
@@ -249,8 +250,9 @@ impl ResultWriter {
         Checkpoint::new(&self.case, &self.began_on, ledger, run).write(&self.out.checkpoint())
     }
 
+    /// The whole contact of a step, both halves.
     fn contact(&self, view: &StepView<'_>) -> Vec<ContactPoint> {
-        view.points.iter().map(|point| ContactPoint::in_units(point, &self.units)).collect()
+        ContactPoint::whole_of(view.points, &self.units)
     }
 
     /// Writes fields and contact table of a step, once.
@@ -263,7 +265,7 @@ impl ResultWriter {
         let path = self.out.fields(step);
         write_contact(&self.out.contact(step), contact)?;
         write_fields(&path, view.mesh, view.displacement, &fields, contact, &self.units)?;
-        self.collection.push(step as f64, &path)?;
+        self.collection.push(self.ledger.path_length(step), &path)?;
         self.ledger.saved.push(step);
         Ok(())
     }

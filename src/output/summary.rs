@@ -110,6 +110,10 @@ pub struct Summary {
     pub f_n_ripple: Option<f64>,
     /// Elements along the contact radius of the coarse run from which the errors were estimated.
     pub error_companion_elements: Option<usize>,
+    /// Steps that were accepted above the tolerance, or under full stick with points that slid.
+    pub relaxed_steps: usize,
+    /// Steps under full stick in which points came off and down again.
+    pub landed_again: usize,
     /// How often the contact left the finely meshed zone and the run started over on a larger one.
     pub remeshed: usize,
     /// |F_T|/F_N at the end of the shear.
@@ -160,6 +164,8 @@ impl Summary {
             steps: history.len(),
             newton_iterations: history.iter().map(|record| record.newton_iterations).sum(),
             cutbacks: history.iter().map(|record| record.cutbacks).sum(),
+            relaxed_steps: history.iter().filter(|record| record.relaxed > 0).count(),
+            landed_again: history.iter().filter(|record| record.landed_again > 0).count(),
             krylov_iterations: history.iter().map(|record| record.krylov_iterations).sum(),
             max_alpha: history.last().map(|record| record.max_alpha),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -454,6 +460,8 @@ mod tests {
             "mu_at_slip",
             "full_slip_reached",
             "remeshed",
+            "relaxed_steps",
+            "landed_again",
             "messages",
         ] {
             assert!(json.get(key).is_some(), "{key} is missing");

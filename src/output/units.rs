@@ -1,6 +1,6 @@
 //! From the scaled results of the simulation (lengths by R, stresses by E, the meshed half) to the user's units and the whole sphere.
 
-use super::{ContactPoint, ContactStatus, StepRecord};
+use super::{ContactPoint, ContactStatus, Half, StepRecord};
 use crate::analytical::ElasticSphere;
 use crate::analytical::olsson_larsson::Hardening;
 use crate::case::{self, Case};
@@ -61,10 +61,11 @@ impl StepRecord {
 
 impl ContactPoint {
     /// A point in the user's units. Pressure and tractions are the point's force over its tributary reference area, exerted by the
-    /// plane on the sphere: the shear traction resists the motion. A point without area has none.
+    /// plane on the sphere: the shear traction resists the motion. A point without area has none. A point on the symmetry plane has its area of both halves.
     pub fn in_units(scaled: &record::ContactPoint, units: &Units) -> Self {
         let length = units.radius;
         let per_area = if scaled.area > 0.0 { units.youngs_modulus / scaled.area } else { 0.0 };
+        let (halves, half) = if scaled.on_symmetry_plane { (2.0, Half::Both) } else { (1.0, Half::Meshed) };
         Self {
             point: scaled.node,
             reference_x: scaled.reference[0] * length,
@@ -75,9 +76,15 @@ impl ContactPoint {
             pressure: scaled.force[2] * per_area,
             traction_x: scaled.force[0] * per_area,
             traction_y: scaled.force[1] * per_area,
-            area: scaled.area * length * length,
+            area: halves * scaled.area * length * length,
             status: scaled.status.into(),
+            half,
         }
+    }
+
+    /// The whole contact of a step from the points of its meshed half.
+    pub fn whole_of(scaled: &[record::ContactPoint], units: &Units) -> Vec<Self> {
+        Self::whole(scaled.iter().map(|point| Self::in_units(point, units)).collect())
     }
 }
 
@@ -194,12 +201,16 @@ mod tests {
             position: [0.11, 0.2, 0.0],
             force: [-0.3, 0.0, 1.0],
             area: 0.5,
+            on_symmetry_plane: false,
             status: Status::Slip,
         };
         let point = ContactPoint::in_units(&scaled, &UNITS);
         assert_eq!(point.pressure * point.area, 400.0);
         assert_eq!((point.traction_x, point.status, point.point), (-60.0, ContactStatus::Slip, 9));
         assert_eq!((point.reference_x, point.current_x, point.gap), (0.2, 0.22, 0.0));
+        // Half of a point on the symmetry plane is meshed.
+        let middle = ContactPoint::in_units(&record::ContactPoint { on_symmetry_plane: true, ..scaled }, &UNITS);
+        assert_eq!((middle.pressure, middle.area, middle.half), (point.pressure, 2.0 * point.area, Half::Both));
         assert_eq!(ContactPoint::in_units(&record::ContactPoint { area: 0.0, ..scaled }, &UNITS).pressure, 0.0);
     }
 }

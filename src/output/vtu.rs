@@ -22,6 +22,8 @@ pub struct Grid<'a> {
     pub points: &'a [[f64; 3]],
     /// Eight points each, in VTK_HEXAHEDRON order.
     pub cells: &'a [[u32; 8]],
+    /// The y at which the rest of the body is this part's mirror image, where it is only half of one: the file says so in a comment and in its field data.
+    pub symmetry_plane: Option<f64>,
 }
 
 /// The numbers of a field.
@@ -80,6 +82,15 @@ pub fn write_vtu(path: &Path, grid: &Grid, point_fields: &[Field], cell_fields: 
     write_atomically(path, |out| {
         let mut xml = Xml::start(out, "UnstructuredGrid")?;
         xml.open("UnstructuredGrid", &[])?;
+        if let Some(y) = grid.symmetry_plane {
+            xml.comment(&format!(
+                " Half of the body: the other half is its mirror image at y = {y}. Forces of this half are half of the whole. "
+            ))?;
+            xml.open("FieldData", &[])?;
+            let attributes = [("NumberOfTuples", "1")];
+            xml.array_with("Float64", "half_model_mirrored_at_y", 1, y.to_le_bytes(), &attributes)?;
+            xml.close("FieldData")?;
+        }
         let (points, cells) = (grid.points.len().to_string(), grid.cells.len().to_string());
         xml.open("Piece", &[("NumberOfPoints", &points), ("NumberOfCells", &cells)])?;
         xml.fields("PointData", point_fields)?;
@@ -138,6 +149,10 @@ impl<W: Write> Xml<W> {
         self.0.write_event(Event::Empty(BytesStart::new(tag).with_attributes(attributes.iter().copied())))
     }
 
+    fn comment(&mut self, text: &str) -> io::Result<()> {
+        self.0.write_event(Event::Comment(BytesText::from_escaped(text)))
+    }
+
     fn close(&mut self, tag: &str) -> io::Result<()> {
         self.0.write_event(Event::End(BytesEnd::new(tag)))
     }
@@ -158,20 +173,32 @@ impl<W: Write> Xml<W> {
     }
 
     /// One inline array: the number of bytes and the bytes, as one base64 block.
-    fn array(&mut self, kind: &str, name: &str, components: usize, bytes: impl Iterator<Item = u8>) -> io::Result<()> {
+    fn array(&mut self, kind: &str, name: &str, components: usize, bytes: impl IntoIterator<Item = u8>) -> io::Result<()> {
+        self.array_with(kind, name, components, bytes, &[])
+    }
+
+    /// The same with more attributes.
+    fn array_with(
+        &mut self,
+        kind: &str,
+        name: &str,
+        components: usize,
+        bytes: impl IntoIterator<Item = u8>,
+        more: &[(&str, &str)],
+    ) -> io::Result<()> {
         let mut block = vec![0; 8];
         block.extend(bytes);
         let length = (block.len() - 8) as u64;
         block[..8].copy_from_slice(&length.to_le_bytes());
         let components = components.to_string();
         let attributes = [("type", kind), ("Name", name), ("NumberOfComponents", &components), ("format", "binary")];
-        self.open("DataArray", &attributes)?;
+        self.open("DataArray", &[&attributes, more].concat())?;
         self.0.write_event(Event::Text(BytesText::from_escaped(BASE64.encode(&block))))?;
         self.close("DataArray")
     }
 }
 
-/// A `.pvd`: files over (pseudo) time. Rewritten whole with every file, so that it can be opened while the run goes on.
+/// A `.pvd`: files over a pseudo-time, which is what the writer says: the length of the path behind. Rewritten whole with every file, so that it can be opened while the run goes on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collection {
     path: PathBuf,
@@ -246,7 +273,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("fields/step_0001.vtu");
         let pressure: Vec<f64> = (0..8).map(|i| 1.0 / (1.0 + i as f64)).collect();
-        let grid = Grid { points: &CUBE, cells: &CELLS };
+        let grid = Grid { points: &CUBE, cells: &CELLS, symmetry_plane: Some(0.0) };
         write_vtu(&path, &grid, &[Field::scalar("p < q & \"r\"", pressure.clone())], &[Field::integer("plastic", vec![1])])
             .unwrap();
         let text = fs::read_to_string(&path).unwrap();
@@ -271,26 +298,31 @@ mod tests {
             }
         }
         let names: Vec<&str> = arrays.iter().map(|array| array.0.as_str()).collect();
-        assert_eq!(names, ["p < q & \"r\"", "plastic", "Points", "connectivity", "offsets", "types"]);
+        let field_data = "half_model_mirrored_at_y";
+        assert_eq!(names, [field_data, "p < q & \"r\"", "plastic", "Points", "connectivity", "offsets", "types"]);
+        assert!(text.contains("<!-- Half of the body: ") && text.contains("mirror image at y = 0."), "{text}");
+        // A body that is whole says nothing of the kind.
+        write_vtu(&path, &Grid { symmetry_plane: None, ..grid }, &[], &[]).unwrap();
+        assert!(!fs::read_to_string(&path).unwrap().contains("alf"));
         for (_, block) in &arrays {
             assert_eq!(u64::from_le_bytes(block[..8].try_into().unwrap()) as usize, block.len() - 8);
         }
-        let decoded: Vec<f64> = arrays[0].1[8..].chunks(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap())).collect();
+        let decoded: Vec<f64> = arrays[1].1[8..].chunks(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap())).collect();
         assert_eq!(decoded, pressure);
-        assert_eq!(arrays[5].1[8..], [12]);
+        assert_eq!(arrays[6].1[8..], [12]);
     }
 
     #[test]
     fn wrong_sizes_are_refused_and_leave_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("step.vtu");
-        let grid = Grid { points: &CUBE, cells: &CELLS };
+        let grid = Grid { points: &CUBE, cells: &CELLS, symmetry_plane: None };
         let error = write_vtu(&path, &grid, &[Field::scalar("gap", vec![0.0; 7])], &[]).unwrap_err().to_string();
         assert!(error.contains("gap has 7 numbers, not 1 for each of 8 points"), "{error}");
         let error = write_vtu(&path, &grid, &[], &[Field::symmetric_tensor("stress", &[])]).unwrap_err().to_string();
         assert!(error.contains("1 cells"), "{error}");
         let wild = [[0, 1, 2, 3, 4, 5, 6, 8]];
-        assert!(write_vtu(&path, &Grid { points: &CUBE, cells: &wild }, &[], &[]).is_err());
+        assert!(write_vtu(&path, &Grid { cells: &wild, ..grid }, &[], &[]).is_err());
         assert!(!path.exists());
     }
 

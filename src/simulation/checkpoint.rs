@@ -56,17 +56,21 @@ impl Committed {
         closed.map(|p| p.reference[0].hypot(p.reference[1])).fold(0.0, f64::max)
     }
 
-    /// Forms the contact points from displacement, force and status.
+    /// Forms the contact points from displacement, force and status. On the symmetry plane the internal force along y is left out: it balances the other
+    /// half of the body, not the plane.
     pub fn place_points(&mut self, mesh: &Mesh) {
         let Self { u, force, statuses, points, .. } = self;
         let point = |(i, (&node, &status)): (usize, (&u32, &Status))| {
             let (base, x) = (3 * node as usize, mesh.nodes[node as usize]);
+            let on_symmetry_plane = mesh.symmetry_nodes.binary_search(&node).is_ok();
+            let exerted = [force[base], if on_symmetry_plane { 0.0 } else { force[base + 1] }, force[base + 2]];
             ContactPoint {
                 node: node as usize,
                 reference: x,
                 position: [x[0] + u[base], x[1] + u[base + 1], x[2] + u[base + 2]],
-                force: if status == Status::Open { [0.0; 3] } else { [force[base], force[base + 1], force[base + 2]] },
+                force: if status == Status::Open { [0.0; 3] } else { exerted },
                 area: mesh.contact_area[i],
+                on_symmetry_plane,
                 status,
             }
         };
@@ -97,6 +101,8 @@ pub(super) struct Place {
     pub depth: usize,
     /// Targets are taken in 2^pace parts.
     pub pace: u32,
+    /// The observer knows of a relaxed step in this segment.
+    pub relaxed_told: bool,
 }
 
 impl Place {

@@ -456,12 +456,17 @@ impl<'a> Drive<'a> {
 
     /// One Newton solve towards a target; commits nothing.
     fn attempt(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
-        let control = Control {
-            h: target.h,
-            delta_t: target.delta_t,
-            normal_force: if target.hold_force { self.held_force } else { None },
-        };
         let guess = self.guess(target);
+        let h = match (target.hold_force, self.state.last_increment) {
+            // Where the force is held the indentation is an unknown, and goes on as the displacements do.
+            (true, Some([last_h, last_delta_t])) if guess.is_some() && last_delta_t != 0.0 => {
+                let r = &self.state.record;
+                r.h + last_h * (target.delta_t - r.delta_t) / last_delta_t
+            }
+            _ => target.h,
+        };
+        let control =
+            Control { h, delta_t: target.delta_t, normal_force: if target.hold_force { self.held_force } else { None } };
         let weight = match self.state.last_increment {
             Some(_) => multistep::weight(self.state.length_to(target.h, target.delta_t) / self.state.last_length),
             None => 0.0,
@@ -573,6 +578,14 @@ impl<'a> Drive<'a> {
             report.times.seconds(Phase::LinearSolve),
             report.times.seconds(Phase::Commit),
         );
+        if report.relaxed && !self.place.relaxed_told {
+            self.place.relaxed_told = true;
+            let r = &self.state.record;
+            observer.note(&format!(
+                "step {} of segment {} was accepted with relaxed conditions; column relaxed of the history tells of it and of any other in this segment",
+                r.step, r.segment
+            ));
+        }
         self.last_report = report;
         self.backend.take_notes().iter().for_each(|note| observer.note(note));
         observer.step(&mut self.view()).map_err(SimulationError::Observer)

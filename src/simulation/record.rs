@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct StepRecord {
     /// Counts accepted steps; 0 is the undeformed state.
     pub step: usize,
-    /// Index of the path's segment.
+    /// Index of the path's segment, from 0: the key of its case is `path.0`.
     pub segment: usize,
     /// Indentation h.
     pub h: f64,
@@ -62,7 +62,7 @@ pub struct StepRecord {
     /// Distance from the sphere's axis to the outermost point in contact, in the undeformed sphere.
     #[serde(default)]
     pub reach: f64,
-    /// 1 where the step was accepted above its tolerance, because no step length lowered its merit any more.
+    /// 1 where the step was accepted above its tolerance, because no step length lowered its merit any more, or where points under full stick slid in it.
     #[serde(default)]
     pub relaxed: usize,
     /// Under full stick: points that came off in the step and came down again, to carry no tangential force up to its end.
@@ -79,10 +79,12 @@ pub struct ContactPoint {
     pub reference: [f64; 3],
     /// Current position.
     pub position: [f64; 3],
-    /// Force of the plane on the point, of the meshed half.
+    /// Force of the plane on the point, of the meshed half: what contact exerts, without the pull of the other half.
     pub force: [f64; 3],
     /// Tributary reference area on the meshed half.
     pub area: f64,
+    /// The point lies on the symmetry plane: half of it is meshed.
+    pub on_symmetry_plane: bool,
     /// Open, sticking or slipping.
     pub status: crate::contact::coulomb::Status,
 }

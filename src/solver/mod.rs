@@ -33,9 +33,9 @@ const FULLY_PLASTIC: f64 = 160.0;
 
 /// How far the first linear system of a step is solved, for a contact whose Johnson parameter grows to `lambda`.
 ///
-/// In a fully plastic contact an increment is many yield strains: its first residual is tens of times the normal force, and a tenth of it left in the
-/// correction throws points back from flow that then do not find to it again. At E/sigma_Y = 7500 a press took 428 iterations with 5 cut-backs so,
-/// and takes 134 with none. Below full plasticity it makes no difference.
+/// The plate's motion first strains the elements beside it alone. Against the contact's force what they resist with goes as E/sigma_Y; where that is much, a tenth
+/// of it left in the correction throws points back from flow that then do not find to it again. At E/sigma_Y = 7500 a press took 428 iterations with
+/// 5 cut-backs so, and takes 134 with none.
 pub fn first_linear(lambda: f64) -> f64 {
     if lambda >= FULLY_PLASTIC { 0.01 } else { f64::INFINITY }
 }

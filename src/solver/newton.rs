@@ -249,14 +249,15 @@ impl Newton {
         guess: Option<&[f64]>,
         control: &Control,
     ) -> Result<(), SolverError> {
-        self.current.h = if control.normal_force.is_some() { start_h } else { control.h };
         if let Some(guess) = guess {
+            self.current.h = control.h;
             self.current.u.copy_from_slice(guess);
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
             if self.current.evaluate(case, &self.boundary, control, &mut self.times)? == Outcome::Valid {
                 return Ok(());
             }
         }
+        self.current.h = if control.normal_force.is_some() { start_h } else { control.h };
         self.current.u.copy_from_slice(start);
         // The committed state can always be evaluated; the plate's increment enters through the linear system.
         self.current.evaluate(case, &self.boundary, control, &mut self.times)?;

@@ -11,8 +11,9 @@
 //! |---|---|---|
 //! | `hertz` | Hertz, F_N and a at h = 1e-4 R; the exact first yield by Mises on the axis | 1 %; 2 % |
 //! | `cattaneo-mindlin` | Cattaneo-Mindlin and Mindlin-Deresiewicz at nu = 0.49; the departure at nu = 0.3 for information | 2 % of mu F_N, half an element in c |
-//! | `models` | the band of Olsson-Larsson and Jackson-Green, Lambda = 11 to 120; the unloading slope 2 E* a | 6 % in Hbar, 8 % in c^2; 2 % |
+//! | `models` | without friction, the range of Olsson-Larsson and Jackson-Green, Lambda = 11 to 120; the unloading slope 2 E* a | what the models are worth, 6 % in Hbar and 8 % in c^2; 2 % |
 //! | `plastic` | F_N, a, the hardness, the loss of F_N and the onset of sliding known from other codes | 2 % beyond their range; 5 % for the onset |
+//! | `pressure` | the profile of an axisymmetric code at the end of the press, with friction and without | 4 % |
 //! | `energy` | work = elastic + plastic + friction, with doubled steps | what is missing more than 1.6 times smaller |
 //! | `jaeger-ciavarella` | elastic shear after a plastic preload, from the unloading curve | 3 % of mu F_N |
 //! | `invariance` | F_N(d) = F_N(-d), F_T(d) = -F_T(-d); other units | a hundred times the solver's tolerance |
@@ -29,6 +30,7 @@ mod invariance;
 mod jaeger_ciavarella;
 mod models;
 mod plastic;
+mod pressure;
 
 use std::time::{Duration, Instant};
 
@@ -62,11 +64,12 @@ pub struct Family {
 }
 
 /// All families, in the order in which they run.
-pub const FAMILIES: [Family; 7] = [
+pub const FAMILIES: [Family; 8] = [
     Family { name: "hertz", run: hertz::checks },
     Family { name: "cattaneo-mindlin", run: cattaneo_mindlin::checks },
     Family { name: "models", run: models::checks },
     Family { name: "plastic", run: plastic::checks },
+    Family { name: "pressure", run: pressure::checks },
     Family { name: "energy", run: plastic::step_convergence },
     Family { name: "jaeger-ciavarella", run: jaeger_ciavarella::checks },
     Family { name: "invariance", run: invariance::checks },

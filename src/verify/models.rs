@@ -1,8 +1,19 @@
-//! Elastic-plastic pressing against the published models, Olsson & Larsson and Jackson & Green, and the slope of the unloading.
+//! Elastic-plastic pressing without friction against the published models, Olsson & Larsson and Jackson & Green, and the slope of the unloading.
 //!
 //! Compared are Johnson's normalised hardness Hbar = F_N/(pi a^2 sigma_Y) and c^2 = a^2/(2 R h), both at the computed contact radius.
 //! Where the two models differ the range between them is what is known. What each is worth is the difference of published models at
-//! Lambda < 130, 6 % in Hbar and 8 % in c^2; axisymmetric finite elements (two codes, Lambda = 53 to 115) lie 6 to 8 % below the lower of the two in c^2.
+//! Lambda < 130, 6 % in Hbar and 8 % in c^2: they cannot tell a solver that is 5 % off, which the checks against other codes do (`plastic`, `pressure`).
+//!
+//! The models are of contacts without friction. The axisymmetric results known for this sphere have mu = 0.3 and are no reference for them, as they lie beyond their band:
+//!
+//! | h/R | Hbar, axisymmetric, mu = 0.3 | above the models by | ours, mu = 0.3 | ours, mu = 0 |
+//! |---|---|---|---|---|
+//! | 0.005 | 2.99 +- 0.08 | 6.5 % | 2.84 | 2.73 |
+//! | 0.01 | 2.91 +- 0.05 | 6.4 % | 2.82 | 2.67 |
+//! | 0.02 | 2.72 +- 0.06 | 5.2 % | 2.73 | 2.51 |
+//!
+//! (ours with 16 elements along the largest contact). Friction holds the surface back: the contact is 3 to 5 % smaller and 4 to 9 % harder. Without it ours are
+//! 0 to 2 % below the models.
 
 use super::equator::Equator;
 use super::runner::{RADIUS, Runner, YOUNGS_MODULUS, press, sphere};
@@ -56,7 +67,7 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
 }
 
 /// Hbar and c^2 at a contact radius: Olsson & Larsson's, then Jackson & Green's.
-fn models(yield_stress: f64, a: f64) -> [[f64; 2]; 2] {
+pub(super) fn models(yield_stress: f64, a: f64) -> [[f64; 2]; 2] {
     let larsson = OlssonLarsson { sphere: BALL, hardening: olsson_larsson::Hardening::Ideal { yield_stress } };
     let green = JacksonGreen { sphere: BALL, yield_stress };
     // Jackson & Green give both over h: the h at which their contact is as large.
@@ -105,25 +116,30 @@ mod tests {
     use super::*;
     use crate::verify::Verdict;
 
-    /// Axisymmetric finite elements, sigma_Y = 400: h/R, F_N, a/R. At h = 0.005 and 0.01 those give an Hbar 6.4 % and more above both models, outside of
-    /// the band that the models leave each other: only the deepest one can stand for them.
-    const AXISYMMETRIC: [(f64, f64, f64); 1] = [(0.02, 148.8, 0.2087)];
-
-    fn verdicts(change: impl Fn(&mut StepRecord)) -> Vec<Verdict> {
-        let rows = AXISYMMETRIC.map(|(h, f_n, a)| {
-            let mut row = StepRecord { h, f_n, a, ..StepRecord::default() };
-            change(&mut row);
-            against_models(400.0, &row)
-        });
-        rows.iter().flatten().map(Check::verdict).collect()
+    #[test]
+    fn the_models_pass_and_what_is_further_off_than_they_are_worth_does_not() {
+        for h in [0.005, 0.01, 0.02] {
+            // Olsson & Larsson's own contact.
+            let larsson = OlssonLarsson { sphere: BALL, hardening: olsson_larsson::Hardening::Ideal { yield_stress: 400.0 } };
+            let model = StepRecord { h, f_n: larsson.force(h), a: larsson.contact_radius(h), ..StepRecord::default() };
+            let verdicts = |row: StepRecord| against_models(400.0, &row).map(|check| check.verdict());
+            assert_eq!(verdicts(model), [Verdict::Pass; 2], "h = {h}");
+            for factor in [0.87, 1.13] {
+                assert_eq!(verdicts(StepRecord { f_n: factor * model.f_n, ..model }), [Verdict::Fail, Verdict::Pass], "h = {h}");
+                assert_eq!(verdicts(StepRecord { h: factor * factor * model.h, ..model })[1], Verdict::Fail, "h = {h}");
+            }
+        }
     }
 
+    /// Why contacts with friction are not held against them: the gaps of the table at the head of this page.
     #[test]
-    fn axisymmetric_computations_pass_and_wrong_ones_do_not() {
-        assert_eq!(verdicts(|_| ()), [Verdict::Pass; 2]);
-        assert!(verdicts(|row| row.f_n *= 0.87).contains(&Verdict::Fail));
-        assert!(verdicts(|row| row.a *= 0.97).contains(&Verdict::Fail));
-        assert!(verdicts(|row| row.h *= 0.8).contains(&Verdict::Fail));
+    fn axisymmetric_contacts_with_friction_lie_beyond_the_band() {
+        for ((h, [f_n, _], [a, _]), gap) in super::super::plastic::PRESSED.into_iter().zip([0.0653, 0.064, 0.052]) {
+            let row = StepRecord { h, f_n, a, ..StepRecord::default() };
+            let [hardness, area] = against_models(400.0, &row);
+            assert!((hardness.error() - gap).abs() < 1e-3, "h = {h}: {}", hardness.error());
+            assert!(area.error() < -0.05, "h = {h}: {}", area.error());
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::case::{
     Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere,
 };
 use crate::compute::{CaseModel, Compute, ComputeError, Description};
-use crate::output::Recorder;
+use crate::output::{ContactPoint, Recorder};
 use crate::simulation::drive::{Drive, Ending};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::StepRecord;
@@ -86,7 +86,7 @@ impl<'a> Runner<'a> {
         // Not where it began, if the device failed on the way.
         self.computed_on = Some(backend.description());
         match ending? {
-            Ending::Done => Ok(History { rows: recorder.rows }),
+            Ending::Done => Ok(History { rows: recorder.rows, contact: recorder.contact }),
             Ending::NotConverged(reason) => Err(VerifyError::Stopped(reason)),
             Ending::Outgrown(outgrowth) => Err(VerifyError::Stopped(outgrowth.to_string())),
             Ending::Interrupted => Err(VerifyError::Stopped("interrupted".to_owned())),
@@ -99,6 +99,8 @@ impl<'a> Runner<'a> {
 pub struct History {
     /// All rows, the undeformed state first.
     pub rows: Vec<StepRecord>,
+    /// The whole contact at the end of the path.
+    pub contact: Vec<ContactPoint>,
 }
 
 impl History {

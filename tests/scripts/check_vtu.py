@@ -30,6 +30,7 @@ for name, values in expected["point_data"].items():
     same(f"meshio: {name}", mesh.point_data[name], values)
 for name, values in expected["cell_data"].items():
     same(f"meshio: {name}", mesh.cell_data[name][0], values)
+same("meshio: field data", mesh.field_data["half_model_mirrored_at_y"], [0.0])
 print(f"meshio {meshio.__version__}: {len(mesh.points)} points, {len(mesh.cells[0].data)} hexahedra, all fields equal")
 
 try:

@@ -9,9 +9,9 @@ the same functions in the same order, for reading, checking and small models: on
     state, response = update(pair, state, h, (d0, d1))  # each step: the indentation, the tangential increment
     state = State.from_bytes(state.to_bytes())          # a restart; the bytes are those of the C struct on a little-endian machine
 
-Any one consistent system of units. For two equal spheres h and the increment are half of the overlap and of the relative displacement. f_t points
-along the displacement: it is what drives the sphere. asperity_law.h says what the model is and where it holds; `python3 asperity_law.py VECTORS.csv`
-compares this module with the test vectors.
+Any one consistent system of units. For two equal spheres h and the increment are half of the overlap and of the relative displacement (exact
+without friction only, see asperity_law.h). f_t points along the displacement: it is what drives the sphere. asperity_law.h says what the model is and where it holds; `python3 asperity_law.py
+VECTORS.csv` compares this module with the test vectors.
 """
 
 import math

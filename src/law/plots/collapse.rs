@@ -7,8 +7,9 @@ use crate::law::forms;
 use crate::law::model::Parameters;
 use crate::law::{Law, LawError};
 use crate::output::plots::Picture;
+use crate::output::plots::canvas::{Canvas, Drawn};
 use crate::output::plots::chart::{Axis, Chart, Line, Series, draw_chart};
-use crate::output::plots::style::{Area, Drawn, INK};
+use crate::output::plots::style::INK;
 
 /// Curves whose F_N falls by less than this share say nothing of f_N.
 const LEAST_FALL: f64 = 0.02;
@@ -21,7 +22,7 @@ pub fn tangential(samples: &[Sample], law: Option<&Law>) -> Result<Picture, LawE
     let share = |sample: &Sample, point: &Point| point.f_t / (sample.friction * sample.f_n_slip);
     let name = "F_T / (μ F_{N,slip})";
     let mut left = panel("Tangential force", name, samples, lines(&all, law, share, |x, _| x));
-    for (n, dash) in [(1.5, 12), (3.0, 7), (8.0, 3)] {
+    for (n, dash) in [(1.5, 12.0), (3.0, 7.0), (8.0, 3.0)] {
         let points = (0..=140).map(|i| 0.01 * f64::from(i)).map(|x| (x, forms::f_t(x, n))).collect();
         left.series.push(Series::dashed(format!("f_T, n = {n}"), INK, dash, points));
     }
@@ -61,10 +62,8 @@ pub fn normal(samples: &[Sample], law: Option<&Law>) -> Result<Option<Picture>, 
 const SINGLE: (u32, u32) = (720, 540);
 const DOUBLE: (u32, u32) = (1180, 540);
 
-fn pair(root: &Area<'_>, charts: [&Chart; 2]) -> Drawn {
-    let (left, right) = root.split_horizontally(DOUBLE.0 as i32 / 2);
-    draw_chart(&left, charts[0])?;
-    draw_chart(&right, charts[1])
+fn pair(root: &Canvas, charts: [&Chart; 2]) -> Drawn {
+    root.columns(2).iter().zip(charts).try_for_each(|(area, chart)| draw_chart(area, chart))
 }
 
 /// A line a sample: `across`(x, law's parameters) and `up`(sample, point), coloured by Lambda.
@@ -93,7 +92,7 @@ fn lines(
         let inside = sample.curve.iter().take_while(|point| x(point) <= 2.0 * END);
         let points = inside.map(|point| (across(x(point), &parameters), up(sample, point))).collect();
         let colour = bar.colour(sample.variables.lambda);
-        Series { line: Some(Line::Solid(1)), opacity: 0.75, ..Series::solid("", colour, points) }
+        Series { line: Some(Line::Solid(1.0)), opacity: 0.75, ..Series::solid("", colour, points) }
     };
     samples.iter().map(line).collect()
 }
@@ -111,6 +110,6 @@ fn panel(title: &str, y: &str, samples: &[Sample], series: Vec<Series>) -> Chart
 fn diagonal(y: &str, x: &str, samples: &[Sample], series: Vec<Series>) -> Chart {
     let mut chart = panel("Against the law", y, samples, series);
     chart.x = Axis::linear(x, 0.0, 1.0);
-    chart.series.push(Series::dashed("the law exactly", INK, 8, vec![(0.0, 0.0), (1.0, 1.0)]));
+    chart.series.push(Series::dashed("the law exactly", INK, 8.0, vec![(0.0, 0.0), (1.0, 1.0)]));
     chart
 }

@@ -43,7 +43,7 @@ pub fn cases(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
     let caption = "Marks: simulation; lines: the law, given the simulation's F_N0 and a0. Cases are ranked by their greatest error, in F_T as a share \
                    of its peak or in F_N as a share of F_N0.";
     Ok(Picture::draw("cases", caption, (480 * 3, 470), |root| {
-        for (area, chart) in root.split_evenly((1, 3)).iter().zip(&charts) {
+        for (area, chart) in root.columns(3).iter().zip(&charts) {
             draw_chart(area, chart)?;
         }
         Ok(())
@@ -115,10 +115,10 @@ pub fn errors(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
         let first = samples.first().map_or(0.3, |sample| sample.body.sphere.poissons_ratio);
         let mut borders: Vec<Series> = [yield_lambda(first), LAMBDA_BOUNDS[0], LAMBDA_BOUNDS[1]]
             .into_iter()
-            .map(|bound| Series::dashed("", GREY, 4, vec![(bound, 0.0), (bound, y.range.1)]))
+            .map(|bound| Series::dashed("", GREY, 4.0, vec![(bound, 0.0), (bound, y.range.1)]))
             .collect();
         borders.extend(series);
-        borders.push(Series::dashed("5 %", INK, 8, vec![(1e-9, 5.0), (1e9, 5.0)]));
+        borders.push(Series::dashed("5 %", INK, 8.0, vec![(1e-9, 5.0), (1e9, 5.0)]));
         let x = lambda_axis(samples.iter().map(|sample| sample.variables.lambda));
         Chart { title: title.into(), x, y, series: borders, bar: None }
     };
@@ -134,7 +134,7 @@ pub fn errors(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
          and 160."
     );
     Ok(Picture::draw("errors", caption, (1180, 480), |root| {
-        for (area, chart) in root.split_evenly((1, 2)).iter().zip(&charts) {
+        for (area, chart) in root.columns(2).iter().zip(&charts) {
             draw_chart(area, chart)?;
         }
         Ok(())

@@ -64,7 +64,7 @@ pub fn parameters(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
     let caption = "Marks: n and δ_T_slip of each case by least squares of its own F_T curve; the two go together, so that single curves leave \
                    them loosely determined. Lines: the law for a reference sphere. Both start from Cattaneo and Mindlin's 3/2 and 1.";
     Ok(Picture::draw("parameters", caption, (1180, 520), |root| {
-        for (area, chart) in root.split_evenly((1, 2)).iter().zip(&charts) {
+        for (area, chart) in root.columns(2).iter().zip(&charts) {
             draw_chart(area, chart)?;
         }
         Ok(())

@@ -5,8 +5,9 @@ use crate::law::Law;
 use crate::law::data::Sample;
 use crate::law::model::{Axisymmetric, Parameters};
 use crate::law::variables::{Body, Variables};
+use crate::output::plots::canvas::Colour;
 use crate::output::plots::chart::{Axis, ColourBar, Mark, Series};
-use crate::output::plots::style::{Colour, GROUPS, tick};
+use crate::output::plots::style::{GROUPS, tick};
 
 /// The label of Lambda's axis.
 pub const LAMBDA_AXIS: &str = "Λ = E a / [(1 − ν²) σ_rep R]";
@@ -114,7 +115,7 @@ impl Reference {
                 (variables.lambda, value(&law.contact(&inputs), &inputs))
             };
             let label = if i == 0 { self.label() } else { String::new() };
-            Series::dashed(label, look(i).0, 7, self.states.iter().map(at).collect())
+            Series::dashed(label, look(i).0, 7.0, self.states.iter().map(at).collect())
         };
         frictions.iter().enumerate().map(series).collect()
     }

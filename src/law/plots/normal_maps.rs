@@ -30,7 +30,7 @@ pub fn johnson(contacts: &[NormalContact], law: Option<&Law>) -> Result<Picture,
     let over = |curve: &dyn Fn(f64) -> f64| along(&x, curve);
     let mut series = vec![
         Series::solid("Hertz, 4Λ/(3π)", GREY, over(&johnson::elastic_hardness)),
-        Series::dashed("Olsson & Larsson 2016", INK, 9, over(&|lambda| normalized_hardness(lambda, 3.0))),
+        Series::dashed("Olsson & Larsson 2016", INK, 9.0, over(&|lambda| normalized_hardness(lambda, 3.0))),
     ];
     let nu = contacts.first().map_or(0.3, |contact| contact.poissons_ratio);
     series.extend(published(nu, |v| v.hardness));
@@ -50,9 +50,9 @@ pub fn area(contacts: &[NormalContact], law: Option<&Law>) -> Result<Picture, Ou
     let x = lambda_axis(contacts.iter().map(|contact| contact.variables.lambda));
     let mut series = vec![Series::solid("Hertz", GREY, vec![(x.range.0, 0.5), (x.range.1, 0.5)])];
     for (exponent, line, name) in [
-        (0.0, Line::Dashed(9), "Olsson & Larsson 2016, e = 0"),
-        (0.2, Line::Dashed(5), "e = 0.2"),
-        (0.4, Line::Dashed(2), "e = 0.4"),
+        (0.0, Line::Dashed(9.0), "Olsson & Larsson 2016, e = 0"),
+        (0.2, Line::Dashed(5.0), "e = 0.2"),
+        (0.4, Line::Dashed(2.0), "e = 0.4"),
     ] {
         let points = along(&x, &|lambda| c_squared(lambda, plastic_c_squared(exponent)));
         series.push(Series { line: Some(line), ..Series::solid(name, INK, points) });
@@ -106,8 +106,8 @@ fn published(nu: f64, value: impl Fn(&Variables) -> f64) -> Vec<Series> {
             .map(|(h, a)| at(h, a, jackson_green.force(h))),
     );
     vec![
-        Series::dashed("Kogut & Etsion 2002", TEAL, 5, kogut_etsion),
-        Series::dashed("Jackson & Green 2005, E/σ_Y = 1000", VIOLET, 3, jackson_green),
+        Series::dashed("Kogut & Etsion 2002", TEAL, 5.0, kogut_etsion),
+        Series::dashed("Jackson & Green 2005, E/σ_Y = 1000", VIOLET, 3.0, jackson_green),
     ]
 }
 

@@ -4,7 +4,6 @@ mod krylov;
 mod problem;
 mod products;
 mod solve;
-mod timing;
 
 pub(super) use super::{BlockMatrix, Hierarchy, LinalgError, LinearSolver, Pattern, SolverKind};
 pub(super) use crate::mesh::{Mesh, Prolongation};

@@ -92,8 +92,9 @@ fn fixed_unknowns_hold_exactly() {
 }
 
 #[test]
-fn iterations_do_not_grow_with_the_mesh() {
-    // Graded 1:10 in every direction; 648 to 46,875 unknowns. Measured 6/7/7, 7/9/12, 7/9/12 (to 1e-3).
+fn iterations_hardly_grow_with_the_mesh() {
+    // Graded 1:10 in every direction; 648 to 46,875 unknowns. Measured 6/7/7, 7/9/12, 7/9/12 (to 1e-3): by 5 where
+    // the unknowns are 70 times as many.
     for (name, make, bound) in
         [("elastic", Brick::elastic as fn(usize) -> Brick, 9), ("plastic", Brick::plastic, 14), ("slipping", Brick::slipping, 14)]
     {

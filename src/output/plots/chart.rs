@@ -1,9 +1,7 @@
 //! A diagram: axes (linear or logarithmic), grid, curves and marks cut at the frame, a legend in lines above it, a colour bar beside it.
 
-use super::style::{Area, Drawn, FAINT, FONT, INK, PALE, tick, viridis};
-use plotters::element::DashedPathElement;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::canvas::{Anchor, Canvas, Colour, Drawn, Ink, Paint, Place, Stroke, Writing};
+use super::style::{FAINT, INK, PALE, WHITE, tick, viridis};
 
 /// One axis of a [`Chart`].
 #[derive(Clone, Debug, PartialEq)]
@@ -88,12 +86,12 @@ pub(super) fn nice_step(least: f64) -> f64 {
 }
 
 /// How a curve is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Line {
     /// Of that many pixels.
-    Solid(u32),
+    Solid(f64),
     /// Dashes of that many pixels.
-    Dashed(i32),
+    Dashed(f64),
 }
 
 /// The shape of a mark, so that curves are told apart without colour.
@@ -118,36 +116,36 @@ pub struct Series {
     /// Its entry in the legend; none if empty.
     pub label: String,
     /// Its colour.
-    pub colour: RGBColor,
+    pub colour: Colour,
     /// 1 for opaque.
     pub opacity: f64,
     /// The line through the points.
     pub line: Option<Line>,
     /// The mark at each point, with its radius in pixels.
-    pub mark: Option<(Mark, i32)>,
+    pub mark: Option<(Mark, f64)>,
     /// The points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Series {
     /// A line of two pixels.
-    pub fn solid(label: impl Into<String>, colour: RGBColor, points: Vec<(f64, f64)>) -> Self {
-        Self { label: label.into(), colour, opacity: 1.0, line: Some(Line::Solid(2)), mark: None, points }
+    pub fn solid(label: impl Into<String>, colour: Colour, points: Vec<(f64, f64)>) -> Self {
+        Self { label: label.into(), colour, opacity: 1.0, line: Some(Line::Solid(2.0)), mark: None, points }
     }
 
     /// A line of dashes, `dash` pixels long.
-    pub fn dashed(label: impl Into<String>, colour: RGBColor, dash: i32, points: Vec<(f64, f64)>) -> Self {
+    pub fn dashed(label: impl Into<String>, colour: Colour, dash: f64, points: Vec<(f64, f64)>) -> Self {
         Self { line: Some(Line::Dashed(dash)), ..Self::solid(label, colour, points) }
     }
 
     /// Marks without a line.
-    pub fn marks(label: impl Into<String>, colour: RGBColor, mark: Mark, points: Vec<(f64, f64)>) -> Self {
-        Self { line: None, mark: Some((mark, 3)), ..Self::solid(label, colour, points) }
+    pub fn marks(label: impl Into<String>, colour: Colour, mark: Mark, points: Vec<(f64, f64)>) -> Self {
+        Self { line: None, mark: Some((mark, 3.0)), ..Self::solid(label, colour, points) }
     }
 
     /// With a mark at each point.
     pub fn marked(self, mark: Mark) -> Self {
-        Self { mark: Some((mark, 3)), ..self }
+        Self { mark: Some((mark, 3.0)), ..self }
     }
 }
 
@@ -163,7 +161,7 @@ const VIRIDIS_END: f64 = 0.88;
 
 impl ColourBar {
     /// The colour of a value; the ends' beyond them.
-    pub fn colour(&self, value: f64) -> RGBColor {
+    pub fn colour(&self, value: f64) -> Colour {
         let place = self.axis.place(value);
         viridis(VIRIDIS_END * if place.is_nan() { 0.0 } else { place.clamp(0.0, 1.0) })
     }
@@ -187,39 +185,31 @@ pub struct Chart {
 /// The frame of the diagram in pixels and the way there.
 struct Frame<'a> {
     chart: &'a Chart,
-    left: i32,
-    right: i32,
-    top: i32,
-    bottom: i32,
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
 }
 
 impl Frame<'_> {
     fn x(&self, value: f64) -> f64 {
-        f64::from(self.left) + self.chart.x.place(value) * f64::from(self.right - self.left)
+        self.left + self.chart.x.place(value) * (self.right - self.left)
     }
 
     fn y(&self, value: f64) -> f64 {
-        f64::from(self.bottom) - self.chart.y.place(value) * f64::from(self.bottom - self.top)
+        self.bottom - self.chart.y.place(value) * (self.bottom - self.top)
     }
 
     fn holds(&self, (x, y): (f64, f64)) -> bool {
         let slack = 0.5;
-        x >= f64::from(self.left) - slack
-            && x <= f64::from(self.right) + slack
-            && y >= f64::from(self.top) - slack
-            && y <= f64::from(self.bottom) + slack
+        x >= self.left - slack && x <= self.right + slack && y >= self.top - slack && y <= self.bottom + slack
     }
 
     /// The part of the segment inside of the frame (Liang & Barsky 1984).
     fn cut(&self, from: (f64, f64), to: (f64, f64)) -> Option<[(f64, f64); 2]> {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-        let sides = [
-            (-dx, from.0 - f64::from(self.left)),
-            (dx, f64::from(self.right) - from.0),
-            (-dy, from.1 - f64::from(self.top)),
-            (dy, f64::from(self.bottom) - from.1),
-        ];
+        let sides = [(-dx, from.0 - self.left), (dx, self.right - from.0), (-dy, from.1 - self.top), (dy, self.bottom - from.1)];
         for (step, room) in sides {
             if step == 0.0 {
                 if room < 0.0 {
@@ -236,8 +226,8 @@ impl Frame<'_> {
     }
 
     /// The pieces of a curve inside of the frame, in pixels.
-    fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<(i32, i32)>> {
-        let mut pieces: Vec<Vec<(i32, i32)>> = Vec::new();
+    fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
+        let mut pieces: Vec<Vec<Place>> = Vec::new();
         let mut open = false;
         for pair in points.windows(2) {
             let [from, to] = [pair[0], pair[1]].map(|(x, y)| (self.x(x), self.y(y)));
@@ -247,10 +237,10 @@ impl Frame<'_> {
                 continue;
             };
             if !open || enter != from {
-                pieces.push(vec![pixel(enter)]);
+                pieces.push(vec![enter]);
             }
-            if let Some(piece) = pieces.last_mut().filter(|piece| piece.last() != Some(&pixel(leave))) {
-                piece.push(pixel(leave));
+            if let Some(piece) = pieces.last_mut().filter(|piece| piece.last() != Some(&leave)) {
+                piece.push(leave);
             }
             open = leave == to;
         }
@@ -259,14 +249,10 @@ impl Frame<'_> {
     }
 }
 
-fn pixel((x, y): (f64, f64)) -> (i32, i32) {
-    (x.round() as i32, y.round() as i32)
-}
-
-/// Without points close to the one before: whole pixels would make a smooth curve of them jagged.
-fn thinned(piece: &[(i32, i32)]) -> Vec<(i32, i32)> {
-    const CLOSE: i32 = 10;
-    let mut kept: Vec<(i32, i32)> = Vec::new();
+/// Without points that no eye could tell from the one before; the last one stays.
+fn thinned(piece: &[Place]) -> Vec<Place> {
+    const CLOSE: f64 = 0.5;
+    let mut kept: Vec<Place> = Vec::new();
     for (i, point) in piece.iter().enumerate() {
         let near = kept.last().is_some_and(|last| (point.0 - last.0).abs().max((point.1 - last.1).abs()) < CLOSE);
         if !near || i + 1 == piece.len() {
@@ -277,133 +263,134 @@ fn thinned(piece: &[(i32, i32)]) -> Vec<(i32, i32)> {
 }
 
 /// Width of a text in pixels, roughly: enough to keep things apart.
-fn text_width(text: &str, size: i32) -> i32 {
+fn text_width(text: &str, size: f64) -> f64 {
     let shown = text.chars().filter(|c| !matches!(c, '_' | '^' | '{' | '}')).count();
-    (0.52 * f64::from(size) * shown as f64).ceil() as i32
+    (0.52 * size * shown as f64).ceil()
 }
 
-fn draw_line(root: &Area<'_>, line: Line, colour: RGBAColor, piece: Vec<(i32, i32)>) -> Drawn {
-    match line {
-        Line::Solid(width) => root.draw(&PathElement::new(piece, colour.stroke_width(width)))?,
-        Line::Dashed(dash) => root.draw(&DashedPathElement::new(piece, dash, dash.min(4), colour.stroke_width(2)))?,
-    }
-    Ok(())
+fn draw_line(root: &Canvas, line: Line, ink: Ink, piece: &[Place]) -> Drawn {
+    root.line(
+        piece,
+        match line {
+            Line::Solid(width) => Stroke::solid(ink, width),
+            Line::Dashed(dash) => Stroke { dashes: Some([dash, dash.min(4.0)]), ..Stroke::solid(ink, 2.0) },
+        },
+    )
 }
 
-fn draw_mark(root: &Area<'_>, (mark, r): (Mark, i32), colour: RGBAColor, (x, y): (i32, i32)) -> Drawn {
+fn draw_mark(root: &Canvas, (mark, r): (Mark, f64), ink: Ink, (x, y): Place) -> Drawn {
+    let fill = Paint::fill(ink);
     match mark {
-        Mark::Dot => root.draw(&Circle::new((x, y), r, colour.filled()))?,
+        Mark::Dot => root.circle((x, y), r, fill),
         Mark::Ring => {
-            root.draw(&Circle::new((x, y), r, WHITE.filled()))?;
-            root.draw(&Circle::new((x, y), r, colour.stroke_width(2)))?;
+            root.circle((x, y), r, Paint::fill(WHITE))?;
+            root.circle((x, y), r, Paint::outline(ink, 2.0))
         }
-        Mark::Square => root.draw(&Rectangle::new([(x - r, y - r), (x + r, y + r)], colour.filled()))?,
-        Mark::Triangle => root.draw(&Polygon::new([(x - r - 1, y + r), (x + r + 1, y + r), (x, y - r - 1)], colour.filled()))?,
-        Mark::Diamond => {
-            root.draw(&Polygon::new([(x - r - 1, y), (x, y + r + 1), (x + r + 1, y), (x, y - r - 1)], colour.filled()))?
-        }
+        Mark::Square => root.rectangle([(x - r, y - r), (x + r, y + r)], fill),
+        Mark::Triangle => root.polygon(&[(x - r - 1.0, y + r), (x + r + 1.0, y + r), (x, y - r - 1.0)], fill),
+        Mark::Diamond => root.polygon(&[(x - r - 1.0, y), (x, y + r + 1.0), (x + r + 1.0, y), (x, y - r - 1.0)], fill),
     }
-    Ok(())
 }
 
 /// Height of a line of the legend.
-const LEGEND_LINE: i32 = 20;
-const LEGEND_SIZE: i32 = 13;
-const SAMPLE: i32 = 26;
+const LEGEND_LINE: f64 = 20.0;
+const LEGEND_SIZE: f64 = 13.0;
+const SAMPLE: f64 = 26.0;
 
 /// Where each entry of the legend stands in lines of the given width: (series, x, line), and the number of lines.
-fn legend_places(series: &[Series], width: i32) -> (Vec<(&Series, i32, i32)>, i32) {
-    let (mut places, mut x, mut line) = (Vec::new(), 0, 0);
+fn legend_places(series: &[Series], width: f64) -> (Vec<(&Series, f64, usize)>, usize) {
+    let (mut places, mut x, mut line) = (Vec::new(), 0.0, 0);
     for entry in series.iter().filter(|entry| !entry.label.is_empty()) {
-        let needs = SAMPLE + 7 + text_width(&entry.label, LEGEND_SIZE);
-        if x > 0 && x + needs > width {
-            (x, line) = (0, line + 1);
+        let needs = SAMPLE + 7.0 + text_width(&entry.label, LEGEND_SIZE);
+        if x > 0.0 && x + needs > width {
+            (x, line) = (0.0, line + 1);
         }
         places.push((entry, x, line));
-        x += needs + 18;
+        x += needs + 18.0;
     }
     let lines = if places.is_empty() { 0 } else { line + 1 };
     (places, lines)
 }
 
-/// Draws the diagram over the whole area.
-pub fn draw_chart(root: &Area<'_>, chart: &Chart) -> Drawn {
-    let (width, height) = root.dim_in_pixel();
-    let (width, height) = (width as i32, height as i32);
-    let (left, right) = (78, width - if chart.bar.is_some() { 96 } else { 26 });
+/// Draws the diagram over the whole canvas.
+pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
+    let (left, right) = (78.0, root.width - if chart.bar.is_some() { 96.0 } else { 26.0 });
     let (legend, lines) = legend_places(&chart.series, right - left);
-    let frame = Frame { chart, left, right, top: 46 + LEGEND_LINE * lines, bottom: height - 58 };
-    let text = |size: i32| (FONT, size).into_font().color(&INK);
-    let at = |style: TextStyle<'static>, h, v| style.pos(Pos::new(h, v));
+    let frame = Frame { chart, left, right, top: 46.0 + LEGEND_LINE * lines as f64, bottom: root.height - 58.0 };
 
-    root.draw(&Text::new(chart.title.clone(), (left, 22), at(text(18), HPos::Left, VPos::Center)))?;
+    root.text(&chart.title, (left, 22.0), INK, Writing::new(18.0, Anchor::Start))?;
     for (entry, x, line) in legend {
-        let (x, y) = (left + x, 48 + LEGEND_LINE * line);
-        let colour = entry.colour.mix(entry.opacity.max(0.8));
+        let (x, y) = (left + x, 48.0 + LEGEND_LINE * line as f64);
+        let ink = entry.colour.mix(entry.opacity.max(0.8));
         if let Some(stroke) = entry.line {
-            draw_line(root, stroke, colour, vec![(x, y), (x + SAMPLE, y)])?;
+            draw_line(root, stroke, ink, &[(x, y), (x + SAMPLE, y)])?;
         }
         if let Some((mark, size)) = entry.mark {
-            draw_mark(root, (mark, size.max(3)), colour, (x + SAMPLE / 2, y))?;
+            draw_mark(root, (mark, size.max(3.0)), ink, (x + 0.5 * SAMPLE, y))?;
         }
-        root.draw(&Text::new(entry.label.clone(), (x + SAMPLE + 7, y), at(text(LEGEND_SIZE), HPos::Left, VPos::Center)))?;
+        root.text(&entry.label, (x + SAMPLE + 7.0, y), INK, Writing::new(LEGEND_SIZE, Anchor::Start))?;
     }
 
     for (value, label) in chart.x.ticks() {
-        let x = frame.x(value).round() as i32;
+        let x = frame.x(value);
         let shade = if label.is_some() { FAINT } else { PALE };
-        root.draw(&PathElement::new([(x, frame.top), (x, frame.bottom)], shade.stroke_width(1)))?;
+        root.line(&[(x, frame.top), (x, frame.bottom)], Stroke::solid(shade, 1.0))?;
         if let Some(label) = label {
-            root.draw(&PathElement::new([(x, frame.bottom), (x, frame.bottom + 5)], INK.stroke_width(1)))?;
-            root.draw(&Text::new(label, (x, frame.bottom + 15), at(text(13), HPos::Center, VPos::Center)))?;
+            root.line(&[(x, frame.bottom), (x, frame.bottom + 5.0)], Stroke::solid(INK, 1.0))?;
+            root.text(&label, (x, frame.bottom + 15.0), INK, Writing::new(13.0, Anchor::Middle))?;
         }
     }
     for (value, label) in chart.y.ticks() {
-        let y = frame.y(value).round() as i32;
-        root.draw(&PathElement::new([(frame.left, y), (frame.right, y)], FAINT.stroke_width(1)))?;
+        let y = frame.y(value);
+        root.line(&[(frame.left, y), (frame.right, y)], Stroke::solid(FAINT, 1.0))?;
         if let Some(label) = label {
-            root.draw(&PathElement::new([(frame.left - 5, y), (frame.left, y)], INK.stroke_width(1)))?;
-            root.draw(&Text::new(label, (frame.left - 9, y), at(text(13), HPos::Right, VPos::Center)))?;
+            root.line(&[(frame.left - 5.0, y), (frame.left, y)], Stroke::solid(INK, 1.0))?;
+            root.text(&label, (frame.left - 9.0, y), INK, Writing::new(13.0, Anchor::End))?;
         }
     }
     for series in &chart.series {
-        let colour = series.colour.mix(series.opacity);
+        let ink = series.colour.mix(series.opacity);
         let finite: Vec<(f64, f64)> = series.points.iter().copied().filter(|p| p.0.is_finite() && p.1.is_finite()).collect();
         if let Some(line) = series.line {
             for piece in frame.pieces(&finite) {
-                draw_line(root, line, colour, piece)?;
+                draw_line(root, line, ink, &piece)?;
             }
         }
         if let Some(mark) = series.mark {
             for at in finite.iter().map(|&(x, y)| (frame.x(x), frame.y(y))).filter(|&at| frame.holds(at)) {
-                draw_mark(root, mark, colour, pixel(at))?;
+                draw_mark(root, mark, ink, at)?;
             }
         }
     }
-    root.draw(&Rectangle::new([(frame.left, frame.top), (frame.right, frame.bottom)], INK.stroke_width(1)))?;
+    root.rectangle([(frame.left, frame.top), (frame.right, frame.bottom)], Paint::outline(INK, 1.0))?;
 
-    let middle = ((frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2);
-    root.draw(&Text::new(chart.x.label.clone(), (middle.0, height - 20), at(text(15), HPos::Center, VPos::Center)))?;
-    let upwards = (FONT, 15).into_font().transform(FontTransform::Rotate270).color(&INK);
-    root.draw(&Text::new(chart.y.label.clone(), (16, middle.1), at(upwards, HPos::Center, VPos::Center)))?;
-    if let Some(bar) = &chart.bar {
-        draw_bar(root, bar, frame.right + 20, frame.top + 24, frame.bottom)?;
+    let middle = (0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
+    let name = Writing::new(15.0, Anchor::Middle);
+    root.text(&chart.x.label, (middle.0, root.height - 20.0), INK, name)?;
+    root.text(&chart.y.label, (16.0, middle.1), INK, Writing { upwards: true, ..name })?;
+    match &chart.bar {
+        Some(bar) => draw_bar(root, bar, frame.right + 20.0, [frame.top + 24.0, frame.bottom]),
+        None => Ok(()),
+    }
+}
+
+fn draw_bar(root: &Canvas, bar: &ColourBar, left: f64, [top, bottom]: [f64; 2]) -> Drawn {
+    root.text(&bar.axis.label, (left, top - 16.0), INK, Writing::new(14.0, Anchor::Start))?;
+    ramp(root, left, 16.0, [top, bottom], |share| viridis(VIRIDIS_END * share))?;
+    for (value, label) in bar.axis.ticks().into_iter().filter_map(|(value, label)| Some((value, label?))) {
+        let y = bottom - bar.axis.place(value) * (bottom - top);
+        root.line(&[(left + 16.0, y), (left + 21.0, y)], Stroke::solid(INK, 1.0))?;
+        root.text(&label, (left + 25.0, y), INK, Writing::new(13.0, Anchor::Start))?;
     }
     Ok(())
 }
 
-fn draw_bar(root: &Area<'_>, bar: &ColourBar, left: i32, top: i32, bottom: i32) -> Drawn {
-    let label = (FONT, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-    root.draw(&Text::new(bar.axis.label.clone(), (left, top - 16), label))?;
-    for y in top..bottom {
-        let share = f64::from(bottom - y) / f64::from(bottom - top);
-        root.draw(&Rectangle::new([(left, y), (left + 16, y + 1)], viridis(VIRIDIS_END * share).filled()))?;
-    }
-    for (value, label) in bar.axis.ticks().into_iter().filter_map(|(value, label)| Some((value, label?))) {
-        let y = bottom - (bar.axis.place(value) * f64::from(bottom - top)).round() as i32;
-        root.draw(&PathElement::new([(left + 16, y), (left + 21, y)], INK.stroke_width(1)))?;
-        let style = (FONT, 13).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-        root.draw(&Text::new(label, (left + 25, y), style))?;
+/// The colours of a bar, from 0 at its foot to 1 at its head, a line a pixel.
+pub(super) fn ramp(root: &Canvas, left: f64, width: f64, [top, bottom]: [f64; 2], colour: impl Fn(f64) -> Colour) -> Drawn {
+    for line in 0..(bottom - top).floor() as u32 {
+        let y = top + f64::from(line);
+        let fill = Paint::fill(colour((bottom - y) / (bottom - top)));
+        root.rectangle([(left, y), (left + width, y + 1.0)], fill)?;
     }
     Ok(())
 }
@@ -430,24 +417,47 @@ mod tests {
     fn curves_end_at_the_frame() {
         let (x, y) = (Axis::linear("", 0.0, 1.0), Axis::linear("", 0.0, 1.0));
         let chart = Chart { title: String::new(), x, y, series: Vec::new(), bar: None };
-        let frame = Frame { chart: &chart, left: 0, right: 100, top: 0, bottom: 100 };
+        let frame = Frame { chart: &chart, left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
         // In, out at the top, and in again.
         let pieces = frame.pieces(&[(0.0, 0.0), (0.5, 1.0), (0.6, 2.0), (0.9, 2.0), (1.0, 0.0)]);
-        assert_eq!(pieces, [vec![(0, 100), (50, 0)], vec![(95, 0), (100, 100)]]);
+        assert_eq!(pieces, [vec![(0.0, 100.0), (50.0, 0.0)], vec![(95.0, 0.0), (100.0, 100.0)]]);
         assert!(frame.pieces(&[(-1.0, 0.5), (-0.5, 0.7)]).is_empty());
         // A logarithm of zero is left out.
         let chart = Chart { x: Axis::logarithmic("", 1.0, 10.0), ..chart.clone() };
-        let frame = Frame { chart: &chart, left: 0, right: 100, top: 0, bottom: 100 };
-        assert_eq!(frame.pieces(&[(0.0, 0.5), (1.0, 0.5), (10.0, 0.5)]), [vec![(0, 50), (100, 50)]]);
+        let frame = Frame { chart: &chart, left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
+        assert_eq!(frame.pieces(&[(0.0, 0.5), (1.0, 0.5), (10.0, 0.5)]), [vec![(0.0, 50.0), (100.0, 50.0)]]);
+    }
+
+    /// A curve is no more broken than its data: on whole pixels it would turn by up to 20 degrees from point to point here.
+    #[test]
+    fn a_smooth_curve_is_drawn_smoothly() {
+        let (x, y) = (Axis::linear("", 0.0, 1.0), Axis::linear("", 0.0, 1.0));
+        let curve = (0..=200).map(|i| 0.005 * f64::from(i)).map(|x| (x, 0.2 + 0.3 * x * x)).collect();
+        let chart = Chart { title: String::new(), x, y, series: vec![Series::solid("", INK, curve)], bar: None };
+        let canvas = Canvas::new((700, 400));
+        draw_chart(&canvas, &chart).unwrap();
+        let svg = canvas.finish();
+        let drawn = svg.lines().find(|line| line.contains("stroke-width=\"2\"")).unwrap();
+        let places = drawn.split("points=\"").nth(1).unwrap().split('"').next().unwrap();
+        let places: Vec<[f64; 2]> = places
+            .split(' ')
+            .map(|place| place.split_once(',').unwrap())
+            .map(|(x, y)| [x.parse().unwrap(), y.parse().unwrap()])
+            .collect();
+        assert_eq!(places.len(), 201);
+        let slopes: Vec<f64> =
+            places.windows(2).map(|pair| ((pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).atan()).collect();
+        let turns = slopes.windows(2).map(|pair| (pair[1] - pair[0]).abs().to_degrees());
+        assert!(turns.fold(0.0, f64::max) < 0.5, "{slopes:?}");
     }
 
     #[test]
     fn entries_of_the_legend_do_not_overlap() {
         let entry = |label: &str| Series::solid(label, INK, Vec::new());
         let series = [entry("F_{N,slip} of the simulation"), entry(""), entry("Olsson & Larsson 2016"), entry("Hertz")];
-        let (places, lines) = legend_places(&series, 300);
+        let (places, lines) = legend_places(&series, 300.0);
         assert_eq!((places.len(), lines), (3, 2));
-        assert_eq!((places[1].1, places[1].2), (0, 1));
+        assert_eq!((places[1].1, places[1].2), (0.0, 1));
         assert!(places[2].1 > SAMPLE + text_width("Olsson & Larsson 2016", LEGEND_SIZE));
     }
 

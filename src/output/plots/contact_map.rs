@@ -1,28 +1,27 @@
-//! The contact surface seen along its normal: status above the symmetry line, pressure mirrored below it.
+//! The contact surface seen along its normal: status above the symmetry line, pressure below it.
 
-use super::super::{ContactPoint, ContactStatus, OutputError};
-use super::chart::nice_step;
-use super::style::{Area, BLUE, Drawn, FONT, INK, ORANGE, Picture, rounded, tick, viridis};
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use super::super::{ContactPoint, ContactStatus, Half, OutputError};
+use super::canvas::{Anchor, Canvas, Colour, Drawn, Paint, Place, Stroke, Writing};
+use super::chart::{nice_step, ramp};
+use super::style::{BLUE, INK, ORANGE, Picture, WHITE, rounded, tick, viridis};
 use serde::{Deserialize, Serialize};
 
-const OPEN: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
+const OPEN: Colour = Colour(0xdd, 0xdd, 0xdd);
 
 /// The map of one step at current positions: open, stick and slip in the upper half, the pressure in the lower one. The shear runs to the right.
 pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
-    let caption = "The contact surface at the last saved step in contact, at current positions; the shear runs to the right.";
+    let caption = "The contact surface at the last saved step in contact, at current positions, with the numbers of its points on both halves; the shear runs to the \
+                   right.";
     Picture::draw("contact", caption, (780, 640), |root| {
-        let map = Map { view: View::of(points), highest: highest(points), square: Square { left: 88, top: 52, side: 520 } };
+        let map = Map { view: View::of(points), highest: highest(points), square: Square { left: 88.0, top: 52.0, side: 520.0 } };
         map.draw(root, points)?;
-        let middle = map.square.top + map.square.side / 2;
-        root.draw(&Text::new("Contact surface", (map.square.left, 26), text(18, HPos::Left)))?;
+        let Square { left, top, side } = map.square;
+        root.text("Contact surface", (left, 26.0), INK, text(18.0))?;
         map.axes(root, true)?;
-        root.draw(&Text::new("status", (map.square.left + 10, map.square.top + 16), text(14, HPos::Left)))?;
-        let below = map.square.top + map.square.side - 16;
-        root.draw(&Text::new("pressure (mirrored)", (map.square.left + 10, below), text(14, HPos::Left)))?;
-        status_names(root, points, 640, map.square.top + 14, true)?;
-        pressure_bar(root, map.highest, 640, middle + 8, map.square.top + map.square.side)
+        root.text("status", (left + 10.0, top + 16.0), INK, text(14.0))?;
+        root.text("pressure", (left + 10.0, top + side - 16.0), INK, text(14.0))?;
+        status_names(root, points, (640.0, top + 14.0), true)?;
+        pressure_bar(root, map.highest, 640.0, [top + 0.5 * side + 8.0, top + side])
     })
 }
 
@@ -39,39 +38,36 @@ pub struct SlipPanel {
 
 /// Maps of some steps of a shear side by side, all to one scale: how slip eats into the contact from its edge.
 pub fn plot_slip(panels: &[SlipPanel]) -> Result<Picture, OutputError> {
-    const PANEL: (i32, i32) = (300, 322);
-    const HEAD: i32 = 48;
-    let columns = match panels.len() as i32 {
+    const PANEL: (f64, f64) = (300.0, 322.0);
+    const HEAD: f64 = 48.0;
+    let columns = match panels.len() {
         4 => 2,
         count => count.clamp(1, 3),
     };
-    let rows = (panels.len() as i32 + columns - 1) / columns;
-    let size = ((columns * PANEL.0 + 196) as u32, (HEAD + rows.max(1) * PANEL.1 + 8) as u32);
-    let caption = "Stick and slip (upper halves) and pressure (lower halves, mirrored) at saved steps of the shear, to one scale; \
+    let rows = panels.len().div_ceil(columns);
+    let left = columns as f64 * PANEL.0;
+    let size = (left as u32 + 196, (HEAD + rows.max(1) as f64 * PANEL.1) as u32 + 8);
+    let caption = "Stick and slip (upper halves) and pressure (lower halves) at saved steps of the shear, to one scale; \
                    the shear runs to the right.";
     Picture::draw("slip", caption, size, |root| {
         let all: Vec<ContactPoint> = panels.iter().flat_map(|panel| panel.points.iter().cloned()).collect();
         let (view, highest) = (View::of(&all), highest(&all));
-        root.draw(&Text::new("Stick and slip during the shear", (24, 26), text(18, HPos::Left)))?;
+        root.text("Stick and slip during the shear", (24.0, 26.0), INK, text(18.0))?;
         for (i, panel) in panels.iter().enumerate() {
-            let (column, row) = (i as i32 % columns, i as i32 / columns);
-            let (left, top) = (column * PANEL.0 + 62, HEAD + row * PANEL.1 + 26);
-            let map = Map { view, highest, square: Square { left, top, side: 228 } };
-            // Covers what sticks out of the square, in its own panel alone.
-            let (x, y) = (column * PANEL.0, HEAD + row * PANEL.1);
-            let area = root.clone().shrink((x as u32, y as u32), (PANEL.0 as u32, PANEL.1 as u32));
-            let inside = Map { square: Square { left: left - x, top: top - y, ..map.square }, ..map };
-            inside.draw(&area, &panel.points)?;
+            // What sticks out of its square is covered in its own panel alone.
+            let corner = ((i % columns) as f64 * PANEL.0, HEAD + (i / columns) as f64 * PANEL.1);
+            let area = root.panel(corner, PANEL);
+            let map = Map { view, highest, square: Square { left: 62.0, top: 26.0, side: 228.0 } };
+            map.draw(&area, &panel.points)?;
             let ratio = panel.ratio.map_or(String::new(), |ratio| format!(", F_T/F_N = {ratio:.3}"));
             let head = format!("δ_T = {}{ratio}", tick(rounded(panel.delta_t)));
-            root.draw(&Text::new(head, (left, top - 13), text(14, HPos::Left)))?;
+            area.text(&head, (map.square.left, map.square.top - 13.0), INK, text(14.0))?;
             // Named where no other panel stands below.
-            map.axes(root, i as i32 + columns >= panels.len() as i32)?;
+            map.axes(&area, i + columns >= panels.len())?;
         }
-        let left = columns * PANEL.0 + 20;
         let first = panels.last().map(|panel| panel.points.as_slice()).unwrap_or_default();
-        status_names(root, first, left, HEAD + 40, false)?;
-        pressure_bar(root, highest, left, HEAD + 130, HEAD + PANEL.1 - 68)
+        status_names(root, first, (left + 20.0, HEAD + 40.0), false)?;
+        pressure_bar(root, highest, left + 20.0, [HEAD + 130.0, HEAD + PANEL.1 - 68.0])
     })
 }
 
@@ -104,9 +100,9 @@ impl View {
 /// Where a map is drawn, in pixels.
 #[derive(Clone, Copy)]
 struct Square {
-    left: i32,
-    top: i32,
-    side: i32,
+    left: f64,
+    top: f64,
+    side: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -119,18 +115,16 @@ struct Map {
 
 impl Map {
     fn scale(&self) -> f64 {
-        0.5 * f64::from(self.square.side) / self.view.reach
+        0.5 * self.square.side / self.view.reach
     }
 
-    fn pixel(&self, x: f64, y: f64) -> (i32, i32) {
-        let half = 0.5 * f64::from(self.square.side);
-        let (middle_x, middle_y) = (f64::from(self.square.left) + half, f64::from(self.square.top) + half);
-        let (x, y) = (middle_x + (x - self.view.centre) * self.scale(), middle_y - y * self.scale());
-        (x.round() as i32, y.round() as i32)
+    fn pixel(&self, x: f64, y: f64) -> Place {
+        let half = 0.5 * self.square.side;
+        (self.square.left + half + (x - self.view.centre) * self.scale(), self.square.top + half - y * self.scale())
     }
 
     /// The points, and white over all of the area that is outside of the square.
-    fn draw(&self, area: &Area<'_>, points: &[ContactPoint]) -> Drawn {
+    fn draw(&self, area: &Canvas, points: &[ContactPoint]) -> Drawn {
         let middle = self.pixel(0.0, 0.0).1;
         let reach = self.view.reach;
         // The open ones first, so that they hide nothing of the contact.
@@ -139,66 +133,66 @@ impl Map {
             if !((point.current_x - self.view.centre).abs() <= reach && point.current_y.abs() <= reach) {
                 continue;
             }
-            // Discs that just overlap; the nodes on the symmetry line stand for half a cell.
-            let radius = (0.6 * point.area.max(0.0).sqrt() * self.scale()).clamp(1.5, 14.0) as i32;
+            // Discs that just overlap; each half shows half of a point on the symmetry line.
+            let area_shown = if point.half == Half::Both { 0.5 * point.area } else { point.area };
+            let radius = (0.6 * area_shown.max(0.0).sqrt() * self.scale()).clamp(1.5, 14.0);
             let pressure = match point.status {
                 ContactStatus::Open => OPEN,
                 _ if self.highest > 0.0 => viridis(point.pressure / self.highest),
                 _ => viridis(0.0),
             };
-            let (x, upper) = self.pixel(point.current_x, point.current_y);
-            let lower = self.pixel(point.current_x, -point.current_y).1;
-            area.draw(&Circle::new((x, upper.min(middle - radius)), radius, status_colour(point.status).filled()))?;
-            area.draw(&Circle::new((x, lower.max(middle + radius)), radius, pressure.filled()))?;
+            let (x, y) = self.pixel(point.current_x, point.current_y);
+            if point.half != Half::Mirrored {
+                area.circle((x, y.min(middle - radius)), radius, Paint::fill(status_colour(point.status)))?;
+            }
+            if point.half != Half::Meshed {
+                area.circle((x, y.max(middle + radius)), radius, Paint::fill(pressure))?;
+            }
         }
         let Square { left, top, side } = self.square;
-        let (width, height) = area.dim_in_pixel();
-        let (width, height) = (width as i32, height as i32);
         for cover in [
-            [(0, 0), (width, top)],
-            [(0, top + side), (width, height)],
-            [(0, top), (left, top + side)],
-            [(left + side, top), (width, top + side)],
+            [(0.0, 0.0), (area.width, top)],
+            [(0.0, top + side), (area.width, area.height)],
+            [(0.0, top), (left, top + side)],
+            [(left + side, top), (area.width, top + side)],
         ] {
-            area.draw(&Rectangle::new(cover, WHITE.filled()))?;
+            area.rectangle(cover, Paint::fill(WHITE))?;
         }
-        area.draw(&PathElement::new([(left, middle), (left + side, middle)], INK.stroke_width(1)))?;
-        area.draw(&Rectangle::new([(left, top), (left + side, top + side)], INK.stroke_width(1)))?;
-        Ok(())
+        area.line(&[(left, middle), (left + side, middle)], Stroke::solid(INK, 1.0))?;
+        area.rectangle([(left, top), (left + side, top + side)], Paint::outline(INK, 1.0))
     }
 
     /// Ticks and their numbers, with the names of the axes; the horizontal name only where it is wanted.
-    fn axes(&self, root: &Area<'_>, named: bool) -> Drawn {
+    fn axes(&self, root: &Canvas, named: bool) -> Drawn {
         let Square { left, top, side } = self.square;
         let (centre, reach) = (self.view.centre, self.view.reach);
         let step = nice_step(2.0 * reach / 5.0);
         for i in ((centre - reach) / step).ceil() as i64..=((centre + reach) / step).floor() as i64 {
             let x = self.pixel(i as f64 * step, 0.0).0;
-            root.draw(&PathElement::new([(x, top + side), (x, top + side + 5)], INK.stroke_width(1)))?;
-            root.draw(&Text::new(tick(i as f64 * step), (x, top + side + 15), text(13, HPos::Center)))?;
+            root.line(&[(x, top + side), (x, top + side + 5.0)], Stroke::solid(INK, 1.0))?;
+            root.text(&tick(i as f64 * step), (x, top + side + 15.0), INK, Writing::new(13.0, Anchor::Middle))?;
         }
         let count = (reach / step).floor() as i64;
         for i in -count..=count {
             let y = self.pixel(0.0, i as f64 * step).1;
-            root.draw(&PathElement::new([(left - 5, y), (left, y)], INK.stroke_width(1)))?;
-            root.draw(&Text::new(tick(i as f64 * step), (left - 9, y), text(13, HPos::Right)))?;
+            root.line(&[(left - 5.0, y), (left, y)], Stroke::solid(INK, 1.0))?;
+            root.text(&tick(i as f64 * step), (left - 9.0, y), INK, Writing::new(13.0, Anchor::End))?;
         }
+        let name = Writing::new(15.0, Anchor::Middle);
         if named {
-            let name = if side > 400 { "x, along the shear (case's unit of length)" } else { "x, along the shear" };
-            root.draw(&Text::new(name, (left + side / 2, top + side + 38), text(15, HPos::Center)))?;
+            let along = if side > 400.0 { "x, along the shear (case's unit of length)" } else { "x, along the shear" };
+            root.text(along, (left + 0.5 * side, top + side + 38.0), INK, name)?;
         }
-        let upwards = (FONT, 15).into_font().transform(FontTransform::Rotate270).color(&INK);
-        let upwards = upwards.pos(Pos::new(HPos::Center, VPos::Center));
-        root.draw(&Text::new("y", (left - if side > 400 { 68 } else { 52 }, top + side / 2), upwards))?;
-        Ok(())
+        let place = (left - if side > 400.0 { 68.0 } else { 52.0 }, top + 0.5 * side);
+        root.text("y", place, INK, Writing { upwards: true, ..name })
     }
 }
 
-fn text(size: i32, place: HPos) -> TextStyle<'static> {
-    (FONT, size).into_font().color(&INK).pos(Pos::new(place, VPos::Center))
+fn text(size: f64) -> Writing {
+    Writing::new(size, Anchor::Start)
 }
 
-fn status_colour(status: ContactStatus) -> RGBColor {
+fn status_colour(status: ContactStatus) -> Colour {
     match status {
         ContactStatus::Open => OPEN,
         ContactStatus::Stick => BLUE,
@@ -207,33 +201,31 @@ fn status_colour(status: ContactStatus) -> RGBColor {
 }
 
 /// The colours of the status, with the number of points of each if `counted`.
-fn status_names(root: &Area<'_>, points: &[ContactPoint], left: i32, top: i32, counted: bool) -> Drawn {
+fn status_names(root: &Canvas, points: &[ContactPoint], (left, top): Place, counted: bool) -> Drawn {
     let names = [(ContactStatus::Stick, "stick"), (ContactStatus::Slip, "slip"), (ContactStatus::Open, "open")];
-    for ((status, name), y) in names.into_iter().zip((top..).step_by(24)) {
+    for (i, (status, name)) in names.into_iter().enumerate() {
+        let y = top + 24.0 * i as f64;
         let count = points.iter().filter(|point| point.status == status).count();
-        root.draw(&Circle::new((left + 8, y), 7, status_colour(status).filled()))?;
+        root.circle((left + 8.0, y), 7.0, Paint::fill(status_colour(status)))?;
         let label = if counted { format!("{name} ({count})") } else { name.to_owned() };
-        root.draw(&Text::new(label, (left + 24, y), text(14, HPos::Left)))?;
+        root.text(&label, (left + 24.0, y), INK, text(14.0))?;
     }
     Ok(())
 }
 
-fn pressure_bar(root: &Area<'_>, highest: f64, left: i32, top: i32, bottom: i32) -> Drawn {
+fn pressure_bar(root: &Canvas, highest: f64, left: f64, [top, bottom]: [f64; 2]) -> Drawn {
     if highest <= 0.0 {
         return Ok(());
     }
-    root.draw(&Text::new("pressure (case's", (left, top), text(14, HPos::Left)))?;
-    root.draw(&Text::new("unit of stress)", (left, top + 17), text(14, HPos::Left)))?;
-    let top = top + 36;
-    for y in top..bottom {
-        let share = f64::from(bottom - y) / f64::from(bottom - top);
-        root.draw(&Rectangle::new([(left, y), (left + 20, y + 1)], viridis(share).filled()))?;
-    }
+    root.text("pressure (case's", (left, top), INK, text(14.0))?;
+    root.text("unit of stress)", (left, top + 17.0), INK, text(14.0))?;
+    let top = top + 36.0;
+    ramp(root, left, 20.0, [top, bottom], viridis)?;
     for i in 0..=4 {
-        let y = bottom - (bottom - top) * i / 4;
-        let value = rounded(highest * f64::from(i) / 4.0);
-        root.draw(&PathElement::new([(left + 20, y), (left + 25, y)], INK.stroke_width(1)))?;
-        root.draw(&Text::new(tick(value), (left + 29, y), text(13, HPos::Left)))?;
+        let share = f64::from(i) / 4.0;
+        let y = bottom - (bottom - top) * share;
+        root.line(&[(left + 20.0, y), (left + 25.0, y)], Stroke::solid(INK, 1.0))?;
+        root.text(&tick(rounded(highest * share)), (left + 29.0, y), INK, text(13.0))?;
     }
     Ok(())
 }

@@ -67,7 +67,7 @@ pub fn plot_ratio(history: &[StepRecord], friction: Option<f64>) -> Result<Pictu
         let reached = points.iter().any(|point| point.1 * sign > 0.0);
         if let Some(mu) = friction.filter(|_| reached) {
             let label = if sign > 0.0 { format!("μ = {}", tick(mu)) } else { format!("−μ = −{}", tick(mu)) };
-            series.push(Series::dashed(label, INK, 6, vec![(low, sign * mu), (high, sign * mu)]));
+            series.push(Series::dashed(label, INK, 6.0, vec![(low, sign * mu), (high, sign * mu)]));
         }
     }
     series.insert(0, Series::solid("F_T / F_N", BLUE, points).marked(Mark::Dot));
@@ -85,7 +85,7 @@ pub fn plot_stick(history: &[StepRecord], friction: Option<f64>) -> Result<Pictu
     if let Some(mu) = friction.filter(|&mu| mu > 0.0) {
         let share = |record: &StepRecord| (1.0 - record.f_t.abs() / (mu * record.f_n)).max(0.0).cbrt();
         let points = loaded().map(|record| (record.delta_t, share(record))).collect();
-        series.push(Series::dashed("∛(1 − F_T/μF_N), Cattaneo & Mindlin", GREY, 5, points));
+        series.push(Series::dashed("∛(1 − F_T/μF_N), Cattaneo & Mindlin", GREY, 5.0, points));
     }
     let chart = over_shear("Stick radius", "stick radius / contact radius", series);
     let caption = "Radius of a disc with the area of the sticking points over the contact radius. Cattaneo and Mindlin's curve, of an \
@@ -107,13 +107,13 @@ pub fn plot_indentation(history: &[StepRecord], inputs: &PlotInputs) -> Result<P
     let mut series = vec![Series::solid("simulation", BLUE, points).marked(Mark::Dot)];
     if let Some(hardening) = inputs.hardening {
         let model = OlssonLarsson { sphere: inputs.sphere, hardening };
-        series.push(Series::dashed("Olsson & Larsson 2016", GREEN, 9, sample(&|h| model.force(h))));
+        series.push(Series::dashed("Olsson & Larsson 2016", GREEN, 9.0, sample(&|h| model.force(h))));
     }
     let values: Vec<f64> = series.iter().flat_map(|curve| &curve.points).map(|point| point.1).collect();
     let hertz = sample(&|h| hertz::force(&inputs.sphere, h));
     let top = (1.5 * values.iter().copied().fold(0.0, f64::max)).min(hertz.iter().map(|point| point.1).fold(0.0, f64::max));
     let y = from_zero("normal force F_N (case's unit of force)", values.into_iter().chain([top]));
-    series.push(Series::dashed("Hertz", GREY, 3, hertz));
+    series.push(Series::dashed("Hertz", GREY, 3.0, hertz));
     let x = Axis::linear("indentation h (case's unit of length)", 0.0, deepest);
     let chart = Chart { title: "Pressing".into(), x, y, series, bar: None };
     Picture::draw("indentation", "Normal force up to the first shear, with closed forms beside it.", SIZE, |root| {
@@ -130,7 +130,7 @@ pub fn plot_law(history: &[StepRecord], laws: &[(String, Vec<[f64; 3]>)]) -> Res
         Series::marks("F_T, simulation", VERMILION, Mark::Ring, computed(|record| record.f_t)),
     ];
     // Told apart by their dashes.
-    let dashes = [Line::Solid(2), Line::Dashed(8), Line::Dashed(3)];
+    let dashes = [Line::Solid(2.0), Line::Dashed(8.0), Line::Dashed(3.0)];
     for ((name, points), line) in laws.iter().zip(dashes.into_iter().cycle()) {
         for (force, colour, column) in [("F_N", BLUE, 2), ("F_T", VERMILION, 1)] {
             let points = points.iter().map(|point| (point[0], point[column])).collect();

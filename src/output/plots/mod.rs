@@ -1,8 +1,9 @@
 //! `plots/*.svg`: what a run looks like, on a white card with dark text and colours that hold in print and for colour-blind readers.
 //!
-//! `style` is the card, the colours and the writing of numbers; `chart` draws any diagram; the others are the pictures of a run. A picture is drawn
+//! `canvas` writes SVG; `style` is the card, the colours and the writing of numbers; `chart` draws any diagram; the others are the pictures of a run. A picture is drawn
 //! into a [`Picture`] first and then written.
 
+pub mod canvas;
 pub mod chart;
 pub mod style;
 

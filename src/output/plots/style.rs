@@ -1,46 +1,35 @@
 //! Colours, the card and the writing of numbers, common to all plots.
 
 use super::super::{OutputError, write_atomically};
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use super::canvas::{Canvas, Colour, Drawn, Paint};
 use std::path::Path;
 
-/// A colour.
-pub type Colour = RGBColor;
-
+/// The card.
+pub const WHITE: Colour = Colour(0xff, 0xff, 0xff);
 /// Text and axes.
-pub const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
+pub const INK: Colour = Colour(0x22, 0x22, 0x22);
 /// Grid lines between those with a number.
-pub const PALE: RGBColor = RGBColor(0xf0, 0xf0, 0xf0);
+pub const PALE: Colour = Colour(0xf0, 0xf0, 0xf0);
 /// Grid lines, frames.
-pub const FAINT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
+pub const FAINT: Colour = Colour(0xdd, 0xdd, 0xdd);
 /// Okabe & Ito's colours, distinguishable with every kind of colour vision and in grey.
-pub const BLUE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+pub const BLUE: Colour = Colour(0x00, 0x72, 0xb2);
 /// Vermilion of the same.
-pub const VERMILION: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+pub const VERMILION: Colour = Colour(0xd5, 0x5e, 0x00);
 /// Orange of the same.
-pub const ORANGE: RGBColor = RGBColor(0xe6, 0x9f, 0x00);
+pub const ORANGE: Colour = Colour(0xe6, 0x9f, 0x00);
 /// Bluish green of the same.
-pub const GREEN: RGBColor = RGBColor(0x00, 0x9e, 0x73);
+pub const GREEN: Colour = Colour(0x00, 0x9e, 0x73);
 /// Reddish purple of the same.
-pub const PURPLE: RGBColor = RGBColor(0xcc, 0x79, 0xa7);
+pub const PURPLE: Colour = Colour(0xcc, 0x79, 0xa7);
 /// For published curves.
-pub const TEAL: RGBColor = RGBColor(0x1b, 0x7f, 0x8c);
+pub const TEAL: Colour = Colour(0x1b, 0x7f, 0x8c);
 /// For published curves.
-pub const VIOLET: RGBColor = RGBColor(0x8a, 0x4f, 0xa3);
+pub const VIOLET: Colour = Colour(0x8a, 0x4f, 0xa3);
 /// For curves that are there for comparison.
-pub const GREY: RGBColor = RGBColor(0x80, 0x80, 0x80);
+pub const GREY: Colour = Colour(0x80, 0x80, 0x80);
 /// Colours of groups, in the order in which groups get them.
-pub const GROUPS: [RGBColor; 6] = [BLUE, VERMILION, GREEN, ORANGE, PURPLE, INK];
-
-/// The reader's own font: nothing has to be loaded.
-pub const FONT: &str = "sans-serif";
-
-/// Where a picture, or one of its panels, is drawn.
-pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// What a drawing function may return.
-pub type Drawn = Result<(), Box<dyn std::error::Error>>;
+pub const GROUPS: [Colour; 6] = [BLUE, VERMILION, GREEN, ORANGE, PURPLE, INK];
 
 /// A picture that is drawn and not yet written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,18 +51,14 @@ impl Picture {
         name: &'static str,
         caption: impl Into<String>,
         size: (u32, u32),
-        picture: impl FnOnce(&Area<'_>) -> Drawn,
+        picture: impl FnOnce(&Canvas) -> Drawn,
     ) -> Result<Self, OutputError> {
-        let mut svg = String::new();
-        let drawn = (|| {
-            let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-            root.fill(&WHITE)?;
-            picture(&root)?;
-            root.present()?;
-            Ok::<(), Box<dyn std::error::Error>>(())
-        })();
-        drawn.map_err(|error| OutputError::Inconsistent { path: format!("{name}.svg").into(), problem: error.to_string() })?;
-        Ok(Self { name, caption: caption.into(), svg: with_subscripts(&svg) })
+        let canvas = Canvas::new(size);
+        let drawn = canvas
+            .rectangle([(0.0, 0.0), (canvas.width, canvas.height)], Paint::fill(WHITE))
+            .and_then(|()| picture(&canvas))
+            .map_err(|error| OutputError::Inconsistent { path: format!("{name}.svg").into(), problem: error.to_string() });
+        drawn.map(|()| Self { name, caption: caption.into(), svg: canvas.finish() })
     }
 
     /// Writes it as `path`, whole or not at all.
@@ -83,57 +68,6 @@ impl Picture {
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
         write_atomically(path, |out| out.write_all(self.svg.as_bytes()))
     }
-}
-
-/// Turns `_x` and `_{xyz}` in the texts of an SVG into subscripts, `^x` and `^{xyz}` into superscripts.
-fn with_subscripts(svg: &str) -> String {
-    let mut out = String::with_capacity(svg.len());
-    let mut rest = svg;
-    while let Some(begin) = rest.find("<text") {
-        let Some(open) = rest[begin..].find('>').map(|at| begin + at + 1) else { break };
-        let Some(close) = rest[open..].find("</text>").map(|at| open + at) else { break };
-        out.push_str(&rest[..open]);
-        out.push_str(&subscripts(rest[open..close].trim()));
-        rest = &rest[close..];
-    }
-    out + rest
-}
-
-/// One text: what follows a `_` is lowered and what follows a `^` is raised, up to the end of the word or of the braces.
-fn subscripts(text: &str) -> String {
-    /// Size of what is off the line.
-    const SMALL: f64 = 0.75;
-    let mut out = String::new();
-    let mut rest = text;
-    let mut height = 0.0;
-    while !rest.is_empty() {
-        let (plain, after) = rest.split_at(rest.find(['_', '^']).unwrap_or(rest.len()));
-        if height != 0.0 && !plain.is_empty() {
-            // Back to the line; without the attribute some readers drop a space at the start of a span.
-            out.push_str(&format!("<tspan dy=\"{}em\" xml:space=\"preserve\">{plain}</tspan>", -height));
-            height = 0.0;
-        } else {
-            out.push_str(plain);
-        }
-        let target = match after.chars().next() {
-            Some('_') => 0.25,
-            Some(_) => -0.375,
-            None => break,
-        };
-        let after = &after[1..];
-        let (inner, after) = match after.strip_prefix('{').and_then(|after| after.split_once('}')) {
-            Some(pair) => pair,
-            None => after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len())),
-        };
-        if !inner.is_empty() {
-            // Ems are those of the small letters.
-            let shift = (target - height) / SMALL;
-            out.push_str(&format!("<tspan dy=\"{shift:.3}em\" style=\"font-size:75%\">{inner}</tspan>"));
-            height = target;
-        }
-        rest = after;
-    }
-    out
 }
 
 /// A number on an axis: plain where that is short, with an exponent elsewhere.
@@ -165,7 +99,7 @@ fn shorten(digits: &str) -> &str {
 }
 
 /// Viridis at `x` in \[0, 1\], from nine of its colours: rising lightness, so that it holds in grey.
-pub fn viridis(x: f64) -> RGBColor {
+pub fn viridis(x: f64) -> Colour {
     const STOPS: [[u8; 3]; 9] = [
         [68, 1, 84],
         [71, 44, 122],
@@ -181,24 +115,5 @@ pub fn viridis(x: f64) -> RGBColor {
     let below = (place as usize).min(STOPS.len() - 2);
     let share = place - below as f64;
     let mix = |i: usize| (f64::from(STOPS[below][i]) * (1.0 - share) + f64::from(STOPS[below + 1][i]) * share).round() as u8;
-    RGBColor(mix(0), mix(1), mix(2))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn subscripts_are_lowered_and_the_line_goes_on() {
-        let low = |text: &str| format!("<tspan dy=\"0.333em\" style=\"font-size:75%\">{text}</tspan>");
-        let back = |text: &str| format!("<tspan dy=\"-0.25em\" xml:space=\"preserve\">{text}</tspan>");
-        assert_eq!(subscripts("plain &amp; simple"), "plain &amp; simple");
-        assert_eq!(subscripts("F_N"), format!("F{}", low("N")));
-        assert_eq!(subscripts("F_N/δ_{T,slip} x"), format!("F{}{}{}{}", low("N"), back("/δ"), low("T,slip"), back(" x")));
-        let up = "<tspan dy=\"-0.500em\" style=\"font-size:75%\">n</tspan>";
-        assert_eq!(subscripts("(1 − x)^n b"), format!("(1 − x){up}<tspan dy=\"0.375em\" xml:space=\"preserve\"> b</tspan>"));
-        assert_eq!(subscripts("a_"), "a");
-        let svg = "<svg><text x=\"1\">\nF_T\n</text><line x_y=\"2\"/><text>b</text></svg>";
-        assert_eq!(with_subscripts(svg), format!("<svg><text x=\"1\">F{}</text><line x_y=\"2\"/><text>b</text></svg>", low("T")));
-    }
+    Colour(mix(0), mix(1), mix(2))
 }

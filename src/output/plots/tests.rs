@@ -1,4 +1,4 @@
-use super::super::ContactStatus;
+use super::super::{ContactStatus, Half};
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::analytical::olsson_larsson::OlssonLarsson;
@@ -32,7 +32,7 @@ pub(super) fn history() -> Vec<StepRecord> {
     rows
 }
 
-/// A half disc with a sticking core, a slipping ring and an open rim.
+/// A disc with a sticking core, a slipping ring and an open rim.
 pub(super) fn contact() -> Vec<ContactPoint> {
     let mut points = Vec::new();
     for ring in 0..24 {
@@ -58,10 +58,11 @@ pub(super) fn contact() -> Vec<ContactPoint> {
                 traction_y: 0.0,
                 area: 0.0125 * 0.0125,
                 status,
+                half: if i == 0 || i == around { Half::Both } else { Half::Meshed },
             });
         }
     }
-    points
+    ContactPoint::whole(points)
 }
 
 /// The text of an SVG without its markup, subscripts with their `_` lost: F_N is FN.
@@ -107,13 +108,19 @@ fn every_plot_is_sound_xml_with_its_labels() {
         ("ratio", ["μ = 0.3", "FT / FN", "Friction used", "δT"]),
         ("stick", ["Mindlin", "stick radius", "simulation", "δT"]),
         ("slip", ["FT/FN =", "stick", "slip", "along the shear"]),
-        ("contact", ["stick (", "slip (", "open (", "pressure (mirrored)"]),
+        ("contact", ["stick (", "slip (", "open (", "unit of stress"]),
     ] {
         let words = parsed(&out.plot(name));
         for label in labels {
             assert!(words.contains(label), "{name}: {label} is missing in {words}");
         }
     }
+    // A point of the diagram for each meshed node, and the whole contact in the map: status of one half, pressure of the other, and both of the middle.
+    let whole = contact();
+    let of = |half: Half| whole.iter().filter(|point| point.half == half).count();
+    assert!(of(Half::Meshed) == of(Half::Mirrored) && of(Half::Both) == 48);
+    let circles = |name: &str| fs::read_to_string(out.plot(name)).unwrap().matches("<circle").count();
+    assert!(circles("pressure") <= of(Half::Meshed) + of(Half::Both) + 1, "{}", circles("pressure"));
     // Six of the seven, the first and the last among them.
     let slip = parsed(&out.plot("slip"));
     assert_eq!(slip.matches("FT/FN =").count(), 6);

@@ -27,15 +27,10 @@ fn control(h: f64, delta_t: f64) -> Control {
 fn a_plate_pushed_through_the_plane_is_reported() {
     for h in [0.6, 0.7, 3.0, 1e6] {
         let failure = rig(12).attempt(&control(h, 0.0)).expect_err("the brick has no height left");
-        match &failure {
-            StepFailure::Inverted { element, point } => assert!(*element < 36 && *point < 8),
-            StepFailure::Iterations { iterations, merit, worst } => {
-                assert!(*iterations >= 1 && *merit > 1e-10, "{failure}");
-                assert!(worst.node < 80 && worst.direction < 3 && worst.residual != 0.0, "{failure}");
-            }
-            StepFailure::Linear(_) => {}
-        }
-        assert!(!failure.to_string().is_empty());
+        let StepFailure::Inverted { element, point } = failure else { panic!("h = {h}: {failure}") };
+        assert!(element < 36 && point < 8, "h = {h}: {failure}");
+        let text = failure.to_string();
+        assert!(text.contains(&format!("element {element} inverts")), "{text}");
     }
 }
 
@@ -104,7 +99,9 @@ fn a_normal_force_that_nothing_carries_is_a_failure() {
     let mut rig = rig(10);
     rig.to(-0.1, 0.0);
     let failure = rig.attempt(&Control { h: -0.1, delta_t: 0.0, normal_force: Some(0.01) }).expect_err("nothing touches");
-    assert!(!failure.to_string().is_empty(), "{failure}");
+    // The plate is moved on until there is a force, which is never the right one.
+    let StepFailure::Iterations { iterations: 10, merit, .. } = failure else { panic!("{failure}") };
+    assert!(merit > 1e-10, "{failure}");
 }
 
 #[test]

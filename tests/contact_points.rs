@@ -1,0 +1,131 @@
+//! What the points of the contact do and carry, at every step of small runs: Coulomb's bound, the sums over both halves, and full stick.
+
+use asperity::case::{Case, Friction};
+use asperity::compute::cpu::Cpu;
+use asperity::output::{ContactPoint, ContactStatus, Half, StepRecord, Units};
+use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::simulation::problem::Problem;
+use rayon::prelude::*;
+
+/// Every accepted step with its whole contact, in the case's units.
+struct Steps {
+    units: Units,
+    taken: Vec<(StepRecord, Vec<ContactPoint>)>,
+}
+
+impl Observer for Steps {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.taken.push((view.record.in_units(&self.units), ContactPoint::whole_of(view.points, &self.units)));
+        Ok(())
+    }
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        Ok(())
+    }
+    fn note(&mut self, _: &str) {}
+}
+
+/// Follows the path of fixtures/cases/ideal.toml, or another, on a mesh of 4 elements a contact radius.
+fn follow(settings: &[&str]) -> (Case, Vec<(StepRecord, Vec<ContactPoint>)>) {
+    let mut all: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
+    all.push("mesh.elements_per_contact_radius=4".to_owned());
+    let case = Case::parse(include_str!("../fixtures/cases/ideal.toml"), "ideal.toml", &all).expect("a case");
+    let problem = Problem::new(&case).expect("a problem");
+    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
+    let mut steps = Steps { units: Units::of(&case), taken: Vec::new() };
+    let newton = problem.newton().expect("a solver");
+    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut steps).expect("no failure of the program");
+    assert_eq!(ending, Ending::Done, "{settings:?}");
+    (case, steps.taken)
+}
+
+const CASES: [&[&str]; 8] = [
+    &[],
+    &["contact.friction=0.1"],
+    &["contact.friction=0.0"],
+    &["contact.friction=0.6", "mesh.fine_zone=2.0"],
+    &["material.hardening={law=\"elastic\"}"],
+    &["material.hardening={law=\"linear\",yield_stress=300.0,modulus=5000.0}", "material.poissons_ratio=0.45"],
+    &["material.hardening={law=\"hollomon\",coefficient=1000.0,exponent=5.0}", "contact.friction=0.2"],
+    // There and back, and off the plane.
+    &["path=[{indentation=0.01},{shear=0.0005},{shear=-0.0005},{release=true}]"],
+];
+
+#[test]
+fn no_point_carries_more_than_friction_allows_and_both_halves_add_up() {
+    CASES.par_iter().for_each(|settings| {
+        // At the default tolerance, and one at which the iteration says nothing more.
+        for tolerance in [None, Some("solver.tolerance=1e-7")] {
+            let settings: Vec<&str> = settings.iter().copied().chain(tolerance).collect();
+            let (case, steps) = follow(&settings);
+            let Friction::Coefficient(mu) = case.contact.friction else { unreachable!("no case is of full stick") };
+            let (mut closed, mut slipping) = (0, 0);
+            for (row, points) in &steps {
+                let at = format!("{settings:?}, step {}", row.step);
+                for p in points.iter().filter(|p| p.status != ContactStatus::Open) {
+                    (closed, slipping) = (closed + 1, slipping + usize::from(p.status == ContactStatus::Slip));
+                    let (traction, bound) = (p.traction_x.hypot(p.traction_y), mu * p.pressure * (1.0 + 1e-3));
+                    // Where the pressure is next to nothing, and wherever the step was accepted with a residual, the bound is known to that: no force is more
+                    // beyond it than the merit, which counts all of them, times F_N. A point on the symmetry plane is two halves.
+                    let residual = row.merit * 0.5 * row.f_n * if p.half == Half::Both { 2.0 } else { 1.0 };
+                    assert!((traction - bound) * p.area <= residual * (1.0 + 1e-9), "{at}: {traction} beyond {bound}, {p:?}");
+                    assert!(tolerance.is_none() || residual < 2e-7 * row.f_n);
+                    assert!(p.pressure >= -1e-6 * row.f_n / p.area, "{at}: {p:?}");
+                    assert!(p.half != Half::Both || p.traction_y == 0.0, "{at}: the other half's pull in {p:?}");
+                }
+                let sum = |of: fn(&ContactPoint) -> f64| points.iter().map(|p| of(p) * p.area).sum::<f64>();
+                let size = 1e-12 * row.f_n.max(f64::MIN_POSITIVE);
+                assert!((sum(|p| p.pressure) - row.f_n).abs() <= size, "{at}: F_N");
+                assert!((sum(|p| p.traction_x) + row.f_t).abs() <= size, "{at}: F_T");
+                assert!(sum(|p| p.traction_y).abs() <= size, "{at}: across");
+                // Each image has its point, at the same distance on the other side.
+                let of = |half: Half| points.iter().filter(move |p| p.half == half);
+                assert!(of(Half::Both).all(|p| p.reference_y == 0.0 && p.current_y == 0.0) && of(Half::Both).count() > 4);
+                assert!(of(Half::Meshed).all(|p| p.reference_y > 0.0));
+                assert!(of(Half::Mirrored).map(|p| (p.point, -p.current_y)).eq(of(Half::Meshed).map(|p| (p.point, p.current_y))));
+            }
+            assert!(closed > 200 && slipping > 50, "{settings:?}: {closed} closed points, {slipping} slip");
+        }
+    });
+}
+
+/// Under full stick a point stays where it has touched down. A point that touches down within a step has no such place before the step's end; a step that has no
+/// solution with it sticking lets it slide, once: steps so relaxed are counted.
+#[test]
+fn full_stick_holds_every_point_from_where_it_touched_down() {
+    let counts: Vec<(usize, usize, usize)> = [5, 12, 16, 17, 20, 24]
+        .into_par_iter()
+        .map(|press_steps| {
+            let steps = format!("solver.press_steps={press_steps}");
+            let path = "path=[{indentation=0.02},{shear=0.002}]";
+            let (_, steps) = follow(&["contact.friction=\"stick\"", path, &steps]);
+            let mut relaxed = 0;
+            for pair in steps.windows(2) {
+                let [(_, before), (row, after)] = pair else { unreachable!("pairs") };
+                let at = format!("{press_steps} steps of the press, step {}", row.step);
+                let mut slid = 0;
+                for (was, is) in before.iter().zip(after).filter(|(_, is)| is.status != ContactStatus::Open) {
+                    if was.status == ContactStatus::Open {
+                        slid += usize::from(is.status == ContactStatus::Slip);
+                        continue;
+                    }
+                    assert_eq!(is.status, ContactStatus::Stick, "{at}: {was:?} slips");
+                    let moved = (is.current_x - was.current_x).hypot(is.current_y - was.current_y);
+                    assert!(moved < 1e-12, "{at}: {was:?} moved by {moved:e}");
+                }
+                relaxed += usize::from(slid > 0);
+                // Nothing comes down while the sphere is sheared, so that nothing is relaxed.
+                assert!(slid == 0 || row.segment == 0, "{at}: {slid} points slide");
+            }
+            let last = steps.last().expect("steps").0;
+            // What slides does so without friction: nothing is dissipated but for the residual at which a step is accepted.
+            assert!(steps.iter().all(|(row, _)| row.work_friction.abs() < 1e-5 * last.work_external), "{press_steps}: {last:?}");
+            // More than any coefficient of the other cases: only the yield stress in shear limits it.
+            assert!(last.f_t / last.f_n > 0.4, "{last:?}");
+            (press_steps, relaxed, steps.len() - 1)
+        })
+        .collect();
+    // Measured 0, 1, 1, 0, 2, 1.
+    assert!(counts.iter().all(|&(_, relaxed, _)| relaxed <= 2), "press steps, relaxed steps, steps: {counts:?}");
+    let sums = counts.iter().fold((0, 0), |sums, count| (sums.0 + count.1, sums.1 + count.2));
+    assert!(20 * sums.0 <= sums.1, "more than one step in twenty is relaxed: {counts:?}");
+}
