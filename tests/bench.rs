@@ -151,7 +151,7 @@ fn bad_input_is_one_message() {
     std::fs::write(dir.path().join("in-the-way"), "").unwrap();
     let export = dir.path().join("in-the-way/bench.json");
     let bad: [([&str; 2], &str); 2] = [
-        (["--elements", "3"], "--elements: elements_per_contact_radius = 3"),
+        (["--elements", "1"], "--elements: elements_per_contact_radius = 1"),
         (["--export", export.to_str().unwrap()], "in-the-way"),
     ];
     for (options, part) in bad {

@@ -283,7 +283,7 @@ fn other_units_give_the_same_normalised_curve() {
     for (a, b) in reference.iter().zip(&other) {
         for ((name, a), (_, b)) in numbers(a).into_iter().zip(numbers(b)) {
             let unit = match name.as_str() {
-                "h" | "delta_T" | "a" | "stick_radius" | "a_gap" => radius,
+                "h" | "delta_T" | "a" | "stick_radius" | "a_gap" | "reach" => radius,
                 "F_N" | "F_T" => force,
                 "work_external" | "energy_elastic" | "work_plastic" | "work_friction" => force * radius,
                 _ => 1.0,
@@ -405,7 +405,7 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
     }
     assert_eq!(message.lines().count(), 1, "{message}");
     assert_eq!((summary.status, summary.steps), (Status::NotConverged, history.len()));
-    assert!(summary.messages[0].contains("no convergence: step "), "{:?}", summary.messages);
+    assert!(summary.messages.last().is_some_and(|last| last.contains("no convergence: step ")), "{:?}", summary.messages);
     // Not one step: still a history with its columns, and a summary whose numbers do not exist.
     let output = scratch.run("none", &["--set", "solver.max_iterations=1", "--set", "solver.max_cutbacks=0"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
@@ -423,6 +423,8 @@ fn asked_to_say_more_it_tells_what_each_step_took() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let (history, _) = results(&scratch.out("out"));
     let told = stderr(&output);
+    // The steps of the coarse run come before.
+    let told = told.split_once("the run:").expect("the run is announced").1;
     for row in &history {
         let (step, newton, krylov) = (row.step, row.newton_iterations, row.krylov_iterations);
         let line =
@@ -433,18 +435,25 @@ fn asked_to_say_more_it_tells_what_each_step_took() {
 }
 
 #[test]
-fn a_contact_that_outgrows_the_mesh_ends_with_3_and_says_what_to_set() {
+fn a_contact_that_leaves_the_fine_mesh_is_computed_on_a_larger_one() {
     let scratch = Scratch::new("");
-    let output = scratch.run("out", &["--set", "mesh.contact_radius=0.12"]);
-    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    assert!(stderr(&output).contains("set [mesh] contact_radius"), "{}", stderr(&output));
-    let (history, summary) = results(&scratch.out("out"));
-    assert_eq!(summary.status, Status::ContactOutgrewMesh);
-    assert!(!history.is_empty() && summary.messages.len() == 1);
-    let text = fs::read_to_string(scratch.out("out").join("summary.json")).expect("text");
-    assert!(text.contains("\"status\": \"contact-outgrew-mesh\""), "{text}");
-    // Where it stands is kept as at the end of a segment.
-    assert_eq!(names(&scratch.out("out").join("contact")), [format!("step_{:04}.csv", history.len())]);
+    let narrow = "mesh.contact_radius=0.12";
+    let scouted = scratch.run("scouted", &["--set", narrow]);
+    let blind = scratch.run("blind", &["--set", narrow, "--set", "solver.error_estimate=false"]);
+    for (name, output, remeshed, note) in [
+        ("scouted", &scouted, 0, "note: the contact leaves the zone of 0.1560 R"),
+        ("blind", &blind, 1, "note: the contact reaches "),
+    ] {
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
+        assert!(stderr(output).contains(note), "{}", stderr(output));
+        let (history, summary) = results(&scratch.out(name));
+        assert_eq!((summary.status, summary.remeshed, summary.messages.len()), (Status::Done, remeshed, 1), "{summary:?}");
+        assert_eq!(history[0].step, 1);
+        assert_eq!(history.len(), summary.steps);
+        assert!((summary.a0.expect("a radius") / 0.2087 - 1.0).abs() < 0.1, "{summary:?}");
+        // Nothing of the first start is left.
+        assert_eq!(names(&scratch.out(name).join("contact")), [format!("step_{:04}.csv", history.len())]);
+    }
 }
 
 #[cfg(unix)]

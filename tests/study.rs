@@ -197,13 +197,14 @@ fn a_case_that_fails_stops_no_other_and_its_row_says_why() {
     let output = scratch.ends_with(3, "out", &["--threads", "2"]);
     let table = rows(&scratch.out("out"));
     let found: Vec<&str> = table.iter().map(|row| row["status"].as_str()).collect();
-    assert_eq!(found, ["done", "outgrown", "not-converged", "not-converged"], "{}", stderr(&output));
-    assert!(table[1]["reason"].contains("set [mesh] contact_radius to a larger value"), "{table:?}");
+    // The second one's contact leaves its fine mesh, and is computed on a larger one.
+    assert_eq!(found, ["done", "done", "not-converged", "not-converged"], "{}", stderr(&output));
+    assert!(stderr(&output).contains("0002: note: the contact reaches "), "{}", stderr(&output));
     assert!(table[2]["reason"].starts_with("no convergence: step 1 of segment 0"), "{table:?}");
     let message = stderr(&output);
     let last = message.lines().last().unwrap_or_default();
     assert!(
-        last.starts_with("error: 3 of 4 cases failed, the first in ") && last.contains("cases/0002: the contact reaches"),
+        last.starts_with("error: 2 of 4 cases failed, the first in ") && last.contains("cases/0003: no convergence"),
         "{message}"
     );
     assert!(last.ends_with("study.csv"), "{message}");
@@ -213,9 +214,9 @@ fn a_case_that_fails_stops_no_other_and_its_row_says_why() {
 
     // The same program would do the same: they are not computed again, unless that is asked for.
     let output = scratch.ends_with(3, "out", &["--resume"]);
-    assert!(stderr(&output).contains("; 1 done and 3 failed before; 0 to compute"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("; 2 done and 2 failed before; 0 to compute"), "{}", stderr(&output));
     let output = scratch.ends_with(3, "out", &["--resume", "--retry"]);
-    assert!(stderr(&output).contains("; 1 done and 0 failed before; 3 to compute"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("; 2 done and 0 failed before; 2 to compute"), "{}", stderr(&output));
     assert_eq!(timeless(rows(&scratch.out("out"))), timeless(table));
 }
 

@@ -22,7 +22,7 @@ pub struct BenchArgs {
     /// Small meshes, small batches, few repetitions: a minute.
     #[arg(long)]
     pub quick: bool,
-    /// Elements along the contact radius of the mesh, 4 to 32; by default 8, with --quick 4.
+    /// Elements along the contact radius of the mesh, 2 to 32; by default 8, with --quick 4.
     #[arg(long, value_name = "N")]
     pub elements: Option<usize>,
     /// Write the numbers to this file, as JSON.

@@ -92,10 +92,14 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     }
     let mut progress = progress(args.verbosity.quiet);
     let begun = Instant::now();
-    let scout = match checkpoint.is_none() && case.solver.error_estimate {
-        true => scout(&case, &stop).map_err(bad_case)?,
-        false => None,
+    let scouts = checkpoint.is_none() && case.solver.error_estimate;
+    let scout = if scouts {
+        log::info!("coarse run, for the reach of the contact and the error estimate:");
+        scout(&case, &stop).map_err(bad_case)?
+    } else {
+        None
     };
+    let stopped = scouts && scout.is_none();
     let scout_took = begun.elapsed().as_secs_f64();
     if let Some(scout) = &scout {
         let zone = scout.zone(problem.zone, problem.spacing);
@@ -129,6 +133,11 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         }
         results.scouted(scout, scout_took);
     }
+    if stopped {
+        // Without a checkpoint: the run will begin with its coarse run again.
+        return conclude(Ok(Ending::Interrupted), results, args);
+    }
+    log::info!("the run:");
     let followed = follow(problem, checkpoint.as_ref().map(Checkpoint::snapshot), &mut seat, &mut results);
     let ending = followed.map(|followed| {
         // Not where it began, if the device failed on the way.

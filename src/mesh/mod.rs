@@ -22,7 +22,7 @@ pub enum MeshError {
     #[error("contact radius a/R = {0} is outside 0.005 to 0.65: change the indentation, or the estimate of the contact radius")]
     ContactRadius(f64),
     /// The number of elements per contact radius is out of range.
-    #[error("elements_per_contact_radius = {0} is outside 4 to 32: 16 is a good start")]
+    #[error("elements_per_contact_radius = {0} is outside 2 to 32: 16 is a good start")]
     ElementsPerContactRadius(usize),
     /// The fine zone is out of range.
     #[error("a fine zone of {0} contact radii is outside 1.1 to 3: 1.3 is a good start")]

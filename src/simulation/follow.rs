@@ -4,7 +4,7 @@ use super::SimulationError;
 use super::checkpoint::Snapshot;
 use super::drive::{Drive, Ending, Observer};
 use super::problem::Problem;
-use super::zone::Zone;
+use super::zone::{BLIND_MARGIN, Zone};
 use crate::compute::cpu::Cpu;
 use crate::compute::select::Selected;
 use crate::compute::{Compute, ComputeError, Description};
@@ -39,9 +39,13 @@ pub fn follow<'a>(
             drive.resume(snapshot)?;
         }
         let ending = drive.run(observer)?;
+        if ending == Ending::Done && problem.case.output.plots {
+            // Whatever becomes of the pictures, the path has not to be followed again.
+            drive.checkpoint(true, observer);
+        }
         let grown = match &ending {
             Ending::Outgrown(outgrowth) => {
-                problem.zone.grown(outgrowth.reach, outgrowth.contact_radius).map(|zone| (zone, *outgrowth))
+                problem.zone.grown(outgrowth.reach, outgrowth.contact_radius, BLIND_MARGIN).map(|zone| (zone, *outgrowth))
             }
             _ => None,
         };

@@ -10,7 +10,7 @@ use super::drive::{Ending, Observer, StepView};
 use super::follow::{follow, on_cpu};
 use super::problem::{Problem, press_steps, shear_steps};
 use super::record::StepRecord;
-use super::zone::Zone;
+use super::zone::{LARGEST_FINE_ZONE, MARGIN, Zone};
 use crate::case::Case;
 
 /// What a scout has found; scaled, lengths by R, forces by E R^2.
@@ -53,7 +53,7 @@ pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, Simul
     let elements = case.mesh.elements_per_contact_radius;
     let asked = Problem::zone_of(&case)?;
     // Elements at the edge are larger here than in the run: a contact that fits there has to fit here.
-    let roomy = Zone { fine_zone: asked.fine_zone + ROOM / elements as f64, ..asked };
+    let roomy = Zone { fine_zone: (asked.fine_zone + ROOM / elements as f64).min(LARGEST_FINE_ZONE), ..asked };
     let problem = Problem::on(&case, Some(roomy))?;
     let mut watch = Watch { stop: stop.clone(), ..Watch::default() };
     watch.set_out(&problem);
@@ -82,7 +82,7 @@ impl Scout {
         let (reach, contact_radius) = (most(|row| row.reach), most(|row| row.a));
         // Where its outermost point is known to half an element only, the run itself shall find out.
         let leaves = reach - 0.5 * self.spacing > asked.radius() - 0.5 * spacing;
-        if leaves { asked.grown(reach, contact_radius).unwrap_or(asked) } else { asked }
+        if leaves { asked.grown(reach, contact_radius, MARGIN).unwrap_or(asked) } else { asked }
     }
 }
 

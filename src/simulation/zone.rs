@@ -11,9 +11,11 @@ const LARGEST_FINE_RADIUS: f64 = 0.85;
 /// Smallest fine zone in contact radii.
 const SMALLEST_FINE_ZONE: f64 = 1.1;
 /// Largest fine zone in contact radii; beyond it the contact radius that is meshed for grows too, and with it the elements.
-const LARGEST_FINE_ZONE: f64 = 3.0;
-/// A zone is made so much larger than the reach that is known.
-const MARGIN: f64 = 1.15;
+pub const LARGEST_FINE_ZONE: f64 = 3.0;
+/// A zone is made so much larger than the reach along the whole path.
+pub const MARGIN: f64 = 1.15;
+/// A zone is made so much larger than a reach that will go on growing.
+pub const BLIND_MARGIN: f64 = 1.5;
 
 /// The finely meshed zone around the pole, scaled by R.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,12 +37,12 @@ impl Zone {
         (self.fine_zone * self.contact_radius).min(LARGEST_FINE_RADIUS)
     }
 
-    /// The zone for a contact that reaches `reach` from the axis and whose radius grows to `contact_radius`: at least as large as this one in both, with
-    /// room beyond the reach. `None` if no zone is larger than this one.
+    /// The zone for a contact that reaches `reach` from the axis and whose radius grows to `contact_radius`: at least as large as this one in both, and
+    /// `margin` times as large as the reach. `None` if no zone is larger than this one.
     ///
     /// The fine zone widens first, which keeps the size of the elements; where it is three contact radii wide the elements grow too.
-    pub fn grown(&self, reach: f64, contact_radius: f64) -> Option<Self> {
-        let radius = (MARGIN * reach).max(self.radius());
+    pub fn grown(&self, reach: f64, contact_radius: f64, margin: f64) -> Option<Self> {
+        let radius = (margin * reach).max(self.radius());
         let contact_radius = contact_radius.max(self.contact_radius).max(radius / LARGEST_FINE_ZONE).min(LARGEST_CONTACT);
         let fine_zone = (radius / contact_radius).max(SMALLEST_FINE_ZONE).min(LARGEST_FINE_ZONE);
         let grown = Self { contact_radius, fine_zone };
@@ -56,7 +58,7 @@ mod tests {
     fn a_zone_grows_until_there_is_no_larger_one() {
         let mut zone = Zone::new(0.02, 1.3);
         let mut zones = vec![zone];
-        while let Some(grown) = zone.grown(1.05 * zone.radius(), 0.0) {
+        while let Some(grown) = zone.grown(1.05 * zone.radius(), 0.0, MARGIN) {
             assert!(grown.radius() > zone.radius() && grown.contact_radius >= zone.contact_radius, "{zones:?}");
             assert!((SMALLEST_FINE_ZONE..=LARGEST_FINE_ZONE).contains(&grown.fine_zone));
             zones.push(grown);
@@ -69,7 +71,7 @@ mod tests {
 
     #[test]
     fn a_larger_contact_has_larger_elements() {
-        let grown = Zone::new(0.02, 1.3).grown(0.04, 0.035).unwrap();
+        let grown = Zone::new(0.02, 1.3).grown(0.04, 0.035, MARGIN).unwrap();
         assert_eq!(grown.contact_radius, 0.035);
         assert!(grown.radius() >= 0.046 - 1e-12 && grown.fine_zone < 1.4, "{grown:?}");
         assert_eq!(Zone::new(2.0, 1.3).contact_radius, LARGEST_CONTACT);

@@ -203,8 +203,10 @@ impl Newton {
             };
             let before = self.current.merit / scale;
             previous = self.current.merit;
-            let may_stay =
-                iteration >= MONOTONE_FROM && self.plate_is_placed(control) && previous <= KINK * self.settings.tolerance * scale;
+            let may_stay = iteration >= MONOTONE_FROM
+                && self.plate_is_placed(control)
+                && self.holds_force(case, control, 2.0 * HELD_TOLERANCE)
+                && previous <= KINK * self.settings.tolerance * scale;
             let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
                 Ok(found) => found,
                 Err(Outcome::Inverted { element, point }) => return Ok(Err(StepFailure::Inverted { element, point })),
@@ -288,11 +290,14 @@ impl Newton {
             Friction::Coulomb(mu) if mu > 0.0 => (TANGENTIAL * mu).min(1.0),
             _ => 1.0,
         };
-        let held = |force: f64| {
-            (self.current.contact_force(&case.model().mesh)[2] - force).abs() <= (HELD_TOLERANCE * force).max(ROUNDING)
-        };
         (friction == 1.0 || self.current.tangential_residual() <= (friction * bound).max(ROUNDING))
-            && control.normal_force.is_none_or(held)
+            && self.holds_force(case, control, HELD_TOLERANCE)
+    }
+
+    /// A normal force that is to be held is met to this share of it.
+    fn holds_force(&self, case: &mut dyn Evaluate, control: &Control, tolerance: f64) -> bool {
+        let found = || self.current.contact_force(&case.model().mesh)[2];
+        control.normal_force.is_none_or(|force| (found() - force).abs() <= (tolerance * force).max(ROUNDING))
     }
 
     /// Under full stick a point that came off within the step and comes down again has let go of its tangential force, and carries none up to the step's
