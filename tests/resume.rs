@@ -19,6 +19,7 @@ use asperity::compute::gpu::Precision;
 use asperity::output::{Clock, OutputDirectory, Position, Progress, ResultWriter, Setting, Summary, TimeByPhase, read_history};
 use asperity::simulation::drive::{Drive, Ending};
 use asperity::simulation::problem::Problem;
+use asperity::simulation::scout::scout;
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
@@ -255,6 +256,8 @@ fn a_run_killed_at_any_step_goes_on() {
     let mut results = ResultWriter::create(&case, &dir, setting, Clock::start(), Box::new(copies), Arc::default(), None)
         .expect("results")
         .with_checkpoints_every(Duration::ZERO);
+    results.meshed(&problem);
+    results.scouted(scout(&case, &Arc::default()).expect("a scout").expect("to its end"), 0.0);
     // What is told of a step comes before its checkpoint: that of each copy is one step old, or older if writing it took long.
     assert_eq!(Drive::new(&problem, &mut backend, 0, newton).run(&mut results).expect("a run"), Ending::Done);
     drop(results);

@@ -44,7 +44,7 @@ impl Zone {
     pub fn grown(&self, reach: f64, contact_radius: f64, margin: f64) -> Option<Self> {
         let radius = (margin * reach).max(self.radius());
         let contact_radius = contact_radius.max(self.contact_radius).max(radius / LARGEST_FINE_ZONE).min(LARGEST_CONTACT);
-        let fine_zone = (radius / contact_radius).max(SMALLEST_FINE_ZONE).min(LARGEST_FINE_ZONE);
+        let fine_zone = (radius / contact_radius).clamp(SMALLEST_FINE_ZONE, LARGEST_FINE_ZONE);
         let grown = Self { contact_radius, fine_zone };
         (grown.radius() > self.radius() * (1.0 + 1e-9)).then_some(grown)
     }
