@@ -126,8 +126,9 @@ pub struct Drive<'a> {
 const STICK_SHARE: f64 = 2e-3;
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a third fewer than none.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
-/// See [`Drive::attempt_stuck`].
-const SLIDING_RATIO: f64 = 3.0;
+/// See [`Drive::attempt_stuck`]; all but the first only after a step was bisected so often.
+const SLIDING_RATIOS: [f64; 3] = [3.0, 1.0, 0.3];
+const SHALLOW: usize = 3;
 /// After a step that failed the targets are taken in half as long parts, until a step takes no more iterations than this.
 const EASY: usize = 6;
 /// Targets are taken in 2^2 parts at most.
@@ -434,13 +435,15 @@ impl<'a> Drive<'a> {
     /// equilibrium with them nor without.
     fn attempt_stuck(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
         let mut attempted = self.slide_beyond(f64::INFINITY, target)?;
-        if let Err(failure) = &attempted {
+        let ratios = if self.place.depth < SHALLOW { &SLIDING_RATIOS[..1] } else { &SLIDING_RATIOS[..] };
+        for &ratio in ratios {
+            let Err(failure) = &attempted else { break };
             log::info!(
-                "points sheared beyond {SLIDING_RATIO} of their normal force slide in the step to delta_T = {:.5}: {failure}",
+                "points sheared beyond {ratio} of their normal force slide in the step to delta_T = {:.5}: {failure}",
                 target.delta_t
             );
             self.place.wasted += failure.iterations();
-            attempted = self.slide_beyond(SLIDING_RATIO, target)?.map(|report| StepReport { relaxed: true, ..report });
+            attempted = self.slide_beyond(ratio, target)?.map(|report| StepReport { relaxed: true, ..report });
         }
         self.newton.let_slide(&[]);
         Ok(attempted)
