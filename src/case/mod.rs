@@ -108,7 +108,7 @@ pub struct Solver {
     pub max_iterations: usize,
     /// How often a step may be cut in half.
     pub max_cutbacks: usize,
-    /// Whether a run is followed by a coarser one from which its error is estimated, a tenth of its work.
+    /// Whether a coarser run goes before a run, a tenth of its work: it finds how far the contact reaches, and the run's error is estimated from it.
     pub error_estimate: bool,
     /// Memory that the mesh and the linear systems may take, in GiB.
     pub max_memory_gib: f64,

@@ -6,9 +6,8 @@ use super::model::{Axisymmetric, Law, MARGIN, OutOfRange, Parameters};
 use super::normal::NormalState;
 use super::variables::{Body, yield_lambda};
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
-use crate::compute::select::{DeviceWish, PrecisionWish, select};
-use crate::simulation::SimulationError;
-use crate::simulation::drive::{Drive, Ending, Observer, StepView};
+use crate::simulation::drive::{Ending, Observer, StepView};
+use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::StepRecord;
 
@@ -144,11 +143,8 @@ fn press(case: &Case) -> Result<NormalState, LawError> {
     let mut case = case.clone();
     case.path.truncate(1);
     case.mesh.elements_per_contact_radius = case.mesh.elements_per_contact_radius.min(PRESS_ELEMENTS);
-    let problem = Problem::new(&case)?;
-    let mut selected = select(DeviceWish::Cpu, PrecisionWish::F64, vec![problem.model.clone()]).map_err(SimulationError::from)?;
-    let newton = problem.newton()?;
     let mut last = Last(StepRecord::default());
-    match Drive::new(&problem, selected.backend.as_mut(), 0, newton).run(&mut last)? {
+    match follow(Problem::new(&case)?, None, &mut |problem| on_cpu(problem), &mut last)?.ending {
         Ending::Done => {}
         Ending::NotConverged(reason) => return Err(LawError::Press(reason)),
         Ending::Outgrown(outgrowth) => return Err(LawError::Press(outgrowth.to_string())),

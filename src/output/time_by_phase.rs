@@ -23,7 +23,7 @@ pub struct OutsideSteps {
     pub setup: f64,
     /// Writing results.
     pub output: f64,
-    /// On the coarser companion by which the error is estimated.
+    /// On the coarse run before it, by which the error is estimated.
     pub error_estimate: f64,
 }
 
@@ -47,7 +47,7 @@ pub struct TimeByPhase {
     pub commit: PhaseTime,
     /// History, fields, contact tables, plots, progress.
     pub output: PhaseTime,
-    /// The coarser companion by which the error is estimated.
+    /// The coarse run before it, by which the error is estimated.
     pub error_estimate: PhaseTime,
     /// All else.
     pub other: PhaseTime,

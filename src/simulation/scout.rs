@@ -73,7 +73,7 @@ pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, Simul
 }
 
 /// Elements by which the scout's zone is wider than the run's.
-const ROOM: f64 = 1.5;
+const ROOM: f64 = 0.75;
 
 impl Scout {
     /// The zone for a run whose case asks for `asked` and whose elements there are of size `spacing`: that one, unless the contact leaves it.
