@@ -6,6 +6,7 @@
 
 pub mod checkpoint;
 pub mod drive;
+mod ending;
 pub mod follow;
 pub mod footprint;
 pub mod path;
