@@ -31,6 +31,11 @@ const TIGHT_LINEAR: f64 = 0.01;
 const UNIT_RESPONSE: f64 = 0.01;
 /// Tangential residuals of points in contact against the friction that the normal force can bear. At mu = 0.3 the tolerance of the merit is the same.
 const TANGENTIAL: f64 = 10.0 / 3.0;
+/// Where points are about to flow, the whole correction may raise the merit although the energy falls along it (the tangent is elastic, the
+/// answer plastic). It is taken then, if the line search found nothing longer than this and the merit does not grow by more than this factor:
+/// the next tangent knows of the flow.
+const CREEPING: f64 = 0.03;
+const DOWNHILL_MERIT: f64 = 4.0;
 /// At a kink of the merit, where a point at the edge changes its status whatever the step length, no step lowers it, and the iteration would go round in
 /// circles until the step is given up. An iterate so many tolerances away is then taken as it is.
 const KINK: f64 = 3.0;
@@ -415,7 +420,8 @@ impl Newton {
         Ok((eta.min(UNIT_RESPONSE) * self.unit_scale).clamp(1e-9, 0.1))
     }
 
-    /// Backtracks along `self.delta` until the merit falls below `reference`; otherwise takes the best there was. `Err` if no length is valid.
+    /// Backtracks along `self.delta` until the merit falls below `reference`; otherwise takes the best there was, or the whole correction
+    /// where that would creep while the energy falls all the way. `Err` if no length is valid.
     fn line_search(
         &mut self,
         case: &mut dyn Evaluate,
@@ -425,6 +431,8 @@ impl Newton {
     ) -> Result<Result<(f64, usize), Outcome>, SolverError> {
         let mut best: Option<f64> = None;
         let mut invalid = Outcome::Valid;
+        let slope = self.slope(&self.current, control, delta_h);
+        let mut downhill = false;
         for s in STEP_LENGTHS {
             for ((u, u0), d) in self.candidate.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
                 *u = u0 + s * d;
@@ -439,6 +447,10 @@ impl Newton {
                 invalid = outcome;
                 continue;
             }
+            if s == 1.0 && self.candidate.merit < DOWNHILL_MERIT * self.current.merit {
+                let left = self.slope(&self.candidate, control, delta_h) / slope;
+                downhill = left < 1.0 && left > -0.25;
+            }
             if best.is_none() || self.candidate.merit < self.best.merit {
                 best = Some(s);
                 std::mem::swap(&mut self.candidate, &mut self.best);
@@ -447,10 +459,26 @@ impl Newton {
                 break;
             }
         }
-        let Some(s) = best else { return Ok(Err(invalid)) };
+        let Some(mut s) = best else { return Ok(Err(invalid)) };
+        if s <= CREEPING && downhill && reference <= self.current.merit {
+            s = 1.0;
+            for ((u, u0), d) in self.best.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
+                *u = u0 + d;
+            }
+            self.best.h = self.current.h + delta_h;
+            self.boundary.place_plate(&mut self.best.u, self.best.h, control.delta_t);
+            self.best.evaluate(case, &self.boundary, control, &mut self.times)?;
+        }
         let changed = self.best.rows.iter().zip(&self.current.rows).filter(|(a, b)| a.status != b.status).count();
         std::mem::swap(&mut self.current, &mut self.best);
         Ok(Ok((s, changed)))
+    }
+
+    /// Work of the residual forces of a trial on the correction: the slope of the potential energy along it, where there is one.
+    fn slope(&self, trial: &Trial, control: &Control, delta_h: f64) -> f64 {
+        let held = control.normal_force.map_or(0.0, |force| delta_h * (trial.plate_force - force));
+        let free = trial.residual.iter().zip(&self.delta).zip(&self.fixed).filter(|(_, fixed)| !**fixed);
+        held + free.map(|((r, d), _)| r * d).sum::<f64>()
     }
 
     fn exhausted(&self, mesh: &Mesh, iterations: usize) -> StepFailure {
