@@ -15,7 +15,7 @@ use asperity::simulation::drive::{Drive, Observer, StepView};
 use asperity::simulation::problem::Problem;
 use asperity::solver::Control;
 use asperity::solver::phases::PhaseTimes;
-use asperity::solver::system::{Boundary, Trial, apply_contact, right_hand_side};
+use asperity::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, right_hand_side};
 use criterion::{BatchSize, Criterion};
 use processor::Processor;
 
@@ -93,7 +93,8 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     handle.tangent(&trial.u, &mut matrix.blocks)?;
     let raw = matrix.clone();
     let mut fixed = vec![false; trial.u.len()];
-    apply_contact(&mut matrix, &mesh, &boundary, &trial.rows, &mut fixed);
+    fixed_unknowns(&mesh, &boundary, &trial.rows, &mut fixed);
+    apply_contact(&mut matrix, &mesh, &trial.rows);
     let mut rhs = vec![0.0; trial.u.len()];
     right_hand_side(&trial, &mesh, &boundary, &mut rhs);
     if outcome != Outcome::Valid {
@@ -113,7 +114,8 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
         b.iter_batched_ref(
             || raw.clone(),
             |matrix| {
-                apply_contact(matrix, &mesh, &boundary, &trial.rows, &mut fixed);
+                fixed_unknowns(&mesh, &boundary, &trial.rows, &mut fixed);
+                apply_contact(matrix, &mesh, &trial.rows);
                 right_hand_side(&trial, &mesh, &boundary, &mut rhs);
             },
             BatchSize::LargeInput,

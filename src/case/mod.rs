@@ -35,6 +35,9 @@ pub struct Case {
     pub material: Material,
     /// How it meets the plane.
     pub contact: Contact,
+    /// What it is pressed against; a rigid plane if nothing is said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub opponent: Option<Opponent>,
     /// How it is meshed.
     pub mesh: Mesh,
     /// How the equations are solved.
@@ -77,6 +80,23 @@ pub enum Friction {
     Coefficient(f64),
     /// A point in contact never slips.
     Stick,
+}
+
+/// What the sphere is pressed against, in place of a rigid plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Opponent {
+    /// The same sphere. Indentation and shear are then the relative displacements of the two equators, twice what each of them moves.
+    Equal,
+}
+
+impl Case {
+    /// Number of bodies that deform: their displacements add up to h and delta_T, their energies to those of the contact.
+    pub fn bodies(&self) -> f64 {
+        match self.opponent {
+            None => 1.0,
+            Some(Opponent::Equal) => 2.0,
+        }
+    }
 }
 
 /// The mesh.

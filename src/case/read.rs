@@ -5,7 +5,7 @@ use std::path::Path;
 use super::document::Document;
 use super::error::CaseError;
 use super::reader::Reader;
-use super::{Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Output, Solver, Sphere, estimate, path};
+use super::{Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, Solver, Sphere, estimate, path};
 use crate::bounded;
 
 /// Radius and Young's modulus, in the units of the case: between these energies, of the order of E R^3, are neither infinite nor nothing.
@@ -34,11 +34,12 @@ impl Case {
     /// Gives the keys of a document their meaning and checks them.
     pub fn from_document(document: &Document) -> Result<Self, CaseError> {
         let root = Reader::new(document)?;
-        root.only(&["sphere", "material", "contact", "mesh", "solver", "output", "path"])?;
+        root.only(&["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "path"])?;
         let sphere = read_sphere(&root.require_table("sphere", "a table with radius")?)?;
         let material = read_material_of(&root)?;
         let contact = read_contact(&root.require_table("contact", "a table with friction")?)?;
         let case = Case {
+            opponent: read_opponent(&root)?,
             mesh: read_mesh(&root.table("mesh")?, sphere.radius)?,
             solver: read_solver(&root.table("solver")?)?,
             output: read_output(&root.table("output")?)?,
@@ -47,6 +48,9 @@ impl Case {
             material,
             contact,
         };
+        if let (Some(_), Linear::Direct, Some(field)) = (case.opponent, case.solver.linear, root.table("solver")?.get("linear")) {
+            return Err(field.refuse("is \"direct\", which solves for one body alone", "\"multigrid\" with an opponent that deforms"));
+        }
         estimate::check_memory(&case, &root)?;
         Ok(case)
     }
@@ -96,6 +100,15 @@ fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
         None => Friction::Coefficient(field.number(allowed, |mu| mu >= 0.0)?),
     };
     Ok(Contact { friction })
+}
+
+fn read_opponent(root: &Reader<'_>) -> Result<Option<Opponent>, CaseError> {
+    let Some(field) = root.get("opponent") else { return Ok(None) };
+    let table = field.table()?;
+    table.only(&["equal"])?;
+    let allowed = "true: the same sphere (for a rigid plane leave the table [opponent] out)";
+    let equal = table.require("equal", allowed)?;
+    if equal.boolean()? { Ok(Some(Opponent::Equal)) } else { Err(equal.refuse("is false", allowed)) }
 }
 
 fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {

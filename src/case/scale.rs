@@ -1,15 +1,17 @@
-//! The case in units in which R = 1 and E = 1.
+//! The case in units in which R = 1 and E = 1, as one body sees it.
 
 use super::{Case, Contact, Material, Mesh, Segment, ShearTarget, Sphere};
 
 impl Case {
-    /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2.
+    /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2. Indentation and shear are what one body moves: half of
+    /// the relative displacement in an equal pair, which the copy is one no more.
     pub fn scaled(&self) -> Case {
         let (radius, modulus) = (self.sphere.radius, self.material.youngs_modulus);
+        let travel = radius * self.bodies();
         let segment = |segment: &Segment| match *segment {
-            Segment::Indentation { indentation } => Segment::Indentation { indentation: indentation / radius },
+            Segment::Indentation { indentation } => Segment::Indentation { indentation: indentation / travel },
             Segment::Shear { shear: ShearTarget::Displacement(delta), hold } => {
-                Segment::Shear { shear: ShearTarget::Displacement(delta / radius), hold }
+                Segment::Shear { shear: ShearTarget::Displacement(delta / travel), hold }
             }
             unscaled => unscaled,
         };
@@ -21,6 +23,7 @@ impl Case {
                 hardening: self.material.hardening.scaled(modulus),
             },
             contact: Contact { friction: self.contact.friction },
+            opponent: None,
             mesh: Mesh { contact_radius: self.mesh.contact_radius.map(|a| a / radius), ..self.mesh.clone() },
             solver: self.solver.clone(),
             output: self.output.clone(),

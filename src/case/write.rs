@@ -2,7 +2,7 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::{Case, Friction, Hold, Segment, ShearTarget};
+use super::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
 
 impl Case {
     /// The case as TOML.
@@ -18,6 +18,16 @@ impl Serialize for Friction {
             Friction::Coefficient(mu) => serializer.serialize_f64(*mu),
             Friction::Stick => serializer.serialize_str("stick"),
         }
+    }
+}
+
+impl Serialize for Opponent {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        match self {
+            Opponent::Equal => map.serialize_entry("equal", &true)?,
+        }
+        map.end()
     }
 }
 

@@ -54,7 +54,7 @@ pub struct Cpu<R> {
 }
 
 /// Alart-Curnier's c = 0.1 E h_c: with c = E h_c the same run took twice the iterations.
-pub(super) const CONTACT_WEIGHT: f64 = 0.1;
+pub(crate) const CONTACT_WEIGHT: f64 = 0.1;
 
 impl<R: Real> Cpu<R> {
     /// Takes a batch of cases in their undeformed, virgin state.

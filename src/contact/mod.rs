@@ -4,6 +4,8 @@
 //! the residual and the linearised rows of the contact conditions.
 
 pub mod coulomb;
+pub mod mortar;
+pub mod pair;
 pub mod plane;
 
 #[cfg(test)]

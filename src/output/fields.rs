@@ -78,7 +78,7 @@ mod tests {
         let mesh = brick(2, 1, 1, [2.0, 1.0, 1.0]).unwrap();
         let displacement = vec![0.01; 3 * mesh.nodes.len()];
         let fields = CaseFields { stress: vec![[1e-3; 6], [0.0; 6]], alpha: vec![0.02, 0.0], max_alpha: 0.03 };
-        let units = Units { radius: 2.0, youngs_modulus: 100.0 };
+        let units = Units { radius: 2.0, youngs_modulus: 100.0, bodies: 1.0 };
         let mut point = ContactPoint {
             point: 3,
             reference_x: 0.0,

@@ -10,19 +10,21 @@ use crate::simulation::record;
 use super::plots::PlotInputs;
 use super::summary::SummaryInputs;
 
-/// The two numbers by which everything is scaled.
+/// The numbers by which everything is scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
     /// Radius R, the unit of length.
     pub radius: f64,
     /// Young's modulus E, the unit of stress.
     pub youngs_modulus: f64,
+    /// Number of bodies that deform (see [`Case::bodies`]).
+    pub bodies: f64,
 }
 
 impl Units {
     /// Those of a case in the user's units.
     pub fn of(case: &Case) -> Self {
-        Self { radius: case.sphere.radius, youngs_modulus: case.material.youngs_modulus }
+        Self { radius: case.sphere.radius, youngs_modulus: case.material.youngs_modulus, bodies: case.bodies() }
     }
 
     /// Unit of force, E R^2.
@@ -37,12 +39,13 @@ impl Units {
 }
 
 impl StepRecord {
-    /// The row in the user's units; the scaled one is of the whole sphere already.
+    /// The row in the user's units; the scaled one is of the whole sphere already, of one of a pair.
     pub fn in_units(&self, units: &Units) -> Self {
-        let (length, force, energy) = (units.radius, units.force(), units.energy());
+        let (length, force, energy) = (units.radius, units.force(), units.bodies * units.energy());
+        let travel = units.bodies * length;
         Self {
-            h: self.h * length,
-            delta_t: self.delta_t * length,
+            h: self.h * travel,
+            delta_t: self.delta_t * travel,
             f_n: self.f_n * force,
             f_t: self.f_t * force,
             a: self.a * length,
@@ -72,7 +75,7 @@ impl ContactPoint {
             reference_y: scaled.reference[1] * length,
             current_x: scaled.position[0] * length,
             current_y: scaled.position[1] * length,
-            gap: scaled.position[2] * length,
+            gap: scaled.gap * length,
             pressure: scaled.force[2] * per_area,
             traction_x: scaled.force[0] * per_area,
             traction_y: scaled.force[1] * per_area,
@@ -150,7 +153,7 @@ impl PlotInputs {
 mod tests {
     use super::*;
 
-    const UNITS: Units = Units { radius: 2.0, youngs_modulus: 100.0 };
+    const UNITS: Units = Units { radius: 2.0, youngs_modulus: 100.0, bodies: 1.0 };
 
     #[test]
     fn every_quantity_has_its_own_unit() {
@@ -201,6 +204,7 @@ mod tests {
             position: [0.11, 0.2, 0.0],
             force: [-0.3, 0.0, 1.0],
             area: 0.5,
+            gap: 0.0,
             on_symmetry_plane: false,
             status: Status::Slip,
         };

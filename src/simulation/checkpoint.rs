@@ -25,6 +25,8 @@ pub(super) struct Committed {
     pub force: Vec<f64>,
     /// What each contact node does; `points` follows from it.
     pub statuses: Vec<Status>,
+    /// Gap at each contact node.
+    pub gaps: Vec<f64>,
     #[serde(skip)]
     pub points: Vec<ContactPoint>,
     pub record: StepRecord,
@@ -38,7 +40,8 @@ impl Committed {
     pub fn virgin(mesh: &Mesh) -> Self {
         let zero = vec![0.0; 3 * mesh.nodes.len()];
         let statuses = vec![Status::Open; mesh.contact_nodes.len()];
-        let mut state = Self { u: zero.clone(), u_before: zero.clone(), force: zero, statuses, ..Self::default() };
+        let gaps = mesh.contact_nodes.iter().map(|&n| mesh.nodes[n as usize][2]).collect();
+        let mut state = Self { u: zero.clone(), u_before: zero.clone(), force: zero, statuses, gaps, ..Self::default() };
         state.place_points(mesh);
         state
     }
@@ -59,7 +62,7 @@ impl Committed {
     /// Forms the contact points from displacement, force and status. On the symmetry plane the internal force along y is left out: it balances the other
     /// half of the body, not the plane.
     pub fn place_points(&mut self, mesh: &Mesh) {
-        let Self { u, force, statuses, points, .. } = self;
+        let Self { u, force, statuses, gaps, points, .. } = self;
         let point = |(i, (&node, &status)): (usize, (&u32, &Status))| {
             let (base, x) = (3 * node as usize, mesh.nodes[node as usize]);
             let on_symmetry_plane = mesh.symmetry_nodes.binary_search(&node).is_ok();
@@ -69,6 +72,7 @@ impl Committed {
                 reference: x,
                 position: [x[0] + u[base], x[1] + u[base + 1], x[2] + u[base + 2]],
                 force: if status == Status::Open { [0.0; 3] } else { exerted },
+                gap: gaps[i],
                 area: mesh.contact_area[i],
                 on_symmetry_plane,
                 status,
@@ -157,6 +161,7 @@ impl Snapshot {
             ("forces", state.force.len(), unknowns),
             ("committed displacements", case.displacement.len(), unknowns),
             ("contact points", state.statuses.len(), mesh.contact_nodes.len()),
+            ("gaps", state.gaps.len(), mesh.contact_nodes.len()),
             ("elements", case.points.len(), elements),
             ("elements with a last flow", case.flow.len(), elements),
             ("elements with plastic work", case.plastic_work.len(), elements),

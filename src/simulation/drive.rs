@@ -17,6 +17,7 @@ use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::newton::{Newton, StepReport};
+use crate::solver::system::Meeting;
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
 use crate::solver::{Control, StepFailure};
 
@@ -293,7 +294,8 @@ impl<'a> Drive<'a> {
                 if distance >= bound {
                     self.full_slip = Some(false);
                     observer.note(&format!(
-                        "shear: full slip was not reached within delta_T = {distance:.4} R; {} of {} contact points slip",
+                        "shear: full slip was not reached within delta_T = {:.4} R; {} of {} contact points slip",
+                        self.problem.bodies * distance,
                         self.state.record.slipping_points, self.state.record.contact_points
                     ));
                     break;
@@ -364,10 +366,10 @@ impl<'a> Drive<'a> {
                              shear_steps) may help",
                             r.step + 1,
                             r.segment,
-                            r.h,
-                            r.delta_t,
-                            next.h,
-                            next.delta_t,
+                            self.problem.bodies * r.h,
+                            self.problem.bodies * r.delta_t,
+                            self.problem.bodies * next.h,
+                            self.problem.bodies * next.delta_t,
                             self.problem.max_cutbacks,
                         )));
                     }
@@ -424,7 +426,7 @@ impl<'a> Drive<'a> {
 
     /// One Newton solve towards a target; commits nothing.
     fn attempt(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
-        let guess = self.guess(target);
+        let mut guess = self.guess(target);
         let h = match (target.hold_force, self.state.last_increment) {
             // Where the force is held the indentation is an unknown, and goes on as the displacements do.
             (true, Some([last_h, last_delta_t])) if guess.is_some() && last_delta_t != 0.0 => {
@@ -439,6 +441,14 @@ impl<'a> Drive<'a> {
             Some(_) => multistep::weight(self.state.length_to(target.h, target.delta_t) / self.state.last_length),
             None => 0.0,
         };
+        if self.problem.equal_pair {
+            let expected = guess.as_deref().unwrap_or(&self.state.u);
+            let meeting = Meeting::new(&self.mesh, &self.state.u, expected);
+            if let Some(guess) = &mut guess {
+                meeting.part(&self.mesh, guess);
+            }
+            self.newton.meet(Some(meeting));
+        }
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;
         lap.end(&mut self.newton.times, Phase::Commit);
@@ -460,6 +470,9 @@ impl<'a> Drive<'a> {
             return None;
         };
         let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
+        if self.problem.equal_pair {
+            return Some(guess);
+        }
         for &node in &self.mesh.contact_nodes {
             let z = 3 * node as usize + 2;
             guess[z] -= gap(self.mesh.nodes[node as usize][2], guess[z]).min(0.0);
@@ -478,13 +491,11 @@ impl<'a> Drive<'a> {
         if let Outcome::Inverted { element, point } = outcome {
             return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
         }
-        let force = accepted.contact_force(&self.mesh);
-        let (h, contact_points, slipping_points) = {
-            let (closed, slipping) = self.newton.contact_counts();
-            (accepted.h, closed, slipping)
-        };
+        let (forces, statuses, gaps) = self.newton.contact_state(&self.mesh);
+        let force: [f64; 3] = std::array::from_fn(|c| forces.iter().map(|f| f[c]).sum());
+        let count = |s: Status| statuses.iter().filter(|status| **status == s).count();
+        let (h, contact_points, slipping_points) = (accepted.h, count(Status::Stick) + count(Status::Slip), count(Status::Slip));
         let length = self.state.length_to(target.h, target.delta_t);
-        let forces: Vec<[f64; 3]> = (0..self.mesh.contact_nodes.len()).map(|i| accepted.point_force(&self.mesh, i)).collect();
         let friction_work = self.friction_work(&accepted.u, &forces);
         self.state.u_before.copy_from_slice(&self.state.u);
         self.state.u.copy_from_slice(&accepted.u);
@@ -492,8 +503,7 @@ impl<'a> Drive<'a> {
         for (force, &node) in forces.iter().zip(&self.mesh.contact_nodes) {
             self.state.force[3 * node as usize..][..3].copy_from_slice(force);
         }
-        self.state.statuses.clear();
-        self.state.statuses.extend(accepted.rows.iter().map(|rows| rows.status));
+        (self.state.statuses, self.state.gaps) = (statuses, gaps);
         self.newton.committed();
         self.state.last_increment = Some([h - before.h, target.delta_t - before.delta_t]);
         self.state.last_length = length;
@@ -576,9 +586,11 @@ impl<'a> Drive<'a> {
     /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over the points of the meshed half.
     fn friction_work(&self, u: &[f64], forces: &[[f64; 3]]) -> f64 {
         let mut work = 0.0;
+        // Over the plane a closed point does not move along z; an interface may be inclined.
+        let components = if self.problem.equal_pair { 3 } else { 2 };
         for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {
             let base = 3 * node as usize;
-            for i in 0..2 {
+            for i in 0..components {
                 work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
             }
         }
@@ -589,6 +601,7 @@ impl<'a> Drive<'a> {
     fn outgrown(&self) -> Option<Outgrowth> {
         let limit = self.mesh.fine_radius - 0.5 * self.problem.spacing;
         let StepRecord { h, delta_t, reach, a: contact_radius, .. } = self.state.record;
+        let (h, delta_t) = (self.problem.bodies * h, self.problem.bodies * delta_t);
         (reach > limit).then_some(Outgrowth { reach, contact_radius, fine_radius: self.mesh.fine_radius, h, delta_t })
     }
 }

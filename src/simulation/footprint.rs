@@ -58,7 +58,7 @@ pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
             r: (p.position[0] - centre).hypot(p.position[1]),
             area: p.area * stretch * stretch,
             force: p.force[2],
-            gap: p.position[2],
+            gap: p.gap,
             closed: p.status != Status::Open,
         })
         .collect();

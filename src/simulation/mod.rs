@@ -37,6 +37,9 @@ pub enum SimulationError {
     /// The device.
     #[error(transparent)]
     Compute(#[from] ComputeError),
+    /// The mesh has nodes without one opposite: an equal pair cannot be simulated on it.
+    #[error("the mesh is not its own mirror image, which an equal pair needs")]
+    NotMirrored,
     /// A snapshot is of a body with another mesh.
     #[error("the state to go on from has {found} {what} where the mesh has {expected}")]
     Snapshot {

@@ -6,7 +6,7 @@ use super::SimulationError;
 use super::path::Resolution;
 use super::zone::Zone;
 use crate::analytical::predicted_contact_radius;
-use crate::case::{self, Case, Segment};
+use crate::case::{self, Case, Opponent, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::linalg::{LinearSolver, SolverKind};
@@ -15,6 +15,7 @@ use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::solver::newton::Newton;
+use crate::solver::pair::{PairSolver, mirror_nodes};
 use crate::solver::system::Boundary;
 use crate::solver::{Settings, SolverError, first_linear, loosest_linear};
 
@@ -35,6 +36,10 @@ pub struct Problem {
     pub spacing: f64,
     /// The part of the surface that is finely meshed.
     pub zone: Zone,
+    /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a plane.
+    pub equal_pair: bool,
+    /// Bodies that deform, see [`Case::bodies`]: displacements of the path and the record are those of one.
+    pub bodies: f64,
 }
 
 /// Steps of a press: so many and so many more for each element along the contact radius; the front moves by a third of an element in the last ones. In the
@@ -91,6 +96,7 @@ impl Problem {
     /// # Errors
     /// As [`Problem::new`].
     pub fn on(case: &Case, zone: Option<Zone>) -> Result<Self, SimulationError> {
+        let (equal_pair, bodies) = (case.opponent == Some(Opponent::Equal), case.bodies());
         let case = case.scaled();
         let nu = case.material.poissons_ratio;
         let material = Material::<f64>::from_case(&case.material)?;
@@ -112,6 +118,8 @@ impl Problem {
             max_cutbacks: case.solver.max_cutbacks,
             spacing: zone.contact_radius / elements as f64,
             zone,
+            equal_pair,
+            bodies,
             model: CaseModel {
                 mesh: Arc::new(mesh),
                 material,
@@ -142,6 +150,11 @@ impl Problem {
     pub fn newton(&self) -> Result<Newton, SimulationError> {
         let mesh = &self.model.mesh;
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
+        if self.equal_pair {
+            let mirror = mirror_nodes(mesh).ok_or(SimulationError::NotMirrored)?;
+            let solver = PairSolver::new(mesh, &pattern, mirror).map_err(SolverError::from)?;
+            return Ok(Newton::new(mesh, solver, self.settings));
+        }
         let kind = match self.case.solver.linear {
             case::Linear::Multigrid => SolverKind::Multigrid,
             case::Linear::Direct => SolverKind::Direct,

@@ -1,9 +1,10 @@
 //! From one accepted state to the next: a semismooth Newton iteration with a merit line search.
 //!
-//! `newton` iterates one step, `system` holds its residual and matrix, `phases` what its parts cost. Choosing steps and bisecting them is the
+//! `newton` iterates one step, `system` holds its residual and matrix, `pair` the linear systems of two equal spheres, `phases` what its parts cost. Choosing steps and bisecting them is the
 //! simulation's business.
 
 pub mod newton;
+pub mod pair;
 pub mod phases;
 pub mod system;
 

@@ -1,12 +1,13 @@
 //! One step: semismooth Newton with a backtracking line search on the contact merit, inexact linear solves.
 
+use super::pair::Systems;
 use super::phases::{Lap, Phase, PhaseTimes};
-use super::system::{Boundary, Trial, apply_contact, plate_functional, right_hand_side};
+use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
 use super::{Control, Iteration, Settings, SolverError, StepFailure};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
 use crate::contact::coulomb::{Friction, Status};
-use crate::linalg::{DEFAULT_FALLBACK_LIMIT, LinalgError, LinearSolver};
+use crate::linalg::LinalgError;
 use crate::mesh::Mesh;
 
 /// Step lengths of the line search, longest first.
@@ -50,7 +51,7 @@ const LOST_SHARE: f64 = 1e-4;
 /// The Newton iteration of one case with everything it keeps between steps.
 pub struct Newton {
     boundary: Boundary,
-    linear: LinearSolver,
+    linear: Systems,
     settings: Settings,
     /// Force scale of the last accepted step, and the largest of any.
     last_scale: f64,
@@ -62,7 +63,9 @@ pub struct Newton {
     came_off: Vec<bool>,
     fixed: Vec<bool>,
     rhs: Vec<f64>,
+    /// Correction of the displacements, and of the unknowns that the linear system has: relative displacements where the body meets its own image.
     delta: Vec<f64>,
+    correction: Vec<f64>,
     functional: Vec<f64>,
     unit_rhs: Vec<f64>,
     unit_response: Vec<f64>,
@@ -98,11 +101,11 @@ impl StepReport {
 
 impl Newton {
     /// Prepares the iteration on a mesh.
-    pub fn new(mesh: &Mesh, linear: LinearSolver, settings: Settings) -> Self {
+    pub fn new(mesh: &Mesh, linear: impl Into<Systems>, settings: Settings) -> Self {
         let n = 3 * mesh.nodes.len();
         Self {
             boundary: Boundary::new(mesh),
-            linear,
+            linear: linear.into(),
             settings,
             last_scale: 0.0,
             largest_scale: 0.0,
@@ -113,6 +116,7 @@ impl Newton {
             fixed: vec![false; n],
             rhs: vec![0.0; n],
             delta: vec![0.0; n],
+            correction: vec![0.0; n],
             functional: vec![0.0; n],
             unit_rhs: vec![0.0; n],
             unit_response: vec![0.0; n],
@@ -155,6 +159,17 @@ impl Newton {
     pub fn let_slide(&mut self, points: &[bool]) {
         self.boundary.frictionless.fill(false);
         self.boundary.frictionless.iter_mut().zip(points).for_each(|(slides, &point)| *slides = point);
+    }
+
+    /// Sets the interface of an equal pair for the next step.
+    pub fn meet(&mut self, meeting: Option<Meeting>) {
+        self.boundary.pair = meeting;
+    }
+
+    /// What contact exerts on each contact node at the accepted trial, what each does, and its gap.
+    pub fn contact_state(&self, mesh: &Mesh) -> (Vec<[f64; 3]>, Vec<Status>, Vec<f64>) {
+        let trial = &self.current;
+        (trial.point_forces(mesh, &self.boundary), trial.statuses(&self.boundary), trial.gaps(mesh, &self.boundary))
     }
 
     /// Number of unknown displacements that are not prescribed.
@@ -301,7 +316,7 @@ impl Newton {
 
     /// A normal force that is to be held is met to this share of it.
     fn holds_force(&self, case: &mut dyn Evaluate, control: &Control, tolerance: f64) -> bool {
-        let found = || self.current.contact_force(&case.model().mesh)[2];
+        let found = || self.current.contact_force(&case.model().mesh, &self.boundary)[2];
         control.normal_force.is_none_or(|force| (found() - force).abs() <= (tolerance * force).max(ROUNDING))
     }
 
@@ -363,13 +378,22 @@ impl Newton {
         if control.normal_force.is_some() {
             plate_functional(matrix, &self.boundary.plate, &mut self.functional);
         }
-        apply_contact(matrix, mesh, &self.boundary, &self.current.rows, &mut self.fixed);
+        fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
+        if self.boundary.pair.is_none() {
+            apply_contact(matrix, mesh, &self.current.rows);
+        }
         right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
         lap.end(&mut self.times, Phase::Contact);
-        self.linear.refresh(&self.fixed)?;
+        match (&mut self.linear, &self.boundary.pair) {
+            (Systems::Plane(solver), None) => solver.refresh(&self.fixed)?,
+            (Systems::Pair(solver), Some(pair)) => {
+                solver.refresh(&pair.interface, &self.current.rows, &self.fixed, &self.boundary.prescribed)?;
+            }
+            _ => return Ok(Err(StepFailure::Linear("the solver is made for another opponent".into()))),
+        }
         lap.end(&mut self.times, Phase::LinearUpdate);
-        self.delta.fill(0.0);
-        let solved = match self.linear.solve(&self.rhs, eta, &mut self.delta) {
+        self.correction.fill(0.0);
+        let solved = match self.linear.solve(&self.rhs, eta, &mut self.correction, true) {
             Ok(report) => report,
             Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
         };
@@ -383,23 +407,31 @@ impl Newton {
             }
             let tolerance = self.unit_tolerance(eta, first)?;
             // It only says how far to move the plate: an answer that is not quite so good is not worth a direct solution.
-            self.linear.set_fallback_limit(0);
-            let solved = self.linear.solve(&self.unit_rhs, tolerance, &mut self.unit_response);
-            self.linear.set_fallback_limit(DEFAULT_FALLBACK_LIMIT);
-            match solved {
+            match self.linear.solve(&self.unit_rhs, tolerance, &mut self.unit_response, false) {
                 Ok(report) => krylov += report.iterations,
                 Err(LinalgError::Stalled { iterations, .. }) => krylov += iterations,
                 Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
             }
-            let along = |x: &[f64]| self.functional.iter().zip(x).map(|(w, x)| w * x).sum::<f64>();
-            let (by_delta, by_unit) = (along(&self.delta), along(&self.unit_response));
+            let interface = self.boundary.pair.as_ref().map(|pair| pair.interface.clone());
+            let mut along = |x: &[f64]| {
+                self.delta.copy_from_slice(x);
+                if let Some(interface) = &interface {
+                    interface.expand(&mut self.delta);
+                }
+                self.functional.iter().zip(&self.delta).map(|(w, x)| w * x).sum::<f64>()
+            };
+            let (by_delta, by_unit) = (along(&self.correction), along(&self.unit_response));
             delta_h = (target - self.current.plate_force + by_delta) / -by_unit;
             if !delta_h.is_finite() {
                 return Ok(Err(StepFailure::Linear("no contact carries the normal force that is to be held".into())));
             }
-            for (d, b) in self.delta.iter_mut().zip(&self.unit_response) {
+            for (d, b) in self.correction.iter_mut().zip(&self.unit_response) {
                 *d += delta_h * b;
             }
+        }
+        self.delta.copy_from_slice(&self.correction);
+        if let Some(pair) = &self.boundary.pair {
+            pair.interface.expand(&mut self.delta);
         }
         lap.end(&mut self.times, Phase::LinearSolve);
         Ok(Ok((krylov, fallback, delta_h)))
@@ -413,6 +445,9 @@ impl Newton {
             let mut guess = vec![0.0; self.unit_rhs.len()];
             let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             guess.iter_mut().skip(2).step_by(3).for_each(|z| *z = -1.0);
+            if let Some(pair) = &self.boundary.pair {
+                pair.interface.contract(&mut guess);
+            }
             let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };
             self.unit_response.copy_from_slice(&guess);
@@ -477,7 +512,7 @@ impl Newton {
     /// Work of the residual forces of a trial on the correction: the slope of the potential energy along it, where there is one.
     fn slope(&self, trial: &Trial, control: &Control, delta_h: f64) -> f64 {
         let held = control.normal_force.map_or(0.0, |force| delta_h * (trial.plate_force - force));
-        let free = trial.residual.iter().zip(&self.delta).zip(&self.fixed).filter(|(_, fixed)| !**fixed);
+        let free = trial.residual.iter().zip(&self.correction).zip(&self.fixed).filter(|(_, fixed)| !**fixed);
         held + free.map(|((r, d), _)| r * d).sum::<f64>()
     }
 

@@ -1,12 +1,16 @@
 //! The nonlinear system of one step: residual, merit and the linearised system with its contact rows.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::{Control, Worst};
+use crate::compute::cpu::CONTACT_WEIGHT;
 use crate::compute::handle::Evaluate;
-use crate::compute::{ComputeError, Outcome};
+use crate::compute::{CaseModel, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
+use crate::contact::pair::Interface;
 use crate::contact::plane::gap;
 use crate::linalg::bsr::BlockMatrix;
 use crate::mesh::Mesh;
@@ -23,6 +27,45 @@ pub struct Boundary {
     pub frictionless: Vec<bool>,
     /// Per unknown: a typical stiffness by which a missing prescribed displacement enters the merit.
     pub weight: f64,
+    /// The interface with the body's own image, in place of the plane.
+    pub pair: Option<Meeting>,
+}
+
+/// The interface of an equal pair in one step, and where it starts from.
+#[derive(Clone, Debug)]
+pub struct Meeting {
+    /// The interface.
+    pub interface: Arc<Interface>,
+    /// Relative positions of the undeformed bodies, per slave in its frame.
+    pub reference: Vec<[f64; 3]>,
+    /// Relative displacements at the start of the step.
+    pub start: Vec<[f64; 3]>,
+}
+
+impl Meeting {
+    /// The interface of a step that starts from displacement `start` and is expected to lead to `expected` (three a node).
+    pub fn new(mesh: &Mesh, start: &[f64], expected: &[f64]) -> Self {
+        let interface = Arc::new(Interface::new(mesh, expected));
+        Self { reference: interface.relative(mesh.nodes.as_flattened()), start: interface.relative(start), interface }
+    }
+
+    /// Moves points of a guess that have passed the opponent back to it, both sides by as much.
+    pub fn part(&self, mesh: &Mesh, guess: &mut [f64]) {
+        let gap = |w: &[[f64; 3]], k: usize| (self.reference[k][2] + w[k][2]).min(0.0);
+        let before = self.interface.relative(guess);
+        for (i, k) in self.interface.facing.iter().enumerate() {
+            let Some(k) = *k else { continue };
+            if self.interface.slave_of[i].is_none() {
+                guess[3 * mesh.contact_nodes[i] as usize + 2] -= 0.5 * gap(&before, k);
+            }
+        }
+        let between = self.interface.relative(guess);
+        self.interface.contract(guess);
+        for (k, &slave) in self.interface.slaves.iter().enumerate() {
+            guess[3 * mesh.contact_nodes[slave] as usize + 2] -= gap(&between, k);
+        }
+        self.interface.expand(guess);
+    }
 }
 
 impl Boundary {
@@ -37,7 +80,7 @@ impl Boundary {
         }
         let mean_size = mesh.contact_size.iter().sum::<f64>() / mesh.contact_size.len().max(1) as f64;
         let frictionless = vec![false; mesh.contact_nodes.len()];
-        Self { plate: mesh.plate_nodes.clone(), prescribed, frictionless, weight: 0.1 * mean_size }
+        Self { plate: mesh.plate_nodes.clone(), prescribed, frictionless, weight: 0.1 * mean_size, pair: None }
     }
 
     /// Writes the plate's position into a displacement.
@@ -59,6 +102,8 @@ pub struct Trial {
     pub rows: Vec<Rows<f64>>,
     /// Residual: a force; for a prescribed unknown the displacement in excess.
     pub residual: Vec<f64>,
+    /// Of an equal pair: the force that the interface carries at each slave node, in its frame.
+    pub interface_force: Vec<[f64; 3]>,
     /// Indentation (an unknown when the normal force is held).
     pub h: f64,
     /// Normal force by which merits are scaled: the sum of f_z over the closed points.
@@ -82,6 +127,7 @@ impl Trial {
             force: vec![0.0; n],
             rows: vec![open; mesh.contact_nodes.len()],
             residual: vec![0.0; n],
+            interface_force: Vec::new(),
             h: 0.0,
             force_scale: 0.0,
             merit: f64::INFINITY,
@@ -116,8 +162,20 @@ impl Trial {
         times: &mut PhaseTimes,
     ) -> Result<Outcome, ComputeError> {
         let mut lap = Lap::start();
-        case.contact(&self.u, &self.force, &mut self.rows)?;
         let mesh = case.model().mesh.clone();
+        if let Some(pair) = &boundary.pair {
+            self.meet(case.model(), boundary, pair);
+        } else {
+            self.meet_plane(case, &mesh, boundary)?;
+        }
+        self.finish(boundary, control);
+        lap.end(times, Phase::Contact);
+        Ok(if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } })
+    }
+
+    /// Contact rows of the plane, and the residual with them in it.
+    fn meet_plane(&mut self, case: &mut dyn Evaluate, mesh: &Mesh, boundary: &Boundary) -> Result<(), ComputeError> {
+        case.contact(&self.u, &self.force, &mut self.rows)?;
         for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free) {
             let base = 3 * mesh.contact_nodes[i] as usize;
             let point = Point {
@@ -133,6 +191,64 @@ impl Trial {
         for (rows, &node) in self.rows.iter().zip(&mesh.contact_nodes) {
             self.residual[3 * node as usize..3 * node as usize + 3].copy_from_slice(&rows.residual);
         }
+        self.force_scale = self
+            .rows
+            .iter()
+            .zip(&mesh.contact_nodes)
+            .filter(|(rows, _)| rows.status != Status::Open)
+            .map(|(_, &n)| self.force[3 * n as usize + 2].abs())
+            .sum();
+        Ok(())
+    }
+
+    /// Contact rows of an equal pair at its slave nodes, and the residual of the unknowns y (see [`crate::contact::pair`]).
+    fn meet(&mut self, model: &CaseModel, boundary: &Boundary, pair: &Meeting) {
+        let (mesh, interface) = (&model.mesh, &pair.interface);
+        self.residual.copy_from_slice(&self.force);
+        interface.reduce(&mut self.residual);
+        let open = contact_rows(
+            Friction::Coulomb(0.0),
+            &Point { force: [0.0; 3], gap: 1.0, slip: [0.0; 2], weight: 1.0, on_symmetry_plane: false },
+        );
+        self.rows.fill(open);
+        self.force_scale = 0.0;
+        self.interface_force.clear();
+        for (k, w) in interface.relative(&self.u).into_iter().enumerate() {
+            let slave = interface.slaves[k];
+            let base = 3 * mesh.contact_nodes[slave] as usize;
+            let force = [self.residual[base], self.residual[base + 1], self.residual[base + 2]];
+            let on_symmetry_plane = boundary.prescribed[base + 1];
+            // On the seam there is no slip along y, nor a force: the row is that of a free node.
+            let free_y = interface.is_free_along_y(k) && !on_symmetry_plane;
+            let slip = |c: usize| w[c] - pair.start[k][c];
+            let point = Point {
+                force: if free_y { [force[0], 0.0, force[2]] } else { force },
+                gap: pair.reference[k][2] + w[2],
+                slip: [slip(0), if free_y { 0.0 } else { slip(1) }],
+                // Two bodies in series are half as stiff.
+                weight: 0.5 * CONTACT_WEIGHT * mesh.contact_size[slave],
+                on_symmetry_plane,
+            };
+            let friction = if boundary.frictionless[slave] { Friction::Coulomb(0.0) } else { model.friction };
+            let mut rows = contact_rows(friction, &point);
+            if free_y {
+                rows.fixed[1] = false;
+                rows.residual[1] = force[1];
+                rows.force_rows[1] = [0.0, 1.0, 0.0];
+                rows.displacement_rows[1] = [0.0; 3];
+            }
+            if rows.status != Status::Open {
+                // The master side carries as much again.
+                self.force_scale += 2.0 * force[2].abs();
+            }
+            self.residual[base..base + 3].copy_from_slice(&rows.residual);
+            self.interface_force.push(force);
+            self.rows[slave] = rows;
+        }
+    }
+
+    /// The residual of what is prescribed, the plate's force and the merit.
+    fn finish(&mut self, boundary: &Boundary, control: &Control) {
         for (i, &p) in boundary.prescribed.iter().enumerate() {
             if p {
                 // Symmetry nodes are at u_y = 0; the plate is handled below.
@@ -148,21 +264,12 @@ impl Trial {
             }
             self.plate_force -= self.force[base + 2];
         }
-        self.force_scale = self
-            .rows
-            .iter()
-            .zip(&mesh.contact_nodes)
-            .filter(|(rows, _)| rows.status != Status::Open)
-            .map(|(_, &n)| self.force[3 * n as usize + 2].abs())
-            .sum();
         let sum: f64 = chunked_sum(self.residual.len(), |i| {
             let r = self.residual[i] * if boundary.prescribed[i] { boundary.weight } else { 1.0 };
             r * r
         });
         let missing = control.normal_force.map_or(0.0, |f| f - self.plate_force);
         self.merit = (sum + missing * missing).sqrt();
-        lap.end(times, Phase::Contact);
-        Ok(if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } })
     }
 
     /// Force of the plane on a contact point, as the contact's conditions have it: normal to the plane the internal force; along it xi_t projected onto the
@@ -178,11 +285,54 @@ impl Trial {
         [tangential(0), across, self.force[3 * node + 2].max(0.0)]
     }
 
+    /// What contact exerts on each contact node: of a plane [`Trial::point_force`]; of an equal pair what the interface's forces, projected as those are, come
+    /// to at the nodes of both sides.
+    pub fn point_forces(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<[f64; 3]> {
+        let Some(pair) = &boundary.pair else {
+            return (0..self.rows.len()).map(|i| self.point_force(mesh, i)).collect();
+        };
+        let interface = &pair.interface;
+        let projected = |(k, force): (usize, &[f64; 3])| {
+            let rows = &self.rows[interface.slaves[k]];
+            if rows.status == Status::Open {
+                return [0.0; 3];
+            }
+            let across = if interface.is_free_along_y(k) { 0.0 } else { force[1] - rows.residual[1] };
+            [force[0] - rows.residual[0], across, force[2].max(0.0)]
+        };
+        let forces: Vec<[f64; 3]> = self.interface_force.iter().enumerate().map(projected).collect();
+        interface.nodal(&forces)
+    }
+
+    /// What each contact node does: a master what the slave does that it has most to do with.
+    pub fn statuses(&self, boundary: &Boundary) -> Vec<Status> {
+        let own = |i: usize| self.rows[i].status;
+        match &boundary.pair {
+            None => (0..self.rows.len()).map(own).collect(),
+            Some(pair) => {
+                let facing = |k: &Option<usize>| k.map_or(Status::Open, |k| own(pair.interface.slaves[k]));
+                pair.interface.facing.iter().map(facing).collect()
+            }
+        }
+    }
+
+    /// Gap at each contact node: to the plane, or between the bodies of an equal pair.
+    pub fn gaps(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<f64> {
+        match &boundary.pair {
+            None => mesh.contact_nodes.iter().map(|&n| gap(mesh.nodes[n as usize][2], self.u[3 * n as usize + 2])).collect(),
+            Some(pair) => {
+                let w = pair.interface.relative(&self.u);
+                let at = |k: &Option<usize>| k.map_or(f64::INFINITY, |k| pair.reference[k][2] + w[k][2]);
+                pair.interface.facing.iter().map(at).collect()
+            }
+        }
+    }
+
     /// Tangential and normal force of the contact on the meshed half, [x, y, z].
-    pub fn contact_force(&self, mesh: &Mesh) -> [f64; 3] {
+    pub fn contact_force(&self, mesh: &Mesh, boundary: &Boundary) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for point in 0..self.rows.len() {
-            for (s, f) in sum.iter_mut().zip(self.point_force(mesh, point)) {
+        for force in self.point_forces(mesh, boundary) {
+            for (s, f) in sum.iter_mut().zip(force) {
                 *s += f;
             }
         }
@@ -229,16 +379,23 @@ pub fn plate_functional(matrix: &BlockMatrix<f64>, plate: &[u32], w: &mut [f64])
     }
 }
 
-/// Replaces the contact nodes' rows by their contact conditions and says which unknowns are prescribed, by boundary or contact.
-///
-/// Rows of prescribed unknowns are left as they are: the linear solver takes `fixed` and never reads them.
-pub fn apply_contact(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, boundary: &Boundary, rows: &[Rows<f64>], fixed: &mut [bool]) {
+/// Says which unknowns are prescribed, by boundary or contact.
+pub fn fixed_unknowns(mesh: &Mesh, boundary: &Boundary, rows: &[Rows<f64>], fixed: &mut [bool]) {
     fixed.copy_from_slice(&boundary.prescribed);
     for (rows, &node) in rows.iter().zip(&mesh.contact_nodes) {
         let n = node as usize;
         for i in 0..3 {
             fixed[3 * n + i] |= rows.fixed[i];
         }
+    }
+}
+
+/// Replaces the contact nodes' rows by their contact conditions.
+///
+/// Rows of prescribed unknowns are left as they are: the linear solver takes `fixed` and never reads them.
+pub fn apply_contact(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, rows: &[Rows<f64>]) {
+    for (rows, &node) in rows.iter().zip(&mesh.contact_nodes) {
+        let n = node as usize;
         if rows.status != Status::Slip {
             continue;
         }

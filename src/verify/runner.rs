@@ -123,6 +123,7 @@ impl History {
 /// A case on the checks' sphere, with default numerics; nothing is written.
 pub fn sphere(poissons_ratio: f64, hardening: Hardening, friction: f64, elements: usize, path: Vec<Segment>) -> Case {
     Case {
+        opponent: None,
         sphere: Sphere { radius: RADIUS },
         material: Material { youngs_modulus: YOUNGS_MODULUS, poissons_ratio, hardening },
         contact: Contact { friction: Friction::Coefficient(friction) },

@@ -73,7 +73,7 @@ impl Rig {
 
     /// Normal and tangential force of the plane on the body, F_T positive against the motion of the plate along +x.
     pub fn forces(&self) -> (f64, f64) {
-        let f = self.newton.accepted().contact_force(&self.mesh);
+        let f = self.newton.contact_state(&self.mesh).0.iter().fold([0.0; 3], |s, f| [s[0] + f[0], s[1] + f[1], s[2] + f[2]]);
         (f[2], -f[0])
     }
 

@@ -1,0 +1,380 @@
+//! Mortar integrals between a surface and its own image, turned half round the y axis: (x, y, z) goes to (-x, y, -z).
+//!
+//! Of an equal pair one body is meshed; the other is its image. The interface, seen along z, is halved at x = 0: on x >= 0 the body's own surface is the
+//! slave and the image of its surface at x <= 0 the master. For every slave node i the gap is weighted with a dual function psi_i (Wohlmuth, SIAM J.
+//! Numer. Anal. 38, 2000): on a face wholly at x >= 0 psi_i is orthogonal to the shape functions of the other nodes. A face that the seam x = 0
+//! cuts has shape functions for psi, those of its nodes at x < 0 added to its nodes at x >= 0, so that the psi of all slaves add up to one everywhere.
+//! Faces are clipped against the image's faces (Sutherland & Hodgman, Commun. ACM 17, 1974) and integrated triangle by triangle.
+
+/// A point of the plane in which surfaces meet.
+type Point = [f64; 2];
+
+/// What the nodes of both sides contribute to the weighted gap of one slave node. The weights of each side add up to one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Weights {
+    /// The slave node.
+    pub slave: usize,
+    /// Nodes of the surface itself, and their weights.
+    pub own: Vec<(usize, f64)>,
+    /// Nodes whose images face it, and their weights.
+    pub image: Vec<(usize, f64)>,
+    /// Area of the interface that belongs to it.
+    pub area: f64,
+    /// The node lies on a face that the seam cuts, or faces its own image.
+    pub at_seam: bool,
+}
+
+/// A face is covered by the image, but for the mesh's rim, from this share of its area on.
+const COVERED: f64 = 0.99;
+/// Triangles and faces of less than this share of a face's area count as nothing.
+const SLIVER: f64 = 1e-9;
+/// A node that faces its own image with more than this weight lies on the seam.
+const OWN_IMAGE: f64 = 0.25;
+/// Degree 5 rule on the triangle (Radon 1948): barycentric coordinates and weight.
+const RULE: [([f64; 3], f64); 7] = {
+    const A: f64 = 0.059_715_871_789_769_82;
+    const B: f64 = 0.470_142_064_105_115_1;
+    const C: f64 = 0.797_426_985_353_087_3;
+    const D: f64 = 0.101_286_507_323_456_34;
+    const U: f64 = 0.132_394_152_788_506_18;
+    const V: f64 = 0.125_939_180_544_827_15;
+    const T: f64 = 1.0 / 3.0;
+    [([T, T, T], 0.225), ([A, B, B], U), ([B, A, B], U), ([B, B, A], U), ([C, D, D], V), ([D, C, D], V), ([D, D, C], V)]
+};
+
+/// The weights of all slave nodes: those at x >= 0 whose faces meet the image. `points` are the positions of the surface's nodes in the plane, `faces` its
+/// quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that counts as none.
+pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], tolerance: f64) -> Vec<Weights> {
+    let is_slave = |n: usize| points[n][0] >= -tolerance;
+    let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| [-points[n][0], points[n][1]]), *f)).collect();
+    let grid = Grid::new(&images);
+    let mut own: Vec<Vec<(usize, f64)>> = vec![Vec::new(); points.len()];
+    let mut image = own.clone();
+    let mut seam = vec![false; points.len()];
+    for nodes in faces {
+        if !nodes.iter().any(|&n| points[n][0] > tolerance) {
+            continue;
+        }
+        let cut = !nodes.iter().all(|&n| is_slave(n));
+        let face = Face::new(nodes.map(|n| points[n]), *nodes);
+        if cut {
+            face.nodes.iter().filter(|&&n| is_slave(n)).for_each(|&n| seam[n] = true);
+        }
+        // Every point of the rule: weight, shape functions of the face and of the image, the image's index.
+        let mut rule: Vec<(f64, [f64; 4], [f64; 4], usize)> = Vec::new();
+        for &m in &grid.near(&face) {
+            let polygon = clip_at_seam(clip(&face.corners, &images[m].corners));
+            each_point(&polygon, SLIVER * face.area, |x, weight| rule.push((weight, face.shape(x), images[m].shape(x), m)));
+        }
+        let covered = rule.iter().map(|p| p.0).sum::<f64>() > COVERED * face.area;
+        let psi = match (cut, covered) {
+            (true, _) => seam_functions(&face, &is_slave),
+            // By the same points, so that orthogonality holds as they integrate it.
+            (false, true) => dual_functions(|f| rule.iter().for_each(|p| f(p.1, p.0))),
+            (false, false) => dual_functions(|f| face.integrate(f)),
+        };
+        for (weight, n, other, m) in &rule {
+            for a in 0..4 {
+                let value = weight * (0..4).map(|b| psi[a][b] * n[b]).sum::<f64>();
+                if value == 0.0 {
+                    continue;
+                }
+                for b in 0..4 {
+                    add(&mut image[face.nodes[a]], images[*m].nodes[b], value * other[b]);
+                    if cut {
+                        add(&mut own[face.nodes[a]], face.nodes[b], value * n[b]);
+                    }
+                }
+            }
+        }
+        if !cut {
+            // Biorthogonal: the integral of psi_i times any shape function but its own is zero.
+            for a in 0..4 {
+                let integral = if covered { rule.iter().map(|p| p.0 * p.1[a]).sum() } else { face.shape_integrals()[a] };
+                add(&mut own[face.nodes[a]], face.nodes[a], integral);
+            }
+        }
+    }
+    let mut rows = Vec::new();
+    for n in (0..points.len()).filter(|&n| is_slave(n)) {
+        let sum = |entries: &[(usize, f64)]| entries.iter().map(|e| e.1).sum::<f64>();
+        let (area, faced) = (sum(&own[n]), sum(&image[n]));
+        if !(area > 0.0) || !(faced > 0.0) {
+            continue;
+        }
+        let normalised = |entries: &[(usize, f64)], by: f64| -> Vec<(usize, f64)> {
+            entries.iter().map(|&(m, w)| (m, w / by)).filter(|(_, w)| w.abs() > 1e-12).collect()
+        };
+        let (own, image) = (normalised(&own[n], area), normalised(&image[n], faced));
+        let itself = image.iter().find(|e| e.0 == n).map_or(0.0, |e| e.1);
+        rows.push(Weights { slave: n, own, image, area, at_seam: seam[n] || itself > OWN_IMAGE });
+    }
+    rows
+}
+
+fn add(entries: &mut Vec<(usize, f64)>, node: usize, value: f64) {
+    match entries.iter_mut().find(|e| e.0 == node) {
+        Some(entry) => entry.1 += value,
+        None => entries.push((node, value)),
+    }
+}
+
+/// The functions of a face that the seam cuts, as rows of coefficients of its shape functions: a node at x < 0 leaves its own to the nodes at x >= 0 next to it,
+/// or to all of them.
+fn seam_functions(face: &Face, is_slave: &impl Fn(usize) -> bool) -> [[f64; 4]; 4] {
+    let slave = face.nodes.map(is_slave);
+    let mut psi = [[0.0; 4]; 4];
+    for b in 0..4 {
+        if slave[b] {
+            psi[b][b] = 1.0;
+            continue;
+        }
+        let next: Vec<usize> = [(b + 1) % 4, (b + 3) % 4].into_iter().filter(|&a| slave[a]).collect();
+        let heirs = if next.is_empty() { (0..4).filter(|&a| slave[a]).collect() } else { next };
+        for &a in &heirs {
+            psi[a][b] = 1.0 / heirs.len() as f64;
+        }
+    }
+    psi
+}
+
+/// A quadrilateral of the surface, its corners counter-clockwise.
+struct Face {
+    corners: [Point; 4],
+    nodes: [usize; 4],
+    area: f64,
+}
+
+impl Face {
+    fn new(mut corners: [Point; 4], mut nodes: [usize; 4]) -> Self {
+        if area(&corners) < 0.0 {
+            corners.swap(1, 3);
+            nodes.swap(1, 3);
+        }
+        Self { area: area(&corners), corners, nodes }
+    }
+
+    fn at(&self, [xi, eta]: Point) -> ([f64; 4], [Point; 2]) {
+        let n = [(1.0 - xi) * (1.0 - eta), (1.0 + xi) * (1.0 - eta), (1.0 + xi) * (1.0 + eta), (1.0 - xi) * (1.0 + eta)].map(|n| 0.25 * n);
+        let by = |d: [f64; 4]| [0, 1].map(|i| (0..4).map(|a| 0.25 * d[a] * self.corners[a][i]).sum());
+        (n, [by([eta - 1.0, 1.0 - eta, 1.0 + eta, -1.0 - eta]), by([xi - 1.0, -1.0 - xi, 1.0 + xi, 1.0 - xi])])
+    }
+
+    /// Shape functions at a point of the plane (the bilinear map inverted by Newton's iteration).
+    fn shape(&self, x: Point) -> [f64; 4] {
+        let mut local = [0.0; 2];
+        for _ in 0..20 {
+            let (n, [a, b]) = self.at(local);
+            let r = [0, 1].map(|i| x[i] - (0..4).map(|c| n[c] * self.corners[c][i]).sum::<f64>());
+            let det = a[0] * b[1] - a[1] * b[0];
+            let step = [(r[0] * b[1] - r[1] * b[0]) / det, (a[0] * r[1] - a[1] * r[0]) / det];
+            if !(step[0].is_finite() && step[1].is_finite()) {
+                break;
+            }
+            local = [local[0] + step[0], local[1] + step[1]];
+            if step[0].abs() + step[1].abs() < 1e-14 {
+                break;
+            }
+        }
+        self.at(local).0
+    }
+
+    /// Integrates over the face by Gauss's 3 x 3 rule.
+    fn integrate(&self, f: &mut dyn FnMut([f64; 4], f64)) {
+        let g = 0.6_f64.sqrt();
+        for (xi, wx) in [(-g, 5.0 / 9.0), (0.0, 8.0 / 9.0), (g, 5.0 / 9.0)] {
+            for (eta, wy) in [(-g, 5.0 / 9.0), (0.0, 8.0 / 9.0), (g, 5.0 / 9.0)] {
+                let (n, [a, b]) = self.at([xi, eta]);
+                f(n, wx * wy * (a[0] * b[1] - a[1] * b[0]));
+            }
+        }
+    }
+
+    fn shape_integrals(&self) -> [f64; 4] {
+        let mut sum = [0.0; 4];
+        self.integrate(&mut |n, w| (0..4).for_each(|a| sum[a] += w * n[a]));
+        sum
+    }
+
+    fn bounds(&self) -> [Point; 2] {
+        let fold = |f: fn(f64, f64) -> f64| {
+            self.corners.iter().skip(1).fold(self.corners[0], |m, c| [f(m[0], c[0]), f(m[1], c[1])])
+        };
+        [fold(f64::min), fold(f64::max)]
+    }
+}
+
+/// Coefficients A of the dual functions psi_a = sum_b A_ab N_b of a face: A = D M^-1 with M the mass matrix that `integrate` gives and D its row sums.
+fn dual_functions(integrate: impl FnOnce(&mut dyn FnMut([f64; 4], f64))) -> [[f64; 4]; 4] {
+    let mut m = [[0.0; 8]; 4];
+    integrate(&mut |n, w| {
+        for a in 0..4 {
+            (0..4).for_each(|b| m[a][b] += w * n[a] * n[b]);
+        }
+    });
+    let d: [f64; 4] = std::array::from_fn(|a| m[a][..4].iter().sum());
+    (0..4).for_each(|a| m[a][4 + a] = 1.0);
+    // Gauss and Jordan; a mass matrix needs no pivoting.
+    for p in 0..4 {
+        let pivot = m[p][p];
+        m[p].iter_mut().for_each(|v| *v /= pivot);
+        for r in (0..4).filter(|&r| r != p) {
+            let factor = m[r][p];
+            let row = m[p];
+            m[r].iter_mut().zip(row).for_each(|(v, q)| *v -= factor * q);
+        }
+    }
+    std::array::from_fn(|a| std::array::from_fn(|b| d[a] * m[a][4 + b]))
+}
+
+fn area(polygon: &[Point]) -> f64 {
+    let n = polygon.len();
+    0.5 * (0..n).map(|i| polygon[i][0] * polygon[(i + 1) % n][1] - polygon[(i + 1) % n][0] * polygon[i][1]).sum::<f64>()
+}
+
+/// The part of a polygon left of the line from `from` to `to`.
+fn cut(polygon: &[Point], from: Point, to: Point) -> Vec<Point> {
+    let side = |p: &Point| (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0]);
+    let mut out = Vec::with_capacity(polygon.len() + 1);
+    for (i, p) in polygon.iter().enumerate() {
+        let q = &polygon[(i + 1) % polygon.len()];
+        let (a, b) = (side(p), side(q));
+        if a >= 0.0 {
+            out.push(*p);
+        }
+        if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+            let t = a / (a - b);
+            out.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]);
+        }
+    }
+    out
+}
+
+fn clip(subject: &[Point; 4], window: &[Point; 4]) -> Vec<Point> {
+    let mut polygon = subject.to_vec();
+    for e in 0..4 {
+        polygon = cut(&polygon, window[e], window[(e + 1) % 4]);
+        if polygon.len() < 3 {
+            return Vec::new();
+        }
+    }
+    polygon
+}
+
+fn clip_at_seam(polygon: Vec<Point>) -> Vec<Point> {
+    if polygon.iter().all(|p| p[0] >= 0.0) { polygon } else { cut(&polygon, [0.0, 1.0], [0.0, 0.0]) }
+}
+
+/// Calls `f` with the points and weights of a rule over a convex polygon.
+fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
+    if polygon.len() < 3 || area(polygon) <= smallest {
+        return;
+    }
+    for i in 1..polygon.len() - 1 {
+        let corners = [polygon[0], polygon[i], polygon[i + 1]];
+        let size = area(&corners);
+        for (l, w) in RULE {
+            f([0, 1].map(|c| (0..3).map(|k| l[k] * corners[k][c]).sum()), w * size);
+        }
+    }
+}
+
+/// Faces by the cells of a regular grid that their bounds touch.
+struct Grid {
+    origin: Point,
+    cell: f64,
+    size: [usize; 2],
+    faces: Vec<Vec<usize>>,
+}
+
+impl Grid {
+    fn new(faces: &[Face]) -> Self {
+        let bounds: Vec<[Point; 2]> = faces.iter().map(Face::bounds).collect();
+        let low = bounds.iter().fold([f64::INFINITY; 2], |m, b| [m[0].min(b[0][0]), m[1].min(b[0][1])]);
+        let high = bounds.iter().fold([f64::NEG_INFINITY; 2], |m, b| [m[0].max(b[1][0]), m[1].max(b[1][1])]);
+        let extent = (high[0] - low[0]).max(high[1] - low[1]).max(f64::MIN_POSITIVE);
+        let cell = extent / (faces.len() as f64).sqrt().max(1.0);
+        let size = [0, 1].map(|c| ((high[c] - low[c]) / cell) as usize + 1);
+        let mut grid = Self { origin: low, cell, size, faces: vec![Vec::new(); size[0] * size[1]] };
+        for (f, b) in bounds.iter().enumerate() {
+            for c in grid.cells(b) {
+                grid.faces[c].push(f);
+            }
+        }
+        grid
+    }
+
+    fn cells(&self, [low, high]: &[Point; 2]) -> Vec<usize> {
+        let index = |x: f64, c: usize| (((x - self.origin[c]) / self.cell).max(0.0) as usize).min(self.size[c] - 1);
+        let [i0, i1] = [index(low[0], 0), index(high[0], 0)];
+        let [j0, j1] = [index(low[1], 1), index(high[1], 1)];
+        (j0..=j1).flat_map(|j| (i0..=i1).map(move |i| i + self.size[0] * j)).collect()
+    }
+
+    /// Faces whose cells the bounds of `face` touch, in increasing order.
+    fn near(&self, face: &Face) -> Vec<usize> {
+        let mut found: Vec<usize> = self.cells(&face.bounds()).into_iter().flat_map(|c| self.faces[c].iter().copied()).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A patch symmetric in x, its lines bent, moved by `shift` along x.
+    fn patch(shift: f64) -> (Vec<Point>, Vec<[usize; 4]>) {
+        let (nx, ny) = (8, 4);
+        let mut points = Vec::new();
+        for j in 0..=ny {
+            for i in 0..=nx {
+                let (x, y) = (i as f64 / 4.0 - 1.0, j as f64 / 4.0);
+                points.push([x * (1.0 + 0.1 * (3.0 * y).sin()) + shift, y * (1.0 + 0.08 * (2.0 * x).cos())]);
+            }
+        }
+        let at = |i: usize, j: usize| i + (nx + 1) * j;
+        let faces = (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))).map(|(i, j)| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
+        (points, faces.collect())
+    }
+
+    #[test]
+    fn without_slip_a_node_faces_its_mirror_image_alone() {
+        let (points, faces) = patch(0.0);
+        let rows = self_image_weights(&points, &faces, 1e-9);
+        assert_eq!(rows.len(), 5 * 5);
+        for row in rows {
+            let mirror = (0..points.len()).find(|&m| (points[m][0] + points[row.slave][0]).abs() < 1e-12 && points[m][1] == points[row.slave][1]).unwrap();
+            assert_eq!(row.own, [(row.slave, 1.0)]);
+            for (m, w) in &row.image {
+                assert!((w - f64::from(u8::from(*m == mirror))).abs() < 1e-10, "{}: {m} {w}", row.slave);
+            }
+            assert_eq!(row.at_seam, mirror == row.slave);
+        }
+    }
+
+    #[test]
+    fn uniform_pressure_goes_through_the_interface() {
+        // What each node gets, as slave and as master, is its own share of the area, wherever the image lies.
+        for shift in [0.0375, 0.125, -0.07, 0.25] {
+            let (points, faces) = patch(shift);
+            let rows = self_image_weights(&points, &faces, 1e-9);
+            let mut force = vec![0.0; points.len()];
+            for row in &rows {
+                row.own.iter().for_each(|&(m, w)| force[m] += row.area * w);
+                row.image.iter().for_each(|&(m, w)| force[m] += row.area * w);
+            }
+            let mut area = vec![0.0; points.len()];
+            for nodes in &faces {
+                let face = Face::new(nodes.map(|n| points[n]), *nodes);
+                face.shape_integrals().into_iter().zip(face.nodes).for_each(|(s, n)| area[n] += s);
+            }
+            // Near the rim there are faces without an image.
+            for (n, p) in points.iter().enumerate().filter(|(_, p)| p[0].abs() < 0.45 - shift.abs() && p[1] < 0.4) {
+                let off = (force[n] - area[n]) / area[n];
+                assert!(off.abs() < 1e-8, "shift {shift}, node {n} at {p:?}: {off:.2e}");
+            }
+        }
+    }
+}

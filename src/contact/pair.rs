@@ -1,0 +1,377 @@
+//! How an equal pair meets itself: what the displacements of one body have to do with the gap and the slip between it and its image, turned half round y.
+//!
+//! With R = diag(-1, 1, -1) the relative position of slave node i is `w_i = sum_k S_ik x_k - R sum_j M_ij x_j` with the mortar weights S of the body itself
+//! and M of its image (see [`super::mortar`]). Its conditions are those of a point over a plane, in a frame of its own: tangents t_1 (in the plane of x and the
+//! normal) and t_2, and the normal n, the mean of the two surfaces'. So the unknowns y of a step are w in these frames at slave nodes and u elsewhere:
+//! `u = T y`. The forces that belong to y are `T^T f`: at a slave node the force that the interface carries there, at a master node the body's own and what
+//! the image exerts on it, which is nothing together in equilibrium.
+
+use super::mortar::{Weights, self_image_weights};
+use crate::mesh::Mesh;
+
+/// R = diag(-1, 1, -1), the half turn round y.
+pub const HALF_TURN: [f64; 3] = [-1.0, 1.0, -1.0];
+
+/// The interface of one step: fixed while it is solved, made anew for the next.
+#[derive(Clone, Debug, Default)]
+pub struct Interface {
+    /// Slave nodes, by their index among the contact nodes.
+    pub slaves: Vec<usize>,
+    /// Per contact node: the slave that it is, if it is one.
+    pub slave_of: Vec<Option<usize>>,
+    /// Per slave: frame [t_1, t_2, n].
+    pub frames: Vec<[[f64; 3]; 3]>,
+    /// Area of the interface that belongs to each slave.
+    pub area: Vec<f64>,
+    /// Per contact node: the slave that it has most to do with.
+    pub facing: Vec<Option<usize>>,
+    /// Nodes of the contact nodes.
+    nodes: Vec<usize>,
+    /// Per slave: coefficients of master nodes (indices among the contact nodes), by component.
+    masters: Vec<Vec<(usize, [f64; 3])>>,
+    /// Slaves that have to do with other slaves or their own image, and their matrices by component: E and its inverse, row after row.
+    seam: Vec<usize>,
+    direct: [Vec<f64>; 3],
+    inverse: [Vec<f64>; 3],
+    /// Position in `seam`.
+    in_seam: Vec<Option<usize>>,
+    /// Per slave: y is not coupled. It is so on the symmetry plane, and on the seam, where there is no slip along y.
+    free_y: Vec<bool>,
+}
+
+/// Share of an element that the seam may be off a node.
+const SEAM: f64 = 1e-2;
+
+impl Interface {
+    /// The interface between a body with displacement `u` (three a node) and its image.
+    pub fn new(mesh: &Mesh, u: &[f64]) -> Self {
+        let nodes: Vec<usize> = mesh.contact_nodes.iter().map(|&n| n as usize).collect();
+        let index = |n: u32| mesh.contact_nodes.partition_point(|&c| c < n);
+        let faces: Vec<[usize; 4]> = mesh.contact_faces.iter().map(|f| f.map(index)).collect();
+        let position = |i: usize| -> [f64; 3] {
+            let n = nodes[i];
+            std::array::from_fn(|c| mesh.nodes[n][c] + u[3 * n + c])
+        };
+        let positions: Vec<[f64; 3]> = (0..nodes.len()).map(position).collect();
+        let plane: Vec<[f64; 2]> = positions.iter().map(|x| [x[0], x[1]]).collect();
+        let spacing = mesh.contact_size.iter().copied().fold(f64::INFINITY, f64::min);
+        let rows = self_image_weights(&plane, &faces, SEAM * spacing);
+        let on_symmetry = |i: usize| mesh.nodes[nodes[i]][1] == 0.0;
+        let up = inward_normals(&positions, &faces);
+
+        let mut slave_of = vec![None; nodes.len()];
+        rows.iter().enumerate().for_each(|(k, row)| slave_of[row.slave] = Some(k));
+        let free_y: Vec<bool> = rows.iter().map(|row| row.at_seam || on_symmetry(row.slave)).collect();
+        let coefficients: Vec<Vec<(usize, [f64; 3])>> = rows.iter().zip(&free_y).map(|(row, &free)| combine(row, free)).collect();
+        let mut facing: Vec<Option<(usize, f64)>> = vec![None; nodes.len()];
+        for (k, row) in rows.iter().enumerate() {
+            facing[row.slave] = Some((k, f64::INFINITY));
+            for &(j, w) in &row.image {
+                if facing[j].is_none_or(|(_, most)| w > most) {
+                    facing[j] = Some((k, w));
+                }
+            }
+        }
+        let plain = |k: usize, row: &[(usize, [f64; 3])]| {
+            row.iter().all(|&(j, c)| slave_of[j].is_none_or(|other| other == k && c == [1.0; 3]))
+        };
+        let mut in_group = vec![false; rows.len()];
+        for (k, row) in coefficients.iter().enumerate().filter(|(k, row)| !plain(*k, row)) {
+            in_group[k] = true;
+            row.iter().filter_map(|e| slave_of[e.0]).for_each(|other| in_group[other] = true);
+        }
+        let seam: Vec<usize> = (0..rows.len()).filter(|&k| in_group[k]).collect();
+        let mut in_seam = vec![None; rows.len()];
+        seam.iter().enumerate().for_each(|(g, &k)| in_seam[k] = Some(g));
+        let n = seam.len();
+        let direct: [Vec<f64>; 3] = std::array::from_fn(|c| {
+            let mut e = vec![0.0; n * n];
+            for (g, &k) in seam.iter().enumerate() {
+                for &(j, w) in &coefficients[k] {
+                    if let Some(other) = slave_of[j].and_then(|other| in_seam[other]) {
+                        e[g * n + other] += w[c];
+                    }
+                }
+            }
+            e
+        });
+        let inverse = std::array::from_fn(|c| invert(&direct[c], n));
+        let frames = rows
+            .iter()
+            .map(|row| {
+                let mut normal = [0.0; 3];
+                for &(j, w) in &row.own {
+                    (0..3).for_each(|c| normal[c] += w * up[j][c]);
+                }
+                for &(j, w) in &row.image {
+                    (0..3).for_each(|c| normal[c] -= w * HALF_TURN[c] * up[j][c]);
+                }
+                if free_y[slave_of[row.slave].unwrap_or(0)] {
+                    normal[1] = 0.0;
+                }
+                frame(normal)
+            })
+            .collect();
+        let masters = coefficients.into_iter().map(|row| row.into_iter().filter(|e| slave_of[e.0].is_none()).collect()).collect();
+        Self {
+            slaves: rows.iter().map(|row| row.slave).collect(),
+            slave_of,
+            frames,
+            area: rows.iter().map(|row| row.area).collect(),
+            facing: facing.into_iter().map(|f| f.map(|(k, _)| k)).collect(),
+            nodes,
+            masters,
+            seam,
+            direct,
+            inverse,
+            in_seam,
+            free_y,
+        }
+    }
+
+    /// The unknown of component 0 of a slave.
+    fn base(&self, k: usize) -> usize {
+        3 * self.nodes[self.slaves[k]]
+    }
+
+    /// Whether a slave's slip along y is no condition: the symmetry plane or the seam sees to it.
+    pub fn is_free_along_y(&self, k: usize) -> bool {
+        self.free_y[k]
+    }
+
+    /// Relative positions or displacements of the slaves in their frames, from those of all nodes (three a node).
+    pub fn relative(&self, x: &[f64]) -> Vec<[f64; 3]> {
+        (0..self.slaves.len()).map(|k| to_frame(&self.frames[k], &self.relative_global(k, x))).collect()
+    }
+
+    fn relative_global(&self, k: usize, x: &[f64]) -> [f64; 3] {
+        let at = |node: usize| &x[3 * node..3 * node + 3];
+        let mut w = [0.0; 3];
+        match self.in_seam[k] {
+            None => w.copy_from_slice(at(self.nodes[self.slaves[k]])),
+            Some(g) => {
+                let n = self.seam.len();
+                for (other, &slave) in self.seam.iter().enumerate() {
+                    let x = at(self.nodes[self.slaves[slave]]);
+                    (0..3).for_each(|c| w[c] += self.direct[c][g * n + other] * x[c]);
+                }
+            }
+        }
+        for &(j, f) in &self.masters[k] {
+            let x = at(self.nodes[j]);
+            (0..3).for_each(|c| w[c] += f[c] * x[c]);
+        }
+        w
+    }
+
+    /// y of displacements u: slave entries become relative ones in their frames.
+    pub fn contract(&self, u: &mut [f64]) {
+        for (k, w) in self.relative(u).into_iter().enumerate() {
+            let base = self.base(k);
+            u[base..base + 3].copy_from_slice(&w);
+        }
+    }
+
+    /// u = T y, in place.
+    pub fn expand(&self, y: &mut [f64]) {
+        let mut rest: Vec<[f64; 3]> = Vec::with_capacity(self.slaves.len());
+        for k in 0..self.slaves.len() {
+            let base = self.base(k);
+            let mut w = from_frame(&self.frames[k], &[y[base], y[base + 1], y[base + 2]]);
+            for &(j, f) in &self.masters[k] {
+                let x = 3 * self.nodes[j];
+                (0..3).for_each(|c| w[c] -= f[c] * y[x + c]);
+            }
+            rest.push(w);
+        }
+        self.through_seam(&mut rest, |m, n, row, column| m[row * n + column]);
+        for (k, w) in rest.into_iter().enumerate() {
+            let base = self.base(k);
+            y[base..base + 3].copy_from_slice(&w);
+        }
+    }
+
+    /// T^T f, in place: slave entries become the forces of the interface in their frames, master entries what is not balanced there.
+    pub fn reduce(&self, f: &mut [f64]) {
+        let mut forces: Vec<[f64; 3]> = (0..self.slaves.len())
+            .map(|k| {
+                let base = self.base(k);
+                [f[base], f[base + 1], f[base + 2]]
+            })
+            .collect();
+        self.through_seam(&mut forces, |m, n, row, column| m[column * n + row]);
+        for (k, force) in forces.into_iter().enumerate() {
+            for &(j, w) in &self.masters[k] {
+                let x = 3 * self.nodes[j];
+                (0..3).for_each(|c| f[x + c] -= w[c] * force[c]);
+            }
+            let base = self.base(k);
+            f[base..base + 3].copy_from_slice(&to_frame(&self.frames[k], &force));
+        }
+    }
+
+    /// The inverse of E, or its transpose, at the seam's slaves.
+    fn through_seam(&self, w: &mut [[f64; 3]], entry: impl Fn(&[f64], usize, usize, usize) -> f64) {
+        let n = self.seam.len();
+        let before: Vec<[f64; 3]> = self.seam.iter().map(|&k| w[k]).collect();
+        for (g, &k) in self.seam.iter().enumerate() {
+            w[k] = std::array::from_fn(|c| (0..n).map(|other| entry(&self.inverse[c], n, g, other) * before[other][c]).sum());
+        }
+    }
+
+    /// What the interface's forces (per slave, in its frame) exert on the contact nodes of the body, in their order.
+    pub fn nodal(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut nodal = vec![[0.0; 3]; self.nodes.len()];
+        let n = self.seam.len();
+        for (k, force) in forces.iter().enumerate() {
+            let force = from_frame(&self.frames[k], force);
+            match self.in_seam[k] {
+                None => (0..3).for_each(|c| nodal[self.slaves[k]][c] += force[c]),
+                Some(g) => {
+                    for (other, &slave) in self.seam.iter().enumerate() {
+                        (0..3).for_each(|c| nodal[self.slaves[slave]][c] += self.direct[c][g * n + other] * force[c]);
+                    }
+                }
+            }
+            for &(j, w) in &self.masters[k] {
+                (0..3).for_each(|c| nodal[j][c] += w[c] * force[c]);
+            }
+        }
+        nodal
+    }
+}
+
+/// The coefficients of w = S x - R M x by node and component. Where y is not coupled it is the slave's own.
+fn combine(row: &Weights, free_y: bool) -> Vec<(usize, [f64; 3])> {
+    let mut out: Vec<(usize, [f64; 3])> = Vec::new();
+    let mut add = |j: usize, by: [f64; 3]| match out.iter_mut().find(|e| e.0 == j) {
+        Some(e) => (0..3).for_each(|c| e.1[c] += by[c]),
+        None => out.push((j, by)),
+    };
+    let coupled = if free_y { 0.0 } else { 1.0 };
+    for &(j, w) in &row.own {
+        add(j, [w, coupled * w, w]);
+    }
+    for &(j, w) in &row.image {
+        add(j, [-HALF_TURN[0] * w, -HALF_TURN[1] * coupled * w, -HALF_TURN[2] * w]);
+    }
+    if free_y {
+        add(row.slave, [0.0, 1.0, 0.0]);
+    }
+    out.sort_by_key(|e| e.0);
+    out
+}
+
+/// Unit normals into the body at the surface's nodes, means of those of the faces around them weighted by area. The body's surface looks down.
+fn inward_normals(positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<[f64; 3]> {
+    let mut normals = vec![[0.0; 3]; positions.len()];
+    for face in faces {
+        let [a, b, c, d] = face.map(|n| positions[n]);
+        let (p, q): ([f64; 3], [f64; 3]) = (std::array::from_fn(|i| c[i] - a[i]), std::array::from_fn(|i| d[i] - b[i]));
+        let cross = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        let sign = if cross[2] < 0.0 { -1.0 } else { 1.0 };
+        for &n in face {
+            (0..3).for_each(|i| normals[n][i] += sign * cross[i]);
+        }
+    }
+    normals.iter_mut().for_each(|n| *n = unit(*n));
+    normals
+}
+
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    if length > 0.0 { v.map(|v| v / length) } else { [0.0, 0.0, 1.0] }
+}
+
+fn frame(normal: [f64; 3]) -> [[f64; 3]; 3] {
+    let n = unit(normal);
+    let t1 = unit(std::array::from_fn(|i| if i == 0 { 1.0 } else { 0.0 } - n[0] * n[i]));
+    let t2 = [n[1] * t1[2] - n[2] * t1[1], n[2] * t1[0] - n[0] * t1[2], n[0] * t1[1] - n[1] * t1[0]];
+    [t1, t2, n]
+}
+
+fn to_frame(frame: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
+    frame.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2])
+}
+
+fn from_frame(frame: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|i| frame[0][i] * v[0] + frame[1][i] * v[1] + frame[2][i] * v[2])
+}
+
+/// The inverse of a small dense matrix, with partial pivoting.
+fn invert(matrix: &[f64], n: usize) -> Vec<f64> {
+    let mut a = matrix.to_vec();
+    let mut inverse = vec![0.0; n * n];
+    (0..n).for_each(|i| inverse[i * n + i] = 1.0);
+    for p in 0..n {
+        let best = (p..n).max_by(|&i, &j| a[i * n + p].abs().total_cmp(&a[j * n + p].abs())).unwrap_or(p);
+        for c in 0..n {
+            a.swap(p * n + c, best * n + c);
+            inverse.swap(p * n + c, best * n + c);
+        }
+        let pivot = a[p * n + p];
+        for c in 0..n {
+            a[p * n + c] /= pivot;
+            inverse[p * n + c] /= pivot;
+        }
+        for r in (0..n).filter(|&r| r != p) {
+            let factor = a[r * n + p];
+            if factor != 0.0 {
+                for c in 0..n {
+                    a[r * n + c] -= factor * a[p * n + c];
+                    inverse[r * n + c] -= factor * inverse[p * n + c];
+                }
+            }
+        }
+    }
+    inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{SphereSpec, sphere_mesh};
+
+    fn slid(mesh: &Mesh, by: f64) -> Vec<f64> {
+        mesh.nodes.iter().flat_map(|x| [by, 0.01 * x[1] * x[0], -0.01 - 0.003 * x[0] + 0.001 * x[1]]).collect()
+    }
+
+    #[test]
+    fn forces_and_displacements_are_dual() {
+        let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap();
+        for by in [0.0, 0.007, 0.06, -0.03] {
+            let interface = Interface::new(&mesh, &slid(&mesh, by));
+            let n = 3 * mesh.nodes.len();
+            let y: Vec<f64> = (0..n).map(|i| (0.37 * i as f64).sin()).collect();
+            let f: Vec<f64> = (0..n).map(|i| (0.11 * i as f64 + 0.4).cos()).collect();
+            let (mut u, mut g) = (y.clone(), f.clone());
+            interface.expand(&mut u);
+            interface.reduce(&mut g);
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            assert!((dot(&u, &f) - dot(&y, &g)).abs() < 1e-10 * dot(&u, &u).sqrt() * dot(&f, &f).sqrt(), "slid by {by}");
+            interface.contract(&mut u);
+            assert!(u.iter().zip(&y).all(|(a, b)| (a - b).abs() < 1e-9), "slid by {by}");
+            // The work of interface forces on relative displacements is that of the nodal forces.
+            let forces: Vec<[f64; 3]> = (0..interface.slaves.len()).map(|k| [(k as f64).sin(), 0.1, 1.0]).collect();
+            let nodal = interface.nodal(&forces);
+            let relative = interface.relative(&f);
+            let work: f64 = forces.iter().zip(&relative).map(|(a, b)| dot(a, b)).sum();
+            let at_nodes: f64 = nodal.iter().zip(&mesh.contact_nodes).map(|(p, &n)| dot(p, &f[3 * n as usize..][..3])).sum();
+            assert!((work - at_nodes).abs() < 1e-9 * work.abs().max(1.0), "slid by {by}: {work} {at_nodes}");
+        }
+    }
+
+    #[test]
+    fn bodies_that_have_not_slid_meet_in_the_plane() {
+        let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap();
+        let interface = Interface::new(&mesh, &vec![0.0; 3 * mesh.nodes.len()]);
+        let positions: Vec<f64> = mesh.nodes.as_flattened().to_vec();
+        for (k, w) in interface.relative(&positions).iter().enumerate() {
+            let [t1, _, normal] = interface.frames[k];
+            assert!(normal[0].abs() < 1e-9 && normal[1].abs() < 1e-9, "slave {k}: {normal:?}");
+            assert!((t1[0] - 1.0).abs() < 1e-9);
+            let z = mesh.nodes[interface.nodes[interface.slaves[k]]][2];
+            assert!((w[2] - 2.0 * z).abs() < 1e-9 && w[0].abs() < 1e-9, "slave {k}: {w:?}");
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! The linear systems of an equal pair, in the unknowns of its interface (see [`crate::contact::pair`]).
+//!
+//! The matrix T^T K T is applied, never formed: patterns, prolongations and coarse matrices stay those of the one body. What preconditions it knows of a pair
+//! that has not slid: a field that is even in x touches its image along the normal alone and slides freely, an odd one is held along the plane alone. So
+//! the right-hand side is split into its even and odd parts, and each goes through a V-cycle of its own.
+
+use std::sync::Arc;
+
+use crate::contact::coulomb::{Rows, Status};
+use crate::contact::pair::{HALF_TURN, Interface};
+use crate::linalg::fgmres::{Fgmres, System};
+use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, Hierarchy, LinalgError, LinearSolver, Pattern, SolveReport};
+use crate::mesh::Mesh;
+
+/// Iterations after which FGMRES starts over, and after which it gives up.
+const RESTART: usize = 60;
+const MAX_ITERATIONS: usize = 120;
+/// A system that stalls is good enough to go on from at this relative residual: the line search judges what it gives.
+const STALLED: f64 = 0.3;
+
+/// The solver of one body's systems, or of an equal pair's.
+#[derive(Debug)]
+pub enum Systems {
+    /// Over a plane.
+    Plane(Box<LinearSolver>),
+    /// Against its own image.
+    Pair(Box<PairSolver>),
+}
+
+impl From<LinearSolver> for Systems {
+    fn from(solver: LinearSolver) -> Self {
+        Self::Plane(Box::new(solver))
+    }
+}
+
+impl From<PairSolver> for Systems {
+    fn from(solver: PairSolver) -> Self {
+        Self::Pair(Box::new(solver))
+    }
+}
+
+impl Systems {
+    /// The tangent, to be written in place.
+    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+        match self {
+            Self::Plane(solver) => solver.matrix_mut(),
+            Self::Pair(solver) => solver.matrix_mut(),
+        }
+    }
+
+    /// Solves for the correction of the unknowns; without `fallback` never by the direct solver.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::solve`].
+    pub fn solve(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64], fallback: bool) -> Result<SolveReport, LinalgError> {
+        match self {
+            Self::Plane(solver) => {
+                solver.set_fallback_limit(if fallback { DEFAULT_FALLBACK_LIMIT } else { 0 });
+                solver.solve(rhs, tolerance, x)
+            }
+            Self::Pair(solver) => solver.solve(rhs, tolerance, x),
+        }
+    }
+
+    /// The norm of what is left of the free unknowns' equations.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::residual_norm`].
+    pub fn residual_norm(&mut self, rhs: &[f64], x: &[f64]) -> Result<f64, LinalgError> {
+        match self {
+            Self::Plane(solver) => solver.residual_norm(rhs, x),
+            Self::Pair(solver) => Ok(solver.residual_norm(rhs, x)),
+        }
+    }
+}
+
+/// Solves for the unknowns y of a pair.
+#[derive(Debug)]
+pub struct PairSolver {
+    matrix: BlockMatrix<f64>,
+    even: Hierarchy,
+    odd: Hierarchy,
+    krylov: Fgmres<f32>,
+    /// The node opposite in x.
+    mirror: Vec<u32>,
+    contact_nodes: Vec<u32>,
+    interface: Arc<Interface>,
+    rows: Vec<Rows<f64>>,
+    fixed: Vec<bool>,
+    even_fixed: Vec<bool>,
+    odd_fixed: Vec<bool>,
+    /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
+    reduced: Vec<f64>,
+    free: Vec<f64>,
+    work: Work,
+}
+
+#[derive(Debug, Default)]
+struct Work {
+    load: Vec<f32>,
+    even: Vec<f32>,
+    odd: Vec<f32>,
+    z_even: Vec<f32>,
+    z_odd: Vec<f32>,
+    u: Vec<f64>,
+    f: Vec<f64>,
+}
+
+/// The node opposite in x of each node of a mesh that is its own mirror image; `None` if it is not.
+pub fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
+    // + 0: no -0 among the keys.
+    let key = |x: &[f64; 3], sign: f64| [sign * x[0] + 0.0, x[1], x[2]].map(f64::to_bits);
+    let nodes: std::collections::HashMap<[u64; 3], u32> = mesh.nodes.iter().zip(0..).map(|(x, n)| (key(x, 1.0), n)).collect();
+    mesh.nodes.iter().map(|x| nodes.get(&key(x, -1.0)).copied()).collect()
+}
+
+impl PairSolver {
+    /// Plans a solver for a mesh.
+    ///
+    /// # Errors
+    /// [`LinalgError::Hierarchy`] if its prolongations do not fit, or if it has none.
+    pub fn new(mesh: &Mesh, pattern: &Pattern, mirror: Vec<u32>) -> Result<Self, LinalgError> {
+        let n = 3 * pattern.rows();
+        let hierarchy = Hierarchy::new(pattern, &mesh.hierarchy)?;
+        let zero = || vec![0.0; n];
+        let small = || vec![0.0; n];
+        Ok(Self {
+            matrix: BlockMatrix::zeros(pattern.clone()),
+            odd: hierarchy.clone(),
+            even: hierarchy,
+            krylov: Fgmres::new(n, RESTART),
+            mirror,
+            contact_nodes: mesh.contact_nodes.clone(),
+            interface: Arc::default(),
+            rows: Vec::new(),
+            fixed: vec![false; n],
+            even_fixed: vec![false; n],
+            odd_fixed: vec![false; n],
+            reduced: zero(),
+            free: zero(),
+            work: Work {
+                load: small(),
+                even: small(),
+                odd: small(),
+                z_even: small(),
+                z_odd: small(),
+                u: zero(),
+                f: zero(),
+            },
+        })
+    }
+
+    /// The tangent of the body, to be written in place before [`PairSolver::refresh`].
+    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+        &mut self.matrix
+    }
+
+    /// Takes over the tangent, the interface, its rows and which unknowns y are fixed, and which displacements are `prescribed` whatever the contact does.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::update`].
+    pub fn refresh(
+        &mut self,
+        interface: &Arc<Interface>,
+        rows: &[Rows<f64>],
+        fixed: &[bool],
+        prescribed: &[bool],
+    ) -> Result<(), LinalgError> {
+        self.interface = interface.clone();
+        self.rows.clear();
+        self.rows.extend_from_slice(rows);
+        self.fixed.copy_from_slice(fixed);
+        self.even_fixed.copy_from_slice(prescribed);
+        self.odd_fixed.copy_from_slice(prescribed);
+        for (i, &node) in self.contact_nodes.iter().enumerate() {
+            let Some(k) = interface.facing[i] else { continue };
+            let base = 3 * node as usize;
+            match rows[interface.slaves[k]].status {
+                Status::Open => {}
+                status => {
+                    self.even_fixed[base + 2] = true;
+                    if status == Status::Stick {
+                        self.odd_fixed[base] = true;
+                        self.odd_fixed[base + 1] |= !interface.is_free_along_y(k);
+                    }
+                }
+            }
+        }
+        self.even.update(&self.matrix, &self.even_fixed)?;
+        self.odd.update(&self.matrix, &self.odd_fixed)
+    }
+
+    /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as [`crate::linalg::LinearSolver::solve`].
+    ///
+    /// # Errors
+    /// [`LinalgError::Stalled`]; `y` is then the best iterate.
+    pub fn solve(&mut self, rhs: &[f64], tolerance: f64, y: &mut [f64]) -> Result<SolveReport, LinalgError> {
+        self.take_over(rhs);
+        self.free.copy_from_slice(y);
+        clear(&self.fixed, &mut self.free);
+        let (mut free, reduced) = (std::mem::take(&mut self.free), std::mem::take(&mut self.reduced));
+        let mut krylov = std::mem::replace(&mut self.krylov, Fgmres::new(0, 1));
+        let tolerance = tolerance * std::env::var("TT").ok().and_then(|t| t.parse::<f64>().ok()).unwrap_or(1.0);
+        let got = krylov.solve(self, &reduced, &mut free, tolerance, MAX_ITERATIONS);
+        (self.free, self.reduced, self.krylov) = (free, reduced, krylov);
+        for (i, y) in y.iter_mut().enumerate() {
+            *y = if self.fixed[i] { rhs[i] } else { self.free[i] };
+        }
+        if got.iterations > 30 {
+            let count = |s: Status| self.interface.slaves.iter().filter(|&&k| self.rows[k].status == s).count();
+            log::debug!("pair: {} its, residual {:.1e}, open {} stick {} slip {}", got.iterations, got.residual, count(Status::Open), count(Status::Stick), count(Status::Slip));
+            for (k, &slave) in self.interface.slaves.iter().enumerate() { if self.rows[slave].status == Status::Slip { log::debug!("  slip {k} {:?} free {} node {}", self.rows[slave], self.interface.is_free_along_y(k), self.contact_nodes[slave]); } }
+        }
+        if !got.converged && !(got.residual <= STALLED) {
+            return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
+        }
+        Ok(SolveReport {
+            iterations: got.iterations,
+            residual: got.residual,
+            converged: got.converged,
+            stagnated: !got.converged,
+            fallback: false,
+        })
+    }
+
+    /// |rhs - A y| over the free unknowns, the fixed ones at their values in `rhs`.
+    pub fn residual_norm(&mut self, rhs: &[f64], y: &[f64]) -> f64 {
+        self.take_over(rhs);
+        let mut free = y.to_vec();
+        clear(&self.fixed, &mut free);
+        let mut r = vec![0.0; free.len()];
+        System::<f32>::residual(self, &self.reduced, &free, &mut r);
+        r.iter().map(|r| r * r).sum::<f64>().sqrt()
+    }
+
+    /// Takes what the fixed unknowns contribute over to the right-hand side.
+    fn take_over(&mut self, rhs: &[f64]) {
+        let mut y = vec![0.0; rhs.len()];
+        (0..y.len()).filter(|&i| self.fixed[i]).for_each(|i| y[i] = rhs[i]);
+        let mut reduced = std::mem::take(&mut self.reduced);
+        reduced.copy_from_slice(rhs);
+        if y.iter().any(|y| *y != 0.0) {
+            let (mut u, mut f) = (vec![0.0; y.len()], vec![0.0; y.len()]);
+            self.apply(&y, &mut u, &mut f);
+            reduced.iter_mut().zip(&f).for_each(|(r, f)| *r -= f);
+        }
+        clear(&self.fixed, &mut reduced);
+        self.reduced = reduced;
+    }
+
+    /// f = A y; rows of fixed unknowns mean nothing.
+    fn apply(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+        u.copy_from_slice(y);
+        self.interface.expand(u);
+        self.matrix.multiply(u, f);
+        self.interface.reduce(f);
+        for &slave in &self.interface.slaves {
+            let (rows, base) = (&self.rows[slave], 3 * self.contact_nodes[slave] as usize);
+            if rows.status == Status::Open {
+                continue;
+            }
+            let force = [f[base], f[base + 1], f[base + 2]];
+            let w = &y[base..base + 3];
+            for i in 0..3 {
+                f[base + i] =
+                    (0..3).map(|j| rows.force_rows[i][j] * force[j] + rows.displacement_rows[i][j] * w[j]).sum::<f64>();
+            }
+        }
+    }
+
+    /// Nodal loads whose T^T is `v`, for a pair that has not slid. At a fixed unknown the interface's force takes half.
+    fn spread(&self, v: &[f32], load: &mut [f32]) {
+        load.copy_from_slice(v);
+        for (k, &slave) in self.interface.slaves.iter().enumerate() {
+            let node = self.contact_nodes[slave] as usize;
+            let opposite = self.mirror[node] as usize;
+            let open = self.rows[slave].status == Status::Open;
+            for c in 0..3 {
+                let (i, j) = (3 * node + c, 3 * opposite + c);
+                let turn = HALF_TURN[c] as f32;
+                if node == opposite {
+                    // It faces itself: its force is twice the interface's.
+                    load[i] = if c == 1 || self.fixed[i] { v[i] } else { 2.0 * v[i] };
+                } else if self.fixed[i] && !open {
+                    load[i] = 0.5 * turn * v[j];
+                    load[j] = 0.5 * v[j];
+                } else if c != 1 || !self.interface.is_free_along_y(k) {
+                    load[j] = v[j] - turn * v[i];
+                }
+            }
+        }
+    }
+}
+
+impl System<f32> for PairSolver {
+    fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
+        let mut work = std::mem::take(&mut self.work);
+        self.spread(v, &mut work.load);
+        for (n, &opposite) in self.mirror.iter().enumerate() {
+            for c in 0..3 {
+                let sign = if c == 0 { -1.0 } else { 1.0 };
+                let (own, other) = (work.load[3 * n + c], sign * work.load[3 * opposite as usize + c]);
+                work.even[3 * n + c] = 0.5 * (own + other);
+                work.odd[3 * n + c] = 0.5 * (own - other);
+            }
+        }
+        clear(&self.even_fixed, &mut work.even);
+        clear(&self.odd_fixed, &mut work.odd);
+        self.even.v_cycle(&work.even, &mut work.z_even);
+        self.odd.v_cycle(&work.odd, &mut work.z_odd);
+        for (n, &opposite) in self.mirror.iter().enumerate() {
+            for c in 0..3 {
+                let sign = if c == 0 { -1.0 } else { 1.0 };
+                let (i, j) = (3 * n + c, 3 * opposite as usize + c);
+                let even = work.z_even[i] + sign * work.z_even[j];
+                let odd = work.z_odd[i] - sign * work.z_odd[j];
+                work.u[i] = 0.5 * (f64::from(even) + f64::from(odd));
+            }
+        }
+        self.interface.contract(&mut work.u);
+        clear(&self.fixed, &mut work.u);
+        z.iter_mut().zip(&work.u).for_each(|(z, u)| *z = *u as f32);
+        let y: Vec<f64> = z.iter().map(|z| f64::from(*z)).collect();
+        self.apply(&y, &mut work.u, &mut work.f);
+        clear(&self.fixed, &mut work.f);
+        w.iter_mut().zip(&work.f).for_each(|(w, f)| *w = *f as f32);
+        self.work = work;
+    }
+
+    fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
+        let mut u = vec![0.0; x.len()];
+        self.apply(x, &mut u, r);
+        r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+        clear(&self.fixed, r);
+    }
+}
+
+fn clear<T: Default>(fixed: &[bool], x: &mut [T]) {
+    x.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed).for_each(|(x, _)| *x = T::default());
+}
