@@ -12,6 +12,18 @@ use crate::mesh::Mesh;
 /// R = diag(-1, 1, -1), the half turn round y.
 pub const HALF_TURN: [f64; 3] = [-1.0, 1.0, -1.0];
 
+/// Leaves the part of a vector (three a node) that is even in x; `mirror` is the node opposite in x of each node.
+pub fn leave_even(mirror: &[u32], v: &mut [f64]) {
+    for (n, &opposite) in mirror.iter().enumerate().filter(|(n, opposite)| *n <= **opposite as usize) {
+        for c in 0..3 {
+            let sign = if c == 0 { -1.0 } else { 1.0 };
+            let (i, j) = (3 * n + c, 3 * opposite as usize + c);
+            let even = 0.5 * (v[i] + sign * v[j]);
+            (v[i], v[j]) = (even, sign * even);
+        }
+    }
+}
+
 /// The interface of one step: fixed while it is solved, made anew for the next.
 #[derive(Clone, Debug, Default)]
 pub struct Interface {

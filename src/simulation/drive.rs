@@ -443,11 +443,13 @@ impl<'a> Drive<'a> {
         };
         if self.problem.equal_pair {
             let expected = guess.as_deref().unwrap_or(&self.state.u);
-            let meeting = Meeting::new(&self.mesh, &self.state.u, expected);
+            // Up to the first shear all is even in x.
+            let meeting = Meeting::new(&self.mesh, &self.state.u, expected, self.state.direction == 0.0);
+            self.newton.meet(meeting.clone());
             if let Some(guess) = &mut guess {
                 meeting.part(&self.mesh, guess);
+                self.newton.symmetrise(guess);
             }
-            self.newton.meet(Some(meeting));
         }
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;

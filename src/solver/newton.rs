@@ -162,8 +162,21 @@ impl Newton {
     }
 
     /// Sets the interface of an equal pair for the next step.
-    pub fn meet(&mut self, meeting: Option<Meeting>) {
-        self.boundary.pair = meeting;
+    pub fn meet(&mut self, meeting: Meeting) {
+        if let Systems::Pair(solver) = &mut self.linear {
+            solver.set_symmetric(meeting.symmetric);
+            if self.boundary.mirror.is_empty() {
+                self.boundary.mirror = solver.mirror().to_vec();
+            }
+        }
+        self.boundary.pair = Some(meeting);
+    }
+
+    /// Leaves the even part of a guess where the step is symmetric.
+    pub fn symmetrise(&self, guess: &mut [f64]) {
+        if let Systems::Pair(solver) = &self.linear {
+            solver.symmetrise(guess);
+        }
     }
 
     /// What contact exerts on each contact node at the accepted trial, what each does, and its gap.
@@ -432,6 +445,9 @@ impl Newton {
         self.delta.copy_from_slice(&self.correction);
         if let Some(pair) = &self.boundary.pair {
             pair.interface.expand(&mut self.delta);
+        }
+        if let Systems::Pair(solver) = &self.linear {
+            solver.symmetrise(&mut self.delta);
         }
         lap.end(&mut self.times, Phase::LinearSolve);
         Ok(Ok((krylov, fallback, delta_h)))

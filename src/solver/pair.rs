@@ -2,15 +2,17 @@
 //!
 //! The matrix T^T K T is applied, never formed: patterns, prolongations and coarse matrices stay those of the one body. What preconditions it knows of a pair
 //! that has not slid: a field that is even in x touches its image along the normal alone and slides freely, an odd one is held along the plane alone. So
-//! the right-hand side is split into its even and odd parts, and each goes through a V-cycle of its own.
+//! the right-hand side is split into its even and odd parts, and each goes through a V-cycle of its own. Up to the first shear all is even.
 
 use std::sync::Arc;
 
 use crate::contact::coulomb::{Rows, Status};
-use crate::contact::pair::{HALF_TURN, Interface};
+use crate::contact::pair::{HALF_TURN, Interface, leave_even};
+use crate::linalg::bsr::Widen;
 use crate::linalg::fgmres::{Fgmres, System};
 use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, Hierarchy, LinalgError, LinearSolver, Pattern, SolveReport};
 use crate::mesh::Mesh;
+use crate::real::Real;
 
 /// Iterations after which FGMRES starts over, and after which it gives up.
 const RESTART: usize = 60;
@@ -78,6 +80,10 @@ impl Systems {
 #[derive(Debug)]
 pub struct PairSolver {
     matrix: BlockMatrix<f64>,
+    /// The same in f32, for the products of the Krylov iteration.
+    single: BlockMatrix<f32>,
+    /// The state and the step are even in x, and so are all corrections.
+    symmetric: bool,
     even: Hierarchy,
     odd: Hierarchy,
     krylov: Fgmres<f32>,
@@ -126,6 +132,8 @@ impl PairSolver {
         let small = || vec![0.0; n];
         Ok(Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
+            single: BlockMatrix::zeros(pattern.clone()),
+            symmetric: false,
             odd: hierarchy.clone(),
             even: hierarchy,
             krylov: Fgmres::new(n, RESTART),
@@ -153,6 +161,25 @@ impl PairSolver {
     /// The tangent of the body, to be written in place before [`PairSolver::refresh`].
     pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
         &mut self.matrix
+    }
+
+    /// Says whether the state and the step are even in x: so is then their solution. Rounding is not, nor the points that it makes flow on one
+    /// side alone: what they add is left out.
+    pub fn set_symmetric(&mut self, symmetric: bool) {
+        self.symmetric = symmetric;
+    }
+
+    /// The node opposite in x of each node.
+    pub fn mirror(&self) -> &[u32] {
+        &self.mirror
+    }
+
+    /// Leaves the even part of displacements or forces (three a node), if all is even.
+    pub fn symmetrise(&self, u: &mut [f64]) {
+        if !self.symmetric {
+            return;
+        }
+        leave_even(&self.mirror, u);
     }
 
     /// Takes over the tangent, the interface, its rows and which unknowns y are fixed, and which displacements are `prescribed` whatever the contact does.
@@ -186,8 +213,9 @@ impl PairSolver {
                 }
             }
         }
+        self.single.blocks.iter_mut().zip(&self.matrix.blocks).for_each(|(s, b)| *s = b.map(|b| b as f32));
         self.even.update(&self.matrix, &self.even_fixed)?;
-        self.odd.update(&self.matrix, &self.odd_fixed)
+        if self.symmetric { Ok(()) } else { self.odd.update(&self.matrix, &self.odd_fixed) }
     }
 
     /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as [`crate::linalg::LinearSolver::solve`].
@@ -200,16 +228,10 @@ impl PairSolver {
         clear(&self.fixed, &mut self.free);
         let (mut free, reduced) = (std::mem::take(&mut self.free), std::mem::take(&mut self.reduced));
         let mut krylov = std::mem::replace(&mut self.krylov, Fgmres::new(0, 1));
-        let tolerance = tolerance * std::env::var("TT").ok().and_then(|t| t.parse::<f64>().ok()).unwrap_or(1.0);
         let got = krylov.solve(self, &reduced, &mut free, tolerance, MAX_ITERATIONS);
         (self.free, self.reduced, self.krylov) = (free, reduced, krylov);
         for (i, y) in y.iter_mut().enumerate() {
             *y = if self.fixed[i] { rhs[i] } else { self.free[i] };
-        }
-        if got.iterations > 30 {
-            let count = |s: Status| self.interface.slaves.iter().filter(|&&k| self.rows[k].status == s).count();
-            log::debug!("pair: {} its, residual {:.1e}, open {} stick {} slip {}", got.iterations, got.residual, count(Status::Open), count(Status::Stick), count(Status::Slip));
-            for (k, &slave) in self.interface.slaves.iter().enumerate() { if self.rows[slave].status == Status::Slip { log::debug!("  slip {k} {:?} free {} node {}", self.rows[slave], self.interface.is_free_along_y(k), self.contact_nodes[slave]); } }
         }
         if !got.converged && !(got.residual <= STALLED) {
             return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
@@ -241,18 +263,19 @@ impl PairSolver {
         reduced.copy_from_slice(rhs);
         if y.iter().any(|y| *y != 0.0) {
             let (mut u, mut f) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-            self.apply(&y, &mut u, &mut f);
+            self.apply(&self.matrix, &y, &mut u, &mut f);
             reduced.iter_mut().zip(&f).for_each(|(r, f)| *r -= f);
         }
         clear(&self.fixed, &mut reduced);
         self.reduced = reduced;
     }
 
-    /// f = A y; rows of fixed unknowns mean nothing.
-    fn apply(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+    /// f = A y with the tangent in `matrix`; rows of fixed unknowns mean nothing.
+    fn apply<T: Real + Widen<f64>>(&self, matrix: &BlockMatrix<T>, y: &[f64], u: &mut [f64], f: &mut [f64]) {
         u.copy_from_slice(y);
         self.interface.expand(u);
-        self.matrix.multiply(u, f);
+        matrix.multiply(u, f);
+        self.symmetrise(f);
         self.interface.reduce(f);
         for &slave in &self.interface.slaves {
             let (rows, base) = (&self.rows[slave], 3 * self.contact_nodes[slave] as usize);
@@ -307,7 +330,11 @@ impl System<f32> for PairSolver {
         clear(&self.even_fixed, &mut work.even);
         clear(&self.odd_fixed, &mut work.odd);
         self.even.v_cycle(&work.even, &mut work.z_even);
-        self.odd.v_cycle(&work.odd, &mut work.z_odd);
+        if self.symmetric {
+            work.z_odd.fill(0.0);
+        } else {
+            self.odd.v_cycle(&work.odd, &mut work.z_odd);
+        }
         for (n, &opposite) in self.mirror.iter().enumerate() {
             for c in 0..3 {
                 let sign = if c == 0 { -1.0 } else { 1.0 };
@@ -321,7 +348,7 @@ impl System<f32> for PairSolver {
         clear(&self.fixed, &mut work.u);
         z.iter_mut().zip(&work.u).for_each(|(z, u)| *z = *u as f32);
         let y: Vec<f64> = z.iter().map(|z| f64::from(*z)).collect();
-        self.apply(&y, &mut work.u, &mut work.f);
+        self.apply(&self.single, &y, &mut work.u, &mut work.f);
         clear(&self.fixed, &mut work.f);
         w.iter_mut().zip(&work.f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;
@@ -329,7 +356,7 @@ impl System<f32> for PairSolver {
 
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
         let mut u = vec![0.0; x.len()];
-        self.apply(x, &mut u, r);
+        self.apply(&self.matrix, x, &mut u, r);
         r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
         clear(&self.fixed, r);
     }

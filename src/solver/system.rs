@@ -10,7 +10,7 @@ use crate::compute::cpu::CONTACT_WEIGHT;
 use crate::compute::handle::Evaluate;
 use crate::compute::{CaseModel, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
-use crate::contact::pair::Interface;
+use crate::contact::pair::{Interface, leave_even};
 use crate::contact::plane::gap;
 use crate::linalg::bsr::BlockMatrix;
 use crate::mesh::Mesh;
@@ -29,6 +29,8 @@ pub struct Boundary {
     pub weight: f64,
     /// The interface with the body's own image, in place of the plane.
     pub pair: Option<Meeting>,
+    /// Of an equal pair: the node opposite in x of each node.
+    pub mirror: Vec<u32>,
 }
 
 /// The interface of an equal pair in one step, and where it starts from.
@@ -40,13 +42,16 @@ pub struct Meeting {
     pub reference: Vec<[f64; 3]>,
     /// Relative displacements at the start of the step.
     pub start: Vec<[f64; 3]>,
+    /// All is even in x: nothing slips, and friction has nothing to do.
+    pub symmetric: bool,
 }
 
 impl Meeting {
-    /// The interface of a step that starts from displacement `start` and is expected to lead to `expected` (three a node).
-    pub fn new(mesh: &Mesh, start: &[f64], expected: &[f64]) -> Self {
+    /// The interface of a step that starts from displacement `start` and is expected to lead to `expected` (three a node), both and the step even in x if
+    /// it is `symmetric`.
+    pub fn new(mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) -> Self {
         let interface = Arc::new(Interface::new(mesh, expected));
-        Self { reference: interface.relative(mesh.nodes.as_flattened()), start: interface.relative(start), interface }
+        Self { reference: interface.relative(mesh.nodes.as_flattened()), start: interface.relative(start), interface, symmetric }
     }
 
     /// Moves points of a guess that have passed the opponent back to it, both sides by as much.
@@ -80,7 +85,7 @@ impl Boundary {
         }
         let mean_size = mesh.contact_size.iter().sum::<f64>() / mesh.contact_size.len().max(1) as f64;
         let frictionless = vec![false; mesh.contact_nodes.len()];
-        Self { plate: mesh.plate_nodes.clone(), prescribed, frictionless, weight: 0.1 * mean_size, pair: None }
+        Self { plate: mesh.plate_nodes.clone(), prescribed, frictionless, weight: 0.1 * mean_size, pair: None, mirror: Vec::new() }
     }
 
     /// Writes the plate's position into a displacement.
@@ -205,6 +210,9 @@ impl Trial {
     fn meet(&mut self, model: &CaseModel, boundary: &Boundary, pair: &Meeting) {
         let (mesh, interface) = (&model.mesh, &pair.interface);
         self.residual.copy_from_slice(&self.force);
+        if pair.symmetric {
+            leave_even(&boundary.mirror, &mut self.residual);
+        }
         interface.reduce(&mut self.residual);
         let open = contact_rows(
             Friction::Coulomb(0.0),
@@ -229,13 +237,16 @@ impl Trial {
                 weight: 0.5 * CONTACT_WEIGHT * mesh.contact_size[slave],
                 on_symmetry_plane,
             };
-            let friction = if boundary.frictionless[slave] { Friction::Coulomb(0.0) } else { model.friction };
+            let friction = if boundary.frictionless[slave] || pair.symmetric { Friction::Coulomb(0.0) } else { model.friction };
             let mut rows = contact_rows(friction, &point);
             if free_y {
                 rows.fixed[1] = false;
                 rows.residual[1] = force[1];
                 rows.force_rows[1] = [0.0, 1.0, 0.0];
                 rows.displacement_rows[1] = [0.0; 3];
+            }
+            if pair.symmetric && rows.status == Status::Slip && model.friction != Friction::Coulomb(0.0) {
+                rows.status = Status::Stick;
             }
             if rows.status != Status::Open {
                 // The master side carries as much again.
