@@ -11,8 +11,8 @@ const FRICTION: [f64; 2] = [0.0, 1.0];
 /// Displacements of a shear of given length over sqrt(2 R h), evenly in the logarithm: from well within stick to far into slip.
 const SHEAR: [f64; 2] = [2e-4, 0.5];
 
-/// Case number `index` of a seed, as a case file; the same for ever.
-pub fn case_text(seed: u64, index: usize, elements: usize) -> String {
+/// Case number `index` of a seed, as a case file; the same for ever. As an `equal` pair its spheres move as far as the one does.
+pub fn case_text(seed: u64, index: usize, elements: usize, equal: bool) -> String {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
     draw.0.set_stream(index as u64);
     let radius = draw.logarithmic([1e-3, 1e3]);
@@ -26,19 +26,20 @@ pub fn case_text(seed: u64, index: usize, elements: usize) -> String {
         1 | 2 => "\"stick\"".to_owned(),
         _ => format!("{:?}", draw.even(FRICTION)),
     };
+    let (opponent, travel) = if equal { ("[opponent]\nequal = true\n", 2.0 * radius) } else { ("", radius) };
     let path = path(&mut draw, h, friction == "\"stick\"");
     let segments: String = path
         .iter()
         .map(|segment| match segment {
-            Segment::Press(h) => format!("[[path]]\nindentation = {:?}\n", h * radius),
-            Segment::Shear(d, held) => format!("[[path]]\nshear = {:?}\n{}", d * radius, hold(*held)),
+            Segment::Press(h) => format!("[[path]]\nindentation = {:?}\n", h * travel),
+            Segment::Shear(d, held) => format!("[[path]]\nshear = {:?}\n{}", d * travel, hold(*held)),
             Segment::FullSlip(held) => format!("[[path]]\nshear = \"full-slip\"\n{}", hold(*held)),
             Segment::Release => "[[path]]\nrelease = true\n".to_owned(),
         })
         .collect();
     format!(
         "[sphere]\nradius = {radius:?}\n[material]\nyoungs_modulus = {modulus:?}\npoissons_ratio = {nu:?}\n[material.hardening]\n{hardening}\n\
-         [contact]\nfriction = {friction}\n[mesh]\nelements_per_contact_radius = {elements}\n{segments}"
+         [contact]\nfriction = {friction}\n{opponent}[mesh]\nelements_per_contact_radius = {elements}\n{segments}"
     )
 }
 

@@ -31,6 +31,9 @@ struct Args {
     /// Elements along the contact radius.
     #[arg(long, default_value_t = 5)]
     elements: usize,
+    /// Between two equal spheres instead of against a plane.
+    #[arg(long)]
+    equal: bool,
     /// Write the measured numbers to this file, as JSON.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -45,7 +48,7 @@ struct Args {
 fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let args = Args::parse();
     if let Some(index) = args.only {
-        print!("{}", case_text(args.seed, index, args.elements));
+        print!("{}", case_text(args.seed, index, args.elements, args.equal));
         return Ok(ExitCode::SUCCESS);
     }
     rayon::ThreadPoolBuilder::new().num_threads(args.threads).build_global()?;
@@ -56,7 +59,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         .into_par_iter()
         .with_max_len(1)
         .map(|index| {
-            let measured = measure(args.seed, index, args.elements);
+            let measured = measure(args.seed, index, args.elements, args.equal);
             println!("{measured}");
             ready.fetch_add(1, Ordering::Relaxed);
             measured

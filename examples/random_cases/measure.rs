@@ -72,8 +72,8 @@ impl Observer for Watch {
 }
 
 /// Runs case `index` of `seed`.
-pub fn measure(seed: u64, index: usize, elements: usize) -> Measured {
-    let text = case_text(seed, index, elements);
+pub fn measure(seed: u64, index: usize, elements: usize, equal: bool) -> Measured {
+    let text = case_text(seed, index, elements, equal);
     let mut measured = Measured { seed, index, ..Measured::default() };
     let begun = Instant::now();
     let mut watch = Watch::default();

@@ -41,6 +41,8 @@ pub struct Interface {
     nodes: Vec<usize>,
     /// Per slave: coefficients of master nodes (indices among the contact nodes), by component.
     masters: Vec<Vec<(usize, [f64; 3])>>,
+    /// Per slave: the share of each master's load that is its own; the shares of a master add up to one.
+    shares: Vec<Vec<(usize, f64)>>,
     /// Slaves that have to do with other slaves or their own image, and their matrices by component: E and its inverse, row after row.
     seam: Vec<usize>,
     direct: [Vec<f64>; 3],
@@ -124,6 +126,17 @@ impl Interface {
                 frame(normal)
             })
             .collect();
+        let mut carried = vec![0.0; nodes.len()];
+        for row in &rows {
+            row.image.iter().for_each(|&(j, w)| carried[j] += row.area * w);
+        }
+        let shares = rows
+            .iter()
+            .map(|row| {
+                let to_masters = row.image.iter().filter(|e| slave_of[e.0].is_none() && carried[e.0] > 0.0);
+                to_masters.map(|&(j, w)| (j, row.area * w / carried[j])).collect()
+            })
+            .collect();
         let masters = coefficients.into_iter().map(|row| row.into_iter().filter(|e| slave_of[e.0].is_none()).collect()).collect();
         Self {
             slaves: rows.iter().map(|row| row.slave).collect(),
@@ -133,6 +146,7 @@ impl Interface {
             facing: facing.into_iter().map(|f| f.map(|(k, _)| k)).collect(),
             nodes,
             masters,
+            shares,
             seam,
             direct,
             inverse,
@@ -228,6 +242,33 @@ impl Interface {
         let before: Vec<[f64; 3]> = self.seam.iter().map(|&k| w[k]).collect();
         for (g, &k) in self.seam.iter().enumerate() {
             w[k] = std::array::from_fn(|c| (0..n).map(|other| entry(&self.inverse[c], n, g, other) * before[other][c]).sum());
+        }
+    }
+
+    /// Nodal loads f with T^T f = `v` at all unknowns that are not `fixed`. Where a slave's unknown is fixed, and so its force any, it takes half of the
+    /// load that its masters have.
+    pub fn loads(&self, v: &[f64], fixed: &[bool], loads: &mut [f64]) {
+        loads.copy_from_slice(v);
+        let forces: Vec<[f64; 3]> = (0..self.slaves.len())
+            .map(|k| {
+                let base = self.base(k);
+                let mut half = [0.0; 3];
+                for &(j, share) in &self.shares[k] {
+                    (0..3).for_each(|c| half[c] += 0.5 * share * HALF_TURN[c] * v[3 * self.nodes[j] + c]);
+                }
+                let half = to_frame(&self.frames[k], &half);
+                std::array::from_fn(|c| match (fixed[base + c], c == 1 && self.free_y[k]) {
+                    (false, _) => v[base + c],
+                    (true, true) => 0.0,
+                    (true, false) => half[c],
+                })
+            })
+            .collect();
+        for &slave in &self.slaves {
+            loads[3 * self.nodes[slave]..][..3].fill(0.0);
+        }
+        for (force, &node) in self.nodal(&forces).iter().zip(&self.nodes) {
+            (0..3).for_each(|c| loads[3 * node + c] += force[c]);
         }
     }
 

@@ -81,7 +81,7 @@ pub struct ContactPoint {
     pub position: [f64; 3],
     /// Force of the plane on the point, of the meshed half: what contact exerts, without the pull of the other half.
     pub force: [f64; 3],
-    /// Gap to the plane, or to the opponent; infinite where nothing faces the point.
+    /// Gap to the plane, or to the opponent.
     pub gap: f64,
     /// Tributary reference area on the meshed half.
     pub area: f64,

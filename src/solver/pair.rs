@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use crate::contact::coulomb::{Rows, Status};
-use crate::contact::pair::{HALF_TURN, Interface, leave_even};
+use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::bsr::Widen;
 use crate::linalg::fgmres::{Fgmres, System};
 use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, Hierarchy, LinalgError, LinearSolver, Pattern, SolveReport};
@@ -202,6 +202,13 @@ impl PairSolver {
         for (i, &node) in self.contact_nodes.iter().enumerate() {
             let Some(k) = interface.facing[i] else { continue };
             let base = 3 * node as usize;
+            // Two masters opposite each other move each by itself.
+            let is_slave = |node: u32| {
+                self.contact_nodes.binary_search(&node).is_ok_and(|at| interface.slave_of[at].is_some())
+            };
+            if !is_slave(node) && !is_slave(self.mirror[node as usize]) {
+                continue;
+            }
             match rows[interface.slaves[k]].status {
                 Status::Open => {}
                 status => {
@@ -290,35 +297,14 @@ impl PairSolver {
             }
         }
     }
-
-    /// Nodal loads whose T^T is `v`, for a pair that has not slid. At a fixed unknown the interface's force takes half.
-    fn spread(&self, v: &[f32], load: &mut [f32]) {
-        load.copy_from_slice(v);
-        for (k, &slave) in self.interface.slaves.iter().enumerate() {
-            let node = self.contact_nodes[slave] as usize;
-            let opposite = self.mirror[node] as usize;
-            let open = self.rows[slave].status == Status::Open;
-            for c in 0..3 {
-                let (i, j) = (3 * node + c, 3 * opposite + c);
-                let turn = HALF_TURN[c] as f32;
-                if node == opposite {
-                    // It faces itself: its force is twice the interface's.
-                    load[i] = if c == 1 || self.fixed[i] { v[i] } else { 2.0 * v[i] };
-                } else if self.fixed[i] && !open {
-                    load[i] = 0.5 * turn * v[j];
-                    load[j] = 0.5 * v[j];
-                } else if c != 1 || !self.interface.is_free_along_y(k) {
-                    load[j] = v[j] - turn * v[i];
-                }
-            }
-        }
-    }
 }
 
 impl System<f32> for PairSolver {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         let mut work = std::mem::take(&mut self.work);
-        self.spread(v, &mut work.load);
+        work.f.iter_mut().zip(v).for_each(|(f, v)| *f = f64::from(*v));
+        self.interface.loads(&work.f, &self.fixed, &mut work.u);
+        work.load.iter_mut().zip(&work.u).for_each(|(load, u)| *load = *u as f32);
         for (n, &opposite) in self.mirror.iter().enumerate() {
             for c in 0..3 {
                 let sign = if c == 0 { -1.0 } else { 1.0 };

@@ -333,8 +333,10 @@ impl Trial {
             None => mesh.contact_nodes.iter().map(|&n| gap(mesh.nodes[n as usize][2], self.u[3 * n as usize + 2])).collect(),
             Some(pair) => {
                 let w = pair.interface.relative(&self.u);
-                let at = |k: &Option<usize>| k.map_or(f64::INFINITY, |k| pair.reference[k][2] + w[k][2]);
-                pair.interface.facing.iter().map(at).collect()
+                let height = |i: usize| 2.0 * (mesh.nodes[mesh.contact_nodes[i] as usize][2] + self.u[3 * mesh.contact_nodes[i] as usize + 2]);
+                // A node at the rim that nothing faces: the gap to its own mirror image.
+                let facing = pair.interface.facing.iter().enumerate();
+                facing.map(|(i, k)| k.map_or_else(|| height(i), |k| pair.reference[k][2] + w[k][2])).collect()
             }
         }
     }

@@ -7,9 +7,9 @@
 use super::equator::Equator;
 use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
-use crate::analytical::ElasticSphere;
+use crate::analytical::{ElasticSphere, hertz};
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
-use crate::case::{Case, Hardening, Hold, Segment};
+use crate::case::{Case, Friction, Hardening, Hold, Opponent, Segment};
 use crate::simulation::record::StepRecord;
 
 /// Indentation: a/R = 0.01.
@@ -68,6 +68,44 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
         let because = "beta = 0.286: the closed form neglects that shear and pressure act on each other";
         let what = format!("F_T/(mu F_N) at {x} d_s, F_N held");
         checks.push(Check::relative("nu = 0.3", what, ours, reference, 0.0, because).by(1.0).without_verdict());
+    }
+    for mu in [0.1, 0.4] {
+        checks.extend(equal_pair(runner, mu, elements)?);
+    }
+    Ok(checks)
+}
+
+/// Two equal spheres: their pressure does not shear the interface (beta = 0), so the closed form is exact at any nu, each body moving half as far.
+fn equal_pair(runner: &mut Runner<'_>, mu: f64, elements: usize) -> Result<Vec<Check>, VerifyError> {
+    const NU: f64 = 0.3;
+    const BECAUSE: &str = "beta = 0: slip across the shear direction and the mesh are worth 1 % each";
+    let mut case = case(NU, elements, Hold::Indentation, std::iter::once(FIRST).chain(LOADING).map(|x| 2.0 * x * mu / MU));
+    case.contact.friction = Friction::Coefficient(mu);
+    case.opponent = Some(Opponent::Equal);
+    if let Some(Segment::Indentation { indentation }) = case.path.first_mut() {
+        *indentation = 2.0 * H;
+    }
+    let history = runner.follow(&case)?;
+    let body = runner.equator(NU)?;
+    let ball = ElasticSphere { radius: RADIUS, youngs_modulus: YOUNGS_MODULUS, poissons_ratio: NU };
+    let mut exact = exact(NU, &history);
+    exact.friction = mu;
+    let limit = mu * exact.normal_force;
+    let mut checks = vec![
+        Check::relative(
+            "equal pair",
+            format!("F_N, mu = {mu}"),
+            exact.normal_force,
+            hertz::force(&ball, body.contact_indentation(H, exact.normal_force)),
+            0.01,
+            "Hertz: each body is pressed half as far, and friction has no part in it",
+        ),
+    ];
+    for (segment, x) in (2..).zip(LOADING) {
+        let row = history.end(segment);
+        let reference = exact.force(body.contact_shear(0.5 * row.delta_t, row.f_t)) / limit;
+        let what = format!("F_T/(mu F_N) at {x} d_s, mu = {mu}");
+        checks.push(Check::relative("equal pair", what, row.f_t / limit, reference, 0.02, BECAUSE).by(1.0));
     }
     Ok(checks)
 }
