@@ -3,7 +3,7 @@
 //! Of an equal pair one body is meshed; the other is its image. The interface, seen along z, is halved at x = 0: on x >= 0 the body's own surface is the
 //! slave and the image of its surface at x <= 0 the master. For every slave node i the gap is weighted with a dual function psi_i (Wohlmuth, SIAM J.
 //! Numer. Anal. 38, 2000): on a face wholly at x >= 0 psi_i is orthogonal to the shape functions of the other nodes. A face that the seam x = 0
-//! cuts has shape functions for psi, those of its nodes at x < 0 added to its nodes at x >= 0, so that the psi of all slaves add up to one everywhere.
+//! cuts has shape functions for psi, those of its nodes that are no slaves added to those that are, so that the psi of all slaves add up to one everywhere.
 //! Faces are clipped against the image's faces (Sutherland & Hodgman, Commun. ACM 17, 1974) and integrated triangle by triangle.
 
 /// A point of the plane in which surfaces meet.
@@ -20,12 +20,14 @@ pub struct Weights {
     pub image: Vec<(usize, f64)>,
     /// Area of the interface that belongs to it.
     pub area: f64,
-    /// The node lies on a face that the seam cuts, or faces its own image.
+    /// The node is closer to the seam than half an element, or faces its own image.
     pub at_seam: bool,
 }
 
 /// A face is covered by the image, but for the mesh's rim, from this share of its area on.
 const COVERED: f64 = 0.99;
+/// A face of which the seam leaves less than this share has no dual functions of its own.
+const NARROW: f64 = 0.3;
 /// Triangles and faces of less than this share of a face's area count as nothing.
 const SLIVER: f64 = 1e-9;
 /// A node that faces its own image with more than this weight lies on the seam.
@@ -42,35 +44,33 @@ const RULE: [([f64; 3], f64); 7] = {
     [([T, T, T], 0.225), ([A, B, B], U), ([B, A, B], U), ([B, B, A], U), ([C, D, D], V), ([D, C, D], V), ([D, D, C], V)]
 };
 
-/// The weights of all slave nodes: those at x >= 0 whose faces meet the image. `points` are the positions of the surface's nodes in the plane, `faces` its
-/// quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that counts as none.
-pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], tolerance: f64) -> Vec<Weights> {
-    let is_slave = |n: usize| points[n][0] >= -tolerance;
+/// The weights of all slave nodes: those at x >= 0, or closer to the seam than half their `size`, whose faces meet the image. `points` are the positions of the
+/// surface's nodes in the plane, `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that counts as none.
+pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], tolerance: f64) -> Vec<Weights> {
+    let is_slave = |n: usize| points[n][0] >= -0.5 * size[n];
     let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| [-points[n][0], points[n][1]]), *f)).collect();
     let grid = Grid::new(&images);
     let mut own: Vec<Vec<(usize, f64)>> = vec![Vec::new(); points.len()];
     let mut image = own.clone();
-    let mut seam = vec![false; points.len()];
     for nodes in faces {
         if !nodes.iter().any(|&n| points[n][0] > tolerance) {
             continue;
         }
-        let cut = !nodes.iter().all(|&n| is_slave(n));
+        let cut = nodes.iter().any(|&n| points[n][0] < -tolerance);
         let face = Face::new(nodes.map(|n| points[n]), *nodes);
-        if cut {
-            face.nodes.iter().filter(|&&n| is_slave(n)).for_each(|&n| seam[n] = true);
-        }
         // Every point of the rule: weight, shape functions of the face and of the image, the image's index.
         let mut rule: Vec<(f64, [f64; 4], [f64; 4], usize)> = Vec::new();
         for &m in &grid.near(&face) {
             let polygon = clip_at_seam(clip(&face.corners, &images[m].corners));
             each_point(&polygon, SLIVER * face.area, |x, weight| rule.push((weight, face.shape(x), images[m].shape(x), m)));
         }
-        let covered = rule.iter().map(|p| p.0).sum::<f64>() > COVERED * face.area;
-        let psi = match (cut, covered) {
-            (true, _) => seam_functions(&face, &is_slave),
+        let share = rule.iter().map(|p| p.0).sum::<f64>() / face.area;
+        // What the seam leaves of a face of slaves has dual functions too, as long as it is not too narrow for them.
+        let by_rule = if cut { share > NARROW && nodes.iter().all(|&n| is_slave(n)) } else { share > COVERED };
+        let psi = match (by_rule, cut) {
             // By the same points, so that orthogonality holds as they integrate it.
-            (false, true) => dual_functions(|f| rule.iter().for_each(|p| f(p.1, p.0))),
+            (true, _) => dual_functions(|f| rule.iter().for_each(|p| f(p.1, p.0))),
+            (false, true) => seam_functions(&face, &is_slave),
             (false, false) => dual_functions(|f| face.integrate(f)),
         };
         for (weight, n, other, m) in &rule {
@@ -81,16 +81,16 @@ pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], tolerance: f64
                 }
                 for b in 0..4 {
                     add(&mut image[face.nodes[a]], images[*m].nodes[b], value * other[b]);
-                    if cut {
+                    if cut && !by_rule {
                         add(&mut own[face.nodes[a]], face.nodes[b], value * n[b]);
                     }
                 }
             }
         }
-        if !cut {
+        if by_rule || !cut {
             // Biorthogonal: the integral of psi_i times any shape function but its own is zero.
             for a in 0..4 {
-                let integral = if covered { rule.iter().map(|p| p.0 * p.1[a]).sum() } else { face.shape_integrals()[a] };
+                let integral = if by_rule { rule.iter().map(|p| p.0 * p.1[a]).sum() } else { face.shape_integrals()[a] };
                 add(&mut own[face.nodes[a]], face.nodes[a], integral);
             }
         }
@@ -107,7 +107,7 @@ pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], tolerance: f64
         };
         let (own, image) = (normalised(&own[n], area), normalised(&image[n], faced));
         let itself = image.iter().find(|e| e.0 == n).map_or(0.0, |e| e.1);
-        rows.push(Weights { slave: n, own, image, area, at_seam: seam[n] || itself > OWN_IMAGE });
+        rows.push(Weights { slave: n, own, image, area, at_seam: points[n][0] < 0.5 * size[n] || itself > OWN_IMAGE });
     }
     rows
 }
@@ -119,8 +119,8 @@ fn add(entries: &mut Vec<(usize, f64)>, node: usize, value: f64) {
     }
 }
 
-/// The functions of a face that the seam cuts, as rows of coefficients of its shape functions: a node at x < 0 leaves its own to the nodes at x >= 0 next to it,
-/// or to all of them.
+/// The functions of a face that the seam cuts, as rows of coefficients of its shape functions: a node that is no slave leaves its own to the slaves next to
+/// it, or to all of them.
 fn seam_functions(face: &Face, is_slave: &impl Fn(usize) -> bool) -> [[f64; 4]; 4] {
     let slave = face.nodes.map(is_slave);
     let mut psi = [[0.0; 4]; 4];
@@ -342,7 +342,7 @@ mod tests {
     #[test]
     fn without_slip_a_node_faces_its_mirror_image_alone() {
         let (points, faces) = patch(0.0);
-        let rows = self_image_weights(&points, &faces, 1e-9);
+        let rows = self_image_weights(&points, &faces, &vec![0.25; points.len()], 1e-9);
         assert_eq!(rows.len(), 5 * 5);
         for row in rows {
             let mirror = (0..points.len()).find(|&m| (points[m][0] + points[row.slave][0]).abs() < 1e-12 && points[m][1] == points[row.slave][1]).unwrap();
@@ -357,9 +357,9 @@ mod tests {
     #[test]
     fn uniform_pressure_goes_through_the_interface() {
         // What each node gets, as slave and as master, is its own share of the area, wherever the image lies.
-        for shift in [0.0375, 0.125, -0.07, 0.25] {
+        for shift in [0.0375, 0.12, 0.13, -0.07, 0.25] {
             let (points, faces) = patch(shift);
-            let rows = self_image_weights(&points, &faces, 1e-9);
+            let rows = self_image_weights(&points, &faces, &vec![0.25; points.len()], 1e-9);
             let mut force = vec![0.0; points.len()];
             for row in &rows {
                 row.own.iter().for_each(|&(m, w)| force[m] += row.area * w);

@@ -69,7 +69,7 @@ impl Interface {
         let positions: Vec<[f64; 3]> = (0..nodes.len()).map(position).collect();
         let plane: Vec<[f64; 2]> = positions.iter().map(|x| [x[0], x[1]]).collect();
         let spacing = mesh.contact_size.iter().copied().fold(f64::INFINITY, f64::min);
-        let rows = self_image_weights(&plane, &faces, SEAM * spacing);
+        let rows = self_image_weights(&plane, &faces, &mesh.contact_size, SEAM * spacing);
         let on_symmetry = |i: usize| mesh.nodes[nodes[i]][1] == 0.0;
         let up = inward_normals(&positions, &faces);
 
