@@ -27,7 +27,9 @@ pub struct Weights {
 /// A face is covered by the image, but for the mesh's rim, from this share of its area on.
 const COVERED: f64 = 0.99;
 /// A face of which the seam leaves less than this share has no dual functions of its own.
-const NARROW: f64 = 0.3;
+const NARROW: f64 = 0.6;
+/// A node that is so much of its size beyond the seam is still a slave: its faces reach far enough to this side.
+const MARGIN: f64 = 0.25;
 /// Triangles and faces of less than this share of a face's area count as nothing.
 const SLIVER: f64 = 1e-9;
 /// A node that faces its own image with more than this weight lies on the seam.
@@ -44,10 +46,10 @@ const RULE: [([f64; 3], f64); 7] = {
     [([T, T, T], 0.225), ([A, B, B], U), ([B, A, B], U), ([B, B, A], U), ([C, D, D], V), ([D, C, D], V), ([D, D, C], V)]
 };
 
-/// The weights of all slave nodes: those at x >= 0, or closer to the seam than half their `size`, whose faces meet the image. `points` are the positions of the
+/// The weights of all slave nodes: those at x >= 0, or not far beyond the seam for their `size`, whose faces meet the image. `points` are the positions of the
 /// surface's nodes in the plane, `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that counts as none.
 pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], tolerance: f64) -> Vec<Weights> {
-    let is_slave = |n: usize| points[n][0] >= -0.5 * size[n];
+    let is_slave = |n: usize| points[n][0] >= -MARGIN * size[n];
     let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| [-points[n][0], points[n][1]]), *f)).collect();
     let grid = Grid::new(&images);
     let mut own: Vec<Vec<(usize, f64)>> = vec![Vec::new(); points.len()];

@@ -59,6 +59,9 @@ const SEAM: f64 = 1e-2;
 impl Interface {
     /// The interface between a body with displacement `u` (three a node) and its image.
     pub fn new(mesh: &Mesh, u: &[f64]) -> Self {
+        // The slaves are on the side that trails: contact is lost there node by node, and its edge is found best where nodes are slaves.
+        let forward = mesh.plate_nodes.first().is_some_and(|&n| u[3 * n as usize] > 0.0);
+        let side = if forward { -1.0 } else { 1.0 };
         let nodes: Vec<usize> = mesh.contact_nodes.iter().map(|&n| n as usize).collect();
         let index = |n: u32| mesh.contact_nodes.partition_point(|&c| c < n);
         let faces: Vec<[usize; 4]> = mesh.contact_faces.iter().map(|f| f.map(index)).collect();
@@ -67,7 +70,7 @@ impl Interface {
             std::array::from_fn(|c| mesh.nodes[n][c] + u[3 * n + c])
         };
         let positions: Vec<[f64; 3]> = (0..nodes.len()).map(position).collect();
-        let plane: Vec<[f64; 2]> = positions.iter().map(|x| [x[0], x[1]]).collect();
+        let plane: Vec<[f64; 2]> = positions.iter().map(|x| [side * x[0], x[1]]).collect();
         let spacing = mesh.contact_size.iter().copied().fold(f64::INFINITY, f64::min);
         let rows = self_image_weights(&plane, &faces, &mesh.contact_size, SEAM * spacing);
         let on_symmetry = |i: usize| mesh.nodes[nodes[i]][1] == 0.0;
