@@ -131,6 +131,9 @@ fn read_sample(
     materials: &mut Vec<Case>,
 ) -> Result<Result<Sample, &'static str>, LawError> {
     let case = Case::load(&directory.case(), &[])?;
+    if case.opponent.is_some() {
+        return Ok(Err("against another sphere, not a plane"));
+    }
     let friction = match case.contact.friction {
         Friction::Coefficient(mu) if mu > 0.0 => mu,
         Friction::Coefficient(_) => return Ok(Err("without friction")),

@@ -84,6 +84,12 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
 /// Indentation, target of the shear and mu of a case of the kind that the law describes.
 fn covered(case: &Case) -> Result<(f64, ShearTarget, f64), LawError> {
     let refuse = |problem, remedy| Err(LawError::NotCovered { problem, remedy });
+    if case.opponent.is_some() {
+        return refuse(
+            "the case has an [opponent], and the law describes a sphere on a rigid plane",
+            "leave the table [opponent] out, or simulate the case with `asperity run`",
+        );
+    }
     let Friction::Coefficient(friction) = case.contact.friction else {
         return refuse(
             "the case has friction = \"stick\", and the law describes slip",

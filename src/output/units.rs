@@ -144,6 +144,7 @@ impl PlotInputs {
                 poissons_ratio: material.poissons_ratio,
             },
             hardening,
+            bodies: case.bodies(),
             friction: coefficient(case.contact.friction),
         }
     }

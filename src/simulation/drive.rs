@@ -588,11 +588,9 @@ impl<'a> Drive<'a> {
     /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over the points of the meshed half.
     fn friction_work(&self, u: &[f64], forces: &[[f64; 3]]) -> f64 {
         let mut work = 0.0;
-        // Over the plane a closed point does not move along z; an interface may be inclined.
-        let components = if self.problem.equal_pair { 3 } else { 2 };
         for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {
             let base = 3 * node as usize;
-            for i in 0..components {
+            for i in 0..2 {
                 work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
             }
         }

@@ -122,6 +122,14 @@ fn so_it_is_in_single_precision_with_full_stick_and_with_the_direct_solver() {
 }
 
 #[test]
+fn so_it_is_between_equal_spheres() {
+    let mut problem = problem("0.3", "");
+    problem.case.path.truncate(3);
+    problem.equal_pair = true;
+    stop_and_go::<f64>(&problem);
+}
+
+#[test]
 fn a_run_that_ends_early_ends_so_again() {
     let mut narrow = problem("0.3", "");
     narrow.case.path.truncate(1);

@@ -107,10 +107,10 @@ pub fn plot_indentation(history: &[StepRecord], inputs: &PlotInputs) -> Result<P
     let mut series = vec![Series::solid("simulation", BLUE, points).marked(Mark::Dot)];
     if let Some(hardening) = inputs.hardening {
         let model = OlssonLarsson { sphere: inputs.sphere, hardening };
-        series.push(Series::dashed("Olsson & Larsson 2016", GREEN, 9.0, sample(&|h| model.force(h))));
+        series.push(Series::dashed("Olsson & Larsson 2016", GREEN, 9.0, sample(&|h| model.force(h / inputs.bodies))));
     }
     let values: Vec<f64> = series.iter().flat_map(|curve| &curve.points).map(|point| point.1).collect();
-    let hertz = sample(&|h| hertz::force(&inputs.sphere, h));
+    let hertz = sample(&|h| hertz::force(&inputs.sphere, h / inputs.bodies));
     let top = (1.5 * values.iter().copied().fold(0.0, f64::max)).min(hertz.iter().map(|point| point.1).fold(0.0, f64::max));
     let y = from_zero("normal force F_N (case's unit of force)", values.into_iter().chain([top]));
     series.push(Series::dashed("Hertz", GREY, 3.0, hertz));

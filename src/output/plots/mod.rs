@@ -36,6 +36,8 @@ pub struct PlotInputs {
     pub hardening: Option<Hardening>,
     /// Coulomb's coefficient for the line that F_T/F_N runs up to; `None` for full stick.
     pub friction: Option<f64>,
+    /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them, over a plane.
+    pub bodies: f64,
 }
 
 /// The contact tables of a run that are shown.
@@ -88,7 +90,7 @@ pub fn run_pictures(history: &[StepRecord], tables: &Tables, inputs: &PlotInputs
         pictures.push(plot_indentation(history, inputs)?);
     }
     if let Some((record, points)) = &tables.pressed {
-        pictures.push(plot_pressure(points, record, &inputs.sphere)?);
+        pictures.push(plot_pressure(points, record, inputs)?);
     }
     if shear.len() > 1 {
         pictures.extend([plot_forces(history)?, plot_ratio(history, inputs.friction)?, plot_stick(history, inputs.friction)?]);

@@ -4,7 +4,8 @@ use super::super::{ContactPoint, ContactStatus, Half, OutputError, StepRecord};
 use super::chart::{Axis, Chart, Mark, Series, draw_chart, extent};
 use super::curves::from_zero;
 use super::style::{BLUE, GREEN, GREY, INK, Picture, rounded, tick};
-use crate::analytical::{ElasticSphere, hertz};
+use super::PlotInputs;
+use crate::analytical::hertz;
 use std::f64::consts::PI;
 
 /// Times the computed pressure from which Hertz's is only named.
@@ -12,7 +13,8 @@ const OFF_SCALE: f64 = 4.0;
 
 /// p(r) of every contact point of one step of the press, `record`, with Hertz's of an elastic sphere at the same h, unless that is far beyond the
 /// computed ones, and a Hertz pressure of the same force over the same circle.
-pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, sphere: &ElasticSphere) -> Result<Picture, OutputError> {
+pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, inputs: &PlotInputs) -> Result<Picture, OutputError> {
+    let sphere = &inputs.sphere;
     // An image has the pressure and the distance of its point.
     let meshed = points.iter().filter(|p| p.half != Half::Mirrored);
     let ours: Vec<(f64, f64)> = meshed.map(|p| (p.current_x.hypot(p.current_y), p.pressure)).collect();
@@ -30,7 +32,7 @@ pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, sphere: &Elas
         let shape = over(record.a, &|r| greatest * (1.0 - (r / record.a).powi(2)).max(0.0).sqrt());
         series.push(Series::dashed("Hertz's shape, same F_N and a", GREEN, 8.0, shape));
     }
-    let a_hertz = hertz::contact_radius(sphere, record.h);
+    let a_hertz = hertz::contact_radius(sphere, record.h / inputs.bodies);
     let p_hertz = hertz::maximum_pressure(sphere, a_hertz);
     let mut top = series.iter().map(|curve| extent(curve.points.iter().map(|p| p.1)).1).fold(computed, f64::max);
     if p_hertz < OFF_SCALE * computed {

@@ -9,6 +9,7 @@ const INPUTS: PlotInputs = PlotInputs {
     sphere: ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 },
     hardening: Some(Hardening::Ideal { yield_stress: 400.0 }),
     friction: Some(0.3),
+    bodies: 1.0,
 };
 
 /// Olsson & Larsson's pressing with a ripple, then a shear of Cattaneo-Mindlin's shape under a falling force.
