@@ -1,18 +1,11 @@
 //! Every mistake in a case file ends with exit code 2 and one message that names file, line, key and what is allowed.
 
+mod common;
+
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::process::Output;
 
-use assert_cmd::Command;
-
-fn asperity(arguments: &[&str]) -> Output {
-    Command::cargo_bin("asperity").expect("the program is built").args(arguments).output().expect("the program runs")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
-}
+use common::{asperity, stderr};
 
 /// File in `fixtures/cases/bad`, line, key, what is wrong, what is allowed (a part of each).
 #[rustfmt::skip]
