@@ -8,11 +8,12 @@ use clap::Args;
 
 use super::backend::choose_backend;
 use super::force::{Earlier, claim, tidy};
+use super::input::Input;
 use super::options::{DeviceArgs, Verbosity};
 use super::resume::{Standing, refused, standing};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, out};
-use crate::case::{BYTES_PER_ELEMENT, Case};
+use crate::case::BYTES_PER_ELEMENT;
 use crate::compute::ComputeError;
 use crate::compute::select::Selected;
 use crate::output::{Checkpoint, Clock, OutputDirectory, ResultWriter, Setting, Status, Summary, progress};
@@ -28,7 +29,7 @@ const COST_EXPONENT: f64 = 1.1;
 /// Simulate one case.
 #[derive(Clone, Debug, Args)]
 pub struct RunArgs {
-    /// The case file.
+    /// The case file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Directory for the results: a new one, an empty one, or with --resume or --force one that holds an earlier result.
@@ -60,7 +61,8 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let clock = Clock::start();
     args.verbosity.start_log();
     args.device.start_threads()?;
-    let case = Case::load(&args.case, &args.set)?;
+    let input = Input::read(&args.case)?;
+    let case = input.case(&args.set)?;
     let earlier = match (args.force, args.resume) {
         (true, _) => Earlier::Replace,
         (_, true) => Earlier::Resume,
@@ -73,7 +75,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         Some(Standing::Unfinished(checkpoint)) => Some(*checkpoint),
         Some(Standing::NotBegun) | None => None,
     };
-    let bad_case = |source: SimulationError| CliError::Problem { file: args.case.clone(), source };
+    let bad_case = |source: SimulationError| CliError::Problem { file: input.name.clone().into(), source };
     let open = |problem: &Problem| choose_backend(&args.device, vec![problem.model.clone()]);
     let mut problem = Problem::on(&case, checkpoint.as_ref().and_then(Checkpoint::zone)).map_err(bad_case)?;
     let Selected { backend, notes } = open(&problem).map_err(|error| match error {
