@@ -79,7 +79,7 @@ fn leaves_every_file_of_the_contract() {
     let output = scratch.run("out", &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let dir = scratch.path("out");
-    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "plots", "summary.json"]);
+    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "plots", "run.log", "summary.json"]);
 
     let text = fs::read_to_string(dir.join("history.csv")).expect("a history");
     assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,"), "{text}");
@@ -193,7 +193,7 @@ fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
     }
     assert_eq!(names(&dir.join("contact")).len(), 3);
     done(&scratch, "out", &[&fewer[..], &["--force"]].concat());
-    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "notes.txt", "plots", "summary.json"]);
+    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "notes.txt", "plots", "run.log", "summary.json"]);
     for folder in ["fields", "contact", "plots"] {
         assert!(names(&dir.join(folder)).is_empty(), "{folder}: {:?}", names(&dir.join(folder)));
     }

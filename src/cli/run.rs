@@ -16,7 +16,9 @@ use super::{CliError, Outcome, out};
 use crate::case::BYTES_PER_ELEMENT;
 use crate::compute::ComputeError;
 use crate::compute::select::Selected;
-use crate::output::{Checkpoint, Clock, OutputDirectory, ResultWriter, Setting, Status, Summary, progress};
+use crate::output::{
+    Checkpoint, Clock, LoggedProgress, OutputDirectory, Progress, ResultWriter, Setting, Status, Summary, progress,
+};
 use crate::simulation::SimulationError;
 use crate::simulation::drive::{Ending, Observer};
 use crate::simulation::follow::{follow, seats};
@@ -92,7 +94,9 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         }
         None => out::prepare(&args.out, &case)?,
     }
-    let mut progress = progress(args.verbosity.quiet);
+    let head = format!("asperity {}: {}", env!("CARGO_PKG_VERSION"), command_line());
+    let log = LoggedProgress::new(progress(args.verbosity.quiet), &OutputDirectory::existing(&args.out), &head);
+    let mut progress: Box<dyn Progress> = Box::new(log);
     let begun = Instant::now();
     let scouts = checkpoint.is_none() && case.solver.error_estimate;
     let scout = if scouts {
@@ -147,6 +151,12 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         followed.ending
     });
     conclude(ending, results, args)
+}
+
+/// The arguments of the program, as they would be typed.
+fn command_line() -> String {
+    let quoted = |arg: String| if arg.contains([' ', '"', '[', '{']) { format!("'{arg}'") } else { arg };
+    std::env::args_os().skip(1).map(|arg| quoted(arg.to_string_lossy().into_owned())).collect::<Vec<_>>().join(" ")
 }
 
 /// What the coarse run tells of the run: its size, and about how long it will take in the same place.
