@@ -76,8 +76,10 @@ const QUANTITIES: [Quantity; 9] = [
     ("max_alpha", |s| s.max_alpha, |s| s.max_alpha),
 ];
 
-/// What a run cost, without differences.
-const COSTS: [(&str, fn(&Summary) -> f64); 4] = [
+/// A part of what a run cost, which has no difference.
+type Cost = (&'static str, fn(&Summary) -> f64);
+
+const COSTS: [Cost; 4] = [
     ("elements", |s| s.elements as f64),
     ("steps", |s| s.steps as f64),
     ("newton_iterations", |s| s.newton_iterations as f64),

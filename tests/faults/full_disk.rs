@@ -39,7 +39,7 @@ fn a_disk_that_is_full_at_any_place_is_told_and_the_run_goes_on_with_room() {
         // Closer together towards the end, where the pictures are drawn.
         let left = sizes - part - 1;
         let room = total - total * left * left / (sizes * sizes);
-        let Some(disk) = Small::mount(scratch.path(&format!("disk{part}")), 8 + room) else {
+        let Some(disk) = Small::mount(scratch.path(format!("disk{part}")), 8 + room) else {
             return skipped("full_disk", "no right to mount a tmpfs");
         };
         let out = disk.0.join("out");

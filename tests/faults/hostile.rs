@@ -365,7 +365,7 @@ fn long_values_are_shortened_in_messages() {
     }
     let scratch = scratch();
     for option in [format!("--device={long}"), format!("--threads={long}")] {
-        let output = scratch.run(&scratch.path("out"), &[&option]);
+        let output = scratch.run("out", &[&option]);
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).len() < 1500, "{}", stderr(&output));
     }
@@ -373,7 +373,7 @@ fn long_values_are_shortened_in_messages() {
     assert_eq!(output.status.code(), Some(2));
     let message = stderr(&output);
     assert!(message.contains("ASPERITY_GPU_MEMORY=abc: is not a whole number of MiB"), "{message}");
-    let mut args = scratch.args(&scratch.path("out"), &[]);
+    let mut args = scratch.args("out", &[]);
     args.iter_mut().filter(|arg| *arg == "1").for_each(|arg| *arg = "100000".into());
     let output = program().args(args).output().expect("it runs");
     let message = stderr(&output);
