@@ -268,7 +268,7 @@ fn shells_and_man_know_every_subcommand() {
     let scratch = Scratch::new("", &[]);
     for shell in ["bash", "zsh", "fish"] {
         let script = stdout(&asperity(&["completions", shell]));
-        assert!(["compare", "--press", "explain"].iter().all(|word| script.contains(word)), "{shell}: {script}");
+        assert!(["compare", "predict", "explain"].iter().all(|word| script.contains(word)), "{shell}: {script}");
     }
     let dir = scratch.path("man");
     let output = asperity(&["man", text(&dir)]);

@@ -113,14 +113,14 @@ const fn hardening(name: &'static str, laws: &'static [&'static str]) -> Key {
 pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
-        range: "> 0 (1e-75 to 1e75)",
+        range: "> 0, from 1e-75 to 1e75",
         meaning: "radius R of the sphere; it sets the unit of length",
         example: "1.0",
         ..key("sphere", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Required)
     },
     Key {
         unit: STRESS,
-        range: "> 0 (1e-75 to 1e75)",
+        range: "> 0, from 1e-75 to 1e75",
         meaning: "Young's modulus E; it sets the unit of stress, and forces are stress times length squared",
         example: "200e3",
         ..key("material", "youngs_modulus", Number(AtLeast(1e-75), AtMost(1e75), &[]), Required)
@@ -215,7 +215,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "4 to 32",
-        meaning: "elements along the contact radius; 8 is quick, 16 has F_N to 0.5 %, and the time grows with about the cube",
+        meaning: "elements along the contact radius; 8 is quick, 16 has F_N to 0.5 %; the time grows as its power 2.5",
         example: "16",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("16"))
     },
