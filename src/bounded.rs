@@ -22,9 +22,13 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if told > most {
         return Err(too_large(most));
     }
-    let mut bytes = Vec::with_capacity(usize::try_from(told).unwrap_or(0));
-    // What a device or a pipe has is not told beforehand.
-    file.take(most + 1).read_to_end(&mut bytes)?;
+    up_to(file, most, usize::try_from(told).unwrap_or(0))
+}
+
+/// What a device or a pipe has is not told beforehand.
+fn up_to(source: impl Read, most: u64, expected: usize) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(expected);
+    source.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
 }
 
@@ -33,7 +37,19 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`read`]; [`ErrorKind::InvalidData`] for what is not UTF-8.
 pub fn read_to_string(path: &Path, most: u64) -> io::Result<String> {
-    String::from_utf8(read(path, most)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not text in UTF-8"))
+    text(read(path, most)?)
+}
+
+/// [`read_to_string`] for what is open already, such as standard input.
+///
+/// # Errors
+/// As [`read_to_string`].
+pub fn to_string(source: impl Read, most: u64) -> io::Result<String> {
+    text(up_to(source, most, 0)?)
+}
+
+fn text(bytes: Vec<u8>) -> io::Result<String> {
+    String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not text in UTF-8"))
 }
 
 fn too_large(most: u64) -> io::Error {
@@ -51,6 +67,8 @@ mod tests {
         std::fs::write(&path, "12345678").unwrap();
         assert_eq!(read_to_string(&path, 8).unwrap(), "12345678");
         assert_eq!(read(&path, 7).unwrap_err().kind(), ErrorKind::FileTooLarge);
+        assert_eq!(to_string(&b"12345678"[..], 8).unwrap(), "12345678");
+        assert_eq!(to_string(&b"12345678"[..], 7).unwrap_err().kind(), ErrorKind::FileTooLarge);
         std::fs::write(&path, b"\xff\xfe").unwrap();
         assert!(read_to_string(&path, 8).unwrap_err().to_string().contains("UTF-8"));
         assert_eq!(read(&folder.path().join("none"), 8).unwrap_err().kind(), ErrorKind::NotFound);

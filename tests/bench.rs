@@ -22,7 +22,7 @@ fn bench(options: &[&str], environment: &[(&str, &str)]) -> Output {
 fn measured(options: &[&str], environment: &[(&str, &str)]) -> (String, String, Value) {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("bench.json");
-    let output = bench(&[options, &["--export", file.to_str().unwrap()]].concat(), environment);
+    let output = bench(&[options, &["--out", file.to_str().unwrap()]].concat(), environment);
     let [table, said] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
     assert_eq!(output.status.code(), Some(0), "{said}");
     (table, said, serde_json::from_str(&std::fs::read_to_string(file).unwrap()).unwrap())
@@ -152,7 +152,7 @@ fn bad_input_is_one_message() {
     let export = dir.path().join("in-the-way/bench.json");
     let bad: [([&str; 2], &str); 2] = [
         (["--elements", "1"], "--elements: elements_per_contact_radius = 1"),
-        (["--export", export.to_str().unwrap()], "in-the-way"),
+        (["--out", export.to_str().unwrap()], "in-the-way"),
     ];
     for (options, part) in bad {
         let output = bench(&[&options[..], &["--device", "cpu", "--quiet"]].concat(), &[]);

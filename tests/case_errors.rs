@@ -1,18 +1,11 @@
 //! Every mistake in a case file ends with exit code 2 and one message that names file, line, key and what is allowed.
 
+mod common;
+
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::process::Output;
 
-use assert_cmd::Command;
-
-fn asperity(arguments: &[&str]) -> Output {
-    Command::cargo_bin("asperity").expect("the program is built").args(arguments).output().expect("the program runs")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
-}
+use common::{asperity, stderr};
 
 /// File in `fixtures/cases/bad`, line, key, what is wrong, what is allowed (a part of each).
 #[rustfmt::skip]
@@ -122,10 +115,11 @@ fn run_refuses_what_check_refuses_and_makes_no_directory() {
 #[test]
 fn a_value_from_the_command_line_is_named_as_such() {
     for (argument, place, what) in [
-        ("contact.friction=-1", "--set contact.friction: contact.friction: ", "is -1.0. allowed: a number >= 0"),
-        ("contact.friction=glue", "--set contact.friction: contact.friction: ", "is \"glue\""),
-        ("path.0.indentation=0.4", "--set path.0.indentation: path.0.indentation: ", "is 0.4"),
-        ("mesh.elements=8", "--set mesh.elements: mesh.elements: ", "unknown key, did you mean `elements_per_contact_radius`?"),
+        ("contact.friction=-1", "--set contact.friction: ", "is -1.0. allowed: a number >= 0"),
+        ("contact.friction=glue", "--set contact.friction: ", "is \"glue\""),
+        ("solver.linear=multgrid", "--set solver.linear: ", "is \"multgrid\" (did you mean \"multigrid\"?). allowed"),
+        ("path.0.indentation=0.4", "--set path.0.indentation: ", "is 0.4"),
+        ("mesh.elements=8", "--set mesh.elements: ", "unknown key, did you mean `elements_per_contact_radius`?"),
         ("path.2={shear=1.0}", "--set path.2: path.2.shear: ", "is 1.0"),
         ("path.7.indentation=0.1", "--set path.7.indentation=0.1: ", "`path` has 2 items"),
         ("sphere.radius.value=1", "--set sphere.radius.value=1: ", "`sphere.radius` is the number 1.0"),

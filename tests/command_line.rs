@@ -1,18 +1,11 @@
 //! Usage, exit codes and the directory of results.
 
+mod common;
+
 use std::fs;
-use std::process::Output;
 
 use asperity::case::Case;
-use assert_cmd::Command;
-
-fn asperity(arguments: &[&str]) -> Output {
-    Command::cargo_bin("asperity").expect("the program is built").args(arguments).output().expect("the program runs")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
-}
+use common::{asperity, stderr};
 
 #[test]
 fn check_prints_every_good_fixture_resolved() {

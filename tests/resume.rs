@@ -1,9 +1,9 @@
 //! `asperity run --resume`: a run that was interrupted or killed goes on to the results of one that never stopped, bit for bit.
 #![cfg(unix)]
 
+mod common;
 mod device;
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -16,12 +16,12 @@ use asperity::case::Case;
 use asperity::compute::Compute;
 use asperity::compute::cpu::Cpu;
 use asperity::compute::gpu::Precision;
-use asperity::output::{Clock, OutputDirectory, Position, Progress, ResultWriter, Setting, Summary, TimeByPhase, read_history};
+use asperity::output::{Clock, OutputDirectory, Position, Progress, ResultWriter, Setting, Summary, read_history};
 use asperity::simulation::drive::{Drive, Ending};
 use asperity::simulation::problem::Problem;
 use asperity::simulation::scout::scout;
+use common::{Scratch, difference, files, program, stderr};
 use rustix::process::{Pid, Signal, kill_process};
-use tempfile::TempDir;
 
 /// Pressed, sheared to full slip and released, with fields of every step.
 const CASE: &str = r#"
@@ -49,54 +49,28 @@ release = true
 /// A program that has not come so far after this time hangs.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-struct Scratch {
-    dir: TempDir,
+fn scratch() -> Scratch {
+    Scratch::new(CASE, &["--device", "cpu"])
 }
 
-impl Scratch {
-    fn new() -> Self {
-        let dir = tempfile::tempdir().expect("a scratch directory");
-        fs::write(dir.path().join("case.toml"), CASE).expect("the case");
-        Self { dir }
-    }
-
-    fn out(&self, name: &str) -> PathBuf {
-        self.dir.path().join(name)
-    }
-
-    fn args(&self, name: &str, options: &[&str]) -> Vec<String> {
-        let paths = [self.out("case.toml"), PathBuf::from("--out"), self.out(name)].map(|path| path.display().to_string());
-        let rest = ["--device", "cpu"].iter().chain(options).map(|option| (*option).to_owned());
-        ["run".to_owned()].into_iter().chain(paths).chain(rest).collect()
-    }
-
-    fn run(&self, name: &str, options: &[&str]) -> Output {
-        program().args(self.args(name, options)).output().expect("the program runs")
-    }
-
-    /// Goes on to the end.
-    fn resumed(&self, name: &str, options: &[&str]) -> String {
-        let output = self.run(name, &[&["--resume"], options].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        stderr(&output)
-    }
-
-    /// Begins or goes on, and sends a signal once the history has `rows` rows.
-    fn stopped(&self, name: &str, signal: Signal, rows: usize, options: &[&str]) -> Output {
-        let child = piped(program().args(self.args(name, options)));
-        stop(child, signal, &self.out(name), rows)
-    }
-
-    /// A run that was interrupted after some steps.
-    fn interrupted(&self, name: &str) {
-        let output = self.stopped(name, Signal::TERM, 3, &[]);
-        assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
-        assert!(self.out(name).join("checkpoint.bin").exists());
-    }
+/// Goes on to the end.
+fn resumed(scratch: &Scratch, name: &str, options: &[&str]) -> String {
+    let output = scratch.run(name, &[&["--resume"], options].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    stderr(&output)
 }
 
-fn program() -> Command {
-    Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
+/// Begins or goes on, and sends a signal once the history has `rows` rows.
+fn stopped(scratch: &Scratch, name: &str, signal: Signal, rows: usize, options: &[&str]) -> Output {
+    let child = piped(program().args(scratch.args(name, options)));
+    stop(child, signal, &scratch.path(name), rows)
+}
+
+/// A run that was interrupted after some steps.
+fn interrupted(scratch: &Scratch, name: &str) {
+    let output = stopped(scratch, name, Signal::TERM, 3, &[]);
+    assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
+    assert!(scratch.path(name).join("checkpoint.bin").exists());
 }
 
 fn piped(command: &mut Command) -> Child {
@@ -113,53 +87,24 @@ fn stop(child: Child, signal: Signal, dir: &Path, rows: usize) -> Output {
     child.wait_with_output().expect("it ends")
 }
 
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
-}
-
 /// Steps of the history, 0 if it cannot be read.
 fn steps(dir: &Path) -> usize {
     read_history(&dir.join("history.csv")).map_or(0, |rows| rows.len())
 }
 
-/// Every file below a directory.
-fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    for entry in fs::read_dir(dir).unwrap_or_else(|error| panic!("{}: {error}", dir.display())) {
-        let path = entry.expect("an entry").path();
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        if path.is_dir() {
-            files.extend(self::files(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
-        } else {
-            files.insert(name, fs::read(&path).expect("a file"));
-        }
-    }
-    files
-}
-
 /// Both hold the same files with the same bytes; the summaries but for times and the number of threads.
 fn assert_same(found: &Path, expected: &Path) {
-    let summary = |dir: &Path| {
-        let summary = Summary::read(&dir.join("summary.json")).expect("a summary");
-        let device = summary.device.split(" (").next().unwrap_or_default().to_owned();
-        Summary { wall_s: 0.0, cpu_s: None, time_by_phase: TimeByPhase::default(), device, ..summary }
-    };
-    assert_eq!(summary(found), summary(expected));
-    let (found, expected) = (files(found), files(expected));
-    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
-    for (name, bytes) in expected.iter().filter(|(name, _)| *name != "summary.json") {
-        assert!(&found[name] == bytes, "{name} differs");
-    }
+    assert_eq!(difference(found, expected), None);
 }
 
 /// The run that nothing stopped, computed once.
 fn whole() -> &'static Path {
     static WHOLE: OnceLock<PathBuf> = OnceLock::new();
     WHOLE.get_or_init(|| {
-        let scratch = Scratch::new();
+        let scratch = scratch();
         let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("resume-whole");
         let output = program()
-            .args(["run", &scratch.out("case.toml").display().to_string(), "--device", "cpu", "--force", "--out"])
+            .args(["run", &scratch.path("case.toml").display().to_string(), "--device", "cpu", "--force", "--out"])
             .arg(&dir)
             .output()
             .expect("the program runs");
@@ -170,10 +115,10 @@ fn whole() -> &'static Path {
 
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bits() {
-    let scratch = Scratch::new();
-    let out = scratch.out("out");
+    let scratch = scratch();
+    let out = scratch.path("out");
     // Without anything to go on with it begins, and says so.
-    let output = scratch.stopped("out", Signal::TERM, 3, &["--resume", "--threads", "1"]);
+    let output = stopped(&scratch, "out", Signal::TERM, 3, &["--resume", "--threads", "1"]);
     assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
     let message = stderr(&output);
     assert!(message.contains("nothing to resume in ") && message.contains(": from the beginning"), "{message}");
@@ -181,11 +126,11 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
     let first = steps(&out);
     assert!(out.join("checkpoint.bin").exists() && out.join("summary.json").exists());
     // Again, elsewhere on the path, on another number of threads.
-    let output = scratch.stopped("out", Signal::INT, first + 8, &["--resume", "--threads", "2"]);
+    let output = stopped(&scratch, "out", Signal::INT, first + 8, &["--resume", "--threads", "2"]);
     assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
     assert!(stderr(&output).contains(&format!("resumed after step {first} ")), "{}", stderr(&output));
     let second = steps(&out);
-    let message = scratch.resumed("out", &[]);
+    let message = resumed(&scratch, "out", &[]);
     assert!(message.contains(&format!("resumed after step {second} ")), "{message}");
     assert_same(&out, whole());
     // The parts' times add up.
@@ -197,18 +142,18 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
 
 #[test]
 fn a_killed_run_goes_on_from_its_last_checkpoint() {
-    let scratch = Scratch::new();
-    let out = scratch.out("out");
-    scratch.interrupted("out");
+    let scratch = scratch();
+    let out = scratch.path("out");
+    interrupted(&scratch, "out");
     let begun = steps(&out);
-    let output = scratch.stopped("out", Signal::KILL, begun + 3, &["--resume", "-q"]);
+    let output = stopped(&scratch, "out", Signal::KILL, begun + 3, &["--resume", "-q"]);
     assert_eq!(output.status.code(), None, "{}", stderr(&output));
     let left = steps(&out);
     // A row cut short, and the draft of a checkpoint.
     let torn = fs::read_to_string(out.join("history.csv")).expect("a history") + "99,1,0.02,0.0";
     fs::write(out.join("history.csv"), torn).expect("a history");
     fs::write(out.join(".checkpoint.bin.4711.tmp"), "draft").expect("a draft");
-    let message = scratch.resumed("out", &[]);
+    let message = resumed(&scratch, "out", &[]);
     let step: usize =
         message.split("resumed after step ").nth(1).expect("told").split(' ').next().unwrap().parse().expect("a step");
     assert!((begun..=left).contains(&step), "{step}: {message}");
@@ -238,21 +183,21 @@ impl Progress for Copies {
 
 #[test]
 fn a_run_killed_at_any_step_goes_on() {
-    let scratch = Scratch::new();
-    let case = Case::load(&scratch.out("case.toml"), &[]).expect("the case");
+    let scratch = scratch();
+    let case = Case::load(&scratch.path("case.toml"), &[]).expect("the case");
     let history = read_history(&whole().join("history.csv")).expect("a history");
     let last_of = |segment| history.iter().filter(|row| row.segment == segment).map(|row| row.step).max().expect("steps");
     // In the press, at its end, just after it, in the shear, just after it, and at the very end.
     let after = vec![4, last_of(0), last_of(0) + 1, last_of(0) + 7, last_of(1) + 1, last_of(2)];
 
-    let dir = scratch.out("run");
+    let dir = scratch.path("run");
     OutputDirectory::create(&dir).and_then(|out| out.write_case(&case.to_toml())).expect("a directory");
     let problem = Problem::new(&case).expect("a problem");
     let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
     let newton = problem.newton().expect("a solver");
     let (elements, unknowns) = (problem.model.mesh.elements.len(), newton.free_unknowns());
     let setting = Setting { computed_on: backend.description(), elements, unknowns };
-    let copies = Copies { from: dir.clone(), to: scratch.out("killed"), after: after.clone() };
+    let copies = Copies { from: dir.clone(), to: scratch.path("killed"), after: after.clone() };
     let mut results = ResultWriter::create(&case, &dir, setting, Clock::start(), Box::new(copies), Arc::default(), None)
         .expect("results")
         .with_checkpoints_every(Duration::ZERO);
@@ -264,20 +209,20 @@ fn a_run_killed_at_any_step_goes_on() {
 
     for step in after {
         let name = format!("killed/{step}");
-        assert_eq!(steps(&scratch.out(&name)), step);
-        let message = scratch.resumed(&name, &[]);
+        assert_eq!(steps(&scratch.path(&name)), step);
+        let message = resumed(&scratch, &name, &[]);
         assert!(
             !message.contains(&format!("resumed after step {step} ")) && message.contains("resumed after step "),
             "{message}"
         );
-        assert_same(&scratch.out(&name), whole());
+        assert_same(&scratch.path(&name), whole());
     }
 }
 
 #[test]
 fn an_interruption_of_the_coarse_run_is_a_run_that_has_not_begun() {
-    let scratch = Scratch::new();
-    let out = scratch.out("out");
+    let scratch = scratch();
+    let out = scratch.path("out");
     // The machine may be so slow that the coarse run is over before the signal.
     for _ in 0..5 {
         let mut child = piped(program().args(scratch.args("out", &["-v", "--force"])));
@@ -292,7 +237,7 @@ fn an_interruption_of_the_coarse_run_is_a_run_that_has_not_begun() {
         let code = child.wait().expect("it ends").code();
         if code == Some(75) && steps(&out) == 0 {
             assert!(!out.join("checkpoint.bin").exists());
-            let message = scratch.resumed("out", &["-v"]);
+            let message = resumed(&scratch, "out", &["-v"]);
             assert!(message.contains("from the beginning"), "{message}");
             assert_same(&out, whole());
             return;
@@ -303,14 +248,14 @@ fn an_interruption_of_the_coarse_run_is_a_run_that_has_not_begun() {
 
 #[test]
 fn a_run_that_has_ended_is_left_alone() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let small =
         ["--set", "path.0.indentation=0.002", "--set", "mesh.elements_per_contact_radius=4", "--set", "output.fields=\"none\""];
     let with = |options: &[&'static str]| [&small[..], options].concat();
     let run = |name: &str, options: &[&'static str]| scratch.run(name, &with(options));
     let message = stderr(&run("out", &["--resume"]));
     assert!(message.contains("nothing to resume in "), "{message}");
-    let before = files(&scratch.out("out"));
+    let before = files(&scratch.path("out"));
     let output = run("out", &["--resume"]);
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
     let text = String::from_utf8(output.stdout).expect("text");
@@ -321,26 +266,26 @@ fn a_run_that_has_ended_is_left_alone() {
     assert_eq!(output.status.code(), Some(2));
     let message = stderr(&output);
     assert!(message.contains("contact.friction is 0.3 there and 0.2 here") && message.contains("without --resume"), "{message}");
-    assert!(files(&scratch.out("out")) == before);
+    assert!(files(&scratch.path("out")) == before);
 
     // What did not converge would not converge again.
     let fails = ["--set", "solver.max_iterations=1", "--set", "solver.max_cutbacks=0"];
     assert_eq!(run("fails", &fails).status.code(), Some(3));
-    let before = files(&scratch.out("fails"));
+    let before = files(&scratch.path("fails"));
     assert!(!before.contains_key("checkpoint.bin"));
     let output = run("fails", &[&fails[..], &["--resume"]].concat());
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(3), "{message}");
     assert!(message.starts_with("error: ended before: no convergence: ") && message.contains("without --resume"), "{message}");
-    assert!(files(&scratch.out("fails")) == before);
+    assert!(files(&scratch.path("fails")) == before);
 }
 
 #[test]
 fn a_checkpoint_that_does_not_fit_is_refused_with_its_name_and_a_remedy() {
-    let scratch = Scratch::new();
-    let out = scratch.out("out");
+    let scratch = scratch();
+    let out = scratch.path("out");
     let path = out.join("checkpoint.bin");
-    scratch.interrupted("out");
+    interrupted(&scratch, "out");
     let good = fs::read(&path).expect("a checkpoint");
     let line = good.iter().position(|&byte| byte == b'\n').expect("a first line");
     let refused = |bytes: &[u8], options: &[&str], expected: &str| {
@@ -371,15 +316,15 @@ fn a_checkpoint_that_does_not_fit_is_refused_with_its_name_and_a_remedy() {
     refused(&other, &[], "version 0.0.1");
     // The good one still does.
     fs::write(&path, &good).expect("a checkpoint");
-    scratch.resumed("out", &["-q"]);
+    resumed(&scratch, "out", &["-q"]);
     assert_same(&out, whole());
 }
 
 #[test]
 fn without_resume_a_run_begins_anew_only_by_force() {
-    let scratch = Scratch::new();
-    scratch.interrupted("out");
-    let before = files(&scratch.out("out"));
+    let scratch = scratch();
+    interrupted(&scratch, "out");
+    let before = files(&scratch.path("out"));
     // Only if it is said: what was computed would be lost.
     let output = scratch.run("out", &["-q"]);
     let message = stderr(&output);
@@ -392,10 +337,10 @@ fn without_resume_a_run_begins_anew_only_by_force() {
         "nothing was changed",
     ];
     assert!(parts.iter().all(|part| message.contains(part)) && message.lines().count() == 1, "{message}");
-    assert!(files(&scratch.out("out")) == before);
+    assert!(files(&scratch.path("out")) == before);
     let output = scratch.run("out", &["-q", "--force"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert_same(&scratch.out("out"), whole());
+    assert_same(&scratch.path("out"), whole());
 }
 
 #[test]
@@ -403,24 +348,24 @@ fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() 
     if device::device("resume", Precision::F64).is_none() {
         return;
     }
-    let scratch = Scratch::new();
+    let scratch = scratch();
     // The press alone, in few steps: software adapters are slow.
     let press: Vec<&str> = CASE.split("[[path]]").take(2).collect();
-    fs::write(scratch.out("case.toml"), press.join("[[path]]")).expect("the case");
+    fs::write(scratch.path("case.toml"), press.join("[[path]]")).expect("the case");
     let small = ["mesh.elements_per_contact_radius=4", "solver.press_steps=5", "solver.error_estimate=false"];
     let sets: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
     for precision in ["f64", "f32"] {
         let run = |options: &[&str], device: &str| {
             let mut args = scratch.args(precision, &[&sets[..], &["--precision", precision], options].concat());
-            args.iter_mut().filter(|arg| *arg == "cpu").for_each(|arg| device.clone_into(arg));
+            args.iter_mut().filter(|arg| *arg == "cpu").for_each(|arg| *arg = device.into());
             args
         };
-        let whole = scratch.out("whole");
+        let whole = scratch.path("whole");
         let args = run(&["--force"], "gpu")
             .into_iter()
-            .map(|arg| if Path::new(&arg) == scratch.out(precision) { whole.display().to_string() } else { arg });
+            .map(|arg| if Path::new(&arg) == scratch.path(precision) { whole.clone().into() } else { arg });
         assert_eq!(program().args(args).output().expect("it runs").status.code(), Some(0));
-        let out = scratch.out(precision);
+        let out = scratch.path(precision);
         let output = stop(piped(program().args(run(&[], "gpu"))), Signal::TERM, &out, 2);
         assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
         let (left, at) = (files(&out), steps(&out));
@@ -447,7 +392,7 @@ fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_disk_that_fills_costs_the_checkpoint_and_not_the_run() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let none = ["--set", "output.fields=\"none\""];
     let limited = |options: &[&str]| {
         let mut command = Command::new("bash");
@@ -456,8 +401,8 @@ fn a_disk_that_fills_costs_the_checkpoint_and_not_the_run() {
         command.args(scratch.args("out", &[&none[..], options].concat()));
         command
     };
-    let out = scratch.out("out");
-    assert_eq!(scratch.stopped("out", Signal::TERM, 2, &none).status.code(), Some(75));
+    let out = scratch.path("out");
+    assert_eq!(stopped(&scratch, "out", Signal::TERM, 2, &none).status.code(), Some(75));
     let good = fs::read(out.join("checkpoint.bin")).expect("a checkpoint");
     assert!(good.len() > 200 << 10, "{} bytes", good.len());
     let output = stop(piped(&mut limited(&["--resume"])), Signal::TERM, &out, steps(&out) + 2);

@@ -1,13 +1,14 @@
 //! `asperity run` on coarse meshes: what it writes, what it computes, and how it ends.
 
+mod common;
 mod python;
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Command;
 
 use asperity::output::{OutputDirectory, Status, StepRecord, Summary, TimeByPhase, read_contact, read_history};
-use tempfile::TempDir;
+use common::{Scratch, program, stderr, stdout};
 
 /// Pressed and sheared, ideally plastic; everything below varies it by `--set`.
 const CASE: &str = r#"
@@ -34,48 +35,18 @@ const FULL_SLIP: &str = "[[path]]\nshear = \"full-slip\"\n";
 /// Whatever devices the machine has: what is tested here is the reference.
 const CPU: [&str; 2] = ["--device", "cpu"];
 
-/// A case in a scratch directory of its own.
-struct Scratch {
-    dir: TempDir,
+/// The case with these segments after its press.
+fn scratch(segments: &str) -> Scratch {
+    Scratch::new(&format!("{CASE}{segments}"), &CPU)
 }
 
-impl Scratch {
-    fn new(segments: &str) -> Self {
-        let dir = tempfile::tempdir().expect("a scratch directory");
-        fs::write(dir.path().join("case.toml"), format!("{CASE}{segments}")).expect("the case");
-        Self { dir }
-    }
-
-    fn out(&self, name: &str) -> PathBuf {
-        self.dir.path().join(name)
-    }
-
-    fn command(&self, name: &str, options: &[&str]) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
-        command.arg("run").arg(self.dir.path().join("case.toml")).arg("--out").arg(self.out(name)).args(CPU).args(options);
-        command
-    }
-
-    fn run(&self, name: &str, options: &[&str]) -> Output {
-        self.command(name, options).output().expect("the program runs")
-    }
-
-    /// Runs to the end and reads the results back.
-    fn done(&self, name: &str, options: &[&str]) -> (Vec<StepRecord>, Summary) {
-        let output = self.run(name, options);
-        assert_eq!(output.status.code(), Some(0), "{options:?}: {}", stderr(&output));
-        let (history, summary) = results(&self.out(name));
-        assert_eq!(summary.status, Status::Done);
-        (history, summary)
-    }
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("text is UTF-8")
+/// Runs to the end and reads the results back.
+fn done(scratch: &Scratch, name: &str, options: &[&str]) -> (Vec<StepRecord>, Summary) {
+    let output = scratch.run(name, options);
+    assert_eq!(output.status.code(), Some(0), "{options:?}: {}", stderr(&output));
+    let (history, summary) = results(&scratch.path(name));
+    assert_eq!(summary.status, Status::Done);
+    (history, summary)
 }
 
 fn results(dir: &Path) -> (Vec<StepRecord>, Summary) {
@@ -104,11 +75,11 @@ fn timeless(summary: &Summary) -> Summary {
 
 #[test]
 fn leaves_every_file_of_the_contract() {
-    let scratch = Scratch::new(FULL_SLIP);
+    let scratch = scratch(FULL_SLIP);
     let output = scratch.run("out", &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let dir = scratch.out("out");
-    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "plots", "summary.json"]);
+    let dir = scratch.path("out");
+    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "plots", "run.log", "summary.json"]);
 
     let text = fs::read_to_string(dir.join("history.csv")).expect("a history");
     assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,"), "{text}");
@@ -190,23 +161,23 @@ fn leaves_every_file_of_the_contract() {
     );
 
     // The resolved case runs to the same result.
-    let again = Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
+    let again = program()
         .arg("run")
-        .args([&dir.join("case.toml"), Path::new("--out"), &scratch.out("again")])
+        .args([&dir.join("case.toml"), Path::new("--out"), &scratch.path("again")])
         .args(CPU)
         .arg("-q")
         .output()
         .expect("the program runs");
     assert_eq!((again.status.code(), again.stdout.len(), again.stderr.len()), (Some(0), 0, 0), "{}", stderr(&again));
-    assert_eq!(fs::read(scratch.out("again").join("history.csv")).expect("a history"), text.as_bytes());
+    assert_eq!(fs::read(scratch.path("again").join("history.csv")).expect("a history"), text.as_bytes());
 }
 
 #[test]
 fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
-    let scratch = Scratch::new("");
+    let scratch = scratch("");
     let set = ["--set", "solver.press_steps=3", "--set", "output.fields=\"all\""];
-    scratch.done("out", &set);
-    let dir = scratch.out("out");
+    done(&scratch, "out", &set);
+    let dir = scratch.path("out");
     assert_eq!(names(&dir.join("fields")), ["case.pvd", "step_0001.vtu", "step_0002.vtu", "step_0003.vtu"]);
     assert_eq!(names(&dir.join("contact")).len(), 3);
     fs::write(dir.join("notes.txt"), "mine").expect("a file");
@@ -221,8 +192,8 @@ fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
         assert!(message.contains(part), "{message}");
     }
     assert_eq!(names(&dir.join("contact")).len(), 3);
-    scratch.done("out", &[&fewer[..], &["--force"]].concat());
-    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "notes.txt", "plots", "summary.json"]);
+    done(&scratch, "out", &[&fewer[..], &["--force"]].concat());
+    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "notes.txt", "plots", "run.log", "summary.json"]);
     for folder in ["fields", "contact", "plots"] {
         assert!(names(&dir.join(folder)).is_empty(), "{folder}: {:?}", names(&dir.join(folder)));
     }
@@ -231,9 +202,9 @@ fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
 #[test]
 fn fields_open_in_python_and_agree_with_the_history() {
     let Some(python) = python::python("fields_open_in_python_and_agree_with_the_history") else { return };
-    let scratch = Scratch::new(SHEAR);
-    let (history, _) = scratch.done("out", &[]);
-    let out = OutputDirectory::existing(scratch.out("out"));
+    let scratch = scratch(SHEAR);
+    let (history, _) = done(&scratch, "out", &[]);
+    let out = OutputDirectory::existing(scratch.path("out"));
     for step in out.contact_steps().expect("contact tables") {
         let force = history[step - 1].f_n.to_string();
         let output = Command::new(&python)
@@ -247,10 +218,11 @@ fn fields_open_in_python_and_agree_with_the_history() {
 
 #[test]
 fn two_runs_are_equal_to_the_bit_on_any_number_of_threads() {
-    let scratch = Scratch::new(SHEAR);
-    let (_, first) = scratch.done("a", &["--threads", "1"]);
-    let (_, second) = scratch.done("b", &["--threads", "2"]);
-    let bytes = |name: &str, file: &str| fs::read(scratch.out(name).join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+    let scratch = scratch(SHEAR);
+    let (_, first) = done(&scratch, "a", &["--threads", "1"]);
+    let (_, second) = done(&scratch, "b", &["--threads", "2"]);
+    let bytes =
+        |name: &str, file: &str| fs::read(scratch.path(name).join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
     for file in ["history.csv", "case.toml", "contact/step_0005.csv", "fields/step_0005.vtu", "plots/forces.svg"] {
         assert!(bytes("a", file) == bytes("b", file), "{file} differs");
     }
@@ -260,10 +232,11 @@ fn two_runs_are_equal_to_the_bit_on_any_number_of_threads() {
 
 #[test]
 fn other_units_give_the_same_normalised_curve() {
-    let scratch = Scratch::new(SHEAR);
+    let scratch = scratch(SHEAR);
     let (radius, modulus) = (2.5e-3, 200e9);
-    let (reference, first) = scratch.done("mpa", &[]);
-    let (other, second) = scratch.done(
+    let (reference, first) = done(&scratch, "mpa", &[]);
+    let (other, second) = done(
+        &scratch,
         "pa",
         &[
             "--set",
@@ -304,10 +277,10 @@ fn other_units_give_the_same_normalised_curve() {
 
 #[test]
 fn a_shear_to_the_left_mirrors_one_to_the_right() {
-    let scratch = Scratch::new(SHEAR);
+    let scratch = scratch(SHEAR);
     // At the default tolerance the two differ by as much as it allows, some 1e-5.
-    let (right, first) = scratch.done("right", &["--set", "solver.tolerance=1e-8"]);
-    let (left, second) = scratch.done("left", &["--set", "solver.tolerance=1e-8", "--set", "path.1.shear=-0.002"]);
+    let (right, first) = done(&scratch, "right", &["--set", "solver.tolerance=1e-8"]);
+    let (left, second) = done(&scratch, "left", &["--set", "solver.tolerance=1e-8", "--set", "path.1.shear=-0.002"]);
     assert_eq!(right.len(), left.len());
     let largest = |name: &str| right.iter().flat_map(numbers).filter(|n| n.0 == name).map(|n| n.1.abs()).fold(0.0, f64::max);
     for (a, b) in right.iter().zip(&left) {
@@ -325,8 +298,8 @@ fn a_shear_to_the_left_mirrors_one_to_the_right() {
 
 #[test]
 fn without_friction_there_is_no_tangential_force() {
-    let scratch = Scratch::new(SHEAR);
-    let (history, summary) = scratch.done("out", &["--set", "contact.friction=0.0", "--set", "solver.tolerance=1e-9"]);
+    let scratch = scratch(SHEAR);
+    let (history, summary) = done(&scratch, "out", &["--set", "contact.friction=0.0", "--set", "solver.tolerance=1e-9"]);
     let pressed = summary.f_n0.expect("F_N0");
     // Zero but for the residual at which a step is accepted.
     let work = history[history.len() - 1].work_external;
@@ -341,8 +314,8 @@ fn without_friction_there_is_no_tangential_force() {
 
 #[test]
 fn full_stick_has_no_full_slip() {
-    let scratch = Scratch::new(SHEAR);
-    let (history, summary) = scratch.done("out", &["--set", "contact.friction=\"stick\""]);
+    let scratch = scratch(SHEAR);
+    let (history, summary) = done(&scratch, "out", &["--set", "contact.friction=\"stick\""]);
     let last = history[history.len() - 1];
     // More than the coefficient of the other cases: only the yield stress in shear limits it. What the points do is in contact_points.rs.
     assert!(last.f_t / last.f_n > 0.4 && last.slipping_points == 0, "{last:?}");
@@ -351,8 +324,8 @@ fn full_stick_has_no_full_slip() {
 
 #[test]
 fn a_held_normal_force_is_held() {
-    let scratch = Scratch::new("[[path]]\nshear = 0.0015\nhold = \"normal-force\"\n");
-    let (history, summary) = scratch.done("out", &["--set", "mesh.fine_zone=1.8", "--set", "solver.tolerance=1e-6"]);
+    let scratch = scratch("[[path]]\nshear = 0.0015\nhold = \"normal-force\"\n");
+    let (history, summary) = done(&scratch, "out", &["--set", "mesh.fine_zone=1.8", "--set", "solver.tolerance=1e-6"]);
     let held = summary.f_n0.expect("F_N0");
     let shear: Vec<&StepRecord> = history.iter().filter(|row| row.segment == 1).collect();
     assert!(shear.len() > 5);
@@ -365,8 +338,8 @@ fn a_held_normal_force_is_held() {
 
 #[test]
 fn a_release_ends_without_force_and_leaves_an_indentation() {
-    let scratch = Scratch::new("[[path]]\nrelease = true\n");
-    let (history, summary) = scratch.done("out", &[]);
+    let scratch = scratch("[[path]]\nrelease = true\n");
+    let (history, summary) = done(&scratch, "out", &[]);
     let last = history[history.len() - 1];
     assert_eq!((last.f_n, last.f_t, last.contact_points, last.a), (0.0, 0.0, 0, 0.0));
     assert!(last.h > 0.017 && last.h < 0.0199, "{last:?}");
@@ -374,14 +347,14 @@ fn a_release_ends_without_force_and_leaves_an_indentation() {
     assert!(forces.windows(2).all(|pair| pair[1] < pair[0]), "{forces:?}");
     assert_eq!(summary.h0, Some(0.02));
     // The map shows the last contact there was.
-    assert!(names(&scratch.out("out").join("plots")).contains(&"contact.svg".to_owned()));
+    assert!(names(&scratch.path("out").join("plots")).contains(&"contact.svg".to_owned()));
 }
 
 #[test]
 fn single_precision_gives_the_same_answer() {
-    let scratch = Scratch::new(SHEAR);
-    let (double, _) = scratch.done("f64", &["--precision", "f64"]);
-    let (single, summary) = scratch.done("f32", &["--precision", "f32"]);
+    let scratch = scratch(SHEAR);
+    let (double, _) = done(&scratch, "f64", &["--precision", "f64"]);
+    let (single, summary) = done(&scratch, "f32", &["--precision", "f32"]);
     assert_eq!(summary.precision, "f32");
     assert_eq!(double.len(), single.len());
     // Two iterates that are both good enough differ by a share of the tolerance, 3e-4.
@@ -393,11 +366,11 @@ fn single_precision_gives_the_same_answer() {
 
 #[test]
 fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
-    let scratch = Scratch::new(SHEAR);
+    let scratch = scratch(SHEAR);
     let output = scratch.run("out", &["--set", "solver.max_iterations=4", "--set", "solver.max_cutbacks=0", "-q"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
     let message = stderr(&output);
-    let (history, summary) = results(&scratch.out("out"));
+    let (history, summary) = results(&scratch.path("out"));
     // The step that failed is the one after the last row, and both are counted alike.
     let failed = format!("error: no convergence: step {} of segment 0 (", history.last().map_or(1, |row| row.step + 1));
     for word in [&failed, "merit ", "node ", "[solver] press_steps", "is kept in "] {
@@ -409,7 +382,7 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
     // Not one step: still a history with its columns, and a summary whose numbers do not exist.
     let output = scratch.run("none", &["--set", "solver.max_iterations=1", "--set", "solver.max_cutbacks=0"]);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-    let (history, summary) = results(&scratch.out("none"));
+    let (history, summary) = results(&scratch.path("none"));
     assert!(history.is_empty() && summary.f_n0.is_none() && summary.steps == 0);
     // The time of attempts that led to no step is told all the same.
     assert!(summary.time_by_phase.tangent.seconds > 0.0 && summary.time_by_phase.linear_solve.seconds > 0.0, "{summary:?}");
@@ -418,10 +391,10 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
 
 #[test]
 fn asked_to_say_more_it_tells_what_each_step_took() {
-    let scratch = Scratch::new("");
+    let scratch = scratch("");
     let output = scratch.run("out", &["-v"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let (history, _) = results(&scratch.out("out"));
+    let (history, _) = results(&scratch.path("out"));
     let told = stderr(&output);
     // The steps of the coarse run come before.
     let told = told.split_once("the run:").expect("the run is announced").1;
@@ -436,7 +409,7 @@ fn asked_to_say_more_it_tells_what_each_step_took() {
 
 #[test]
 fn a_contact_that_leaves_the_fine_mesh_is_computed_on_a_larger_one() {
-    let scratch = Scratch::new("");
+    let scratch = scratch("");
     let narrow = "mesh.contact_radius=0.12";
     let scouted = scratch.run("scouted", &["--set", narrow]);
     let blind = scratch.run("blind", &["--set", narrow, "--set", "solver.error_estimate=false"]);
@@ -446,13 +419,13 @@ fn a_contact_that_leaves_the_fine_mesh_is_computed_on_a_larger_one() {
     ] {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
         assert!(stderr(output).contains(note), "{}", stderr(output));
-        let (history, summary) = results(&scratch.out(name));
+        let (history, summary) = results(&scratch.path(name));
         assert_eq!((summary.status, summary.remeshed, summary.messages.len()), (Status::Done, remeshed, 1), "{summary:?}");
         assert_eq!(history[0].step, 1);
         assert_eq!(history.len(), summary.steps);
         assert!((summary.a0.expect("a radius") / 0.2087 - 1.0).abs() < 0.1, "{summary:?}");
         // Nothing of the first start is left.
-        assert_eq!(names(&scratch.out(name).join("contact")), [format!("step_{:04}.csv", history.len())]);
+        assert_eq!(names(&scratch.path(name).join("contact")), [format!("step_{:04}.csv", history.len())]);
     }
 }
 
@@ -462,13 +435,14 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
     use rustix::process::{Pid, Signal, kill_process};
     use std::time::{Duration, Instant};
 
-    let scratch = Scratch::new("[[path]]\nshear = 0.01\n");
+    let scratch = scratch("[[path]]\nshear = 0.01\n");
     for (name, signal) in
         [("terminated", Signal::TERM), ("interrupted", Signal::INT), ("warned", Signal::USR1), ("hung-up", Signal::HUP)]
     {
-        let mut command = scratch.command(name, &["--set", "mesh.elements_per_contact_radius=8"]);
+        let mut command = program();
+        command.args(scratch.args(name, &["--set", "mesh.elements_per_contact_radius=8"]));
         let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("a run");
-        let history = scratch.out(name).join("history.csv");
+        let history = scratch.path(name).join("history.csv");
         let started = Instant::now();
         while read_history(&history).map_or(0, |rows| rows.len()) < 2 {
             assert!(started.elapsed() < Duration::from_secs(60), "no step in a minute");
@@ -483,17 +457,17 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
                 && message.contains("run the same command with --resume"),
             "{message}"
         );
-        let (history, summary) = results(&scratch.out(name));
+        let (history, summary) = results(&scratch.path(name));
         assert!(history.len() >= 2);
         assert_eq!((summary.status, summary.steps), (Status::Interrupted, history.len()));
-        assert_eq!(names(&scratch.out(name).join("fields")), ["case.pvd".to_owned(), format!("step_{:04}.vtu", history.len())]);
+        assert_eq!(names(&scratch.path(name).join("fields")), ["case.pvd".to_owned(), format!("step_{:04}.vtu", history.len())]);
     }
 }
 
 #[test]
 fn bad_places_and_devices_end_with_2_and_touch_nothing() {
-    let scratch = Scratch::new(SHEAR);
-    let mine = scratch.out("mine");
+    let scratch = scratch(SHEAR);
+    let mine = scratch.path("mine");
     fs::create_dir(&mine).expect("a directory");
     fs::write(mine.join("notes.txt"), "mine").expect("a file");
     for (out, options, expected) in [
@@ -509,19 +483,19 @@ fn bad_places_and_devices_end_with_2_and_touch_nothing() {
     }
     assert_eq!(names(&mine), ["notes.txt"]);
     assert_eq!(fs::read_to_string(mine.join("notes.txt")).expect("still there"), "mine");
-    assert!(!scratch.out("new").exists());
+    assert!(!scratch.path("new").exists());
 }
 
 /// A limit on the size of a file stands for a full disk: the system refuses the first write beyond it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
-    let scratch = Scratch::new(SHEAR);
+    let scratch = scratch(SHEAR);
     let output = Command::new("bash")
         .args(["-c", "trap '' XFSZ; ulimit -f 60; exec \"$@\"", "bash"])
         .arg(assert_cmd::cargo::cargo_bin!("asperity"))
         .arg("run")
-        .args([&scratch.out("case.toml"), Path::new("--out"), &scratch.out("out")])
+        .args([&scratch.path("case.toml"), Path::new("--out"), &scratch.path("out")])
         .args(CPU)
         .output()
         .expect("bash runs");
@@ -532,8 +506,8 @@ fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
         "{message}"
     );
     assert_eq!(message.lines().filter(|line| line.starts_with("error")).count(), 1, "{message}");
-    let (history, summary) = results(&scratch.out("out"));
+    let (history, summary) = results(&scratch.path("out"));
     assert_eq!((history.len(), summary.status), (5, Status::Interrupted));
     assert!(summary.messages[0].contains("step_0005.vtu"), "{:?}", summary.messages);
-    assert!(names(&scratch.out("out").join("fields")).is_empty());
+    assert!(names(&scratch.path("out").join("fields")).is_empty());
 }

@@ -1,5 +1,6 @@
 //! `asperity study`: a directory and a row a case, whatever becomes of the others; shares; interruption; bad files.
 
+mod common;
 mod device;
 
 use std::collections::BTreeMap;
@@ -11,6 +12,7 @@ use std::time::{Duration, Instant};
 use asperity::case::Case;
 use asperity::compute::gpu::Precision;
 use asperity::output::{OutputDirectory, Status, Summary, read_contact, read_history};
+use common::{stderr, stdout};
 use tempfile::TempDir;
 
 /// Less than a second a case.
@@ -90,14 +92,6 @@ impl Scratch {
     fn case(&self, name: &str, id: &str) -> OutputDirectory {
         OutputDirectory::existing(self.out(name).join("cases").join(id))
     }
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("messages are UTF-8")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("text is UTF-8")
 }
 
 type Row = BTreeMap<String, String>;

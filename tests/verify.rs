@@ -82,6 +82,9 @@ fn one_family_quietly_with_reasons() {
     assert!(!table.contains("mirror image"));
     let output = verify(&["--device", "cpu", "--only", "invariance", "-v"]);
     assert!(text(&output.stdout).contains("the mesh is its own mirror image"), "{}", text(&output.stdout));
+    let output = verify(&["--device", "cpu", "--only", "invariance", "-q", "--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).expect("nothing but JSON");
+    assert_eq!(json["checks"].as_array().map(Vec::len), Some(table.lines().count() - 3), "{json}");
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub enum CaseError {
         what: String,
     },
     /// A key that no case has.
-    #[error("{place}: {}: unknown key{} allowed: {allowed}", short(.key), did_you_mean(.nearest))]
+    #[error("{}: unknown key{} allowed: {allowed}", at(.place, .key), did_you_mean(.nearest))]
     UnknownKey {
         /// Where the key stands.
         place: Place,
@@ -59,7 +59,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A key without which there is no case.
-    #[error("{place}: {}: missing. allowed: {allowed}", short(.key))]
+    #[error("{}: missing. allowed: {allowed}", at(.place, .key))]
     Missing {
         /// The table that lacks the key.
         place: Place,
@@ -69,7 +69,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A value of another type than the key takes.
-    #[error("{place}: {}: is {}, which is the wrong type. allowed: {allowed}", short(.key), short(.found))]
+    #[error("{}: is {}, which is the wrong type. allowed: {allowed}", at(.place, .key), short(.found))]
     WrongType {
         /// Where the value stands.
         place: Place,
@@ -81,7 +81,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A value out of range, or one that does not go with the rest of the case.
-    #[error("{place}: {}: {}. allowed: {allowed}", short(.key), short(.what))]
+    #[error("{}: {}. allowed: {allowed}", at(.place, .key), short(.what))]
     NotAllowed {
         /// Where the value stands.
         place: Place,
@@ -115,6 +115,14 @@ pub fn short(text: &str) -> Cow<'_, str> {
     }
     let (head, tail): (String, String) = (text.chars().take(MOST / 2).collect(), text.chars().skip(count - MOST / 4).collect());
     Cow::Owned(format!("{head} [... {} characters ...] {tail}", count - MOST / 2 - MOST / 4))
+}
+
+/// Place and key; a `--set` argument that names the key is both.
+fn at(place: &Place, key: &str) -> String {
+    match place {
+        Place::Set(set) if **set == *key => place.to_string(),
+        _ => format!("{place}: {}", short(key)),
+    }
 }
 
 fn did_you_mean(nearest: &Option<String>) -> String {

@@ -8,10 +8,13 @@ mod document;
 mod error;
 mod estimate;
 mod hardening;
+pub mod keys;
 mod path;
 mod read;
 mod reader;
 mod scale;
+mod schema;
+mod starter;
 mod write;
 
 #[cfg(test)]
@@ -23,6 +26,8 @@ pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
 pub use hardening::Hardening;
 pub use path::{Hold, Segment, ShearTarget};
 pub use reader::{Field, Reader};
+pub use schema::{case_schema, study_schema};
+pub use starter::starter_case;
 
 use serde::Serialize;
 

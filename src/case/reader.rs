@@ -123,7 +123,11 @@ impl<'d> Field<'d> {
             return Err(self.wrong_type(&words));
         };
         let chosen = options.iter().find(|(word, _)| word == text);
-        chosen.map(|(_, option)| *option).ok_or_else(|| self.refuse(&format!("is {text:?}"), &words))
+        chosen.map(|(_, option)| *option).ok_or_else(|| {
+            let known: Vec<&str> = options.iter().map(|(word, _)| *word).collect();
+            let meant = nearest(text, &known).map_or(String::new(), |word| format!(" (did you mean {word:?}?)"));
+            self.refuse(&format!("is {text:?}{meant}"), &words)
+        })
     }
 
     /// The text, if the value is a string.
@@ -171,7 +175,7 @@ impl<'d> Field<'d> {
 }
 
 /// The known key most like `name`, unless they have little in common.
-fn nearest(name: &str, known: &[&str]) -> Option<String> {
+pub(super) fn nearest(name: &str, known: &[&str]) -> Option<String> {
     let likeness = |key: &&str| strsim::jaro_winkler(&name.to_lowercase(), key);
     let best = known.iter().copied().max_by(|left, right| likeness(left).total_cmp(&likeness(right)))?;
     (likeness(&best) > 0.75).then(|| best.to_owned())

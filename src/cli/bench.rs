@@ -26,8 +26,11 @@ pub struct BenchArgs {
     #[arg(long, value_name = "N")]
     pub elements: Option<usize>,
     /// Write the numbers to this file, as JSON.
-    #[arg(long, value_name = "FILE")]
-    pub export: Option<PathBuf>,
+    #[arg(long, alias = "export", value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Print that JSON in place of the table.
+    #[arg(long)]
+    pub json: bool,
     /// Threads of the rows on all cores; by default all of the machine's.
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
@@ -47,7 +50,7 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
     let threads = args.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let mut options = if args.quick { Options::quick(device, threads) } else { Options::full(device, threads) };
     options.elements = args.elements.unwrap_or(options.elements);
-    if let Some(path) = args.export.as_ref().filter(|path| !path.exists()) {
+    if let Some(path) = args.out.as_ref().filter(|path| !path.exists()) {
         // Minutes of measuring are not lost to a file that cannot be written.
         write_atomically(path, |_| Ok(()))?;
     }
@@ -62,8 +65,8 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
         BenchError::Device(error) => CliError::Device { what: error.to_string() },
         error => CliError::Bench(error),
     })?;
-    super::print(&table::table(&report))?;
-    if let Some(path) = &args.export {
+    super::print(&if args.json { report.to_json() } else { table::table(&report) })?;
+    if let Some(path) = &args.out {
         write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
     }
     Ok(Outcome::Done)

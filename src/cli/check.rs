@@ -3,47 +3,100 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::{Value, json};
 
-use super::{CliError, Outcome};
-use crate::bounded;
-use crate::case::{Case, Document};
-use crate::study::Study;
+use super::input::Input;
+use super::{CliError, Outcome, print, print_json};
+use crate::case::{Case, estimated_elements, estimated_memory};
+use crate::simulation::problem::{press_steps, shear_steps};
+use crate::study::{Study, StudyCase, estimated_seconds};
 
-/// Check a case and print it with every default, without running it; of a study, check every combination and print how many there are, and the first.
+/// Check a case and print it with every default and its size, without running it; of a study, check every combination and print how many there are, and
+/// the first.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArgs {
-    /// The case file, or a study file.
+    /// The case file, or a study file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Print JSON in place of TOML.
+    #[arg(long)]
+    pub json: bool,
 }
 
-/// Loads and checks the case and prints it as TOML; so the first case of a study, after a line on the size of its grid.
+/// Loads and checks the case and prints it as TOML under its size; so the first case of a study, after a line on the size of its grid.
 pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
-    if let Some(study) = study(args)? {
-        let first = study
-            .cases
-            .first()
-            .map_or(String::new(), |case| format!("# case {}: {}\n{}", case.id, study.combination(case), case.case.to_toml()));
-        super::print(&format!("# {}\n{first}", study.size()))?;
+    let input = Input::read(&args.case)?;
+    if input.is_study() {
+        if let Some(argument) = args.set.first() {
+            return Err(CliError::SetInStudy { argument: argument.clone(), file: args.case.clone() });
+        }
+        let study = input.study()?;
+        if args.json {
+            print_json(&study_json(&study))?
+        } else {
+            print(&study_text(&study))?
+        }
         return Ok(Outcome::Done);
     }
-    let case = Case::load(&args.case, &args.set)?;
-    super::print(&case.to_toml())?;
+    let case = input.case(&args.set)?;
+    if args.json {
+        print_json(&case_json(&case))?
+    } else {
+        print(&case_text(&case))?
+    }
     Ok(Outcome::Done)
 }
 
-/// The study, if the file is one. What cannot be read as TOML is left to the case's own check.
-fn study(args: &CheckArgs) -> Result<Option<Study>, CliError> {
-    let name = args.case.display().to_string();
-    let text = bounded::read_to_string(&args.case, bounded::CASE).unwrap_or_default();
-    if !Document::parse(&text, &name).is_ok_and(|document| Study::is_study(&document)) {
-        return Ok(None);
-    }
-    match args.set.first() {
-        Some(argument) => Err(CliError::SetInStudy { argument: argument.clone(), file: args.case.clone() }),
-        None => Ok(Some(Study::parse(&text, &name)?)),
+fn study_text(study: &Study) -> String {
+    let first = |case: &StudyCase| format!("# case {}: {}\n{}", case.id, study.combination(case), case_text(&case.case));
+    let seconds = duration(study.cases.iter().map(|case| estimated_seconds(&case.case)).sum());
+    let first = study.cases.first().map_or(String::new(), first);
+    format!("# {}\n# about {seconds} of processor time in all, to a factor of three\n{first}", study.size())
+}
+
+fn study_json(study: &Study) -> Value {
+    let seconds: f64 = study.cases.iter().map(|case| estimated_seconds(&case.case)).sum();
+    let keys: Vec<Value> =
+        study.keys.iter().zip(&study.counts).map(|(key, values)| json!({ "key": key, "values": values })).collect();
+    let first = study.cases.first().map(|case| case_json(&case.case));
+    json!({ "kind": "study", "cases": study.cases.len(), "grid": keys, "estimated_seconds": seconds, "first": first })
+}
+
+/// The case under comments with its size and with what the mesh decides where no key does.
+fn case_text(case: &Case) -> String {
+    format!(
+        "# about {} elements, {:.2} GiB and {} of processor time (to a factor of three)\n\
+         # press_steps = {} and shear_steps = {}\n{}",
+        estimated_elements(case),
+        estimated_memory(case),
+        duration(estimated_seconds(case)),
+        press_steps(case),
+        shear_steps(case),
+        case.to_toml()
+    )
+}
+
+fn case_json(case: &Case) -> Value {
+    json!({
+        "kind": "case",
+        "case": case,
+        "press_steps": press_steps(case),
+        "shear_steps": shear_steps(case),
+        "estimated_elements": estimated_elements(case),
+        "estimated_memory_gib": estimated_memory(case),
+        "estimated_seconds": estimated_seconds(case),
+    })
+}
+
+/// A time in the unit that suits it.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        ..10.0 => format!("{seconds:.1} s"),
+        10.0..120.0 => format!("{seconds:.0} s"),
+        120.0..7200.0 => format!("{:.0} min", seconds / 60.0),
+        _ => format!("{:.1} h", seconds / 3600.0),
     }
 }

@@ -182,6 +182,42 @@ pub enum CliError {
     /// A study.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// A study where a case is wanted.
+    #[error(
+        "{file}: is a study, a grid of cases. `asperity study {file} --out DIR` computes it, `asperity check {file}` shows its first case"
+    )]
+    StudyGiven {
+        /// The file.
+        file: String,
+    },
+    /// A case where a study is wanted.
+    #[error("{file}: is a case, not a study (there is no [base] and no [grid]). `asperity run {file} --out DIR` computes it")]
+    CaseGiven {
+        /// The file.
+        file: String,
+    },
+    /// A key that `explain` does not know.
+    #[error("{key}: no key of case or study files{} `asperity explain` lists them", nearest.as_ref().map_or(".".to_owned(), |key| format!(", did you mean `{key}`?")))]
+    UnknownKey {
+        /// What was asked for.
+        key: String,
+        /// The key that it resembles.
+        nearest: Option<String>,
+    },
+    /// A file that `init` would replace.
+    #[error("{}: is there already. give another name, or --force to replace it (nothing was changed)", .file.display())]
+    FileThere {
+        /// The file.
+        file: PathBuf,
+    },
+    /// Results that cannot be compared.
+    #[error("{}: {what}. give directories that `asperity run` wrote", .dir.display())]
+    NothingToCompare {
+        /// The directory.
+        dir: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A study where `--set` was given.
     #[error("--set {argument}: {} is a study, whose values are those of its file. edit the file, or give a case", .file.display())]
     SetInStudy {

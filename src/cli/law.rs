@@ -7,8 +7,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
-use super::{CliError, Outcome, print};
-use crate::case::Case;
+use serde_json::{Value, json};
+
+use super::input::Input;
+use super::{CliError, Outcome, print, print_json};
+use crate::law::data::Point;
 use crate::law::export::{Language, files, source};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
@@ -45,6 +48,9 @@ pub struct FitArgs {
     /// another law.json.
     #[arg(long, value_name = "PRIOR", default_value = "built-in")]
     pub prior: String,
+    /// Print the law as JSON, as it stands in DIR/law.json, in place of the tables.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// The arguments of `law predict`.
@@ -53,7 +59,7 @@ pub struct PredictArgs {
     /// A law, as `law fit` writes it.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The case: pressed once, sheared once at constant indentation.
+    /// The case, `-` for standard input: pressed once, sheared once at constant indentation.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Take F_N0 and a0 from a simulation of the press alone, not from the law's formulas.
@@ -62,6 +68,9 @@ pub struct PredictArgs {
     /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Print JSON in place of CSV: the curve, what the law was given, its parameters, and what lies outside of its range.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// The arguments of `law export`.
@@ -92,7 +101,11 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
     let law = fit::fit(&args.dir, &Prior::from_option(&args.prior)?)?;
     let path = args.dir.join("law.json");
     law.write(&path)?;
-    print(&format!("{}\nlaw in {}\n", summary(&law), path.display()))?;
+    if args.json {
+        print_json(&law)?;
+    } else {
+        print(&format!("{}\nlaw in {}\n", summary(&law), path.display()))?;
+    }
     Ok(Outcome::Done)
 }
 
@@ -135,17 +148,35 @@ fn summary(law: &Law) -> String {
 
 fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     let law = Law::read(&args.law)?;
-    let case = Case::load(&args.case, &args.set)?;
+    let input = Input::read(&args.case)?;
+    let case = input.case(&args.set)?;
     let source = if args.press { NormalSource::Press } else { NormalSource::Formulas };
-    let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
-    let Prediction { curve, out_of_range, .. } = predict(&law, &case, source).map_err(in_case)?;
-    warn_out_of_range(&args.case, &out_of_range);
+    let in_case = |source: LawError| CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) };
+    let prediction = predict(&law, &case, source).map_err(in_case)?;
+    warn_out_of_range(Path::new(&input.name), &prediction.out_of_range);
+    if args.json {
+        print_json(&as_json(&prediction))?;
+        return Ok(Outcome::Done);
+    }
     let mut text = String::from("delta_T,F_T,F_N\n");
-    for point in &curve {
+    for point in &prediction.curve {
         let _ = writeln!(text, "{:?},{:?},{:?}", point.delta_t, point.f_t, point.f_n);
     }
     print(&text)?;
     Ok(Outcome::Done)
+}
+
+fn as_json(prediction: &Prediction) -> Value {
+    let column = |of: fn(&Point) -> f64| prediction.curve.iter().map(of).collect::<Vec<f64>>();
+    let outside = prediction.out_of_range.iter().map(
+        |OutOfRange { quantity, value, range }| json!({ "quantity": quantity, "value": value, "from": range.from, "to": range.to }),
+    );
+    json!({
+        "curve": { "delta_T": column(|p| p.delta_t), "F_T": column(|p| p.f_t), "F_N": column(|p| p.f_n) },
+        "inputs": prediction.inputs,
+        "parameters": prediction.parameters,
+        "out_of_range": outside.collect::<Vec<_>>(),
+    })
 }
 
 fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
@@ -157,8 +188,15 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
     let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
     fs::create_dir_all(dir).map_err(failed("be created"))?;
     for file in files(&law, args.format) {
-        write_atomically(&dir.join(file.name), |out| out.write_all(file.content.as_bytes()))?;
+        let path = dir.join(file.name);
+        write_atomically(&path, |out| out.write_all(file.content.as_bytes()))?;
+        print(&format!("{}\n", path.display()))?;
     }
+    let check = match args.format {
+        Language::C => "cc -std=c99 asperity_law_check.c -lm -o check && ./check asperity_law_vectors.csv",
+        Language::Python => "python3 asperity_law.py asperity_law_vectors.csv",
+    };
+    print(&format!("to check it against the vectors: cd {} && {check}\n", dir.display()))?;
     Ok(Outcome::Done)
 }
 

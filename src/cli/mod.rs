@@ -4,10 +4,14 @@ pub mod backend;
 pub mod bench;
 pub mod check;
 pub mod cluster;
+pub mod compare;
 pub mod devices;
 pub mod environment;
 pub mod error;
+pub mod explain;
 pub mod force;
+pub mod init;
+pub mod input;
 pub mod law;
 pub mod options;
 pub mod out;
@@ -16,6 +20,8 @@ pub mod point;
 pub mod processor;
 pub mod resume;
 pub mod run;
+pub mod schema;
+pub mod shell;
 pub mod signals;
 pub mod study;
 pub mod verify;
@@ -25,7 +31,8 @@ pub use error::CliError;
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use serde::Serialize;
 
 /// Simulates elastic-plastic spheres pressed onto a rigid plane and sheared along it.
 #[derive(Debug, Parser)]
@@ -40,15 +47,21 @@ const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not co
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Run(run::RunArgs),
+    Init(init::InitArgs),
+    Explain(explain::ExplainArgs),
     Check(check::CheckArgs),
+    Run(run::RunArgs),
+    Study(study::StudyArgs),
+    Plot(plot::PlotArgs),
+    Compare(compare::CompareArgs),
+    Law(law::LawArgs),
     Verify(verify::VerifyArgs),
     Devices(devices::DevicesArgs),
     Bench(bench::BenchArgs),
     Point(point::PointArgs),
-    Study(study::StudyArgs),
-    Law(law::LawArgs),
-    Plot(plot::PlotArgs),
+    Schema(schema::SchemaArgs),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 impl Command {
@@ -63,6 +76,12 @@ impl Command {
             Command::Study(args) => study::study(args),
             Command::Law(args) => law::law(args),
             Command::Plot(args) => plot::plot(args),
+            Command::Init(args) => init::init(args),
+            Command::Explain(args) => explain::explain(args),
+            Command::Compare(args) => compare::compare(args),
+            Command::Schema(args) => schema::schema(args),
+            Command::Completions(args) => shell::completions(args),
+            Command::Man(args) => shell::man(args),
         }
     }
 }
@@ -110,6 +129,17 @@ pub fn main() -> ExitCode {
         let _ = writeln!(std::io::stderr(), "error: {error}");
         ExitCode::from(error.exit_code())
     })
+}
+
+/// The definition of the command line, for completions and man pages.
+fn command() -> clap::Command {
+    Cli::command()
+}
+
+/// Writes indented JSON to stdout; what is not a number is null.
+pub fn print_json(value: &impl Serialize) -> Result<(), CliError> {
+    // Plain numbers, words and lists: nothing that could fail.
+    print(&(serde_json::to_string_pretty(value).unwrap_or_default() + "\n"))
 }
 
 /// Writes to stdout; a reader that has gone away (`asperity check ... | head`) is not an error.

@@ -8,14 +8,17 @@ use clap::Args;
 
 use super::backend::choose_backend;
 use super::force::{Earlier, claim, tidy};
+use super::input::Input;
 use super::options::{DeviceArgs, Verbosity};
 use super::resume::{Standing, refused, standing};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, out};
-use crate::case::{BYTES_PER_ELEMENT, Case};
+use crate::case::BYTES_PER_ELEMENT;
 use crate::compute::ComputeError;
 use crate::compute::select::Selected;
-use crate::output::{Checkpoint, Clock, OutputDirectory, ResultWriter, Setting, Status, Summary, progress};
+use crate::output::{
+    Checkpoint, Clock, LoggedProgress, OutputDirectory, Progress, ResultWriter, Setting, Status, Summary, progress,
+};
 use crate::simulation::SimulationError;
 use crate::simulation::drive::{Ending, Observer};
 use crate::simulation::follow::{follow, seats};
@@ -28,7 +31,7 @@ const COST_EXPONENT: f64 = 1.1;
 /// Simulate one case.
 #[derive(Clone, Debug, Args)]
 pub struct RunArgs {
-    /// The case file.
+    /// The case file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Directory for the results: a new one, an empty one, or with --resume or --force one that holds an earlier result.
@@ -60,7 +63,8 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let clock = Clock::start();
     args.verbosity.start_log();
     args.device.start_threads()?;
-    let case = Case::load(&args.case, &args.set)?;
+    let input = Input::read(&args.case)?;
+    let case = input.case(&args.set)?;
     let earlier = match (args.force, args.resume) {
         (true, _) => Earlier::Replace,
         (_, true) => Earlier::Resume,
@@ -73,7 +77,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         Some(Standing::Unfinished(checkpoint)) => Some(*checkpoint),
         Some(Standing::NotBegun) | None => None,
     };
-    let bad_case = |source: SimulationError| CliError::Problem { file: args.case.clone(), source };
+    let bad_case = |source: SimulationError| CliError::Problem { file: input.name.clone().into(), source };
     let open = |problem: &Problem| choose_backend(&args.device, vec![problem.model.clone()]);
     let mut problem = Problem::on(&case, checkpoint.as_ref().and_then(Checkpoint::zone)).map_err(bad_case)?;
     let Selected { backend, notes } = open(&problem).map_err(|error| match error {
@@ -90,7 +94,9 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         }
         None => out::prepare(&args.out, &case)?,
     }
-    let mut progress = progress(args.verbosity.quiet);
+    let head = format!("asperity {}: {}", env!("CARGO_PKG_VERSION"), command_line());
+    let log = LoggedProgress::new(progress(args.verbosity.quiet), &OutputDirectory::existing(&args.out), &head);
+    let mut progress: Box<dyn Progress> = Box::new(log);
     let begun = Instant::now();
     let scouts = checkpoint.is_none() && case.solver.error_estimate;
     let scout = if scouts {
@@ -145,6 +151,12 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         followed.ending
     });
     conclude(ending, results, args)
+}
+
+/// The arguments of the program, as they would be typed.
+fn command_line() -> String {
+    let quoted = |arg: String| if arg.contains([' ', '"', '[', '{']) { format!("'{arg}'") } else { arg };
+    std::env::args_os().skip(1).map(|arg| quoted(arg.to_string_lossy().into_owned())).collect::<Vec<_>>().join(" ")
 }
 
 /// What the coarse run tells of the run: its size, and about how long it will take in the same place.

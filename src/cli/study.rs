@@ -9,11 +9,12 @@ use std::sync::atomic::Ordering;
 use clap::Args;
 
 use super::backend::{device_wish, precision_wish};
+use super::input::Input;
 use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, cluster};
 use crate::compute::ComputeError;
-use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgress};
+use crate::study::{self, Options, Report, Shard, StudyError, StudyProgress};
 
 /// Simulate every combination of a grid of cases, one directory and one row of study.csv each.
 ///
@@ -66,7 +67,7 @@ pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
     }
     args.device.start_threads()?;
     // Clap lets no study pass without its file.
-    let study = Study::load(args.study.as_deref().unwrap_or(Path::new("")))?;
+    let study = Input::read(args.study.as_deref().unwrap_or(Path::new("")))?.study()?;
     if let Some(arguments) = &args.slurm {
         return cluster::slurm(&study, arguments, args);
     }

@@ -27,6 +27,9 @@ pub struct VerifyArgs {
     /// Write the rows with their reasons to this file, as JSON.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Print that JSON in place of the table.
+    #[arg(long)]
+    pub json: bool,
     /// Device, precision, threads.
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -67,11 +70,15 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
         report.add(rows);
     }
     report.computed_on(&runner);
-    super::print(&table::table(&report.checks))?;
-    if args.verbosity.verbose > 0 {
-        super::print(&format!("\n{}", table::reasons(&report.checks)))?;
+    if args.json {
+        super::print(&report.to_json())?;
+    } else {
+        super::print(&table::table(&report.checks))?;
+        if args.verbosity.verbose > 0 {
+            super::print(&format!("\n{}", table::reasons(&report.checks)))?;
+        }
+        super::print(&format!("\n{}\n", table::summary(&report)))?;
     }
-    super::print(&format!("\n{}\n", table::summary(&report)))?;
     if let Some(path) = &args.out {
         write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
     }

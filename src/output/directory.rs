@@ -56,6 +56,11 @@ impl OutputDirectory {
         self.root.join("checkpoint.bin")
     }
 
+    /// `run.log`, what the run said and when.
+    pub fn log(&self) -> PathBuf {
+        self.root.join("run.log")
+    }
+
     /// `fields/step_0020.vtu`.
     pub fn fields(&self, step: usize) -> PathBuf {
         self.root.join(format!("fields/step_{step:04}.vtu"))
@@ -105,7 +110,7 @@ impl OutputDirectory {
         let files: Vec<String> =
             saved.iter().flat_map(|&step| [self.fields(step), self.contact(step)]).map(|path| file_name(&path)).collect();
         self.clear_but(|folder, name| match folder {
-            "" => matches!(name, "history.csv" | "checkpoint.bin"),
+            "" => matches!(name, "history.csv" | "checkpoint.bin" | "run.log"),
             "plots" => false,
             _ => name == "case.pvd" || files.iter().any(|file| file == name),
         })
@@ -199,7 +204,7 @@ fn ours(folder: &str, name: &str) -> bool {
     };
     let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || ours(folder, name));
     let named = match folder {
-        "" => matches!(name, "history.csv" | "summary.json" | "checkpoint.bin"),
+        "" => matches!(name, "history.csv" | "summary.json" | "checkpoint.bin" | "run.log"),
         "fields" => name == "case.pvd" || step(".vtu"),
         "contact" => step(".csv"),
         "plots" => name.strip_suffix(".svg").is_some_and(|name| RUN_PICTURES.contains(&name)),
@@ -237,6 +242,7 @@ mod tests {
             "history.csv",
             "summary.json",
             "checkpoint.bin",
+            "run.log",
             ".checkpoint.bin.417.tmp",
             ".summary.json.417.tmp",
             ".case.toml.417.tmp",
@@ -298,7 +304,15 @@ mod tests {
         let out = OutputDirectory::create(folder.path()).unwrap();
         let gone =
             ["summary.json", ".checkpoint.bin.417.tmp", "fields/step_0021.vtu", "contact/step_0021.csv", "plots/forces.svg"];
-        let kept = ["case.toml", "history.csv", "checkpoint.bin", "fields/step_0020.vtu", "contact/step_0020.csv", "notes.txt"];
+        let kept = [
+            "case.toml",
+            "history.csv",
+            "checkpoint.bin",
+            "run.log",
+            "fields/step_0020.vtu",
+            "contact/step_0020.csv",
+            "notes.txt",
+        ];
         for name in gone.iter().chain(&kept).chain(&["fields/case.pvd"]) {
             write_atomically(&folder.path().join(name), |_| Ok(())).unwrap();
         }

@@ -21,7 +21,7 @@ pub struct Position {
 
 impl Position {
     /// The segment and the number of the last one.
-    fn place(&self) -> String {
+    pub(super) fn place(&self) -> String {
         format!("segment {} (last {})", self.segment, self.segments.saturating_sub(1))
     }
 }

@@ -30,4 +30,4 @@ pub use place::{Placed, alone};
 pub use progress::StudyProgress;
 pub use row::{FIRST_COLUMNS, NUMBERS, Row, RowStatus};
 pub use run::{Options, Report, prepare, run};
-pub use shard::{Shard, cost};
+pub use shard::{Shard, cost, estimated_seconds};

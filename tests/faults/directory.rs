@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -14,14 +14,15 @@ use asperity::simulation::drive::Drive;
 use asperity::simulation::problem::Problem;
 use rustix::process::{Pid, Signal, kill_process};
 
-use super::program::{CASE, Scratch, difference, files, program, stderr, whole};
+use super::common::{Scratch, difference, files, program, stderr};
+use super::program::{CASE, scratch, whole};
 
 /// Takes some seconds.
 const SLOW: [&str; 4] = ["--set", "mesh.elements_per_contact_radius=8", "--set", "solver.press_steps=60"];
 
 /// Starts a run and waits until it has some steps.
 fn started(scratch: &Scratch, out: &Path, options: &[&str]) -> Child {
-    let mut command = Command::new(program());
+    let mut command = program();
     command.args(scratch.args(out, options)).stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().expect("the program runs");
     let begun = Instant::now();
@@ -42,7 +43,7 @@ fn interrupted(scratch: &Scratch, out: &Path) {
 
 #[test]
 fn a_second_run_is_refused_with_the_first_ones_process_and_the_first_is_not_disturbed() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let (out, alone) = (scratch.path("out"), scratch.path("alone"));
     let child = started(&scratch, &out, &[&["-q"][..], &SLOW].concat());
     let process = child.id();
@@ -61,7 +62,7 @@ fn a_second_run_is_refused_with_the_first_ones_process_and_the_first_is_not_dist
 
 #[test]
 fn the_lock_of_a_killed_run_is_taken_over_and_said() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let out = scratch.path("out");
     let mut child = started(&scratch, &out, &[&["-q"][..], &SLOW].concat());
     let process = child.id();
@@ -76,7 +77,7 @@ fn the_lock_of_a_killed_run_is_taken_over_and_said() {
 
 #[test]
 fn a_directory_that_is_removed_in_the_middle_ends_the_run_with_3_and_stays_removed() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let out = scratch.path("out");
     let child = started(&scratch, &out, &[&["-q"][..], &SLOW].concat());
     fs::remove_dir_all(&out).expect("removed");
@@ -90,7 +91,7 @@ fn a_directory_that_is_removed_in_the_middle_ends_the_run_with_3_and_stays_remov
 
 #[test]
 fn a_folder_of_results_that_is_a_link_is_refused() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let (out, foreign) = (scratch.path("out"), scratch.path("foreign"));
     assert_eq!(scratch.run(&out, &["-q"]).status.code(), Some(0));
     fs::create_dir(&foreign).expect("a directory");
@@ -107,7 +108,7 @@ fn a_folder_of_results_that_is_a_link_is_refused() {
 
 #[test]
 fn a_file_that_a_checkpoint_tells_of_and_that_is_gone_is_missed() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let out = scratch.path("out");
     interrupted(&scratch, &out);
     let options = ["-q", "--resume", "--set", "output.fields=\"all\"", "--set", "solver.press_steps=30"];
@@ -127,7 +128,7 @@ fn a_file_that_a_checkpoint_tells_of_and_that_is_gone_is_missed() {
 
 #[test]
 fn what_was_left_by_a_kill_at_the_very_end_is_tidied_up() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let out = scratch.path("out");
     assert_eq!(scratch.run(&out, &["-q"]).status.code(), Some(0));
     for name in ["checkpoint.bin", ".summary.json.4711.tmp", "plots/.forces.svg.4711.tmp"] {
@@ -141,7 +142,7 @@ fn what_was_left_by_a_kill_at_the_very_end_is_tidied_up() {
 /// In units so great that forces overflow; a case file with such is refused, so this one is made by hand.
 #[test]
 fn a_result_that_is_no_number_is_a_failure_with_its_step_and_never_done() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let mut case = Case::parse(CASE, "case.toml", &[]).expect("the case");
     case.sphere.radius = 1e200;
     case.mesh.contact_radius = Some(0.16e200);
@@ -164,17 +165,12 @@ fn a_result_that_is_no_number_is_a_failure_with_its_step_and_never_done() {
 
 #[test]
 fn several_starts_at_once_are_one_run() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     for _ in 0..3 {
         let out = scratch.path("out");
         let mut starts: Vec<Child> = (0..6)
             .map(|_| {
-                Command::new(program())
-                    .args(scratch.args(&out, &["-q"]))
-                    .stderr(Stdio::piped())
-                    .stdout(Stdio::null())
-                    .spawn()
-                    .expect("it runs")
+                program().args(scratch.args(&out, &["-q"])).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("it runs")
             })
             .collect();
         let ended: Vec<_> = starts.drain(..).map(|child| child.wait_with_output().expect("it ends")).collect();

@@ -4,7 +4,8 @@ use std::process::Command;
 
 use asperity::output::{Status, Summary};
 
-use super::program::{Scratch, difference, files, skipped, stderr, whole};
+use super::common::{difference, files, stderr};
+use super::program::{scratch, skipped, whole};
 
 /// A file system in memory, of a size; unmounted when dropped.
 struct Small(std::path::PathBuf);
@@ -30,7 +31,7 @@ impl Drop for Small {
 
 #[test]
 fn a_disk_that_is_full_at_any_place_is_told_and_the_run_goes_on_with_room() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let total = files(whole()).values().map(|bytes| bytes.len().div_ceil(4096) * 4).sum::<usize>();
     let (mut full, mut while_drawing) = (0, 0);
     let sizes = if super::all() { 40 } else { 10 };
@@ -38,7 +39,7 @@ fn a_disk_that_is_full_at_any_place_is_told_and_the_run_goes_on_with_room() {
         // Closer together towards the end, where the pictures are drawn.
         let left = sizes - part - 1;
         let room = total - total * left * left / (sizes * sizes);
-        let Some(disk) = Small::mount(scratch.path(&format!("disk{part}")), 8 + room) else {
+        let Some(disk) = Small::mount(scratch.path(format!("disk{part}")), 8 + room) else {
             return skipped("full_disk", "no right to mount a tmpfs");
         };
         let out = disk.0.join("out");

@@ -15,7 +15,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rustix::process::{Pid, Signal, kill_process};
 
-use super::program::{CASE, Scratch, program, whole};
+use super::common::{program, stderr};
+use super::program::{CASE, scratch, whole};
 
 const SEED: u64 = 15;
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -125,11 +126,10 @@ fn small_law() -> Vec<u8> {
 
 /// That of a run that was interrupted.
 fn checkpoint() -> Vec<u8> {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let out = scratch.path("out");
     let args = scratch.args(&out, &["-q", "--set", "solver.press_steps=60"]);
-    let mut child =
-        std::process::Command::new(program()).args(args).stderr(std::process::Stdio::null()).spawn().expect("it runs");
+    let mut child = program().args(args).stderr(std::process::Stdio::null()).spawn().expect("it runs");
     while !out.join("checkpoint.bin").exists() {
         std::thread::sleep(Duration::from_millis(1));
     }
@@ -363,21 +363,20 @@ fn long_values_are_shortened_in_messages() {
         let message = Case::parse(CASE, "case.toml", &[set]).expect_err("refused").to_string();
         assert!(message.contains("characters ...]") && message.len() < 1200, "{message}");
     }
-    let scratch = Scratch::new();
+    let scratch = scratch();
     for option in [format!("--device={long}"), format!("--threads={long}")] {
-        let output = scratch.run(&scratch.path("out"), &[&option]);
+        let output = scratch.run("out", &[&option]);
         assert_eq!(output.status.code(), Some(2));
-        assert!(super::program::stderr(&output).len() < 1500, "{}", super::program::stderr(&output));
+        assert!(stderr(&output).len() < 1500, "{}", stderr(&output));
     }
-    let output =
-        std::process::Command::new(program()).arg("devices").env("ASPERITY_GPU_MEMORY", "abc").output().expect("it runs");
+    let output = program().arg("devices").env("ASPERITY_GPU_MEMORY", "abc").output().expect("it runs");
     assert_eq!(output.status.code(), Some(2));
-    let message = super::program::stderr(&output);
+    let message = stderr(&output);
     assert!(message.contains("ASPERITY_GPU_MEMORY=abc: is not a whole number of MiB"), "{message}");
-    let mut args = scratch.args(&scratch.path("out"), &[]);
-    args.iter_mut().filter(|arg| *arg == "1").for_each(|arg| *arg = "100000".to_owned());
-    let output = std::process::Command::new(program()).args(args).output().expect("it runs");
-    let message = super::program::stderr(&output);
+    let mut args = scratch.args("out", &[]);
+    args.iter_mut().filter(|arg| *arg == "1").for_each(|arg| *arg = "100000".into());
+    let output = program().args(args).output().expect("it runs");
+    let message = stderr(&output);
     assert!(output.status.code() == Some(2) && message.contains("a number of threads is from 1 to"), "{message}");
     assert!(!scratch.path("out").exists());
 }

@@ -6,14 +6,15 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use super::program::{Scratch, difference, program, skipped, stderr, whole};
+use super::common::{Scratch, difference, program, stderr};
+use super::program::{scratch, skipped, whole};
 
 /// Those that change a file, or hold on to one; the question mark lets one be unknown to the system.
 const CALLS: &str = "?open,openat,write,?pwrite64,?rename,?renameat,renameat2,?unlink,unlinkat,?mkdir,mkdirat,?rmdir,fsync,fdatasync,ftruncate,flock";
 
 fn strace(scratch: &Scratch, out: &Path, options: &[&str], tracing: &[&str]) -> Output {
     let mut command = Command::new("strace");
-    command.args(["-f", "-qq", "-y"]).args(tracing).arg(program()).args(scratch.args(out, options));
+    command.args(["-f", "-qq", "-y"]).args(tracing).arg(program().get_program()).args(scratch.args(out, options));
     command.output().expect("strace runs")
 }
 
@@ -43,7 +44,7 @@ fn a_run_killed_at_any_call_that_changes_a_file_goes_on_to_the_same_bits() {
     if !can_trace() {
         return skipped("kills", "strace is not there, or may not trace");
     }
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let traced = scratch.path("traced");
     let log = scratch.path("log").display().to_string();
     let output = strace(&scratch, &traced, &["-q"], &["-e", &format!("trace={CALLS}"), "-o", &log]);
@@ -76,12 +77,12 @@ fn a_run_killed_at_any_call_that_changes_a_file_goes_on_to_the_same_bits() {
 /// Many kills of one and the same run, wherever it stands.
 #[test]
 fn a_run_that_is_killed_again_and_again_comes_to_its_end() {
-    let scratch = Scratch::new();
+    let scratch = scratch();
     let out = scratch.path("out");
     let many = if super::all() { 200 } else { 12 };
     let mut kills = 0;
     for attempt in 0..many {
-        let mut child = Command::new(program()).args(scratch.args(&out, &["-q", "--resume"])).spawn().expect("the program runs");
+        let mut child = program().args(scratch.args(&out, &["-q", "--resume"])).spawn().expect("the program runs");
         // Over the whole of a start, early and late.
         std::thread::sleep(std::time::Duration::from_millis(7 + 13 * (attempt % 17)));
         kills += usize::from(child.try_wait().expect("its state").is_none());

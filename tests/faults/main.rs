@@ -4,6 +4,8 @@
 //! A share of the kills and of the hostile inputs runs by default; ASPERITY_FAULTS=all runs every kill and a million inputs.
 #![cfg(target_os = "linux")]
 
+#[path = "../common/mod.rs"]
+mod common;
 mod directory;
 mod full_disk;
 mod hostile;

@@ -2,6 +2,7 @@
 
 use super::adapters::{ADAPTER_VARIABLE, Adapter, DeviceRequest, choose};
 use super::buffers::MEMORY_VARIABLE;
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// The adapters, their features and limits as far as they matter here, and what `--device auto` and `--device gpu` would take.
@@ -12,6 +13,37 @@ pub fn report(adapters: &[Adapter], wanted: Option<&str>) -> String {
     // writing to a String cannot fail
     let _ = write_report(&mut text, adapters, wanted);
     text
+}
+
+/// The same for programs: sizes in bytes.
+pub fn report_json(adapters: &[Adapter], wanted: Option<&str>) -> Value {
+    let adapter = |a: &Adapter| {
+        json!({
+            "name": a.name,
+            "type": a.kind.to_string(),
+            "backend": a.backend,
+            "driver": a.driver,
+            "double_precision": a.double_precision,
+            "timestamps": a.timestamps,
+            "max_binding": a.max_binding,
+            "max_buffer": a.max_buffer,
+            "max_storage_buffers": a.max_storage_buffers,
+            "max_workgroup": a.max_workgroup,
+            "max_workgroups": a.max_workgroups,
+        })
+    };
+    let chosen = |request| match choose(adapters, request, wanted) {
+        Ok(choice) => {
+            let device = choice.adapter.map_or("CPU", |i| adapters[i].name.as_str());
+            json!({ "device": device, "reason": choice.reason })
+        }
+        Err(error) => json!({ "device": null, "reason": error.to_string() }),
+    };
+    json!({
+        "adapters": adapters.iter().map(adapter).collect::<Vec<_>>(),
+        "wanted": wanted,
+        "chosen": { "auto": chosen(DeviceRequest::Auto), "gpu": chosen(DeviceRequest::Gpu) },
+    })
 }
 
 fn write_report(text: &mut String, adapters: &[Adapter], wanted: Option<&str>) -> std::fmt::Result {
@@ -87,6 +119,10 @@ mod tests {
 
     #[test]
     fn says_that_there_is_nothing() {
+        let json = report_json(&[], Some("A100"));
+        assert_eq!(json["adapters"], json!([]));
+        assert_eq!(json["chosen"]["gpu"]["device"], Value::Null);
+        assert!(json["chosen"]["gpu"]["reason"].as_str().is_some_and(|reason| reason.contains("A100")), "{json}");
         let text = report(&[], None);
         for line in
             ["No GPU adapter", "--device auto  the CPU (no adapter is present)", "--device gpu   no GPU found", "--device cpu"]

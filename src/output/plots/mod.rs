@@ -9,11 +9,13 @@ pub mod style;
 
 mod contact_map;
 mod curves;
+mod overlay;
 mod pressure;
 mod replot;
 
 pub use contact_map::{SlipPanel, plot_contact, plot_slip};
 pub use curves::{plot_forces, plot_indentation, plot_law, plot_ratio, plot_stick};
+pub use overlay::{OverlaidRun, plot_overlay};
 pub use pressure::plot_pressure;
 pub use replot::replot;
 pub use style::Picture;

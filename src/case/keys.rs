@@ -1,0 +1,503 @@
+//! Every key of a case file in one table: what it means, its unit, its range and its default.
+//!
+//! `asperity explain`, `asperity init` and `asperity schema` are made from [`KEYS`]. The tests below
+//! hold it against the parser: a key that one of the two lacks fails them.
+
+use Kind::{Number, Points, Truth, Whole, Word};
+use Limit::{Above, AtLeast, AtMost, Free};
+use Presence::{Defaults, Optional, Required};
+
+/// One key of a case file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    /// The table in which it stands, dotted; `path` is an array of tables.
+    pub table: &'static str,
+    /// Its name in that table.
+    pub name: &'static str,
+    /// What its value is.
+    pub kind: Kind,
+    /// The unit of its value; empty where it has none.
+    pub unit: &'static str,
+    /// Whether it has to be there.
+    pub presence: Presence,
+    /// What its value may be, in words.
+    pub range: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// The hardening laws that take it; empty for all.
+    pub laws: &'static [&'static str],
+    /// A value that fits the other examples, as TOML.
+    pub example: &'static str,
+}
+
+/// What a value is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number between limits, or one of some words in its place.
+    Number(Limit, Limit, &'static [&'static str]),
+    /// A whole number from the first to the second.
+    Whole(u32, u32),
+    /// True or false.
+    Truth,
+    /// One of some words.
+    Word(&'static [&'static str]),
+    /// Pairs of numbers.
+    Points,
+}
+
+/// A limit that does not depend on other keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// There is none.
+    Free,
+    /// This or more.
+    AtLeast(f64),
+    /// This or less.
+    AtMost(f64),
+    /// More than this as a lower limit, less as an upper one.
+    Above(f64),
+}
+
+/// Whether a key has to be there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Presence {
+    /// There is no case without it.
+    Required,
+    /// Without it, this value, as TOML.
+    Defaults(&'static str),
+    /// Without it, what these words say.
+    Optional(&'static str),
+}
+
+impl Key {
+    /// The key as `--set` and errors name it, `N` for the number of a segment.
+    pub fn dotted(&self) -> String {
+        let index = if self.table == "path" { ".N" } else { "" };
+        format!("{}{index}.{}", self.table, self.name)
+    }
+
+    /// Whether a case with this hardening law takes the key.
+    pub fn fits(&self, law: &str) -> bool {
+        self.laws.is_empty() || self.laws.contains(&law)
+    }
+}
+
+/// The tables of a case file in the order in which they are written, with what each is about.
+pub const TABLES: [(&str, &str); 8] = [
+    ("sphere", "the body"),
+    ("material", "what it is made of"),
+    ("material.hardening", "yield stress over equivalent plastic strain alpha"),
+    ("contact", "how the sphere meets the plane"),
+    ("mesh", "how finely it is meshed; every key is optional"),
+    ("solver", "how the equations are solved; every key is optional"),
+    ("output", "what is written besides history and summary; every key is optional"),
+    ("path", "the segments, followed in order; the first one presses"),
+];
+
+/// The words of `material.hardening.law`.
+pub const LAWS: [&str; 7] = ["elastic", "ideal", "linear", "power", "hollomon", "voce", "table"];
+
+const STRESS: &str = "stress";
+const LENGTH: &str = "length";
+
+/// A key without a unit that every law takes.
+const fn key(table: &'static str, name: &'static str, kind: Kind, presence: Presence) -> Key {
+    Key { table, name, kind, unit: "", presence, range: "", meaning: "", laws: &[], example: "" }
+}
+
+const fn hardening(name: &'static str, laws: &'static [&'static str]) -> Key {
+    Key { unit: STRESS, laws, ..key("material.hardening", name, Number(Above(0.0), Free, &[]), Required) }
+}
+
+/// Every key, table by table.
+pub const KEYS: &[Key] = &[
+    Key {
+        unit: LENGTH,
+        range: "> 0, from 1e-75 to 1e75",
+        meaning: "radius R of the sphere; it sets the unit of length",
+        example: "1.0",
+        ..key("sphere", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Required)
+    },
+    Key {
+        unit: STRESS,
+        range: "> 0, from 1e-75 to 1e75",
+        meaning: "Young's modulus E; it sets the unit of stress, and forces are stress times length squared",
+        example: "200e3",
+        ..key("material", "youngs_modulus", Number(AtLeast(1e-75), AtMost(1e75), &[]), Required)
+    },
+    Key {
+        range: "> -1 and < 0.5",
+        meaning: "Poisson's ratio nu; above 0.45 runs take longer, near 0.5 deep plastic ones may not converge",
+        example: "0.3",
+        ..key("material", "poissons_ratio", Number(Above(-1.0), Above(0.5), &[]), Required)
+    },
+    Key {
+        range: "\"elastic\", \"ideal\", \"linear\", \"power\", \"hollomon\", \"voce\" or \"table\"",
+        meaning: "hardening law; it decides on the other keys of this table",
+        example: "\"ideal\"",
+        ..key("material.hardening", "law", Word(&LAWS), Required)
+    },
+    Key {
+        range: "1e-7 E to 0.2 E",
+        meaning: "stress sigma_Y at first yield",
+        example: "400.0",
+        ..hardening("yield_stress", &["ideal", "linear", "power", "voce"])
+    },
+    Key {
+        range: "> 0, at most the stress of the first point",
+        meaning: "stress at alpha = 0, where the points begin later",
+        presence: Optional("the points begin at alpha = 0"),
+        example: "400.0",
+        ..hardening("yield_stress", &["table"])
+    },
+    Key {
+        range: ">= 0",
+        meaning: "hardening modulus H in sigma_Y + H alpha",
+        kind: Number(AtLeast(0.0), Free, &[]),
+        example: "2000.0",
+        ..hardening("modulus", &["linear"])
+    },
+    Key {
+        range: ">= 0",
+        meaning: "K in sigma_Y + K alpha^n",
+        kind: Number(AtLeast(0.0), Free, &[]),
+        example: "1000.0",
+        ..hardening("coefficient", &["power"])
+    },
+    Key {
+        unit: "",
+        range: "> 0 and <= 1",
+        meaning: "n in sigma_Y + K alpha^n",
+        kind: Number(Above(0.0), AtMost(1.0), &[]),
+        example: "0.4",
+        ..hardening("exponent", &["power"])
+    },
+    Key {
+        range: "> 0, such that (sigma_0^m/E)^(1/(m-1)) is from 1e-7 E to 0.2 E",
+        meaning: "sigma_0 in sigma = sigma_0 eps^(1/m), eps the total strain; first yield is where this meets Hooke's line",
+        example: "1000.0",
+        ..hardening("coefficient", &["hollomon"])
+    },
+    Key {
+        unit: "",
+        range: "> 1",
+        meaning: "m in sigma = sigma_0 eps^(1/m)",
+        kind: Number(Above(1.0), Free, &[]),
+        example: "5.0",
+        ..hardening("exponent", &["hollomon"])
+    },
+    Key {
+        range: ">= yield_stress",
+        meaning: "sigma_inf in sigma_Y + (sigma_inf - sigma_Y) (1 - exp(-k alpha))",
+        example: "700.0",
+        ..hardening("saturation_stress", &["voce"])
+    },
+    Key {
+        unit: "",
+        range: "> 0",
+        meaning: "k in sigma_Y + (sigma_inf - sigma_Y) (1 - exp(-k alpha)), per unit of plastic strain",
+        example: "20.0",
+        ..hardening("rate", &["voce"])
+    },
+    Key {
+        unit: "pairs of a strain and a stress",
+        range: "alpha rising from 0, stress > 0 and never falling",
+        meaning: "points [alpha, stress], joined by straight lines; constant after the last",
+        kind: Points,
+        example: "[[0.0, 400.0], [0.05, 550.0], [0.3, 700.0]]",
+        ..hardening("points", &["table"])
+    },
+    Key {
+        range: ">= 0, or \"stick\"",
+        meaning: "Coulomb's coefficient mu, which holds at every point; with \"stick\" no point ever slips",
+        example: "0.3",
+        ..key("contact", "friction", Number(AtLeast(0.0), Free, &["stick"]), Required)
+    },
+    Key {
+        range: "4 to 32",
+        meaning: "elements along the contact radius; 8 is quick, 16 has F_N to 0.5 %; the time grows as its power 2.5",
+        example: "16",
+        ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("16"))
+    },
+    Key {
+        range: "1.1 to 3",
+        meaning: "radius of the finely meshed zone over the contact radius; it is enlarged if the contact leaves it",
+        example: "1.3",
+        ..key("mesh", "fine_zone", Number(AtLeast(1.1), AtMost(3.0), &[]), Defaults("1.3"))
+    },
+    Key {
+        unit: LENGTH,
+        range: "0.005 R to 0.65 R",
+        meaning: "contact radius to mesh for",
+        example: "0.2",
+        ..key("mesh", "contact_radius", Number(Above(0.0), Free, &[]), Optional("the one that closed forms predict"))
+    },
+    Key {
+        range: "\"multigrid\" or \"direct\"",
+        meaning: "solver of the linear systems: FGMRES with multigrid, or a sparse factorisation, which is slower",
+        example: "\"multigrid\"",
+        ..key("solver", "linear", Word(&["multigrid", "direct"]), Defaults("\"multigrid\""))
+    },
+    Key {
+        unit: "share of the normal force",
+        range: "> 1e-12 and <= 1e-2",
+        meaning: "residual at which a step is accepted; 1e-3 costs 0.8 % in F_T",
+        example: "3e-4",
+        ..key("solver", "tolerance", Number(Above(1e-12), AtMost(1e-2), &[]), Defaults("3e-4"))
+    },
+    Key {
+        range: "1 to 100000",
+        meaning: "load steps of a press from first touch; one that goes on takes its share and two more",
+        example: "26",
+        ..key("solver", "press_steps", Whole(1, 100_000), Optional("as many as the mesh asks for, 26 at 16 elements"))
+    },
+    Key {
+        range: "1 to 100000",
+        meaning: "steps of the first part of a shear, in which points come to slip",
+        example: "15",
+        ..key("solver", "shear_steps", Whole(1, 100_000), Optional("15"))
+    },
+    Key {
+        range: "1 to 1000",
+        meaning: "Newton iterations of a step before it is cut in half",
+        example: "25",
+        ..key("solver", "max_iterations", Whole(1, 1000), Defaults("25"))
+    },
+    Key {
+        range: "0 to 30",
+        meaning: "how often a step may be cut in half before the run ends as not converged",
+        example: "8",
+        ..key("solver", "max_cutbacks", Whole(0, 30), Defaults("8"))
+    },
+    Key {
+        range: "true or false",
+        meaning: "whether a coarse run goes first, a tenth of the work: it finds the reach of the contact and gives error estimates",
+        example: "true",
+        ..key("solver", "error_estimate", Truth, Defaults("true"))
+    },
+    Key {
+        unit: "GiB",
+        range: "> 0",
+        meaning: "memory that mesh and linear systems may take; a case that needs more is refused before it runs",
+        example: "8.0",
+        ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Defaults("8.0"))
+    },
+    Key {
+        range: "\"none\", \"segments\" or \"all\"",
+        meaning: "steps after which fields/*.vtu and contact/*.csv are written: none, the last of each segment, all; in a study, none",
+        example: "\"segments\"",
+        ..key("output", "fields", Word(&["none", "segments", "all"]), Defaults("\"segments\""))
+    },
+    Key {
+        range: "true or false",
+        meaning: "whether plots/*.svg are drawn; in a study they are not, unless its base says so",
+        example: "true",
+        ..key("output", "plots", Truth, Defaults("true"))
+    },
+    Key {
+        unit: LENGTH,
+        range: ">= 0 and < 0.3 R; the first one > 0",
+        meaning: "press to this indentation h, a total from first touch; a smaller one than the current one unloads to it",
+        example: "0.02",
+        ..key("path", "indentation", Number(AtLeast(0.0), Free, &[]), Optional("the segment shears or releases"))
+    },
+    Key {
+        unit: LENGTH,
+        range: "-0.5 R to 0.5 R, or \"full-slip\"",
+        meaning: "shear to this delta_T, a total of either sign; \"full-slip\" goes on until every point slips",
+        example: "\"full-slip\"",
+        ..key("path", "shear", Number(Free, Free, &["full-slip"]), Optional("the segment presses or releases"))
+    },
+    Key {
+        range: "\"indentation\" or \"normal-force\"",
+        meaning: "what a shear keeps constant: h or F_N",
+        example: "\"indentation\"",
+        ..key("path", "hold", Word(&["indentation", "normal-force"]), Defaults("\"indentation\""))
+    },
+    Key {
+        range: "true",
+        meaning: "unload until contact is lost",
+        example: "true",
+        ..key("path", "release", Truth, Optional("the segment presses or shears"))
+    },
+];
+
+/// The keys that a dotted name may mean: all of it, `path.0.shear` for any segment, a table, or its
+/// last parts.
+pub fn find(name: &str) -> Vec<&'static Key> {
+    let part = |part: &str| if part.parse::<usize>().is_ok() { "N".to_owned() } else { part.to_owned() };
+    let wanted = name.split('.').map(part).collect::<Vec<_>>().join(".");
+    let meant = |key: &Key| {
+        let dotted = key.dotted();
+        dotted == wanted || key.table == wanted || dotted.ends_with(&format!(".{wanted}"))
+    };
+    KEYS.iter().filter(|key| meant(key)).collect()
+}
+
+/// The known name most like one that is none.
+pub fn nearest(name: &str) -> Option<String> {
+    let names: Vec<String> = KEYS.iter().flat_map(|key| [key.dotted(), key.name.to_owned()]).collect();
+    super::reader::nearest(name, &names.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::case::{Case, CaseError, starter_case};
+
+    fn parsed(law: &str, sets: &[String]) -> Result<Case, CaseError> {
+        Case::parse(&starter_case(law, "case.toml"), "case.toml", sets)
+    }
+
+    /// The names that the parser knows in a table, from its refusal of one that nobody knows.
+    fn known(law: &str, table: &str) -> Option<BTreeSet<String>> {
+        let key = if table.is_empty() { "no_such_key".to_owned() } else { format!("{table}.no_such_key") };
+        match parsed(law, &[format!("{key}=1")]) {
+            Err(CaseError::UnknownKey { allowed, .. }) => Some(allowed.split(", ").map(str::to_owned).collect()),
+            _ => None,
+        }
+    }
+
+    fn listed(law: &str, table: &str) -> BTreeSet<String> {
+        let keys = KEYS.iter().filter(|key| key.table == table && key.fits(law)).map(|key| key.name.to_owned());
+        let below = TABLES.iter().filter_map(|(name, _)| {
+            let (above, last) = name.rsplit_once('.').unwrap_or(("", name));
+            (above == table).then(|| last.to_owned())
+        });
+        keys.chain(below).collect()
+    }
+
+    #[test]
+    fn the_table_has_every_key_of_the_parser_and_no_other() {
+        for law in LAWS {
+            // From the parser, so that a table that is missing here is found as well.
+            let mut tables = vec![String::new()];
+            while let Some(table) = tables.pop() {
+                let place = if table == "path" { "path.0".to_owned() } else { table.clone() };
+                let Some(known) = known(law, &place) else { continue };
+                assert_eq!(known, listed(law, &table), "{law}: [{table}]");
+                let dotted = |name: &String| if table.is_empty() { name.clone() } else { format!("{table}.{name}") };
+                tables.extend(known.iter().map(dotted));
+            }
+        }
+        let named: BTreeSet<&str> = KEYS.iter().map(|key| key.table).collect();
+        assert_eq!(named, TABLES.iter().map(|(table, _)| *table).collect());
+    }
+
+    /// The segment, or the table, to which a key belongs.
+    fn place(key: &Key) -> String {
+        match key.name {
+            "shear" | "hold" => format!("path.1.{}", key.name),
+            "release" => "path.2.release".to_owned(),
+            _ => key.dotted().replace("N", "0"),
+        }
+    }
+
+    fn refused(law: &str, key: &Key, value: &str) -> bool {
+        match parsed(law, &[format!("{}={value}", place(key))]) {
+            Err(CaseError::NotAllowed { key: named, .. } | CaseError::WrongType { key: named, .. }) => named == place(key),
+            _ => false,
+        }
+    }
+
+    fn laws(key: &Key) -> Vec<&'static str> {
+        LAWS.into_iter().filter(|law| key.fits(law)).collect()
+    }
+
+    #[test]
+    fn examples_and_words_are_taken_and_values_beyond_the_limits_are_refused() {
+        for key in KEYS {
+            let law = if key.name == "law" { "elastic" } else { laws(key)[0] };
+            let takes = |value: &str| {
+                let case = parsed(law, &[format!("{}={value}", place(key))]);
+                assert!(case.is_ok(), "{} = {value}: {:?}", key.dotted(), case.err());
+            };
+            let (least, beyond) = (|x: f64| format!("{:?}", x - 1e-6 * x.abs()), |x: f64| format!("{:?}", x + 1e-6 * x.abs()));
+            if key.name != "law" {
+                takes(key.example);
+            }
+            match key.kind {
+                Number(low, high, words) => {
+                    for word in words {
+                        let law = if key.name == "friction" { "path.1.shear=0.001" } else { "path.1.hold=indentation" };
+                        let case = parsed("ideal", &[format!("{}=\"{word}\"", place(key)), law.to_owned()]);
+                        assert!(case.is_ok(), "{}: {:?}", key.dotted(), case.err());
+                    }
+                    assert!(refused(law, key, "nan") && refused(law, key, "[]"), "{}", key.dotted());
+                    match low {
+                        Free => {}
+                        AtLeast(limit) | AtMost(limit) => assert!(refused(law, key, &least(limit - 1e-300)), "{}", key.dotted()),
+                        Above(limit) => assert!(refused(law, key, &format!("{limit:?}")), "{}", key.dotted()),
+                    }
+                    match high {
+                        Free => {}
+                        AtLeast(limit) | AtMost(limit) => assert!(refused(law, key, &beyond(limit)), "{}", key.dotted()),
+                        Above(limit) => assert!(refused(law, key, &format!("{limit:?}")), "{}", key.dotted()),
+                    }
+                }
+                Whole(least, most) => {
+                    takes(&least.to_string());
+                    takes(&most.to_string());
+                    assert!(refused(law, key, &format!("{}", i64::from(least) - 1)), "{}", key.dotted());
+                    assert!(refused(law, key, &format!("{}", i64::from(most) + 1)), "{}", key.dotted());
+                }
+                Truth => assert!(refused(law, key, "1"), "{}", key.dotted()),
+                Word(words) => {
+                    if key.name != "law" {
+                        words.iter().for_each(|word| takes(&format!("{word:?}")));
+                    }
+                    assert!(refused(law, key, "\"no such word\""), "{}", key.dotted());
+                }
+                Points => assert!(refused(law, key, "1.0"), "{}", key.dotted()),
+            }
+        }
+    }
+
+    #[test]
+    fn required_keys_are_missed_and_defaults_are_what_the_parser_takes() {
+        let resolved = parsed("ideal", &[]).expect("a case").to_toml();
+        for key in KEYS {
+            match key.presence {
+                Required => {
+                    let law = laws(key)[0];
+                    let start = starter_case(law, "case.toml");
+                    let line = start.lines().position(|line| line.starts_with(&format!("{} = ", key.name)));
+                    // An exponent or a coefficient stands once in the file of its law.
+                    let without: Vec<&str> =
+                        start.lines().enumerate().filter(|(i, _)| Some(*i) != line).map(|(_, line)| line).collect();
+                    match Case::parse(&without.join("\n"), "case.toml", &[]) {
+                        Err(CaseError::Missing { key: named, .. }) => assert_eq!(named, key.dotted()),
+                        other => panic!("{}: {other:?}", key.dotted()),
+                    }
+                }
+                Defaults(value) => {
+                    let told = |line: &str| {
+                        let (name, told) = line.split_once(" = ")?;
+                        let same = match (told.parse::<f64>(), value.parse::<f64>()) {
+                            (Ok(told), Ok(value)) => told == value,
+                            _ => told == value,
+                        };
+                        (name == key.name).then_some(same)
+                    };
+                    assert_eq!(resolved.lines().find_map(told), Some(true), "{}: {resolved}", key.dotted());
+                }
+                Optional(_) => {}
+            }
+        }
+    }
+
+    #[test]
+    fn keys_are_found_by_whole_names_parts_and_tables() {
+        let found = |name: &str| find(name).iter().map(|key| key.dotted()).collect::<Vec<_>>();
+        assert_eq!(found("contact.friction"), ["contact.friction"]);
+        assert_eq!(found("friction"), ["contact.friction"]);
+        assert_eq!(found("path.7.shear"), ["path.N.shear"]);
+        assert_eq!(found("exponent").len(), 2);
+        assert_eq!(found("hardening.law"), ["material.hardening.law"]);
+        assert_eq!(found("output").len(), 2);
+        assert!(found("shear_").is_empty());
+        assert_eq!(nearest("frictoin").as_deref(), Some("friction"));
+    }
+}

@@ -1,0 +1,47 @@
+//! `asperity init`: a case file to start from.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
+use super::{CliError, Outcome, print};
+use crate::case::keys::LAWS;
+use crate::case::starter_case;
+use crate::output::write_atomically;
+
+/// Write a commented case file that runs as it stands.
+///
+/// Every key is there with its meaning, unit and range; optional ones as comments with their
+/// defaults.
+#[derive(Clone, Debug, Args)]
+pub struct InitArgs {
+    /// The file to write; `.toml` is added if it has no ending. `-` writes to stdout.
+    #[arg(value_name = "NAME", default_value = "case.toml")]
+    pub name: PathBuf,
+    /// The hardening law of its material.
+    #[arg(long, value_name = "LAW", default_value = "ideal", value_parser = PossibleValuesParser::new(LAWS))]
+    pub material: String,
+    /// Replace a file that is there.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Writes the file and says what to do with it.
+pub fn init(args: &InitArgs) -> Result<Outcome, CliError> {
+    if args.name.as_os_str() == "-" {
+        print(&starter_case(&args.material, "case.toml"))?;
+        return Ok(Outcome::Done);
+    }
+    let mut file = args.name.clone();
+    if file.extension().is_none() {
+        file.set_extension("toml");
+    }
+    let name = file.display().to_string();
+    if file.exists() && !args.force {
+        return Err(CliError::FileThere { file });
+    }
+    write_atomically(&file, |out| out.write_all(starter_case(&args.material, &name).as_bytes()))?;
+    print(&format!("{name} written; `asperity run {name} --out out` runs it\n"))?;
+    Ok(Outcome::Done)
+}

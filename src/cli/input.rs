@@ -1,0 +1,72 @@
+//! Case and study files as they are given on the command line; `-` is standard input.
+
+use std::path::Path;
+
+use super::CliError;
+use crate::bounded;
+use crate::case::{Case, CaseError, Document, Value};
+use crate::study::Study;
+
+/// A case or study file, read and not yet parsed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// Its text.
+    pub text: String,
+    /// The name that messages give.
+    pub name: String,
+}
+
+impl Input {
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// [`CaseError::Unreadable`].
+    pub fn read(file: &Path) -> Result<Self, CliError> {
+        let (name, text) = if file == Path::new("-") {
+            ("<stdin>".to_owned(), bounded::to_string(std::io::stdin().lock(), bounded::CASE))
+        } else {
+            (file.display().to_string(), bounded::read_to_string(file, bounded::CASE))
+        };
+        match text {
+            Ok(text) => Ok(Self { text, name }),
+            Err(source) => Err(CaseError::Unreadable { file: name, source }.into()),
+        }
+    }
+
+    /// The case with these `--set` arguments.
+    ///
+    /// # Errors
+    /// [`CliError::StudyGiven`] for a study; what is wrong with the case.
+    pub fn case(&self, settings: &[String]) -> Result<Case, CliError> {
+        if self.is_study() {
+            return Err(CliError::StudyGiven { file: self.name.clone() });
+        }
+        Ok(Case::parse(&self.text, &self.name, settings)?)
+    }
+
+    /// The study.
+    ///
+    /// # Errors
+    /// [`CliError::CaseGiven`] for a case; what is wrong with the study.
+    pub fn study(&self) -> Result<Study, CliError> {
+        let is_case = |table: &str| self.has(table);
+        if !self.is_study() && ["sphere", "material", "path"].into_iter().any(is_case) {
+            return Err(CliError::CaseGiven { file: self.name.clone() });
+        }
+        Ok(Study::parse(&self.text, &self.name)?)
+    }
+
+    /// Whether it is meant as a study. What cannot be read as TOML is not.
+    pub fn is_study(&self) -> bool {
+        self.document().is_some_and(|document| Study::is_study(&document))
+    }
+
+    fn document(&self) -> Option<Document> {
+        Document::parse(&self.text, &self.name).ok()
+    }
+
+    fn has(&self, table: &str) -> bool {
+        let document = self.document();
+        document.is_some_and(|found| matches!(&found.root.value, Value::Table(root) if root.contains_key(table)))
+    }
+}

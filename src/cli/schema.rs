@@ -1,0 +1,35 @@
+//! `asperity schema`: JSON Schema of the files that users write.
+
+use clap::{Args, ValueEnum};
+
+use super::{CliError, Outcome, print_json};
+use crate::case::{case_schema, study_schema};
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FileKind {
+    /// A case file.
+    Case,
+    /// A study file.
+    Study,
+}
+
+/// Print the JSON Schema of case or study files, by which editors complete and check TOML.
+///
+/// Editors with Even Better TOML (taplo) read it from a first line `#:schema ./case.schema.json`.
+/// Ranges that depend on other keys are checked by `asperity check` alone.
+#[derive(Clone, Debug, Args)]
+pub struct SchemaArgs {
+    /// The kind of file.
+    #[arg(value_enum, value_name = "KIND")]
+    pub kind: FileKind,
+}
+
+/// Prints the schema.
+pub fn schema(args: &SchemaArgs) -> Result<Outcome, CliError> {
+    print_json(&match args.kind {
+        FileKind::Case => case_schema(),
+        FileKind::Study => study_schema(),
+    })?;
+    Ok(Outcome::Done)
+}

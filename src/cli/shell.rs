@@ -1,0 +1,45 @@
+//! `asperity completions` and `asperity man`: what shells and `man` know of the program, made from
+//! its own definition of the command line.
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::Args;
+use clap_complete::Shell;
+
+use super::{CliError, Outcome, command, print};
+
+/// Print completions for a shell.
+///
+/// For bash: asperity completions bash > ~/.local/share/bash-completion/completions/asperity
+#[derive(Clone, Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: Shell,
+}
+
+/// Write man pages into a directory, one for each subcommand.
+#[derive(Clone, Debug, Args)]
+pub struct ManArgs {
+    /// The directory; it is made if it is not there, and pages of the same names are replaced.
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+}
+
+/// Prints the completions.
+pub fn completions(args: &CompletionsArgs) -> Result<Outcome, CliError> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut command(), "asperity", &mut script);
+    print(&String::from_utf8_lossy(&script))?;
+    Ok(Outcome::Done)
+}
+
+/// Writes the pages and says where.
+pub fn man(args: &ManArgs) -> Result<Outcome, CliError> {
+    let failed = |what| move |source| CliError::Out { dir: args.dir.clone(), what, source };
+    fs::create_dir_all(&args.dir).map_err(failed("be created"))?;
+    clap_mangen::generate_to(command(), &args.dir).map_err(failed("be written"))?;
+    print(&format!("man pages in {0}; `man -l {0}/asperity.1` shows the first\n", args.dir.display()))?;
+    Ok(Outcome::Done)
+}
