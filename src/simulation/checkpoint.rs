@@ -71,7 +71,7 @@ impl Committed {
                 node: node as usize,
                 reference: x,
                 position: [x[0] + u[base], x[1] + u[base + 1], x[2] + u[base + 2]],
-                force: if status == Status::Open { [0.0; 3] } else { exerted },
+                force: exerted,
                 gap: gaps[i],
                 area: mesh.contact_area[i],
                 on_symmetry_plane,
