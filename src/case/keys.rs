@@ -83,11 +83,12 @@ impl Key {
 }
 
 /// The tables of a case file in the order in which they are written, with what each is about.
-pub const TABLES: [(&str, &str); 8] = [
+pub const TABLES: [(&str, &str); 9] = [
     ("sphere", "the body"),
     ("material", "what it is made of"),
     ("material.hardening", "yield stress over equivalent plastic strain alpha"),
     ("contact", "how the sphere meets the plane"),
+    ("opponent", "what the sphere is pressed against, if not a rigid plane"),
     ("mesh", "how finely it is meshed; every key is optional"),
     ("solver", "how the equations are solved; every key is optional"),
     ("output", "what is written besides history and summary; every key is optional"),
@@ -212,6 +213,12 @@ pub const KEYS: &[Key] = &[
         meaning: "Coulomb's coefficient mu, which holds at every point; with \"stick\" no point ever slips",
         example: "0.3",
         ..key("contact", "friction", Number(AtLeast(0.0), Free, &["stick"]), Required)
+    },
+    Key {
+        range: "true or false",
+        meaning: "the same sphere; indentation and shear, and h and delta_T in all results, are then the relative displacements of the two equators, twice what each moves",
+        example: "true",
+        ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
     Key {
         range: "4 to 32",

@@ -106,9 +106,8 @@ fn read_opponent(root: &Reader<'_>) -> Result<Option<Opponent>, CaseError> {
     let Some(field) = root.get("opponent") else { return Ok(None) };
     let table = field.table()?;
     table.only(&["equal"])?;
-    let allowed = "true: the same sphere (for a rigid plane leave the table [opponent] out)";
-    let equal = table.require("equal", allowed)?;
-    if equal.boolean()? { Ok(Some(Opponent::Equal)) } else { Err(equal.refuse("is false", allowed)) }
+    let equal = table.get("equal").map_or(Ok(false), |equal| equal.boolean())?;
+    Ok(equal.then_some(Opponent::Equal))
 }
 
 fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
