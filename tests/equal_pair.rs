@@ -97,7 +97,11 @@ fn the_contact_carries_the_force_and_the_energies_balance() {
         // The trapezoidal rule of the work is worth 2 % at so few steps.
         let last = steps.last().map(|(row, _)| *row).unwrap_or_default();
         let energy = last.energy_elastic + last.work_plastic + last.work_friction;
-        assert!((last.work_external - energy).abs() <= 0.03 * last.work_external, "{settings:?}: {} and {energy}", last.work_external);
+        assert!(
+            (last.work_external - energy).abs() <= 0.03 * last.work_external,
+            "{settings:?}: {} and {energy}",
+            last.work_external
+        );
         let held: Vec<&StepRecord> = steps.iter().map(|(row, _)| row).filter(|row| row.segment == 1).collect();
         if settings.iter().any(|s| s.contains("normal-force")) {
             let force = steps.iter().rfind(|(row, _)| row.segment == 0).map_or(0.0, |(row, _)| row.f_n);

@@ -21,7 +21,8 @@ pub fn estimated_elements(case: &Case) -> usize {
         _ => deepest,
     });
     let radius = case.sphere.radius;
-    let contact = case.mesh.contact_radius.map_or((2.0 * deepest / (case.bodies() * radius)).sqrt(), |a| a / radius).clamp(0.005, 0.3);
+    let contact =
+        case.mesh.contact_radius.map_or((2.0 * deepest / (case.bodies() * radius)).sqrt(), |a| a / radius).clamp(0.005, 0.3);
     let n = case.mesh.elements_per_contact_radius as f64;
     (n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln())).ceil() as usize
 }

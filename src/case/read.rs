@@ -5,7 +5,9 @@ use std::path::Path;
 use super::document::Document;
 use super::error::CaseError;
 use super::reader::Reader;
-use super::{Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, Solver, Sphere, estimate, path};
+use super::{
+    Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, Solver, Sphere, estimate, path,
+};
 use crate::bounded;
 
 /// Radius and Young's modulus, in the units of the case: between these energies, of the order of E R^3, are neither infinite nor nothing.
@@ -49,7 +51,9 @@ impl Case {
             contact,
         };
         if let (Some(_), Linear::Direct, Some(field)) = (case.opponent, case.solver.linear, root.table("solver")?.get("linear")) {
-            return Err(field.refuse("is \"direct\", which solves for one body alone", "\"multigrid\" with an opponent that deforms"));
+            return Err(
+                field.refuse("is \"direct\", which solves for one body alone", "\"multigrid\" with an opponent that deforms")
+            );
         }
         estimate::check_memory(&case, &root)?;
         Ok(case)

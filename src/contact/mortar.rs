@@ -157,7 +157,8 @@ impl Face {
     }
 
     fn at(&self, [xi, eta]: Point) -> ([f64; 4], [Point; 2]) {
-        let n = [(1.0 - xi) * (1.0 - eta), (1.0 + xi) * (1.0 - eta), (1.0 + xi) * (1.0 + eta), (1.0 - xi) * (1.0 + eta)].map(|n| 0.25 * n);
+        let n = [(1.0 - xi) * (1.0 - eta), (1.0 + xi) * (1.0 - eta), (1.0 + xi) * (1.0 + eta), (1.0 - xi) * (1.0 + eta)]
+            .map(|n| 0.25 * n);
         let by = |d: [f64; 4]| [0, 1].map(|i| (0..4).map(|a| 0.25 * d[a] * self.corners[a][i]).sum());
         (n, [by([eta - 1.0, 1.0 - eta, 1.0 + eta, -1.0 - eta]), by([xi - 1.0, -1.0 - xi, 1.0 + xi, 1.0 - xi])])
     }
@@ -199,9 +200,8 @@ impl Face {
     }
 
     fn bounds(&self) -> [Point; 2] {
-        let fold = |f: fn(f64, f64) -> f64| {
-            self.corners.iter().skip(1).fold(self.corners[0], |m, c| [f(m[0], c[0]), f(m[1], c[1])])
-        };
+        let fold =
+            |f: fn(f64, f64) -> f64| self.corners.iter().skip(1).fold(self.corners[0], |m, c| [f(m[0], c[0]), f(m[1], c[1])]);
         [fold(f64::min), fold(f64::max)]
     }
 }
@@ -337,7 +337,9 @@ mod tests {
             }
         }
         let at = |i: usize, j: usize| i + (nx + 1) * j;
-        let faces = (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))).map(|(i, j)| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
+        let faces = (0..ny)
+            .flat_map(|j| (0..nx).map(move |i| (i, j)))
+            .map(|(i, j)| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
         (points, faces.collect())
     }
 
@@ -347,7 +349,9 @@ mod tests {
         let rows = self_image_weights(&points, &faces, &vec![0.25; points.len()], 1e-9);
         assert_eq!(rows.len(), 5 * 5);
         for row in rows {
-            let mirror = (0..points.len()).find(|&m| (points[m][0] + points[row.slave][0]).abs() < 1e-12 && points[m][1] == points[row.slave][1]).unwrap();
+            let mirror = (0..points.len())
+                .find(|&m| (points[m][0] + points[row.slave][0]).abs() < 1e-12 && points[m][1] == points[row.slave][1])
+                .unwrap();
             assert_eq!(row.own, [(row.slave, 1.0)]);
             for (m, w) in &row.image {
                 assert!((w - f64::from(u8::from(*m == mirror))).abs() < 1e-10, "{}: {m} {w}", row.slave);

@@ -17,8 +17,8 @@ use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::newton::{Newton, StepReport};
-use crate::solver::system::Meeting;
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
+use crate::solver::system::Meeting;
 use crate::solver::{Control, StepFailure};
 
 /// Watches a run.
@@ -296,7 +296,8 @@ impl<'a> Drive<'a> {
                     observer.note(&format!(
                         "shear: full slip was not reached within delta_T = {:.4} R; {} of {} contact points slip",
                         self.problem.bodies * distance,
-                        self.state.record.slipping_points, self.state.record.contact_points
+                        self.state.record.slipping_points,
+                        self.state.record.contact_points
                     ));
                     break;
                 }

@@ -146,15 +146,7 @@ impl PairSolver {
             odd_fixed: vec![false; n],
             reduced: zero(),
             free: zero(),
-            work: Work {
-                load: small(),
-                even: small(),
-                odd: small(),
-                z_even: small(),
-                z_odd: small(),
-                u: zero(),
-                f: zero(),
-            },
+            work: Work { load: small(), even: small(), odd: small(), z_even: small(), z_odd: small(), u: zero(), f: zero() },
         })
     }
 
@@ -203,9 +195,7 @@ impl PairSolver {
             let Some(k) = interface.facing[i] else { continue };
             let base = 3 * node as usize;
             // Two masters opposite each other move each by itself.
-            let is_slave = |node: u32| {
-                self.contact_nodes.binary_search(&node).is_ok_and(|at| interface.slave_of[at].is_some())
-            };
+            let is_slave = |node: u32| self.contact_nodes.binary_search(&node).is_ok_and(|at| interface.slave_of[at].is_some());
             if !is_slave(node) && !is_slave(self.mirror[node as usize]) {
                 continue;
             }
@@ -292,8 +282,7 @@ impl PairSolver {
             let force = [f[base], f[base + 1], f[base + 2]];
             let w = &y[base..base + 3];
             for i in 0..3 {
-                f[base + i] =
-                    (0..3).map(|j| rows.force_rows[i][j] * force[j] + rows.displacement_rows[i][j] * w[j]).sum::<f64>();
+                f[base + i] = (0..3).map(|j| rows.force_rows[i][j] * force[j] + rows.displacement_rows[i][j] * w[j]).sum::<f64>();
             }
         }
     }

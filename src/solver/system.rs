@@ -85,7 +85,14 @@ impl Boundary {
         }
         let mean_size = mesh.contact_size.iter().sum::<f64>() / mesh.contact_size.len().max(1) as f64;
         let frictionless = vec![false; mesh.contact_nodes.len()];
-        Self { plate: mesh.plate_nodes.clone(), prescribed, frictionless, weight: 0.1 * mean_size, pair: None, mirror: Vec::new() }
+        Self {
+            plate: mesh.plate_nodes.clone(),
+            prescribed,
+            frictionless,
+            weight: 0.1 * mean_size,
+            pair: None,
+            mirror: Vec::new(),
+        }
     }
 
     /// Writes the plate's position into a displacement.
@@ -333,7 +340,9 @@ impl Trial {
             None => mesh.contact_nodes.iter().map(|&n| gap(mesh.nodes[n as usize][2], self.u[3 * n as usize + 2])).collect(),
             Some(pair) => {
                 let w = pair.interface.relative(&self.u);
-                let height = |i: usize| 2.0 * (mesh.nodes[mesh.contact_nodes[i] as usize][2] + self.u[3 * mesh.contact_nodes[i] as usize + 2]);
+                let height = |i: usize| {
+                    2.0 * (mesh.nodes[mesh.contact_nodes[i] as usize][2] + self.u[3 * mesh.contact_nodes[i] as usize + 2])
+                };
                 // A node at the rim that nothing faces: the gap to its own mirror image.
                 let facing = pair.interface.facing.iter().enumerate();
                 facing.map(|(i, k)| k.map_or_else(|| height(i), |k| pair.reference[k][2] + w[k][2])).collect()

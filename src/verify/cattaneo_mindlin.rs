@@ -7,8 +7,8 @@
 use super::equator::Equator;
 use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
-use crate::analytical::{ElasticSphere, hertz};
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
+use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hardening, Hold, Opponent, Segment};
 use crate::simulation::record::StepRecord;
 
@@ -91,16 +91,14 @@ fn equal_pair(runner: &mut Runner<'_>, mu: f64, elements: usize) -> Result<Vec<C
     let mut exact = exact(NU, &history);
     exact.friction = mu;
     let limit = mu * exact.normal_force;
-    let mut checks = vec![
-        Check::relative(
-            "equal pair",
-            format!("F_N, mu = {mu}"),
-            exact.normal_force,
-            hertz::force(&ball, body.contact_indentation(H, exact.normal_force)),
-            0.01,
-            "Hertz: each body is pressed half as far, and friction has no part in it",
-        ),
-    ];
+    let mut checks = vec![Check::relative(
+        "equal pair",
+        format!("F_N, mu = {mu}"),
+        exact.normal_force,
+        hertz::force(&ball, body.contact_indentation(H, exact.normal_force)),
+        0.01,
+        "Hertz: each body is pressed half as far, and friction has no part in it",
+    )];
     for (segment, x) in (2..).zip(LOADING) {
         let row = history.end(segment);
         let reference = exact.force(body.contact_shear(0.5 * row.delta_t, row.f_t)) / limit;

@@ -1,10 +1,10 @@
 //! The pressure over the radius at the end of the press.
 
 use super::super::{ContactPoint, ContactStatus, Half, OutputError, StepRecord};
+use super::PlotInputs;
 use super::chart::{Axis, Chart, Mark, Series, draw_chart, extent};
 use super::curves::from_zero;
 use super::style::{BLUE, GREEN, GREY, INK, Picture, rounded, tick};
-use super::PlotInputs;
 use crate::analytical::hertz;
 use std::f64::consts::PI;
 
