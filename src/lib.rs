@@ -36,6 +36,11 @@
 //! | closed forms | [`analytical`] |
 //! | one material point | [`material::point`] |
 //!
+//! # Features
+//!
+//! All are on by default, for the program. `default-features = false` leaves a library that computes on the CPU; `gpu` adds the kernels for Vulkan, Metal and DX12 and the
+//! largest part of the time to compile, `cli` (with `gpu`) the command line.
+//!
 //! # The rooms
 //!
 //! From the kernels up; each knows only those named before it:
@@ -44,9 +49,11 @@
 //! ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
+#[cfg(feature = "gpu")]
 pub mod bench;
 pub mod bounded;
 pub mod case;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod compute;
 pub mod contact;
@@ -57,6 +64,7 @@ pub mod linalg;
 pub mod material;
 pub mod mesh;
 pub mod output;
+pub mod processor;
 pub mod real;
 pub mod session;
 pub mod simulation;

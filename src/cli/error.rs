@@ -8,6 +8,7 @@ use crate::case::CaseError;
 use crate::law::LawError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
+use crate::processor::TooOld;
 use crate::session::SessionError;
 use crate::simulation::SimulationError;
 use crate::study::StudyError;
@@ -81,13 +82,8 @@ pub enum CliError {
         source: io::Error,
     },
     /// The program was compiled for a newer processor.
-    #[error(
-        "this processor lacks {missing}, for which this program was compiled. build it on this machine with RUSTFLAGS=-Ctarget-cpu=native"
-    )]
-    Processor {
-        /// The missing instruction sets.
-        missing: String,
-    },
+    #[error(transparent)]
+    Processor(#[from] TooOld),
     /// A GPU was asked for and cannot be used.
     #[error("--device gpu: {what}")]
     Device {

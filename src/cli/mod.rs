@@ -11,7 +11,6 @@ pub mod law;
 pub mod options;
 pub mod plot;
 pub mod point;
-pub mod processor;
 pub mod run;
 pub mod signals;
 pub mod study;
@@ -91,7 +90,7 @@ impl From<Outcome> for ExitCode {
 
 /// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with its exit code.
 pub fn main() -> ExitCode {
-    let checked = processor::check().and_then(|()| environment::check());
+    let checked = crate::processor::check().map_err(CliError::from).and_then(|()| environment::check());
     let outcome = checked.and_then(|()| match Cli::try_parse() {
         Ok(cli) => cli.command.run().map(ExitCode::from),
         Err(usage) => {
