@@ -1,4 +1,4 @@
-//! Two spheres' contact in a loop over time: a sphere falls onto a plane at an angle and bounces: `cargo run --release --example law_in_time_loop`.
+//! A contact in a loop over time: a sphere hits a plane at an angle and bounces: `cargo run --release --example law_in_time_loop`.
 //!
 //! The contact is the incremental update of the built-in law: an indentation and an increment along the plane go in, forces come out, and the
 //! memory of the contact is one small struct.

@@ -1,13 +1,15 @@
 //! The results of a run without a directory.
 
+use super::Canceller;
 use crate::case::{Case, Segment};
 use crate::output::{
-    Clock, ErrorEstimate, PathShare, Position, Progress, Setting, Status, StepRecord, Summary, SummaryInputs, Units,
+    Clock, ErrorEstimate, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary, SummaryInputs,
+    TimeByPhase, Units,
 };
-use crate::session::Canceller;
 use crate::simulation::drive::{Observer, StepView};
 use crate::simulation::problem::Problem;
 use crate::simulation::scout::Scout;
+use crate::solver::phases::PhaseTimes;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -25,6 +27,8 @@ pub struct Memory {
     scout: Option<Scout>,
     remeshed: usize,
     fallbacks: usize,
+    times: PhaseTimes,
+    outside: OutsideSteps,
     messages: Vec<String>,
 }
 
@@ -51,18 +55,23 @@ impl Memory {
             scout: None,
             remeshed: 0,
             fallbacks: 0,
+            times: PhaseTimes::default(),
+            outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
             messages: Vec::new(),
         }
     }
 
-    /// Takes what the coarse run has found.
-    pub fn scouted(&mut self, scout: Scout) {
+    /// Takes what the coarse run has found in so many seconds on the wall, which have gone by already.
+    pub fn scouted(&mut self, scout: Scout, seconds: f64) {
+        self.outside.error_estimate = seconds;
+        self.outside.setup -= seconds;
         self.scout = Some(scout);
     }
 
     /// The summary of the run, as it would be written.
     pub fn finish(mut self, rows: &[StepRecord], status: Status, message: Option<&str>) -> Summary {
         self.progress.finish(&format!("{status}: {} steps", rows.len()));
+        let wall_s = self.clock.wall_seconds();
         let mut summary = Summary {
             status,
             remeshed: self.remeshed,
@@ -71,8 +80,9 @@ impl Memory {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.fallbacks,
-            wall_s: self.clock.wall_seconds(),
+            wall_s,
             cpu_s: self.clock.cpu_seconds(),
+            time_by_phase: TimeByPhase::new(&self.times, &self.outside, wall_s),
             messages: self.messages.into_iter().chain(message.map(str::to_owned)).collect(),
             ..Summary::from_history(rows, &self.inputs)
         };
@@ -96,6 +106,7 @@ impl Observer for Memory {
             return Ok(());
         }
         self.fallbacks += view.report.fallbacks;
+        self.times += view.report.times;
         let row = view.record.in_units(&self.units);
         self.progress.step(&Position {
             step: row.step,
@@ -107,7 +118,8 @@ impl Observer for Memory {
         Ok(())
     }
 
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        self.times += view.unfinished;
         Ok(())
     }
 

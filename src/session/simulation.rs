@@ -408,7 +408,7 @@ impl Simulation {
             }
             match &mut sink {
                 Sink::Files(results) => results.scouted(scout, scout_took),
-                Sink::Memory(memory) => memory.scouted(scout),
+                Sink::Memory(memory) => memory.scouted(scout, scout_took),
             }
         }
         if stopped {
