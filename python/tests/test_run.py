@@ -123,6 +123,15 @@ def test_progress_is_told_and_may_end_the_run(case: asperity.Case, tmp_path: Pat
     assert left.history.rows < run.history.rows
 
 
+def test_the_bar_is_a_line_that_is_written_over(case: asperity.Case, capfd: pytest.CaptureFixture[str]) -> None:
+    asperity.run(case, progress=False)
+    assert capfd.readouterr().out == ""
+    run = asperity.run(case, progress=True)
+    said = capfd.readouterr().err
+    lines = [line for line in said.split("\r") if line.startswith("[")]
+    assert len(lines) == run.history.rows and "step 1 " in lines[0] and said.endswith("\n")
+
+
 def test_a_run_that_does_not_converge_is_an_exception_with_the_results(case: asperity.Case) -> None:
     hopeless = case.replace({"solver.max_iterations": 1, "solver.max_cutbacks": 0})
     with pytest.raises(asperity.NotConverged, match="no convergence: step 1 of segment 0") as error:

@@ -1,6 +1,10 @@
 from __future__ import annotations
 
 import importlib.util
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +43,31 @@ def test_a_study_goes_on(study: asperity.Study, case: asperity.Case, tmp_path: P
         asperity.study(base, {"contact.friction": [-1.0]})
     with pytest.raises(asperity.AsperityError, match="has no grid"):
         asperity.study(base)
+
+
+INTERRUPTED = """
+import asperity, sys
+try:
+    asperity.study(sys.argv[1], out=sys.argv[2], threads=1)
+except asperity.Interrupted as interrupted:
+    print(list(interrupted.study.table["status"]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_ends_a_study_that_goes_on(study: asperity.Study, tmp_path: Path) -> None:
+    out = tmp_path / "study"
+    child = subprocess.Popen(
+        [sys.executable, "-c", INTERRUPTED, study.directory / "study.toml", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    deadline = time.monotonic() + 60.0
+    while not list(out.glob("cases/*/history.csv")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    child.send_signal(signal.SIGINT)
+    said, complaint = child.communicate(timeout=60)
+    assert child.returncode == 0 and "pending" in said, complaint
+    again = asperity.study(out / "study.toml", out=out, resume=True)
+    assert (again.table["F_T_max"] == study.table["F_T_max"]).all()
 
 
 @pytest.fixture(scope="module")
