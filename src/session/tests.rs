@@ -1,22 +1,21 @@
 use std::sync::Mutex;
 
 use super::*;
-use crate::case::{Case, Friction, Segment};
+use crate::case::{Case, Friction};
 use crate::compute::select::DeviceWish;
 use crate::output::{OutputDirectory, StepRecord, read_contact, read_history};
 
 /// Pressed, sheared at constant force and back: steps of every kind, on a coarse mesh.
 fn case() -> Case {
     let text = include_str!("../../fixtures/cases/ideal.toml");
-    let settings =
-        ["mesh.elements_per_contact_radius=4", "solver.error_estimate=false", "solver.press_steps=5", "solver.shear_steps=5"];
-    let mut case = Case::parse(text, "ideal.toml", &settings.map(str::to_owned)).expect("the fixture is a case");
-    case.path = vec![
-        Segment::Indentation { indentation: 0.005 },
-        Segment::Shear { shear: crate::case::ShearTarget::Displacement(4e-4), hold: crate::case::Hold::NormalForce },
-        Segment::Release,
+    let settings = [
+        "mesh.elements_per_contact_radius=4",
+        "solver.error_estimate=false",
+        "solver.press_steps=5",
+        "solver.shear_steps=5",
+        "path=[{ indentation = 0.005 }, { shear = 4e-4, hold = \"normal-force\" }, { release = true }]",
     ];
-    case
+    Case::parse(text, "ideal.toml", &settings.map(str::to_owned)).expect("the fixture is a case")
 }
 
 fn on_cpu() -> Options {
