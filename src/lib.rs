@@ -1,14 +1,59 @@
-//! Asperity: force-displacement laws for elastic-plastic spheres sheared along a rigid plane. The plane stands for a second, equal sphere only without
-//! friction.
+//! Asperity: force-displacement laws for elastic-plastic spheres, computed instead of guessed.
 //!
-//! The rooms, from the kernels up; each knows only those named before it:
+//! One sphere is pressed onto a rigid plane and sheared along it, with finite-strain J2 plasticity and exact Coulomb friction, by implicit finite elements.
+//! The plane stands for a second, equal sphere only without friction. A [`Case`] says what is simulated, a [`Simulation`] does it:
+//!
+//! ```
+//! use asperity::{Case, Simulation};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let case = Case::parse(
+//!     r#"
+//!     sphere = { radius = 1.0 }
+//!     material = { youngs_modulus = 200e3, poissons_ratio = 0.3, hardening = { law = "ideal", yield_stress = 400.0 } }
+//!     contact = { friction = 0.3 }
+//!     mesh = { elements_per_contact_radius = 4 }
+//!     path = [{ indentation = 0.005 }, { shear = "full-slip" }]
+//!     "#, "my case", &[])?;
+//! let outcome = Simulation::new(&case)?.run()?;
+//! println!("F_N = {:?}, largest F_T = {:?}", outcome.summary.f_n0, outcome.summary.f_t_max);
+//! # assert!(outcome.is_done());
+//! # assert!(outcome.summary.f_n0.is_some_and(|f_n| (29.0..40.0).contains(&f_n)));
+//! # Ok(()) }
+//! ```
+//!
+//! Lengths and stresses are in any one consistent system of units; forces are of the whole sphere, F_N positive in compression. With
+//! [`Options::out`] a simulation leaves the files of `asperity run`; [`Simulation::steps`] takes one step at a time, [`Simulation::canceller`] ends it from
+//! another thread. A case that a program has put together is held to the rules of a case file by [`Case::validate`].
+//!
+//! # Where to look
+//!
+//! | for | there is |
+//! |---|---|
+//! | one run | [`Simulation`], [`Options`], [`Outcome`]; `examples/run.rs`, `examples/fields.rs` |
+//! | many runs | [`study`]; `examples/parallel_study.rs` |
+//! | a contact law in a discrete-element code | [`law::Law`], [`law::contact`]; `examples/law_in_time_loop.rs` |
+//! | closed forms | [`analytical`] |
+//! | one material point | [`material::point`] |
+//!
+//! # Features
+//!
+//! All are on by default, for the program. `default-features = false` leaves a library that computes on the CPU; `gpu` adds the kernels for Vulkan, Metal and DX12 and the
+//! largest part of the time to compile, `cli` (with `gpu`) the command line.
+//!
+//! # The rooms
+//!
+//! From the kernels up; each knows only those named before it:
 //! `analytical` (closed forms), `case` (the case file), `mesh`, `material`, `element`, `contact`, `compute` (one trait, CPU and
-//! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `law`, `study`, `verify` (closed-form checks), `bench` (rates), `cli`. ARCHITECTURE.md follows one case through them.
+//! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `session` (one run from case to results), `law`, `study`, `verify` (closed-form checks), `bench` (rates), `cli`.
+//! ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
+#[cfg(feature = "gpu")]
 pub mod bench;
 pub mod bounded;
 pub mod case;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod compute;
 pub mod contact;
@@ -19,8 +64,13 @@ pub mod linalg;
 pub mod material;
 pub mod mesh;
 pub mod output;
+pub mod processor;
 pub mod real;
+pub mod session;
 pub mod simulation;
 pub mod solver;
 pub mod study;
 pub mod verify;
+
+pub use case::Case;
+pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};

@@ -93,6 +93,10 @@ begin "cluster"
 cargo build --quiet
 bash tests/cluster/run.sh target/debug/asperity
 
+# The Python package as a user gets it: a wheel, in an environment of its own. ASPERITY_REQUIRE_PYTHON=1 makes a skip a failure.
+begin "python"
+ASPERITY_PROGRAM="$PWD/target/debug/asperity" bash python/tests/run.sh
+
 # Every test target runs, whatever failed before it: one run tells all.
 begin "cargo test"
 cargo test --no-fail-fast

@@ -77,6 +77,11 @@ impl Document {
         Ok(Self { root: Entry { place: lines.place(0), value: table_value(table.get_ref(), &|at| lines.place(at))? } })
     }
 
+    /// The document of a table that a program has made: a value has no line then, so that errors name the key alone.
+    pub fn from_table(table: &toml::Table) -> Self {
+        Self { root: given(&toml::Value::Table(table.clone())) }
+    }
+
     /// Applies one `--set` argument, `key=value`: see [`Document::set`]. The value is TOML; what is not valid TOML is a string.
     pub fn set_argument(&mut self, argument: &str) -> Result<(), CaseError> {
         let refuse = |what: String| CaseError::Set { argument: argument.to_owned(), what };
@@ -214,6 +219,19 @@ fn value(parsed: &DeValue<'_>, place: &dyn Fn(usize) -> Place) -> Result<Value, 
         ),
         DeValue::Table(table) => table_value(table, place)?,
     })
+}
+
+fn given(value: &toml::Value) -> Entry {
+    let value = match value {
+        toml::Value::String(text) => Value::String(text.clone()),
+        toml::Value::Integer(number) => Value::Integer(*number),
+        toml::Value::Float(number) => Value::Float(*number),
+        toml::Value::Boolean(truth) => Value::Boolean(*truth),
+        toml::Value::Datetime(date) => Value::Datetime(date.to_string()),
+        toml::Value::Array(items) => Value::Array(items.iter().map(given).collect()),
+        toml::Value::Table(table) => Value::Table(table.iter().map(|(key, item)| (key.clone(), given(item))).collect()),
+    };
+    Entry { place: Place::Given, value }
 }
 
 fn one_line(message: &str) -> String {

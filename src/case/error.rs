@@ -16,6 +16,8 @@ pub enum Place {
     },
     /// A `--set key=value` argument; the key.
     Set(Arc<str>),
+    /// No file: a value that a program has given.
+    Given,
 }
 
 impl fmt::Display for Place {
@@ -23,6 +25,7 @@ impl fmt::Display for Place {
         match self {
             Place::Line { file, line } => write!(f, "{}:{line}", short(file)),
             Place::Set(key) => write!(f, "--set {}", short(key)),
+            Place::Given => f.write_str("case"),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::document::Document;
-use super::error::CaseError;
+use super::error::{CaseError, Place};
 use super::reader::Reader;
 use super::{
     Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, Solver, Sphere, estimate, path,
@@ -57,6 +57,34 @@ impl Case {
         }
         estimate::check_memory(&case, &root)?;
         Ok(case)
+    }
+
+    /// A case from a table with the keys of a case file.
+    ///
+    /// # Errors
+    /// Those of a case file, with the key; they name no line.
+    pub fn from_table(table: &toml::Table) -> Result<Self, CaseError> {
+        Self::from_document(&Document::from_table(table))
+    }
+
+    /// Holds a case that a program has put together, or changed, to the rules of a case file.
+    ///
+    /// ```
+    /// use asperity::{Case, case::Friction};
+    /// # let text = include_str!("../../fixtures/cases/ideal.toml");
+    /// let mut case = Case::parse(text, "ideal.toml", &[])?;
+    /// case.contact.friction = Friction::Coefficient(-0.1);
+    /// let error = case.validate().unwrap_err().to_string();
+    /// assert_eq!(error, "case: contact.friction: is -0.1. allowed: a number >= 0, or \"stick\"");
+    /// # Ok::<(), asperity::case::CaseError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of a case file, with the key; they name no line.
+    pub fn validate(&self) -> Result<(), CaseError> {
+        let table =
+            toml::Table::try_from(self).map_err(|error| CaseError::Syntax { place: Place::Given, what: error.to_string() })?;
+        Self::from_table(&table).map(drop)
     }
 }
 

@@ -25,7 +25,7 @@ impl<'d> Reader<'d> {
         let unknown = self.table.into_iter().flatten().filter(|(name, _)| !known.contains(&name.as_str()));
         let line = |place: &Place| match place {
             Place::Line { line, .. } => *line,
-            Place::Set(_) => usize::MAX,
+            Place::Set(_) | Place::Given => usize::MAX,
         };
         match unknown.min_by_key(|(_, entry)| line(&entry.place)) {
             None => Ok(()),

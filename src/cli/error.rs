@@ -1,13 +1,15 @@
 //! What can go wrong in front of the simulation.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::bench::BenchError;
 use crate::case::CaseError;
 use crate::law::LawError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
+use crate::processor::TooOld;
+use crate::session::SessionError;
 use crate::simulation::SimulationError;
 use crate::study::StudyError;
 use crate::verify::VerifyError;
@@ -23,20 +25,6 @@ pub enum CliError {
     /// The case file.
     #[error(transparent)]
     Case(#[from] CaseError),
-    /// The directory of `--out` holds something else.
-    #[error("--out {}: holds {found:?}, and is not an Asperity result. give a new or an empty directory (nothing was changed)", .dir.display())]
-    NotAResult {
-        /// The directory.
-        dir: PathBuf,
-        /// A file found in it.
-        found: String,
-    },
-    /// The directory of `--out` is something else.
-    #[error("--out {}: is not a directory. give a new or an empty directory (nothing was changed)", .dir.display())]
-    NotADirectory {
-        /// The path.
-        dir: PathBuf,
-    },
     /// The directory of `--out` cannot be made, read or written.
     #[error("--out {}: cannot {what}: {source}. give a directory that you may write to", .dir.display())]
     Out {
@@ -46,17 +34,6 @@ pub enum CliError {
         what: &'static str,
         /// What the system says.
         source: io::Error,
-    },
-    /// The directory of `--out` holds an earlier result, and it was not said what is to become of it.
-    #[error(
-        "--out {}: holds {found}. --resume goes on with it (if it is done, it stays), --force replaces it; or give another directory (nothing was changed)",
-        .dir.display()
-    )]
-    Earlier {
-        /// The directory.
-        dir: PathBuf,
-        /// What is there.
-        found: String,
     },
     /// Scripts that cannot be submitted.
     #[error("--submit: {what}. the scripts are written; submit them with `bash {}` where sbatch is", .script.display())]
@@ -105,13 +82,8 @@ pub enum CliError {
         source: io::Error,
     },
     /// The program was compiled for a newer processor.
-    #[error(
-        "this processor lacks {missing}, for which this program was compiled. build it on this machine with RUSTFLAGS=-Ctarget-cpu=native"
-    )]
-    Processor {
-        /// The missing instruction sets.
-        missing: String,
-    },
+    #[error(transparent)]
+    Processor(#[from] TooOld),
     /// A GPU was asked for and cannot be used.
     #[error("--device gpu: {what}")]
     Device {
@@ -154,31 +126,12 @@ pub enum CliError {
         /// What is wrong with it.
         what: String,
     },
-    /// `--resume` where another case has been computed.
-    #[error(
-        "--out {}: holds the results of another case: {difference}. restore the case file or --set, give another directory, or run with --force and without \
-         --resume to replace them",
-        .dir.display()
-    )]
-    OtherRun {
-        /// The directory.
-        dir: PathBuf,
-        /// A key in which they differ.
-        difference: String,
-    },
-    /// Results cannot be begun, or an unfinished run cannot go on.
+    /// A run.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// A file cannot be written or read.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A run broke off: results cannot be written, or the device failed.
-    #[error("the run broke off after {steps} steps: {what}. {}", kept(.dir))]
-    BrokeOff {
-        /// Steps that are kept.
-        steps: usize,
-        /// What went wrong and what to do.
-        what: String,
-        /// The directory of `--out`.
-        dir: PathBuf,
-    },
     /// A study.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -236,20 +189,13 @@ pub enum CliError {
     },
 }
 
-/// What became of the results of a run that broke off, and what to do.
-fn kept(dir: &Path) -> String {
-    let dir_name = dir.display();
-    if super::force::is_absent(&dir.join("case.toml")) {
-        return format!("nothing of it is left in {dir_name}; run it again from the beginning");
-    }
-    format!("what was computed until then is kept in {dir_name}; to go on, run the same command with --resume")
-}
-
 impl CliError {
     /// The exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            CliError::BrokeOff { .. } | CliError::Verify { .. } | CliError::Study(StudyError::BrokeOff { .. }) => NOT_CONVERGED,
+            CliError::Session(SessionError::BrokeOff { .. })
+            | CliError::Verify { .. }
+            | CliError::Study(StudyError::BrokeOff { .. }) => NOT_CONVERGED,
             CliError::LawCase { source, .. } if matches!(**source, LawError::Press(_)) => NOT_CONVERGED,
             _ => BAD_INPUT,
         }

@@ -5,7 +5,8 @@ use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
+use clap::builder::PossibleValue;
+use clap::{Args, Subcommand, ValueEnum};
 
 use serde_json::{Value, json};
 
@@ -86,6 +87,19 @@ pub struct ExportArgs {
     /// replaced [default: the header or module alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+impl ValueEnum for Language {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::C, Self::Python]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(match self {
+            Self::C => PossibleValue::new("c").help("One header, C99 and C++17"),
+            Self::Python => PossibleValue::new("python").help("One module, Python 3.8 or later"),
+        })
+    }
 }
 
 /// Runs a subcommand of `asperity law`.

@@ -9,16 +9,12 @@ pub mod devices;
 pub mod environment;
 pub mod error;
 pub mod explain;
-pub mod force;
 pub mod init;
 pub mod input;
 pub mod law;
 pub mod options;
-pub mod out;
 pub mod plot;
 pub mod point;
-pub mod processor;
-pub mod resume;
 pub mod run;
 pub mod schema;
 pub mod shell;
@@ -113,7 +109,7 @@ impl From<Outcome> for ExitCode {
 
 /// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with its exit code.
 pub fn main() -> ExitCode {
-    let checked = processor::check().and_then(|()| environment::check());
+    let checked = crate::processor::check().map_err(CliError::from).and_then(|()| environment::check());
     let outcome = checked.and_then(|()| match Cli::try_parse() {
         Ok(cli) => cli.command.run().map(ExitCode::from),
         Err(usage) => {

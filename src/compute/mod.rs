@@ -9,8 +9,10 @@
 pub mod cpu;
 pub mod fallback;
 pub mod gather;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod handle;
+#[cfg(feature = "gpu")]
 pub mod lost;
 pub mod select;
 mod sweep;

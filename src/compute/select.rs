@@ -1,12 +1,12 @@
 //! Where a batch is computed: the one place that turns a wish for a device and a precision into a backend.
 
-use std::sync::Arc;
-
 use super::cpu::Cpu;
-use super::fallback::Fallback;
-use super::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, Mixed, Precision};
-use super::lost::hooked;
 use super::{CaseModel, Compute, ComputeError};
+
+#[cfg(feature = "gpu")]
+pub use device::select_on;
+#[cfg(feature = "gpu")]
+use device::{on_device, opens};
 
 /// The device wished for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,41 +46,20 @@ pub struct Selected {
 /// [`ComputeError::InvertedMesh`] and [`ComputeError::Connectivity`] from any device; [`ComputeError::Device`] if a GPU was asked for
 /// and there is none, or the batch does not fit.
 pub fn select(device: DeviceWish, precision: PrecisionWish, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
-    let context = match device {
-        DeviceWish::Cpu => Ok(None),
-        DeviceWish::Gpu => GpuContext::open(DeviceRequest::Gpu),
-        DeviceWish::Auto => GpuContext::open(DeviceRequest::Auto),
-    };
-    select_on(context, device, precision, models)
+    match device {
+        DeviceWish::Cpu => Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
+        wish => on_device(wish, precision, models),
+    }
 }
 
-/// As [`select`], on a device that was opened (or not) by the caller.
+/// Whether a device is to be used: asked for or found, and able to be opened.
 ///
 /// # Errors
-/// As [`select`].
-pub fn select_on(
-    context: Result<Option<GpuContext>, GpuError>,
-    device: DeviceWish,
-    precision: PrecisionWish,
-    models: Vec<CaseModel>,
-) -> Result<Selected, ComputeError> {
-    let reason = match context {
-        Ok(None) if device == DeviceWish::Gpu => ComputeError::from(GpuError::NoAdapter),
-        Ok(None) => return Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
-        Err(error) => error.into(),
-        Ok(Some(context)) => match gpu(Arc::new(context), precision, models.clone()) {
-            Ok((backend, notes)) if device == DeviceWish::Gpu => return Ok(Selected { backend, notes }),
-            Ok((backend, notes)) => return Ok(Selected { backend: Box::new(Fallback::new(backend)), notes }),
-            Err(error) => error,
-        },
-    };
-    match reason {
-        ComputeError::Device(reason) if device != DeviceWish::Gpu => {
-            let note = format!("the GPU could not be used ({reason}); the CPU was taken instead");
-            log::info!("{note}");
-            Ok(Selected { backend: cpu(precision, models)?, notes: vec![note] })
-        }
-        error => Err(error),
+/// [`ComputeError::Device`] if a GPU was asked for and cannot be had.
+pub fn is_there(device: DeviceWish) -> Result<bool, ComputeError> {
+    match device {
+        DeviceWish::Cpu => Ok(false),
+        wish => opens(wish),
     }
 }
 
@@ -91,21 +70,108 @@ fn cpu(precision: PrecisionWish, models: Vec<CaseModel>) -> Result<Box<dyn Compu
     })
 }
 
-fn gpu(
-    context: Arc<GpuContext>,
-    precision: PrecisionWish,
-    models: Vec<CaseModel>,
-) -> Result<(Box<dyn Compute>, Vec<String>), ComputeError> {
-    if precision == PrecisionWish::F32 {
-        return Ok((hooked(Box::new(Gpu::<f32>::new(context.clone(), models)?), context), Vec::new()));
+#[cfg(not(feature = "gpu"))]
+fn on_device(device: DeviceWish, precision: PrecisionWish, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+    opens(device)?;
+    Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() })
+}
+
+#[cfg(not(feature = "gpu"))]
+fn opens(device: DeviceWish) -> Result<bool, ComputeError> {
+    match device {
+        DeviceWish::Gpu => Err(ComputeError::Device(
+            "this build computes on the CPU only. build it with the feature gpu, or ask for the CPU".to_owned(),
+        )),
+        DeviceWish::Auto | DeviceWish::Cpu => Ok(false),
     }
-    if context.supports(Precision::F64).is_ok() {
-        return Ok((hooked(Box::new(Gpu::<f64>::new(context.clone(), models)?), context), Vec::new()));
+}
+
+/// What there is only with a GPU in the build.
+#[cfg(feature = "gpu")]
+mod device {
+    use std::sync::Arc;
+
+    use super::{DeviceWish, PrecisionWish, Selected, cpu};
+    use crate::compute::fallback::Fallback;
+    use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, Mixed, Precision};
+    use crate::compute::lost::hooked;
+    use crate::compute::{CaseModel, Compute, ComputeError};
+
+    fn open(device: DeviceWish) -> Result<Option<GpuContext>, GpuError> {
+        match device {
+            DeviceWish::Cpu => Ok(None),
+            DeviceWish::Gpu => GpuContext::open(DeviceRequest::Gpu),
+            DeviceWish::Auto => GpuContext::open(DeviceRequest::Auto),
+        }
     }
-    let note = format!(
-        "{} has no double precision in shaders: it computes the tangents in f32, the CPU the residuals in f64",
-        context.adapter().name
-    );
-    log::info!("{note}");
-    Ok((hooked(Box::new(Mixed::new(context.clone(), models)?), context), vec![note]))
+
+    pub(super) fn on_device(
+        device: DeviceWish,
+        precision: PrecisionWish,
+        models: Vec<CaseModel>,
+    ) -> Result<Selected, ComputeError> {
+        select_on(open(device), device, precision, models)
+    }
+
+    pub(super) fn opens(device: DeviceWish) -> Result<bool, ComputeError> {
+        match open(device) {
+            Ok(Some(_)) => Ok(true),
+            Ok(None) if device == DeviceWish::Gpu => Err(GpuError::NoAdapter.into()),
+            Ok(None) => Ok(false),
+            Err(error) if device == DeviceWish::Gpu => Err(error.into()),
+            Err(error) => {
+                log::info!("the GPU could not be used ({error}); the CPU was taken instead");
+                Ok(false)
+            }
+        }
+    }
+
+    /// As [`super::select`], on a device that was opened (or not) by the caller.
+    ///
+    /// # Errors
+    /// As [`super::select`].
+    pub fn select_on(
+        context: Result<Option<GpuContext>, GpuError>,
+        device: DeviceWish,
+        precision: PrecisionWish,
+        models: Vec<CaseModel>,
+    ) -> Result<Selected, ComputeError> {
+        let reason = match context {
+            Ok(None) if device == DeviceWish::Gpu => ComputeError::from(GpuError::NoAdapter),
+            Ok(None) => return Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
+            Err(error) => error.into(),
+            Ok(Some(context)) => match gpu(Arc::new(context), precision, models.clone()) {
+                Ok((backend, notes)) if device == DeviceWish::Gpu => return Ok(Selected { backend, notes }),
+                Ok((backend, notes)) => return Ok(Selected { backend: Box::new(Fallback::new(backend)), notes }),
+                Err(error) => error,
+            },
+        };
+        match reason {
+            ComputeError::Device(reason) if device != DeviceWish::Gpu => {
+                let note = format!("the GPU could not be used ({reason}); the CPU was taken instead");
+                log::info!("{note}");
+                Ok(Selected { backend: cpu(precision, models)?, notes: vec![note] })
+            }
+            error => Err(error),
+        }
+    }
+
+    fn gpu(
+        context: Arc<GpuContext>,
+        precision: PrecisionWish,
+        models: Vec<CaseModel>,
+    ) -> Result<(Box<dyn Compute>, Vec<String>), ComputeError> {
+        if precision == PrecisionWish::F32 {
+            return Ok((hooked(Box::new(Gpu::<f32>::new(context.clone(), models)?), context), Vec::new()));
+        }
+        if context.supports(Precision::F64).is_ok() {
+            return Ok((hooked(Box::new(Gpu::<f64>::new(context.clone(), models)?), context), Vec::new()));
+        }
+        let note = format!(
+            "{} has no double precision in shaders: it computes the tangents in f32, the CPU the residuals in f64",
+            context.adapter().name
+        );
+        log::info!("{note}");
+        Ok((hooked(Box::new(Mixed::new(context.clone(), models)?), context), vec![note]))
+    }
 }

@@ -71,6 +71,12 @@ fn header() -> io::Result<String> {
     String::from_utf8(text[..end].to_vec()).map_err(io::Error::other)
 }
 
+/// The columns of a `history.csv`, in their order.
+pub fn history_columns() -> Vec<String> {
+    // The record's own field names: there is nothing in them that could not be written.
+    header().unwrap_or_default().trim_end().split(',').map(str::to_owned).collect()
+}
+
 /// Reads a `history.csv`. A last row without its line end, left by a killed job, is not counted; columns after the first ten may be missing or
 /// unknown. Errors name the line and the column.
 pub fn read_history(path: &Path) -> Result<Vec<StepRecord>, OutputError> {

@@ -39,7 +39,7 @@ pub use directory::{OutputDirectory, RESULT_MARKER};
 pub use error::OutputError;
 pub use estimate::{ErrorEstimate, ripple};
 pub use fields::{mises, write_fields};
-pub use history::{HistoryWriter, read_history};
+pub use history::{HistoryWriter, history_columns, read_history};
 pub use lock::{DirectoryLock, LOCK_NAME};
 pub use path_share::PathShare;
 pub use plots::{Picture, PlotInputs, write_plots};

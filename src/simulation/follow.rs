@@ -2,12 +2,12 @@
 
 use super::SimulationError;
 use super::checkpoint::Snapshot;
-use super::drive::{Drive, Ending, Observer};
+use super::drive::{Drive, Ending, Observer, Paused};
 use super::problem::Problem;
 use super::zone::{BLIND_MARGIN, Zone};
 use crate::compute::cpu::Cpu;
 use crate::compute::select::Selected;
-use crate::compute::{Compute, ComputeError, Description};
+use crate::compute::{CaseFields, Compute, ComputeError, Description};
 
 /// A backend and the number of the case on it, which is in its virgin state.
 pub type Seat<'a> = (Box<dyn Compute + 'a>, usize);
@@ -27,39 +27,112 @@ pub struct Followed {
 /// # Errors
 /// [`SimulationError`] where no smaller step helps.
 pub fn follow<'a>(
-    mut problem: Problem,
-    mut snapshot: Option<Snapshot>,
+    problem: Problem,
+    snapshot: Option<Snapshot>,
     seat: &mut dyn FnMut(&Problem) -> Result<Seat<'a>, SimulationError>,
     observer: &mut dyn Observer,
 ) -> Result<Followed, SimulationError> {
-    loop {
-        let (mut backend, case) = seat(&problem)?;
-        let mut drive = Drive::new(&problem, backend.as_mut(), case, problem.newton()?);
-        if let Some(snapshot) = snapshot.take() {
-            drive.resume(snapshot)?;
-        }
-        let ending = drive.run(observer)?;
-        if ending == Ending::Done && problem.case.output.plots {
-            // Whatever becomes of the pictures, the path has not to be followed again.
-            drive.checkpoint(true, observer);
-        }
-        let grown = match &ending {
-            Ending::Outgrown(outgrowth) => {
-                problem.zone.grown(outgrowth.reach, outgrowth.contact_radius, BLIND_MARGIN).map(|zone| (zone, *outgrowth))
-            }
-            _ => None,
-        };
-        let Some((zone, outgrowth)) = grown else {
-            return Ok(Followed { ending, computed_on: backend.description() });
-        };
-        problem = Problem::on(&problem.case, Some(zone))?;
-        observer.starts_over(&problem, problem.free_unknowns()).map_err(SimulationError::Observer)?;
-        observer.note(&format!(
-            "{outgrowth}; started over with a finely meshed zone of {:.4} R and elements of {:.5} R in it",
-            zone.radius(),
-            problem.spacing
-        ));
+    let mut follower = Follower::new(problem, snapshot, seat)?;
+    let ending = follower.go_on(seat, observer)?;
+    Ok(Followed { ending, computed_on: follower.description() })
+}
+
+/// A run that may be left after any step, and taken up again: what [`follow`] does, in parts.
+pub struct Follower<'a> {
+    problem: Problem,
+    seat: Seat<'a>,
+    /// `None` only while the drive is under way, and after it failed.
+    paused: Option<Paused>,
+}
+
+impl<'a> Follower<'a> {
+    /// At the start of the path, or where `snapshot` was taken.
+    ///
+    /// # Errors
+    /// [`SimulationError`] if there is no backend, or the snapshot is of another mesh.
+    pub fn new(
+        problem: Problem,
+        snapshot: Option<Snapshot>,
+        seat: &mut dyn FnMut(&Problem) -> Result<Seat<'a>, SimulationError>,
+    ) -> Result<Self, SimulationError> {
+        let mut seat = seat(&problem)?;
+        let paused = set_out(&problem, &mut seat, snapshot)?;
+        Ok(Self { problem, seat, paused: Some(paused) })
     }
+
+    /// Follows the path to its end, or until the observer asks to stop. After [`Ending::Interrupted`] it may be called again.
+    ///
+    /// # Errors
+    /// As [`follow`]; there is then nothing to go on from.
+    pub fn go_on(
+        &mut self,
+        seat: &mut dyn FnMut(&Problem) -> Result<Seat<'a>, SimulationError>,
+        observer: &mut dyn Observer,
+    ) -> Result<Ending, SimulationError> {
+        loop {
+            let paused = match self.paused.take() {
+                Some(paused) => paused,
+                None => set_out(&self.problem, &mut self.seat, None)?,
+            };
+            let mut drive = paused.go_on(&self.problem, self.seat.0.as_mut(), self.seat.1);
+            let ending = drive.run(observer)?;
+            if ending == Ending::Done && self.problem.case.output.plots {
+                // Whatever becomes of the pictures, the path has not to be followed again.
+                drive.checkpoint(true, observer);
+            }
+            self.paused = Some(drive.pause());
+            let grown = match &ending {
+                Ending::Outgrown(outgrowth) => {
+                    let zone = self.problem.zone.grown(outgrowth.reach, outgrowth.contact_radius, BLIND_MARGIN);
+                    zone.map(|zone| (zone, *outgrowth))
+                }
+                _ => None,
+            };
+            let Some((zone, outgrowth)) = grown else { return Ok(ending) };
+            self.problem = Problem::on(&self.problem.case, Some(zone))?;
+            let problem = &self.problem;
+            observer.starts_over(problem, problem.free_unknowns()).map_err(SimulationError::Observer)?;
+            observer.note(&format!(
+                "{outgrowth}; started over with a finely meshed zone of {:.4} R and elements of {:.5} R in it",
+                zone.radius(),
+                problem.spacing
+            ));
+            self.paused = None;
+            self.seat = seat(problem)?;
+        }
+    }
+
+    /// The problem, on the mesh of the present part of the run.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// The last accepted step; `None` after a failure.
+    pub fn last(&self) -> Option<&Paused> {
+        self.paused.as_ref()
+    }
+
+    /// Stresses and strains of the last accepted step, scaled.
+    ///
+    /// # Errors
+    /// [`ComputeError`] of the device.
+    pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
+        self.seat.0.fields(self.seat.1)
+    }
+
+    /// Where the present part of the run is computed.
+    pub fn description(&self) -> Description {
+        self.seat.0.description()
+    }
+}
+
+/// A drive that has done nothing yet, or is put back to where `snapshot` was taken.
+fn set_out(problem: &Problem, seat: &mut Seat<'_>, snapshot: Option<Snapshot>) -> Result<Paused, SimulationError> {
+    let mut drive = Drive::new(problem, seat.0.as_mut(), seat.1, problem.newton()?);
+    if let Some(snapshot) = snapshot {
+        drive.resume(snapshot)?;
+    }
+    Ok(drive.pause())
 }
 
 /// Gives out `first`, which was made for a problem on `zone`, and afterwards, or for another zone, what `open` makes.

@@ -143,7 +143,7 @@ fn read_grid(document: &Document) -> Result<Vec<GridKey>, CaseError> {
     }
     let line = |place: &Place| match place {
         Place::Line { line, .. } => *line,
-        Place::Set(_) => usize::MAX,
+        Place::Set(_) | Place::Given => usize::MAX,
     };
     keys.sort_by(|a, b| line(&a.place).cmp(&line(&b.place)).then_with(|| a.name.cmp(&b.name)));
     let mut seen = BTreeSet::new();

@@ -21,8 +21,7 @@ use super::row::{Row, RowStatus, write_table};
 use super::schedule::{pools, side_by_side};
 use super::shard::{Shard, cost, dearest_first};
 use super::simulate::Simulator;
-use crate::compute::gpu::{DeviceRequest, GpuContext, GpuError};
-use crate::compute::select::{DeviceWish, PrecisionWish, Selected, select};
+use crate::compute::select::{DeviceWish, PrecisionWish, Selected, is_there, select};
 use crate::compute::{CaseModel, Compute, ComputeError};
 use crate::mesh::Mesh;
 use crate::output::Summary;
@@ -87,7 +86,7 @@ pub fn run(
     progress: Arc<StudyProgress>,
     stop: Arc<AtomicBool>,
 ) -> Result<Report, StudyError> {
-    let device = device(options.device)?;
+    let device = is_there(options.device)?;
     let slots = if device { (2 * options.threads).clamp(1, LARGEST_BATCH) } else { options.threads.max(1) };
     let directory = &StudyDirectory::new(dir);
     let costs: Vec<f64> = study.cases.iter().map(|case| cost(&case.case)).collect();
@@ -273,25 +272,6 @@ impl Table<'_> {
             (self.written, self.took) = (Instant::now(), begun.elapsed());
         }
         Ok(())
-    }
-}
-
-/// Whether a device is to be used: asked for or found, and able to be opened.
-fn device(wish: DeviceWish) -> Result<bool, StudyError> {
-    let found = match wish {
-        DeviceWish::Cpu => return Ok(false),
-        DeviceWish::Gpu => GpuContext::open(DeviceRequest::Gpu),
-        DeviceWish::Auto => GpuContext::open(DeviceRequest::Auto),
-    };
-    match found {
-        Ok(Some(_)) => Ok(true),
-        Ok(None) if wish == DeviceWish::Gpu => Err(ComputeError::from(GpuError::NoAdapter).into()),
-        Ok(None) => Ok(false),
-        Err(error) if wish == DeviceWish::Gpu => Err(ComputeError::from(error).into()),
-        Err(error) => {
-            log::info!("the GPU could not be used ({error}); the CPU was taken instead");
-            Ok(false)
-        }
     }
 }
 

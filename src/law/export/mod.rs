@@ -17,7 +17,7 @@ const MODULE: &str = include_str!("asperity_law.py");
 const CHECK: &str = include_str!("asperity_law_check.c");
 
 /// A language of the export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
     /// One header, C99 and C++17.
     C,

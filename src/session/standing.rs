@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::CliError;
+use super::SessionError;
 use crate::case::Case;
 use crate::output::{Checkpoint, OutputDirectory, OutputError, Status, Summary, case_difference};
 
@@ -20,8 +20,8 @@ pub enum Standing {
 /// Looks into `dir`, and leaves it as it is.
 ///
 /// # Errors
-/// [`CliError::OtherRun`] for the results of another case; [`CliError::Output`] for a checkpoint that is damaged, of another version or another case.
-pub fn standing(dir: &Path, case: &Case) -> Result<Standing, CliError> {
+/// [`SessionError::OtherRun`] for the results of another case; [`SessionError::Output`] for a checkpoint that is damaged, of another version or another case.
+pub fn standing(dir: &Path, case: &Case) -> Result<Standing, SessionError> {
     let out = OutputDirectory::existing(dir);
     // Anything that is not a result is left to those who prepare the directory.
     let Some(found) = out.read_case() else { return Ok(Standing::NotBegun) };
@@ -33,7 +33,7 @@ pub fn standing(dir: &Path, case: &Case) -> Result<Standing, CliError> {
     if let Some(summary) = Summary::read(&out.summary()).ok().filter(ended) {
         return match case_difference(&found, &case.to_toml()) {
             None => Ok(Standing::Ended(Box::new(summary))),
-            Some(difference) => Err(CliError::OtherRun { dir: dir.to_owned(), difference }),
+            Some(difference) => Err(SessionError::OtherRun { dir: dir.to_owned(), difference }),
         };
     }
     let path = out.checkpoint();
@@ -44,7 +44,7 @@ pub fn standing(dir: &Path, case: &Case) -> Result<Standing, CliError> {
 }
 
 /// An error of the checkpoint in `dir` that only the simulation can see.
-pub fn refused(dir: &Path, problem: &str) -> CliError {
+pub fn refused(dir: &Path, problem: &str) -> SessionError {
     OutputError::Checkpoint {
         path: OutputDirectory::existing(dir).checkpoint(),
         problem: format!("{problem}; run with --force and without --resume to begin anew"),

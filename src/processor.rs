@@ -3,12 +3,23 @@
 //! On x86-64 the program is compiled for AVX2 and FMA (`.cargo/config.toml`); without them it would die of an illegal instruction
 //! in the middle of a run.
 
-use super::CliError;
+/// The program was compiled for a newer processor.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "this processor lacks {missing}, for which this program was compiled. build it on this machine with RUSTFLAGS=-Ctarget-cpu=native"
+)]
+pub struct TooOld {
+    /// The missing instruction sets.
+    pub missing: String,
+}
 
-/// An error that names the instruction sets that were compiled in and that the processor lacks.
-pub fn check() -> Result<(), CliError> {
+/// To be called before anything is computed.
+///
+/// # Errors
+/// [`TooOld`] names the instruction sets that were compiled in and that the processor lacks.
+pub fn check() -> Result<(), TooOld> {
     let missing = missing();
-    if missing.is_empty() { Ok(()) } else { Err(CliError::Processor { missing: missing.join(", ") }) }
+    if missing.is_empty() { Ok(()) } else { Err(TooOld { missing: missing.join(", ") }) }
 }
 
 #[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]

@@ -1,24 +1,13 @@
 //! The right to write to the directory of `--out`: nobody else writes there, and what stands there is not replaced without a word.
 
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::{CliError, out};
+use super::{Earlier, SessionError, prepare};
 use crate::case::Case;
 use crate::output::{DirectoryLock, OutputDirectory, Status, Summary, case_difference, read_history};
-
-/// What to do with an earlier result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Earlier {
-    /// Refuse it.
-    Keep,
-    /// Go on with it.
-    Resume,
-    /// Replace it.
-    Replace,
-}
 
 /// A directory that is taken. Given up, folders that were made for it and in which nothing was written go too.
 #[derive(Debug)]
@@ -26,6 +15,13 @@ pub struct Claim {
     lock: Option<DirectoryLock>,
     /// Innermost first.
     made: Vec<PathBuf>,
+}
+
+impl Claim {
+    /// What the user should know of a lock that a killed run left.
+    pub fn note(&self) -> Option<&str> {
+        self.lock.as_ref()?.note()
+    }
 }
 
 impl Drop for Claim {
@@ -40,24 +36,20 @@ impl Drop for Claim {
 /// that another process writes to, and an earlier result that is neither to be resumed nor replaced are refused, and stay as they are.
 ///
 /// # Errors
-/// [`CliError::NotAResult`], [`CliError::NotADirectory`], [`CliError::Out`], [`CliError::Earlier`], [`CliError::Output`].
-pub fn claim(dir: &Path, case: &Case, earlier: Earlier, quiet: bool) -> Result<Claim, CliError> {
-    out::recognise(dir)?;
+/// [`SessionError::NotAResult`], [`SessionError::NotADirectory`], [`SessionError::Out`], [`SessionError::Earlier`], [`SessionError::Output`].
+pub fn claim(dir: &Path, case: &Case, earlier: Earlier) -> Result<Claim, SessionError> {
+    prepare::recognise(dir)?;
     let made = dir.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && is_absent(folder));
     let made = made.map(Path::to_path_buf).collect();
     let mut claim = Claim { lock: None, made };
-    fs::create_dir_all(dir).map_err(|source| CliError::Out { dir: dir.to_owned(), what: "be created", source })?;
-    let lock = claim.lock.insert(DirectoryLock::take(dir)?);
+    fs::create_dir_all(dir).map_err(|source| SessionError::Out { dir: dir.to_owned(), what: "be created", source })?;
+    claim.lock = Some(DirectoryLock::take(dir)?);
     // Once more, as now nobody else changes it.
-    out::recognise(dir)?;
+    prepare::recognise(dir)?;
     if earlier == Earlier::Keep
         && let Some(found) = found(dir, case)
     {
-        return Err(CliError::Earlier { dir: dir.to_owned(), found });
-    }
-    if let Some(note) = lock.note().filter(|_| !quiet) {
-        // A closed stderr does not change how the run goes.
-        let _ = writeln!(std::io::stderr(), "note: {note}");
+        return Err(SessionError::Earlier { dir: dir.to_owned(), found });
     }
     Ok(claim)
 }

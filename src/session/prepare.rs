@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-use super::CliError;
+use super::SessionError;
 use crate::case::Case;
 use crate::output::OutputDirectory;
 
@@ -12,11 +12,11 @@ use crate::output::OutputDirectory;
 /// had its name leaves those alone.
 ///
 /// # Errors
-/// [`CliError::NotAResult`], [`CliError::NotADirectory`], [`CliError::Out`], [`CliError::Output`] for a folder of results that is a link.
-pub fn recognise(dir: &Path) -> Result<(), CliError> {
-    let failed = |what: &'static str| move |source: io::Error| CliError::Out { dir: dir.to_owned(), what, source };
+/// [`SessionError::NotAResult`], [`SessionError::NotADirectory`], [`SessionError::Out`], [`SessionError::Output`] for a folder of results that is a link.
+pub fn recognise(dir: &Path) -> Result<(), SessionError> {
+    let failed = |what: &'static str| move |source: io::Error| SessionError::Out { dir: dir.to_owned(), what, source };
     match fs::metadata(dir) {
-        Ok(found) if !found.is_dir() => return Err(CliError::NotADirectory { dir: dir.to_owned() }),
+        Ok(found) if !found.is_dir() => return Err(SessionError::NotADirectory { dir: dir.to_owned() }),
         Ok(_) => {}
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(failed("be read")(error)),
@@ -24,7 +24,7 @@ pub fn recognise(dir: &Path) -> Result<(), CliError> {
     let out = OutputDirectory::existing(dir);
     let found = out.names().map_err(failed("be read"))?.into_iter().next();
     match found.filter(|_| !out.holds_result()) {
-        Some(found) => Err(CliError::NotAResult { dir: dir.to_owned(), found }),
+        Some(found) => Err(SessionError::NotAResult { dir: dir.to_owned(), found }),
         None => Ok(out.refuse_links()?),
     }
 }
@@ -33,9 +33,9 @@ pub fn recognise(dir: &Path) -> Result<(), CliError> {
 ///
 /// A directory that does not exist is made, an empty one is used. In one that holds an earlier result, what that
 /// run wrote is removed and everything else stays. Anything else is refused, untouched.
-pub fn prepare(dir: &Path, case: &Case) -> Result<(), CliError> {
+pub fn prepare(dir: &Path, case: &Case) -> Result<(), SessionError> {
     recognise(dir)?;
-    fs::create_dir_all(dir).map_err(|source| CliError::Out { dir: dir.to_owned(), what: "be created", source })?;
+    fs::create_dir_all(dir).map_err(|source| SessionError::Out { dir: dir.to_owned(), what: "be created", source })?;
     let out = OutputDirectory::existing(dir);
     out.clear()?;
     Ok(out.write_case(&case.to_toml())?)
@@ -83,7 +83,7 @@ mod tests {
         // A draft of something else is the user's.
         let mine = tempfile::tempdir().expect("a scratch directory");
         fs::write(mine.path().join(".thesis.tex.4711.tmp"), "mine").expect("a file");
-        assert!(matches!(prepare(mine.path(), &case()), Err(CliError::NotAResult { .. })));
+        assert!(matches!(prepare(mine.path(), &case()), Err(SessionError::NotAResult { .. })));
     }
 
     #[test]
@@ -92,7 +92,7 @@ mod tests {
         // A case of the user's own, even one that has the name that a result would have.
         fs::write(scratch.path().join("case.toml"), "[sphere]\n").expect("a file");
         let refused = prepare(scratch.path(), &case()).expect_err("not a result");
-        assert!(matches!(refused, CliError::NotAResult { .. }), "{refused}");
+        assert!(matches!(refused, SessionError::NotAResult { .. }), "{refused}");
         assert_eq!(fs::read_to_string(scratch.path().join("case.toml")).expect("the user's file"), "[sphere]\n");
     }
 
@@ -101,8 +101,8 @@ mod tests {
         let scratch = tempfile::tempdir().expect("a scratch directory");
         let file = scratch.path().join("file");
         fs::write(&file, "mine").expect("a file");
-        assert!(matches!(prepare(&file, &case()), Err(CliError::NotADirectory { .. })));
-        assert!(matches!(prepare(&file.join("below"), &case()), Err(CliError::Out { .. })));
+        assert!(matches!(prepare(&file, &case()), Err(SessionError::NotADirectory { .. })));
+        assert!(matches!(prepare(&file.join("below"), &case()), Err(SessionError::Out { .. })));
         assert_eq!(fs::read_to_string(&file).expect("the user's file"), "mine");
     }
 }

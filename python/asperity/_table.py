@@ -1,0 +1,82 @@
+"""Columns of numbers and words."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ._optional import need
+
+__all__ = ["Table"]
+
+
+class Table(Mapping[str, np.ndarray]):
+    """A mapping from the names of columns to NumPy arrays of one length.
+
+    Every column is also an attribute: ``table.F_N`` is ``table["F_N"]``.
+    """
+
+    def __init__(self, columns: Mapping[str, Any]) -> None:
+        self._columns: dict[str, np.ndarray] = {name: np.asarray(column) for name, column in columns.items()}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise KeyError(f"{name}: no such column. there are {', '.join(self._columns)}") from None
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        columns: dict[str, np.ndarray] = self.__dict__.get("_columns", {})
+        if name in columns:
+            return columns[name]
+        raise AttributeError(f"{name}: no such column. there are {', '.join(columns)}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._columns]
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(next(iter(self._columns.values()), ()))
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self.rows} rows of {', '.join(self._columns)}>"
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame``."""
+        return need("pandas", "pandas", "to_pandas()").DataFrame(self._columns)
+
+    def to_arrow(self) -> Any:
+        """A ``pyarrow.Table``."""
+        return need("pyarrow", "pyarrow", "to_arrow()").table(dict(self._columns))
+
+
+def read(path: Path, whole: Sequence[str] = (), words: Sequence[str] = ()) -> Table:
+    """A CSV file: the columns ``whole`` as int64, ``words`` as text, all others as float64 with NaN where nothing stands.
+
+    A column that holds something else is text as a whole.
+    """
+    with path.open(newline="", encoding="utf-8") as file:
+        names, *rows = list(csv.reader(file))
+    columns: dict[str, Any] = {}
+    for name, values in zip(names, zip(*rows) if rows else [()] * len(names)):
+        if name in whole:
+            columns[name] = np.array([int(value) for value in values], dtype=np.int64)
+            continue
+        try:
+            if name in words:
+                raise ValueError(name)
+            columns[name] = np.array([float(value) if value else np.nan for value in values], dtype=np.float64)
+        except ValueError:
+            columns[name] = np.array(values, dtype=np.str_)
+    return Table(columns)

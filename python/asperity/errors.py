@@ -1,0 +1,40 @@
+"""What can go wrong. The texts are those of the program."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .run import Run
+    from .study import Study
+
+__all__ = ["AsperityError", "CaseError", "Interrupted", "MissingPackage", "NotConverged"]
+
+
+class AsperityError(Exception):
+    """Anything that this package raises, but for :class:`Interrupted`."""
+
+
+class CaseError(AsperityError, ValueError):
+    """A case, a study or an argument that is refused: what, where, and what is allowed."""
+
+
+class NotConverged(AsperityError):
+    """A run that did not get to the end of its path. What was computed is in ``run``."""
+
+    def __init__(self, message: str, run: Run) -> None:
+        super().__init__(message)
+        self.run = run
+
+
+class MissingPackage(AsperityError, ImportError):
+    """An optional package that is not installed."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C, after the step that was under way. What was computed is in ``run`` or ``study``; with ``resume=True`` it goes on."""
+
+    def __init__(self, message: str, run: Run | None = None, study: Study | None = None) -> None:
+        super().__init__(message)
+        self.run = run
+        self.study = study

@@ -1,0 +1,130 @@
+"""Contact laws: from studies to forces in other programs."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._asperity import NativeContacts, NativeLaw, fit_law
+from ._table import Table
+from .case import Case, as_case
+from .study import Study
+
+__all__ = ["Contacts", "Law"]
+
+
+class Contacts:
+    """The memory of many contacts of one pair of materials, for :meth:`Law.update`; made by :meth:`Law.contacts`."""
+
+    __slots__ = ("_native",)
+
+    def __init__(self, native: NativeContacts) -> None:
+        self._native = native
+
+    def __len__(self) -> int:
+        return len(self._native)
+
+    def copy(self) -> Contacts:
+        """A copy, to try a step on."""
+        return Contacts(self._native.copy())
+
+    @property
+    def array(self) -> np.ndarray:
+        """A copy of the memory, a row a contact: h, the greatest h, the elastic approach, lengths; x, the place on the virgin curves; the deflections of the
+        sliders, lengths. What is assigned here is put back."""
+        return self._native.to_array()
+
+    @array.setter
+    def array(self, memory: ArrayLike) -> None:
+        self._native.set_array(np.ascontiguousarray(memory, dtype=np.float64))
+
+    def rotate(self, angle: ArrayLike) -> None:
+        """Turns the tangential memory into axes that are turned by ``angle`` (radians), where the frame follows the contact's normal."""
+        angles = np.broadcast_to(np.asarray(angle, dtype=np.float64), (len(self),))
+        self._native.rotate(np.cos(angles), np.sin(angles))
+
+
+class Law:
+    """A contact law: F_N and F_T of an elastic-plastic sphere that is pressed and sheared."""
+
+    __slots__ = ("_native",)
+
+    def __init__(self, native: NativeLaw) -> None:
+        self._native = native
+
+    @classmethod
+    def fit(cls, study: Study | str | os.PathLike[str], prior: str = "built-in") -> Law:
+        """Fits a law to a study and writes ``law.json`` into its directory.
+
+        :param prior: constants to start from: ``"built-in"``, ``"none"``, or the path of another ``law.json``.
+        """
+        directory = study.directory if isinstance(study, Study) else study
+        return cls(fit_law(os.fspath(directory), prior))
+
+    @classmethod
+    def load(cls, file: str | os.PathLike[str]) -> Law:
+        """Reads a ``law.json``."""
+        return cls(NativeLaw.load(os.fspath(file)))
+
+    @classmethod
+    def built_in(cls) -> Law:
+        """The law that comes with the program, fitted to 240 cases of 15 materials, Poisson's ratio 0.3."""
+        return cls(NativeLaw.built_in())
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes a ``law.json``."""
+        self._native.save(os.fspath(file))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of ``law.json``: forms, constants, where they come from, where they hold and how well."""
+        law: dict[str, Any] = json.loads(self._native.to_json())
+        return law
+
+    def formulas(self) -> str:
+        """The formulas with their constants."""
+        return self._native.formulas()
+
+    def predict(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], press: bool = False) -> Table:
+        """``delta_T``, ``F_T``, ``F_N`` of a case that is pressed once and sheared once at constant indentation, in its units, without simulating its shear.
+
+        Warns where the case lies outside of what the law was fitted to.
+
+        :param press: take F_N0 and a0 from a simulation of the press, not from the law's formulas.
+        """
+        columns, outside = self._native.predict(as_case(case)._native, press)
+        if outside:
+            warnings.warn(f"the case lies outside of what the law was fitted to: {', '.join(outside)}. compare with a run", stacklevel=2)
+        return Table(columns)
+
+    def export(self, format: str, out: str | os.PathLike[str] | None = None) -> str | list[Path]:
+        """The law for other programs, ``"c"`` or ``"python"``: its source, or with ``out`` the files that were written there, with test vectors."""
+        if out is None:
+            return self._native.source(format)
+        return [Path(file) for file in self._native.export(format, os.fspath(out))]
+
+    def contacts(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], number: int = 1) -> Contacts:
+        """``number`` contacts of a case's sphere, material and friction, before first touch."""
+        return Contacts(self._native.contacts(as_case(case)._native, number))
+
+    def update(self, state: Contacts, h: ArrayLike, delta: ArrayLike) -> Table:
+        """Moves every contact to the indentation ``h`` (n,) and then along the plane by the increment ``delta`` (n, 2), lengths, and keeps that in ``state``.
+
+        Contacts are independent of each other and computed side by side. Gives ``F_N`` (n,), compression positive; ``F_T`` (n, 2), along the displacement; the
+        contact radius ``a`` (n,); and the tangents ``dF_N_dh`` (n,), ``dF_N_ddelta`` (n, 2), ``dF_T_ddelta`` (n, 2, 2). Where ``h`` or ``delta`` is not finite, neither is
+        the answer, and that contact stays as it was.
+        """
+        number = len(state)
+        depth = np.ascontiguousarray(np.broadcast_to(np.asarray(h, dtype=np.float64), (number,)))
+        increment = np.ascontiguousarray(np.broadcast_to(np.asarray(delta, dtype=np.float64), (number, 2)))
+        return Table(state._native.update(depth, increment))
+
+    def __repr__(self) -> str:
+        provenance = self.to_dict()["provenance"]
+        return f"<Law: fitted to {provenance['cases']} cases of {provenance['materials']} materials>"

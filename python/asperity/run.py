@@ -1,0 +1,201 @@
+"""One run: from a case to its results."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _asperity, _table
+from ._optional import need
+from ._progress import Bar, Listener, bar_wanted
+from ._table import Table
+from .case import Case, as_case
+from .errors import AsperityError, Interrupted, NotConverged
+from .fields import Fields, Mesh, read_vtu
+
+__all__ = ["Run", "run"]
+
+
+class Run:
+    """The results of a run: a view of its directory.
+
+    Forces are of the whole sphere, normal ones positive in compression. Everything is in the units of the case.
+    """
+
+    def __init__(self, directory: str | os.PathLike[str]) -> None:
+        self.directory = Path(directory)
+        text = _asperity.resolved_case(self.directory)
+        if text is None:
+            raise AsperityError(f"{self.directory}: is not a result of an Asperity run. give the directory of `asperity run --out`")
+        self.case = Case.parse(text, name=str(self.directory / "case.toml"))
+        self._kept: tempfile.TemporaryDirectory[str] | None = None
+
+    @classmethod
+    def load(cls, directory: str | os.PathLike[str]) -> Run:
+        """The results in a directory, of this package or of ``asperity run``."""
+        return cls(directory)
+
+    def __repr__(self) -> str:
+        return f"<Run: {self.history.rows} steps, {self.summary['status']}, in {self.directory}>"
+
+    @cached_property
+    def history(self) -> Table:
+        """A row a step: ``h``, ``delta_T``, ``a``, lengths; ``F_N``, ``F_T``, forces; ``segment``, iterations, energies, ..."""
+        return Table(dict(_asperity.history(self.directory)))
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The run in some numbers: ``F_N0``, ``a0``, ``F_N_slip``, ``F_T_max``, ``delta_T_slip``, ``k_T0``, their estimated errors, ``status``, ..."""
+        summary: dict[str, Any] = json.loads((self.directory / "summary.json").read_text(encoding="utf-8"))
+        return summary
+
+    def _steps(self, folder: str, suffix: str) -> list[int]:
+        names = (self.directory / folder).glob(f"step_*{suffix}")
+        return sorted(int(name.stem.removeprefix("step_")) for name in names)
+
+    @property
+    def contact_steps(self) -> list[int]:
+        """Steps of which there is a contact table."""
+        return self._steps("contact", ".csv")
+
+    @property
+    def field_steps(self) -> list[int]:
+        """Steps of which there are fields: the ends of segments, or all with ``output={"fields": "all"}``."""
+        return self._steps("fields", ".vtu")
+
+    def _choose(self, step: int | None, steps: list[int], what: str) -> int:
+        if not steps:
+            raise AsperityError(f'{self.directory}: has no {what}. run the case with output.fields = "segments" or "all"')
+        chosen = steps[-1] if step is None else step
+        if chosen not in steps:
+            raise AsperityError(f"{self.directory}: has no {what} of step {chosen}. there are those of {', '.join(map(str, steps))}")
+        return chosen
+
+    def contact(self, step: int | None = None) -> Table:
+        """Every contact point, both halves, after a step (by default the last that was saved).
+
+        ``X``, ``Y`` before and ``x``, ``y`` after deformation and ``gap``, lengths; ``pressure``, ``traction_x``, ``traction_y``, stresses, forces over the area
+        before deformation; ``area``; ``status`` (``open``, ``stick``, ``slip``) and ``half``. Pressure times area adds up to F_N.
+        """
+        step = self._choose(step, self.contact_steps, "contact table")
+        return _table.read(self.directory / f"contact/step_{step:04}.csv", whole=["point"], words=["status", "half"])
+
+    def fields(self, step: int | None = None) -> Fields:
+        """Displacement, stress, plastic strain and contact on the meshed half after a step (by default the last that was saved)."""
+        step = self._choose(step, self.field_steps, "fields")
+        return read_vtu(self.directory / f"fields/step_{step:04}.vtu")
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The meshed half before deformation."""
+        fields = self.fields()
+        return Mesh(fields.points, fields.cells)
+
+    def plot_forces(self, ax: Any = None) -> Any:
+        """F_N and F_T over delta_T in shear, or F_N over h where there is none; gives the axes of matplotlib."""
+        ax = _axes(ax)
+        history = self.history
+        sheared = np.flatnonzero(history["delta_T"] != 0.0)
+        if len(sheared):
+            # From the last step before it moves along the plane.
+            rows = slice(max(sheared[0] - 1, 0), None)
+            x, label = history["delta_T"][rows], "delta_T"
+            ax.plot(x, history["F_T"][rows], marker=".", label="F_T")
+        else:
+            rows = slice(None)
+            x, label = history["h"], "h"
+        ax.plot(x, history["F_N"][rows], marker=".", label="F_N")
+        ax.set_xlabel(label)
+        ax.set_ylabel("force")
+        ax.legend()
+        return ax
+
+    def plot_press(self, ax: Any = None) -> Any:
+        """F_N over h, as far as the sphere is not sheared; gives the axes of matplotlib."""
+        ax = _axes(ax)
+        history = self.history
+        pressed = history["delta_T"] == 0.0
+        ax.plot(history["h"][pressed], history["F_N"][pressed], marker=".")
+        ax.set_xlabel("h")
+        ax.set_ylabel("F_N")
+        return ax
+
+    def plot_pressure(self, step: int | None = None, ax: Any = None) -> Any:
+        """The contact pressure as a map of the contact surface; gives the axes of matplotlib."""
+        ax = _axes(ax)
+        contact = self.contact(step)
+        closed = contact["status"] != "open"
+        shown = ax.scatter(contact["x"][closed], contact["y"][closed], c=contact["pressure"][closed], s=12)
+        ax.figure.colorbar(shown, ax=ax, label="pressure")
+        ax.set_aspect("equal")
+        ax.set_xlabel("x")
+        ax.set_ylabel("y")
+        return ax
+
+
+def _axes(ax: Any) -> Any:
+    if ax is not None:
+        return ax
+    return need("matplotlib.pyplot", "matplotlib", "a plot").subplots()[1]
+
+
+def run(
+    case: Case | Mapping[str, Any] | str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
+    device: str = "auto",
+    threads: int | None = None,
+    progress: Listener | bool | None = None,
+    *,
+    precision: str = "auto",
+    resume: bool = False,
+    force: bool = False,
+) -> Run:
+    """Simulates a case, with the bits and files of ``asperity run``.
+
+    Other threads of Python go on meanwhile. Ctrl-C ends the run after its present step and keeps what there is.
+
+    :param case: a :class:`Case`, a dictionary, the path of a case file, or its text.
+    :param out: directory for the results: a new or an empty one, or one with an earlier result and ``resume`` or ``force``. Without one they are in a
+        temporary directory that lives as long as the answer.
+    :param device: ``"auto"``, ``"cpu"`` or ``"gpu"``.
+    :param threads: threads to use, by default all of the machine's; results do not depend on it.
+    :param progress: by default a bar in terminals and notebooks; ``True`` or ``False``, or a function that is called with the share of the path that is
+        behind, the number of the step and a text (a note has the share -1). What it raises ends the run like Ctrl-C.
+    :param precision: ``"auto"``, ``"f32"`` or ``"f64"``.
+    :param resume: go on with an unfinished run of the same case in ``out``.
+    :param force: replace an earlier result in ``out``.
+    :raises CaseError: the case or an argument is refused.
+    :raises NotConverged: a step failed, or the contact outgrew its mesh; the results up to there are in ``run`` of the exception.
+    :raises Interrupted: a :class:`KeyboardInterrupt` with the results up to there in ``run``.
+    :raises AsperityError: anything else.
+    """
+    case = as_case(case)
+    kept = None
+    if out is None:
+        kept = tempfile.TemporaryDirectory(prefix="asperity-")
+        out = kept.name
+    bar = Bar() if progress is True or (progress is None and bar_wanted()) else None
+    listener: Listener | None = bar if bar is not None else (progress if callable(progress) else None)
+    try:
+        status, message, raised = _asperity.run(case._native, os.fspath(out), device, precision, threads, resume, force, listener)
+    finally:
+        if bar is not None:
+            bar.close()
+    if status == "interrupted" and not (Path(out) / "summary.json").exists():
+        raise raised or Interrupted(message or "interrupted")
+    result = Run(out)
+    result._kept = kept
+    if raised is not None:
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted(message or "interrupted after the last step", run=result) from raised
+        raise raised
+    if status != "done":
+        raise NotConverged(message or status, result)
+    return result

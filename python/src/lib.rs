@@ -1,0 +1,32 @@
+//! The native half of the Python package: cases, runs, studies and laws of the `asperity` library. What only reads files and shapes answers is Python.
+
+mod case;
+mod errors;
+mod law;
+mod results;
+mod run;
+mod wait;
+
+use pyo3::exceptions::PyImportError;
+use pyo3::prelude::*;
+
+/// The private module `asperity._asperity`.
+#[pymodule]
+mod _asperity {
+    #[pymodule_export]
+    use super::case::NativeCase;
+    #[pymodule_export]
+    use super::law::{Contacts, NativeLaw, fit_law};
+    #[pymodule_export]
+    use super::results::{history, resolved_case};
+    #[pymodule_export]
+    use super::run::{run, study};
+    use super::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // Compiled for AVX2: on an older processor the first run would die of an illegal instruction.
+        asperity::processor::check().map_err(|error| PyImportError::new_err(error.to_string()))?;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,133 @@
+//! Runs and studies.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use asperity::compute::select::{DeviceWish, PrecisionWish};
+use asperity::study::{Shard, Study, StudyError, StudyProgress};
+use asperity::{Canceller, Earlier, Options, SessionError, Simulation};
+use pyo3::prelude::*;
+
+use crate::case::NativeCase;
+use crate::errors::{failed, refused};
+use crate::wait::{News, Told, wait};
+
+fn device(word: &str) -> PyResult<DeviceWish> {
+    match word {
+        "auto" => Ok(DeviceWish::Auto),
+        "cpu" => Ok(DeviceWish::Cpu),
+        "gpu" => Ok(DeviceWish::Gpu),
+        other => Err(refused(format!("device: is {other:?}. allowed: \"auto\", \"cpu\", \"gpu\""))),
+    }
+}
+
+fn precision(word: &str) -> PyResult<PrecisionWish> {
+    match word {
+        "auto" => Ok(PrecisionWish::Auto),
+        "f32" => Ok(PrecisionWish::F32),
+        "f64" => Ok(PrecisionWish::F64),
+        other => Err(refused(format!("precision: is {other:?}. allowed: \"auto\", \"f32\", \"f64\""))),
+    }
+}
+
+/// All of the machine's, unless it is said how many.
+fn threads(number: Option<usize>) -> PyResult<NonZeroUsize> {
+    let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let most = all.get().max(256);
+    match number {
+        None => Ok(all),
+        Some(number) => NonZeroUsize::new(number)
+            .filter(|number| number.get() <= most)
+            .ok_or_else(|| refused(format!("threads: is {number}. allowed: a number of threads from 1 to {most}"))),
+    }
+}
+
+/// Simulates a case into a directory; gives the status, the message, and the exception that interrupted it.
+#[pyfunction]
+#[pyo3(signature = (case, out, device, precision, threads, resume, force, listener))]
+#[allow(clippy::too_many_arguments)] // keywords in Python
+pub fn run(
+    py: Python<'_>,
+    case: &NativeCase,
+    out: PathBuf,
+    device: &str,
+    precision: &str,
+    threads: Option<usize>,
+    resume: bool,
+    force: bool,
+    listener: Option<Py<PyAny>>,
+) -> PyResult<(String, Option<String>, Option<PyErr>)> {
+    let canceller = Canceller::default();
+    let options = Options {
+        device: self::device(device)?,
+        precision: self::precision(precision)?,
+        threads: Some(self::threads(threads)?),
+        out: Some(out),
+        earlier: match (force, resume) {
+            (true, false) => Earlier::Replace,
+            (false, true) => Earlier::Resume,
+            (false, false) => Earlier::Keep,
+            (true, true) => return Err(refused("force: stands beside resume. allowed: one of resume and force")),
+        },
+        canceller: canceller.clone(),
+        ..Options::default()
+    };
+    let work = |news: std::sync::mpsc::Sender<News>| -> Result<asperity::Outcome, SessionError> {
+        let simulation = Simulation::with(&case.case, options)?;
+        simulation.notes().iter().for_each(|note| drop(news.send(News::Message(note.clone()))));
+        simulation.watched_by(Box::new(Told(news))).run()
+    };
+    let (outcome, raised) = wait(py, listener.as_ref(), &canceller, work)?;
+    let outcome = outcome.map_err(|error| match error {
+        SessionError::Case(_) => refused(error),
+        error => failed(error),
+    })?;
+    let status = serde_json::to_value(outcome.status).map_err(failed)?;
+    Ok((status.as_str().unwrap_or_default().to_owned(), outcome.message, raised))
+}
+
+/// Computes a study into a directory; gives the numbers of cases that are done, failed and pending, the first failure, and the exception that interrupted it.
+#[pyfunction]
+#[pyo3(signature = (text, name, out, device, precision, threads, shard, resume, retry, force, quiet))]
+#[allow(clippy::too_many_arguments, clippy::type_complexity)] // keywords in Python
+pub fn study(
+    py: Python<'_>,
+    text: &str,
+    name: &str,
+    out: PathBuf,
+    device: &str,
+    precision: &str,
+    threads: Option<usize>,
+    shard: Option<&str>,
+    resume: bool,
+    retry: bool,
+    force: bool,
+    quiet: bool,
+) -> PyResult<((usize, usize, usize), Option<(String, String)>, Option<PyErr>)> {
+    let study = Study::parse(text, name).map_err(refused)?;
+    let options = asperity::study::Options {
+        device: self::device(device)?,
+        precision: self::precision(precision)?,
+        threads: self::threads(threads)?.get(),
+        shard: shard.map(str::parse::<Shard>).transpose().map_err(|error| refused(format!("shard: {error}")))?,
+        resume,
+        retry,
+        force,
+    };
+    let stop = Arc::new(AtomicBool::new(false));
+    let canceller = Canceller::on_signal(stop.clone());
+    let progress = Arc::new(StudyProgress::new(quiet));
+    let work = |news: std::sync::mpsc::Sender<News>| {
+        // Let go of when the work has ended, which is how that is noticed.
+        let _news = news;
+        asperity::study::run(&study, &out, &options, progress, stop)
+    };
+    let (report, raised) = wait(py, None, &canceller, work)?;
+    let report = report.map_err(|error| match error {
+        StudyError::File(_) | StudyError::Combination { .. } => refused(error),
+        error => failed(error),
+    })?;
+    Ok(((report.done, report.failed, report.pending), report.first_failure, raised))
+}

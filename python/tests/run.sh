@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Builds the wheel, installs it into a fresh environment and tests it there. Where there is no Python, venv or pip, or nothing can be downloaded, it says that it skips;
+# with ASPERITY_REQUIRE_PYTHON=1 it fails.
+# The wheel is the one that `pip install ./python` makes but for the kernels of the GPU, which take most of the time to compile; with ASPERITY_REQUIRE_PYTHON=1 it has them.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+skip() {
+    echo "SKIPPED the Python package: $1" >&2
+    [ "${ASPERITY_REQUIRE_PYTHON:-0}" != 1 ] || exit 1
+    exit 0
+}
+
+place=target/python-package
+python="$place/venv/bin/python"
+rm -rf "$place"
+mkdir -p "$place"
+command -v python3 >/dev/null || skip "there is no python3"
+python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' || skip "$(python3 --version) is older than 3.10"
+python3 -m venv "$place/venv" 2>"$place/log" || skip "python3 -m venv fails: $(tail -1 "$place/log")"
+pip() { timeout 300 "$python" -m pip --disable-pip-version-check --quiet "$@"; }
+pip install "maturin>=1.9,<2" numpy pytest matplotlib pandas meshio 2>"$place/log" || skip "pip cannot install: $(tail -1 "$place/log")"
+
+settings=(--config-settings=build-args=--no-default-features)
+[ "${ASPERITY_REQUIRE_PYTHON:-0}" != 1 ] || settings=()
+export PATH="$PWD/$place/venv/bin:$PATH"
+timeout 3600 "$python" -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps ${settings[@]+"${settings[@]}"} --wheel-dir "$place" ./python
+pip install --no-index --no-deps "$place"/asperity-*.whl
+# Not from python/, where the sources would be imported.
+cd "$place"
+exec venv/bin/python -m pytest -q --rootdir ../../python -p no:cacheprovider ../../python/tests

@@ -1,0 +1,166 @@
+from __future__ import annotations
+
+import importlib.util
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import asperity
+
+GRID = {"material.hardening.yield_stress": [200.0, 800.0], "contact.friction": [0.1, "stick"], "path.1.shear": [0.002]}
+
+
+@pytest.fixture(scope="module")
+def study(case: asperity.Case) -> asperity.Study:
+    return asperity.study(case.replace({"output.fields": "none", "output.plots": False}), GRID)
+
+
+def test_a_study_is_a_table_and_its_runs(study: asperity.Study) -> None:
+    assert len(study) == 4 and list(study.table["status"]) == ["done"] * 4
+    assert list(study.table["case"]) == sorted(study.table["case"])
+    assert (study.table["sigma_Y"] == [200.0, 200.0, 800.0, 800.0]).all()
+    assert np.isnan(study.table["mu"][1]) and study.table["mu"][0] == 0.1
+    for row, run in enumerate(study):
+        assert run.summary["F_N0"] == study.table["F_N0"][row]
+    assert study[3].case["contact.friction"] == "stick"
+
+
+def test_a_study_goes_on(study: asperity.Study, case: asperity.Case, tmp_path: Path) -> None:
+    small = {"contact.friction": [0.1]}
+    base = case.replace({"path.1.shear": 0.001, "output.fields": "none", "output.plots": False})
+    first = asperity.study(base, small, out=tmp_path / "study")
+    with pytest.raises(asperity.AsperityError, match="--resume goes on with it"):
+        asperity.study(base, small, out=tmp_path / "study")
+    again = asperity.study(tmp_path / "study/study.toml", out=tmp_path / "study", resume=True)
+    assert (again.table["F_T_max"] == first.table["F_T_max"]).all()
+    with pytest.raises(asperity.CaseError, match="is -1"):
+        asperity.study(base, {"contact.friction": [-1.0]})
+    with pytest.raises(asperity.AsperityError, match="has no grid"):
+        asperity.study(base)
+
+
+INTERRUPTED = """
+import asperity, sys
+try:
+    asperity.study(sys.argv[1], out=sys.argv[2], threads=1)
+except asperity.Interrupted as interrupted:
+    print(list(interrupted.study.table["status"]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_ends_a_study_that_goes_on(study: asperity.Study, tmp_path: Path) -> None:
+    out = tmp_path / "study"
+    child = subprocess.Popen(
+        [sys.executable, "-c", INTERRUPTED, study.directory / "study.toml", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    deadline = time.monotonic() + 60.0
+    while not list(out.glob("cases/*/history.csv")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    child.send_signal(signal.SIGINT)
+    said, complaint = child.communicate(timeout=60)
+    assert child.returncode == 0 and "pending" in said, complaint
+    again = asperity.study(out / "study.toml", out=out, resume=True)
+    assert (again.table["F_T_max"] == study.table["F_T_max"]).all()
+
+
+@pytest.fixture(scope="module")
+def law() -> asperity.Law:
+    return asperity.Law.load(ROOT / "fixtures/law/law.json")
+
+
+def test_a_law_is_kept_and_told(law: asperity.Law, tmp_path: Path) -> None:
+    assert law.to_dict() == asperity.Law.built_in().to_dict()
+    law.save(tmp_path / "law.json")
+    assert asperity.Law.load(tmp_path / "law.json").to_dict() == law.to_dict()
+    assert "F_T" in law.formulas() and "240 cases of 15 materials" in repr(law)
+    with pytest.raises(asperity.AsperityError, match="cannot be read"):
+        asperity.Law.load(tmp_path / "nowhere.json")
+
+
+def test_a_law_needs_enough_cases(study: asperity.Study) -> None:
+    with pytest.raises(asperity.AsperityError, match="usable cases of"):
+        asperity.Law.fit(study)
+
+
+def test_a_law_predicts(law: asperity.Law, case: asperity.Case, done: asperity.Run) -> None:
+    curve = law.predict(case)
+    assert list(curve) == ["delta_T", "F_T", "F_N"] and curve["F_T"][0] == 0.0
+    assert curve["F_T"].max() == pytest.approx(done.summary["F_T_max"], rel=0.12)
+    with pytest.warns(UserWarning, match="lies outside of what the law was fitted to"):
+        law.predict(case.replace({"contact.friction": 0.9}))
+    with pytest.raises(asperity.AsperityError, match='the case has friction = "stick"'):
+        law.predict(case.replace({"contact.friction": "stick", "path.1.shear": 0.001}))
+
+
+def test_an_export_is_the_programs(law: asperity.Law, tmp_path: Path) -> None:
+    files = law.export("c", tmp_path)
+    assert [file.name for file in files] == ["asperity_law.h", "asperity_law_vectors.csv", "asperity_law_check.c"]
+    assert files[0].read_text() == law.export("c")
+    with pytest.raises(asperity.CaseError, match='format: is "fortran"'):
+        law.export("fortran")
+
+
+def test_contacts_are_those_of_the_exported_module(law: asperity.Law, case: asperity.Case, tmp_path: Path) -> None:
+    file = tmp_path / "asperity_law.py"
+    file.write_text(str(law.export("python")))
+    spec = importlib.util.spec_from_file_location("asperity_law", file)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    steel = module.Material(200e3, 0.3, module.IDEAL, (400.0, 0.0, 0.0))
+    pair = module.setup(steel, 1.0, 0.3)
+    depth = np.array([0.005, 0.01, 0.02])
+    ours, theirs = law.contacts(case, 3), [module.State() for _ in depth]
+    for h, delta in [(1.0, (0.0, 0.0)), (1.0, (5e-4, 1e-4)), (0.9, (-2e-4, 3e-4)), (1.1, (0.0, -1e-4))]:
+        forces = law.update(ours, h * depth, delta)
+        for i, state in enumerate(theirs):
+            theirs[i], response = module.update(pair, state, float(h * depth[i]), delta)
+            assert forces["F_N"][i] == pytest.approx(response.f_n, rel=1e-10)
+            assert forces["F_T"][i] == pytest.approx(response.f_t, rel=1e-9, abs=1e-9 * response.f_n)
+    assert (np.hypot(*forces["F_T"].T) <= 0.3 * forces["F_N"] * (1 + 1e-12)).all()
+
+
+def test_contacts_are_independent_and_their_memory_is_kept(law: asperity.Law, case: asperity.Case) -> None:
+    random = np.random.default_rng(7)
+    number = 3000
+    many = law.contacts(case, number)
+    assert len(many) == number and (many.array == 0.0).all()
+    h, delta = random.uniform(-0.001, 0.02, number), random.normal(0.0, 3e-4, (number, 2))
+    for _ in range(3):
+        forces = law.update(many, h, delta)
+    for i in (0, 255, 256, number - 1):
+        one = law.contacts(case, 1)
+        for _ in range(3):
+            alone = law.update(one, h[i], delta[i])
+        assert all((alone[name][0] == forces[name][i]).all() for name in forces)
+    kept, tried = many.array, many.copy()
+    law.update(tried, 2.0 * h, delta)
+    assert (many.array == kept).all() and (tried.array != kept).any()
+    tried.array = kept
+    assert all((law.update(tried, h, delta)[name] == law.update(many, h, delta)[name]).all() for name in ["F_N", "F_T", "a"])
+    with pytest.raises(asperity.CaseError, match="state: has the shape"):
+        many.array = kept[:5]
+
+
+def test_the_memory_turns_with_the_frame(law: asperity.Law, case: asperity.Case) -> None:
+    state = law.contacts(case, 2)
+    law.update(state, 0.01, (3e-4, 0.0))
+    before = law.update(state, 0.01, (0.0, 0.0))["F_T"]
+    state.rotate([np.pi / 2, 0.0])
+    after = law.update(state, 0.01, (0.0, 0.0))["F_T"]
+    assert after[0] == pytest.approx([0.0, -before[0, 0]], abs=1e-12) and (after[1] == before[1]).all()
+
+
+def test_a_number_that_is_none_leaves_the_contact(law: asperity.Law, case: asperity.Case) -> None:
+    state = law.contacts(case, 2)
+    law.update(state, 0.01, (0.0, 0.0))
+    kept = state.array
+    answer = law.update(state, [np.nan, 0.01], (0.0, 0.0))
+    assert np.isnan(answer["F_N"][0]) and np.isfinite(answer["F_N"][1]) and (state.array[0] == kept[0]).all()

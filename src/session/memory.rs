@@ -1,0 +1,144 @@
+//! The results of a run without a directory.
+
+use super::Canceller;
+use crate::case::{Case, Segment};
+use crate::output::{
+    Clock, ErrorEstimate, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary, SummaryInputs,
+    TimeByPhase, Units,
+};
+use crate::simulation::drive::{Observer, StepView};
+use crate::simulation::problem::Problem;
+use crate::simulation::scout::Scout;
+use crate::solver::phases::PhaseTimes;
+
+type Failed = Box<dyn std::error::Error + Send + Sync>;
+
+/// What the summary has to know beside the history.
+pub struct Memory {
+    units: Units,
+    inputs: SummaryInputs,
+    setting: Setting,
+    canceller: Canceller,
+    clock: Clock,
+    progress: Box<dyn Progress>,
+    share: PathShare,
+    path: Vec<Segment>,
+    spacing: f64,
+    scout: Option<Scout>,
+    remeshed: usize,
+    fallbacks: usize,
+    times: PhaseTimes,
+    outside: OutsideSteps,
+    messages: Vec<String>,
+}
+
+impl Memory {
+    /// Of a run of `case` on the mesh of `problem`.
+    pub fn new(
+        case: &Case,
+        problem: &Problem,
+        setting: Setting,
+        clock: Clock,
+        progress: Box<dyn Progress>,
+        canceller: Canceller,
+    ) -> Self {
+        Self {
+            progress,
+            share: PathShare::new(&case.path),
+            path: case.path.clone(),
+            units: Units::of(case),
+            inputs: SummaryInputs::of(case),
+            setting,
+            canceller,
+            clock,
+            spacing: problem.spacing,
+            scout: None,
+            remeshed: 0,
+            fallbacks: 0,
+            times: PhaseTimes::default(),
+            outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
+            messages: Vec::new(),
+        }
+    }
+
+    /// Takes what the coarse run has found in so many seconds on the wall, which have gone by already.
+    pub fn scouted(&mut self, scout: Scout, seconds: f64) {
+        self.outside.error_estimate = seconds;
+        self.outside.setup -= seconds;
+        self.scout = Some(scout);
+    }
+
+    /// The summary of the run, as it would be written.
+    pub fn finish(mut self, rows: &[StepRecord], status: Status, message: Option<&str>) -> Summary {
+        self.progress.finish(&format!("{status}: {} steps", rows.len()));
+        let wall_s = self.clock.wall_seconds();
+        let mut summary = Summary {
+            status,
+            remeshed: self.remeshed,
+            elements: self.setting.elements,
+            unknowns: self.setting.unknowns,
+            device: self.setting.computed_on.device,
+            precision: self.setting.computed_on.precision.to_owned(),
+            linear_fallbacks: self.fallbacks,
+            wall_s,
+            cpu_s: self.clock.cpu_seconds(),
+            time_by_phase: TimeByPhase::new(&self.times, &self.outside, wall_s),
+            messages: self.messages.into_iter().chain(message.map(str::to_owned)).collect(),
+            ..Summary::from_history(rows, &self.inputs)
+        };
+        if let Some(scout) = self.scout.filter(|scout| scout.failure.is_none() && status == Status::Done) {
+            let coarse: Vec<StepRecord> = scout.rows.iter().map(|row| row.in_units(&self.units)).collect();
+            let coarse = Summary::from_history(&coarse, &self.inputs);
+            let errors = ErrorEstimate::new(rows, &summary, self.spacing, &coarse, scout.spacing, scout.elements);
+            summary.f_n0_error = errors.f_n0;
+            summary.a0_error = errors.a0;
+            summary.f_t_max_error = errors.f_t_max;
+            summary.error_companion_elements = Some(errors.coarse_elements);
+        }
+        summary
+    }
+}
+
+impl Observer for Memory {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        if view.record.step == 0 {
+            // The undeformed state is no step that was computed.
+            return Ok(());
+        }
+        self.fallbacks += view.report.fallbacks;
+        self.times += view.report.times;
+        let row = view.record.in_units(&self.units);
+        self.progress.step(&Position {
+            step: row.step,
+            segment: row.segment,
+            segments: self.share.segments(),
+            fraction: self.share.after(&row),
+            detail: format!("h {:.4e}  F_N {:.4e}  {} iterations", row.h, row.f_n, row.newton_iterations),
+        });
+        Ok(())
+    }
+
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+        self.times += view.unfinished;
+        Ok(())
+    }
+
+    fn note(&mut self, text: &str) {
+        self.progress.message(&format!("note: {text}"));
+        self.messages.push(format!("note: {text}"));
+    }
+
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Failed> {
+        self.setting.elements = problem.model.mesh.elements.len();
+        self.setting.unknowns = unknowns;
+        self.spacing = problem.spacing;
+        self.share = PathShare::new(&self.path);
+        self.fallbacks = 0;
+        self.remeshed += 1;
+        Ok(())
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.canceller.is_cancelled()
+    }
+}

@@ -1,0 +1,496 @@
+//! A simulation that is owned: options, steps, results.
+
+use std::sync::Arc;
+
+use rayon::ThreadPool;
+
+use super::claim::{Claim, claim, tidy};
+use super::memory::Memory;
+use super::pacer::{Pace, Pacer};
+use super::prepare::prepare;
+use super::standing::{Standing, refused, standing};
+use super::{Canceller, Earlier, Options, Outcome, SessionError};
+use crate::case::{BYTES_PER_ELEMENT, Case};
+use crate::compute::select::{Selected, select};
+use crate::compute::{ComputeError, Description};
+use crate::output::{
+    Checkpoint, Clock, ContactPoint, OutputDirectory, Progress, ResultWriter, Setting, SilentProgress, Status, StepRecord,
+    Summary, Units, mises, read_history,
+};
+use crate::simulation::SimulationError;
+use crate::simulation::drive::{Ending, Observer};
+use crate::simulation::follow::{Follower, Seat, seats};
+use crate::simulation::problem::Problem;
+use crate::simulation::scout::{Scout, scout};
+
+/// The cost of a Newton iteration grows with this power of the number of elements.
+const COST_EXPONENT: f64 = 1.1;
+
+/// One case on its way along its path.
+///
+/// [`Simulation::run`] goes to the end of the path. [`Simulation::step`] takes one step, [`Simulation::steps`] iterates over those that are left; in between,
+/// contact and fields can be looked at. All of it gives the same bits, those of `asperity run`. A simulation with a directory that is dropped before the end
+/// of its path leaves a checkpoint there, as an interrupted run does.
+///
+/// ```
+/// use asperity::{Case, Simulation};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # let text = include_str!("../../fixtures/cases/ideal.toml");
+/// # let case = Case::parse(text, "ideal.toml", &["mesh.elements_per_contact_radius=4".into(), "solver.error_estimate=false".into()])?;
+/// let mut simulation = Simulation::new(&case)?;
+/// for row in simulation.steps().take(3) {
+///     let row = row?;
+///     println!("h = {}, F_N = {}", row.h, row.f_n);
+/// }
+/// assert_eq!(simulation.history().len(), 3);
+/// # Ok(()) }
+/// ```
+pub struct Simulation {
+    case: Case,
+    options: Options,
+    clock: Clock,
+    progress: Option<Box<dyn Progress>>,
+    pool: Option<Arc<ThreadPool>>,
+    notes: Vec<String>,
+    history: Vec<StepRecord>,
+    stage: Stage,
+    /// Kept until the end: nobody else writes there. Last, so that it is given back when all is written.
+    claim: Option<Claim>,
+}
+
+type Seats = Box<dyn FnMut(&Problem) -> Result<Seat<'static>, SimulationError> + Send>;
+
+/// How far it is.
+enum Stage {
+    /// Nothing is computed; what is needed for it is there.
+    Ready(Box<Ready>),
+    Running(Box<Running>),
+    /// To the end of the path, or as far as it went; without a follower it had ended before.
+    Ended(Box<Outcome>, Option<Box<Follower<'static>>>),
+    BrokenOff,
+}
+
+struct Ready {
+    problem: Problem,
+    seats: Seats,
+    computed_on: Description,
+    selection: Vec<String>,
+    checkpoint: Option<Box<Checkpoint>>,
+}
+
+struct Running {
+    follower: Follower<'static>,
+    seats: Seats,
+    sink: Sink,
+}
+
+/// Where results go.
+enum Sink {
+    Files(Box<ResultWriter>),
+    Memory(Box<Memory>),
+}
+
+impl Sink {
+    fn observer(&mut self) -> &mut dyn Observer {
+        match self {
+            Self::Files(results) => results.as_mut(),
+            Self::Memory(memory) => memory.as_mut(),
+        }
+    }
+}
+
+/// What the last accepted step shows, of the meshed half, y >= 0, in the user's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepFields {
+    /// Positions of the nodes before deformation, lengths.
+    pub nodes: Vec<[f64; 3]>,
+    /// Hexahedra: eight nodes each, in the order of VTK.
+    pub elements: Vec<[u32; 8]>,
+    /// Displacement of the nodes, lengths.
+    pub displacement: Vec<[f64; 3]>,
+    /// Cauchy stress xx, yy, zz, xy, yz, zx of the elements.
+    pub stress: Vec<[f64; 6]>,
+    /// Mises' equivalent stress of the elements.
+    pub mises: Vec<f64>,
+    /// Equivalent plastic strain of the elements.
+    pub alpha: Vec<f64>,
+}
+
+impl Simulation {
+    /// A simulation of `case` in the pool of threads from which it is called, on a GPU if there is one worth it, that writes nothing.
+    ///
+    /// # Errors
+    /// [`SessionError`]: a case that is none, with the name of the key.
+    pub fn new(case: &Case) -> Result<Self, SessionError> {
+        Self::with(case, Options::default())
+    }
+
+    /// The same with options. The directory is taken, and an earlier result is recognised, before anything is computed.
+    ///
+    /// # Errors
+    /// [`SessionError`]: a case that is none, a directory that is not to be used, a device that is not there.
+    pub fn with(case: &Case, options: Options) -> Result<Self, SessionError> {
+        let clock = Clock::start();
+        case.validate()?;
+        let pool = options.threads.map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build();
+            pool.map(Arc::new).map_err(|error| SessionError::Threads { threads: threads.get(), what: error.to_string() })
+        });
+        let mut simulation = Self {
+            case: case.clone(),
+            clock,
+            progress: None,
+            pool: pool.transpose()?,
+            notes: Vec::new(),
+            history: Vec::new(),
+            stage: Stage::BrokenOff,
+            claim: None,
+            options,
+        };
+        simulation.stage = simulation.within_pool(Self::make_ready)?;
+        Ok(simulation)
+    }
+
+    /// Shows every step to `progress`; to be called before the first one.
+    pub fn watched_by(mut self, progress: Box<dyn Progress>) -> Self {
+        self.progress = Some(progress);
+        self
+    }
+
+    /// What the user should know of how the directory was taken.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Ends the run from another thread.
+    pub fn canceller(&self) -> Canceller {
+        self.options.canceller.clone()
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The accepted steps so far, in the user's units.
+    pub fn history(&self) -> &[StepRecord] {
+        &self.history
+    }
+
+    /// How it ended; `None` before that.
+    pub fn outcome(&self) -> Option<&Outcome> {
+        match &self.stage {
+            Stage::Ended(outcome, _) => Some(outcome),
+            _ => None,
+        }
+    }
+
+    /// Follows the path, or what is left of it, to its end.
+    ///
+    /// A step that does not converge and a cancelled run are no errors: what was computed is kept, and the outcome says so.
+    ///
+    /// # Errors
+    /// [`SessionError::BrokeOff`]: results cannot be written, or the device failed; what was computed is kept.
+    pub fn run(&mut self) -> Result<Outcome, SessionError> {
+        self.advance(Pace::Whole)?;
+        self.outcome().cloned().ok_or(SessionError::Over)
+    }
+
+    /// Takes one step and gives its row; `None` once the run has ended, of which [`Simulation::outcome`] then tells.
+    ///
+    /// The first call also makes the coarse run that goes before a run. A contact that leaves the finely meshed zone, which that run prevents, makes the
+    /// run start over: the rows begin again at step 1.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`].
+    pub fn step(&mut self) -> Result<Option<StepRecord>, SessionError> {
+        Ok(self.advance(Pace::Step)?.then(|| self.history.last().copied()).flatten())
+    }
+
+    /// The steps that are left.
+    pub fn steps(&mut self) -> Steps<'_> {
+        Steps { simulation: self, failed: false }
+    }
+
+    /// The whole contact after the last accepted step, both halves, in the user's units; empty before the first step of this process.
+    pub fn contact(&self) -> Vec<ContactPoint> {
+        let points = self.follower().and_then(Follower::last).map(|last| last.points());
+        points.map_or_else(Vec::new, |points| ContactPoint::whole_of(points, &Units::of(&self.case)))
+    }
+
+    /// Stresses and strains after the last accepted step; `None` before the first step of this process.
+    ///
+    /// # Errors
+    /// [`SessionError::Simulation`] if the device fails.
+    pub fn fields(&mut self) -> Result<Option<StepFields>, SessionError> {
+        let Units { radius, youngs_modulus, .. } = Units::of(&self.case);
+        let follower = match &mut self.stage {
+            Stage::Running(running) => &mut running.follower,
+            Stage::Ended(_, Some(follower)) => follower.as_mut(),
+            _ => return Ok(None),
+        };
+        let fields = follower.fields().map_err(|error| SessionError::Simulation(error.into()))?;
+        let Some(last) = follower.last() else { return Ok(None) };
+        let mesh = &follower.problem().model.mesh;
+        let length = |x: &[f64; 3]| x.map(|x| x * radius);
+        let stress: Vec<[f64; 6]> = fields.stress.iter().map(|stress| stress.map(|s| s * youngs_modulus)).collect();
+        Ok(Some(StepFields {
+            nodes: mesh.nodes.iter().map(length).collect(),
+            elements: mesh.elements.clone(),
+            displacement: last.displacement().as_chunks::<3>().0.iter().map(length).collect(),
+            mises: stress.iter().map(mises).collect(),
+            stress,
+            alpha: fields.alpha,
+        }))
+    }
+
+    fn follower(&self) -> Option<&Follower<'static>> {
+        match &self.stage {
+            Stage::Running(running) => Some(&running.follower),
+            Stage::Ended(_, follower) => follower.as_deref(),
+            _ => None,
+        }
+    }
+
+    /// Calls `work` in the pool of this simulation, if it has one.
+    fn within_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
+        match self.pool.clone() {
+            Some(pool) => pool.install(|| work(self)),
+            None => work(self),
+        }
+    }
+
+    /// Takes the directory, meshes and finds a device.
+    fn make_ready(&mut self) -> Result<Stage, SessionError> {
+        let (case, options) = (&self.case, &self.options);
+        let mut checkpoint = None;
+        if let Some(out) = &options.out {
+            let claim = self.claim.insert(claim(out, case, options.earlier)?);
+            self.notes.extend(claim.note().map(|note| format!("note: {note}")));
+            if options.earlier == Earlier::Resume {
+                match standing(out, case)? {
+                    Standing::Ended(summary) => return self.ended_before(*summary),
+                    Standing::Unfinished(found) => checkpoint = Some(found),
+                    Standing::NotBegun => {}
+                }
+            }
+        }
+        let problem = Problem::on(case, checkpoint.as_deref().and_then(Checkpoint::zone)).map_err(SessionError::Simulation)?;
+        let (device, precision) = (options.device, options.precision);
+        let open = move |problem: &Problem| select(device, precision, vec![problem.model.clone()]);
+        let Selected { backend, notes } = open(&problem).map_err(|error| match error {
+            ComputeError::Device(what) => SessionError::Device { what },
+            error => SessionError::Simulation(error.into()),
+        })?;
+        let computed_on = backend.description();
+        if let Some(out) = &options.out {
+            match &checkpoint {
+                Some(checkpoint) => {
+                    checkpoint.check_precision(&OutputDirectory::existing(out).checkpoint(), computed_on.precision)?;
+                    checkpoint.snapshot().check(&problem.model.mesh).map_err(|error| refused(out, &error.to_string()))?;
+                }
+                None => prepare(out, case)?,
+            }
+        }
+        let seats = Box::new(seats((backend, 0), problem.zone, open));
+        Ok(Stage::Ready(Box::new(Ready { problem, seats, computed_on, selection: notes, checkpoint })))
+    }
+
+    /// A run that is not computed again.
+    fn ended_before(&mut self, summary: Summary) -> Result<Stage, SessionError> {
+        if let Some(out) = &self.options.out {
+            self.history = read_history(&OutputDirectory::existing(out).history())?;
+            tidy(out);
+        }
+        let message = summary.messages.last().filter(|_| summary.status != Status::Done).cloned();
+        Ok(Stage::Ended(Box::new(Outcome { status: summary.status, message, summary, ended_before: true }), None))
+    }
+
+    /// Goes on as far as `pace` says; whether a step was accepted.
+    fn advance(&mut self, pace: Pace) -> Result<bool, SessionError> {
+        self.within_pool(|simulation| simulation.advance_here(pace))
+    }
+
+    fn advance_here(&mut self, pace: Pace) -> Result<bool, SessionError> {
+        let mut running = match std::mem::replace(&mut self.stage, Stage::BrokenOff) {
+            Stage::Ready(ready) => match self.set_out(*ready)? {
+                Stage::Running(running) => running,
+                ended => {
+                    self.stage = ended;
+                    return Ok(false);
+                }
+            },
+            Stage::Running(running) => running,
+            Stage::Ended(outcome, follower) => {
+                self.stage = Stage::Ended(outcome, follower);
+                return Ok(false);
+            }
+            Stage::BrokenOff => return Err(SessionError::Over),
+        };
+        let Running { follower, seats, sink } = running.as_mut();
+        let mut pacer = Pacer::new(sink.observer(), Units::of(&self.case), &mut self.history, pace);
+        let followed = follower.go_on(seats, &mut pacer);
+        let (paused, accepted) = (pacer.has_paused(), pacer.has_accepted());
+        if paused && followed.is_ok() {
+            self.stage = Stage::Running(running);
+            return Ok(accepted);
+        }
+        let Running { follower, mut sink, .. } = *running;
+        if let Sink::Files(results) = &mut sink
+            && followed.is_ok()
+        {
+            // Not where it began, if the device failed on the way.
+            results.computed_on(follower.description());
+        }
+        let outcome = self.conclude(followed, sink)?;
+        self.stage = Stage::Ended(Box::new(outcome), Some(Box::new(follower)));
+        Ok(accepted)
+    }
+
+    /// Makes the coarse run, meshes for what it has found, and begins the results.
+    fn set_out(&mut self, ready: Ready) -> Result<Stage, SessionError> {
+        let Ready { mut problem, mut seats, computed_on, selection, checkpoint } = ready;
+        let case = &self.case;
+        let canceller = self.options.canceller.clone();
+        let mut progress = self.progress.take().unwrap_or_else(|| Box::new(SilentProgress));
+        let begun = std::time::Instant::now();
+        let scouts = checkpoint.is_none() && case.solver.error_estimate;
+        let scout = if scouts {
+            log::info!("coarse run, for the reach of the contact and the error estimate:");
+            scout(case, &canceller.flag).map_err(SessionError::Simulation)?
+        } else {
+            None
+        };
+        let stopped = scouts && scout.is_none();
+        let scout_took = begun.elapsed().as_secs_f64();
+        if let Some(scout) = &scout {
+            let zone = scout.zone(problem.zone, problem.spacing);
+            if zone != problem.zone {
+                problem = Problem::on(case, Some(zone)).map_err(SessionError::Simulation)?;
+            }
+            progress.message(&forecast(scout, &problem, scout_took));
+        }
+        let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
+        let mut sink = match &self.options.out {
+            Some(out) => {
+                let stop = canceller.flag.clone();
+                let found = checkpoint.as_deref();
+                let mut results = ResultWriter::create(case, out, setting, self.clock, progress, stop, found)?;
+                results.meshed(&problem);
+                if let Some(interval) = self.options.checkpoint_every {
+                    results = results.with_checkpoints_every(interval);
+                }
+                match &checkpoint {
+                    Some(checkpoint) => {
+                        results.tell(&format!("resumed after step {} of the run in {}", checkpoint.step(), out.display()));
+                        self.history = read_history(&OutputDirectory::existing(out).history())?;
+                    }
+                    None if self.options.earlier == Earlier::Resume => {
+                        results.tell(&format!("nothing to resume in {}: from the beginning", out.display()));
+                    }
+                    None => {}
+                }
+                Sink::Files(Box::new(results))
+            }
+            None => Sink::Memory(Box::new(Memory::new(case, &problem, setting, self.clock, progress, canceller))),
+        };
+        // A resumed run has noted them before.
+        selection.iter().filter(|_| checkpoint.is_none()).for_each(|note| sink.observer().note(note));
+        if let Some(scout) = scout {
+            let asked = Problem::zone_of(case).map_err(SessionError::Simulation)?;
+            if problem.zone != asked {
+                sink.observer().note(&format!(
+                    "the contact leaves the zone of {:.4} R around the pole that would be meshed finely: meshed to {:.4} R, with elements of {:.5} R",
+                    asked.radius(),
+                    problem.zone.radius(),
+                    problem.spacing
+                ));
+            }
+            match &mut sink {
+                Sink::Files(results) => results.scouted(scout, scout_took),
+                Sink::Memory(memory) => memory.scouted(scout, scout_took),
+            }
+        }
+        if stopped {
+            // Without a checkpoint: the run will begin with its coarse run again.
+            return Ok(Stage::Ended(Box::new(self.conclude(Ok(Ending::Interrupted), sink)?), None));
+        }
+        log::info!("the run:");
+        match Follower::new(problem, checkpoint.as_deref().map(Checkpoint::snapshot), &mut seats) {
+            Ok(follower) => Ok(Stage::Running(Box::new(Running { follower, seats, sink }))),
+            Err(error) => Ok(Stage::Ended(Box::new(self.conclude(Err(error), sink)?), None)),
+        }
+    }
+
+    /// Writes the end of the results and says how it went.
+    fn conclude(&self, followed: Result<Ending, SimulationError>, sink: Sink) -> Result<Outcome, SessionError> {
+        let steps = self.history.len();
+        let broke_off = |what: String| SessionError::BrokeOff { steps, what, dir: self.options.out.clone() };
+        let (status, message) = match followed {
+            Ok(Ending::Done) => (Status::Done, None),
+            Ok(Ending::NotConverged(reason)) => (Status::NotConverged, Some(format!("no convergence: {reason}"))),
+            Ok(Ending::Outgrown(outgrowth)) => {
+                (Status::ContactOutgrewMesh, Some(format!("{outgrowth}; there is no larger mesh")))
+            }
+            Ok(Ending::Interrupted) => {
+                let by = self.options.canceller.by;
+                let reason = format!("interrupted{by} after step {steps}; to go on, run the same command with --resume");
+                (Status::Interrupted, Some(reason))
+            }
+            Err(error) => {
+                let what = error.to_string();
+                if let Sink::Files(results) = sink {
+                    // The disk may be full: what can still be written is written, and the first error is the one to tell.
+                    let _ = results.finish(Status::Interrupted, Some(&what));
+                }
+                return Err(broke_off(what));
+            }
+        };
+        let summary = match sink {
+            Sink::Files(results) => results.finish(status, message.as_deref()).map_err(|error| broke_off(error.to_string()))?,
+            Sink::Memory(memory) => memory.finish(&self.history, status, message.as_deref()),
+        };
+        Ok(Outcome { status, message, summary, ended_before: false })
+    }
+}
+
+impl Drop for Simulation {
+    fn drop(&mut self) {
+        let begun = matches!(&self.stage, Stage::Running(running) if matches!(running.sink, Sink::Files(_)));
+        if begun && !std::thread::panicking() {
+            // What cannot be written is lost; the steps are in the history all the same.
+            let _ = self.advance(Pace::Halt);
+        }
+    }
+}
+
+/// The steps of a simulation that are left; after an error there are no more.
+pub struct Steps<'a> {
+    simulation: &'a mut Simulation,
+    failed: bool,
+}
+
+impl Iterator for Steps<'_> {
+    type Item = Result<StepRecord, SessionError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let step = self.simulation.step().transpose();
+        self.failed = matches!(step, Some(Err(_)));
+        step
+    }
+}
+
+/// What the coarse run tells of the run: its size, and about how long it will take in the same place.
+fn forecast(scout: &Scout, problem: &Problem, scout_seconds: f64) -> String {
+    let elements = problem.model.mesh.elements.len();
+    let refinement = scout.spacing / problem.spacing;
+    let seconds = scout_seconds * refinement * (elements as f64 / scout.mesh_elements.max(1) as f64).powf(COST_EXPONENT);
+    format!(
+        "{elements} elements; about {:.1} GiB and, if the coarse run on {} elements is a measure, {seconds:.0} s",
+        elements as f64 * BYTES_PER_ELEMENT / f64::from(1 << 30),
+        scout.mesh_elements
+    )
+}
