@@ -105,9 +105,6 @@ pub(super) struct Place {
     pub depth: usize,
     /// Targets are taken in 2^pace parts.
     pub pace: u32,
-    /// Attempts of the path that failed, and how many steps in a row were easy since: so many of them are needed before targets are taken in longer parts.
-    pub failures: u32,
-    pub easy: u32,
     /// The observer knows of a relaxed step in this segment.
     pub relaxed_told: bool,
 }
@@ -120,14 +117,7 @@ impl Place {
 
     /// At the start of the next segment.
     pub fn next_segment(&self) -> Self {
-        Self {
-            begun: self.begun,
-            segment: self.segment + 1,
-            pace: self.pace,
-            failures: self.failures,
-            easy: self.easy,
-            ..Self::default()
-        }
+        Self { begun: self.begun, segment: self.segment + 1, pace: self.pace, ..Self::default() }
     }
 }
 

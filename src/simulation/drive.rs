@@ -345,9 +345,8 @@ impl<'a> Drive<'a> {
                 Ok(report) => {
                     self.place.waiting.pop();
                     self.place.depth = self.place.depth.saturating_sub(1);
-                    self.place.easy = if report.iterations.len() <= EASY { self.place.easy + 1 } else { 0 };
-                    if self.place.easy > 0 && self.place.easy >= self.place.failures {
-                        (self.place.pace, self.place.easy) = (self.place.pace.saturating_sub(1), 0);
+                    if report.iterations.len() <= EASY {
+                        self.place.pace = self.place.pace.saturating_sub(1);
                     }
                     self.accept(&next, report, observer)?;
                     self.checkpoint(false, observer);
@@ -358,7 +357,6 @@ impl<'a> Drive<'a> {
                     self.place.cutbacks += 1;
                     self.place.wasted += failure.iterations();
                     self.place.pace = (self.place.pace + 1).min(FINEST);
-                    (self.place.easy, self.place.failures) = (0, self.place.failures + 1);
                     self.place.depth += 1;
                     if self.place.depth > self.problem.max_cutbacks {
                         return Ok(Ending::NotConverged(format!(
