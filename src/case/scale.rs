@@ -11,6 +11,9 @@ impl Case {
             Segment::Shear { shear: ShearTarget::Displacement(delta), hold } => {
                 Segment::Shear { shear: ShearTarget::Displacement(delta / radius), hold }
             }
+            Segment::Oblique { indentation, shear } => {
+                Segment::Oblique { indentation: indentation / radius, shear: shear / radius }
+            }
             unscaled => unscaled,
         };
         Case {

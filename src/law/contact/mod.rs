@@ -21,11 +21,14 @@
 //! Every flow dissipates: with [`ContactParameters::stored_energy`], no path returns more than was stored.
 
 mod material;
+pub mod path;
 mod update;
 mod virgin;
 
 pub use update::{ContactResponse, ContactState};
-pub use virgin::{Axial, COLUMNS, ContactError, ContactParameters, KNOTS, SLIDERS, Virgin, VirginPoint};
+pub use virgin::{
+    Axial, BY_NUMBERS, COLUMNS, ContactError, ContactParameters, KNOTS, LEVELS, POINTS, SLIDERS, Shapes, Virgin, VirginPoint,
+};
 
 #[cfg(test)]
 mod tests;

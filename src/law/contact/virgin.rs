@@ -10,6 +10,12 @@ use crate::law::model::Parameters;
 pub const KNOTS: usize = 128;
 /// Number of tabulated quantities.
 pub const COLUMNS: usize = 8;
+/// Points of a shape that is given by numbers, over x = (j/POINTS)^2, j = 1 and on.
+pub const POINTS: usize = 24;
+/// Levels of ln h on which they are given.
+pub const LEVELS: usize = 16;
+/// [`ContactParameters::form`] of shapes that are given by numbers.
+pub const BY_NUMBERS: f64 = 2.0;
 /// Number of sliders that stand for the contact's annuli.
 pub const SLIDERS: usize = 16;
 
@@ -25,7 +31,7 @@ pub struct ContactParameters {
     pub effective_modulus: f64,
     /// Coulomb's coefficient mu.
     pub friction: f64,
-    /// Form of f_N: 0 is \[1 - (1 - x)^M\]^N, 1 is 1 - (1 - x^M)^N.
+    /// Form of f_N: 0 is \[1 - (1 - x)^M\]^N, 1 is 1 - (1 - x^M)^N; 2: f_T and f_N are `shapes`.
     pub form: f64,
     /// ln h of the first knot.
     pub log_first: f64,
@@ -33,7 +39,12 @@ pub struct ContactParameters {
     pub log_step: f64,
     /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T.
     pub table: [[f64; COLUMNS]; KNOTS],
+    /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero otherwise.
+    pub shapes: [Shapes; LEVELS],
 }
+
+/// f_T and f_N at x = (j/POINTS)^2, j = 1 and on.
+pub type Shapes = [[f64; POINTS]; 2];
 
 /// What a pair of materials answers for one indentation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,6 +120,8 @@ pub struct Virgin {
     pub weight: [f64; SLIDERS],
     /// Approach over D at which each slider's annulus loses contact.
     pub lost: [f64; SLIDERS],
+    /// f_T and f_N of form 2.
+    pub shapes: Shapes,
 }
 
 /// gamma from how far the hardness has fallen below Hertz's at the same contact radius: 3/2 while it has not (Hertz), 4/pi at the end (a uniform
@@ -173,9 +186,36 @@ impl ContactParameters {
                 k_t.ln(),
             ];
         }
-        let mut parameters = Self { radius, effective_modulus, friction, form, log_first, log_step, table };
+        let shapes = [[[0.0; POINTS]; 2]; LEVELS];
+        let mut parameters = Self { radius, effective_modulus, friction, form, log_first, log_step, table, shapes };
         parameters.conserve();
         Ok(parameters)
+    }
+
+    /// The same with f_T and f_N given by numbers for every level, the first at the first knot.
+    #[must_use]
+    pub fn with_shapes(self, shapes: [Shapes; LEVELS]) -> Self {
+        Self { form: BY_NUMBERS, shapes, ..self }
+    }
+
+    /// f_T and f_N at a place between the levels; straight between them.
+    fn shapes_at(&self, position: f64) -> Shapes {
+        let mut shapes = self.shapes[0];
+        if self.form != BY_NUMBERS || position <= 0.0 {
+            return shapes;
+        }
+        let level = position * (LEVELS as f64 - 1.0) / (KNOTS as f64 - 1.0);
+        let last = (LEVELS - 1) as f64;
+        let level = if level < last { level } else { last };
+        let i = if (level as usize) < LEVELS - 2 { level as usize } else { LEVELS - 2 };
+        let u = level - i as f64;
+        for kind in 0..2 {
+            for j in 0..POINTS {
+                let (low, high) = (self.shapes[i][kind][j], self.shapes[i + 1][kind][j]);
+                shapes[kind][j] = low + u * (high - low);
+            }
+        }
+        shapes
     }
 
     /// Widens the contact where the law's F_N0 and a would let a press store more energy than was put in (a fit may be off by that much next to
@@ -295,6 +335,7 @@ impl ContactParameters {
             backbone,
             weight,
             lost,
+            shapes: self.shapes_at(position),
         }
     }
 }
