@@ -7,13 +7,16 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
+use super::law_check::{CheckArgs, check_law};
+use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print};
 use crate::case::Case;
+use crate::law::contact::path::{PathPoint, follow};
 use crate::law::export::{Language, files, source};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
-use crate::law::{Law, LawError, fit, report};
+use crate::law::{Law, LawError, LawFile, fit, report};
 use crate::output::write_atomically;
 
 /// Fit a contact law to a study, and use it.
@@ -29,8 +32,13 @@ pub struct LawArgs {
 pub enum LawCommand {
     /// Fit a law to a study: writes DIR/law.json and prints the forms that were compared and the errors.
     Fit(FitArgs),
-    /// Predict F_T and F_N over delta_T for a case, without simulating its shear; prints CSV.
+    /// Make the law of one material and one friction as curves in h: simulates depths up to the case's as a study, writes DIR/law.json and prints its errors at
+    /// depths between.
+    Tabulate(TabulateArgs),
+    /// Predict F_N and F_T along the path of a case, without simulating it; prints CSV.
     Predict(PredictArgs),
+    /// Simulate a protocol of paths and print how far the law's contact update is from each.
+    Check(CheckArgs),
     /// Write the law for a DEM code: an incremental contact update as a C header or a Python module, to stdout or with test vectors to a directory.
     Export(ExportArgs),
 }
@@ -50,13 +58,14 @@ pub struct FitArgs {
 /// The arguments of `law predict`.
 #[derive(Clone, Debug, Args)]
 pub struct PredictArgs {
-    /// A law, as `law fit` writes it.
+    /// A law, as `law fit` or `law tabulate` writes it.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The case: pressed once, sheared once at constant indentation.
+    /// The case, with any path.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Take F_N0 and a0 from a simulation of the press alone, not from the law's formulas.
+    /// Take F_N0 and a0 from a simulation of the press alone, not from the law's formulas; for a case that is pressed once and sheared once at constant
+    /// indentation.
     #[arg(long)]
     pub press: bool,
     /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
@@ -83,7 +92,9 @@ pub struct ExportArgs {
 pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
     match &args.command {
         LawCommand::Fit(args) => fit_law(args),
+        LawCommand::Tabulate(args) => tabulate(args),
         LawCommand::Predict(args) => predict_case(args),
+        LawCommand::Check(args) => check_law(args),
         LawCommand::Export(args) => export_law(args),
     }
 }
@@ -134,18 +145,35 @@ fn summary(law: &Law) -> String {
 }
 
 fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
-    let law = Law::read(&args.law)?;
+    let law = LawFile::read(&args.law)?;
     let case = Case::load(&args.case, &args.set)?;
-    let source = if args.press { NormalSource::Press } else { NormalSource::Formulas };
     let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
-    let Prediction { curve, out_of_range, .. } = predict(&law, &case, source).map_err(in_case)?;
+    let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { followed(&law, &case) }.map_err(in_case)?;
     warn_out_of_range(&args.case, &out_of_range);
-    let mut text = String::from("delta_T,F_T,F_N\n");
-    for point in &curve {
-        let _ = writeln!(text, "{:?},{:?},{:?}", point.delta_t, point.f_t, point.f_n);
+    let mut text = String::from("segment,h,delta_T,F_N,F_T\n");
+    for point in &points {
+        let _ = writeln!(text, "{},{:?},{:?},{:?},{:?}", point.segment, point.h, point.delta_t, point.f_n, point.f_t);
     }
     print(&text)?;
     Ok(Outcome::Done)
+}
+
+/// The whole path with the contact update, and what of its deepest contact is out of the law's range.
+fn followed(law: &LawFile, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
+    let points = follow(&law.contact_parameters(case)?, &case.path);
+    let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
+    let out_of_range = if deepest > 0.0 { law.out_of_range(case, deepest)? } else { Vec::new() };
+    Ok((points, out_of_range))
+}
+
+/// One shear from a simulated press.
+fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
+    let LawFile::Formulas(law) = law else {
+        return Err(LawError::IsTable { path: path.to_owned(), what: "--press" });
+    };
+    let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press)?;
+    let point = |p: &crate::law::data::Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };
+    Ok((curve.iter().map(point).collect(), out_of_range))
 }
 
 fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {

@@ -9,6 +9,8 @@ pub mod environment;
 pub mod error;
 pub mod force;
 pub mod law;
+mod law_check;
+mod law_tabulate;
 pub mod options;
 pub mod out;
 pub mod plot;

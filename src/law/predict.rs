@@ -2,9 +2,9 @@
 
 use super::LawError;
 use super::data::Point;
-use super::model::{Axisymmetric, Law, MARGIN, OutOfRange, Parameters};
+use super::model::{Axisymmetric, Law, OutOfRange, Parameters};
 use super::normal::NormalState;
-use super::variables::{Body, yield_lambda};
+use super::variables::Body;
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
 use crate::simulation::drive::{Ending, Observer, StepView};
 use crate::simulation::follow::{follow, on_cpu};
@@ -73,11 +73,7 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
         })
         .collect();
     let mut out_of_range = law.out_of_range(&inputs);
-    let (exponent, range) = (body.hardening_exponent(inputs.a), law.validity.hardening_exponent);
-    let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);
-    if yielded && !range.contains(exponent, MARGIN) {
-        out_of_range.push(OutOfRange { quantity: "hardening exponent", value: exponent, range });
-    }
+    out_of_range.extend(law.hardening_out_of_range(&body, &inputs));
     Ok(Prediction { inputs, parameters, curve, out_of_range })
 }
 
