@@ -12,7 +12,7 @@ use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print};
 use crate::case::Case;
 use crate::law::contact::path::{PathPoint, follow};
-use crate::law::export::{Language, files, source};
+use crate::law::export::{Language, law_files, law_source};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
@@ -76,7 +76,7 @@ pub struct PredictArgs {
 /// The arguments of `law export`.
 #[derive(Clone, Debug, Args)]
 pub struct ExportArgs {
-    /// A law, as `law fit` writes it.
+    /// A law, as `law fit` or `law tabulate` writes it.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The language.
@@ -148,7 +148,8 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     let law = LawFile::read(&args.law)?;
     let case = Case::load(&args.case, &args.set)?;
     let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
-    let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { followed(&law, &case) }.map_err(in_case)?;
+    let (points, out_of_range) =
+        if args.press { pressed(&law, &case, &args.law) } else { followed(&law, &case) }.map_err(in_case)?;
     warn_out_of_range(&args.case, &out_of_range);
     let mut text = String::from("segment,h,delta_T,F_N,F_T\n");
     for point in &points {
@@ -177,14 +178,14 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
 }
 
 fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
-    let law = Law::read(&args.law)?;
+    let law = LawFile::read(&args.law)?;
     let Some(dir) = &args.out else {
-        print(&source(&law, args.format))?;
+        print(&law_source(&law, args.format)?)?;
         return Ok(Outcome::Done);
     };
     let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
     fs::create_dir_all(dir).map_err(failed("be created"))?;
-    for file in files(&law, args.format) {
+    for file in law_files(&law, args.format)? {
         write_atomically(&dir.join(file.name), |out| out.write_all(file.content.as_bytes()))?;
     }
     Ok(Outcome::Done)

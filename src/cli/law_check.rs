@@ -80,7 +80,8 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
     print(&text)?;
     if failed > 0 {
         // A closed stderr does not change the outcome.
-        let _ = writeln!(std::io::stderr(), "error: {failed} of {count} paths were not simulated to their end, as the table says");
+        let _ =
+            writeln!(std::io::stderr(), "error: {failed} of {count} paths were not simulated to their end, as the table says");
         return Ok(Outcome::NotConverged);
     }
     Ok(Outcome::Done)

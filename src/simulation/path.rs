@@ -301,9 +301,9 @@ mod tests {
             assert!(targets.len() <= 160, "{h} {d}: {} steps", targets.len());
             let press = indentation_targets(&from, h, &resolution);
             let longest = |ends: &[f64], whole: f64| {
-                std::iter::once(ends[0] - from.h).chain(ends.windows(2).map(|w| w[1] - w[0])).fold(0.0, |most: f64, d| {
-                    most.max((d / whole).abs())
-                })
+                std::iter::once(ends[0] - from.h)
+                    .chain(ends.windows(2).map(|w| w[1] - w[0]))
+                    .fold(0.0, |most: f64, d| most.max((d / whole).abs()))
             };
             let ours: Vec<f64> = targets.iter().map(|t| t.h).collect();
             let theirs: Vec<f64> = press.iter().map(|t| t.h).collect();

@@ -73,13 +73,8 @@ impl<'a> Follower<'a> {
     }
 
     fn tell(&mut self) {
-        let point = PathPoint {
-            segment: self.number,
-            h: self.state.h,
-            delta_t: self.delta_t,
-            f_n: self.out.f_n,
-            f_t: self.out.f_t[0],
-        };
+        let point =
+            PathPoint { segment: self.number, h: self.state.h, delta_t: self.delta_t, f_n: self.out.f_n, f_t: self.out.f_t[0] };
         self.points.push(point);
     }
 
@@ -158,11 +153,8 @@ impl<'a> Follower<'a> {
         }
         let (start, f_n, direction) = (self.delta_t, self.out.f_n, self.direction);
         for i in 1..=(MOST_SLIPS + 1) * STEPS {
-            let distance = if i <= STEPS {
-                length.min(slip) * (i as f64 / STEPS as f64).powi(2)
-            } else {
-                slip * i as f64 / STEPS as f64
-            };
+            let distance =
+                if i <= STEPS { length.min(slip) * (i as f64 / STEPS as f64).powi(2) } else { slip * i as f64 / STEPS as f64 };
             let last = distance >= length * (1.0 - 1e-12) || i == (MOST_SLIPS + 1) * STEPS && length.is_finite();
             let delta_t = match target {
                 ShearTarget::Displacement(d) if last => d,

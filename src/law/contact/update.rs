@@ -42,6 +42,11 @@ const AT_CAP: f64 = 1.0 - 1e-9;
 /// Share of a bound up to which a force counts as within it, so that a contact at rest answers with its elastic stiffness.
 const AT_BOUND: f64 = 1.0 + 1e-10;
 
+/// A sheared contact that is pressed on flows; F_T then falls e-fold for each share 1/YIELDING of F_N0 by which its elastic response to the press exceeds its
+/// virgin curve. Of a rigid-plastic contact; one that presses on elastically keeps its F_T (Mindlin & Deresiewicz 1953), and between them it goes with the fourth
+/// power of what the virgin curve is softer by. Of simulated oblique presses and presses of sheared contacts.
+const YIELDING: f64 = 2.6;
+
 /// F_N_slip/F_N0 from which a contact counts as elastic.
 const ELASTIC: f64 = 1.0 - 1e-6;
 
@@ -307,18 +312,29 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     }
     let bound = tangential_shape_inverse(p, virgin, f_t / slip_force);
     let cap = normal_cap(p, virgin, bound);
-    let share = slip_force * tangential_shape(p, virgin, bound)[1] / (virgin.point.k_t * virgin.point.delta_t_slip);
-    let gain = if share < 1.0 { 1.0 - share } else { 0.0 };
-    let raised = cap + gain * (trial - cap);
-    let f_n = if raised < virgin.point.f_n0 { raised } else { virgin.point.f_n0 };
-    let x = mobilisation(p, virgin, f_n);
-    let keep = slip_force * tangential_shape(p, virgin, x)[0] / f_t;
-    if keep < 1.0 {
-        for q in &mut state.deflection {
-            *q = [keep * q[0], keep * q[1]];
-        }
+    let share = if f_t < slip_force { f_t / slip_force } else { 1.0 };
+    let soft = 1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0);
+    let soft = if soft > 0.0 { soft * soft } else { 0.0 };
+    // At full slip the flow is along the plane. It has to fade there: where f_T is flat, x would leap back from 1 at any press.
+    let sliding = (share * share) * (share * share);
+    let rate = YIELDING * (soft * soft) * (1.0 - sliding * sliding);
+    let flow = if trial > cap { rate * (trial - cap) / virgin.point.f_n0 } else { 0.0 };
+    let most = slip_force * tangential_shape(p, virgin, bound)[0];
+    let keep = (-flow).exp() * if most < f_t { most / f_t } else { 1.0 };
+    let x = tangential_shape_inverse(p, virgin, keep * f_t / slip_force);
+    let raised = normal_cap(p, virgin, x);
+    let rises = slip_force * tangential_shape(p, virgin, x)[1];
+    let falls = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1];
+    // What F_N gains for a share of F_T lost, over F_N0; the curve itself grows with h.
+    let gain = if rises > 0.0 { falls * keep * f_t / (virgin.point.f_n0 * rises) } else { 0.0 };
+    let along = virgin.slope * (raised / virgin.point.f_n0 + gain);
+    let slope = along + rate * gain * (stiffness - along);
+    let slope = if raised < f_n && slope < stiffness { slope } else { stiffness };
+    let f_n = if raised < f_n { raised } else { f_n };
+    for q in &mut state.deflection {
+        *q = [keep * q[0], keep * q[1]];
     }
-    Pressed { f_n, x, df_n_dh: gain * stiffness + (1.0 - gain) * virgin.slope }
+    Pressed { f_n, x, df_n_dh: slope }
 }
 
 impl ContactState {

@@ -37,7 +37,8 @@ pub struct ContactParameters {
     pub log_first: f64,
     /// Step of ln h from knot to knot.
     pub log_step: f64,
-    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T.
+    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T. With form 2 a is the radius with which 2 E* a is the stiffness of an unloading, M the
+    /// contact radius over it, N the exponent of the sliders' backbone.
     pub table: [[f64; COLUMNS]; KNOTS],
     /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero otherwise.
     pub shapes: [Shapes; LEVELS],
@@ -192,10 +193,37 @@ impl ContactParameters {
         Ok(parameters)
     }
 
-    /// The same with f_T and f_N given by numbers for every level, the first at the first knot.
+    /// The same with f_T and f_N given by numbers for every level, the first at the first knot, and with the contact radius that `contact_radius` has for an
+    /// indentation.
     #[must_use]
-    pub fn with_shapes(self, shapes: [Shapes; LEVELS]) -> Self {
-        Self { form: BY_NUMBERS, shapes, ..self }
+    pub fn with_shapes(self, shapes: [Shapes; LEVELS], contact_radius: impl Fn(f64) -> f64) -> Self {
+        let mut given = Self { form: BY_NUMBERS, shapes, ..self };
+        for (i, row) in given.table.iter_mut().enumerate() {
+            let h = (self.log_first + self.log_step * i as f64).exp();
+            row[5] = contact_radius(h) / row[1].exp();
+        }
+        given
+    }
+
+    /// Those of a sphere with R = 1 and E = 1 for a sphere of this radius and this Young's modulus.
+    #[must_use]
+    pub fn scaled(self, radius: f64, youngs_modulus: f64) -> Self {
+        let length = radius.ln();
+        let force = (youngs_modulus * radius * radius).ln();
+        let stiffness = (youngs_modulus * radius).ln();
+        let mut scaled = Self {
+            radius,
+            effective_modulus: self.effective_modulus * youngs_modulus,
+            log_first: self.log_first + length,
+            ..self
+        };
+        for row in &mut scaled.table {
+            row[0] += force;
+            row[1] += length;
+            row[3] += length;
+            row[7] += stiffness;
+        }
+        scaled
     }
 
     /// f_T and f_N at a place between the levels; straight between them.
@@ -315,7 +343,12 @@ impl ContactParameters {
         let n = self.column(4, position)[0];
         let m_exponent = self.column(5, position)[0];
         let n_exponent = self.column(6, position)[0];
-        let backbone = if gamma < n { gamma } else { n };
+        let mut backbone = if gamma < n { gamma } else { n };
+        let mut contact_radius = a;
+        if self.form == BY_NUMBERS {
+            backbone = n_exponent;
+            contact_radius = m_exponent * a;
+        }
         // The elastic sliders must be able to follow the virgin curve: neither softer at its start nor slower to slip.
         let mut k_t = self.column(7, position)[0].exp();
         let start = n * self.friction * f_n_slip / delta_t_slip;
@@ -328,7 +361,7 @@ impl ContactParameters {
         }
         let (weight, lost) = sliders(backbone);
         Virgin {
-            point: VirginPoint { a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent },
+            point: VirginPoint { a: contact_radius, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent },
             slope: f_n0 * log_f_slope / (self.log_step * h),
             gamma,
             depth: gamma * f_n0 / (2.0 * self.effective_modulus * a),

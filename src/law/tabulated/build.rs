@@ -4,13 +4,13 @@ use std::path::Path;
 
 use super::measure::{Measured, measured};
 use super::spline::{Spline, smooth};
-use super::{Curves, DepthErrors, FORMAT, Level, PLANE, Tabulated, VERSION, columns_of, level_of};
+use super::{BACKBONE, Curves, DepthErrors, FORMAT, Level, PLANE, Tabulated, VERSION, columns_of, level_of};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
 use crate::law::LawError;
-use crate::law::contact::POINTS;
 use crate::law::contact::path::drive;
+use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
 use crate::law::variables::{Body, yield_lambda};
 
@@ -26,6 +26,8 @@ const RATIO: f64 = 2.2;
 const FEWEST: usize = 5;
 /// The curves of the shear end at so many times the displacement at which F_T/F_N is 0.99 mu.
 const LENGTH: f64 = 2.0;
+/// Share of F_N that the release at the end leaves.
+const LEFT: f64 = 0.5;
 /// F_T/F_N there over mu.
 const NEARLY_SLIPPING: f64 = 0.99;
 /// A depth nearer than this share of its size to first yield needs no Hertz contact below it.
@@ -81,7 +83,7 @@ fn first_yield(body: &Body) -> Option<f64> {
     (!body.is_elastic()).then_some(a * a)
 }
 
-/// The case of the study at one of its depths: pressed, and sheared to full slip.
+/// The case of the study at one of its depths: pressed, sheared to full slip and back, and released by half.
 pub fn case_of(case: &Case, elements: usize) -> Case {
     let mut case = case.clone();
     case.mesh.elements_per_contact_radius = elements;
@@ -91,8 +93,10 @@ pub fn case_of(case: &Case, elements: usize) -> Case {
     case.output.plots = false;
     case.path = vec![Segment::Indentation { indentation: 0.01 * case.sphere.radius }];
     if case.contact.friction != Friction::Coefficient(0.0) {
-        case.path.push(Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation });
+        let shear = |shear| Segment::Shear { shear, hold: Hold::Indentation };
+        case.path.extend([shear(ShearTarget::FullSlip), shear(ShearTarget::Displacement(0.0))]);
     }
+    case.path.push(Segment::Release { share: LEFT });
     case
 }
 
@@ -105,8 +109,7 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     let (all, missing) = measured(dir)?;
     let is = |h: f64, wanted: f64| (h / wanted - 1.0).abs() < 1e-6;
     let all: Vec<Measured> = all.into_iter().filter(|one| wanted.iter().any(|&h| is(one.h, h))).collect();
-    let even: Vec<Measured> =
-        all.iter().filter(|one| wanted.iter().step_by(2).any(|&h| is(one.h, h))).cloned().collect();
+    let even: Vec<Measured> = all.iter().filter(|one| wanted.iter().step_by(2).any(|&h| is(one.h, h))).cloned().collect();
     if even.len() < 4 {
         let reason = missing.first().map_or_else(String::new, |(id, reason)| format!("; {id} ended with: {reason}"));
         return Err(LawError::TooFewDepths { path: dir.to_owned(), done: all.len(), of: wanted.len(), reason });
@@ -121,7 +124,7 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     Ok(Built { table, coarse, measured: all, missing })
 }
 
-fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
+pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
     let scaled = case_of(&case.scaled(), elements);
     let body = Body::from_case(&scaled)?;
     let friction = match scaled.contact.friction {
@@ -170,7 +173,8 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
         let elastic = hertzian(sphere, friction, one.h);
         let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
         let delta_t_slip = 1.5 * friction.max(1e-6) * one.f_n0 / mindlin * LENGTH * NEARLY_MINDLIN;
-        return Level { f_n0: one.f_n0, a0: one.a0, delta_t_slip, k_t0: mindlin, ..elastic };
+        let unloading_radius = unloading_radius(sphere, one);
+        return Level { f_n0: one.f_n0, a0: one.a0, delta_t_slip, unloading_radius, k_t: mindlin, ..elastic };
     }
     let slipping = one.curve.iter().position(|point| point.f_t >= NEARLY_SLIPPING * friction * point.f_n);
     let at_99 = match slipping {
@@ -194,26 +198,74 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
     let (f_n_slip, lost) = (f_n(1.0).min(one.f_n0), one.f_n0 - f_n(1.0));
     // Of a loss within the tolerance of a step there is no shape.
     let shape = |x: f64| if lost > 1e-3 * one.f_n0 { ((one.f_n0 - f_n(x)) / lost).clamp(0.0, 1.0) } else { x };
-    let first = one.curve[1];
+    let [k_t, backbone] = reversal(sphere, friction, one);
     Level {
         h: one.h,
         f_n0: one.f_n0,
         a0: one.a0,
         slip_share: f_n_slip / one.f_n0,
         delta_t_slip: end,
-        k_t0: initial_stiffness(&one.curve).unwrap_or(first.f_t / first.delta_t),
+        unloading_radius: unloading_radius(sphere, one),
+        k_t,
+        backbone,
         tangential: points().map(|x| f_t(x) / (friction * f_n_slip)).collect(),
         normal: points().map(shape).collect(),
     }
 }
 
-/// The secants to the first two points, extrapolated to no displacement, as in summary.json.
-fn initial_stiffness(curve: &[crate::law::data::Point]) -> Option<f64> {
-    let [_, first, second, ..] = curve else { return None };
-    let secant = |point: &crate::law::data::Point| point.f_t / point.delta_t;
-    let fall = (secant(first) - secant(second)) / (second.delta_t - first.delta_t);
-    Some(secant(first) + fall * first.delta_t)
+/// k_T and the exponent b with which Masing's rule, F_T = F - 2 F_s [1 - (1 - k_T delta/(2 b F_s))^b], is nearest to the simulated reversal, F and F_s = mu F_N
+/// being those where it begins.
+fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
+    let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
+    let Some(start) = one.back.first().filter(|_| one.back.len() > 4) else { return [mindlin, 1.5] };
+    let slip = friction * start.f_n;
+    // Beyond, what it loses of F_N shows.
+    let rows: Vec<[f64; 2]> = one
+        .back
+        .iter()
+        .skip(1)
+        .map(|point| [start.delta_t - point.delta_t, start.f_t - point.f_t])
+        .take_while(|row| row[1] < REVERSED * slip)
+        .collect();
+    let misfit = |k: f64, b: f64| -> f64 {
+        let fall = |d: f64| 2.0 * slip * (1.0 - (1.0 - (k * d / (2.0 * b * slip)).min(1.0)).powf(b));
+        rows.iter().map(|row| (fall(row[0]) - row[1]).powi(2)).sum()
+    };
+    let mut best = [f64::INFINITY, mindlin, 1.5];
+    for i in 0..=40 {
+        let b = BACKBONE[0] + (1.5 - BACKBONE[0]) * f64::from(i) / 40.0;
+        for j in 0..=120 {
+            let k = mindlin * (0.4 + 0.01 * f64::from(j));
+            let found = misfit(k, b);
+            if found < best[0] {
+                best = [found, k, b];
+            }
+        }
+    }
+    [best[1], 1.0 + AGAIN * (best[2] - 1.0)]
 }
+
+/// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from the first force F of the release to the last.
+fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
+    let (Some(from), Some(to)) = (one.release.first(), one.release.last()) else { return one.a0 };
+    let way = from[0] - to[0];
+    if !(way > 0.0 && from[1] > to[1] && to[1] > 0.0) {
+        return one.a0;
+    }
+    let mut a = one.a0;
+    for _ in 0..50 {
+        let gamma = unloading_exponent(sphere.radius, sphere.effective_modulus(), a, one.f_n0);
+        let depth = way / (1.0 - (to[1] / from[1]).powf(1.0 / gamma));
+        a = gamma * from[1] / (2.0 * sphere.effective_modulus() * depth);
+    }
+    a
+}
+
+/// Share of the exponent's excess over 1 that a reversal has which is not the first: then it turns more sharply. Between that of the first and those after it,
+/// which a contact that goes to and fro has.
+const AGAIN: f64 = 0.65;
+/// Fall of F_T over mu F_N up to which a reversal is fitted: to nine tenths of the way to slip on the other side.
+const REVERSED: f64 = 1.9;
 
 /// Share of Mindlin's slip displacement at which F_T/F_N is 0.99 mu: (1 - y)^(3/2) = 0.01.
 const NEARLY_MINDLIN: f64 = 0.953_584_1;
@@ -230,7 +282,9 @@ fn hertzian(sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
         a0: contact.contact_radius,
         slip_share: 1.0,
         delta_t_slip: end,
-        k_t0: cattaneo_mindlin::initial_stiffness(sphere, contact.contact_radius),
+        unloading_radius: contact.contact_radius,
+        k_t: cattaneo_mindlin::initial_stiffness(sphere, contact.contact_radius),
+        backbone: 1.5,
         tangential: points().map(share).collect(),
         normal: points().collect(),
     }
@@ -247,10 +301,7 @@ fn errors(table: &Tabulated, one: &Measured) -> Result<DepthErrors, LawError> {
     let mut sums = [0.0f64; 2];
     let mut most = [0.0f64; 2];
     for (ours, point) in forces.iter().zip(&one.curve) {
-        let errors = [
-            if peak > 0.0 { (ours[1] - point.f_t).abs() / peak } else { 0.0 },
-            (ours[0] - point.f_n).abs() / one.f_n0,
-        ];
+        let errors = [if peak > 0.0 { (ours[1] - point.f_t).abs() / peak } else { 0.0 }, (ours[0] - point.f_n).abs() / one.f_n0];
         for i in 0..2 {
             sums[i] += errors[i] * errors[i];
             most[i] = most[i].max(errors[i]);

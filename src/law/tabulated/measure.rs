@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::case::Case;
+use crate::case::{Case, Segment};
 use crate::law::LawError;
 use crate::law::data::Point;
 use crate::law::table::StudyTable;
@@ -19,6 +19,10 @@ pub struct Measured {
     pub a0: f64,
     /// The shear from its start on, as sizes; the start alone without friction.
     pub curve: Vec<Point>,
+    /// The shear back, from the end of the first on; empty without friction.
+    pub back: Vec<Point>,
+    /// (h, F_N) of the release at the end, from its start on.
+    pub release: Vec<[f64; 2]>,
 }
 
 impl Measured {
@@ -31,12 +35,18 @@ impl Measured {
         let (radius, force) = (case.sphere.radius, case.material.youngs_modulus * case.sphere.radius * case.sphere.radius);
         let start = history.iter().rfind(|row| row.segment == 0)?;
         let mut curve = vec![Point { delta_t: 0.0, f_t: 0.0, f_n: start.f_n / force }];
-        curve.extend(history.iter().filter(|row| row.segment == 1).map(|row| Point {
-            delta_t: row.delta_t / radius,
-            f_t: row.f_t / force,
-            f_n: row.f_n / force,
-        }));
-        Some(Self { h: start.h / radius, f_n0: start.f_n / force, a0: start.a / radius, curve })
+        let shears = matches!(case.path.get(1), Some(Segment::Shear { .. }));
+        let point = |row: &StepRecord| Point { delta_t: row.delta_t / radius, f_t: row.f_t / force, f_n: row.f_n / force };
+        let of = |segment: usize| history.iter().filter(move |row| row.segment == segment);
+        let mut back = Vec::new();
+        if shears {
+            curve.extend(of(1).map(point));
+            back.extend(of(1).next_back().into_iter().chain(of(2)).map(point));
+        }
+        let last = if shears { 3 } else { 1 };
+        let release = history.iter().rfind(|row| row.segment + 1 == last).into_iter().chain(of(last));
+        let release = release.map(|row| [row.h / radius, row.f_n / force]).collect();
+        Some(Self { h: start.h / radius, f_n0: start.f_n / force, a0: start.a / radius, curve, back, release })
     }
 }
 

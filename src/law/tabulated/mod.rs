@@ -48,9 +48,13 @@ pub struct Level {
     pub slip_share: f64,
     /// Displacement at which the curves of the shear end, delta_T at x = 1: twice that at which F_T/F_N is 0.99 mu.
     pub delta_t_slip: f64,
-    /// Initial tangential stiffness k_T0.
-    #[serde(rename = "k_T0")]
-    pub k_t0: f64,
+    /// Radius with which 2 E* a is the stiffness of an unloading; that of the contact in Hertz's.
+    pub unloading_radius: f64,
+    /// Tangential stiffness k_T at the start of a reversal.
+    #[serde(rename = "k_T")]
+    pub k_t: f64,
+    /// Exponent of the curve on reversal: 3/2 in Cattaneo and Mindlin's contact, near 1 where it turns sharply.
+    pub backbone: f64,
     /// F_T over mu times the normal force at full slip, at x = (j/24)^2, j = 1 and on.
     pub tangential: Vec<f64>,
     /// What F_N has lost of what it loses, likewise.
@@ -106,6 +110,10 @@ pub struct Tabulated {
     pub errors: Vec<DepthErrors>,
 }
 
+/// Share of mu F_N up to which a curve goes.
+const WITHIN: f64 = 1.0 - 1e-4;
+/// Least and greatest exponent of a backbone.
+const BACKBONE: [f64; 2] = [1.02, 1.6];
 /// Relative difference up to which two materials are the same one in other units.
 const SAME: f64 = 1e-9;
 
@@ -153,7 +161,10 @@ impl Tabulated {
 
     fn check(&self) -> Result<(), String> {
         if self.body != PLANE {
-            return Err(format!("is a tabulated law for the body {:?}, and this program has the one for a \"{PLANE}\"", self.body));
+            return Err(format!(
+                "is a tabulated law for the body {:?}, and this program has the one for a \"{PLANE}\"",
+                self.body
+            ));
         }
         let case = self.case()?;
         if !matches!(case.contact.friction, Friction::Coefficient(_)) {
@@ -163,7 +174,16 @@ impl Tabulated {
             return Err("has fewer than three levels, or they do not increase".to_owned());
         }
         for level in &self.levels {
-            let numbers = [level.h, level.f_n0, level.a0, level.slip_share, level.delta_t_slip, level.k_t0];
+            let numbers = [
+                level.h,
+                level.f_n0,
+                level.a0,
+                level.slip_share,
+                level.delta_t_slip,
+                level.unloading_radius,
+                level.k_t,
+                level.backbone - 1.0,
+            ];
             let shapes = level.tangential.iter().chain(&level.normal);
             let complete = level.tangential.len() == POINTS && level.normal.len() == POINTS;
             if !complete || !numbers.iter().all(|x| *x > 0.0 && x.is_finite()) || !shapes.clone().all(|x| x.is_finite()) {
@@ -226,38 +246,44 @@ impl Tabulated {
     /// # Errors
     /// [`LawError::Contact`] where a number is none.
     pub fn contact_parameters(&self, radius: f64, youngs_modulus: f64) -> Result<ContactParameters, LawError> {
+        Ok(self.unit_parameters()?.scaled(radius, youngs_modulus))
+    }
+
+    /// Those of a sphere with R = 1 and E = 1, from which all others follow.
+    ///
+    /// # Errors
+    /// [`LawError::Contact`] where a number is none.
+    pub fn unit_parameters(&self) -> Result<ContactParameters, LawError> {
         let nu = self.material()?.poissons_ratio;
         let curves = Curves::new(&self.levels);
         let mu = self.friction();
-        let force = youngs_modulus * radius * radius;
+        let level_at = |h: f64| curves.at(h.clamp(self.range.from, self.range.to));
         let contact = |h: f64| {
-            let level = curves.at((h / radius).clamp(self.range.from, self.range.to));
-            let steepest = steepest(&level.tangential);
-            let f_n0 = level.f_n0 * force;
+            let level = level_at(h);
             let law = Parameters {
-                f_n0,
-                f_n_slip: level.slip_share * f_n0,
-                delta_t_slip: level.delta_t_slip * radius,
-                k_t0: level.k_t0 * youngs_modulus * radius,
-                n: steepest,
+                f_n0: level.f_n0,
+                f_n_slip: level.slip_share * level.f_n0,
+                delta_t_slip: level.delta_t_slip,
+                k_t0: level.k_t,
+                n: steepest(&level.tangential),
+                // Taken by the contact radius, below.
                 m_exponent: 1.0,
-                n_exponent: 1.0,
+                n_exponent: level.backbone,
             };
-            Axial { a: level.a0 * radius, k_t: law.k_t0, law }
+            Axial { a: level.unloading_radius, k_t: level.k_t, law }
         };
-        let sphere = ElasticSphere { radius, youngs_modulus, poissons_ratio: nu };
-        let range = [self.range.from * radius, self.range.to * radius];
+        let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: nu };
+        let range = [self.range.from, self.range.to];
         let curve = NormalCurve::PowerOfComplement;
-        let parameters = ContactParameters::tabulate(radius, sphere.effective_modulus(), mu, curve, range, contact)?;
+        let parameters = ContactParameters::tabulate(1.0, sphere.effective_modulus(), mu, curve, range, contact)?;
         let mut shapes: [Shapes; LEVELS] = [[[0.0; POINTS]; 2]; LEVELS];
         for (i, shape) in shapes.iter_mut().enumerate() {
             let position = i as f64 * (KNOTS as f64 - 1.0) / (LEVELS as f64 - 1.0);
-            let h = (parameters.log_first + position * parameters.log_step).exp() / radius;
-            let level = curves.at(h.clamp(self.range.from, self.range.to));
+            let level = level_at((parameters.log_first + position * parameters.log_step).exp());
             shape[0].copy_from_slice(&level.tangential);
             shape[1].copy_from_slice(&level.normal);
         }
-        Ok(parameters.with_shapes(shapes))
+        Ok(parameters.with_shapes(shapes, |h| level_at(h).a0))
     }
 
     /// A case of its material and friction that is pressed to its end.
@@ -305,7 +331,7 @@ struct Curves {
 }
 
 /// Columns of a level before its shapes.
-const NUMBERS: usize = 5;
+const NUMBERS: usize = 7;
 
 /// A level as columns that hardly bend over ln h.
 fn columns_of(level: &Level) -> Vec<f64> {
@@ -315,7 +341,9 @@ fn columns_of(level: &Level) -> Vec<f64> {
         level.a0.ln() - 0.5 * ln_h,
         level.slip_share,
         level.delta_t_slip.ln() - ln_h,
-        level.k_t0.ln() - 0.5 * ln_h,
+        level.unloading_radius.ln() - 0.5 * ln_h,
+        level.k_t.ln() - 0.5 * ln_h,
+        level.backbone,
     ];
     columns.extend(level.tangential.iter().chain(&level.normal));
     columns
@@ -331,14 +359,22 @@ fn level_of(h: f64, columns: &[f64]) -> Level {
         fallen = value.clamp(fallen, 1.0);
         *value = fallen;
     }
+    let slip_share = columns[2].min(1.0);
+    let mut tangential = columns[NUMBERS..NUMBERS + POINTS].to_vec();
+    // Where everything slips before F_N has fallen, F_T is all that friction gives: a curve beyond it would never be reached, and F_N fall no further.
+    for (f_t, lost) in tangential.iter_mut().zip(&normal) {
+        *f_t = f_t.min(WITHIN * (1.0 - (1.0 - slip_share) * lost) / slip_share);
+    }
     Level {
         h,
         f_n0: (columns[0] + 1.5 * ln_h).exp(),
         a0: (columns[1] + 0.5 * ln_h).exp(),
-        slip_share: columns[2].min(1.0),
+        slip_share,
         delta_t_slip: (columns[3] + ln_h).exp(),
-        k_t0: (columns[4] + 0.5 * ln_h).exp(),
-        tangential: columns[NUMBERS..NUMBERS + POINTS].to_vec(),
+        unloading_radius: (columns[4] + 0.5 * ln_h).exp(),
+        k_t: (columns[5] + 0.5 * ln_h).exp(),
+        backbone: columns[6].clamp(BACKBONE[0], BACKBONE[1]),
+        tangential,
         normal,
     }
 }

@@ -26,14 +26,23 @@ pub fn picture(built: &Built) -> Result<Picture, LawError> {
 }
 
 fn normal(built: &Built) -> Result<Chart, LawError> {
-    let sphere =
-        ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: built.table.material()?.poissons_ratio };
+    let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: built.table.material()?.poissons_ratio };
     let force = |h: f64, f_n0: f64| f_n0 / hertz::force(&sphere, h);
     let area = |h: f64, a0: f64| a0 * a0 / h;
     let levels: Vec<Level> = built.curve(150);
     let series = vec![
-        Series::marks("F_N0 / Hertz", BLUE, Mark::Dot, built.measured.iter().map(|one| (one.h, force(one.h, one.f_n0))).collect()),
-        Series::marks("a_0² / (R h)", VERMILION, Mark::Ring, built.measured.iter().map(|one| (one.h, area(one.h, one.a0))).collect()),
+        Series::marks(
+            "F_N0 / Hertz",
+            BLUE,
+            Mark::Dot,
+            built.measured.iter().map(|one| (one.h, force(one.h, one.f_n0))).collect(),
+        ),
+        Series::marks(
+            "a_0² / (R h)",
+            VERMILION,
+            Mark::Ring,
+            built.measured.iter().map(|one| (one.h, area(one.h, one.a0))).collect(),
+        ),
         Series::solid("", BLUE, levels.iter().map(|level| (level.h, force(level.h, level.f_n0))).collect()),
         Series::solid("", VERMILION, levels.iter().map(|level| (level.h, area(level.h, level.a0))).collect()),
     ];
