@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::measure::{Measured, measured};
+use super::measure::{Measured, Missing, measured};
 use super::spline::{Spline, smooth};
 use super::{BACKBONE, Curves, DepthErrors, FORMAT, Level, PLANE, Tabulated, VERSION, columns_of, level_of};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
@@ -44,15 +44,6 @@ pub struct Built {
     pub(super) measured: Vec<Measured>,
     /// Depths that were not reached.
     pub missing: Vec<Missing>,
-}
-
-/// A depth that was not reached.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Missing {
-    /// The case in the study.
-    pub id: String,
-    /// Why.
-    pub reason: String,
 }
 
 /// The depths, over R, that a table up to the depth of `case` needs: every other one, the first and the last among them, makes it, and those between check it.
@@ -111,7 +102,7 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     let all: Vec<Measured> = all.into_iter().filter(|one| wanted.iter().any(|&h| is(one.h, h))).collect();
     let even: Vec<Measured> = all.iter().filter(|one| wanted.iter().step_by(2).any(|&h| is(one.h, h))).cloned().collect();
     if even.len() < 4 {
-        let reason = missing.first().map_or_else(String::new, |(id, reason)| format!("; {id} ended with: {reason}"));
+        let reason = missing.first().map_or_else(String::new, |Missing { id, reason }| format!("; {id} ended with: {reason}"));
         return Err(LawError::TooFewDepths { path: dir.to_owned(), done: all.len(), of: wanted.len(), reason });
     }
     let mut coarse = table(case, &even, elements)?;
@@ -120,7 +111,6 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     }
     let mut table = table(case, &all, elements)?;
     table.errors.clone_from(&coarse.errors);
-    let missing = missing.into_iter().map(|(id, reason)| Missing { id, reason }).collect();
     Ok(Built { table, coarse, measured: all, missing })
 }
 

@@ -8,6 +8,15 @@ use crate::law::data::Point;
 use crate::law::table::StudyTable;
 use crate::output::{OutputDirectory, StepRecord, read_history};
 
+/// A depth that was not reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// The case in the study.
+    pub id: String,
+    /// Why.
+    pub reason: String,
+}
+
 /// One depth, pressed and sheared; lengths over R, forces over E R^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
@@ -54,18 +63,18 @@ impl Measured {
 ///
 /// # Errors
 /// No study there, or a file that cannot be read.
-pub fn measured(dir: &Path) -> Result<(Vec<Measured>, Vec<(String, String)>), LawError> {
+pub fn measured(dir: &Path) -> Result<(Vec<Measured>, Vec<Missing>), LawError> {
     let (mut all, mut missing) = (Vec::new(), Vec::new());
     for row in StudyTable::read(&dir.join("study.csv"))?.rows {
         if !row.is_done() {
-            missing.push((row.id, row.status));
+            missing.push(Missing { id: row.id, reason: row.status });
             continue;
         }
         let directory = OutputDirectory::existing(dir.join(&row.directory));
         let case = Case::load(&directory.case(), &[])?;
         match Measured::of(&case, &read_history(&directory.history())?) {
             Some(one) => all.push(one),
-            None => missing.push((row.id, "without a step".to_owned())),
+            None => missing.push(Missing { id: row.id, reason: "without a step".to_owned() }),
         }
     }
     all.sort_by(|a, b| a.h.total_cmp(&b.h));

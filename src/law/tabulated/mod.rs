@@ -23,7 +23,8 @@ use crate::bounded;
 use crate::case::{self, Case, Friction};
 use crate::output::write_atomically;
 
-pub use build::{Built, Missing, build, case_of, depths};
+pub use build::{Built, build, case_of, depths};
+pub use measure::Missing;
 pub use picture::picture;
 
 /// The first key of a table, by which it is recognised.

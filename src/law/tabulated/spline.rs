@@ -130,7 +130,7 @@ mod tests {
         let bend = |x: f64| (0.25 * x).sin();
         let ripple = |i: usize| 0.01 * if i * i % 7 < 3 { 1.0 } else { -1.0 };
         let y: Vec<f64> = x.iter().enumerate().map(|(i, &x)| bend(x) + ripple(i)).collect();
-        let smoothed = &smooth(&x, &[y.clone()])[0];
+        let smoothed = &smooth(&x, std::slice::from_ref(&y))[0];
         let error = |y: &[f64]| (x.iter().zip(y).map(|(&x, y)| (y - bend(x)).powi(2)).sum::<f64>() / 15.0).sqrt();
         assert!(error(smoothed) < 0.8 * error(&y), "{} of {}", error(smoothed), error(&y));
         let exact: Vec<f64> = x.iter().map(|&x| bend(x)).collect();

@@ -47,7 +47,7 @@ fn depths() -> Vec<f64> {
 }
 
 fn made() -> Tabulated {
-    let ripple = |i: usize| if i % 2 == 0 { 0.004 } else { -0.004 };
+    let ripple = |i: usize| if i.is_multiple_of(2) { 0.004 } else { -0.004 };
     let all: Vec<Measured> = depths().into_iter().enumerate().map(|(i, h)| measured(h, ripple(i))).collect();
     table(&case("law = \"ideal\"\nyield_stress = 400.0"), &all, 8).unwrap()
 }
