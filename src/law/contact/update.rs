@@ -315,9 +315,8 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     let share = if f_t < slip_force { f_t / slip_force } else { 1.0 };
     let soft = 1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0);
     let soft = if soft > 0.0 { soft * soft } else { 0.0 };
-    // At full slip the flow is along the plane. It has to fade there: where f_T is flat, x would leap back from 1 at any press.
-    let sliding = (share * share) * (share * share);
-    let rate = YIELDING * (soft * soft) * (1.0 - sliding * sliding);
+    // Towards full slip the flow is more along the plane. Were it to fade there an oblique press would have two steady states.
+    let rate = YIELDING * (soft * soft) * (1.0 - 0.5 * (share * share));
     let flow = if trial > cap { rate * (trial - cap) / virgin.point.f_n0 } else { 0.0 };
     let most = slip_force * tangential_shape(p, virgin, bound)[0];
     let keep = (-flow).exp() * if most < f_t { most / f_t } else { 1.0 };

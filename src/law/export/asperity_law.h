@@ -887,7 +887,7 @@ static inline void asperity_scale(double deflection[ASPERITY_SLIDERS][2], double
 /* Moves h with delta_T held: the normal force, x to *x, dF_N/dh to *df_n_dh. */
 static inline double asperity_press(
     const asperity_parameters *p, asperity_state *s, const asperity_virgin_curve *v, double h, double *x, double *df_n_dh) {
-    double dh = h - s->h, e = s->approach + dh, trial = v->f_n0, stiffness = v->slope, f_n, elastic, f_t, slip_force, bound, cap, share, soft, sliding, rate, flow, most, rises, falls, gain, along, slope, raised;
+    double dh = h - s->h, e = s->approach + dh, trial = v->f_n0, stiffness = v->slope, f_n, elastic, f_t, slip_force, bound, cap, share, soft, rate, flow, most, rises, falls, gain, along, slope, raised;
     double limit[ASPERITY_SLIDERS], force[2], derivative, keep;
     int grown = h > s->h_max, first = grown && (s->x == 0.0 || !(s->h_max > 0.0)), i;
     if (grown && s->h_max > 0.0) {
@@ -938,8 +938,7 @@ static inline double asperity_press(
     share = f_t < slip_force ? f_t / slip_force : 1.0;
     soft = 1.0 - v->slope * v->depth / (v->gamma * v->f_n0);
     soft = soft > 0.0 ? soft * soft : 0.0;
-    sliding = (share * share) * (share * share);
-    rate = 2.6 * (soft * soft) * (1.0 - sliding * sliding);
+    rate = 2.6 * (soft * soft) * (1.0 - 0.5 * (share * share));
     flow = trial > cap ? rate * (trial - cap) / v->f_n0 : 0.0;
     most = slip_force * asperity_tangential_shape(v, bound, &derivative);
     keep = exp(-flow) * (most < f_t ? most / f_t : 1.0);

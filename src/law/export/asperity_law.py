@@ -735,8 +735,7 @@ def press(p, s, v, h):
     share = f_t / slip_force if f_t < slip_force else 1.0
     soft = 1.0 - v.slope * v.depth / (v.gamma * v.f_n0)
     soft = soft * soft if soft > 0.0 else 0.0
-    sliding = (share * share) * (share * share)
-    rate = 2.6 * (soft * soft) * (1.0 - sliding * sliding)
+    rate = 2.6 * (soft * soft) * (1.0 - 0.5 * (share * share))
     flow = rate * (trial - cap) / v.f_n0 if trial > cap else 0.0
     most = slip_force * tangential_shape(v, bound)[0]
     keep = math.exp(-flow) * (most / f_t if most < f_t else 1.0)
