@@ -385,8 +385,9 @@ fn the_tangents_are_the_derivatives() {
         for dh in [1e-6 * v.depth, -1e-6 * v.depth] {
             let (_, moved) = p.update(&next, at + dh, [0.0; 2]);
             let difference = (moved.f_n - out.f_n) / dh;
-            // That the exponents of the curves change with h is left out of it.
-            assert!((difference / moved.df_n_dh - 1.0).abs() < 1e-2, "way {number}, {dh}: {difference} {}", moved.df_n_dh);
+            // Where a press flows the slope leaves out that the shapes of the curves change with h.
+            let tolerance = if dh > 0.0 && number < 5 { 2e-2 } else { 5e-3 };
+            assert!((difference / moved.df_n_dh - 1.0).abs() < tolerance, "way {number}, {dh}: {difference} {}", moved.df_n_dh);
         }
     }
 }
