@@ -76,12 +76,15 @@ fn deck(case: &Case, problem: &Problem) -> Result<String, Failed> {
     for segment in &case.path {
         match segment {
             Segment::Indentation { indentation } => h = *indentation,
+            Segment::Oblique { indentation, shear } => (h, delta_t) = (*indentation, *shear),
             Segment::Shear { shear: ShearTarget::Displacement(to), hold: Hold::Indentation } => delta_t = *to,
             Segment::Shear { shear: ShearTarget::FullSlip, .. } => {
                 return Err("a deck cannot ask for full slip: give the shear a displacement, as in path.1.shear=0.03".into());
             }
             Segment::Shear { .. } => return Err("a held normal force is not written to decks: hold the indentation".into()),
-            Segment::Release => return Err("a release has no end known in advance: give an indentation to go back to".into()),
+            Segment::Release { .. } => {
+                return Err("a release has no end known in advance: give an indentation to go back to".into());
+            }
         }
         step(&mut text, h, delta_t)?;
     }

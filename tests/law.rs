@@ -104,17 +104,32 @@ fn fit_and_predict_through_the_program() {
     let csv = String::from_utf8_lossy(&within.get_output().stdout).into_owned();
     let rows: Vec<Vec<f64>> =
         csv.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
-    assert!(csv.starts_with("delta_T,F_T,F_N\n") && rows.len() > 50);
-    assert_eq!((rows[0][0], rows[0][1]), (0.0, 0.0));
+    assert!(csv.starts_with("segment,h,delta_T,F_N,F_T\n") && rows.len() > 100);
+    assert_eq!(rows[0], [0.0; 5]);
     let last = rows.last().expect("rows");
-    assert!((last[1] / (0.3 * last[2]) - 1.0).abs() < 1e-9, "full slip: {last:?}");
-    assert!(rows.windows(2).all(|w| w[1][0] > w[0][0] && w[1][1] >= w[0][1] && w[1][2] <= w[0][2]));
+    assert!((last[4] / (0.3 * last[3]) - 1.0).abs() < 1e-6, "full slip: {last:?}");
+    let of = |segment: f64| rows.iter().filter(move |row| row[0] == segment).collect::<Vec<_>>();
+    assert!(of(0.0).windows(2).all(|w| w[1][1] > w[0][1] && w[1][3] > w[0][3] && w[1][4] == 0.0));
+    assert!(of(1.0).windows(2).all(|w| w[1][2] > w[0][2] && w[1][3] <= w[0][3] && w[1][1] == w[0][1]));
+
+    // The rest of what a contact goes through.
+    let path = "path=[{indentation=0.02},{shear=0.001,hold='normal-force'},{release=0.4},{indentation=0.022,shear=-0.001},{release=true}]";
+    let whole = asperity(&["law", "predict", text(&law), text(&case), "--set", path]).code(0);
+    let whole = String::from_utf8_lossy(&whole.get_output().stdout).into_owned();
+    let rows: Vec<Vec<f64>> =
+        whole.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+    let end = |segment: f64| rows.iter().rfind(|row| row[0] == segment).expect("a row").clone();
+    assert!(rows.iter().filter(|row| row[0] == 1.0).all(|row| (row[3] / end(0.0)[3] - 1.0).abs() < 1e-9), "held");
+    assert!((end(2.0)[3] / end(1.0)[3] - 0.4).abs() < 1e-9 && end(2.0)[2] == 0.001, "released: {:?}", end(2.0));
+    assert_eq!((end(3.0)[1], end(3.0)[2]), (0.022, -0.001));
+    assert!(end(3.0)[4] < 0.0 && end(4.0)[3] == 0.0, "{:?} {:?}", end(3.0), end(4.0));
 
     // The other way round, in the same units.
     let back = asperity(&["law", "predict", text(&law), text(&case), "--set", "path.1.shear=-1e-3"]).code(0);
     let back = String::from_utf8_lossy(&back.get_output().stdout).into_owned();
     let end = back.lines().last().expect("rows").to_owned();
-    assert!(end.starts_with("-0.001,-"), "{end}");
+    let cells: Vec<&str> = end.split(',').collect();
+    assert!(cells[2] == "-0.001" && cells[4].starts_with('-'), "{end}");
 
     let outside = asperity(&["law", "predict", text(&law), text(&case), "--set", "contact.friction=0.9"]).code(0);
     let warning = String::from_utf8_lossy(&outside.get_output().stderr).into_owned();
@@ -129,6 +144,7 @@ fn fit_and_predict_through_the_program() {
 
     for (set, told) in [
         ("contact.friction=\"stick\"", "stick"),
+        // A simulated press gives F_N0 and a0 for one shear.
         ("path.1.hold=\"normal-force\"", "normal force"),
         ("path=[{indentation = 0.02}]", "no shear"),
         ("path=[{indentation = 0.02}, {shear = 0.001}, {shear = -0.001}]", "goes on after"),
@@ -137,6 +153,8 @@ fn fit_and_predict_through_the_program() {
         let mut args = vec!["law", "predict", text(&law), text(&case), "--set", set];
         if told == "stick" {
             args.extend(["--set", "path.1.shear=0.01"]);
+        } else {
+            args.push("--press");
         }
         let refused = asperity(&args).code(2);
         let said = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();

@@ -8,13 +8,14 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use asperity::analytical::ElasticSphere;
-use asperity::law::contact::ContactParameters;
-use asperity::law::export::{Language, files, source, vectors};
+use asperity::law::contact::{ContactParameters, POINTS};
+use asperity::law::export::{Language, files, law_files, source, vectors};
 use asperity::law::forms::{Constants, Forms, NormalCurve, SlipForm, Variable};
 use asperity::law::model::{FORMAT, Interval, Law, Provenance, VERSION, Validity};
 use asperity::law::normal::{NormalForm, NormalModel};
+use asperity::law::tabulated::{self, Level, Tabulated};
 use asperity::law::variables::Body;
-use asperity::law::{Axisymmetric, Parameters};
+use asperity::law::{Axisymmetric, LawFile, Parameters};
 use asperity::material::hardening::Hardening;
 
 /// A made-up law of the given forms.
@@ -133,6 +134,106 @@ fn the_header_agrees_as_c99() {
 #[test]
 fn the_header_agrees_as_cpp17() {
     compiled_header_agrees(&["g++", "-std=c++17"], "the_header_agrees_as_cpp17");
+}
+
+/// A made-up table of a hardening law given as TOML.
+fn table(hardening: &str) -> LawFile {
+    let level = |i: i32| {
+        let h = 1e-4 * 1.6f64.powi(i);
+        let plasticity = f64::from(i) / 11.0;
+        let (a0, f_n0) = ((h * (1.0 + plasticity)).sqrt(), 1.4 * h.powf(1.5) * (1.0 - 0.6 * plasticity));
+        let shape = |power: f64| (1..=POINTS).map(move |j| 1.0 - (1.0 - (j as f64 / POINTS as f64).powi(2)).powf(power));
+        let peak = |x: f64| 0.05 * plasticity * x * (1.0 - x);
+        Level {
+            h,
+            f_n0,
+            a0,
+            slip_share: 1.0 - 0.3 * plasticity,
+            delta_t_slip: 0.9 * f_n0 / (1.6 * a0) * (1.0 + plasticity),
+            unloading_radius: 1.1 * a0,
+            k_t: 1.7 * a0,
+            backbone: 1.3,
+            tangential: shape(2.0 + plasticity).map(|f| f + peak(f)).collect(),
+            normal: shape(3.0).collect(),
+        }
+    };
+    let levels: Vec<Level> = (0..12).map(level).collect();
+    LawFile::Table(Box::new(Tabulated {
+        format: tabulated::FORMAT.to_owned(),
+        version: tabulated::VERSION,
+        body: tabulated::PLANE.to_owned(),
+        program: "a test".to_owned(),
+        case: format!(
+            "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1.0\npoissons_ratio = 0.25\n[material.hardening]\n{hardening}\n[contact]\n\
+             friction = 0.4\n[[path]]\nindentation = 0.01\n"
+        ),
+        range: Interval { from: levels[0].h, to: levels[11].h },
+        elements_per_contact_radius: 8,
+        levels,
+        errors: Vec::new(),
+    }))
+}
+
+#[test]
+fn a_table_agrees_in_every_language() {
+    for hardening in [
+        "law = \"elastic\"",
+        "law = \"hollomon\"\ncoefficient = 0.02\nexponent = 5.0",
+        "law = \"voce\"\nyield_stress = 0.002\nsaturation_stress = 0.004\nrate = 10.0",
+        "law = \"table\"\npoints = [[0.0, 0.002], [0.1, 0.003]]",
+    ] {
+        let law = table(hardening);
+        for (compiler, language) in
+            [(Some(["gcc", "-std=c99"]), Language::C), (Some(["g++", "-std=c++17"]), Language::C), (None, Language::Python)]
+        {
+            if !has(compiler.map_or("python3", |compiler| compiler[0]), "a_table_agrees_in_every_language") {
+                continue;
+            }
+            let dir = tempfile::tempdir().unwrap();
+            for file in law_files(&law, language).unwrap() {
+                fs::write(dir.path().join(file.name), file.content).unwrap();
+            }
+            let run = match compiler {
+                Some(compiler) => compile_and_run(dir.path(), &compiler, "asperity_law_vectors.csv"),
+                None => Command::new("python3")
+                    .args(["-W", "error", "asperity_law.py", "asperity_law_vectors.csv"])
+                    .current_dir(dir.path())
+                    .output()
+                    .unwrap(),
+            };
+            assert!(run.status.success(), "{hardening}: {}", text(&run));
+        }
+    }
+}
+
+#[test]
+fn a_table_refuses_another_material_in_every_language() {
+    let law = table("law = \"ideal\"\nyield_stress = 0.002");
+    let dir = tempfile::tempdir().unwrap();
+    let write = |language| {
+        for file in law_files(&law, language).unwrap() {
+            fs::write(dir.path().join(file.name), file.content).unwrap();
+        }
+    };
+    if has("gcc", "a_table_refuses_another_material_in_every_language") {
+        write(Language::C);
+        let program = "#include \"asperity_law.h\"\n#include <stdio.h>\nstatic asperity_parameters p;\nint main(void) {\n\
+            asperity_material m = {100.0, 0.25, ASPERITY_IDEAL, {0.2, 0.0, 0.0}, 0, 0}, soft = m, other = m;\n\
+            soft.hardening_numbers[0] = 0.19; other.poissons_ratio = 0.3;\n\
+            printf(\"%d %d %d %d %d %d\", asperity_setup(&p, &m, 2.0, 0.4), asperity_setup(&p, &soft, 2.0, 0.4),\n\
+            asperity_setup(&p, &other, 2.0, 0.4), asperity_setup(&p, &m, 2.0, 0.3), asperity_setup(&p, &m, 0.0, 0.4),\n\
+            asperity_out_of_range(&soft, 2.0, 0.3, 1.0));\nreturn 0;\n}\n";
+        fs::write(dir.path().join("asperity_law_check.c"), program).unwrap();
+        let run = compile_and_run(dir.path(), &["gcc", "-std=c99"], "");
+        assert_eq!(text(&run), "0 4 4 5 1 194");
+    }
+    if has("python3", "a_table_refuses_another_material_in_every_language") {
+        write(Language::Python);
+        let program = "import asperity_law as law\nfor e, s, mu in ((100.0, 0.2, 0.4), (100.0, 0.19, 0.4), (100.0, 0.2, 0.3)):\n    try:\n        \
+            law.setup(law.Material(e, 0.25, law.IDEAL, (s, 0.0, 0.0)), 2.0, mu)\n        print('made')\n    except ValueError as error:\n        print(error)\n";
+        let run = Command::new("python3").args(["-c", program]).current_dir(dir.path()).output().unwrap();
+        assert_eq!(text(&run), "made\nthe table is of another material\nthe table is of mu = 0.4\n");
+    }
 }
 
 #[test]

@@ -35,6 +35,8 @@ pub fn case_text(seed: u64, index: usize, elements: usize, equal: bool) -> Strin
             Segment::Shear(d, held) => format!("[[path]]\nshear = {:?}\n{}", d * travel, hold(*held)),
             Segment::FullSlip(held) => format!("[[path]]\nshear = \"full-slip\"\n{}", hold(*held)),
             Segment::Release => "[[path]]\nrelease = true\n".to_owned(),
+            Segment::ReleaseTo(share) => format!("[[path]]\nrelease = {share:?}\n"),
+            Segment::Oblique(h, d) => format!("[[path]]\nindentation = {:?}\nshear = {:?}\n", h * radius, d * radius),
         })
         .collect();
     format!(
@@ -53,6 +55,8 @@ enum Segment {
     Shear(f64, bool),
     FullSlip(bool),
     Release,
+    ReleaseTo(f64),
+    Oblique(f64, f64),
 }
 
 struct Draw(ChaCha8Rng);
@@ -107,13 +111,13 @@ fn hardening(draw: &mut Draw, modulus: f64, yield_strain: f64) -> String {
 }
 
 fn path(draw: &mut Draw, h: f64, stick: bool) -> Vec<Segment> {
-    use Segment::{FullSlip, Press, Release, Shear};
+    use Segment::{FullSlip, Oblique, Press, Release, ReleaseTo, Shear};
     let scale = (2.0 * h).sqrt();
     let d = (scale * draw.logarithmic(SHEAR)).min(0.45);
     let held = draw.chance(0.25);
     // What never slips fully is sheared by a length.
     let far = |d: f64, held: bool| if stick { Shear(d, held) } else { FullSlip(held) };
-    match draw.one_of(8) {
+    match draw.one_of(12) {
         0 => vec![Press(h), far(d, false)],
         1 => vec![Press(h), Shear(d, held)],
         2 => vec![Press(h), Shear(d, held), Shear(-d, held)],
@@ -121,6 +125,17 @@ fn path(draw: &mut Draw, h: f64, stick: bool) -> Vec<Segment> {
         4 => vec![Press(h), Release],
         5 => vec![Press(h), Shear(d, held), Release],
         6 => vec![Press(h), far(d, true)],
+        7 => vec![Press(h), ReleaseTo(draw.even([0.1, 0.9])), Shear(d, held), Press(h)],
+        8 => vec![Press(h), Shear(d, false), ReleaseTo(draw.even([0.1, 0.9])), Shear(-d, false)],
+        // Obliquely in, up to 75 degrees off the normal, and out another way.
+        9 => {
+            let [along, back] = [draw.even([-3.7, 3.7]), draw.even([-3.7, 3.7])].map(|slope| (slope * h).clamp(-0.45, 0.45));
+            vec![Oblique(h, along), Oblique(0.0, back)]
+        }
+        10 => {
+            let end = draw.even([0.8, 1.5]) * h;
+            vec![Press(h), Oblique(end, d), Oblique(0.95 * end, -d)]
+        }
         _ => vec![Press(0.6 * h), Shear(d, held), Press(h), Shear(draw.even([-1.0, 1.0]) * d, false)],
     }
 }

@@ -147,7 +147,9 @@ fn describe(case: &Case) -> String {
         .iter()
         .map(|segment| match segment {
             asperity::case::Segment::Indentation { indentation } => format!("h {indentation:.1e}"),
-            asperity::case::Segment::Release => "release".to_owned(),
+            asperity::case::Segment::Release { share: 0.0 } => "release".to_owned(),
+            asperity::case::Segment::Release { share } => format!("release to {share:.2}"),
+            asperity::case::Segment::Oblique { indentation, shear } => format!("h {indentation:.1e} and {shear:.1e}"),
             asperity::case::Segment::Shear { shear, hold } => {
                 let held = if *hold == asperity::case::Hold::NormalForce { " held" } else { "" };
                 match shear {

@@ -17,7 +17,7 @@ const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
 /// elastic and the ideally plastic contact; of an equal pair h is half of it.
 pub fn estimated_elements(case: &Case) -> usize {
     let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
-        Segment::Indentation { indentation } => deepest.max(*indentation),
+        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
         _ => deepest,
     });
     let radius = case.sphere.radius;

@@ -3,7 +3,7 @@
 //! `asperity explain`, `asperity init` and `asperity schema` are made from [`KEYS`]. The tests below
 //! hold it against the parser: a key that one of the two lacks fails them.
 
-use Kind::{Number, Points, Truth, Whole, Word};
+use Kind::{Number, Points, ShareOrTrue, Truth, Whole, Word};
 use Limit::{Above, AtLeast, AtMost, Free};
 use Presence::{Defaults, Optional, Required};
 
@@ -39,6 +39,8 @@ pub enum Kind {
     Whole(u32, u32),
     /// True or false.
     Truth,
+    /// True, or a number between 0 and 1.
+    ShareOrTrue,
     /// One of some words.
     Word(&'static [&'static str]),
     /// Pairs of numbers.
@@ -306,7 +308,12 @@ pub const KEYS: &[Key] = &[
         range: ">= 0 and < 0.3 R; the first one > 0",
         meaning: "press to this indentation h, a total from first touch; a smaller one than the current one unloads to it",
         example: "0.02",
-        ..key("path", "indentation", Number(AtLeast(0.0), Free, &[]), Optional("the segment shears or releases"))
+        ..key(
+            "path",
+            "indentation",
+            Number(AtLeast(0.0), Free, &[]),
+            Optional("the segment shears or releases; with shear beside it both go in proportion"),
+        )
     },
     Key {
         unit: LENGTH,
@@ -322,10 +329,10 @@ pub const KEYS: &[Key] = &[
         ..key("path", "hold", Word(&["indentation", "normal-force"]), Defaults("\"indentation\""))
     },
     Key {
-        range: "true",
-        meaning: "unload until contact is lost",
+        range: "true, or a share between 0 and 1",
+        meaning: "unload until contact is lost, or until F_N has fallen to this share of what it was when the segment began",
         example: "true",
-        ..key("path", "release", Truth, Optional("the segment presses or shears"))
+        ..key("path", "release", ShareOrTrue, Optional("the segment presses or shears"))
     },
 ];
 
@@ -451,6 +458,10 @@ mod tests {
                     assert!(refused(law, key, &format!("{}", i64::from(most) + 1)), "{}", key.dotted());
                 }
                 Truth => assert!(refused(law, key, "1"), "{}", key.dotted()),
+                ShareOrTrue => {
+                    takes("0.5");
+                    assert!(["false", "0.0", "1.0"].iter().all(|value| refused(law, key, value)), "{}", key.dotted());
+                }
                 Word(words) => {
                     if key.name != "law" {
                         words.iter().for_each(|word| takes(&format!("{word:?}")));

@@ -19,8 +19,18 @@ pub enum Segment {
         /// What is constant meanwhile.
         hold: Hold,
     },
-    /// Unload until contact is lost.
-    Release,
+    /// Move the plate to both in a straight line, h and delta_T in proportion: oblique loading and rebound.
+    Oblique {
+        /// Target h >= 0, a length.
+        indentation: f64,
+        /// Target delta_T, a length of either sign.
+        shear: f64,
+    },
+    /// Unload.
+    Release {
+        /// Until F_N has fallen to this share of what it was when the segment began, 0 <= share < 1; with 0 until contact is lost.
+        share: f64,
+    },
 }
 
 /// Where a shear segment ends.
@@ -74,7 +84,7 @@ impl Default for State {
 }
 
 fn read_segment(table: &Reader<'_>, state: &mut State, radius: f64, friction: Friction) -> Result<Segment, CaseError> {
-    const ONE: &str = "one of indentation, shear (with hold, if wanted) and release = true, in each [[path]]";
+    const ONE: &str = "one of indentation, shear (with hold, if wanted), both of them, and release, in each [[path]]";
     table.only(&["indentation", "shear", "hold", "release"])?;
     let (indentation, shear, release) = (table.get("indentation"), table.get("shear"), table.get("release"));
     if let (Some(hold), None) = (table.get("hold"), &shear) {
@@ -93,20 +103,58 @@ fn read_segment(table: &Reader<'_>, state: &mut State, radius: f64, friction: Fr
             }
             Ok(Segment::Shear { shear, hold })
         }
-        (None, None, Some(field)) => {
-            if !field.boolean()? {
-                return Err(field.refuse("is false", ONE));
+        (Some(indentation), Some(shear), None) => {
+            if let Some(hold) = table.get("hold") {
+                return Err(hold.refuse("stands beside indentation and shear, of which none is held", "no hold in this [[path]]"));
             }
-            if !state.in_contact {
-                return Err(field.refuse("releases what is not in contact", "release after a segment that presses"));
-            }
-            *state = State { in_contact: false, indentation: None, shear: state.shear };
-            Ok(Segment::Release)
+            read_oblique(&indentation, &shear, state, radius)
         }
+        (None, None, Some(field)) => read_release(&field, state),
         (None, None, None) => Err(table.refuse("has neither indentation nor shear nor release", ONE)),
-        (Some(_), Some(field), _) => Err(field.refuse("stands beside indentation", ONE)),
         (_, _, Some(field)) => Err(field.refuse("stands beside another target", ONE)),
     }
+}
+
+fn read_release(field: &Field<'_>, state: &mut State) -> Result<Segment, CaseError> {
+    const ALLOWED: &str = "release = true, or the share of F_N that is left, between 0 and 1";
+    let share = if field.truth() == Some(true) {
+        0.0
+    } else if field.truth() == Some(false) {
+        return Err(field.refuse("is false", ALLOWED));
+    } else {
+        field.number(ALLOWED, |share| share > 0.0 && share < 1.0)?
+    };
+    if !state.in_contact {
+        return Err(field.refuse("releases what is not in contact", "release after a segment that presses"));
+    }
+    *state = State { in_contact: share > 0.0, indentation: None, shear: state.shear };
+    Ok(Segment::Release { share })
+}
+
+/// Both targets at once; from where nothing touches too.
+fn read_oblique(h: &Field<'_>, delta_t: &Field<'_>, state: &mut State, radius: f64) -> Result<Segment, CaseError> {
+    if delta_t.text().is_some() {
+        let allowed = "a length: where it ends has to be known";
+        return Err(delta_t.refuse("is a word beside indentation", allowed));
+    }
+    let before = state.shear;
+    let Segment::Indentation { indentation } = read_indentation(h, state, radius)? else {
+        return Err(h.refuse("is no indentation", "a length"));
+    };
+    let shear = displacement(delta_t, radius, "")?;
+    let target = Some(ShearTarget::Displacement(shear));
+    if before == target {
+        return Err(delta_t.refuse("is where the segment begins", "a target other than the current one, or no shear here"));
+    }
+    state.shear = target;
+    Ok(Segment::Oblique { indentation, shear })
+}
+
+/// A displacement along the plane; `or` is what else stands there.
+fn displacement(field: &Field<'_>, radius: f64, or: &str) -> Result<f64, CaseError> {
+    let largest = MAX_SHEAR * radius;
+    let allowed = format!("a length between {:?} and {largest:?} (0.5 radius){or}", -largest);
+    field.number(&allowed, |shear| (shear / radius).abs() < MAX_SHEAR)
 }
 
 fn read_indentation(field: &Field<'_>, state: &mut State, radius: f64) -> Result<Segment, CaseError> {
@@ -140,9 +188,7 @@ fn read_shear(field: &Field<'_>, state: &mut State, radius: f64, friction: Frict
         }
         shear
     } else {
-        let largest = MAX_SHEAR * radius;
-        let allowed = format!("a length between {:?} and {largest:?} (0.5 radius), or \"full-slip\"", -largest);
-        ShearTarget::Displacement(field.number(&allowed, |shear| (shear / radius).abs() < MAX_SHEAR)?)
+        ShearTarget::Displacement(displacement(field, radius, ", or \"full-slip\"")?)
     };
     if state.shear == Some(shear) {
         return Err(field.refuse("is where the segment begins", "a target other than the current one"));

@@ -108,6 +108,14 @@ impl<'d> Field<'d> {
         count.ok_or_else(|| self.refuse(&format!("is {number}"), &allowed))
     }
 
+    /// The truth value, if it is one.
+    pub fn truth(&self) -> Option<bool> {
+        match self.entry.value {
+            Value::Boolean(truth) => Some(truth),
+            _ => None,
+        }
+    }
+
     /// `true` or `false`.
     pub fn boolean(&self) -> Result<bool, CaseError> {
         match self.entry.value {

@@ -13,6 +13,9 @@ impl Case {
             Segment::Shear { shear: ShearTarget::Displacement(delta), hold } => {
                 Segment::Shear { shear: ShearTarget::Displacement(delta / travel), hold }
             }
+            Segment::Oblique { indentation, shear } => {
+                Segment::Oblique { indentation: indentation / travel, shear: shear / travel }
+            }
             unscaled => unscaled,
         };
         Case {

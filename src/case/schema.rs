@@ -109,6 +109,9 @@ fn property(key: &Key) -> Value {
         }
         Kind::Whole(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         Kind::Truth => json!({ "type": "boolean" }),
+        Kind::ShareOrTrue => {
+            json!({ "anyOf": [{ "const": true }, { "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 }] })
+        }
         Kind::Word(words) => json!({ "enum": words }),
         Kind::Points => json!({
             "type": "array",

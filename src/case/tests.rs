@@ -61,7 +61,7 @@ fn settings_replace_append_and_make_tables() {
     assert_eq!(case.output.fields, Fields::None);
     assert_eq!(case.material.hardening, Hardening::Power { yield_stress: 300.0, coefficient: 500.0, exponent: 0.5 });
     let shear = Segment::Shear { shear: ShearTarget::Displacement(3e-3), hold: Hold::NormalForce };
-    assert_eq!(case.path, [Segment::Indentation { indentation: 0.01 }, shear, Segment::Release]);
+    assert_eq!(case.path, [Segment::Indentation { indentation: 0.01 }, shear, Segment::Release { share: 0.0 }]);
     assert_eq!(parse(&case.to_toml(), &[]).expect("it reads back"), case);
 }
 
@@ -191,4 +191,20 @@ fn the_path_may_return_to_where_it_was() {
     ] {
         ideal(&[path]);
     }
+}
+
+#[test]
+fn both_at_once_and_a_share_of_the_force_read_back() {
+    let case = ideal(&["path=[{indentation=0.02,shear=-0.01},{release=0.5},{shear=0.0},{indentation=0.0,shear=0.01}]"]);
+    let expected = [
+        Segment::Oblique { indentation: 0.02, shear: -0.01 },
+        Segment::Release { share: 0.5 },
+        Segment::Shear { shear: ShearTarget::Displacement(0.0), hold: Hold::Indentation },
+        Segment::Oblique { indentation: 0.0, shear: 0.01 },
+    ];
+    assert_eq!(case.path, expected);
+    assert_eq!(parse(&case.to_toml(), &[]).expect("it reads back"), case);
+    // What has a unit is scaled, a share is none.
+    let scaled = ideal(&["sphere.radius=2", "path=[{indentation=0.02,shear=-0.01},{release=0.5}]"]).scaled();
+    assert_eq!(scaled.path, [Segment::Oblique { indentation: 0.01, shear: -0.005 }, Segment::Release { share: 0.5 }]);
 }

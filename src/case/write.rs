@@ -40,7 +40,12 @@ impl Serialize for Segment {
                 map.serialize_entry("shear", shear)?;
                 map.serialize_entry("hold", hold)?;
             }
-            Segment::Release => map.serialize_entry("release", &true)?,
+            Segment::Oblique { indentation, shear } => {
+                map.serialize_entry("indentation", indentation)?;
+                map.serialize_entry("shear", shear)?;
+            }
+            Segment::Release { share } if *share > 0.0 => map.serialize_entry("release", share)?,
+            Segment::Release { .. } => map.serialize_entry("release", &true)?,
         }
         map.end()
     }

@@ -11,13 +11,16 @@ use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 
 use super::input::Input;
+use super::law_check::{CheckArgs, check_law};
+use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print, print_json};
-use crate::law::data::Point;
-use crate::law::export::{Language, files, source};
+use crate::case::Case;
+use crate::law::contact::path::{PathPoint, follow};
+use crate::law::export::{Language, law_files, law_source};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
-use crate::law::{Law, LawError, fit, report};
+use crate::law::{Law, LawError, LawFile, fit, report};
 use crate::output::write_atomically;
 
 /// Fit a contact law to a study, and use it.
@@ -33,8 +36,13 @@ pub struct LawArgs {
 pub enum LawCommand {
     /// Fit a law to a study: writes DIR/law.json and prints the forms that were compared and the errors.
     Fit(FitArgs),
-    /// Predict F_T and F_N over delta_T for a case, without simulating its shear; prints CSV.
+    /// Make the law of one material and one friction as curves in h: simulates depths up to the case's as a study, writes DIR/law.json and prints its errors at
+    /// depths between.
+    Tabulate(TabulateArgs),
+    /// Predict F_N and F_T along the path of a case, without simulating it; prints CSV.
     Predict(PredictArgs),
+    /// Simulate a protocol of paths and print how far the law's contact update is from each.
+    Check(CheckArgs),
     /// Write the law for a DEM code: an incremental contact update as a C header or a Python module, to stdout or with test vectors to a directory.
     Export(ExportArgs),
 }
@@ -57,13 +65,14 @@ pub struct FitArgs {
 /// The arguments of `law predict`.
 #[derive(Clone, Debug, Args)]
 pub struct PredictArgs {
-    /// A law, as `law fit` writes it.
+    /// A law, as `law fit` or `law tabulate` writes it.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The case, `-` for standard input: pressed once, sheared once at constant indentation.
+    /// The case, with any path; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Take F_N0 and a0 from a simulation of the press alone, not from the law's formulas.
+    /// Take F_N0 and a0 from a simulation of the press alone, not from the law's formulas; for a case that is pressed once and sheared once at constant
+    /// indentation.
     #[arg(long)]
     pub press: bool,
     /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
@@ -77,7 +86,7 @@ pub struct PredictArgs {
 /// The arguments of `law export`.
 #[derive(Clone, Debug, Args)]
 pub struct ExportArgs {
-    /// A law, as `law fit` writes it.
+    /// A law, as `law fit` or `law tabulate` writes it.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The language.
@@ -106,7 +115,9 @@ impl ValueEnum for Language {
 pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
     match &args.command {
         LawCommand::Fit(args) => fit_law(args),
+        LawCommand::Tabulate(args) => tabulate(args),
         LawCommand::Predict(args) => predict_case(args),
+        LawCommand::Check(args) => check_law(args),
         LawCommand::Export(args) => export_law(args),
     }
 }
@@ -161,47 +172,69 @@ fn summary(law: &Law) -> String {
 }
 
 fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
-    let law = Law::read(&args.law)?;
+    let law = LawFile::read(&args.law)?;
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
-    let source = if args.press { NormalSource::Press } else { NormalSource::Formulas };
     let in_case = |source: LawError| CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) };
-    let prediction = predict(&law, &case, source).map_err(in_case)?;
-    warn_out_of_range(Path::new(&input.name), &prediction.out_of_range);
+    let (points, out_of_range) =
+        if args.press { pressed(&law, &case, &args.law) } else { followed(&law, &case) }.map_err(in_case)?;
+    warn_out_of_range(Path::new(&input.name), &out_of_range);
     if args.json {
-        print_json(&as_json(&prediction))?;
+        print_json(&as_json(&points, &out_of_range))?;
         return Ok(Outcome::Done);
     }
-    let mut text = String::from("delta_T,F_T,F_N\n");
-    for point in &prediction.curve {
-        let _ = writeln!(text, "{:?},{:?},{:?}", point.delta_t, point.f_t, point.f_n);
+    let mut text = String::from("segment,h,delta_T,F_N,F_T\n");
+    for point in &points {
+        let _ = writeln!(text, "{},{:?},{:?},{:?},{:?}", point.segment, point.h, point.delta_t, point.f_n, point.f_t);
     }
     print(&text)?;
     Ok(Outcome::Done)
 }
 
-fn as_json(prediction: &Prediction) -> Value {
-    let column = |of: fn(&Point) -> f64| prediction.curve.iter().map(of).collect::<Vec<f64>>();
-    let outside = prediction.out_of_range.iter().map(
+fn as_json(points: &[PathPoint], out_of_range: &[OutOfRange]) -> Value {
+    let column = |of: fn(&PathPoint) -> f64| points.iter().map(of).collect::<Vec<f64>>();
+    let outside = out_of_range.iter().map(
         |OutOfRange { quantity, value, range }| json!({ "quantity": quantity, "value": value, "from": range.from, "to": range.to }),
     );
     json!({
-        "curve": { "delta_T": column(|p| p.delta_t), "F_T": column(|p| p.f_t), "F_N": column(|p| p.f_n) },
-        "inputs": prediction.inputs,
-        "parameters": prediction.parameters,
+        "curve": {
+            "segment": points.iter().map(|p| p.segment).collect::<Vec<_>>(),
+            "h": column(|p| p.h),
+            "delta_T": column(|p| p.delta_t),
+            "F_N": column(|p| p.f_n),
+            "F_T": column(|p| p.f_t)
+        },
         "out_of_range": outside.collect::<Vec<_>>(),
     })
 }
 
+/// The whole path with the contact update, and what of its deepest contact is out of the law's range.
+fn followed(law: &LawFile, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
+    let points = follow(&law.contact_parameters(case)?, &case.path);
+    let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
+    let out_of_range = if deepest > 0.0 { law.out_of_range(case, deepest)? } else { Vec::new() };
+    Ok((points, out_of_range))
+}
+
+/// One shear from a simulated press.
+fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
+    let LawFile::Formulas(law) = law else {
+        return Err(LawError::IsTable { path: path.to_owned(), what: "--press" });
+    };
+    let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press)?;
+    let point = |p: &crate::law::data::Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };
+    Ok((curve.iter().map(point).collect(), out_of_range))
+}
+
 fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
-    let law = Law::read(&args.law)?;
+    let law = LawFile::read(&args.law)?;
     let Some(dir) = &args.out else {
-        print(&source(&law, args.format))?;
+        print(&law_source(&law, args.format)?)?;
         return Ok(Outcome::Done);
     };
     let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
     fs::create_dir_all(dir).map_err(failed("be created"))?;
-    for file in files(&law, args.format) {
+    for file in law_files(&law, args.format)? {
         let path = dir.join(file.name);
         write_atomically(&path, |out| out.write_all(file.content.as_bytes()))?;
         print(&format!("{}\n", path.display()))?;

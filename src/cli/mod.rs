@@ -12,6 +12,8 @@ pub mod explain;
 pub mod init;
 pub mod input;
 pub mod law;
+mod law_check;
+mod law_tabulate;
 pub mod options;
 pub mod plot;
 pub mod point;

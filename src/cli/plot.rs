@@ -8,8 +8,8 @@ use clap::Args;
 
 use super::{CliError, Outcome, print};
 use crate::case::Case;
-use crate::law::plots::law_beside_run;
-use crate::law::{Law, LawError};
+use crate::law::plots::{law_beside_run, table_beside_run};
+use crate::law::{LawError, LawFile};
 use crate::output::plots::replot;
 use crate::output::{OutputDirectory, read_history};
 use crate::study::{StudyDirectory, report};
@@ -58,20 +58,31 @@ pub fn plot(args: &PlotArgs) -> Result<Outcome, CliError> {
 fn plot_study(study: &StudyDirectory, law: Option<&Path>) -> Result<Outcome, CliError> {
     let own = study.root().join("law.json");
     let path = law.map(Path::to_owned).or_else(|| own.exists().then_some(own));
-    let law = path.as_deref().map(Law::read).transpose()?;
-    let written = report::write_report(study, law.as_ref())?;
+    let law = path.as_deref().map(LawFile::read).transpose()?;
+    let formulas = match &law {
+        Some(LawFile::Formulas(law)) => Some(law.as_ref()),
+        // The table's own picture is drawn where the table is made; its study is drawn without formulas.
+        Some(LawFile::Table(_)) | None => None,
+    };
+    let written = report::write_report(study, formulas)?;
     tell(&written)
 }
 
 fn plot_run(run: &OutputDirectory, law: Option<&Path>) -> Result<Outcome, CliError> {
-    let law = law.map(Law::read).transpose()?;
+    let law = law.map(LawFile::read).transpose()?;
     let case = Case::load(&run.case(), &[])?;
     let history = read_history(&run.history())?;
     let mut pictures = replot(run, &case, &history)?;
     if let Some(law) = &law {
         let in_case = |source: LawError| CliError::LawCase { file: run.case(), source: Box::new(source) };
-        let (picture, prediction) = law_beside_run(law, &case, &history).map_err(in_case)?;
-        super::law::warn_out_of_range(&run.case(), &prediction.out_of_range);
+        let (picture, out_of_range) = match law {
+            LawFile::Formulas(law) => {
+                law_beside_run(law, &case, &history).map(|(picture, prediction)| (picture, prediction.out_of_range))
+            }
+            LawFile::Table(_) => table_beside_run(law, &case, &history),
+        }
+        .map_err(in_case)?;
+        super::law::warn_out_of_range(&run.case(), &out_of_range);
         pictures.push(picture);
     }
     if pictures.is_empty() {

@@ -147,9 +147,7 @@ fn read_sample(
         _ => return Ok(Err("not pressed once and then sheared")),
     }
     let history = read_history(&directory.history())?;
-    let inputs =
-        SummaryInputs { radius: case.sphere.radius, youngs_modulus: case.material.youngs_modulus, friction: Some(friction) };
-    let summary = Summary::from_history(&history, &inputs);
+    let summary = Summary::from_history(&history, &SummaryInputs::of(&case));
     let (Some(h0), Some(a0), Some(f_n0), Some(k_t0), Some(delta_t_99), Some(_)) =
         (summary.h0, summary.a0, summary.f_n0, summary.k_t0, summary.delta_t_slip, summary.f_n_slip)
     else {

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::case::CaseError;
+use crate::law::contact::ContactError;
 use crate::material::HardeningError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
@@ -72,6 +73,35 @@ pub enum LawError {
         /// What to do.
         remedy: &'static str,
     },
+    /// A case of which a table says nothing.
+    #[error("the table is of another material: {what}. tabulate this one with `asperity law tabulate`, or use a law of formulas")]
+    OtherMaterial {
+        /// What differs.
+        what: String,
+    },
+    /// A table for what takes formulas.
+    #[error("{}: is a tabulated law, and {what} takes formulas. give a law.json that `asperity law fit` wrote", .path.display())]
+    IsTable {
+        /// The file.
+        path: PathBuf,
+        /// What.
+        what: &'static str,
+    },
+    /// Too few depths for a table.
+    #[error("{}: {done} of {of} depths were computed to their end, too few for a table{reason}. run it again with --resume", .path.display())]
+    TooFewDepths {
+        /// The study.
+        path: PathBuf,
+        /// Depths that are there.
+        done: usize,
+        /// Depths that were wanted.
+        of: usize,
+        /// Why another is missing, after a semicolon; or nothing.
+        reason: String,
+    },
+    /// The contact update has no numbers for a material.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
     /// The hardening law of a case.
     #[error(transparent)]
     Hardening(#[from] HardeningError),

@@ -4,10 +4,14 @@
 //! the candidate correlations; `prior` is what a small study may take from a bigger one; `fit` determines their constants, compares them by cross-validation and keeps the best as a [`Law`] (`model`,
 //! `law.json`); `predict` applies it to a case; `contact` is the law as an
 //! incremental update of one contact, and `export` writes that for other programs. `least_squares` and `report` serve them.
+//!
+//! `tabulated` is the law of one material and one friction as curves in h; `file` takes either kind; `check` holds the update against simulated paths.
 
+pub mod check;
 pub mod contact;
 pub mod data;
 pub mod export;
+pub mod file;
 pub mod fit;
 pub mod forms;
 pub mod model;
@@ -17,6 +21,7 @@ pub mod predict;
 pub mod prior;
 pub mod report;
 pub mod table;
+pub mod tabulated;
 pub mod variables;
 
 mod baseline;
@@ -30,4 +35,5 @@ mod own_fit;
 mod tests;
 
 pub use error::LawError;
+pub use file::LawFile;
 pub use model::{Axisymmetric, Law, Parameters};

@@ -2,9 +2,9 @@
 
 use super::LawError;
 use super::data::Point;
-use super::model::{Axisymmetric, Law, MARGIN, OutOfRange, Parameters};
+use super::model::{Axisymmetric, Law, OutOfRange, Parameters};
 use super::normal::NormalState;
-use super::variables::{Body, yield_lambda};
+use super::variables::Body;
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
 use crate::simulation::drive::{Ending, Observer, StepView};
 use crate::simulation::follow::{follow, on_cpu};
@@ -73,23 +73,28 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
         })
         .collect();
     let mut out_of_range = law.out_of_range(&inputs);
-    let (exponent, range) = (body.hardening_exponent(inputs.a), law.validity.hardening_exponent);
-    let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);
-    if yielded && !range.contains(exponent, MARGIN) {
-        out_of_range.push(OutOfRange { quantity: "hardening exponent", value: exponent, range });
-    }
+    out_of_range.extend(law.hardening_out_of_range(&body, &inputs));
     Ok(Prediction { inputs, parameters, curve, out_of_range })
+}
+
+/// Refuses a case with an opponent: laws are of a sphere on a rigid plane.
+///
+/// # Errors
+/// [`LawError::NotCovered`].
+pub fn over_a_plane(case: &Case) -> Result<(), LawError> {
+    match case.opponent {
+        None => Ok(()),
+        Some(_) => Err(LawError::NotCovered {
+            problem: "the case has an [opponent], and laws describe a sphere on a rigid plane",
+            remedy: "leave the table [opponent] out, or simulate the case with `asperity run`",
+        }),
+    }
 }
 
 /// Indentation, target of the shear and mu of a case of the kind that the law describes.
 fn covered(case: &Case) -> Result<(f64, ShearTarget, f64), LawError> {
     let refuse = |problem, remedy| Err(LawError::NotCovered { problem, remedy });
-    if case.opponent.is_some() {
-        return refuse(
-            "the case has an [opponent], and the law describes a sphere on a rigid plane",
-            "leave the table [opponent] out, or simulate the case with `asperity run`",
-        );
-    }
+    over_a_plane(case)?;
     let Friction::Coefficient(friction) = case.contact.friction else {
         return refuse(
             "the case has friction = \"stick\", and the law describes slip",

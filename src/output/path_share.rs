@@ -50,8 +50,10 @@ impl PathShare {
         let part = |from: f64, now: f64, to: f64| if from == to { 1.0 } else { (now - from) / (to - from) };
         match *segment {
             // All but the first steps are equal.
-            Segment::Indentation { indentation } => part(self.start.h, record.h, indentation),
-            Segment::Release => part(self.start.f_n, record.f_n, 0.0),
+            Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => {
+                part(self.start.h, record.h, indentation)
+            }
+            Segment::Release { share } => part(self.start.f_n, record.f_n, share * self.start.f_n),
             Segment::Shear { shear: ShearTarget::Displacement(target), .. } => {
                 part(self.start.delta_t, record.delta_t, target).max(0.0).powf(SHEAR_POWER)
             }
@@ -76,22 +78,26 @@ mod tests {
             shear(ShearTarget::FullSlip),
             shear(ShearTarget::Displacement(-1.0)),
             Segment::Indentation { indentation: 0.03 },
-            Segment::Release,
+            Segment::Release { share: 0.5 },
+            Segment::Release { share: 0.0 },
+            Segment::Oblique { indentation: 0.02, shear: 0.0 },
         ];
         let record = |segment, h, delta_t, f_n| StepRecord { segment, h, delta_t, f_n, ..StepRecord::default() };
         let mut share = PathShare::new(&path);
-        assert_eq!(share.segments(), 5);
+        assert_eq!(share.segments(), 7);
         let mut last = 0.0;
         for (record, expected) in [
-            (record(0, 0.01, 0.0, 5.0), Some(0.05)),
-            (record(0, 0.04, 0.0, 10.0), Some(0.2)),
+            (record(0, 0.01, 0.0, 5.0), Some(0.25 / 7.0)),
+            (record(0, 0.04, 0.0, 10.0), Some(1.0 / 7.0)),
             (record(1, 0.04, 0.1, 10.0), None),
             (record(1, 0.04, 0.5, 10.0), None),
             (record(2, 0.04, 0.2, 10.0), None),
-            (record(2, 0.04, -1.0, 10.0), Some(0.6)),
-            (record(3, 0.03, -1.0, 4.0), Some(0.8)),
-            (record(4, 0.02, -1.0, 2.0), Some(0.9)),
-            (record(4, 0.01, -1.0, 0.0), Some(1.0)),
+            (record(2, 0.04, -1.0, 10.0), Some(3.0 / 7.0)),
+            (record(3, 0.03, -1.0, 4.0), Some(4.0 / 7.0)),
+            (record(4, 0.02, -1.0, 3.0), Some(4.5 / 7.0)),
+            (record(4, 0.02, -1.0, 2.0), Some(5.0 / 7.0)),
+            (record(5, 0.01, -1.0, 0.0), Some(6.0 / 7.0)),
+            (record(6, 0.02, 0.0, 3.0), Some(1.0)),
         ] {
             let now = share.after(&record);
             assert!(now >= last && now <= 1.0, "{now} after {last}");

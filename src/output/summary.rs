@@ -43,7 +43,7 @@ impl std::fmt::Display for Status {
 }
 
 /// What [`Summary::from_history`] has to know beside the history, in the same units.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SummaryInputs {
     /// Radius R.
     pub radius: f64,
@@ -51,6 +51,8 @@ pub struct SummaryInputs {
     pub youngs_modulus: f64,
     /// Coulomb's coefficient mu; `None` for full stick.
     pub friction: Option<f64>,
+    /// Segments of the path in which h and delta_T move together: none of them is a shear.
+    pub oblique: Vec<usize>,
 }
 
 /// The forces over E R^2, the lengths over R, the stiffness over E R.
@@ -73,7 +75,7 @@ pub struct NormalizedResults {
 }
 
 /// A run in some numbers, in the user's units. What does not exist is null. "The shear" is the first one of the path, as far as it goes in one
-/// direction; its numbers are sizes, so that a shear to the left gives the same as one to the right.
+/// direction; its numbers are sizes, so that a shear to the left gives the same as one to the right. Where h and delta_T move together there is no shear.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Summary {
@@ -172,7 +174,7 @@ impl Summary {
             ..Self::default()
         };
         summary.f_n_ripple = super::ripple(history);
-        let (start, shear) = first_shear(history);
+        let (start, shear) = first_shear(history, &inputs.oblique);
         if let Some(start) = start {
             (summary.f_n0, summary.a0, summary.h0) = (Some(start.f_n), Some(start.a), Some(start.h));
         }
@@ -227,14 +229,16 @@ impl Summary {
 
 /// The last record before the first shear and the records of that shear, up to where it stops or turns. Without a shear the record of the
 /// greatest indentation and nothing.
-fn first_shear(history: &[StepRecord]) -> (Option<&StepRecord>, &[StepRecord]) {
-    let begin = history.windows(2).position(|pair| pair[1].delta_t != pair[0].delta_t);
+fn first_shear<'a>(history: &'a [StepRecord], oblique: &[usize]) -> (Option<&'a StepRecord>, &'a [StepRecord]) {
+    let sheared = |pair: &[StepRecord]| pair[1].delta_t != pair[0].delta_t && !oblique.contains(&pair[1].segment);
+    let begin = history.windows(2).position(sheared);
     let Some(begin) = begin else {
         let deepest = history.iter().reduce(|deepest, record| if record.h >= deepest.h { record } else { deepest });
         return (deepest, &[]);
     };
     let direction = (history[begin + 1].delta_t - history[begin].delta_t).signum();
-    let length = history[begin..].windows(2).take_while(|pair| direction * (pair[1].delta_t - pair[0].delta_t) > 0.0).count();
+    let on = |pair: &&[StepRecord]| sheared(pair) && direction * (pair[1].delta_t - pair[0].delta_t) > 0.0;
+    let length = history[begin..].windows(2).take_while(on).count();
     (Some(&history[begin]), &history[begin + 1..=begin + length])
 }
 
@@ -301,7 +305,7 @@ mod tests {
     use std::fs;
 
     const MU: f64 = 0.3;
-    const INPUTS: SummaryInputs = SummaryInputs { radius: 2.0, youngs_modulus: 200e3, friction: Some(MU) };
+    const INPUTS: SummaryInputs = SummaryInputs { radius: 2.0, youngs_modulus: 200e3, friction: Some(MU), oblique: Vec::new() };
 
     fn contact() -> CattaneoMindlin {
         CattaneoMindlin::at_indentation(ElasticSphere { radius: 2.0, youngs_modulus: 200e3, poissons_ratio: 0.3 }, MU, 1e-3)

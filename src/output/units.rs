@@ -3,7 +3,7 @@
 use super::{ContactPoint, ContactStatus, Half, StepRecord};
 use crate::analytical::ElasticSphere;
 use crate::analytical::olsson_larsson::Hardening;
-use crate::case::{self, Case};
+use crate::case::{self, Case, Segment};
 use crate::contact::coulomb::Status;
 use crate::simulation::record;
 
@@ -115,6 +115,7 @@ impl SummaryInputs {
             radius: case.sphere.radius,
             youngs_modulus: case.material.youngs_modulus,
             friction: coefficient(case.contact.friction),
+            oblique: (0..case.path.len()).filter(|&i| matches!(case.path[i], Segment::Oblique { .. })).collect(),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::SimulationError;
 use super::checkpoint::{Committed, Place, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
 use super::footprint::footprint;
-use super::path::{Resolution, ShearSteps, Start, Target, indentation_targets};
+use super::path::{Resolution, ShearSteps, Start, Target, indentation_targets, oblique_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::{Hold, Segment, ShearTarget};
@@ -97,6 +97,8 @@ const SHALLOW: usize = 3;
 const EASY: usize = 6;
 /// Targets are taken in 2^2 parts at most.
 const FINEST: u32 = 2;
+/// A release to a share of F_N asks for the force itself when so many steps are left by the contact's stiffness, which the simulated one exceeds by a fifth at most.
+const LANDING: f64 = 1.25;
 /// F_T has stopped rising when it grows by less than this share over a step.
 const PLATEAU: f64 = 1e-3;
 
@@ -163,8 +165,14 @@ impl<'a> Drive<'a> {
                 None => self.begin_segment(segment),
             };
             let ending = match segment {
-                Segment::Indentation { indentation } => self.indentation(&start, *indentation, observer)?,
-                Segment::Release => self.release(&start, observer)?,
+                Segment::Indentation { indentation } => {
+                    self.reach(&indentation_targets(&start, *indentation, &self.resolution()), observer)?
+                }
+                Segment::Oblique { indentation, shear } => {
+                    self.reach(&oblique_targets(&start, *indentation, *shear, &self.resolution()), observer)?
+                }
+                Segment::Release { share } if *share > 0.0 => self.release_to(&start, *share, observer)?,
+                Segment::Release { .. } => self.release(&start, observer)?,
                 Segment::Shear { shear, hold } => self.shear(&start, *shear, *hold, observer)?,
             };
             observer.segment_end(&mut self.view()).map_err(SimulationError::Observer)?;
@@ -181,7 +189,12 @@ impl<'a> Drive<'a> {
         self.state.record.segment = self.place.segment;
         self.state.last_increment = None;
         let mut start = self.start();
-        if let Segment::Shear { shear, .. } = segment {
+        let target = match segment {
+            Segment::Shear { shear, .. } => Some(*shear),
+            Segment::Oblique { shear, .. } => Some(ShearTarget::Displacement(*shear)),
+            _ => None,
+        };
+        if let Some(shear) = target {
             let direction = match shear {
                 ShearTarget::Displacement(d) => (d - start.delta_t).signum(),
                 // Full slip goes on in the direction of the last shear, forward if there was none.
@@ -216,8 +229,8 @@ impl<'a> Drive<'a> {
         self.problem.resolution
     }
 
-    fn indentation(&mut self, start: &Start, h: f64, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let targets = indentation_targets(start, h, &self.resolution());
+    /// Reaches the targets of a segment one after the other.
+    fn reach(&mut self, targets: &[Target], observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         while let Some(target) = targets.get(self.place.reached) {
             let ending = self.advance(target, observer)?;
             if ending != Ending::Done {
@@ -243,6 +256,32 @@ impl<'a> Drive<'a> {
                 return Ok(ending);
             }
         }
+        Ok(Ending::Done)
+    }
+
+    /// Withdraws the plate until F_N has fallen to a share of what it was: in steps up to the last one, which asks for the force itself.
+    fn release_to(&mut self, start: &Start, share: f64, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        let wanted = share * start.f_n;
+        let step = start.recovery() / 12.0;
+        if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
+            observer.note("release: nothing touches, so there is nothing to release");
+            return Ok(Ending::Done);
+        }
+        self.held_force = Some(0.5 * wanted);
+        // A force that is asked for is met to 5e-5.
+        while self.place.under_way || self.state.record.f_n > wanted * (1.0 + 1e-4) {
+            let StepRecord { h, a, f_n, .. } = self.state.record;
+            let rest = (f_n - wanted) / start.unloading_stiffness(a.max(1e-12));
+            let hold_force = rest <= LANDING * step;
+            let h = h - if hold_force { rest } else { step };
+            let target = Target { h, delta_t: start.delta_t, hold_force, extrapolate: false };
+            let ending = self.advance(&target, observer)?;
+            if ending != Ending::Done {
+                self.held_force = None;
+                return Ok(ending);
+            }
+        }
+        self.held_force = None;
         Ok(Ending::Done)
     }
 
@@ -463,7 +502,10 @@ impl<'a> Drive<'a> {
     fn guess(&self, target: &Target) -> Option<Vec<f64>> {
         let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;
-        let ratio = if last_delta_t != 0.0 {
+        // Where the plate goes both ways it presses, and a press is the harder of the two to guess.
+        let ratio = if last_delta_t != 0.0 && last_h != 0.0 && !target.hold_force {
+            PRESS_EXTRAPOLATION * (target.h - r.h) / last_h
+        } else if last_delta_t != 0.0 {
             (target.delta_t - r.delta_t) / last_delta_t
         } else if last_h != 0.0 {
             PRESS_EXTRAPOLATION * (target.h - r.h) / last_h

@@ -79,6 +79,11 @@ impl Start {
         if self.reversed { 2.0 * scale } else { scale }
     }
 
+    /// Fall of F_N with h at the start of an unloading, 2 E* a.
+    pub fn unloading_stiffness(&self, a: f64) -> f64 {
+        2.0 * self.plane_modulus() * a
+    }
+
     /// Elastic recovery of an unloading, F_N/(2 E* a) times 3/2 (Hertz: h = 3F/(4E*a)).
     pub fn recovery(&self) -> f64 {
         0.75 * self.f_n / (self.plane_modulus() * self.a.max(1e-12))
@@ -132,6 +137,58 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         if let Some(last) = targets.last_mut() {
             last.h = h;
         }
+    }
+    targets
+}
+
+/// Targets of a segment from `start` to `h` and `delta_t` together: at every place no longer than the steps of the press and of the shear alone would be there.
+pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolution) -> Vec<Target> {
+    let rise = h - start.h;
+    let length = (delta_t - start.delta_t).abs();
+    let pressed: Vec<Target> = indentation_targets(start, h, resolution);
+    // Where the segment stands at the end of each step, as shares of it.
+    let mut ends: Vec<[f64; 2]> = pressed.iter().map(|t| [(t.h - start.h) / rise, f64::from(t.extrapolate)]).collect();
+    let sheared: Vec<f64> = if start.a > 0.0 {
+        let steps = ShearSteps::new(start, length, false, resolution);
+        (1..).map(|i| steps.distance(i) / length).take_while(|&share| share < 1.0 - 1e-9).chain([1.0]).collect()
+    } else {
+        // What begins to touch has no slip displacement yet; where all of it slips, steps of a share of its radius do.
+        let longest = LARGEST_SHEAR_STEP * h.max(0.0).sqrt();
+        let count = (length / longest.max(1e-12)).ceil().clamp(1.0, MOST_LATER_STEPS);
+        (1..=count as usize).map(|i| i as f64 / count).collect()
+    };
+    if let Some(last) = ends.last_mut() {
+        last[0] = 1.0;
+    }
+    // Beyond 1.5 recoveries nothing touches any more, and no step is too long.
+    let free = if rise < 0.0 { (1.5 * start.recovery() / -rise).min(1.0) } else { 1.0 };
+    let around = |ends: &mut dyn Iterator<Item = f64>, at: f64| {
+        let mut from = 0.0;
+        for end in ends {
+            if end > at + 1e-9 {
+                return end - from;
+            }
+            from = end;
+        }
+        1.0
+    };
+    let (mut at, mut targets) = (0.0, Vec::new());
+    while at < 1.0 {
+        let press = around(&mut ends.iter().map(|end| end[0]), at);
+        let shear = if at < free - 1e-9 { around(&mut sheared.iter().copied(), at) } else { 1.0 };
+        let step = press.min(shear);
+        // A rest of less than a third of a step goes with it.
+        at = if at + 1.33 * step >= 1.0 { 1.0 } else { at + step };
+        let extrapolate = ends.iter().find(|end| end[0] > at - 1e-9).is_some_and(|end| end[1] > 0.0);
+        targets.push(Target {
+            h: start.h + at * rise,
+            delta_t: start.delta_t + at * (delta_t - start.delta_t),
+            hold_force: false,
+            extrapolate,
+        });
+    }
+    if let Some(last) = targets.last_mut() {
+        (last.h, last.delta_t) = (h, delta_t);
     }
     targets
 }
@@ -222,6 +279,45 @@ mod tests {
         let half = Start { h: 0.01, h_max: 0.01, ..start(0.14, 0.3) };
         let targets = indentation_targets(&half, 0.02, &resolution(24));
         assert!(targets.len() == 14 && targets[0].h < 0.0102 && targets[13].h == 0.02, "{targets:?}");
+    }
+
+    #[test]
+    fn an_oblique_segment_is_cut_as_finely_as_a_press_and_a_shear() {
+        let resolution = Resolution { press_steps: 20, shear_steps: 15 };
+        let first = Start { h: 0.0, h_max: 0.0, f_n: 0.0, ..start(0.0, 0.3) };
+        let later = start(0.2, 0.3);
+        for (from, h, d) in [
+            (first, 0.02, 0.005),
+            (first, 0.02, 0.08),
+            (later, 0.025, 0.001),
+            (later, 0.0201, 0.03),
+            (later, 0.0, 0.02),
+            (later, 0.0199, -0.01),
+            (Start { h: 0.019, delta_t: 0.001, ..later }, 0.03, -0.002),
+        ] {
+            let targets = oblique_targets(&from, h, d, &resolution);
+            let last = targets[targets.len() - 1];
+            assert_eq!((last.h, last.delta_t), (h, d));
+            assert!(targets.len() <= 160, "{h} {d}: {} steps", targets.len());
+            let press = indentation_targets(&from, h, &resolution);
+            let longest = |ends: &[f64], whole: f64| {
+                std::iter::once(ends[0] - from.h)
+                    .chain(ends.windows(2).map(|w| w[1] - w[0]))
+                    .fold(0.0, |most: f64, d| most.max((d / whole).abs()))
+            };
+            let ours: Vec<f64> = targets.iter().map(|t| t.h).collect();
+            let theirs: Vec<f64> = press.iter().map(|t| t.h).collect();
+            assert!(longest(&ours, h - from.h) <= 1.34 * longest(&theirs, h - from.h) + 1e-9, "{h} {d}: {ours:?}");
+            for pair in targets.windows(2) {
+                let slope = (pair[1].delta_t - pair[0].delta_t) * (h - from.h) - (pair[1].h - pair[0].h) * (d - from.delta_t);
+                assert!(slope.abs() < 1e-12, "not in proportion");
+                assert!((pair[1].h - pair[0].h) * (h - from.h) > 0.0);
+            }
+        }
+        // The shear alone bounds the first steps of one that hardly presses.
+        let targets = oblique_targets(&later, 0.0201, 0.03, &resolution);
+        let steps = ShearSteps::new(&later, 0.03, false, &resolution);
+        assert!(targets[0].delta_t <= steps.distance(1) * 1.0001, "{:?}", targets[0]);
     }
 
     #[test]

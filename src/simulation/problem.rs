@@ -50,7 +50,7 @@ const SHEAR_STEPS: usize = 15;
 /// Largest indentation of the path, scaled.
 fn largest_indentation(case: &Case) -> f64 {
     case.path.iter().fold(0.0, |h, s| match s {
-        Segment::Indentation { indentation } => h.max(*indentation),
+        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => h.max(*indentation),
         _ => h,
     })
 }

@@ -18,12 +18,12 @@ fn problem(friction: &str, solver: &str) -> Problem {
         "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\nlaw = \"linear\"\nyield_stress = 400.0\n\
          modulus = 2000.0\n[contact]\nfriction = {friction}\n[mesh]\nelements_per_contact_radius = 4\nfine_zone = 1.5\n[solver]\npress_steps = 4\n\
          shear_steps = 4\n{solver}\n[[path]]\nindentation = 0.015\n[[path]]\nshear = 0.001\nhold = \"normal-force\"\n[[path]]\nshear = -0.0003\n[[path]]\n\
-         indentation = 0.014\n[[path]]\nshear = {end}\n[[path]]\nindentation = 0.016\n[[path]]\nrelease = true\n"
+         indentation = 0.014\n[[path]]\nshear = {end}\n[[path]]\nindentation = 0.016\n[[path]]\nindentation = 0.017\nshear = 0.0\n[[path]]\nrelease = 0.6\n[[path]]\nindentation = 0.0165\nshear = -0.0005\n[[path]]\nrelease = true\n"
     );
     let mut problem = Problem::new(&Case::parse(&text, "case.toml", &[]).unwrap()).unwrap();
     // A case file may not ask for more of what does not touch.
     let shear = Segment::Shear { shear: ShearTarget::Displacement(0.002), hold: Hold::Indentation };
-    problem.case.path.extend([Segment::Release, shear]);
+    problem.case.path.extend([Segment::Release { share: 0.0 }, shear]);
     problem
 }
 
@@ -101,7 +101,7 @@ fn stop_and_go<R: Real>(problem: &Problem) -> Seen {
 fn a_run_that_stops_after_every_attempt_is_the_run_that_never_stops() {
     // So few iterations that steps are bisected, some of them twice.
     let seen = stop_and_go::<f64>(&problem("0.3", "max_iterations = 4"));
-    assert_eq!(seen.ends.len(), 9);
+    assert_eq!(seen.ends.len(), 12);
     let cutbacks: usize = seen.rows.iter().map(|row| row.cutbacks).sum();
     assert!(cutbacks > 3, "{cutbacks}");
     assert!(seen.notes.iter().any(|note| note.starts_with("release: nothing touches")), "{:?}", seen.notes);

@@ -67,12 +67,12 @@ pub fn cost(case: &Case) -> f64 {
     let (mut steps, mut deepest) = (0.0, 0.0f64);
     for segment in &case.path {
         steps += match segment {
-            Segment::Indentation { indentation } => {
+            Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => {
                 deepest = deepest.max(indentation / radius);
                 press_steps(case) as f64
             }
             Segment::Shear { .. } => SHEAR_STEPS,
-            Segment::Release => 12.0,
+            Segment::Release { .. } => 12.0,
         };
     }
     // Of the order of Johnson's Lambda: contact strain over yield strain.

@@ -1,6 +1,6 @@
 //! One increment of one contact. The C and the Python twin have the same functions in the same order and do the same operations.
 
-use super::virgin::{ContactParameters, SLIDERS, Virgin};
+use super::virgin::{BY_NUMBERS, ContactParameters, POINTS, SLIDERS, Virgin};
 
 /// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a file as it is.
 #[repr(C)]
@@ -42,11 +42,57 @@ const AT_CAP: f64 = 1.0 - 1e-9;
 /// Share of a bound up to which a force counts as within it, so that a contact at rest answers with its elastic stiffness.
 const AT_BOUND: f64 = 1.0 + 1e-10;
 
+/// A sheared contact that is pressed on flows; F_T then falls e-fold for each share 1/YIELDING of F_N0 by which its elastic response to the press exceeds its
+/// virgin curve. Of a rigid-plastic contact; one that presses on elastically keeps its F_T (Mindlin & Deresiewicz 1953), and between them it goes with the fourth
+/// power of what the virgin curve is softer by. Of simulated oblique presses and presses of sheared contacts.
+const YIELDING: f64 = 2.6;
+
 /// F_N_slip/F_N0 from which a contact counts as elastic.
 const ELASTIC: f64 = 1.0 - 1e-6;
 
+/// x at point `j` of a shape that is given by numbers.
+fn point_x(j: usize) -> f64 {
+    let share = j as f64 / POINTS as f64;
+    share * share
+}
+
+/// A shape that is given by numbers and its derivative, straight from point to point, 0 <= x <= 1.
+fn given(shape: &[f64; POINTS], x: f64) -> [f64; 2] {
+    if x >= 1.0 {
+        return [shape[POINTS - 1], 0.0];
+    }
+    let mut j = (POINTS as f64 * x.sqrt()) as usize;
+    if j > POINTS - 1 {
+        j = POINTS - 1;
+    }
+    let below = if j == 0 { 0.0 } else { shape[j - 1] };
+    let slope = (shape[j] - below) / (point_x(j + 1) - point_x(j));
+    [below + slope * (x - point_x(j)), slope]
+}
+
+/// The least x at which a shape that is given by numbers has the value `f`, or that of its peak.
+fn given_inverse(shape: &[f64; POINTS], f: f64) -> f64 {
+    if f <= 0.0 {
+        return 0.0;
+    }
+    let (mut below, mut peak, mut place) = (0.0, 0.0, 0.0);
+    for j in 0..POINTS {
+        if shape[j] >= f {
+            return point_x(j) + (f - below) / (shape[j] - below) * (point_x(j + 1) - point_x(j));
+        }
+        below = shape[j];
+        if below > peak {
+            (peak, place) = (below, point_x(j + 1));
+        }
+    }
+    place
+}
+
 /// f_T(x) = 1 - (1 - x)^n and its derivative, 0 <= x <= 1.
-fn tangential_shape(virgin: &Virgin, x: f64) -> [f64; 2] {
+fn tangential_shape(p: &ContactParameters, virgin: &Virgin, x: f64) -> [f64; 2] {
+    if p.form == BY_NUMBERS {
+        return given(&virgin.shapes[0], x);
+    }
     let n = virgin.point.n;
     let rest = 1.0 - x;
     if rest <= 0.0 {
@@ -57,7 +103,10 @@ fn tangential_shape(virgin: &Virgin, x: f64) -> [f64; 2] {
 }
 
 /// The x at which f_T has the value `f`.
-fn tangential_shape_inverse(virgin: &Virgin, f: f64) -> f64 {
+fn tangential_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> f64 {
+    if p.form == BY_NUMBERS {
+        return given_inverse(&virgin.shapes[0], f);
+    }
     if f >= 1.0 { 1.0 } else { 1.0 - (1.0 - f).powf(1.0 / virgin.point.n) }
 }
 
@@ -68,6 +117,9 @@ fn normal_shape(p: &ContactParameters, virgin: &Virgin, x: f64) -> [f64; 2] {
     }
     if x >= 1.0 {
         return [1.0, 0.0];
+    }
+    if p.form == BY_NUMBERS {
+        return given(&virgin.shapes[1], x);
     }
     let (m, n) = (virgin.point.m_exponent, virgin.point.n_exponent);
     if p.form == 0.0 {
@@ -90,6 +142,9 @@ fn normal_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> f64 {
     }
     if f >= 1.0 {
         return 1.0;
+    }
+    if p.form == BY_NUMBERS {
+        return given_inverse(&virgin.shapes[1], f);
     }
     let (m, n) = (virgin.point.m_exponent, virgin.point.n_exponent);
     if p.form == 0.0 { 1.0 - (1.0 - f.powf(1.0 / n)).powf(1.0 / m) } else { (1.0 - (1.0 - f).powf(1.0 / n)).powf(1.0 / m) }
@@ -249,26 +304,36 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [0.0, 0.0]);
     let f_t = length(slider_force(virgin, &state.deflection));
     let slip_force = p.friction * virgin.point.f_n_slip;
-    if f_t <= slip_force * tangential_shape(virgin, elastic)[0] {
+    if f_t <= slip_force * tangential_shape(p, virgin, elastic)[0] {
         return Pressed { f_n, x: elastic, df_n_dh: stiffness };
     }
     if is_elastic(virgin) {
         return Pressed { f_n, x: elastic, df_n_dh: stiffness }; // pressing leaves F_T as it is
     }
-    let bound = tangential_shape_inverse(virgin, f_t / slip_force);
+    let bound = tangential_shape_inverse(p, virgin, f_t / slip_force);
     let cap = normal_cap(p, virgin, bound);
-    let share = slip_force * tangential_shape(virgin, bound)[1] / (virgin.point.k_t * virgin.point.delta_t_slip);
-    let gain = if share < 1.0 { 1.0 - share } else { 0.0 };
-    let raised = cap + gain * (trial - cap);
-    let f_n = if raised < virgin.point.f_n0 { raised } else { virgin.point.f_n0 };
-    let x = mobilisation(p, virgin, f_n);
-    let keep = slip_force * tangential_shape(virgin, x)[0] / f_t;
-    if keep < 1.0 {
-        for q in &mut state.deflection {
-            *q = [keep * q[0], keep * q[1]];
-        }
+    let share = if f_t < slip_force { f_t / slip_force } else { 1.0 };
+    let soft = 1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0);
+    let soft = if soft > 0.0 { soft * soft } else { 0.0 };
+    // Towards full slip the flow is more along the plane. Were it to fade there an oblique press would have two steady states.
+    let rate = YIELDING * (soft * soft) * (1.0 - 0.5 * (share * share));
+    let flow = if trial > cap { rate * (trial - cap) / virgin.point.f_n0 } else { 0.0 };
+    let most = slip_force * tangential_shape(p, virgin, bound)[0];
+    let keep = (-flow).exp() * if most < f_t { most / f_t } else { 1.0 };
+    let x = tangential_shape_inverse(p, virgin, keep * f_t / slip_force);
+    let raised = normal_cap(p, virgin, x);
+    let rises = slip_force * tangential_shape(p, virgin, x)[1];
+    let falls = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1];
+    // What F_N gains for a share of F_T lost, over F_N0; the curve itself grows with h.
+    let gain = if rises > 0.0 { falls * keep * f_t / (virgin.point.f_n0 * rises) } else { 0.0 };
+    let along = virgin.slope * (raised / virgin.point.f_n0 + gain);
+    let slope = along + rate * gain * (stiffness - along);
+    let slope = if raised < f_n && slope < stiffness { slope } else { stiffness };
+    let f_n = if raised < f_n { raised } else { f_n };
+    for q in &mut state.deflection {
+        *q = [keep * q[0], keep * q[1]];
     }
-    Pressed { f_n, x, df_n_dh: gain * stiffness + (1.0 - gain) * virgin.slope }
+    Pressed { f_n, x, df_n_dh: slope }
 }
 
 impl ContactState {
@@ -355,7 +420,7 @@ fn shear(
     out.f_t = slider_force(virgin, &next.deflection);
     out.df_t_ddelta = slider_stiffness(virgin, &before, &limit, increment);
     let slip_force = p.friction * virgin.point.f_n_slip;
-    let bound = slip_force * tangential_shape(virgin, next.x)[0];
+    let bound = slip_force * tangential_shape(p, virgin, next.x)[0];
     let trial = length(out.f_t);
     if next.x >= 1.0 || trial <= AT_BOUND * bound || is_elastic(virgin) {
         return;
@@ -377,7 +442,7 @@ fn shear(
     slide(&mut next.deflection, &limit, increment);
     let held = slider_force(virgin, &next.deflection);
     let stiffness = slider_stiffness(virgin, &before, &limit, increment);
-    let [shape, shape_slope] = tangential_shape(virgin, next.x);
+    let [shape, shape_slope] = tangential_shape(p, virgin, next.x);
     let bound = slip_force * shape;
     let size = length(held);
     out.f_t = held;

@@ -10,6 +10,12 @@ use crate::law::model::Parameters;
 pub const KNOTS: usize = 128;
 /// Number of tabulated quantities.
 pub const COLUMNS: usize = 8;
+/// Points of a shape that is given by numbers, over x = (j/POINTS)^2, j = 1 and on.
+pub const POINTS: usize = 24;
+/// Levels of ln h on which they are given.
+pub const LEVELS: usize = 16;
+/// [`ContactParameters::form`] of shapes that are given by numbers.
+pub const BY_NUMBERS: f64 = 2.0;
 /// Number of sliders that stand for the contact's annuli.
 pub const SLIDERS: usize = 16;
 
@@ -25,15 +31,21 @@ pub struct ContactParameters {
     pub effective_modulus: f64,
     /// Coulomb's coefficient mu.
     pub friction: f64,
-    /// Form of f_N: 0 is \[1 - (1 - x)^M\]^N, 1 is 1 - (1 - x^M)^N.
+    /// Form of f_N: 0 is \[1 - (1 - x)^M\]^N, 1 is 1 - (1 - x^M)^N; 2: f_T and f_N are `shapes`.
     pub form: f64,
     /// ln h of the first knot.
     pub log_first: f64,
     /// Step of ln h from knot to knot.
     pub log_step: f64,
-    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T.
+    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T. With form 2 a is the radius with which 2 E* a is the stiffness of an unloading, M the
+    /// contact radius over it, N the exponent of the sliders' backbone.
     pub table: [[f64; COLUMNS]; KNOTS],
+    /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero otherwise.
+    pub shapes: [Shapes; LEVELS],
 }
+
+/// f_T and f_N at x = (j/POINTS)^2, j = 1 and on.
+pub type Shapes = [[f64; POINTS]; 2];
 
 /// What a pair of materials answers for one indentation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,6 +121,8 @@ pub struct Virgin {
     pub weight: [f64; SLIDERS],
     /// Approach over D at which each slider's annulus loses contact.
     pub lost: [f64; SLIDERS],
+    /// f_T and f_N of form 2.
+    pub shapes: Shapes,
 }
 
 /// gamma from how far the hardness has fallen below Hertz's at the same contact radius: 3/2 while it has not (Hertz), 4/pi at the end (a uniform
@@ -173,9 +187,63 @@ impl ContactParameters {
                 k_t.ln(),
             ];
         }
-        let mut parameters = Self { radius, effective_modulus, friction, form, log_first, log_step, table };
+        let shapes = [[[0.0; POINTS]; 2]; LEVELS];
+        let mut parameters = Self { radius, effective_modulus, friction, form, log_first, log_step, table, shapes };
         parameters.conserve();
         Ok(parameters)
+    }
+
+    /// The same with f_T and f_N given by numbers for every level, the first at the first knot, and with the contact radius that `contact_radius` has for an
+    /// indentation.
+    #[must_use]
+    pub fn with_shapes(self, shapes: [Shapes; LEVELS], contact_radius: impl Fn(f64) -> f64) -> Self {
+        let mut given = Self { form: BY_NUMBERS, shapes, ..self };
+        for (i, row) in given.table.iter_mut().enumerate() {
+            let h = (self.log_first + self.log_step * i as f64).exp();
+            row[5] = contact_radius(h) / row[1].exp();
+        }
+        given
+    }
+
+    /// Those of a sphere with R = 1 and E = 1 for a sphere of this radius and this Young's modulus.
+    #[must_use]
+    pub fn scaled(self, radius: f64, youngs_modulus: f64) -> Self {
+        let length = radius.ln();
+        let force = (youngs_modulus * radius * radius).ln();
+        let stiffness = (youngs_modulus * radius).ln();
+        let mut scaled = Self {
+            radius,
+            effective_modulus: self.effective_modulus * youngs_modulus,
+            log_first: self.log_first + length,
+            ..self
+        };
+        for row in &mut scaled.table {
+            row[0] += force;
+            row[1] += length;
+            row[3] += length;
+            row[7] += stiffness;
+        }
+        scaled
+    }
+
+    /// f_T and f_N at a place between the levels; straight between them.
+    fn shapes_at(&self, position: f64) -> Shapes {
+        let mut shapes = self.shapes[0];
+        if self.form != BY_NUMBERS || position <= 0.0 {
+            return shapes;
+        }
+        let level = position * (LEVELS as f64 - 1.0) / (KNOTS as f64 - 1.0);
+        let last = (LEVELS - 1) as f64;
+        let level = if level < last { level } else { last };
+        let i = if (level as usize) < LEVELS - 2 { level as usize } else { LEVELS - 2 };
+        let u = level - i as f64;
+        for kind in 0..2 {
+            for j in 0..POINTS {
+                let (low, high) = (self.shapes[i][kind][j], self.shapes[i + 1][kind][j]);
+                shapes[kind][j] = low + u * (high - low);
+            }
+        }
+        shapes
     }
 
     /// Widens the contact where the law's F_N0 and a would let a press store more energy than was put in (a fit may be off by that much next to
@@ -275,7 +343,12 @@ impl ContactParameters {
         let n = self.column(4, position)[0];
         let m_exponent = self.column(5, position)[0];
         let n_exponent = self.column(6, position)[0];
-        let backbone = if gamma < n { gamma } else { n };
+        let mut backbone = if gamma < n { gamma } else { n };
+        let mut contact_radius = a;
+        if self.form == BY_NUMBERS {
+            backbone = n_exponent;
+            contact_radius = m_exponent * a;
+        }
         // The elastic sliders must be able to follow the virgin curve: neither softer at its start nor slower to slip.
         let mut k_t = self.column(7, position)[0].exp();
         let start = n * self.friction * f_n_slip / delta_t_slip;
@@ -288,13 +361,14 @@ impl ContactParameters {
         }
         let (weight, lost) = sliders(backbone);
         Virgin {
-            point: VirginPoint { a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent },
+            point: VirginPoint { a: contact_radius, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent },
             slope: f_n0 * log_f_slope / (self.log_step * h),
             gamma,
             depth: gamma * f_n0 / (2.0 * self.effective_modulus * a),
             backbone,
             weight,
             lost,
+            shapes: self.shapes_at(position),
         }
     }
 }

@@ -1,6 +1,6 @@
 /* asperity_law.h: force-displacement law of an elastic-plastic sphere on a rigid plane, as an incremental contact update.
  *
- * Written by asperity @VERSION@ from the law of study @STUDY@ (@CASES@ cases). C99 and C++17; needs the C mathematics library only.
+ * Written by asperity @VERSION@ from @SOURCE@. C99 and C++17; needs the C mathematics library only.
  * No global data, no allocation, no failure at run time. Any one consistent system of units.
  *
  * Once a pair of materials:
@@ -31,7 +31,7 @@
  * turn takes F_T. Unloading in h is elastic from 2 E* a on and ends at the residual dent. No path returns more energy than
  * asperity_stored_energy had. Contacts whose law is elastic have F_T to 0.3 % of mu F_N.
  *
- * Fitted for Lambda @LAMBDA_FROM@ to @LAMBDA_TO@, mu @FRICTION_FROM@ to @FRICTION_TO@, a/R @RADIUS_FROM@ to @RADIUS_TO@, nu @NU_FROM@ to @NU_TO@:
+ * @FITTED@:
  * asperity_out_of_range tells.
  */
 #ifndef ASPERITY_LAW_H
@@ -47,13 +47,15 @@ extern "C" {
 /* Forms of the law and their constants. */
 #define ASPERITY_VARIABLE @VARIABLE@     /* z: 0 ln(Lambda/Lambda_Y), 1 ln(1 + mu (Lambda - Lambda_Y)), 2 stiffness, 3 area */
 #define ASPERITY_SLIP_FORM @SLIP_FORM@    /* 0 direct, 1 through the initial stiffness */
-#define ASPERITY_NORMAL_CURVE @NORMAL_CURVE@ /* f_N: 0 [1 - (1 - x)^M]^N, 1 1 - (1 - x^M)^N */
+#define ASPERITY_NORMAL_CURVE @NORMAL_CURVE@ /* f_N: 0 [1 - (1 - x)^M]^N, 1 1 - (1 - x^M)^N; 2 a table of one material, f_T and f_N by numbers */
 #define ASPERITY_NORMAL_FORM @NORMAL_FORM@  /* F_N0(h), a(h): 0 Olsson & Larsson 2016, 1 the same corrected, 2 smooth curves */
 @CONSTANTS@
 #define ASPERITY_PI 3.141592653589793
 #define ASPERITY_KNOTS @KNOTS@
 #define ASPERITY_COLUMNS @COLUMNS@
 #define ASPERITY_SLIDERS @SLIDERS@
+#define ASPERITY_POINTS @POINTS@ /* of a shape that is given by numbers, x = (j/points)^2 */
+#define ASPERITY_LEVELS @LEVELS@
 
 /* Hardening laws: the stresses and numbers of asperity_material.hardening_numbers. */
 enum {
@@ -85,6 +87,9 @@ typedef struct asperity_parameters {
     double log_step;
     /* ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T */
     double table[ASPERITY_KNOTS][ASPERITY_COLUMNS];
+#if ASPERITY_NORMAL_CURVE == 2
+    double shapes[ASPERITY_LEVELS][2][ASPERITY_POINTS]; /* f_T and f_N, levels equidistant in ln h */
+#endif
 } asperity_parameters;
 
 /* The memory of a contact. */
@@ -106,6 +111,14 @@ typedef struct asperity_response {
     double a;                /* contact radius */
 } asperity_response;
 
+/* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
+static inline double asperity_unloading_exponent(double radius, double effective_modulus, double a, double f_n0) {
+    double hertz = 4.0 * effective_modulus * a * a * a / (3.0 * radius);
+    double share = f_n0 < hertz ? f_n0 / hertz : 1.0;
+    return 1.2732395447351628 + (1.5 - 1.2732395447351628) * share;
+}
+
+#if ASPERITY_NORMAL_CURVE != 2
 /* ---- set-up: the material, the normal model, the law ---- */
 
 /* Flow stress at the plastic strain `plastic`. */
@@ -374,13 +387,6 @@ static inline void asperity_row(const asperity_material *m, double radius, doubl
     row[7] = log(mindlin / body);
 }
 
-/* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
-static inline double asperity_unloading_exponent(double radius, double effective_modulus, double a, double f_n0) {
-    double hertz = 4.0 * effective_modulus * a * a * a / (3.0 * radius);
-    double share = f_n0 < hertz ? f_n0 / hertz : 1.0;
-    return 1.2732395447351628 + (1.5 - 1.2732395447351628) * share;
-}
-
 /* Elastic energy of the virgin contact at a knot. */
 static inline double asperity_stored_at(const asperity_parameters *p, int i) {
     double f_n0 = exp(p->table[i][0]), a = exp(p->table[i][1]);
@@ -484,6 +490,9 @@ static inline int asperity_out_of_range(const asperity_material *m, double radiu
     return outside;
 }
 
+#else
+@TABLE@#endif
+
 /* ---- virgin curves ---- */
 
 /* First loading at one indentation. */
@@ -495,6 +504,9 @@ typedef struct asperity_virgin_curve {
     double backbone; /* exponent of the sliders' backbone */
     double weight[ASPERITY_SLIDERS];
     double lost[ASPERITY_SLIDERS];
+#if ASPERITY_NORMAL_CURVE == 2
+    double shapes[2][ASPERITY_POINTS]; /* f_T and f_N */
+#endif
 } asperity_virgin_curve;
 
 /* Slope of a column at a knot, per step. */
@@ -560,6 +572,27 @@ static inline void asperity_sliders(double backbone, double weight[ASPERITY_SLID
     }
 }
 
+#if ASPERITY_NORMAL_CURVE == 2
+/* f_T and f_N at a place between the levels; straight between them. */
+static inline void asperity_shapes_at(const asperity_parameters *p, double position, double shapes[2][ASPERITY_POINTS]) {
+    double level = position * (ASPERITY_LEVELS - 1.0) / (ASPERITY_KNOTS - 1.0), last = ASPERITY_LEVELS - 1, u;
+    int i, j, kind;
+    memcpy(shapes, p->shapes[0], sizeof p->shapes[0]);
+    if (position <= 0.0) {
+        return;
+    }
+    level = level < last ? level : last;
+    i = (int)level < ASPERITY_LEVELS - 2 ? (int)level : ASPERITY_LEVELS - 2;
+    u = level - i;
+    for (kind = 0; kind < 2; kind++) {
+        for (j = 0; j < ASPERITY_POINTS; j++) {
+            double low = p->shapes[i][kind][j], high = p->shapes[i + 1][kind][j];
+            shapes[kind][j] = low + u * (high - low);
+        }
+    }
+}
+#endif
+
 /* First loading at the indentation h > 0. */
 static inline void asperity_virgin(const asperity_parameters *p, double h, asperity_virgin_curve *v) {
     double position = (log(h) - p->log_first) / p->log_step, log_slope, unused, start, end;
@@ -572,6 +605,10 @@ static inline void asperity_virgin(const asperity_parameters *p, double h, asper
     v->m_exponent = asperity_column(p, 5, position, &unused);
     v->n_exponent = asperity_column(p, 6, position, &unused);
     v->backbone = v->gamma < v->n ? v->gamma : v->n;
+#if ASPERITY_NORMAL_CURVE == 2
+    v->backbone = v->n_exponent;
+    asperity_shapes_at(p, position, v->shapes);
+#endif
     v->k_t = exp(asperity_column(p, 7, position, &unused));
     start = v->n * p->friction * v->f_n_slip / v->delta_t_slip;
     end = v->backbone * p->friction * v->f_n0 / v->delta_t_slip;
@@ -584,10 +621,77 @@ static inline void asperity_virgin(const asperity_parameters *p, double h, asper
     asperity_sliders(v->backbone, v->weight, v->lost);
     v->slope = v->f_n0 * log_slope / (p->log_step * h);
     v->depth = v->gamma * v->f_n0 / (2.0 * p->effective_modulus * v->a);
+#if ASPERITY_NORMAL_CURVE == 2
+    v->a = v->m_exponent * v->a;
+#endif
 }
 
 /* ---- update ---- */
 
+#if ASPERITY_NORMAL_CURVE == 2
+/* x at point j of a shape that is given by numbers. */
+static inline double asperity_point_x(int j) {
+    double share = (double)j / ASPERITY_POINTS;
+    return share * share;
+}
+
+/* A shape that is given by numbers and its derivative, straight from point to point. */
+static inline double asperity_given(const double shape[ASPERITY_POINTS], double x, double *derivative) {
+    double below;
+    int j;
+    *derivative = 0.0;
+    if (x >= 1.0) {
+        return shape[ASPERITY_POINTS - 1];
+    }
+    j = (int)(ASPERITY_POINTS * sqrt(x));
+    if (j > ASPERITY_POINTS - 1) {
+        j = ASPERITY_POINTS - 1;
+    }
+    below = j == 0 ? 0.0 : shape[j - 1];
+    *derivative = (shape[j] - below) / (asperity_point_x(j + 1) - asperity_point_x(j));
+    return below + *derivative * (x - asperity_point_x(j));
+}
+
+/* The least x at which it has the value f, or that of its peak. */
+static inline double asperity_given_inverse(const double shape[ASPERITY_POINTS], double f) {
+    double below = 0.0, peak = 0.0, place = 0.0;
+    int j;
+    if (f <= 0.0) {
+        return 0.0;
+    }
+    for (j = 0; j < ASPERITY_POINTS; j++) {
+        if (shape[j] >= f) {
+            return asperity_point_x(j) + (f - below) / (shape[j] - below) * (asperity_point_x(j + 1) - asperity_point_x(j));
+        }
+        below = shape[j];
+        if (below > peak) {
+            peak = below;
+            place = asperity_point_x(j + 1);
+        }
+    }
+    return place;
+}
+
+static inline double asperity_tangential_shape(const asperity_virgin_curve *v, double x, double *derivative) {
+    return asperity_given(v->shapes[0], x, derivative);
+}
+
+static inline double asperity_tangential_shape_inverse(const asperity_virgin_curve *v, double f) {
+    return asperity_given_inverse(v->shapes[0], f);
+}
+
+static inline double asperity_normal_shape(const asperity_virgin_curve *v, double x, double *derivative) {
+    *derivative = 0.0;
+    if (x <= 0.0) {
+        return 0.0;
+    }
+    return x >= 1.0 ? 1.0 : asperity_given(v->shapes[1], x, derivative);
+}
+
+static inline double asperity_normal_shape_inverse(const asperity_virgin_curve *v, double f) {
+    return f <= 0.0 ? 0.0 : f >= 1.0 ? 1.0 : asperity_given_inverse(v->shapes[1], f);
+}
+#else
 /* f_T(x) and its derivative. */
 static inline double asperity_tangential_shape(const asperity_virgin_curve *v, double x, double *derivative) {
     double rest = 1.0 - x, power;
@@ -642,6 +746,8 @@ static inline double asperity_normal_shape_inverse(const asperity_virgin_curve *
     }
     return pow(1.0 - pow(1.0 - f, 1.0 / v->n_exponent), 1.0 / v->m_exponent);
 }
+
+#endif
 
 /* F_N on the virgin curve at x. */
 static inline double asperity_normal_cap(const asperity_virgin_curve *v, double x) {
@@ -781,7 +887,7 @@ static inline void asperity_scale(double deflection[ASPERITY_SLIDERS][2], double
 /* Moves h with delta_T held: the normal force, x to *x, dF_N/dh to *df_n_dh. */
 static inline double asperity_press(
     const asperity_parameters *p, asperity_state *s, const asperity_virgin_curve *v, double h, double *x, double *df_n_dh) {
-    double dh = h - s->h, e = s->approach + dh, trial = v->f_n0, stiffness = v->slope, f_n, elastic, f_t, slip_force, bound, cap, share, gain, raised;
+    double dh = h - s->h, e = s->approach + dh, trial = v->f_n0, stiffness = v->slope, f_n, elastic, f_t, slip_force, bound, cap, share, soft, rate, flow, most, rises, falls, gain, along, slope, raised;
     double limit[ASPERITY_SLIDERS], force[2], derivative, keep;
     int grown = h > s->h_max, first = grown && (s->x == 0.0 || !(s->h_max > 0.0)), i;
     if (grown && s->h_max > 0.0) {
@@ -829,17 +935,25 @@ static inline double asperity_press(
     }
     bound = asperity_tangential_shape_inverse(v, f_t / slip_force);
     cap = asperity_normal_cap(v, bound);
-    asperity_tangential_shape(v, bound, &derivative);
-    share = slip_force * derivative / (v->k_t * v->delta_t_slip);
-    gain = share < 1.0 ? 1.0 - share : 0.0;
-    raised = cap + gain * (trial - cap);
-    f_n = raised < v->f_n0 ? raised : v->f_n0;
-    *x = asperity_mobilisation(v, f_n);
-    keep = slip_force * asperity_tangential_shape(v, *x, &derivative) / f_t;
-    if (keep < 1.0) {
-        asperity_scale(s->deflection, keep);
-    }
-    *df_n_dh = gain * stiffness + (1.0 - gain) * v->slope;
+    share = f_t < slip_force ? f_t / slip_force : 1.0;
+    soft = 1.0 - v->slope * v->depth / (v->gamma * v->f_n0);
+    soft = soft > 0.0 ? soft * soft : 0.0;
+    rate = 2.6 * (soft * soft) * (1.0 - 0.5 * (share * share));
+    flow = trial > cap ? rate * (trial - cap) / v->f_n0 : 0.0;
+    most = slip_force * asperity_tangential_shape(v, bound, &derivative);
+    keep = exp(-flow) * (most < f_t ? most / f_t : 1.0);
+    *x = asperity_tangential_shape_inverse(v, keep * f_t / slip_force);
+    raised = asperity_normal_cap(v, *x);
+    asperity_tangential_shape(v, *x, &derivative);
+    rises = slip_force * derivative;
+    asperity_normal_shape(v, *x, &derivative);
+    falls = (v->f_n0 - v->f_n_slip) * derivative;
+    gain = rises > 0.0 ? falls * keep * f_t / (v->f_n0 * rises) : 0.0;
+    along = v->slope * (raised / v->f_n0 + gain);
+    slope = along + rate * gain * (stiffness - along);
+    *df_n_dh = raised < f_n && slope < stiffness ? slope : stiffness;
+    f_n = raised < f_n ? raised : f_n;
+    asperity_scale(s->deflection, keep);
     return f_n;
 }
 

@@ -1,6 +1,6 @@
 """Force-displacement law of an elastic-plastic sphere on a rigid plane, as an incremental contact update.
 
-Written by asperity @VERSION@ from the law of study @STUDY@ (@CASES@ cases). Python 3.8 or later, standard library only; the twin of asperity_law.h, with
+Written by asperity @VERSION@ from @SOURCE@. Python 3.8 or later, standard library only; the twin of asperity_law.h, with
 the same functions in the same order, for reading, checking and small models: one contact a call.
 
     steel = Material(200e3, 0.3, IDEAL, (400.0, 0.0, 0.0))
@@ -26,6 +26,8 @@ NORMAL_FORM = @NORMAL_FORM@
 KNOTS = @KNOTS@
 COLUMNS = @COLUMNS@
 SLIDERS = @SLIDERS@
+POINTS = @POINTS@  # of a shape that is given by numbers, x = (j/POINTS)^2
+LEVELS = @LEVELS@
 
 # Hardening laws, with their numbers.
 ELASTIC = 0
@@ -53,7 +55,7 @@ class Material:
 class Parameters:
     """A pair of materials, shared by its contacts."""
 
-    __slots__ = ("radius", "effective_modulus", "friction", "log_first", "log_step", "table")
+    __slots__ = ("radius", "effective_modulus", "friction", "log_first", "log_step", "table", "shapes")
 
 
 class State:
@@ -400,14 +402,14 @@ def out_of_range(m, radius, friction, h):
     return outside
 
 
-# ---- virgin curves ----
+@TABLE@# ---- virgin curves ----
 
 
 class Virgin:
     """First loading at one indentation."""
 
     __slots__ = (
-        "f_n0", "a", "f_n_slip", "delta_t_slip", "k_t", "n", "m_exponent", "n_exponent", "slope", "gamma", "depth", "backbone", "weight", "lost"
+        "f_n0", "a", "f_n_slip", "delta_t_slip", "k_t", "n", "m_exponent", "n_exponent", "slope", "gamma", "depth", "backbone", "weight", "lost", "shapes"
     )  # fmt: skip
 
 
@@ -467,6 +469,17 @@ def sliders(backbone):
     return weight, lost
 
 
+def shapes_at(p, position):
+    """f_T and f_N of a table at a place between the levels; straight between them."""
+    if position <= 0.0:
+        return p.shapes[0]
+    level = position * (LEVELS - 1.0) / (KNOTS - 1.0)
+    level = level if level < LEVELS - 1 else LEVELS - 1.0
+    i = int(level) if int(level) < LEVELS - 2 else LEVELS - 2
+    u = level - i
+    return [[low + u * (high - low) for low, high in zip(p.shapes[i][kind], p.shapes[i + 1][kind])] for kind in range(2)]
+
+
 def virgin(p, h):
     """First loading at the indentation h > 0."""
     v = Virgin()
@@ -481,6 +494,9 @@ def virgin(p, h):
     v.m_exponent = column_at(p, 5, position)[0]
     v.n_exponent = column_at(p, 6, position)[0]
     v.backbone = v.gamma if v.gamma < v.n else v.n
+    if NORMAL_CURVE == 2:
+        v.backbone = v.n_exponent
+        v.shapes = shapes_at(p, position)
     v.k_t = math.exp(column_at(p, 7, position)[0])
     start = v.n * p.friction * v.f_n_slip / v.delta_t_slip
     end = v.backbone * p.friction * v.f_n0 / v.delta_t_slip
@@ -491,14 +507,50 @@ def virgin(p, h):
     v.weight, v.lost = sliders(v.backbone)
     v.slope = v.f_n0 * log_slope / (p.log_step * h)
     v.depth = v.gamma * v.f_n0 / (2.0 * p.effective_modulus * v.a)
+    if NORMAL_CURVE == 2:
+        v.a = v.m_exponent * v.a
     return v
 
 
 # ---- update ----
 
 
+def point_x(j):
+    """x at point j of a shape that is given by numbers."""
+    share = float(j) / POINTS
+    return share * share
+
+
+def given(shape, x):
+    """A shape that is given by numbers and its derivative, straight from point to point."""
+    if x >= 1.0:
+        return shape[POINTS - 1], 0.0
+    j = int(POINTS * math.sqrt(x))
+    j = j if j < POINTS - 1 else POINTS - 1
+    below = 0.0 if j == 0 else shape[j - 1]
+    slope = (shape[j] - below) / (point_x(j + 1) - point_x(j))
+    return below + slope * (x - point_x(j)), slope
+
+
+def given_inverse(shape, f):
+    """The least x at which it has the value f, or that of its peak."""
+    if f <= 0.0:
+        return 0.0
+    below = peak = place = 0.0
+    for j in range(POINTS):
+        if shape[j] >= f:
+            return point_x(j) + (f - below) / (shape[j] - below) * (point_x(j + 1) - point_x(j))
+        below = shape[j]
+        if below > peak:
+            peak = below
+            place = point_x(j + 1)
+    return place
+
+
 def tangential_shape(v, x):
     """f_T(x) and its derivative."""
+    if NORMAL_CURVE == 2:
+        return given(v.shapes[0], x)
     rest = 1.0 - x
     if rest <= 0.0:
         return 1.0, 0.0
@@ -508,6 +560,8 @@ def tangential_shape(v, x):
 
 def tangential_shape_inverse(v, f):
     """The x at which f_T has the value f."""
+    if NORMAL_CURVE == 2:
+        return given_inverse(v.shapes[0], f)
     return 1.0 if f >= 1.0 else 1.0 - (1.0 - f) ** (1.0 / v.n)
 
 
@@ -517,6 +571,8 @@ def normal_shape(v, x):
         return 0.0, 0.0
     if x >= 1.0:
         return 1.0, 0.0
+    if NORMAL_CURVE == 2:
+        return given(v.shapes[1], x)
     m, n = v.m_exponent, v.n_exponent
     if NORMAL_CURVE == 0:
         rest = (1.0 - x) ** m
@@ -535,6 +591,8 @@ def normal_shape_inverse(v, f):
         return 0.0
     if f >= 1.0:
         return 1.0
+    if NORMAL_CURVE == 2:
+        return given_inverse(v.shapes[1], f)
     if NORMAL_CURVE == 0:
         return 1.0 - (1.0 - f ** (1.0 / v.n_exponent)) ** (1.0 / v.m_exponent)
     return (1.0 - (1.0 - f) ** (1.0 / v.n_exponent)) ** (1.0 / v.m_exponent)
@@ -674,15 +732,24 @@ def press(p, s, v, h):
         return f_n, elastic, stiffness
     bound = tangential_shape_inverse(v, f_t / slip_force)
     cap = normal_cap(v, bound)
-    share = slip_force * tangential_shape(v, bound)[1] / (v.k_t * v.delta_t_slip)
-    gain = 1.0 - share if share < 1.0 else 0.0
-    raised = cap + gain * (trial - cap)
-    f_n = raised if raised < v.f_n0 else v.f_n0
-    x = mobilisation(v, f_n)
-    keep = slip_force * tangential_shape(v, x)[0] / f_t
-    if keep < 1.0:
-        s.deflection = scale(s.deflection, keep)
-    return f_n, x, gain * stiffness + (1.0 - gain) * v.slope
+    share = f_t / slip_force if f_t < slip_force else 1.0
+    soft = 1.0 - v.slope * v.depth / (v.gamma * v.f_n0)
+    soft = soft * soft if soft > 0.0 else 0.0
+    rate = 2.6 * (soft * soft) * (1.0 - 0.5 * (share * share))
+    flow = rate * (trial - cap) / v.f_n0 if trial > cap else 0.0
+    most = slip_force * tangential_shape(v, bound)[0]
+    keep = math.exp(-flow) * (most / f_t if most < f_t else 1.0)
+    x = tangential_shape_inverse(v, keep * f_t / slip_force)
+    raised = normal_cap(v, x)
+    rises = slip_force * tangential_shape(v, x)[1]
+    falls = (v.f_n0 - v.f_n_slip) * normal_shape(v, x)[1]
+    gain = falls * keep * f_t / (v.f_n0 * rises) if rises > 0.0 else 0.0
+    along = v.slope * (raised / v.f_n0 + gain)
+    slope = along + rate * gain * (stiffness - along)
+    slope = slope if raised < f_n and slope < stiffness else stiffness
+    f_n = raised if raised < f_n else f_n
+    s.deflection = scale(s.deflection, keep)
+    return f_n, x, slope
 
 
 def shear(p, s, out, v, f_n, increment):

@@ -5,15 +5,20 @@
 
 mod vectors;
 
-pub use vectors::vectors;
+pub use vectors::{table_vectors, vectors};
 
-use super::contact::{COLUMNS, KNOTS, SLIDERS};
+use super::contact::{COLUMNS, ContactParameters, KNOTS, LEVELS, POINTS, SLIDERS};
 use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
 use super::model::Law;
 use super::normal::NormalForm;
+use super::tabulated::Tabulated;
+use super::{LawError, LawFile};
+use crate::case::Hardening;
 
 const HEADER: &str = include_str!("asperity_law.h");
 const MODULE: &str = include_str!("asperity_law.py");
+const TABLE_HEADER: &str = include_str!("asperity_law_table.h");
+const TABLE_MODULE: &str = include_str!("asperity_law_table.py");
 const CHECK: &str = include_str!("asperity_law_check.c");
 
 /// A language of the export.
@@ -37,13 +42,40 @@ pub struct ExportedFile {
 /// The files of an export, the law itself first: then the test vectors and, for C, the program that checks them (the Python module checks
 /// itself).
 pub fn files(law: &Law, language: Language) -> Vec<ExportedFile> {
-    let vectors = ExportedFile { name: "asperity_law_vectors.csv", content: vectors(law, vectors::SEED) };
+    files_of(source(law, language), vectors(law, vectors::SEED), language)
+}
+
+/// The files of either kind of law.
+///
+/// # Errors
+/// A table without numbers.
+pub fn law_files(law: &LawFile, language: Language) -> Result<Vec<ExportedFile>, LawError> {
+    let vectors = match law {
+        LawFile::Formulas(law) => vectors(law, vectors::SEED),
+        LawFile::Table(table) => table_vectors(table, vectors::SEED)?,
+    };
+    Ok(files_of(law_source(law, language)?, vectors, language))
+}
+
+/// Either kind of law as source of a language.
+///
+/// # Errors
+/// A table without numbers.
+pub fn law_source(law: &LawFile, language: Language) -> Result<String, LawError> {
+    match law {
+        LawFile::Formulas(law) => Ok(source(law, language)),
+        LawFile::Table(table) => table_source(table, language),
+    }
+}
+
+fn files_of(source: String, vectors: String, language: Language) -> Vec<ExportedFile> {
+    let vectors = ExportedFile { name: "asperity_law_vectors.csv", content: vectors };
     match language {
         Language::C => {
             let check = ExportedFile { name: "asperity_law_check.c", content: CHECK.to_owned() };
-            vec![ExportedFile { name: "asperity_law.h", content: source(law, language) }, vectors, check]
+            vec![ExportedFile { name: "asperity_law.h", content: source }, vectors, check]
         }
-        Language::Python => vec![ExportedFile { name: "asperity_law.py", content: source(law, language) }, vectors],
+        Language::Python => vec![ExportedFile { name: "asperity_law.py", content: source }, vectors],
     }
 }
 
@@ -84,30 +116,126 @@ pub fn source(law: &Law, language: Language) -> String {
     let short = |x: f64| format!("{x:.4}").trim_end_matches('0').trim_end_matches('.').to_owned();
     let values = [
         ("VERSION", env!("CARGO_PKG_VERSION").to_owned()),
-        ("STUDY", plain(&law.provenance.study)),
-        ("CASES", law.provenance.cases.to_string()),
-        ("LAMBDA_FROM", short(range.lambda.from)),
-        ("LAMBDA_TO", short(range.lambda.to)),
-        ("FRICTION_FROM", short(range.friction.from)),
-        ("FRICTION_TO", short(range.friction.to)),
-        ("RADIUS_FROM", short(range.relative_radius.from)),
-        ("RADIUS_TO", short(range.relative_radius.to)),
-        ("NU_FROM", short(range.poissons_ratio.from)),
-        ("NU_TO", short(range.poissons_ratio.to)),
+        ("SOURCE", format!("the law of study {} ({} cases)", plain(&law.provenance.study), law.provenance.cases)),
+        (
+            "FITTED",
+            format!(
+                "Fitted for Lambda {} to {}, mu {} to {}, a/R {} to {}, nu {} to {}",
+                short(range.lambda.from),
+                short(range.lambda.to),
+                short(range.friction.from),
+                short(range.friction.to),
+                short(range.relative_radius.from),
+                short(range.relative_radius.to),
+                short(range.poissons_ratio.from),
+                short(range.poissons_ratio.to)
+            ),
+        ),
+        ("TABLE", String::new()),
         ("VARIABLE", variable(law.forms.variable).to_string()),
         ("SLIP_FORM", slip_form(law.forms.slip_displacement).to_string()),
         ("NORMAL_CURVE", normal_curve(law.forms.normal_curve).to_string()),
         ("NORMAL_FORM", normal_form(law.normal.form).to_string()),
-        ("KNOTS", KNOTS.to_string()),
-        ("COLUMNS", COLUMNS.to_string()),
-        ("SLIDERS", SLIDERS.to_string()),
         ("CONSTANTS", constants.trim_end().to_owned()),
     ];
-    let template = match language {
+    fill(template(language), values.into_iter().chain(sizes()))
+}
+
+fn template(language: Language) -> &'static str {
+    match language {
         Language::C => HEADER,
         Language::Python => MODULE,
+    }
+}
+
+fn sizes() -> [(&'static str, String); 5] {
+    [("KNOTS", KNOTS), ("COLUMNS", COLUMNS), ("SLIDERS", SLIDERS), ("POINTS", POINTS), ("LEVELS", LEVELS)]
+        .map(|(name, size)| (name, size.to_string()))
+}
+
+fn fill<'a>(template: &str, values: impl IntoIterator<Item = (&'a str, String)>) -> String {
+    values.into_iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), &value))
+}
+
+/// A table as source of a language.
+fn table_source(table: &Tabulated, language: Language) -> Result<String, LawError> {
+    let ContactParameters { effective_modulus, friction, log_first, log_step, table: rows, shapes, .. } =
+        table.unit_parameters()?;
+    let material = table.material()?;
+    let number = |x: f64| format!("{x:.16e}");
+    let list = |values: &[f64]| values.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", ");
+    let (open, close) = match language {
+        Language::C => ('{', '}'),
+        Language::Python => ('(', ')'),
     };
-    values.iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), value))
+    let lines = |all: &mut dyn Iterator<Item = String>| all.map(|line| format!("    {line},\n")).collect::<String>();
+    let shape_lines = |shape: &[[f64; POINTS]; 2]| {
+        let [t, n] = shape.map(|values| format!("{open}{}{close}", list(&values)));
+        format!("{open}{t}, {n}{close}")
+    };
+    let (kind, numbers, stresses) = hardening_numbers(&material.hardening);
+    let points: Vec<f64> = match &material.hardening {
+        Hardening::Table { points } => points.iter().flatten().copied().collect(),
+        _ => Vec::new(),
+    };
+    let words = match language {
+        Language::C => ["0", "1"],
+        Language::Python => ["False", "True"],
+    };
+    let fragment = match language {
+        Language::C => TABLE_HEADER,
+        Language::Python => TABLE_MODULE,
+    };
+    let point_list: String = points.iter().map(|&x| format!("{}, ", number(x))).collect();
+    let fragment = fill(
+        fragment,
+        [
+            ("NU", number(material.poissons_ratio)),
+            ("FRICTION", number(friction)),
+            ("MODULUS", number(effective_modulus)),
+            ("LOG_FIRST", number(log_first)),
+            ("LOG_STEP", number(log_step)),
+            ("DEEPEST", number(table.range.to)),
+            ("HARDENING", kind.to_string()),
+            ("PAIRS", (points.len() / 2).to_string()),
+            ("NUMBERS", list(&numbers)),
+            ("STRESSES", stresses.map(|stress| words[usize::from(stress)]).join(", ")),
+            ("POINT_LIST", point_list.trim_end().to_owned()),
+            ("ROWS", lines(&mut rows.iter().map(|row| format!("{open}{}{close}", list(row))))),
+            ("SHAPES", lines(&mut shapes.iter().map(shape_lines))),
+        ],
+    );
+    let short = |x: f64| format!("{x:.4}").trim_end_matches('0').trim_end_matches('.').to_owned();
+    let what = format!("one material (nu = {}), mu = {}, on a {}", short(material.poissons_ratio), short(friction), table.body);
+    let values = [
+        ("VERSION", env!("CARGO_PKG_VERSION").to_owned()),
+        ("SOURCE", format!("a table of {what}")),
+        ("FITTED", format!("Of {what}, h/R up to {}", short(table.range.to))),
+        ("VARIABLE", "0".to_owned()),
+        ("SLIP_FORM", "0".to_owned()),
+        ("NORMAL_CURVE", "2".to_owned()),
+        ("NORMAL_FORM", "0".to_owned()),
+        ("CONSTANTS", String::new()),
+        ("TABLE", fragment),
+    ];
+    Ok(fill(template(language), values.into_iter().chain(sizes())))
+}
+
+/// The number that a hardening law has in the exports, its numbers there, and which of them are stresses.
+fn hardening_numbers(hardening: &Hardening) -> (u8, [f64; 3], [bool; 3]) {
+    match *hardening {
+        Hardening::Elastic => (0, [0.0; 3], [false; 3]),
+        Hardening::Ideal { yield_stress } => (1, [yield_stress, 0.0, 0.0], [true, false, false]),
+        Hardening::Linear { yield_stress, modulus } => (2, [yield_stress, modulus, 0.0], [true, true, false]),
+        Hardening::Power { yield_stress, coefficient, exponent } => {
+            (3, [yield_stress, coefficient, exponent], [true, true, false])
+        }
+        Hardening::Hollomon { coefficient, exponent } => (4, [coefficient, exponent, 0.0], [true, false, false]),
+        Hardening::Voce { yield_stress, saturation_stress, rate } => {
+            (5, [yield_stress, saturation_stress, rate], [true, true, false])
+        }
+        Hardening::Table { .. } => (6, [0.0; 3], [false; 3]),
+    }
 }
 
 /// A name that can stand in a comment of any language.

@@ -4,9 +4,11 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use crate::analytical::ElasticSphere;
+use crate::law::LawError;
 use crate::law::contact::{ContactParameters, ContactState};
 use crate::law::folds::splitmix;
 use crate::law::model::Law;
+use crate::law::tabulated::Tabulated;
 use crate::law::variables::Body;
 use crate::material::hardening::{Hardening, HardeningError};
 
@@ -73,6 +75,36 @@ pub fn vectors(law: &Law, seed: u64) -> String {
     text
 }
 
+/// The vectors of a table: paths of its material and its friction with spheres of any radius and units.
+///
+/// # Errors
+/// A table without numbers.
+pub fn table_vectors(table: &Tabulated, seed: u64) -> Result<String, LawError> {
+    let mut text = format!("{COLUMNS}\n");
+    let mut random = Random(seed);
+    let material = table.material()?;
+    let (kind, numbers, stresses) = super::hardening_numbers(&material.hardening);
+    for path in 0..6 * PATHS {
+        let e = (10f64).powf(random.between(0.0, 12.0));
+        let radius = (10f64).powf(random.between(-4.0, 1.0));
+        let pair = table.contact_parameters(radius, e)?;
+        let numbers = std::array::from_fn(|i| if stresses[i] { numbers[i] * e } else { numbers[i] });
+        let contact = Contact { e, nu: material.poissons_ratio, kind: kind.into(), numbers, pair };
+        let deepest = 1.2 * table.range.to * (10f64).powf(random.between(-2.0, 0.0));
+        write_steps(path, &contact, deepest * radius, &mut random, &mut text);
+    }
+    Ok(text)
+}
+
+/// What a path is of.
+struct Contact {
+    e: f64,
+    nu: f64,
+    kind: usize,
+    numbers: [f64; 3],
+    pair: ContactParameters,
+}
+
 /// Writes one path; `None` if there is no contact for its numbers.
 fn write_path(law: &Law, path: usize, random: &mut Random, text: &mut String) -> Option<()> {
     let (e, nu) = ((10f64).powf(random.between(0.0, 12.0)), random.between(0.2, 0.45));
@@ -82,6 +114,14 @@ fn write_path(law: &Law, path: usize, random: &mut Random, text: &mut String) ->
     let body = Body { sphere: ElasticSphere { radius, youngs_modulus: e, poissons_ratio: nu }, hardening };
     let pair = ContactParameters::new(law, &body, friction).ok()?;
     let deepest = radius * (10f64).powf(random.between(-4.0, -1.3));
+    write_steps(path, &Contact { e, nu, kind, numbers, pair }, deepest, random, text);
+    Some(())
+}
+
+/// Writes the steps of one path that goes to about `deepest`.
+fn write_steps(path: usize, contact: &Contact, deepest: f64, random: &mut Random, text: &mut String) {
+    let &Contact { e, nu, kind, numbers, ref pair } = contact;
+    let (radius, friction) = (pair.radius, pair.friction);
     let slip = pair.virgin(deepest).point.delta_t_slip;
     let depth = pair.virgin(deepest).depth;
     let mut state = ContactState::default();
@@ -141,5 +181,4 @@ fn write_path(law: &Law, path: usize, random: &mut Random, text: &mut String) ->
             text.push('\n');
         }
     }
-    Some(())
 }

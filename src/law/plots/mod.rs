@@ -14,7 +14,7 @@ mod run;
 mod tests;
 
 pub use comparison::greatest_errors;
-pub use run::law_beside_run;
+pub use run::{law_beside_run, table_beside_run};
 
 use super::data::StudyData;
 use super::variables::{Body, Variables};

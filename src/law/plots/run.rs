@@ -1,11 +1,30 @@
 //! A law beside the simulation of one case.
 
 use crate::case::Case;
+use crate::law::contact::path::drive;
+use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::variables::Body;
-use crate::law::{Law, LawError, model};
+use crate::law::{Law, LawError, LawFile, model};
 use crate::output::plots::{Picture, plot_law};
 use crate::output::{StepRecord, Summary, SummaryInputs};
+
+/// The forces of a run with those of the contact update along the same places, whatever the path.
+///
+/// # Errors
+/// The law says nothing of the case; a drawing fails.
+pub fn table_beside_run(law: &LawFile, case: &Case, history: &[StepRecord]) -> Result<(Picture, Vec<OutOfRange>), LawError> {
+    let parameters = law.contact_parameters(case)?;
+    let places: Vec<[f64; 2]> = history.iter().map(|record| [record.h, record.delta_t]).collect();
+    let forces = drive(&parameters, &places, 8);
+    let points = places.iter().zip(forces).map(|(place, [f_n, f_t])| [place[1], f_t, f_n]);
+    // From where the shear begins, as the simulation is drawn.
+    let pressed = places.windows(2).take_while(|pair| pair[1][1] == pair[0][1]).count();
+    let curve: Vec<[f64; 3]> = points.skip(pressed).collect();
+    let deepest = places.iter().map(|place| place[0]).fold(0.0, f64::max);
+    let picture = plot_law(history, &[("law, from h and δ_T".to_owned(), curve)])?;
+    Ok((picture, law.out_of_range(case, deepest)?))
+}
 
 /// The forces of a run with the law's: from the case alone, and given the F_N0 and a0 of the run. The prediction is returned for its range.
 ///

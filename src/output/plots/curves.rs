@@ -17,6 +17,11 @@ pub(super) const SHEAR_AXIS: &str = "tangential displacement δ_T (case's unit o
 /// The records up to the start of the first shear, and those from there on with the starting one first; the latter are empty without a shear.
 pub(super) fn split(history: &[StepRecord]) -> (&[StepRecord], &[StepRecord]) {
     match history.windows(2).position(|pair| pair[1].delta_t != pair[0].delta_t) {
+        // Pressed and sheared at once from the start: all that presses is both.
+        Some(0) => {
+            let pressing = history.windows(2).take_while(|pair| pair[1].h > pair[0].h).count();
+            (&history[..=pressing], history)
+        }
         Some(begin) => (&history[..=begin], &history[begin..]),
         None => (history, &[]),
     }

@@ -1,0 +1,138 @@
+//! `asperity law tabulate`: the law of one material and one friction as curves in h.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use clap::Args;
+
+use super::backend::{device_wish, precision_wish};
+use super::options::{DeviceArgs, Verbosity};
+use super::signals::stop_flag;
+use super::{CliError, Outcome, print};
+use crate::case::Case;
+use crate::compute::ComputeError;
+use crate::law::LawError;
+use crate::law::tabulated::{Built, build, case_of, depths, picture};
+use crate::study::{self, Options, Study, StudyError, StudyProgress};
+
+/// The arguments of `law tabulate`.
+#[derive(Clone, Debug, Args)]
+pub struct TabulateArgs {
+    /// The case: its material, its friction, and how deep the table goes; nothing else of its path is used.
+    #[arg(value_name = "CASE.toml")]
+    pub case: PathBuf,
+    /// Directory of the study and its law.json: a new or an empty one, or with --resume or --force one that holds an earlier one.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Elements along the contact radius of every depth.
+    #[arg(long, default_value_t = 8, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=32))]
+    pub elements: u32,
+    /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Go on in a directory with results of this table: depths that are done stay.
+    #[arg(long)]
+    pub resume: bool,
+    /// Replace an earlier study in DIR, whatever it is of.
+    #[arg(long, conflicts_with = "resume")]
+    pub force: bool,
+    /// Device, precision, threads.
+    #[command(flatten)]
+    pub device: DeviceArgs,
+    /// How much to say.
+    #[command(flatten)]
+    pub verbosity: Verbosity,
+}
+
+/// Simulates the depths, makes the table of them, and says how good it is.
+pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
+    args.verbosity.start_log();
+    args.device.start_threads()?;
+    let case = Case::load(&args.case, &args.set)?;
+    let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
+    let elements = args.elements as usize;
+    let depths = depths(&case).map_err(in_case)?;
+    let study = Study::parse(&study_text(&case, elements, &depths), "tabulate")?;
+    let all_cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let options = Options {
+        device: device_wish(&args.device),
+        precision: precision_wish(&args.device),
+        threads: args.device.threads.unwrap_or_else(all_cores).get(),
+        shard: None,
+        resume: args.resume,
+        retry: false,
+        force: args.force,
+    };
+    let progress = Arc::new(StudyProgress::new(args.verbosity.quiet));
+    let stop = stop_flag()?;
+    let report = study::run(&study, &args.out, &options, progress, stop.clone()).map_err(|error| match error {
+        StudyError::Compute(ComputeError::Device(what)) => CliError::Device { what },
+        error => error.into(),
+    })?;
+    if report.pending > 0 || stop.load(Ordering::Relaxed) {
+        // A closed stderr does not change how it went.
+        let _ = writeln!(
+            std::io::stderr(),
+            "error: interrupted with {} depths to go. what was computed is kept in {}; to go on, run the same command with --resume",
+            report.pending,
+            args.out.display()
+        );
+        return Ok(Outcome::Interrupted);
+    }
+    let built = build(&args.out, &case, elements)?;
+    let law = args.out.join("law.json");
+    built.table.write(&law)?;
+    let drawn = args.out.join("tabulated.svg");
+    picture(&built)?.write(&drawn)?;
+    print(&format!("{}\nlaw in {}, picture in {}\n", summary(&built), law.display(), drawn.display()))?;
+    Ok(if built.missing.is_empty() { Outcome::Done } else { Outcome::CasesFailed })
+}
+
+/// The study: the case with one press and one shear, and the depths as its grid.
+fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
+    let radius = case.sphere.radius;
+    let base = toml::Value::String(String::new());
+    let base = toml::Table::try_from(case_of(case, elements)).map_or(base, toml::Value::Table);
+    let depths = depths.iter().map(|h| toml::Value::Float(h * radius)).collect();
+    let mut grid = toml::Table::new();
+    grid.insert("path.0.indentation".to_owned(), toml::Value::Array(depths));
+    let mut study = toml::Table::new();
+    study.insert("base".to_owned(), base);
+    study.insert("grid".to_owned(), toml::Value::Table(grid));
+    study.to_string()
+}
+
+/// What the command prints.
+fn summary(built: &Built) -> String {
+    let table = &built.table;
+    let mut text = format!(
+        "{} levels from h/R = {:.2e} to {:.2e}, {} elements along the contact radius, for a {}\n\n\
+         Errors of a table of every other depth at the depths between, in per cent (F_T of its peak, F_N of F_N0)\n\n\
+         {:>10} {:>7} {:>7} {:>8} {:>7} {:>8} {:>7}\n",
+        table.levels.len(),
+        table.range.from,
+        table.range.to,
+        table.elements_per_contact_radius,
+        table.body,
+        "h/R",
+        "F_N0",
+        "a0",
+        "F_T rms",
+        "max",
+        "F_N rms",
+        "max"
+    );
+    for e in &table.errors {
+        let [f_n0, a0, t, t_max, n, n_max] = [e.f_n0, e.a0, e.f_t_rms, e.f_t_max, e.f_n_rms, e.f_n_max].map(|x| 100.0 * x);
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{:>10.3e} {f_n0:>+7.2} {a0:>+7.2} {t:>8.2} {t_max:>7.2} {n:>8.2} {n_max:>7.2}", e.h);
+    }
+    for missing in &built.missing {
+        let _ = writeln!(text, "\nmissing: {} ended with: {}; the table does without", missing.id, missing.reason);
+    }
+    text
+}

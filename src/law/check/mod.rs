@@ -1,0 +1,192 @@
+//! The exported update against simulations, path by path.
+
+mod protocol;
+
+use std::fmt::Write as _;
+
+use rayon::prelude::*;
+
+use super::contact::path::drive;
+use super::contact::{ContactParameters, ContactState};
+use super::{LawError, LawFile};
+use crate::case::Case;
+use crate::output::{StepRecord, Units};
+use crate::simulation::drive::{Ending, Observer, StepView};
+use crate::simulation::follow::{follow, on_cpu};
+use crate::simulation::problem::Problem;
+
+pub use protocol::{Path, materials, protocol};
+
+/// Increments of the update between two steps of a simulation.
+const INCREMENTS: usize = 8;
+/// Aims: root mean square and worst error of a force over the greatest of its path.
+pub const AIMS: [f64; 2] = [0.05, 0.12];
+
+/// One path, simulated and followed; in the case's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// The path's name.
+    pub name: &'static str,
+    /// The simulated steps.
+    pub rows: Vec<StepRecord>,
+    /// F_N and F_T of the update at them.
+    pub law: Vec<[f64; 2]>,
+    /// Work that the simulation and the update have dissipated at the end.
+    pub dissipated: [f64; 2],
+    /// Why the simulation did not come to the end of the path.
+    pub failure: Option<String>,
+}
+
+/// Errors of a path, over the greatest size of the force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Root mean square.
+    pub rms: f64,
+    /// Greatest.
+    pub worst: f64,
+}
+
+impl Errors {
+    /// Whether both are within the aims.
+    pub fn within(&self) -> bool {
+        self.rms <= AIMS[0] && self.worst <= AIMS[1]
+    }
+}
+
+impl Checked {
+    /// Errors of F_T and of F_N.
+    pub fn errors(&self) -> [Errors; 2] {
+        [self.errors_of(|row| row.f_t, 1), self.errors_of(|row| row.f_n, 0)]
+    }
+
+    fn errors_of(&self, force: fn(&StepRecord) -> f64, component: usize) -> Errors {
+        let normal = self.rows.iter().map(|row| row.f_n).fold(0.0, f64::max);
+        // A press alone has no tangential force but that of the tolerance.
+        let peak = self.rows.iter().map(|row| force(row).abs()).fold(0.01 * normal, f64::max);
+        if !(peak > 0.0) {
+            return Errors::default();
+        }
+        let errors: Vec<f64> =
+            self.rows.iter().zip(&self.law).map(|(row, law)| (law[component] - force(row)).abs() / peak).collect();
+        Errors {
+            rms: (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt(),
+            worst: errors.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    /// F_N at the end over the greatest of the simulated path, simulated and by the update.
+    pub fn left(&self) -> [f64; 2] {
+        let peak = self.rows.iter().map(|row| row.f_n).fold(0.0, f64::max);
+        match (self.rows.last(), self.law.last()) {
+            (Some(row), Some(law)) if peak > 0.0 => [row.f_n / peak, law[0] / peak],
+            _ => [0.0; 2],
+        }
+    }
+
+    /// The simulated steps with the update's forces beside them, as CSV.
+    pub fn csv(&self) -> String {
+        let mut text = String::from("segment,h,delta_T,F_N,F_T,law_F_N,law_F_T\n");
+        for (row, law) in self.rows.iter().zip(&self.law) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{},{:?},{:?},{:?},{:?},{:?},{:?}",
+                row.segment, row.h, row.delta_t, row.f_n, row.f_t, law[0], law[1]
+            );
+        }
+        text
+    }
+}
+
+/// Simulates the protocol for the material, the friction and the greatest depth of `case`, on so many elements along the contact radius, and drives the update
+/// that the law exports along it. Paths side by side.
+///
+/// # Errors
+/// The law says nothing of the case; a simulation cannot be set up.
+pub fn check(law: &LawFile, case: &Case, elements: usize) -> Result<Vec<Checked>, LawError> {
+    let parameters = law.contact_parameters(case)?;
+    protocol(case, &parameters, elements).par_iter().with_max_len(1).map(|path| run(path, &parameters)).collect()
+}
+
+fn run(path: &Path, parameters: &ContactParameters) -> Result<Checked, LawError> {
+    /// Keeps the steps of the last start.
+    #[derive(Default)]
+    struct Watch {
+        rows: Vec<StepRecord>,
+        units: Option<Units>,
+    }
+    type Failed = Box<dyn std::error::Error + Send + Sync>;
+    impl Observer for Watch {
+        fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
+            self.rows.extend(self.units.as_ref().map(|units| view.record.in_units(units)));
+            Ok(())
+        }
+        fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
+            Ok(())
+        }
+        fn note(&mut self, text: &str) {
+            log::info!("{text}");
+        }
+        fn starts_over(&mut self, _: &Problem, _: usize) -> Result<(), Failed> {
+            self.rows.clear();
+            Ok(())
+        }
+    }
+    let mut watch = Watch { units: Some(Units::of(&path.case)), ..Watch::default() };
+    let followed = follow(Problem::new(&path.case)?, None, &mut |problem| on_cpu(problem), &mut watch)?;
+    let failure = match followed.ending {
+        Ending::Done => None,
+        Ending::NotConverged(reason) => Some(reason),
+        Ending::Outgrown(outgrowth) => Some(outgrowth.to_string()),
+        Ending::Interrupted => Some("interrupted".to_owned()),
+    };
+    let rows: Vec<StepRecord> = watch.rows.into_iter().filter(|row| row.step > 0).collect();
+    let places: Vec<[f64; 2]> = rows.iter().map(|row| [row.h, row.delta_t]).collect();
+    let law = drive(parameters, &places, INCREMENTS);
+    let simulated = rows.last().map_or(0.0, |row| row.work_plastic + row.work_friction);
+    Ok(Checked { name: path.name, dissipated: [simulated, dissipated(parameters, &places)], rows, law, failure })
+}
+
+/// Work that the update takes along some places, less what it stores at the end.
+fn dissipated(parameters: &ContactParameters, places: &[[f64; 2]]) -> f64 {
+    let (mut state, mut at, mut before, mut work) = (ContactState::default(), [0.0; 2], [0.0; 2], 0.0);
+    for &[h, delta_t] in places {
+        let step = [(h - at[0]) / INCREMENTS as f64, (delta_t - at[1]) / INCREMENTS as f64];
+        for i in 1..=INCREMENTS {
+            let (next, out) = parameters.update(&state, at[0] + step[0] * i as f64, [step[1], 0.0]);
+            let now = [out.f_n, out.f_t[0]];
+            work += 0.5 * ((before[0] + now[0]) * step[0] + (before[1] + now[1]) * step[1]);
+            (state, before) = (next, now);
+        }
+        at = [h, delta_t];
+    }
+    work - parameters.stored_energy(&state)
+}
+
+/// The checked paths as a table, a line each.
+pub fn table(checked: &[Checked]) -> String {
+    let mut text = format!(
+        "{:<30} {:>7} {:>7} {:>7} {:>7}   {:>15}   {:>22}\n",
+        "", "F_T rms", "worst", "F_N rms", "worst", "F_N left (law)", "dissipated (law)"
+    );
+    for one in checked {
+        let [t, n] = one.errors().map(|e| [100.0 * e.rms, 100.0 * e.worst]);
+        let ([left, left_law], [work, work_law]) = (one.left(), one.dissipated);
+        let mark = if one.errors().iter().all(Errors::within) { ' ' } else { '*' };
+        let _ = writeln!(
+            text,
+            "{:<29}{mark} {:>7.1} {:>7.1} {:>7.1} {:>7.1}   {:>6.3} ({:>6.3})   {:>9.3e} ({:>9.3e}){}",
+            one.name,
+            t[0],
+            t[1],
+            n[0],
+            n[1],
+            left,
+            left_law,
+            work,
+            work_law,
+            one.failure.as_ref().map_or_else(String::new, |reason| format!("\n  not simulated to its end: {reason}"))
+        );
+    }
+    text
+}

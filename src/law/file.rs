@@ -1,0 +1,105 @@
+//! A law file, whichever kind it is of.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::contact::ContactParameters;
+use super::model::{Axisymmetric, MARGIN, OutOfRange};
+use super::tabulated::{self, Tabulated};
+use super::variables::{Body, yield_lambda};
+use super::{Law, LawError};
+use crate::bounded;
+use crate::case::{Case, Friction};
+use crate::law::predict::over_a_plane;
+
+/// What a `law.json` may be.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawFile {
+    /// Formulas for all materials, as `law fit` writes them.
+    Formulas(Box<Law>),
+    /// Curves in h of one material and one friction, as `law tabulate` writes them.
+    Table(Box<Tabulated>),
+}
+
+impl LawFile {
+    /// Reads either kind.
+    ///
+    /// # Errors
+    /// [`LawError::BadLaw`] with what the file is instead.
+    pub fn read(path: &Path) -> Result<Self, LawError> {
+        #[derive(Deserialize)]
+        struct Head {
+            format: String,
+        }
+        let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
+        let text = bounded::read_to_string(path, bounded::RESULT).map_err(|error| bad(format!("cannot be read: {error}")))?;
+        let head: Head = serde_json::from_str(&text).map_err(|error| bad(format!("is not a law: {error}")))?;
+        if head.format == tabulated::FORMAT {
+            return Ok(Self::Table(Box::new(Tabulated::from_json(&text).map_err(bad)?)));
+        }
+        Ok(Self::Formulas(Box::new(Law::from_json(&text).map_err(bad)?)))
+    }
+
+    /// What the contact update needs for the sphere of a case, in the case's units.
+    ///
+    /// # Errors
+    /// [`LawError::NotCovered`] for full stick; [`LawError::OtherMaterial`] for a case that a table is not of; no numbers for this material.
+    pub fn contact_parameters(&self, case: &Case) -> Result<ContactParameters, LawError> {
+        over_a_plane(case)?;
+        let Friction::Coefficient(friction) = case.contact.friction else {
+            return Err(LawError::NotCovered {
+                problem: "the case has friction = \"stick\", and the law describes slip",
+                remedy: "give contact.friction a number, or simulate the case with `asperity run`",
+            });
+        };
+        match self {
+            Self::Formulas(law) => Ok(ContactParameters::new(law, &Body::from_case(case)?, friction)?),
+            Self::Table(table) => {
+                table.covers(case)?;
+                table.contact_parameters(case.sphere.radius, case.material.youngs_modulus)
+            }
+        }
+    }
+
+    /// What of a contact of the case at the indentation `h`, in the case's units, lies outside of the law's range.
+    ///
+    /// # Errors
+    /// The hardening law of the case.
+    pub fn out_of_range(&self, case: &Case, h: f64) -> Result<Vec<OutOfRange>, LawError> {
+        match self {
+            Self::Formulas(law) => {
+                let body = Body::from_case(case)?;
+                let Friction::Coefficient(friction) = case.contact.friction else { return Ok(Vec::new()) };
+                Ok(out_of_formulas(law, &body, friction, h))
+            }
+            Self::Table(table) => Ok(table.out_of_range(h / case.sphere.radius)),
+        }
+    }
+}
+
+fn out_of_formulas(law: &Law, body: &Body, friction: f64, h: f64) -> Vec<OutOfRange> {
+    let state = law.normal.state(body, h);
+    let inputs = Axisymmetric {
+        youngs_modulus: body.sphere.youngs_modulus,
+        poissons_ratio: body.sphere.poissons_ratio,
+        radius: body.sphere.radius,
+        friction,
+        sigma_rep: body.representative_stress(state.a),
+        h,
+        a: state.a,
+        f_n: state.f_n,
+    };
+    let mut outside = law.out_of_range(&inputs);
+    outside.extend(law.hardening_out_of_range(body, &inputs));
+    outside
+}
+
+impl Law {
+    /// The hardening exponent of a body that has yielded, where it is not one that the law was fitted to.
+    pub fn hardening_out_of_range(&self, body: &Body, inputs: &Axisymmetric) -> Option<OutOfRange> {
+        let (value, range) = (body.hardening_exponent(inputs.a), self.validity.hardening_exponent);
+        let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);
+        (yielded && !range.contains(value, MARGIN)).then_some(OutOfRange { quantity: "hardening exponent", value, range })
+    }
+}

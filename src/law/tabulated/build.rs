@@ -1,0 +1,321 @@
+//! From the simulated depths to a table.
+
+use std::path::Path;
+
+use super::measure::{Measured, Missing, measured};
+use super::spline::{Spline, smooth};
+use super::{BACKBONE, Curves, DepthErrors, FORMAT, Level, PLANE, Tabulated, VERSION, columns_of, level_of};
+use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
+use crate::analytical::{ElasticSphere, hertz};
+use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::law::LawError;
+use crate::law::contact::path::drive;
+use crate::law::contact::{POINTS, unloading_exponent};
+use crate::law::model::Interval;
+use crate::law::predict::over_a_plane;
+use crate::law::variables::{Body, yield_lambda};
+
+/// Least depth that is simulated: the mesh has a contact radius of 0.005 R at least.
+const SHALLOWEST: f64 = 2e-5;
+/// Where an elastic contact is one on a half-space still.
+const HALF_SPACE: f64 = 1e-3;
+/// The shallowest depth is at most this share of the greatest.
+const SPAN: f64 = 0.1;
+/// Greatest ratio of one depth to the next; the depths between are simulated to check it, and then serve the table too.
+const RATIO: f64 = 2.2;
+/// Fewest depths without those between.
+const FEWEST: usize = 5;
+/// The curves of the shear end at so many times the displacement at which F_T/F_N is 0.99 mu.
+const LENGTH: f64 = 2.0;
+/// Share of F_N that the release at the end leaves.
+const LEFT: f64 = 0.5;
+/// F_T/F_N there over mu.
+const NEARLY_SLIPPING: f64 = 0.99;
+/// A depth nearer than this share of its size to first yield needs no Hertz contact below it.
+const NEAR: f64 = 1.3;
+
+/// A table and what it was made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Built {
+    /// The table.
+    pub table: Tabulated,
+    /// That of every other depth, which was checked.
+    pub coarse: Tabulated,
+    /// The simulated depths.
+    pub(super) measured: Vec<Measured>,
+    /// Depths that were not reached.
+    pub missing: Vec<Missing>,
+}
+
+/// The depths, over R, that a table up to the depth of `case` needs: every other one, the first and the last among them, makes it, and those between check it.
+///
+/// # Errors
+/// [`LawError::NotCovered`] for a case that presses into nothing or sticks; a hardening law that is none.
+pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
+    over_a_plane(case)?;
+    if case.contact.friction == Friction::Stick {
+        return Err(LawError::NotCovered {
+            problem: "the case has friction = \"stick\", and the law describes slip",
+            remedy: "give contact.friction a number",
+        });
+    }
+    let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
+        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
+        _ => deepest,
+    }) / case.sphere.radius;
+    let first = first_yield(&Body::from_case(case)?).unwrap_or(HALF_SPACE).clamp(SHALLOWEST, HALF_SPACE).min(SPAN * deepest);
+    let count = (((deepest / first).ln() / RATIO.ln()).ceil() as usize + 1).max(FEWEST);
+    let last = 2 * count - 2;
+    Ok((0..=last).map(|i| first * (deepest / first).powf(i as f64 / last as f64)).collect())
+}
+
+/// h/R at first yield; `None` for an elastic sphere.
+fn first_yield(body: &Body) -> Option<f64> {
+    let sphere = body.sphere;
+    let a = yield_lambda(sphere.poissons_ratio) * body.hardening.flow_stress(0.0) / sphere.effective_modulus();
+    (!body.is_elastic()).then_some(a * a)
+}
+
+/// The case of the study at one of its depths: pressed, sheared to full slip and back, and released by half.
+pub fn case_of(case: &Case, elements: usize) -> Case {
+    let mut case = case.clone();
+    case.mesh.elements_per_contact_radius = elements;
+    case.mesh.contact_radius = None;
+    case.solver.error_estimate = false;
+    case.output.fields = crate::case::Fields::None;
+    case.output.plots = false;
+    case.path = vec![Segment::Indentation { indentation: 0.01 * case.sphere.radius }];
+    if case.contact.friction != Friction::Coefficient(0.0) {
+        let shear = |shear| Segment::Shear { shear, hold: Hold::Indentation };
+        case.path.extend([shear(ShearTarget::FullSlip), shear(ShearTarget::Displacement(0.0))]);
+    }
+    case.path.push(Segment::Release { share: LEFT });
+    case
+}
+
+/// Makes the table of the study in `dir`, which has the depths of [`depths`] for `case`.
+///
+/// # Errors
+/// Results that cannot be read; [`LawError::TooFewDepths`].
+pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError> {
+    let wanted = depths(case)?;
+    let (all, missing) = measured(dir)?;
+    let is = |h: f64, wanted: f64| (h / wanted - 1.0).abs() < 1e-6;
+    let all: Vec<Measured> = all.into_iter().filter(|one| wanted.iter().any(|&h| is(one.h, h))).collect();
+    let even: Vec<Measured> = all.iter().filter(|one| wanted.iter().step_by(2).any(|&h| is(one.h, h))).cloned().collect();
+    if even.len() < 4 {
+        let reason = missing.first().map_or_else(String::new, |Missing { id, reason }| format!("; {id} ended with: {reason}"));
+        return Err(LawError::TooFewDepths { path: dir.to_owned(), done: all.len(), of: wanted.len(), reason });
+    }
+    let mut coarse = table(case, &even, elements)?;
+    for one in all.iter().filter(|one| one.h < coarse.range.to && !even.contains(one)) {
+        coarse.errors.push(errors(&coarse, one)?);
+    }
+    let mut table = table(case, &all, elements)?;
+    table.errors.clone_from(&coarse.errors);
+    Ok(Built { table, coarse, measured: all, missing })
+}
+
+pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
+    let scaled = case_of(&case.scaled(), elements);
+    let body = Body::from_case(&scaled)?;
+    let friction = match scaled.contact.friction {
+        Friction::Coefficient(mu) => mu,
+        Friction::Stick => f64::NAN,
+    };
+    let mut levels: Vec<Level> = depths.iter().map(|one| level(&body.sphere, friction, one)).collect();
+    smoothed(&mut levels);
+    if let Some(yielding) = first_yield(&body).filter(|&h| NEAR * h < levels[0].h) {
+        levels.insert(0, hertzian(&body.sphere, friction, yielding));
+    }
+    let (from, to) = (levels[0].h, levels[levels.len() - 1].h);
+    Ok(Tabulated {
+        format: FORMAT.to_owned(),
+        version: VERSION,
+        body: PLANE.to_owned(),
+        program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
+        case: scaled.to_toml(),
+        range: Interval { from, to },
+        elements_per_contact_radius: elements,
+        levels,
+        errors: Vec::new(),
+    })
+}
+
+/// Takes the ripple of the mesh out of the levels.
+fn smoothed(levels: &mut [Level]) {
+    let x: Vec<f64> = levels.iter().map(|level| level.h.ln()).collect();
+    let rows: Vec<Vec<f64>> = levels.iter().map(columns_of).collect();
+    let columns: Vec<Vec<f64>> = (0..rows[0].len()).map(|c| rows.iter().map(|row| row[c]).collect()).collect();
+    let smooth = smooth(&x, &columns);
+    for (i, level) in levels.iter_mut().enumerate() {
+        *level = level_of(level.h, &smooth.iter().map(|column| column[i]).collect::<Vec<f64>>());
+    }
+}
+
+/// x at the points of the shapes.
+fn points() -> impl Iterator<Item = f64> {
+    (1..=POINTS).map(|j| (j as f64 / POINTS as f64).powi(2))
+}
+
+/// The level of a simulated depth.
+fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
+    let points_of_curve = one.curve.len();
+    if friction <= 0.0 || points_of_curve < 4 {
+        let elastic = hertzian(sphere, friction, one.h);
+        let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
+        let delta_t_slip = 1.5 * friction.max(1e-6) * one.f_n0 / mindlin * LENGTH * NEARLY_MINDLIN;
+        let unloading_radius = unloading_radius(sphere, one);
+        return Level { f_n0: one.f_n0, a0: one.a0, delta_t_slip, unloading_radius, k_t: mindlin, ..elastic };
+    }
+    let slipping = one.curve.iter().position(|point| point.f_t >= NEARLY_SLIPPING * friction * point.f_n);
+    let at_99 = match slipping {
+        Some(i) if i > 0 => {
+            let ratio = |i: usize| one.curve[i].f_t / (friction * one.curve[i].f_n);
+            let (before, after) = (ratio(i - 1), ratio(i));
+            let (from, to) = (one.curve[i - 1].delta_t, one.curve[i].delta_t);
+            from + (to - from) * (NEARLY_SLIPPING - before) / (after - before)
+        }
+        _ => one.curve[points_of_curve - 1].delta_t / LENGTH,
+    };
+    let end = LENGTH * at_99;
+    // Over the square root of delta_T the points of the curve are about even.
+    let root: Vec<f64> = one.curve.iter().map(|point| point.delta_t.sqrt()).collect();
+    let last = one.curve[points_of_curve - 1];
+    let curve = |value: fn(&crate::law::data::Point) -> f64| {
+        let spline = Spline::through(&root, &one.curve.iter().map(value).collect::<Vec<f64>>());
+        move |x: f64| if x * end >= last.delta_t { value(&last) } else { spline.at((x * end).sqrt()) }
+    };
+    let (f_t, f_n) = (curve(|point| point.f_t), curve(|point| point.f_n));
+    let (f_n_slip, lost) = (f_n(1.0).min(one.f_n0), one.f_n0 - f_n(1.0));
+    // Of a loss within the tolerance of a step there is no shape.
+    let shape = |x: f64| if lost > 1e-3 * one.f_n0 { ((one.f_n0 - f_n(x)) / lost).clamp(0.0, 1.0) } else { x };
+    let [k_t, backbone] = reversal(sphere, friction, one);
+    Level {
+        h: one.h,
+        f_n0: one.f_n0,
+        a0: one.a0,
+        slip_share: f_n_slip / one.f_n0,
+        delta_t_slip: end,
+        unloading_radius: unloading_radius(sphere, one),
+        k_t,
+        backbone,
+        tangential: points().map(|x| f_t(x) / (friction * f_n_slip)).collect(),
+        normal: points().map(shape).collect(),
+    }
+}
+
+/// k_T and the exponent b with which Masing's rule, F_T = F - 2 F_s [1 - (1 - k_T delta/(2 b F_s))^b], is nearest to the simulated reversal, F and F_s = mu F_N
+/// being those where it begins.
+fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
+    let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
+    let Some(start) = one.back.first().filter(|_| one.back.len() > 4) else { return [mindlin, 1.5] };
+    let slip = friction * start.f_n;
+    // Beyond, what it loses of F_N shows.
+    let rows: Vec<[f64; 2]> = one
+        .back
+        .iter()
+        .skip(1)
+        .map(|point| [start.delta_t - point.delta_t, start.f_t - point.f_t])
+        .take_while(|row| row[1] < REVERSED * slip)
+        .collect();
+    let misfit = |k: f64, b: f64| -> f64 {
+        let fall = |d: f64| 2.0 * slip * (1.0 - (1.0 - (k * d / (2.0 * b * slip)).min(1.0)).powf(b));
+        rows.iter().map(|row| (fall(row[0]) - row[1]).powi(2)).sum()
+    };
+    let mut best = [f64::INFINITY, mindlin, 1.5];
+    for i in 0..=40 {
+        let b = BACKBONE[0] + (1.5 - BACKBONE[0]) * f64::from(i) / 40.0;
+        for j in 0..=120 {
+            let k = mindlin * (0.4 + 0.01 * f64::from(j));
+            let found = misfit(k, b);
+            if found < best[0] {
+                best = [found, k, b];
+            }
+        }
+    }
+    [best[1], 1.0 + AGAIN * (best[2] - 1.0)]
+}
+
+/// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from the first force F of the release to the last.
+fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
+    let (Some(from), Some(to)) = (one.release.first(), one.release.last()) else { return one.a0 };
+    let way = from[0] - to[0];
+    if !(way > 0.0 && from[1] > to[1] && to[1] > 0.0) {
+        return one.a0;
+    }
+    let mut a = one.a0;
+    for _ in 0..50 {
+        let gamma = unloading_exponent(sphere.radius, sphere.effective_modulus(), a, one.f_n0);
+        let depth = way / (1.0 - (to[1] / from[1]).powf(1.0 / gamma));
+        a = gamma * from[1] / (2.0 * sphere.effective_modulus() * depth);
+    }
+    a
+}
+
+/// Share of the exponent's excess over 1 that a reversal has which is not the first: then it turns more sharply. Between that of the first and those after it,
+/// which a contact that goes to and fro has.
+const AGAIN: f64 = 0.65;
+/// Fall of F_T over mu F_N up to which a reversal is fitted: to nine tenths of the way to slip on the other side.
+const REVERSED: f64 = 1.9;
+
+/// Share of Mindlin's slip displacement at which F_T/F_N is 0.99 mu: (1 - y)^(3/2) = 0.01.
+const NEARLY_MINDLIN: f64 = 0.953_584_1;
+
+/// The level of an elastic contact on a half-space, Hertz's sheared as Cattaneo and Mindlin have it.
+fn hertzian(sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
+    // Without friction there is no displacement at full slip, and none is asked for.
+    let contact = CattaneoMindlin::at_indentation(*sphere, friction.max(1e-6), h);
+    let end = LENGTH * NEARLY_MINDLIN * contact.slip_displacement();
+    let share = |x: f64| contact.force(x * end) / (contact.friction * contact.normal_force);
+    Level {
+        h,
+        f_n0: hertz::force(sphere, h),
+        a0: contact.contact_radius,
+        slip_share: 1.0,
+        delta_t_slip: end,
+        unloading_radius: contact.contact_radius,
+        k_t: cattaneo_mindlin::initial_stiffness(sphere, contact.contact_radius),
+        backbone: 1.5,
+        tangential: points().map(share).collect(),
+        normal: points().collect(),
+    }
+}
+
+/// What a table says of a depth, against its simulation.
+fn errors(table: &Tabulated, one: &Measured) -> Result<DepthErrors, LawError> {
+    let parameters = table.contact_parameters(1.0, 1.0)?;
+    let virgin = parameters.virgin(one.h).point;
+    let mut places = vec![[one.h, 0.0]];
+    places.extend(one.curve.iter().map(|point| [one.h, point.delta_t]));
+    let forces = &drive(&parameters, &places, 4)[1..];
+    let peak = one.peak();
+    let mut sums = [0.0f64; 2];
+    let mut most = [0.0f64; 2];
+    for (ours, point) in forces.iter().zip(&one.curve) {
+        let errors = [if peak > 0.0 { (ours[1] - point.f_t).abs() / peak } else { 0.0 }, (ours[0] - point.f_n).abs() / one.f_n0];
+        for i in 0..2 {
+            sums[i] += errors[i] * errors[i];
+            most[i] = most[i].max(errors[i]);
+        }
+    }
+    let rms = sums.map(|sum| (sum / one.curve.len() as f64).sqrt());
+    Ok(DepthErrors {
+        h: one.h,
+        f_n0: virgin.f_n0 / one.f_n0 - 1.0,
+        a0: virgin.a / one.a0 - 1.0,
+        f_t_rms: rms[0],
+        f_t_max: most[0],
+        f_n_rms: rms[1],
+        f_n_max: most[1],
+    })
+}
+
+impl Built {
+    /// The levels of the table over h, for a picture.
+    pub(super) fn curve(&self, count: usize) -> Vec<Level> {
+        let curves = Curves::new(&self.table.levels);
+        let (from, to) = (self.table.range.from, self.table.range.to);
+        (0..=count).map(|i| from * (to / from).powf(i as f64 / count as f64)).map(|h| curves.at(h)).collect()
+    }
+}

@@ -1,0 +1,398 @@
+//! The law of one material and one friction on a rigid plane as curves in h, from simulations at some depths: exact where formulas for all materials are not.
+//!
+//! Lengths are over R and forces over E R^2, so that one table serves every radius. [`Tabulated::contact_parameters`] hands the curves to the contact update,
+//! and everything that uses a table goes through it: what is checked is what is exported.
+
+mod build;
+mod measure;
+mod picture;
+pub mod spline;
+
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use self::spline::Spline;
+use super::LawError;
+use super::contact::{Axial, ContactParameters, KNOTS, LEVELS, POINTS, Shapes};
+use super::forms::NormalCurve;
+use super::model::{Interval, OutOfRange, Parameters};
+use crate::analytical::ElasticSphere;
+use crate::bounded;
+use crate::case::{self, Case, Friction};
+use crate::output::write_atomically;
+
+pub use build::{Built, build, case_of, depths};
+pub use measure::Missing;
+pub use picture::picture;
+
+/// The first key of a table, by which it is recognised.
+pub const FORMAT: &str = "asperity-law-table";
+/// Version of its layout.
+pub const VERSION: u32 = 1;
+/// What the sphere is pressed against.
+pub const PLANE: &str = "plane";
+
+/// The law at one depth; lengths over R, forces over E R^2.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Level {
+    /// Indentation h.
+    pub h: f64,
+    /// Normal force F_N0 before any shear.
+    #[serde(rename = "F_N0")]
+    pub f_n0: f64,
+    /// Contact radius a0.
+    pub a0: f64,
+    /// Normal force at full slip over F_N0, at most 1.
+    pub slip_share: f64,
+    /// Displacement at which the curves of the shear end, delta_T at x = 1: twice that at which F_T/F_N is 0.99 mu.
+    pub delta_t_slip: f64,
+    /// Radius with which 2 E* a is the stiffness of an unloading; that of the contact in Hertz's.
+    pub unloading_radius: f64,
+    /// Tangential stiffness k_T at the start of a reversal.
+    #[serde(rename = "k_T")]
+    pub k_t: f64,
+    /// Exponent of the curve on reversal: 3/2 in Cattaneo and Mindlin's contact, near 1 where it turns sharply.
+    pub backbone: f64,
+    /// F_T over mu times the normal force at full slip, at x = (j/24)^2, j = 1 and on.
+    pub tangential: Vec<f64>,
+    /// What F_N has lost of what it loses, likewise.
+    pub normal: Vec<f64>,
+}
+
+/// Errors on a depth that the table was not made from, as shares.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DepthErrors {
+    /// Indentation over R.
+    pub h: f64,
+    /// Error of F_N0.
+    #[serde(rename = "F_N0")]
+    pub f_n0: f64,
+    /// Error of a0.
+    pub a0: f64,
+    /// Error of F_T over its peak, root mean square along the shear.
+    #[serde(rename = "F_T_rms")]
+    pub f_t_rms: f64,
+    /// The greatest.
+    #[serde(rename = "F_T_max")]
+    pub f_t_max: f64,
+    /// Error of F_N over F_N0 along the shear, root mean square.
+    #[serde(rename = "F_N_rms")]
+    pub f_n_rms: f64,
+    /// The greatest.
+    #[serde(rename = "F_N_max")]
+    pub f_n_max: f64,
+}
+
+/// A table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tabulated {
+    /// [`FORMAT`].
+    pub format: String,
+    /// [`VERSION`].
+    pub version: u32,
+    /// [`PLANE`].
+    pub body: String,
+    /// The program and its version.
+    pub program: String,
+    /// The case that it was made of, in units in which R and E are 1: material and friction are those of the table.
+    pub case: String,
+    /// h/R between which it holds. Below the first the contact is Hertz's.
+    pub range: Interval,
+    /// Elements along the contact radius.
+    pub elements_per_contact_radius: usize,
+    /// The levels, increasing in h.
+    pub levels: Vec<Level>,
+    /// How well the levels of every other depth tell those between.
+    pub errors: Vec<DepthErrors>,
+}
+
+/// Share of mu F_N up to which a curve goes.
+const WITHIN: f64 = 1.0 - 1e-4;
+/// Least and greatest exponent of a backbone.
+const BACKBONE: [f64; 2] = [1.02, 1.6];
+/// Relative difference up to which two materials are the same one in other units.
+const SAME: f64 = 1e-9;
+
+impl Tabulated {
+    /// Writes it, whole or not at all.
+    ///
+    /// # Errors
+    /// The place cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), LawError> {
+        Ok(write_atomically(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
+            out.write_all(b"\n")
+        })?)
+    }
+
+    /// Reads one and checks it.
+    ///
+    /// # Errors
+    /// [`LawError::BadLaw`]: no such file, no table, another version.
+    pub fn read(path: &Path) -> Result<Self, LawError> {
+        let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
+        let text = bounded::read_to_string(path, bounded::RESULT).map_err(|error| bad(format!("cannot be read: {error}")))?;
+        Self::from_json(&text).map_err(bad)
+    }
+
+    /// A table from the text of its file; the error is what is wrong, in words.
+    pub(super) fn from_json(text: &str) -> Result<Self, String> {
+        /// Read first, so that a file of another version is called that.
+        #[derive(Deserialize)]
+        struct Head {
+            format: String,
+            version: u32,
+        }
+        let head: Head = serde_json::from_str(text).map_err(|error| format!("is not a law: {error}"))?;
+        if head.format != FORMAT {
+            return Err(format!("is not a tabulated law: its format is {:?}", head.format));
+        }
+        if head.version != VERSION {
+            return Err(format!("is a tabulated law of version {}, and this program reads version {VERSION}", head.version));
+        }
+        let table: Self = serde_json::from_str(text).map_err(|error| format!("is not a tabulated law: {error}"))?;
+        table.check()?;
+        Ok(table)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        if self.body != PLANE {
+            return Err(format!(
+                "is a tabulated law for the body {:?}, and this program has the one for a \"{PLANE}\"",
+                self.body
+            ));
+        }
+        let case = self.case()?;
+        if !matches!(case.contact.friction, Friction::Coefficient(_)) {
+            return Err("is a tabulated law without a friction coefficient".to_owned());
+        }
+        if self.levels.len() < 3 || !self.levels.windows(2).all(|pair| pair[0].h < pair[1].h) {
+            return Err("has fewer than three levels, or they do not increase".to_owned());
+        }
+        for level in &self.levels {
+            let numbers = [
+                level.h,
+                level.f_n0,
+                level.a0,
+                level.slip_share,
+                level.delta_t_slip,
+                level.unloading_radius,
+                level.k_t,
+                level.backbone - 1.0,
+            ];
+            let shapes = level.tangential.iter().chain(&level.normal);
+            let complete = level.tangential.len() == POINTS && level.normal.len() == POINTS;
+            if !complete || !numbers.iter().all(|x| *x > 0.0 && x.is_finite()) || !shapes.clone().all(|x| x.is_finite()) {
+                return Err(format!("has a number that is missing or none at h/R = {}", level.h));
+            }
+        }
+        Ok(())
+    }
+
+    /// The case of the table, R = 1 and E = 1.
+    fn case(&self) -> Result<Case, String> {
+        Case::parse(&self.case, "case", &[]).map_err(|error| format!("is of a case that is none: {error}"))
+    }
+
+    /// mu.
+    pub fn friction(&self) -> f64 {
+        match self.case().map(|case| case.contact.friction) {
+            Ok(Friction::Coefficient(mu)) => mu,
+            _ => f64::NAN,
+        }
+    }
+
+    /// The material, in units of its E.
+    ///
+    /// # Errors
+    /// [`LawError::BadLaw`], after reading it never.
+    pub fn material(&self) -> Result<case::Material, LawError> {
+        let bad = |problem| LawError::BadLaw { path: "law.json".into(), problem };
+        Ok(self.case().map_err(bad)?.material)
+    }
+
+    /// Refuses a case of another material or another friction.
+    ///
+    /// # Errors
+    /// [`LawError::OtherMaterial`] with what differs.
+    pub fn covers(&self, case: &Case) -> Result<(), LawError> {
+        let own = self.material()?;
+        let other = case.scaled().material;
+        let refuse = |what: String| Err(LawError::OtherMaterial { what });
+        let differ = |a: f64, b: f64| (a - b).abs() > SAME * a.abs().max(b.abs());
+        if differ(own.poissons_ratio, other.poissons_ratio) {
+            return refuse(format!("nu = {}, and the table is of nu = {}", other.poissons_ratio, own.poissons_ratio));
+        }
+        let mu = self.friction();
+        match case.contact.friction {
+            Friction::Coefficient(friction) if !differ(friction, mu) => {}
+            Friction::Coefficient(friction) => return refuse(format!("mu = {friction}, and the table is of mu = {mu}")),
+            Friction::Stick => return refuse(format!("friction = \"stick\", and the table is of mu = {mu}")),
+        }
+        let [ours, theirs] = [&own, &other].map(|material| serde_json::to_value(&material.hardening));
+        match (ours, theirs) {
+            (Ok(ours), Ok(theirs)) if alike(&ours, &theirs) => Ok(()),
+            (Ok(ours), Ok(theirs)) => refuse(format!("over E, hardening is {theirs}, and that of the table is {ours}")),
+            _ => refuse("its hardening cannot be compared".to_owned()),
+        }
+    }
+
+    /// What the contact update needs, for a sphere of this radius and this Young's modulus, whatever their units.
+    ///
+    /// # Errors
+    /// [`LawError::Contact`] where a number is none.
+    pub fn contact_parameters(&self, radius: f64, youngs_modulus: f64) -> Result<ContactParameters, LawError> {
+        Ok(self.unit_parameters()?.scaled(radius, youngs_modulus))
+    }
+
+    /// Those of a sphere with R = 1 and E = 1, from which all others follow.
+    ///
+    /// # Errors
+    /// [`LawError::Contact`] where a number is none.
+    pub fn unit_parameters(&self) -> Result<ContactParameters, LawError> {
+        let nu = self.material()?.poissons_ratio;
+        let curves = Curves::new(&self.levels);
+        let mu = self.friction();
+        let level_at = |h: f64| curves.at(h.clamp(self.range.from, self.range.to));
+        let contact = |h: f64| {
+            let level = level_at(h);
+            let law = Parameters {
+                f_n0: level.f_n0,
+                f_n_slip: level.slip_share * level.f_n0,
+                delta_t_slip: level.delta_t_slip,
+                k_t0: level.k_t,
+                n: steepest(&level.tangential),
+                // Taken by the contact radius, below.
+                m_exponent: 1.0,
+                n_exponent: level.backbone,
+            };
+            Axial { a: level.unloading_radius, k_t: level.k_t, law }
+        };
+        let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: nu };
+        let range = [self.range.from, self.range.to];
+        let curve = NormalCurve::PowerOfComplement;
+        let parameters = ContactParameters::tabulate(1.0, sphere.effective_modulus(), mu, curve, range, contact)?;
+        let mut shapes: [Shapes; LEVELS] = [[[0.0; POINTS]; 2]; LEVELS];
+        for (i, shape) in shapes.iter_mut().enumerate() {
+            let position = i as f64 * (KNOTS as f64 - 1.0) / (LEVELS as f64 - 1.0);
+            let level = level_at((parameters.log_first + position * parameters.log_step).exp());
+            shape[0].copy_from_slice(&level.tangential);
+            shape[1].copy_from_slice(&level.normal);
+        }
+        Ok(parameters.with_shapes(shapes, |h| level_at(h).a0))
+    }
+
+    /// A case of its material and friction that is pressed to its end.
+    ///
+    /// # Errors
+    /// [`LawError::BadLaw`], after reading it never.
+    pub fn deepest_case(&self) -> Result<Case, LawError> {
+        let bad = |problem| LawError::BadLaw { path: "law.json".into(), problem };
+        let mut case = self.case().map_err(bad)?;
+        case.path = vec![case::Segment::Indentation { indentation: self.range.to / 1.1 }];
+        Ok(case)
+    }
+
+    /// What of a contact at the indentation `h` over R lies outside of the table.
+    pub fn out_of_range(&self, h: f64) -> Vec<OutOfRange> {
+        let range = Interval { from: 0.0, to: self.range.to };
+        if range.contains(h, 1e-9) { Vec::new() } else { vec![OutOfRange { quantity: "h/R", value: h, range }] }
+    }
+}
+
+/// Greatest slope of f_T over x.
+fn steepest(shape: &[f64]) -> f64 {
+    let x = |j: usize| (j as f64 / POINTS as f64).powi(2);
+    (0..shape.len()).map(|j| (shape[j] - if j == 0 { 0.0 } else { shape[j - 1] }) / (x(j + 1) - x(j))).fold(0.0, f64::max)
+}
+
+/// Whether two values are the same but for rounding.
+fn alike(a: &serde_json::Value, b: &serde_json::Value) -> bool {
+    use serde_json::Value::{Array, Object};
+    match (a, b) {
+        (Array(a), Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| alike(a, b)),
+        (Object(a), Object(b)) => {
+            a.len() == b.len() && a.iter().all(|(key, value)| b.get(key).is_some_and(|other| alike(value, other)))
+        }
+        (a, b) => match (a.as_f64(), b.as_f64()) {
+            (Some(a), Some(b)) => (a - b).abs() <= SAME * a.abs().max(b.abs()),
+            _ => a == b,
+        },
+    }
+}
+
+/// What is tabulated as smooth curves in ln h: everything over the power of h that it has in Hertz's contact.
+struct Curves {
+    columns: Vec<Spline>,
+}
+
+/// Columns of a level before its shapes.
+const NUMBERS: usize = 7;
+
+/// A level as columns that hardly bend over ln h.
+fn columns_of(level: &Level) -> Vec<f64> {
+    let ln_h = level.h.ln();
+    let mut columns = vec![
+        level.f_n0.ln() - 1.5 * ln_h,
+        level.a0.ln() - 0.5 * ln_h,
+        level.slip_share,
+        level.delta_t_slip.ln() - ln_h,
+        level.unloading_radius.ln() - 0.5 * ln_h,
+        level.k_t.ln() - 0.5 * ln_h,
+        level.backbone,
+    ];
+    columns.extend(level.tangential.iter().chain(&level.normal));
+    columns
+}
+
+/// The level of such columns.
+fn level_of(h: f64, columns: &[f64]) -> Level {
+    let ln_h = h.ln();
+    let mut normal = columns[NUMBERS + POINTS..].to_vec();
+    // F_N falls, and has fallen at x = 1.
+    let mut fallen = 0.0;
+    for value in &mut normal {
+        fallen = value.clamp(fallen, 1.0);
+        *value = fallen;
+    }
+    let slip_share = columns[2].min(1.0);
+    let mut tangential = columns[NUMBERS..NUMBERS + POINTS].to_vec();
+    // Where everything slips before F_N has fallen, F_T is all that friction gives: a curve beyond it would never be reached, and F_N fall no further.
+    for (f_t, lost) in tangential.iter_mut().zip(&normal) {
+        *f_t = f_t.min(WITHIN * (1.0 - (1.0 - slip_share) * lost) / slip_share);
+    }
+    Level {
+        h,
+        f_n0: (columns[0] + 1.5 * ln_h).exp(),
+        a0: (columns[1] + 0.5 * ln_h).exp(),
+        slip_share,
+        delta_t_slip: (columns[3] + ln_h).exp(),
+        unloading_radius: (columns[4] + 0.5 * ln_h).exp(),
+        k_t: (columns[5] + 0.5 * ln_h).exp(),
+        backbone: columns[6].clamp(BACKBONE[0], BACKBONE[1]),
+        tangential,
+        normal,
+    }
+}
+
+impl Curves {
+    fn new(levels: &[Level]) -> Self {
+        let x: Vec<f64> = levels.iter().map(|level| level.h.ln()).collect();
+        let rows: Vec<Vec<f64>> = levels.iter().map(columns_of).collect();
+        let column = |c: usize| rows.iter().map(|row| row[c]).collect::<Vec<f64>>();
+        Self { columns: (0..NUMBERS + 2 * POINTS).map(|c| Spline::through(&x, &column(c))).collect() }
+    }
+
+    fn at(&self, h: f64) -> Level {
+        let values: Vec<f64> = self.columns.iter().map(|spline| spline.at(h.ln())).collect();
+        level_of(h, &values)
+    }
+}
+
+#[cfg(test)]
+mod tests;

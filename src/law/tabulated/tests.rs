@@ -1,0 +1,180 @@
+use super::build::table;
+use super::measure::Measured;
+use super::*;
+use crate::law::contact::path::{drive, follow};
+use crate::law::data::Point;
+use crate::law::file::LawFile;
+
+const MU: f64 = 0.3;
+
+fn case(text: &str) -> Case {
+    let text = format!(
+        "[sphere]\nradius = 2.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\n{text}\n[contact]\nfriction = {MU}\n\
+         [[path]]\nindentation = 0.04\n"
+    );
+    Case::parse(&text, "case.toml", &[]).unwrap()
+}
+
+/// A made-up contact that yields at h/R = 2e-5 and is fully plastic at 0.02, with a ripple of the mesh.
+fn measured(h: f64, ripple: f64) -> Measured {
+    let plasticity = (h / 2e-5).ln().max(0.0) / 1000f64.ln();
+    let hertz = 4.0 / (3.0 * 0.91) * h.powf(1.5);
+    let f_n0 = hertz * (1.0 - 0.8 * plasticity) * (1.0 + ripple);
+    let a0 = (h * (1.0 + 1.2 * plasticity)).sqrt();
+    let (fall, n) = (0.3 * plasticity, 1.5 + 3.0 * plasticity);
+    let k_t = 1.6 * a0;
+    let slip = n * MU * f_n0 * (1.0 - fall) / k_t;
+    let at = |x: f64| Point {
+        delta_t: x * slip,
+        f_t: MU * f_n0 * (1.0 - fall) * (1.0 - (1.0 - x).powf(n)),
+        f_n: f_n0 * (1.0 - fall * (1.0 - (1.0 - x).powf(1.5 * n)).powf(1.3)),
+    };
+    let curve: Vec<Point> = (0..=25).map(|i| at((f64::from(i) / 25.0).powi(2))).collect();
+    let end = curve[25];
+    // Masing's rule with the exponent 1.2, and an unloading with 2.4 E* a.
+    let force = MU * end.f_n;
+    let back = (0..=20).map(f64::from).map(|i| {
+        let d = 3.0 * force / k_t * i / 20.0;
+        let fall = 2.0 * force * (1.0 - (1.0 - (k_t * d / (2.4 * force)).min(1.0)).powf(1.2));
+        Point { delta_t: end.delta_t - d, f_t: end.f_t - fall, f_n: end.f_n }
+    });
+    let release = (0..=5).map(f64::from).map(|i| [h - 0.1 * i * end.f_n / (2.4 * a0 / 0.91), end.f_n * (1.0 - 0.1 * i)]);
+    Measured { h, f_n0, a0, back: back.collect(), release: release.collect(), curve }
+}
+
+fn depths() -> Vec<f64> {
+    (0..=18).map(|i| 2e-5 * 1000f64.powf(f64::from(i) / 18.0)).collect()
+}
+
+fn made() -> Tabulated {
+    let ripple = |i: usize| if i.is_multiple_of(2) { 0.004 } else { -0.004 };
+    let all: Vec<Measured> = depths().into_iter().enumerate().map(|(i, h)| measured(h, ripple(i))).collect();
+    table(&case("law = \"ideal\"\nyield_stress = 400.0"), &all, 8).unwrap()
+}
+
+#[test]
+fn a_table_tells_the_depths_between() {
+    let table = made();
+    let parameters = table.contact_parameters(1.0, 1.0).unwrap();
+    for h in [4e-5, 3.3e-4, 2.7e-3, 0.011, 0.017] {
+        let exact = measured(h, 0.0);
+        let virgin = parameters.virgin(h).point;
+        assert!((virgin.f_n0 / exact.f_n0 - 1.0).abs() < 6e-3, "{h}: {} {}", virgin.f_n0, exact.f_n0);
+        assert!((virgin.a / exact.a0 - 1.0).abs() < 2e-3, "{h}: {} {}", virgin.a, exact.a0);
+        let mut places = vec![[h, 0.0]];
+        places.extend(exact.curve.iter().map(|point| [h, point.delta_t]));
+        for (force, point) in drive(&parameters, &places, 3)[1..].iter().zip(&exact.curve) {
+            assert!((force[1] - point.f_t).abs() < 0.015 * exact.peak(), "{h}: F_T {} {}", force[1], point.f_t);
+            assert!((force[0] - point.f_n).abs() < 0.01 * exact.f_n0, "{h}: F_N {} {}", force[0], point.f_n);
+        }
+    }
+}
+
+#[test]
+fn one_table_serves_every_radius_and_every_unit() {
+    let table = made();
+    let one = table.contact_parameters(1.0, 1.0).unwrap();
+    let (radius, modulus) = (3.7e-3, 70e9);
+    let other = table.contact_parameters(radius, modulus).unwrap();
+    let places = [[0.01, 0.0], [0.01, 0.001], [0.012, 0.0005], [0.0115, -0.002], [0.005, 0.0], [0.015, 0.004]];
+    let scaled = places.map(|place| place.map(|x| x * radius));
+    let force = modulus * radius * radius;
+    for (a, b) in drive(&one, &places, 20).iter().zip(drive(&other, &scaled, 20)) {
+        for i in 0..2 {
+            assert!((a[i] * force - b[i]).abs() < 1e-9 * force * one.virgin(0.01).point.f_n0, "{a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_fitted_to_a_reversal_and_a_release_is_found_again() {
+    let table = made();
+    for (level, h) in table.levels.iter().zip(depths()).skip(3) {
+        let exact = measured(h, 0.0);
+        assert!((level.k_t / (1.6 * exact.a0) - 1.0).abs() < 0.02, "{h}: {}", level.k_t / exact.a0);
+        assert!((level.backbone - 1.0 - 0.65 * 0.2).abs() < 0.02, "{h}: {}", level.backbone);
+        // A straight release, of which the update's bent curve has the ends.
+        let virgin = table.contact_parameters(1.0, 1.0).unwrap().virgin(h);
+        let way = virgin.depth * exact.release[0][1] / exact.f_n0 * (1.0 - 0.5f64.powf(1.0 / virgin.gamma));
+        assert!((way / (exact.release[0][0] - exact.release[5][0]) - 1.0).abs() < 0.05, "{h}: {way}");
+    }
+}
+
+#[test]
+fn a_file_is_read_back_and_others_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("law.json");
+    let table = made();
+    table.write(&path).unwrap();
+    assert_eq!(LawFile::read(&path).unwrap(), LawFile::Table(Box::new(table.clone())));
+    let text = std::fs::read_to_string(&path).unwrap();
+    for (from, to, told) in [
+        ("\"version\": 1", "\"version\": 9", "tabulated law of version 9"),
+        ("\"body\": \"plane\"", "\"body\": \"equal-pair\"", "for the body \"equal-pair\""),
+        ("\"asperity-law-table\"", "\"asperity-law-3\"", "its format is \"asperity-law-3\""),
+        ("\"levels\"", "\"lewels\"", "is not a tabulated law"),
+        ("friction = 0.3", "friction = -0.3", "of a case that is none"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        let refused = LawFile::read(&path).unwrap_err().to_string();
+        assert!(refused.contains(told), "{told}: {refused}");
+    }
+    let read = Tabulated::read(&path).unwrap_err().to_string();
+    assert!(read.contains("law tabulate") || read.contains("law.json"), "{read}");
+}
+
+#[test]
+fn another_material_is_refused_by_name() {
+    let table = LawFile::Table(Box::new(made()));
+    let other = |change: &dyn Fn(&mut Case)| {
+        let mut case = case("law = \"ideal\"\nyield_stress = 400.0");
+        change(&mut case);
+        table.contact_parameters(&case).map(drop).map_err(|error| error.to_string())
+    };
+    assert_eq!(other(&|_| {}), Ok(()));
+    // In other units it is the same.
+    let units = |case: &mut Case| {
+        case.material.youngs_modulus *= 1e6;
+        case.material.hardening = case::Hardening::Ideal { yield_stress: 400e6 };
+        case.sphere.radius = 0.7;
+    };
+    assert_eq!(other(&units), Ok(()));
+    for (told, change) in [
+        ("nu = 0.31", &(|case: &mut Case| case.material.poissons_ratio = 0.31) as &dyn Fn(&mut Case)),
+        ("mu = 0.2", &|case: &mut Case| case.contact.friction = Friction::Coefficient(0.2)),
+        ("stick", &|case: &mut Case| case.contact.friction = Friction::Stick),
+        ("0.0021", &|case: &mut Case| case.material.hardening = case::Hardening::Ideal { yield_stress: 420.0 }),
+        ("linear", &|case: &mut Case| {
+            case.material.hardening = case::Hardening::Linear { yield_stress: 400.0, modulus: 0.0 };
+        }),
+    ] {
+        let refused = other(change).unwrap_err();
+        assert!(refused.contains(told), "{told}: {refused}");
+    }
+}
+
+#[test]
+fn beyond_its_depths_it_answers_and_says_so() {
+    let table = made();
+    let parameters = table.contact_parameters(1.0, 1.0).unwrap();
+    assert!(table.out_of_range(0.02).is_empty() && table.out_of_range(1e-7).is_empty());
+    let outside = table.out_of_range(0.03);
+    assert_eq!((outside.len(), outside[0].quantity), (1, "h/R"));
+    let path = [case::Segment::Indentation { indentation: 0.03 }];
+    let forces: Vec<f64> = follow(&parameters, &path).iter().map(|point| point.f_n).collect();
+    assert!(forces.windows(2).all(|pair| pair[1] >= pair[0]) && forces[100].is_finite());
+}
+
+#[test]
+fn depths_go_from_first_yield_to_the_case() {
+    let deep = build::depths(&case("law = \"ideal\"\nyield_stress = 400.0")).unwrap();
+    assert!(deep.len() % 2 == 1 && deep.windows(2).all(|pair| pair[1] > pair[0]));
+    assert!((deep[0] / 2.1e-5 - 1.0).abs() < 0.1 && (deep[deep.len() - 1] - 0.02).abs() < 1e-12, "{deep:?}");
+    // A sphere that never yields has a half-space's contact below a depth, one that yields at once is not meshed finer than can be.
+    assert!((build::depths(&case("law = \"elastic\"")).unwrap()[0] - 1e-3).abs() < 1e-12);
+    assert!((build::depths(&case("law = \"ideal\"\nyield_stress = 10.0")).unwrap()[0] - 2e-5).abs() < 1e-12);
+    let mut stuck = case("law = \"elastic\"");
+    stuck.contact.friction = Friction::Stick;
+    assert!(matches!(build::depths(&stuck), Err(LawError::NotCovered { .. })));
+}
