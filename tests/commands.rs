@@ -198,7 +198,7 @@ fn a_case_comes_from_standard_input_as_well() {
     let bad = piped(&["check", "-"], &case.replace("0.3", "-0.3"));
     assert!(refused(&bad).starts_with("error: <stdin>:"), "{}", stderr(&bad));
     let predicted = piped(&["law", "predict", "fixtures/law/law.json", "-"], &case);
-    assert!(stdout(&predicted).starts_with("delta_T,F_T,F_N\n"), "{}", stderr(&predicted));
+    assert!(stdout(&predicted).starts_with("segment,h,delta_T,F_N,F_T\n"), "{}", stderr(&predicted));
 }
 
 #[test]

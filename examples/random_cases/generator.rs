@@ -36,7 +36,7 @@ pub fn case_text(seed: u64, index: usize, elements: usize, equal: bool) -> Strin
             Segment::FullSlip(held) => format!("[[path]]\nshear = \"full-slip\"\n{}", hold(*held)),
             Segment::Release => "[[path]]\nrelease = true\n".to_owned(),
             Segment::ReleaseTo(share) => format!("[[path]]\nrelease = {share:?}\n"),
-            Segment::Oblique(h, d) => format!("[[path]]\nindentation = {:?}\nshear = {:?}\n", h * radius, d * radius),
+            Segment::Oblique(h, d) => format!("[[path]]\nindentation = {:?}\nshear = {:?}\n", h * travel, d * travel),
         })
         .collect();
     format!(

@@ -513,6 +513,11 @@ impl<'a> Drive<'a> {
             return None;
         };
         let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
+        if last_delta_t != 0.0 && last_h != 0.0 && !target.hold_force && 2 * r.slipping_points > r.contact_points {
+            // What slides goes along with the plate for the rest of its way.
+            let rest = target.delta_t - r.delta_t - ratio * last_delta_t;
+            guess.iter_mut().step_by(3).for_each(|x| *x += rest);
+        }
         if self.problem.equal_pair {
             return Some(guess);
         }
