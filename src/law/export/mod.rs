@@ -1,6 +1,6 @@
 //! The law for other programs: a C header and a Python module with the incremental contact update, and test vectors for both.
 //!
-//! Header, module and [`ContactParameters`](super::contact::ContactParameters) are triplets: the same functions in the same order with the same operations. Only the
+//! Header, module and [`ContactParameters`] are triplets: the same functions in the same order with the same operations. Only the
 //! constants of the law are filled in here.
 
 mod vectors;
