@@ -10,7 +10,7 @@ use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
     Outcome, TangentRequest,
 };
-use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
 use crate::element::hex8::{self, Geometry, Invalid, NODES, Nodal, Points, State, Tangent, pair};
 use crate::material::multistep::Flow;
@@ -52,9 +52,6 @@ pub struct Cpu<R> {
     /// State and elastic energy of each element at the end of a step, before it is committed.
     next: Vec<(State<R>, R)>,
 }
-
-/// Alart-Curnier's c = 0.1 E h_c: with c = E h_c the same run took twice the iterations.
-pub(crate) const CONTACT_WEIGHT: f64 = 0.1;
 
 impl<R: Real> Cpu<R> {
     /// Takes a batch of cases in their undeformed, virgin state.

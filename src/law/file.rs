@@ -6,12 +6,12 @@ use serde::Deserialize;
 
 use super::contact::ContactParameters;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
+use super::predict::over_a_plane;
 use super::tabulated::{self, Tabulated};
 use super::variables::{Body, yield_lambda};
 use super::{Law, LawError};
 use crate::bounded;
 use crate::case::{Case, Friction};
-use crate::law::predict::over_a_plane;
 
 /// What a `law.json` may be.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,74 +1,30 @@
 //! Takes the steps of a path: predicts, solves, bisects what fails, measures and records what is accepted.
 
+mod paused;
+mod segments;
+
 use std::sync::Arc;
 
 use super::SimulationError;
 use super::checkpoint::{Committed, Place, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
 use super::footprint::footprint;
-use super::path::{Resolution, ShearSteps, Start, Target, indentation_targets, oblique_targets};
+pub use super::observer::{Observer, StepView};
+use super::path::{Resolution, Start, Target, indentation_targets, oblique_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
-use crate::case::{Hold, Segment, ShearTarget};
+use crate::case::{Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
-use crate::compute::{CaseFields, Compute, ComputeError, Outcome};
+use crate::compute::{Compute, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::newton::{Newton, StepReport};
-use crate::solver::phases::{Lap, Phase, PhaseTimes};
+use crate::solver::phases::{Lap, Phase};
 use crate::solver::system::Meeting;
 use crate::solver::{Control, StepFailure};
-
-/// Watches a run.
-pub trait Observer {
-    /// A step was accepted. The undeformed state comes first, as step 0.
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
-    /// A segment of the path has ended, or the run ends within it; `view` shows its last accepted step.
-    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
-    /// Something that the user should know and the summary should keep.
-    fn note(&mut self, text: &str);
-    /// The contact left the finely meshed zone: the run starts over from the undeformed state on the mesh of `problem`, which has so many unknowns.
-    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        let _ = (problem, unknowns);
-        Ok(())
-    }
-    /// Asks the run to end after the present step.
-    fn stop_requested(&self) -> bool {
-        false
-    }
-    /// Offers a checkpoint, after every accepted step; `take` copies the state that a run could go on from. `last`: no other is offered, because
-    /// the run is interrupted or has followed its path.
-    fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
-        let _ = (last, take);
-    }
-}
-
-/// An accepted step, for output.
-pub struct StepView<'a> {
-    /// Its row in the history.
-    pub record: StepRecord,
-    /// How Newton went.
-    pub report: &'a StepReport,
-    /// Time of attempts since then that led to no step.
-    pub unfinished: PhaseTimes,
-    /// The mesh.
-    pub mesh: &'a Mesh,
-    /// Displacement, three a node.
-    pub displacement: &'a [f64],
-    /// Every point that can touch.
-    pub points: &'a [ContactPoint],
-    backend: &'a mut dyn Compute,
-    case: usize,
-}
-
-impl StepView<'_> {
-    /// Stresses and strains of the step.
-    pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
-        self.backend.fields(self.case)
-    }
-}
+pub use paused::Paused;
 
 /// Follows a path.
 pub struct Drive<'a> {
@@ -86,8 +42,6 @@ pub struct Drive<'a> {
     last_report: StepReport,
 }
 
-/// Full slip: the sticking points carry no more than this share of the normal force.
-const STICK_SHARE: f64 = 2e-3;
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a third fewer than none.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
 /// See [`Drive::attempt_stuck`]; all but the first only after a step was bisected so often.
@@ -97,10 +51,6 @@ const SHALLOW: usize = 3;
 const EASY: usize = 6;
 /// Targets are taken in 2^2 parts at most.
 const FINEST: u32 = 2;
-/// A release to a share of F_N asks for the force itself when so many steps are left by the contact's stiffness, which the simulated one exceeds by a fifth at most.
-const LANDING: f64 = 1.25;
-/// F_T has stopped rising when it grows by less than this share over a step.
-const PLATEAU: f64 = 1e-3;
 
 impl<'a> Drive<'a> {
     /// Prepares to follow the problem's path on a backend whose case `case` is the problem's model in its virgin state.
@@ -229,136 +179,6 @@ impl<'a> Drive<'a> {
         self.problem.resolution
     }
 
-    /// Reaches the targets of a segment one after the other.
-    fn reach(&mut self, targets: &[Target], observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        while let Some(target) = targets.get(self.place.reached) {
-            let ending = self.advance(target, observer)?;
-            if ending != Ending::Done {
-                return Ok(ending);
-            }
-        }
-        Ok(Ending::Done)
-    }
-
-    /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that the residual indentation is sharp.
-    fn release(&mut self, start: &Start, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let step = start.recovery() / 12.0;
-        if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
-            observer.note("release: nothing touches, so there is nothing to release");
-            return Ok(Ending::Done);
-        }
-        while self.place.under_way || self.state.record.contact_points > 0 {
-            let f = (self.state.record.f_n / start.f_n).clamp(0.0, 1.0);
-            let h = self.state.record.h - step * (0.2 + 0.8 * f.sqrt());
-            let target = Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
-            let ending = self.advance(&target, observer)?;
-            if ending != Ending::Done {
-                return Ok(ending);
-            }
-        }
-        Ok(Ending::Done)
-    }
-
-    /// Withdraws the plate until F_N has fallen to a share of what it was: in steps up to the last one, which asks for the force itself.
-    fn release_to(&mut self, start: &Start, share: f64, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let wanted = share * start.f_n;
-        let step = start.recovery() / 12.0;
-        if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
-            observer.note("release: nothing touches, so there is nothing to release");
-            return Ok(Ending::Done);
-        }
-        self.held_force = Some(0.5 * wanted);
-        // A force that is asked for is met to 5e-5.
-        while self.place.under_way || self.state.record.f_n > wanted * (1.0 + 1e-4) {
-            let StepRecord { h, a, f_n, .. } = self.state.record;
-            let rest = (f_n - wanted) / start.unloading_stiffness(a.max(1e-12));
-            let hold_force = rest <= LANDING * step;
-            let h = h - if hold_force { rest } else { step };
-            let target = Target { h, delta_t: start.delta_t, hold_force, extrapolate: false };
-            let ending = self.advance(&target, observer)?;
-            if ending != Ending::Done {
-                self.held_force = None;
-                return Ok(ending);
-            }
-        }
-        self.held_force = None;
-        Ok(Ending::Done)
-    }
-
-    fn shear(
-        &mut self,
-        start: &Start,
-        shear: ShearTarget,
-        hold: Hold,
-        observer: &mut dyn Observer,
-    ) -> Result<Ending, SimulationError> {
-        if self.place.is_at_segment_start() && start.f_n <= 0.0 {
-            observer.note("shear: nothing touches, so the sphere moves freely");
-        }
-        let direction = self.state.direction;
-        let length = match shear {
-            ShearTarget::Displacement(d) => (d - start.delta_t).abs(),
-            ShearTarget::FullSlip => f64::INFINITY,
-        };
-        let steps = ShearSteps::new(start, length, hold == Hold::NormalForce, &self.resolution());
-        let bound = steps.bound(start.a);
-        self.held_force = (hold == Hold::NormalForce).then_some(0.5 * start.f_n);
-        loop {
-            let i = self.place.reached + 1;
-            let distance = steps.distance(i);
-            let ends = length.is_finite() && distance >= length * (1.0 - 1e-9);
-            let target = Target {
-                h: self.state.record.h,
-                delta_t: match shear {
-                    ShearTarget::Displacement(d) if ends => d,
-                    _ => start.delta_t + direction * distance,
-                },
-                hold_force: self.held_force.is_some(),
-                extrapolate: i > 1,
-            };
-            let ending = self.advance(&target, observer)?;
-            if ending != Ending::Done {
-                self.held_force = None;
-                return Ok(ending);
-            }
-            if ends {
-                break;
-            }
-            if length.is_infinite() {
-                let before = self.place.force_before;
-                if self.slips_fully() && (self.state.record.f_t - before) * direction <= PLATEAU * before.abs() {
-                    self.full_slip = Some(true);
-                    break;
-                }
-                if distance >= bound {
-                    self.full_slip = Some(false);
-                    observer.note(&format!(
-                        "shear: full slip was not reached within delta_T = {:.4} R; {} of {} contact points slip",
-                        self.problem.bodies * distance,
-                        self.state.record.slipping_points,
-                        self.state.record.contact_points
-                    ));
-                    break;
-                }
-            }
-        }
-        self.held_force = None;
-        Ok(Ending::Done)
-    }
-
-    /// Every point slips, but for points at the edge that carry next to nothing.
-    fn slips_fully(&self) -> bool {
-        let closed = self.state.points.iter().filter(|p| p.status != Status::Open);
-        let (mut stick, mut all) = (0.0, 0.0);
-        for p in closed {
-            all += p.force[2];
-            if p.status == Status::Stick {
-                stick += p.force[2];
-            }
-        }
-        stick <= STICK_SHARE * all
-    }
-
     /// Reaches `target` from the committed state in one step, or in as many as bisection needs; a target that was set out for before, in what is left
     /// of it.
     fn advance(&mut self, target: &Target, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
@@ -483,9 +303,11 @@ impl<'a> Drive<'a> {
             let expected = guess.as_deref().unwrap_or(&self.state.u);
             // Up to the first shear all is even in x.
             let meeting = Meeting::new(&self.mesh, &self.state.u, expected, self.state.direction == 0.0);
-            self.newton.meet(meeting.clone());
             if let Some(guess) = &mut guess {
-                meeting.part(&self.mesh, guess);
+                meeting.separate(&self.mesh, guess);
+            }
+            self.newton.meet(meeting);
+            if let Some(guess) = &mut guess {
                 self.newton.symmetrise(guess);
             }
         }
@@ -649,40 +471,5 @@ impl<'a> Drive<'a> {
         let StepRecord { h, delta_t, reach, a: contact_radius, .. } = self.state.record;
         let (h, delta_t) = (self.problem.bodies * h, self.problem.bodies * delta_t);
         (reach > limit).then_some(Outgrowth { reach, contact_radius, fine_radius: self.mesh.fine_radius, h, delta_t })
-    }
-}
-
-/// A drive between two steps, without the problem and the backend that it borrows.
-pub struct Paused {
-    newton: Newton,
-    state: Committed,
-    place: Place,
-    full_slip: Option<bool>,
-    last_report: StepReport,
-}
-
-impl Drive<'_> {
-    /// Gives problem and backend back after an interruption or at the end of the path.
-    pub fn pause(self) -> Paused {
-        let Self { newton, state, place, full_slip, last_report, .. } = self;
-        Paused { newton, state, place, full_slip, last_report }
-    }
-}
-
-impl Paused {
-    /// Takes the path up again, with the problem and the backend that [`Drive::pause`] gave back.
-    pub fn go_on<'a>(self, problem: &'a Problem, backend: &'a mut dyn Compute, case: usize) -> Drive<'a> {
-        let Self { newton, state, place, full_slip, last_report } = self;
-        Drive { state, place, full_slip, last_report, ..Drive::new(problem, backend, case, newton) }
-    }
-
-    /// Displacement of the last accepted step, three numbers a node, scaled.
-    pub fn displacement(&self) -> &[f64] {
-        &self.state.u
-    }
-
-    /// Every point of the meshed half that can touch, as the last accepted step left it, scaled.
-    pub fn points(&self) -> &[ContactPoint] {
-        &self.state.points
     }
 }

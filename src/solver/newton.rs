@@ -103,9 +103,14 @@ impl Newton {
     /// Prepares the iteration on a mesh.
     pub fn new(mesh: &Mesh, linear: impl Into<Systems>, settings: Settings) -> Self {
         let n = 3 * mesh.nodes.len();
+        let linear = linear.into();
+        let mut boundary = Boundary::new(mesh);
+        if let Systems::Pair(solver) = &linear {
+            boundary.mirror = solver.mirror().to_vec();
+        }
         Self {
-            boundary: Boundary::new(mesh),
-            linear: linear.into(),
+            boundary,
+            linear,
             settings,
             last_scale: 0.0,
             largest_scale: 0.0,
@@ -165,9 +170,6 @@ impl Newton {
     pub fn meet(&mut self, meeting: Meeting) {
         if let Systems::Pair(solver) = &mut self.linear {
             solver.set_symmetric(meeting.symmetric);
-            if self.boundary.mirror.is_empty() {
-                self.boundary.mirror = solver.mirror().to_vec();
-            }
         }
         self.boundary.pair = Some(meeting);
     }

@@ -6,10 +6,9 @@ use rayon::prelude::*;
 
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::{Control, Worst};
-use crate::compute::cpu::CONTACT_WEIGHT;
 use crate::compute::handle::Evaluate;
 use crate::compute::{CaseModel, ComputeError, Outcome};
-use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
+use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::contact::pair::{Interface, leave_even};
 use crate::contact::plane::gap;
 use crate::linalg::bsr::BlockMatrix;
@@ -55,7 +54,7 @@ impl Meeting {
     }
 
     /// Moves points of a guess that have passed the opponent back to it, both sides by as much.
-    pub fn part(&self, mesh: &Mesh, guess: &mut [f64]) {
+    pub fn separate(&self, mesh: &Mesh, guess: &mut [f64]) {
         let gap = |w: &[[f64; 3]], k: usize| (self.reference[k][2] + w[k][2]).min(0.0);
         let before = self.interface.relative(guess);
         for (i, k) in self.interface.facing.iter().enumerate() {
@@ -322,7 +321,7 @@ impl Trial {
         interface.nodal(&forces)
     }
 
-    /// What each contact node does: a master what the slave does that it has most to do with.
+    /// Status of each contact node; a master has that of the slave that carries most of its load.
     pub fn statuses(&self, boundary: &Boundary) -> Vec<Status> {
         let own = |i: usize| self.rows[i].status;
         match &boundary.pair {

@@ -178,7 +178,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                         force_rows: [row(3), row(6), row(9)],
                         displacement_rows: [row(12), row(15), row(18)],
                         fixed: [code & 4 != 0, code & 8 != 0, code & 16 != 0],
-                        weight: R::of(crate::compute::cpu::CONTACT_WEIGHT * sizes[k]).to_f64(),
+                        weight: R::of(crate::contact::coulomb::CONTACT_WEIGHT * sizes[k]).to_f64(),
                     };
                 }
             }

@@ -15,9 +15,9 @@ use super::shader_sources::{
     CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN,
     HEX8_MODULI, HEX8_UPDATE, Kernel,
 };
-use crate::compute::cpu::CONTACT_WEIGHT;
 use crate::compute::gather::GatherPlan;
 use crate::compute::{CaseModel, ComputeError, Outcome};
+use crate::contact::coulomb::CONTACT_WEIGHT;
 
 /// Components of `moduli`.
 const MODULI: usize = 31;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::super::predict::over_a_plane;
 use super::measure::{Measured, Missing, measured};
 use super::spline::{Spline, smooth};
 use super::{BACKBONE, Curves, DepthErrors, FORMAT, Level, PLANE, Tabulated, VERSION, columns_of, level_of};
@@ -12,7 +13,6 @@ use crate::law::LawError;
 use crate::law::contact::path::drive;
 use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
-use crate::law::predict::over_a_plane;
 use crate::law::variables::{Body, yield_lambda};
 
 /// Least depth that is simulated: the mesh has a contact radius of 0.005 R at least.

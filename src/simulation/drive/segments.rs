@@ -1,0 +1,152 @@
+//! The segments of a path, each as a sequence of targets.
+
+use super::{Drive, Ending, Observer};
+use crate::case::{Hold, ShearTarget};
+use crate::contact::coulomb::Status;
+use crate::simulation::SimulationError;
+use crate::simulation::path::{ShearSteps, Start, Target};
+use crate::simulation::record::StepRecord;
+
+/// Full slip: the sticking points carry no more than this share of the normal force.
+const STICK_SHARE: f64 = 2e-3;
+/// A release to a share of F_N asks for the force itself when so many steps are left by the contact's stiffness, which the simulated one exceeds by a fifth at most.
+const LANDING: f64 = 1.25;
+/// F_T has stopped rising when it grows by less than this share over a step.
+const PLATEAU: f64 = 1e-3;
+
+impl Drive<'_> {
+    /// Reaches the targets of a segment one after the other.
+    pub(super) fn reach(&mut self, targets: &[Target], observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        while let Some(target) = targets.get(self.place.reached) {
+            let ending = self.advance(target, observer)?;
+            if ending != Ending::Done {
+                return Ok(ending);
+            }
+        }
+        Ok(Ending::Done)
+    }
+
+    /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that the residual indentation is sharp.
+    pub(super) fn release(&mut self, start: &Start, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        let step = start.recovery() / 12.0;
+        if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
+            observer.note("release: nothing touches, so there is nothing to release");
+            return Ok(Ending::Done);
+        }
+        while self.place.under_way || self.state.record.contact_points > 0 {
+            let f = (self.state.record.f_n / start.f_n).clamp(0.0, 1.0);
+            let h = self.state.record.h - step * (0.2 + 0.8 * f.sqrt());
+            let target = Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
+            let ending = self.advance(&target, observer)?;
+            if ending != Ending::Done {
+                return Ok(ending);
+            }
+        }
+        Ok(Ending::Done)
+    }
+
+    /// Withdraws the plate until F_N has fallen to a share of what it was: in steps up to the last one, which asks for the force itself.
+    pub(super) fn release_to(
+        &mut self,
+        start: &Start,
+        share: f64,
+        observer: &mut dyn Observer,
+    ) -> Result<Ending, SimulationError> {
+        let wanted = share * start.f_n;
+        let step = start.recovery() / 12.0;
+        if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
+            observer.note("release: nothing touches, so there is nothing to release");
+            return Ok(Ending::Done);
+        }
+        self.held_force = Some(0.5 * wanted);
+        // A force that is asked for is met to 5e-5.
+        while self.place.under_way || self.state.record.f_n > wanted * (1.0 + 1e-4) {
+            let StepRecord { h, a, f_n, .. } = self.state.record;
+            let rest = (f_n - wanted) / start.unloading_stiffness(a.max(1e-12));
+            let hold_force = rest <= LANDING * step;
+            let h = h - if hold_force { rest } else { step };
+            let target = Target { h, delta_t: start.delta_t, hold_force, extrapolate: false };
+            let ending = self.advance(&target, observer)?;
+            if ending != Ending::Done {
+                self.held_force = None;
+                return Ok(ending);
+            }
+        }
+        self.held_force = None;
+        Ok(Ending::Done)
+    }
+
+    pub(super) fn shear(
+        &mut self,
+        start: &Start,
+        shear: ShearTarget,
+        hold: Hold,
+        observer: &mut dyn Observer,
+    ) -> Result<Ending, SimulationError> {
+        if self.place.is_at_segment_start() && start.f_n <= 0.0 {
+            observer.note("shear: nothing touches, so the sphere moves freely");
+        }
+        let direction = self.state.direction;
+        let length = match shear {
+            ShearTarget::Displacement(d) => (d - start.delta_t).abs(),
+            ShearTarget::FullSlip => f64::INFINITY,
+        };
+        let steps = ShearSteps::new(start, length, hold == Hold::NormalForce, &self.resolution());
+        let bound = steps.bound(start.a);
+        self.held_force = (hold == Hold::NormalForce).then_some(0.5 * start.f_n);
+        loop {
+            let i = self.place.reached + 1;
+            let distance = steps.distance(i);
+            let ends = length.is_finite() && distance >= length * (1.0 - 1e-9);
+            let target = Target {
+                h: self.state.record.h,
+                delta_t: match shear {
+                    ShearTarget::Displacement(d) if ends => d,
+                    _ => start.delta_t + direction * distance,
+                },
+                hold_force: self.held_force.is_some(),
+                extrapolate: i > 1,
+            };
+            let ending = self.advance(&target, observer)?;
+            if ending != Ending::Done {
+                self.held_force = None;
+                return Ok(ending);
+            }
+            if ends {
+                break;
+            }
+            if length.is_infinite() {
+                let before = self.place.force_before;
+                if self.slips_fully() && (self.state.record.f_t - before) * direction <= PLATEAU * before.abs() {
+                    self.full_slip = Some(true);
+                    break;
+                }
+                if distance >= bound {
+                    self.full_slip = Some(false);
+                    observer.note(&format!(
+                        "shear: full slip was not reached within delta_T = {:.4} R; {} of {} contact points slip",
+                        self.problem.bodies * distance,
+                        self.state.record.slipping_points,
+                        self.state.record.contact_points
+                    ));
+                    break;
+                }
+            }
+        }
+        self.held_force = None;
+        Ok(Ending::Done)
+    }
+
+    /// Every point slips, but for points at the edge that carry next to nothing.
+    fn slips_fully(&self) -> bool {
+        let closed = self.state.points.iter().filter(|p| p.status != Status::Open);
+        let (mut stick, mut all) = (0.0, 0.0);
+        for p in closed {
+            all += p.force[2];
+            if p.status == Status::Stick {
+                stick += p.force[2];
+            }
+        }
+        stick <= STICK_SHARE * all
+    }
+}

@@ -1,0 +1,58 @@
+//! Who watches a run, and what is shown of a step.
+
+use super::checkpoint::Snapshot;
+use super::problem::Problem;
+use super::record::{ContactPoint, StepRecord};
+use crate::compute::{CaseFields, Compute, ComputeError};
+use crate::mesh::Mesh;
+use crate::solver::newton::StepReport;
+use crate::solver::phases::PhaseTimes;
+
+/// Watches a run.
+pub trait Observer {
+    /// A step was accepted. The undeformed state comes first, as step 0.
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    /// A segment of the path has ended, or the run ends within it; `view` shows its last accepted step.
+    fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
+    /// Something that the user should know and the summary should keep.
+    fn note(&mut self, text: &str);
+    /// The contact left the finely meshed zone: the run starts over from the undeformed state on the mesh of `problem`, which has so many unknowns.
+    fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        let _ = (problem, unknowns);
+        Ok(())
+    }
+    /// Asks the run to end after the present step.
+    fn stop_requested(&self) -> bool {
+        false
+    }
+    /// Offers a checkpoint, after every accepted step; `take` copies the state that a run could go on from. `last`: no other is offered, because
+    /// the run is interrupted or has followed its path.
+    fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
+        let _ = (last, take);
+    }
+}
+
+/// An accepted step, for output.
+pub struct StepView<'a> {
+    /// Its row in the history.
+    pub record: StepRecord,
+    /// How Newton went.
+    pub report: &'a StepReport,
+    /// Time of attempts since then that led to no step.
+    pub unfinished: PhaseTimes,
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// Displacement, three a node.
+    pub displacement: &'a [f64],
+    /// Every point that can touch.
+    pub points: &'a [ContactPoint],
+    pub(super) backend: &'a mut dyn Compute,
+    pub(super) case: usize,
+}
+
+impl StepView<'_> {
+    /// Stresses and strains of the step.
+    pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
+        self.backend.fields(self.case)
+    }
+}
