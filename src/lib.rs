@@ -56,21 +56,15 @@ pub mod case;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compute;
-pub mod contact;
-pub mod element;
-pub mod lanes;
 pub mod law;
-pub mod linalg;
-pub mod material;
-pub mod mesh;
 pub mod output;
 pub mod processor;
-pub mod real;
 pub mod session;
 pub mod simulation;
 pub mod solver;
 pub mod study;
 pub mod verify;
 
+pub use asperity_kernels::{contact, element, lanes, linalg, material, mesh, real};
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
