@@ -56,8 +56,8 @@ if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
     export XDG_RUNTIME_DIR
 fi
 
-begin "cargo fmt --check"
-cargo fmt --check
+begin "cargo fmt --all --check"
+cargo fmt --all --check
 
 begin "cargo clippy --all-targets"
 cargo clippy --all-targets -- -D warnings
