@@ -5,6 +5,7 @@ use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::Instant;
 
 use super::common::{Scratch, difference, program, stderr};
 use super::program::{scratch, skipped, whole};
@@ -85,11 +86,14 @@ fn a_run_that_is_killed_again_and_again_comes_to_its_end() {
         assert_eq!(output.status.code(), Some(0), "after {kills} kills: {}", stderr(&output));
         assert_eq!(difference(&out, whole()), None, "after {kills} kills");
     };
+    // Over the whole of a run, early and late, however fast this machine is just now.
+    let begun = Instant::now();
+    assert_eq!(scratch.run(scratch.path("alone"), &["-q"]).status.code(), Some(0));
+    let moment = begun.elapsed() / 16;
     let (mut kills, mut starts, mut ends) = (0, 0, 0);
     while kills < many {
         let mut child = program().args(scratch.args(&out, &["-q", "--resume"])).spawn().expect("the program runs");
-        // Over the whole of a start, early and late.
-        std::thread::sleep(std::time::Duration::from_millis(7 + 13 * (starts % 17)));
+        std::thread::sleep(moment * (starts % 17) as u32);
         kills += usize::from(child.try_wait().expect("its state").is_none());
         starts += 1;
         let _ = child.kill();
@@ -99,7 +103,7 @@ fn a_run_that_is_killed_again_and_again_comes_to_its_end() {
             ends += 1;
             fs::remove_dir_all(&out).expect("removed");
         }
-        assert!(starts < 20 * many as u64, "{kills} kills of {starts} starts");
+        assert!(starts < 20 * many, "{kills} kills of {starts} starts");
     }
     ends_alike(kills);
     println!("{kills} kills of {starts} starts; {} runs came to their end, all with the same bits", ends + 1);
