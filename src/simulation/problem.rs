@@ -10,7 +10,6 @@ use crate::case::{self, Case, Opponent, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::linalg::{LinearSolver, SolverKind};
-use crate::material::Material;
 use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
@@ -110,7 +109,7 @@ impl Problem {
         let (equal_pair, bodies) = (case.opponent == Some(Opponent::Equal), case.bodies());
         let case = case.scaled();
         let nu = case.material.poissons_ratio;
-        let material = Material::<f64>::from_case(&case.material)?;
+        let material = case.material.constants::<f64>()?;
         let zone = zone.unwrap_or_else(|| asked_zone(&case, &material.hardening));
         let elements = case.mesh.elements_per_contact_radius;
         let lambda = johnson_parameter(&material.hardening, nu, zone.contact_radius);
@@ -151,7 +150,7 @@ impl Problem {
     /// [`SimulationError::Hardening`].
     pub fn zone_of(case: &Case) -> Result<Zone, SimulationError> {
         let case = case.scaled();
-        Ok(asked_zone(&case, &Material::<f64>::from_case(&case.material)?.hardening))
+        Ok(asked_zone(&case, &case.material.constants::<f64>()?.hardening))
     }
 
     /// Number of displacements that are not prescribed.
