@@ -42,6 +42,9 @@ pub struct Drive<'a> {
     last_report: StepReport,
 }
 
+/// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a
+/// third fewer than none.
+const PRESS_EXTRAPOLATION: f64 = 0.6;
 /// See [`Drive::attempt_stuck`]; all but the first only after a step was bisected so often.
 const SLIDING_RATIOS: [f64; 3] = [3.0, 1.0, 0.3];
 const SHALLOW: usize = 3;
@@ -317,22 +320,26 @@ impl<'a> Drive<'a> {
     }
 
     /// Extrapolates the last step of the segment: under shear, pressed at the same time or not, all of it; under
-    /// pressing alone the share of [`Problem::press_extrapolation`].
+    /// pressing alone a part, so that points that are about to touch come down but are not pushed through the plane.
+    ///
     /// What matters is less the guess's accuracy than that points that flow are found flowing: the first tangent is
-    /// then a plastic one. An oblique press at E/sigma_Y = 9000, mu = 0.5, extrapolated by 0.6 or 0.9 took 19,800 and
-    /// several thousand iterations, with 472 cuts in the first; extrapolated in full it takes 440 and 2.
+    /// then a plastic one. A fully plastic contact is extrapolated in full, and points that come out below the plane
+    /// are left there: lifted one by one they would strain the elements under them backwards. Without friction, at
+    /// E/sigma_Y = 15,000 and h = 0.085 R, a press took 2,200 iterations and 37 cuts, and takes 150 and one; an
+    /// oblique press at E/sigma_Y = 9000, mu = 0.5, took 19,800 and 472, and takes 300 and none.
     fn guess(&self, target: &Target) -> Option<Vec<f64>> {
         let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;
         let ratio = if last_delta_t != 0.0 {
             (target.delta_t - r.delta_t) / last_delta_t
         } else if last_h != 0.0 {
-            self.problem.press_extrapolation * (target.h - r.h) / last_h
+            let share = if self.problem.fully_plastic { 1.0 } else { PRESS_EXTRAPOLATION };
+            share * (target.h - r.h) / last_h
         } else {
             return None;
         };
         let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
-        if self.problem.equal_pair {
+        if self.problem.equal_pair || self.problem.fully_plastic {
             return Some(guess);
         }
         for &node in &self.mesh.contact_nodes {

@@ -16,7 +16,7 @@ use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::solver::newton::Newton;
 use crate::solver::pair::{PairSolver, mirror_nodes};
 use crate::solver::system::Boundary;
-use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_linear};
+use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_linear, monotone_from};
 
 /// A case ready to be simulated.
 #[derive(Clone, Debug)]
@@ -35,8 +35,8 @@ pub struct Problem {
     pub spacing: f64,
     /// The part of the surface that is finely meshed.
     pub zone: Zone,
-    /// Share of the last step by which a press step is extrapolated.
-    pub press_extrapolation: f64,
+    /// The contact becomes fully plastic: what flows has to be found flowing.
+    pub fully_plastic: bool,
     /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a plane.
     pub equal_pair: bool,
     /// Bodies that deform, see [`Case::bodies`]: displacements of the path and the record are those of one.
@@ -83,15 +83,6 @@ fn johnson_parameter(law: &Hardening<f64>, nu: f64, a: f64) -> f64 {
     }
 }
 
-/// Share of the last step by which a press step is extrapolated, for a contact whose Johnson parameter grows to
-/// `lambda`: a part, so that points that are about to touch come down but are not pushed through the plane (0.45 to
-/// 0.75 need the same iterations, a third fewer than none); all of it where the contact is fully plastic, so that what
-/// flows is found flowing. Without friction, at E/sigma_Y = 15,000 and h = 0.085 R, a press took 2,200 iterations and
-/// 37 cuts at 0.6, and takes 170 and one.
-fn press_extrapolation(lambda: f64) -> f64 {
-    if lambda >= FULLY_PLASTIC { 1.0 } else { 0.6 }
-}
-
 impl Problem {
     /// Scales a case (in the user's units) and makes the mesh that it asks for.
     ///
@@ -125,11 +116,12 @@ impl Problem {
                 max_iterations: case.solver.max_iterations,
                 loosest_linear: loosest_linear(nu),
                 first_linear: first_linear(lambda),
+                monotone_from: monotone_from(lambda),
             },
             max_cutbacks: case.solver.max_cutbacks,
             spacing: zone.contact_radius / elements as f64,
             zone,
-            press_extrapolation: press_extrapolation(lambda),
+            fully_plastic: lambda >= FULLY_PLASTIC,
             equal_pair,
             bodies,
             model: CaseModel {

@@ -27,6 +27,8 @@ pub struct Settings {
     /// Share of the sum of the normal contact forces down to which the first linear system of a step is solved (see [`first_linear`]); infinite if
     /// the loosest tolerance does.
     pub first_linear: f64,
+    /// From this iteration on the line search compares with the last iterate alone (see [`monotone_from`]).
+    pub monotone_from: usize,
 }
 
 /// From this Johnson parameter E a/((1 - nu^2) sigma_rep R) on a contact is fully plastic (Olsson & Larsson 2016).
@@ -39,6 +41,17 @@ pub const FULLY_PLASTIC: f64 = 160.0;
 /// 5 cut-backs so, and takes 134 with none.
 pub fn first_linear(lambda: f64) -> f64 {
     if lambda >= FULLY_PLASTIC { 0.01 } else { f64::INFINITY }
+}
+
+/// From this iteration on the line search compares with the last iterate alone, for a contact whose Johnson parameter
+/// grows to `lambda`; before, with the largest merit so far, because the first changes of contact status raise the
+/// merit on the way down.
+///
+/// In deep plasticity the merit must not rise for long: at E/sigma_Y = 5000 a press of 20 steps took 375 iterations
+/// and 7 cuts from the fifth iteration on, 166 and none from the second or third. At E/sigma_Y = 18,500 one took 1,170
+/// and 19 from the third, and takes 950 and 10 from the second.
+pub fn monotone_from(lambda: f64) -> usize {
+    if lambda >= FULLY_PLASTIC { 1 } else { 2 }
 }
 
 /// Loosest linear tolerance for a Poisson's ratio: 0.1 up to 0.3, and above less as the ratio of bulk to shear modulus grows.

@@ -16,10 +16,6 @@ const STEP_LENGTHS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
 /// loosest to [`Settings::loosest_linear`]. Solving more tightly (gamma 0.9, the first system to 0.01) takes a sixth more
 /// processor time for 3 % fewer iterations: it is plastic loading and unloading that the iteration has to find.
 const FORCING_GAMMA: f64 = 2.0;
-/// From this iteration on the line search compares with the last iterate alone; before, with the largest merit so far, because the first
-/// changes of contact status raise the merit on the way down. In deep plasticity the merit must not rise for long: at E/sigma_Y = 5000 a press of
-/// 20 steps took 375 iterations and 7 cuts from the fifth iteration on, 166 and none from the second or third.
-const MONOTONE_FROM: usize = 2;
 /// The first linear system of a step is solved no further than this.
 const TIGHTEST_FIRST: f64 = 1e-4;
 /// A held normal force is met to this share of it.
@@ -233,12 +229,12 @@ impl Newton {
             let moves_plate = iteration == 0 && !self.plate_is_placed(control);
             let reference = match iteration {
                 0 if moves_plate => f64::INFINITY,
-                i if i < MONOTONE_FROM => highest,
+                i if i < self.settings.monotone_from => highest,
                 _ => self.current.merit,
             };
             let before = self.current.merit / scale;
             previous = self.current.merit;
-            let may_stay = iteration >= MONOTONE_FROM
+            let may_stay = iteration >= self.settings.monotone_from
                 && self.plate_is_placed(control)
                 && self.holds_force(case, control, 2.0 * HELD_TOLERANCE)
                 && previous <= KINK * self.settings.tolerance * scale;

@@ -15,7 +15,7 @@ fn rig(max_iterations: usize) -> Rig {
         mesh,
         plastic(),
         Friction::Coulomb(0.3),
-        Settings { tolerance: 1e-10, max_iterations, loosest_linear: 0.1, first_linear: f64::INFINITY },
+        Settings { tolerance: 1e-10, max_iterations, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 },
     )
 }
 
