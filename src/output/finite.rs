@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::{OutputError, StepRecord, Summary};
+use super::{ContactPoint, OutputError, StepRecord, Summary};
+use crate::compute::CaseFields;
 
 /// Refuses a row of the history with such a number.
 ///
@@ -51,6 +52,29 @@ pub fn check_summary(path: &Path, summary: &Summary) -> Result<(), OutputError> 
     refuse(path, summary.steps, numbers)
 }
 
+/// Refuses the fields and the contact table of a step with such a number.
+///
+/// # Errors
+/// [`OutputError::NotFinite`] with the step and what it is of.
+pub fn check_saved(path: &Path, step: usize, fields: &CaseFields, contact: &[ContactPoint]) -> Result<(), OutputError> {
+    for point in contact {
+        let numbers = [
+            ("x", point.current_x),
+            ("y", point.current_y),
+            ("gap", point.gap),
+            ("pressure", point.pressure),
+            ("traction_x", point.traction_x),
+            ("traction_y", point.traction_y),
+        ];
+        refuse(path, step, numbers.map(|(name, value)| (name, Some(value))))?;
+    }
+    for (stress, alpha) in fields.stress.iter().zip(&fields.alpha) {
+        let worst = stress.iter().find(|stress| !stress.is_finite()).copied();
+        refuse(path, step, [("stress", worst), ("alpha", Some(*alpha))])?;
+    }
+    Ok(())
+}
+
 fn refuse<const N: usize>(path: &Path, step: usize, numbers: [(&str, Option<f64>); N]) -> Result<(), OutputError> {
     let bad = numbers.into_iter().find_map(|(name, value)| Some((name, value.filter(|value| !value.is_finite())?)));
     bad.map_or(Ok(()), |(column, value)| {
@@ -86,6 +110,21 @@ mod tests {
         assert_eq!(refused, 14);
         let message = check_row(path, &StepRecord { f_n: f64::NAN, ..row }).unwrap_err().to_string();
         assert!(message.starts_with("step 3: F_N is NaN"), "{message}");
+    }
+
+    #[test]
+    fn fields_and_contact_points_are_looked_at() {
+        let path = Path::new("out/fields/step_0003.vtu");
+        let fields = CaseFields { stress: vec![[1.0; 6]; 2], alpha: vec![0.0; 2], max_alpha: 0.0 };
+        assert!(check_saved(path, 3, &fields, &[]).is_ok());
+        let mut bad = fields.clone();
+        bad.stress[1][4] = f64::NAN;
+        let message = check_saved(path, 3, &bad, &[]).unwrap_err().to_string();
+        assert!(message.starts_with("step 3: stress is NaN"), "{message}");
+        bad = fields;
+        bad.alpha[0] = f64::INFINITY;
+        let message = check_saved(path, 3, &bad, &[]).unwrap_err().to_string();
+        assert!(message.starts_with("step 3: alpha is inf"), "{message}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::checkpoint::Checkpoint;
 use super::clock::Clock;
-use super::finite::check_summary;
+use super::finite::{check_saved, check_summary};
 use super::ledger::Ledger;
 use super::path_share::PathShare;
 use super::{
@@ -263,6 +263,10 @@ impl ResultWriter {
         }
         let fields = view.fields()?;
         let path = self.out.fields(step);
+        if let Err(error) = check_saved(&path, step, &fields, contact) {
+            self.failed = true;
+            return Err(error.into());
+        }
         write_contact(&self.out.contact(step), contact)?;
         write_fields(&path, view.mesh, view.displacement, &fields, contact, &self.units)?;
         self.collection.push(self.ledger.path_length(step), &path)?;
