@@ -1,0 +1,148 @@
+//! A rigid sphere as the opponent: of great radius it is the plane; Hertz with R*; the hardness of a flat; friction and energies while it is sheared.
+
+use std::f64::consts::PI;
+
+use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
+use super::{Check, VerifyError};
+use crate::analytical::{ElasticSphere, hertz};
+use crate::case::{Case, Hardening, Hold, Opponent, Segment};
+use crate::output::{ContactPoint, ContactStatus, ripple};
+use crate::simulation::record::StepRecord;
+
+const NU: f64 = 0.3;
+const MU: f64 = 0.3;
+/// Indentation at which Hertz is checked.
+const H: f64 = 1e-4 * RADIUS;
+/// A flat of this yield stress is fully plastic from h = 0.002 R on: there Lambda, Johnson's parameter, is 160.
+const SOFT: f64 = 100.0;
+const DEEP: f64 = 0.008 * RADIUS;
+
+/// A case against a rigid sphere of this radius; its body is a flat or a sphere.
+fn against(radius: f64, flat: bool, hardening: Hardening, friction: f64, elements: usize, path: Vec<Segment>) -> Case {
+    let mut case = sphere(NU, hardening, friction, elements, path);
+    case.sphere.flat = flat;
+    case.opponent = Some(Opponent::Rigid { radius });
+    case
+}
+
+/// Runs the checks.
+pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
+    let mut checks = plane(runner)?;
+    for flat in [true, false] {
+        checks.extend(hertzian(runner, flat)?);
+    }
+    checks.extend(brinell(runner)?);
+    checks.extend(sheared(runner)?);
+    Ok(checks)
+}
+
+/// A sphere of great radius and the plane, which is computed another way.
+fn plane(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
+    let path = vec![press(0.02 * RADIUS), shear(0.002 * RADIUS, Hold::Indentation)];
+    let mut plane = sphere(NU, Hardening::Ideal { yield_stress: 400.0 }, MU, 4, path);
+    plane.solver.tolerance = 1e-8;
+    (plane.solver.press_steps, plane.solver.shear_steps) = (Some(8), Some(5));
+    let mut case = plane.clone();
+    case.opponent = Some(Opponent::Rigid { radius: 1e9 * RADIUS });
+    let (plane, case) = (runner.follow(&plane)?, runner.follow(&case)?);
+    let pressed = |history: &History| history.end(0);
+    let last = |history: &History| history.last();
+    let check = |what: &str, ours: f64, reference: f64| {
+        let because = "the solver's tolerance is 1e-8, and a/R over 1e9 nothing";
+        Check::relative("rigid sphere", format!("radius 1e9 R: {what}"), ours, reference, 1e-6, because)
+    };
+    Ok(vec![
+        check("F_N, pressed", pressed(&case).f_n, pressed(&plane).f_n),
+        check("a, pressed", pressed(&case).a, pressed(&plane).a),
+        check("F_N, sheared", last(&case).f_n, last(&plane).f_n),
+        check("F_T, sheared", last(&case).f_t, last(&plane).f_t),
+        check("a, sheared", last(&case).a, last(&plane).a),
+    ])
+}
+
+/// An elastic body against a rigid sphere of radius R: Hertz with R* = R for the flat, R/2 for the sphere.
+fn hertzian(runner: &mut Runner<'_>, flat: bool) -> Result<Vec<Check>, VerifyError> {
+    let mut case = against(RADIUS, flat, Hardening::Elastic, 0.0, runner.elements(8), vec![press(H)]);
+    case.solver.press_steps = Some(4);
+    case.solver.tolerance = 1e-5;
+    let row = runner.follow(&case)?.last();
+    let exact = ElasticSphere { radius: case.effective_radius(), youngs_modulus: YOUNGS_MODULUS, poissons_ratio: NU };
+    let body = if flat { "flat" } else { "sphere" };
+    let check = |what: &str, ours: f64, reference: f64, because: &'static str| {
+        Check::relative("rigid sphere", format!("elastic {body}: {what} at h = 1e-4 R"), ours, reference, 0.01, because)
+    };
+    Ok(vec![
+        check("F_N", row.f_n, hertz::force(&exact, H), "the plate stands off by R or 2 R, which makes F_N 0.3 to 0.4 % larger; the rest is the mesh"),
+        check("a", row.a, hertz::contact_radius(&exact, H), "a is found to less than a tenth of an element, of which it has 8"),
+    ])
+}
+
+/// A rigid sphere pressed into an ideally plastic flat, without friction.
+fn brinell(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
+    let elements = runner.elements(8);
+    let history = runner.follow(&against(RADIUS, true, Hardening::Ideal { yield_stress: SOFT }, 0.0, elements, vec![press(DEEP)]))?;
+    const PLASTIC: &str = "a finite-element result, read from a figure; beyond it mesh and steps are worth 2 %";
+    let mut checks = Vec::new();
+    for share in [0.5, 1.0] {
+        let row = history.segment(0).find(|row| row.h >= share * DEEP * (1.0 - 1e-9)).copied().unwrap_or_default();
+        let at = format!("at h = {:.4} R", row.h);
+        let (pressure, area) = (row.f_n / (PI * row.a * row.a * SOFT), row.a * row.a / (2.0 * RADIUS * row.h));
+        checks.push(Check::relative("rigid sphere", format!("ideal flat: p_m/sigma_Y {at}"), pressure, 3.0, 0.04, PLASTIC));
+        checks.push(Check::relative("rigid sphere", format!("ideal flat: a^2/(2 R h) {at}"), area, 1.4, 0.04, PLASTIC));
+    }
+    checks.push(Check::information(
+        "rigid sphere",
+        "ideal flat: ripple of F_N",
+        ripple(&history.rows).unwrap_or(f64::NAN),
+        "root mean square of ln F_N about a parabola in ln h",
+    ));
+    Ok(checks)
+}
+
+/// A rigid sphere sheared along a flat, and the main job's sphere along a plane, for what they cost.
+fn sheared(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
+    let path = || vec![press(0.02 * RADIUS), shear(0.01 * RADIUS, Hold::Indentation)];
+    let hardening = || Hardening::Ideal { yield_stress: 400.0 };
+    let ball = runner.follow(&against(RADIUS, true, hardening(), MU, 6, path()))?;
+    let plane = runner.follow(&sphere(NU, hardening(), MU, 6, path()))?;
+    let iterations = |history: &History| history.rows.iter().map(|row| row.newton_iterations).sum::<usize>() as f64;
+    let balance = |row: StepRecord| 1.0 - (row.energy_elastic + row.work_plastic + row.work_friction) / row.work_external;
+    let energy = |what: &str, row: StepRecord| {
+        let because = "trapezoidal rule over the steps, as over a plane";
+        Check::relative("rigid sphere", what, balance(row), 0.0, 0.03, because).by(1.0)
+    };
+    Ok(vec![
+        Check::range(
+            "rigid sphere",
+            "sheared along a flat: |q|/(mu p) at any point",
+            worst_friction(&ball.contact, RADIUS),
+            [0.9, 1.0],
+            1e-6,
+            "Coulomb's bound holds at every point, in the frame of the sphere's surface there, of which gaps of 1e-8 say where it is",
+        ),
+        energy("sheared along a flat: missing work, pressed", ball.end(0)),
+        energy("sheared along a flat: missing work, sheared", ball.last()),
+        Check::range(
+            "rigid sphere",
+            "sheared along a flat: Newton iterations over those of the plane",
+            iterations(&ball) / iterations(&plane),
+            [0.0, 1.3],
+            0.0,
+            "the same path of a sphere on the plane, on as many elements along the contact radius",
+        ),
+    ])
+}
+
+/// Largest |q|/(mu p) of the points in contact with a rigid sphere of this radius.
+pub fn worst_friction(points: &[ContactPoint], radius: f64) -> f64 {
+    let closed = points.iter().filter(|point| point.status != ContactStatus::Open && point.pressure > 0.0);
+    closed.map(|point| {
+        let (x, y) = (point.current_x / radius, point.current_y / radius);
+        let normal = [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()];
+        let traction = [point.traction_x, point.traction_y, point.pressure];
+        let p: f64 = normal.iter().zip(traction).map(|(n, t)| n * t).sum();
+        let q: f64 = normal.iter().zip(traction).map(|(n, t)| (t - p * n).powi(2)).sum::<f64>().sqrt();
+        q / (MU * p)
+    })
+    .fold(0.0, f64::max)
+}
