@@ -45,7 +45,8 @@ fn follow(settings: &[&str]) -> Vec<(StepRecord, Vec<ContactPoint>)> {
 
 /// Pressure and traction of a point in contact across and along the surface of a sphere with this radius.
 fn in_its_frame(point: &ContactPoint, radius: f64) -> [f64; 2] {
-    let (x, y) = (point.current_x / radius, point.current_y / radius);
+    let distance = radius + point.gap;
+    let (x, y) = (point.current_x / distance, point.current_y / distance);
     let normal = [x, y, (1.0 - x * x - y * y).sqrt()];
     let traction = [point.traction_x, point.traction_y, point.pressure];
     let p: f64 = normal.iter().zip(traction).map(|(n, t)| n * t).sum();
@@ -74,10 +75,11 @@ fn coulomb_holds_at_every_point_and_the_energies_balance() {
             let mean = row.f_n / (std::f64::consts::PI * row.a * row.a).max(1e-12);
             for point in points.iter().filter(|p| p.status != ContactStatus::Open) {
                 let [p, q] = in_its_frame(point, radius);
-                assert!(point.gap.abs() < 1e-5, "{at}: {point:?}");
-                assert!(p > -1e-5 * mean && q <= mu * p + 1e-4 * mean, "{at}: {p} {q} {point:?}");
+                assert!(point.gap.abs() < 1e-4, "{at}: {point:?}");
+                let bound = if mu.is_finite() { mu * p } else { f64::INFINITY };
+                assert!(p > -1e-9 * mean && q <= bound + 1e-9 * mean, "{at}: {p} {q} {point:?}");
             }
-            assert!(points.iter().all(|p| p.gap > -1e-5), "{at}: nothing has passed the sphere");
+            assert!(points.iter().all(|p| p.gap > -1e-4), "{at}: nothing has passed the sphere");
         }
         let last = steps.last().map(|(row, _)| *row).unwrap_or_default();
         let most = steps.iter().map(|(row, _)| row.work_external).fold(0.0, f64::max);
