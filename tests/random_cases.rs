@@ -14,7 +14,8 @@ const COUNT: usize = 24;
 
 #[test]
 fn random_cases_end_by_themselves_and_say_what_is_true() {
-    let all: Vec<Measured> = (0..COUNT).into_par_iter().with_max_len(1).map(|index| measure(SEED, index, 4, Against::Plane)).collect();
+    let all: Vec<Measured> =
+        (0..COUNT).into_par_iter().with_max_len(1).map(|index| measure(SEED, index, 4, Against::Plane)).collect();
     println!("{}", Measured::HEAD);
     all.iter().for_each(|one| println!("{one}"));
     println!("{}", summary(&all));

@@ -1,10 +1,10 @@
 //! A rigid sphere as the opponent, of a sphere and of a flat: forces, friction at every point, energies, held forces, stick, release; and resumed runs.
 
 use asperity::case::Case;
+use asperity::compute::cpu::Cpu;
 use asperity::output::{ContactPoint, ContactStatus, StepRecord, Units};
 use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
 use asperity::simulation::problem::Problem;
-use asperity::compute::cpu::Cpu;
 use rayon::prelude::*;
 
 /// Every accepted step with its whole contact, in the case's units.
@@ -88,7 +88,10 @@ fn coulomb_holds_at_every_point_and_the_energies_balance() {
         assert!((last.work_external - energy).abs() <= 0.03 * most, "{settings:?}: {} and {energy}", last.work_external);
         if settings.iter().any(|s| s.contains("normal-force")) {
             let force = steps.iter().rfind(|(row, _)| row.segment == 0).map_or(0.0, |(row, _)| row.f_n);
-            assert!(steps.iter().filter(|(row, _)| row.segment == 1).all(|(row, _)| (row.f_n / force - 1.0).abs() < 1e-4), "{force}");
+            assert!(
+                steps.iter().filter(|(row, _)| row.segment == 1).all(|(row, _)| (row.f_n / force - 1.0).abs() < 1e-4),
+                "{force}"
+            );
         }
         if settings.iter().any(|s| s.contains("release=true")) {
             assert_eq!((last.contact_points, last.f_n), (0, 0.0), "{settings:?}");

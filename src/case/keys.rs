@@ -450,7 +450,8 @@ mod tests {
                     "sphere.flat" => &["opponent.rigid=true", "opponent.radius=2.0"],
                     _ => &[],
                 };
-                let sets: Vec<String> = beside.iter().map(|set| (*set).to_owned()).chain([format!("{}={value}", place(key))]).collect();
+                let sets: Vec<String> =
+                    beside.iter().map(|set| (*set).to_owned()).chain([format!("{}={value}", place(key))]).collect();
                 let case = parsed(law, &sets);
                 assert!(case.is_ok(), "{} = {value}: {:?}", key.dotted(), case.err());
             };

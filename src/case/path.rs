@@ -1,8 +1,8 @@
 //! The path: segments of pressing, shearing and releasing.
 
-use super::{Friction, Opponent, Sphere};
 use super::error::CaseError;
 use super::reader::{Field, Reader};
+use super::{Friction, Opponent, Sphere};
 
 /// One segment of the path. Targets are totals from the undeformed sphere, not increments.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,9 +79,7 @@ impl Lengths {
                 press_name: if sphere.flat { "of the smaller radius" } else { "effective radius" },
                 shear_name: "of the smaller radius",
             },
-            None | Some(Opponent::Equal) => {
-                Self { press: radius, shear: radius, press_name: "radius", shear_name: "radius" }
-            }
+            None | Some(Opponent::Equal) => Self { press: radius, shear: radius, press_name: "radius", shear_name: "radius" },
         }
     }
 }

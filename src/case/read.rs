@@ -54,7 +54,9 @@ impl Case {
             material,
             contact,
         };
-        if let (Some(Opponent::Equal), Linear::Direct, Some(field)) = (case.opponent, case.solver.linear, root.table("solver")?.get("linear")) {
+        if let (Some(Opponent::Equal), Linear::Direct, Some(field)) =
+            (case.opponent, case.solver.linear, root.table("solver")?.get("linear"))
+        {
             return Err(
                 field.refuse("is \"direct\", which solves for one body alone", "\"multigrid\" with an opponent that deforms")
             );

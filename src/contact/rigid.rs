@@ -71,7 +71,10 @@ mod tests {
                 }
                 let moved = |by: [f64; 3]| rigid.gap(&std::array::from_fn(|i| x[i] + 1e-6 * from_frame(&frame, &by)[i]));
                 assert!((moved([0.0, 0.0, 1.0]) - rigid.gap(&x) - 1e-6).abs() < 1e-12);
-                assert!((moved([1.0, 0.0, 0.0]) - rigid.gap(&x)).abs() < 1e-11 && (moved([0.0, 1.0, 0.0]) - rigid.gap(&x)).abs() < 1e-11);
+                assert!(
+                    (moved([1.0, 0.0, 0.0]) - rigid.gap(&x)).abs() < 1e-11
+                        && (moved([0.0, 1.0, 0.0]) - rigid.gap(&x)).abs() < 1e-11
+                );
                 assert!((rigid.gap(&rigid.push_out(&x)) - rigid.gap(&x).max(0.0)).abs() < 1e-14);
                 let back = from_frame(&frame, &to_frame(&frame, &x));
                 assert!(back.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-15));

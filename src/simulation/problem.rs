@@ -74,7 +74,8 @@ fn asked_zone(case: &Case, law: &Hardening<f64>) -> Zone {
     let flow_stress = |alpha| if matches!(law, Hardening::Elastic) { f64::INFINITY } else { law.flow_stress(alpha) };
     // Of two spheres the closed forms know R* alone.
     let r = case.effective_radius();
-    let predicted = || r * predicted_contact_radius(1.0, case.material.poissons_ratio, flow_stress, largest_indentation(case) / r);
+    let predicted =
+        || r * predicted_contact_radius(1.0, case.material.poissons_ratio, flow_stress, largest_indentation(case) / r);
     Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone)
 }
 
@@ -111,11 +112,8 @@ impl Problem {
         let material = Material::<f64>::from_case(&case.material)?;
         let zone = zone.unwrap_or_else(|| asked_zone(&case, &material.hardening));
         let elements = case.mesh.elements_per_contact_radius;
-        let spec = SphereSpec {
-            contact_radius: zone.contact_radius,
-            elements_per_contact_radius: elements,
-            fine_zone: zone.fine_zone,
-        };
+        let spec =
+            SphereSpec { contact_radius: zone.contact_radius, elements_per_contact_radius: elements, fine_zone: zone.fine_zone };
         let mesh = if case.sphere.flat { flat_mesh(&spec)? } else { sphere_mesh(&spec)? };
         let relative_radius = zone.contact_radius / case.effective_radius();
         Ok(Self {

@@ -75,7 +75,12 @@ fn hertzian(runner: &mut Runner<'_>, flat: bool) -> Result<Vec<Check>, VerifyErr
         Check::relative("rigid sphere", format!("elastic {body}: {what} at a = 0.005 R"), ours, reference, 0.01, because)
     };
     Ok(vec![
-        check("F_N", row.f_n, hertz::force(&exact, h), "the body beyond its plate is missing, which makes F_N 0.55 or, of a flat, 0.65 a/R larger; the rest is the mesh"),
+        check(
+            "F_N",
+            row.f_n,
+            hertz::force(&exact, h),
+            "the body beyond its plate is missing, which makes F_N 0.55 or, of a flat, 0.65 a/R larger; the rest is the mesh",
+        ),
         check("a", row.a, hertz::contact_radius(&exact, h), "a is found to less than a tenth of an element, of which it has 8"),
     ])
 }
@@ -83,12 +88,14 @@ fn hertzian(runner: &mut Runner<'_>, flat: bool) -> Result<Vec<Check>, VerifyErr
 /// A rigid sphere pressed into an ideally plastic flat, without friction.
 fn brinell(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     let elements = runner.elements(8);
-    let history = runner.follow(&against(RADIUS, true, Hardening::Ideal { yield_stress: SOFT }, 0.0, elements, vec![press(DEEP)]))?;
+    let history =
+        runner.follow(&against(RADIUS, true, Hardening::Ideal { yield_stress: SOFT }, 0.0, elements, vec![press(DEEP)]))?;
     const PLASTIC: &str = "Mesarovic & Fleck 1999, two digits of a finite-element result; mesh and steps are worth 2 %";
     // Means over the second half of the press, in which both are constant but for the ripple.
     let rows: Vec<&StepRecord> = history.segment(0).filter(|row| row.h >= 0.5 * DEEP * (1.0 - 1e-9)).collect();
     let mean = |of: fn(&StepRecord) -> f64| rows.iter().map(|row| of(row)).sum::<f64>() / rows.len() as f64;
-    let (pressure, area) = (mean(|row| row.f_n / (PI * row.a * row.a * SOFT)), mean(|row| row.a * row.a / (2.0 * RADIUS * row.h)));
+    let (pressure, area) =
+        (mean(|row| row.f_n / (PI * row.a * row.a * SOFT)), mean(|row| row.a * row.a / (2.0 * RADIUS * row.h)));
     let mut checks = vec![
         Check::relative("rigid sphere", "ideal flat, fully plastic: p_m/sigma_Y", pressure, 3.0, 0.04, PLASTIC),
         Check::relative("rigid sphere", "ideal flat, fully plastic: a^2/(2 R h)", area, 1.4, 0.04, PLASTIC),
@@ -96,7 +103,7 @@ fn brinell(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     checks.push(Check::information(
         "rigid sphere",
         "ideal flat: ripple of F_N",
-        ripple(&history.rows).unwrap_or(f64::NAN),
+        ripple(&history.segment(0).copied().collect::<Vec<_>>()).unwrap_or(f64::NAN),
         "root mean square of ln F_N about a parabola in ln h",
     ));
     Ok(checks)
@@ -139,14 +146,15 @@ fn sheared(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
 /// Largest |q|/(mu p) of the points in contact with a rigid sphere of this radius.
 pub fn worst_friction(points: &[ContactPoint], radius: f64) -> f64 {
     let closed = points.iter().filter(|point| point.status != ContactStatus::Open && point.pressure > 0.0);
-    closed.map(|point| {
-        let distance = radius + point.gap;
-        let (x, y) = (point.current_x / distance, point.current_y / distance);
-        let normal = [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()];
-        let traction = [point.traction_x, point.traction_y, point.pressure];
-        let p: f64 = normal.iter().zip(traction).map(|(n, t)| n * t).sum();
-        let q: f64 = normal.iter().zip(traction).map(|(n, t)| (t - p * n).powi(2)).sum::<f64>().sqrt();
-        q / (MU * p)
-    })
-    .fold(0.0, f64::max)
+    closed
+        .map(|point| {
+            let distance = radius + point.gap;
+            let (x, y) = (point.current_x / distance, point.current_y / distance);
+            let normal = [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()];
+            let traction = [point.traction_x, point.traction_y, point.pressure];
+            let p: f64 = normal.iter().zip(traction).map(|(n, t)| n * t).sum();
+            let q: f64 = normal.iter().zip(traction).map(|(n, t)| (t - p * n).powi(2)).sum::<f64>().sqrt();
+            q / (MU * p)
+        })
+        .fold(0.0, f64::max)
 }
