@@ -58,8 +58,8 @@ if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
     export XDG_RUNTIME_DIR
 fi
 
-begin "cargo fmt --check"
-cargo fmt --check
+begin "cargo fmt --all --check"
+cargo fmt --all --check
 
 begin "cargo clippy --all-targets"
 cargo clippy --all-targets -- -D warnings
@@ -75,9 +75,9 @@ if [ "${ASPERITY_DENY:-}" = install ] && ! command -v cargo-deny >/dev/null; the
 fi
 PATH="$PATH:$PWD/target/tools/bin"
 if command -v cargo-deny >/dev/null; then
-    cargo deny check licenses bans sources
+    cargo deny --workspace check licenses bans sources
     if timeout 120 cargo deny fetch db >/dev/null 2>&1; then
-        cargo deny check advisories
+        cargo deny --workspace check advisories
     else
         echo "SKIPPED cargo deny check advisories: their database cannot be had" >&2
     fi
