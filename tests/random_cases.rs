@@ -1,6 +1,7 @@
 //! Random cases, as `cargo run --release --example random_cases` draws and runs them, here a few: each gets to the end of its path and what it says is true.
 
 #[path = "../examples/random_cases/generator.rs"]
+#[expect(dead_code, reason = "other opponents are drawn by the example alone")]
 mod generator;
 #[path = "../examples/random_cases/measure.rs"]
 mod measure;
