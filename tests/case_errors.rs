@@ -11,6 +11,7 @@ use common::{asperity, stderr};
 #[rustfmt::skip]
 const MISTAKES: &[(&str, usize, &str, &str, &str)] = &[
     ("duplicate-key", 7, "", "not valid TOML: duplicate key", ""),
+    ("flat-on-plane", 4, "sphere.flat", "a flat is pressed by a sphere alone", "[opponent] rigid = true and its radius"),
     ("friction-negative", 14, "contact.friction", "is -0.1", "a number >= 0, or \"stick\""),
     ("friction-word", 14, "contact.friction", "is \"glue\"", "a number >= 0, or \"stick\""),
     ("hollomon-coefficient", 11, "material.hardening.coefficient", "puts the yield stress", "< 0.2 E"),
@@ -28,6 +29,10 @@ const MISTAKES: &[(&str, usize, &str, &str, &str)] = &[
     ("missing-law", 9, "material.hardening.law", "missing", "\"elastic\", \"ideal\""),
     ("missing-table", 1, "contact", "missing", "a table with friction"),
     ("nan", 14, "contact.friction", "is NaN", "a number >= 0, or \"stick\""),
+    ("opponent-both", 16, "opponent", "is both equal and rigid", "one of equal = true and rigid = true"),
+    ("opponent-radius-alone", 17, "opponent.radius", "stands without rigid = true", "or no radius"),
+    ("opponent-radius-small", 18, "opponent.radius", "is 0.01", "at least 0.05 sphere.radius = 0.05"),
+    ("opponent-too-deep", 21, "path.0.indentation", "is 0.02", "< 0.3 effective radius = 0.01698"),
     ("output-fields", 17, "output.fields", "is \"some\"", "\"none\", \"segments\", \"all\""),
     ("output-plots", 17, "output.plots", "is the string \"yes\", which is the wrong type", "true or false"),
     ("overflow", 6, "material.youngs_modulus", "is inf", "a stress > 0"),

@@ -1,10 +1,12 @@
 //! Random cases, as `cargo run --release --example random_cases` draws and runs them, here a few: each gets to the end of its path and what it says is true.
 
 #[path = "../examples/random_cases/generator.rs"]
+#[expect(dead_code, reason = "other opponents are drawn by the example alone")]
 mod generator;
 #[path = "../examples/random_cases/measure.rs"]
 mod measure;
 
+use generator::Against;
 use measure::{Measured, measure, summary};
 use rayon::prelude::*;
 
@@ -13,7 +15,8 @@ const COUNT: usize = 24;
 
 #[test]
 fn random_cases_end_by_themselves_and_say_what_is_true() {
-    let all: Vec<Measured> = (0..COUNT).into_par_iter().with_max_len(1).map(|index| measure(SEED, index, 4, false)).collect();
+    let all: Vec<Measured> =
+        (0..COUNT).into_par_iter().with_max_len(1).map(|index| measure(SEED, index, 4, Against::Plane)).collect();
     println!("{}", Measured::HEAD);
     all.iter().for_each(|one| println!("{one}"));
     println!("{}", summary(&all));

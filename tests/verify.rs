@@ -57,6 +57,7 @@ fn every_check_passes_on_the_cpu() {
         "plastic shear",
         "energy",
         "jaeger-ciavarella",
+        "rigid sphere",
         "symmetry",
         "units",
     ] {

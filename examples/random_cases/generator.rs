@@ -11,8 +11,21 @@ const FRICTION: [f64; 2] = [0.0, 1.0];
 /// Displacements of a shear of given length over sqrt(2 R h), evenly in the logarithm: from well within stick to far into slip.
 const SHEAR: [f64; 2] = [2e-4, 0.5];
 
-/// Case number `index` of a seed, as a case file; the same for ever. As an `equal` pair its spheres move as far as the one does.
-pub fn case_text(seed: u64, index: usize, elements: usize, equal: bool) -> String {
+/// Radius of a rigid sphere over that of the body, evenly in its logarithm.
+const OPPONENT: [f64; 2] = [0.2, 5.0];
+
+/// What the body is pressed against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Against {
+    Plane,
+    /// Its equal; its spheres move as far as the one does.
+    Equal,
+    /// A rigid sphere, and every second body a flat; it moves as far in R*, or in the smaller radius.
+    Rigid,
+}
+
+/// Case number `index` of a seed, as a case file; the same for ever.
+pub fn case_text(seed: u64, index: usize, elements: usize, against: Against) -> String {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
     draw.0.set_stream(index as u64);
     let radius = draw.logarithmic([1e-3, 1e3]);
@@ -26,8 +39,18 @@ pub fn case_text(seed: u64, index: usize, elements: usize, equal: bool) -> Strin
         1 | 2 => "\"stick\"".to_owned(),
         _ => format!("{:?}", draw.even(FRICTION)),
     };
-    let (opponent, travel) = if equal { ("[opponent]\nequal = true\n", 2.0 * radius) } else { ("", radius) };
     let path = path(&mut draw, h, friction == "\"stick\"");
+    let (body, opponent, travel) = match against {
+        Against::Plane => ("", String::new(), radius),
+        Against::Equal => ("", "[opponent]\nequal = true\n".to_owned(), 2.0 * radius),
+        Against::Rigid => {
+            // Drawn last, so that all else is as over the plane.
+            let other = radius * draw.logarithmic(OPPONENT);
+            let opponent = format!("[opponent]\nrigid = true\nradius = {other:?}\n");
+            let effective = radius * other / (radius + other);
+            if draw.chance(0.5) { ("flat = true\n", opponent, radius.min(other)) } else { ("", opponent, effective) }
+        }
+    };
     let segments: String = path
         .iter()
         .map(|segment| match segment {
@@ -40,7 +63,7 @@ pub fn case_text(seed: u64, index: usize, elements: usize, equal: bool) -> Strin
         })
         .collect();
     format!(
-        "[sphere]\nradius = {radius:?}\n[material]\nyoungs_modulus = {modulus:?}\npoissons_ratio = {nu:?}\n[material.hardening]\n{hardening}\n\
+        "[sphere]\nradius = {radius:?}\n{body}[material]\nyoungs_modulus = {modulus:?}\npoissons_ratio = {nu:?}\n[material.hardening]\n{hardening}\n\
          [contact]\nfriction = {friction}\n{opponent}[mesh]\nelements_per_contact_radius = {elements}\n{segments}"
     )
 }

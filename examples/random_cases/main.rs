@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Parser;
 use rayon::prelude::*;
 
-use generator::case_text;
+use generator::{Against, case_text};
 use measure::{Measured, measure, summary};
 
 #[derive(Parser)]
@@ -34,6 +34,9 @@ struct Args {
     /// Between two equal spheres instead of against a plane.
     #[arg(long)]
     equal: bool,
+    /// Against a rigid sphere, every second body a flat.
+    #[arg(long, conflicts_with = "equal")]
+    rigid: bool,
     /// Write the measured numbers to this file, as JSON.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -47,8 +50,13 @@ struct Args {
 
 fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let args = Args::parse();
+    let against = match (args.equal, args.rigid) {
+        (true, _) => Against::Equal,
+        (_, true) => Against::Rigid,
+        _ => Against::Plane,
+    };
     if let Some(index) = args.only {
-        print!("{}", case_text(args.seed, index, args.elements, args.equal));
+        print!("{}", case_text(args.seed, index, args.elements, against));
         return Ok(ExitCode::SUCCESS);
     }
     rayon::ThreadPoolBuilder::new().num_threads(args.threads).build_global()?;
@@ -59,7 +67,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         .into_par_iter()
         .with_max_len(1)
         .map(|index| {
-            let measured = measure(args.seed, index, args.elements, args.equal);
+            let measured = measure(args.seed, index, args.elements, against);
             println!("{measured}");
             ready.fetch_add(1, Ordering::Relaxed);
             measured

@@ -13,7 +13,7 @@ use asperity::simulation::record::StepRecord;
 use asperity::simulation::scout::scout;
 use serde::Serialize;
 
-use crate::generator::case_text;
+use crate::generator::{Against, case_text};
 
 /// How a case went.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -72,8 +72,8 @@ impl Observer for Watch {
 }
 
 /// Runs case `index` of `seed`.
-pub fn measure(seed: u64, index: usize, elements: usize, equal: bool) -> Measured {
-    let text = case_text(seed, index, elements, equal);
+pub fn measure(seed: u64, index: usize, elements: usize, against: Against) -> Measured {
+    let text = case_text(seed, index, elements, against);
     let mut measured = Measured { seed, index, ..Measured::default() };
     let begun = Instant::now();
     let mut watch = Watch::default();

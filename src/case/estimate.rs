@@ -14,15 +14,15 @@ const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
 ///
 /// N = n^2 (n/16)^0.35 [18 + 36 f + 12 ln(0.2 R/a)], n = `elements_per_contact_radius`, f = `fine_zone`: a fit to the O-grids themselves,
 /// n from 8 to 32, f from 1.1 to 3, a/R from 0.005 to 0.3. Where a is not given it is (2 R h)^(1/2), h the largest indentation, between the
-/// elastic and the ideally plastic contact; of an equal pair h is half of it.
+/// elastic and the ideally plastic contact, with R* in place of R where the opponent is a sphere.
 pub fn estimated_elements(case: &Case) -> usize {
     let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
         _ => deepest,
     });
     let radius = case.sphere.radius;
-    let contact =
-        case.mesh.contact_radius.map_or((2.0 * deepest / (case.bodies() * radius)).sqrt(), |a| a / radius).clamp(0.005, 0.3);
+    let share = case.effective_radius() / radius;
+    let contact = case.mesh.contact_radius.map_or((2.0 * share * deepest / radius).sqrt(), |a| a / radius).clamp(0.005, 0.3);
     let n = case.mesh.elements_per_contact_radius as f64;
     (n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln())).ceil() as usize
 }

@@ -122,6 +122,12 @@ pub const KEYS: &[Key] = &[
         ..key("sphere", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Required)
     },
     Key {
+        range: "true, with a rigid sphere as the opponent, or false",
+        meaning: "the body is a flat, not a sphere: half a ball of radius 2 R, pressed on its flat face; R is still the unit of length",
+        example: "true",
+        ..key("sphere", "flat", Truth, Optional("a sphere"))
+    },
+    Key {
         unit: STRESS,
         range: "> 0, from 1e-75 to 1e75",
         meaning: "Young's modulus E; it sets the unit of stress, and forces are stress times length squared",
@@ -223,6 +229,19 @@ pub const KEYS: &[Key] = &[
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
     Key {
+        range: "true or false, and not beside equal",
+        meaning: "a rigid sphere with the radius of this table; without one, the rigid plane",
+        example: "true",
+        ..key("opponent", "rigid", Truth, Optional("a rigid plane"))
+    },
+    Key {
+        unit: LENGTH,
+        range: ">= 0.05 R, with rigid = true",
+        meaning: "radius of the rigid sphere; with R* from 1/R* = 1/R + 1/radius, or of a flat the radius itself, h is below 0.3 R*",
+        example: "2.0",
+        ..key("opponent", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Optional("a rigid plane"))
+    },
+    Key {
         range: "4 to 32",
         meaning: "elements along the contact radius; 8 is quick, 16 has F_N to 0.5 %; the time grows as its power 2.5",
         example: "16",
@@ -305,7 +324,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0 and < 0.3 R; the first one > 0",
+        range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0",
         meaning: "press to this indentation h, a total from first touch; a smaller one than the current one unloads to it",
         example: "0.02",
         ..key(
@@ -425,7 +444,15 @@ mod tests {
         for key in KEYS {
             let law = if key.name == "law" { "elastic" } else { laws(key)[0] };
             let takes = |value: &str| {
-                let case = parsed(law, &[format!("{}={value}", place(key))]);
+                // What goes with a rigid sphere alone.
+                let beside: &[&str] = match key.dotted().as_str() {
+                    "opponent.radius" => &["opponent.rigid=true"],
+                    "sphere.flat" => &["opponent.rigid=true", "opponent.radius=2.0"],
+                    _ => &[],
+                };
+                let sets: Vec<String> =
+                    beside.iter().map(|set| (*set).to_owned()).chain([format!("{}={value}", place(key))]).collect();
+                let case = parsed(law, &sets);
                 assert!(case.is_ok(), "{} = {value}: {:?}", key.dotted(), case.err());
             };
             let (least, beyond) = (|x: f64| format!("{:?}", x - 1e-6 * x.abs()), |x: f64| format!("{:?}", x + 1e-6 * x.abs()));

@@ -59,6 +59,9 @@ pub struct Case {
 pub struct Sphere {
     /// Radius R > 0, the unit of length of the path.
     pub radius: f64,
+    /// The body is no sphere but a flat: half a ball of radius 2 R, pressed onto its flat face.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub flat: bool,
 }
 
 /// An isotropic elastic-plastic material.
@@ -89,19 +92,41 @@ pub enum Friction {
 }
 
 /// What the sphere is pressed against, in place of a rigid plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opponent {
     /// The same sphere. Indentation and shear are then the relative displacements of the two equators, twice what each of them moves.
     Equal,
+    /// A rigid sphere.
+    Rigid {
+        /// Its radius > 0, a length.
+        radius: f64,
+    },
 }
 
 impl Case {
     /// Number of bodies that deform: their displacements add up to h and delta_T, their energies to those of the contact.
     pub fn bodies(&self) -> f64 {
         match self.opponent {
-            None => 1.0,
+            None | Some(Opponent::Rigid { .. }) => 1.0,
             Some(Opponent::Equal) => 2.0,
         }
+    }
+
+    /// The effective radius R*, 1/R* = 1/R_1 + 1/R_2: that of the sphere which, pressed onto a plane, meets it as closely as these two surfaces meet.
+    pub fn effective_radius(&self) -> f64 {
+        match self.opponent {
+            None => self.sphere.radius,
+            Some(Opponent::Equal) => 0.5 * self.sphere.radius,
+            Some(Opponent::Rigid { radius }) if self.sphere.flat => radius,
+            // The quotient, and not the radii, is what stays of the order of one.
+            Some(Opponent::Rigid { radius }) => self.sphere.radius / (1.0 + self.sphere.radius / radius),
+        }
+    }
+
+    /// Radius of the sphere over a plane that one body of this case is pressed like: R* against a rigid sphere; R in an equal pair too, of which each body
+    /// is pressed by its share of h.
+    pub fn body_radius(&self) -> f64 {
+        self.bodies() * self.effective_radius()
     }
 }
 

@@ -1,8 +1,8 @@
 //! The path: segments of pressing, shearing and releasing.
 
-use super::Friction;
 use super::error::CaseError;
 use super::reader::{Field, Reader};
+use super::{Friction, Opponent, Sphere};
 
 /// One segment of the path. Targets are totals from the undeformed sphere, not increments.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,17 +57,44 @@ pub(super) const MAX_INDENTATION: f64 = 0.3;
 /// Largest tangential displacement over the radius.
 const MAX_SHEAR: f64 = 0.5;
 
+/// The lengths that limit a path.
+pub(super) struct Lengths {
+    /// Largest indentations are shares of this one: the radius, or with a rigid sphere R*.
+    press: f64,
+    /// Largest displacements along the surface are shares of this one: the radius, or of two the smaller.
+    shear: f64,
+    /// How errors call them.
+    press_name: &'static str,
+    shear_name: &'static str,
+}
+
+impl Lengths {
+    /// Those of a body and what it is pressed against.
+    pub fn of(sphere: &Sphere, opponent: Option<Opponent>) -> Self {
+        let radius = sphere.radius;
+        match opponent {
+            Some(Opponent::Rigid { radius: other }) => Self {
+                press: if sphere.flat { other.min(radius) } else { radius / (1.0 + radius / other) },
+                shear: radius.min(other),
+                press_name: if sphere.flat { "of the smaller radius" } else { "effective radius" },
+                shear_name: "of the smaller radius",
+            },
+            None | Some(Opponent::Equal) => Self { press: radius, shear: radius, press_name: "radius", shear_name: "radius" },
+        }
+    }
+}
+
 const PATH: &str = "at least one [[path]] segment, the first with an indentation > 0";
 
 /// Reads all of `[[path]]`, in the order in which it is followed.
-pub(super) fn read(root: &Reader<'_>, radius: f64, friction: Friction) -> Result<Vec<Segment>, CaseError> {
+pub(super) fn read(root: &Reader<'_>, lengths: &Lengths, friction: Friction) -> Result<Vec<Segment>, CaseError> {
     let field = root.require("path", PATH)?;
     let items = field.array(PATH)?;
     if items.is_empty() {
         return Err(field.refuse("is empty", PATH));
     }
     let mut state = State::default();
-    items.iter().map(|item| read_segment(&item.table()?, &mut state, radius, friction)).collect()
+    items.iter().map(|item| read_segment(&item.table()?, &mut state, lengths, friction)).collect()
 }
 
 /// What is known of the state when a segment begins; `None` where only the simulation can know.
@@ -83,7 +110,7 @@ impl Default for State {
     }
 }
 
-fn read_segment(table: &Reader<'_>, state: &mut State, radius: f64, friction: Friction) -> Result<Segment, CaseError> {
+fn read_segment(table: &Reader<'_>, state: &mut State, lengths: &Lengths, friction: Friction) -> Result<Segment, CaseError> {
     const ONE: &str = "one of indentation, shear (with hold, if wanted), both of them, and release, in each [[path]]";
     table.only(&["indentation", "shear", "hold", "release"])?;
     let (indentation, shear, release) = (table.get("indentation"), table.get("shear"), table.get("release"));
@@ -91,13 +118,13 @@ fn read_segment(table: &Reader<'_>, state: &mut State, radius: f64, friction: Fr
         return Err(hold.refuse("stands without shear", "hold beside shear in the same [[path]]"));
     }
     match (indentation, shear, release) {
-        (Some(field), None, None) => read_indentation(&field, state, radius),
+        (Some(field), None, None) => read_indentation(&field, state, lengths),
         (None, Some(field), None) => {
             let hold = match table.get("hold") {
                 Some(hold) => hold.choice(&[("indentation", Hold::Indentation), ("normal-force", Hold::NormalForce)])?,
                 None => Hold::default(),
             };
-            let shear = read_shear(&field, state, radius, friction)?;
+            let shear = read_shear(&field, state, lengths, friction)?;
             if hold == Hold::NormalForce {
                 state.indentation = None;
             }
@@ -107,7 +134,7 @@ fn read_segment(table: &Reader<'_>, state: &mut State, radius: f64, friction: Fr
             if let Some(hold) = table.get("hold") {
                 return Err(hold.refuse("stands beside indentation and shear, of which none is held", "no hold in this [[path]]"));
             }
-            read_oblique(&indentation, &shear, state, radius)
+            read_oblique(&indentation, &shear, state, lengths)
         }
         (None, None, Some(field)) => read_release(&field, state),
         (None, None, None) => Err(table.refuse("has neither indentation nor shear nor release", ONE)),
@@ -132,16 +159,16 @@ fn read_release(field: &Field<'_>, state: &mut State) -> Result<Segment, CaseErr
 }
 
 /// Both targets at once; from where nothing touches too.
-fn read_oblique(h: &Field<'_>, delta_t: &Field<'_>, state: &mut State, radius: f64) -> Result<Segment, CaseError> {
+fn read_oblique(h: &Field<'_>, delta_t: &Field<'_>, state: &mut State, lengths: &Lengths) -> Result<Segment, CaseError> {
     if delta_t.text().is_some() {
         let allowed = "a length: where it ends has to be known";
         return Err(delta_t.refuse("is a word beside indentation", allowed));
     }
     let before = state.shear;
-    let Segment::Indentation { indentation } = read_indentation(h, state, radius)? else {
+    let Segment::Indentation { indentation } = read_indentation(h, state, lengths)? else {
         return Err(h.refuse("is no indentation", "a length"));
     };
-    let shear = displacement(delta_t, radius, "")?;
+    let shear = displacement(delta_t, lengths, "")?;
     let target = Some(ShearTarget::Displacement(shear));
     if before == target {
         return Err(delta_t.refuse("is where the segment begins", "a target other than the current one, or no shear here"));
@@ -151,18 +178,19 @@ fn read_oblique(h: &Field<'_>, delta_t: &Field<'_>, state: &mut State, radius: f
 }
 
 /// A displacement along the plane; `or` is what else stands there.
-fn displacement(field: &Field<'_>, radius: f64, or: &str) -> Result<f64, CaseError> {
-    let largest = MAX_SHEAR * radius;
-    let allowed = format!("a length between {:?} and {largest:?} (0.5 radius){or}", -largest);
-    field.number(&allowed, |shear| (shear / radius).abs() < MAX_SHEAR)
+fn displacement(field: &Field<'_>, lengths: &Lengths, or: &str) -> Result<f64, CaseError> {
+    let (largest, name) = (MAX_SHEAR * lengths.shear, lengths.shear_name);
+    let allowed = format!("a length between {:?} and {largest:?} (0.5 {name}){or}", -largest);
+    field.number(&allowed, |shear| (shear / lengths.shear).abs() < MAX_SHEAR)
 }
 
-fn read_indentation(field: &Field<'_>, state: &mut State, radius: f64) -> Result<Segment, CaseError> {
+fn read_indentation(field: &Field<'_>, state: &mut State, lengths: &Lengths) -> Result<Segment, CaseError> {
     // Compared as ratios, so that a case and its copy in other units are accepted alike.
-    let below = |h: f64| h / radius < MAX_INDENTATION;
-    let largest = format!("< {MAX_INDENTATION} radius = {:?}", MAX_INDENTATION * radius);
+    let (length, name) = (lengths.press, lengths.press_name);
+    let below = |h: f64| h / length < MAX_INDENTATION;
+    let largest = format!("< {MAX_INDENTATION} {name} = {:?}", MAX_INDENTATION * length);
     let indentation = if !state.in_contact {
-        field.number(&format!("a length > 0 and {largest}, to come into contact"), |h| h / radius > 0.0 && below(h))?
+        field.number(&format!("a length > 0 and {largest}, to come into contact"), |h| h / length > 0.0 && below(h))?
     } else {
         field.number(&format!("a length >= 0 and {largest}"), |h| h >= 0.0 && below(h))?
     };
@@ -176,7 +204,7 @@ fn read_indentation(field: &Field<'_>, state: &mut State, radius: f64) -> Result
     Ok(Segment::Indentation { indentation })
 }
 
-fn read_shear(field: &Field<'_>, state: &mut State, radius: f64, friction: Friction) -> Result<ShearTarget, CaseError> {
+fn read_shear(field: &Field<'_>, state: &mut State, lengths: &Lengths, friction: Friction) -> Result<ShearTarget, CaseError> {
     if !state.in_contact {
         return Err(field.refuse("shears what is not in contact", "shear after a segment with an indentation > 0"));
     }
@@ -188,7 +216,7 @@ fn read_shear(field: &Field<'_>, state: &mut State, radius: f64, friction: Frict
         }
         shear
     } else {
-        ShearTarget::Displacement(displacement(field, radius, ", or \"full-slip\"")?)
+        ShearTarget::Displacement(displacement(field, lengths, ", or \"full-slip\"")?)
     };
     if state.shear == Some(shear) {
         return Err(field.refuse("is where the segment begins", "a target other than the current one"));

@@ -1,10 +1,10 @@
 //! The case in units in which R = 1 and E = 1, as one body sees it.
 
-use super::{Case, Contact, Material, Mesh, Segment, ShearTarget, Sphere};
+use super::{Case, Contact, Material, Mesh, Opponent, Segment, ShearTarget, Sphere};
 
 impl Case {
     /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2. Indentation and shear are what one body moves: half of
-    /// the relative displacement in an equal pair, which the copy is one no more.
+    /// the relative displacement in an equal pair, which the copy is one no more. A rigid opponent is scaled too.
     pub fn scaled(&self) -> Case {
         let (radius, modulus) = (self.sphere.radius, self.material.youngs_modulus);
         let travel = radius * self.bodies();
@@ -19,14 +19,17 @@ impl Case {
             unscaled => unscaled,
         };
         Case {
-            sphere: Sphere { radius: 1.0 },
+            sphere: Sphere { radius: 1.0, flat: self.sphere.flat },
             material: Material {
                 youngs_modulus: 1.0,
                 poissons_ratio: self.material.poissons_ratio,
                 hardening: self.material.hardening.scaled(modulus),
             },
             contact: Contact { friction: self.contact.friction },
-            opponent: None,
+            opponent: match self.opponent {
+                Some(Opponent::Rigid { radius: other }) => Some(Opponent::Rigid { radius: other / radius }),
+                None | Some(Opponent::Equal) => None,
+            },
             mesh: Mesh { contact_radius: self.mesh.contact_radius.map(|a| a / radius), ..self.mesh.clone() },
             solver: self.solver.clone(),
             output: self.output.clone(),

@@ -17,7 +17,7 @@ fn ideal(settings: &[&str]) -> Case {
 fn the_reference_case_reads_with_the_documented_defaults() {
     let expected = Case {
         opponent: None,
-        sphere: Sphere { radius: 1.0 },
+        sphere: Sphere { radius: 1.0, flat: false },
         material: Material { youngs_modulus: 200e3, poissons_ratio: 0.3, hardening: Hardening::Ideal { yield_stress: 400.0 } },
         contact: Contact { friction: Friction::Coefficient(0.3) },
         mesh: Mesh { elements_per_contact_radius: 16, fine_zone: 1.3, contact_radius: None },

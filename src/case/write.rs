@@ -26,6 +26,10 @@ impl Serialize for Opponent {
         let mut map = serializer.serialize_map(None)?;
         match self {
             Opponent::Equal => map.serialize_entry("equal", &true)?,
+            Opponent::Rigid { radius } => {
+                map.serialize_entry("rigid", &true)?;
+                map.serialize_entry("radius", radius)?;
+            }
         }
         map.end()
     }

@@ -31,12 +31,12 @@ pub struct Variables {
 }
 
 impl Body {
-    /// The sphere of a case, in the case's units.
+    /// The sphere of a case, in the case's units; against a rigid sphere one of radius R*.
     ///
     /// # Errors
     /// A hardening law whose numbers make no law.
     pub fn from_case(case: &Case) -> Result<Self, HardeningError> {
-        Self::new(case.sphere.radius, &case.material)
+        Self::new(case.body_radius(), &case.material)
     }
 
     /// A sphere of the radius R of a case file's material.

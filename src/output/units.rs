@@ -140,7 +140,7 @@ impl PlotInputs {
         };
         Self {
             sphere: ElasticSphere {
-                radius: case.sphere.radius,
+                radius: case.body_radius(),
                 youngs_modulus: material.youngs_modulus,
                 poissons_ratio: material.poissons_ratio,
             },

@@ -10,6 +10,7 @@ use super::path::{Start, Target};
 use super::record::{ContactPoint, StepRecord};
 use crate::compute::CaseState;
 use crate::contact::coulomb::Status;
+use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
 
 /// The committed state of the drive, scaled.
@@ -37,10 +38,11 @@ pub(super) struct Committed {
 
 impl Committed {
     /// The undeformed state.
-    pub fn virgin(mesh: &Mesh) -> Self {
+    pub fn virgin(mesh: &Mesh, rigid: Option<Rigid>) -> Self {
         let zero = vec![0.0; 3 * mesh.nodes.len()];
         let statuses = vec![Status::Open; mesh.contact_nodes.len()];
-        let gaps = mesh.contact_nodes.iter().map(|&n| mesh.nodes[n as usize][2]).collect();
+        let gap = |x: &[f64; 3]| rigid.map_or(x[2], |rigid| rigid.gap(x));
+        let gaps = mesh.contact_nodes.iter().map(|&n| gap(&mesh.nodes[n as usize])).collect();
         let mut state = Self { u: zero.clone(), u_before: zero.clone(), force: zero, statuses, gaps, ..Self::default() };
         state.place_points(mesh);
         state

@@ -17,11 +17,13 @@ use crate::case::{Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::{Compute, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
+use crate::contact::frame::to_frame;
 use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::newton::{Newton, StepReport};
 use crate::solver::phases::{Lap, Phase};
+use crate::solver::rigid::position;
 use crate::solver::system::Meeting;
 use crate::solver::{Control, StepFailure};
 pub use paused::Paused;
@@ -57,7 +59,7 @@ impl<'a> Drive<'a> {
     /// Prepares to follow the problem's path on a backend whose case `case` is the problem's model in its virgin state.
     pub fn new(problem: &'a Problem, backend: &'a mut dyn Compute, case: usize, newton: Newton) -> Self {
         let mesh = problem.model.mesh.clone();
-        let state = Committed::virgin(&mesh);
+        let state = Committed::virgin(&mesh, problem.rigid);
         Self {
             problem,
             mesh,
@@ -342,6 +344,14 @@ impl<'a> Drive<'a> {
         if self.problem.equal_pair || self.problem.fully_plastic {
             return Some(guess);
         }
+        if let Some(rigid) = self.problem.rigid {
+            for &node in &self.mesh.contact_nodes {
+                let x = rigid.push_out(&position(&self.mesh, &guess, node));
+                let reference = self.mesh.nodes[node as usize];
+                (0..3).for_each(|c| guess[3 * node as usize + c] = x[c] - reference[c]);
+            }
+            return Some(guess);
+        }
         for &node in &self.mesh.contact_nodes {
             let z = 3 * node as usize + 2;
             guess[z] -= gap(self.mesh.nodes[node as usize][2], guess[z]).min(0.0);
@@ -457,9 +467,18 @@ impl<'a> Drive<'a> {
         let mut work = 0.0;
         for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {
             let base = 3 * node as usize;
-            for i in 0..2 {
-                work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
-            }
+            let Some(rigid) = self.problem.rigid else {
+                for i in 0..2 {
+                    work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
+                }
+                continue;
+            };
+            // Along the surface half-way: across it points come down, and nothing is dissipated.
+            let [before, after] = [&self.state.u, u].map(|u| position(&self.mesh, u, node));
+            let frame = rigid.frame(&std::array::from_fn(|i| 0.5 * (before[i] + after[i])));
+            let slip = to_frame(&frame, &std::array::from_fn(|i| after[i] - before[i]));
+            let traction = to_frame(&frame, &std::array::from_fn(|i| 0.5 * (point.force[i] + force[i])));
+            work -= traction[0] * slip[0] + traction[1] * slip[1];
         }
         work
     }

@@ -89,7 +89,7 @@ impl<'a> Follower<'a> {
                 _ => None,
             };
             let Some((zone, outgrowth)) = grown else { return Ok(ending) };
-            self.problem = Problem::on(&self.problem.case, Some(zone))?;
+            self.problem = self.problem.on_zone(zone)?;
             let problem = &self.problem;
             observer.starts_over(problem, problem.free_unknowns()).map_err(SimulationError::Observer)?;
             observer.note(&format!(

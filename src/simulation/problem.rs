@@ -9,10 +9,11 @@ use crate::analytical::predicted_contact_radius;
 use crate::case::{self, Case, Opponent, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
+use crate::contact::rigid::Rigid;
 use crate::linalg::{LinearSolver, SolverKind};
 use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
-use crate::mesh::sphere::{SphereSpec, sphere_mesh};
+use crate::mesh::sphere::{SphereSpec, flat_mesh, sphere_mesh};
 use crate::solver::newton::Newton;
 use crate::solver::pair::{PairSolver, mirror_nodes};
 use crate::solver::system::Boundary;
@@ -39,6 +40,8 @@ pub struct Problem {
     pub fully_plastic: bool,
     /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a plane.
     pub equal_pair: bool,
+    /// What the body is pressed against, if it is no plane nor its image.
+    pub rigid: Option<Rigid>,
     /// Bodies that deform, see [`Case::bodies`]: displacements of the path and the record are those of one.
     pub bodies: f64,
 }
@@ -70,7 +73,10 @@ pub fn shear_steps(case: &Case) -> usize {
 /// The fine zone that a scaled case asks for: its own contact radius, or else the predicted one.
 fn asked_zone(case: &Case, law: &Hardening<f64>) -> Zone {
     let flow_stress = |alpha| if matches!(law, Hardening::Elastic) { f64::INFINITY } else { law.flow_stress(alpha) };
-    let predicted = || predicted_contact_radius(1.0, case.material.poissons_ratio, flow_stress, largest_indentation(case));
+    // Of two spheres the closed forms know R* alone.
+    let r = case.effective_radius();
+    let predicted =
+        || r * predicted_contact_radius(1.0, case.material.poissons_ratio, flow_stress, largest_indentation(case) / r);
     Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone)
 }
 
@@ -99,16 +105,19 @@ impl Problem {
     pub fn on(case: &Case, zone: Option<Zone>) -> Result<Self, SimulationError> {
         let (equal_pair, bodies) = (case.opponent == Some(Opponent::Equal), case.bodies());
         let case = case.scaled();
+        let rigid = match case.opponent {
+            Some(Opponent::Rigid { radius }) => Some(Rigid { curvature: 1.0 / radius }),
+            None | Some(Opponent::Equal) => None,
+        };
         let nu = case.material.poissons_ratio;
         let material = case.material.constants::<f64>()?;
         let zone = zone.unwrap_or_else(|| asked_zone(&case, &material.hardening));
         let elements = case.mesh.elements_per_contact_radius;
-        let lambda = johnson_parameter(&material.hardening, nu, zone.contact_radius);
-        let mesh = sphere_mesh(&SphereSpec {
-            contact_radius: zone.contact_radius,
-            elements_per_contact_radius: elements,
-            fine_zone: zone.fine_zone,
-        })?;
+        let spec =
+            SphereSpec { contact_radius: zone.contact_radius, elements_per_contact_radius: elements, fine_zone: zone.fine_zone };
+        let mesh = if case.sphere.flat { flat_mesh(&spec)? } else { sphere_mesh(&spec)? };
+        // Of two spheres it knows R* alone.
+        let lambda = johnson_parameter(&material.hardening, nu, zone.contact_radius / case.effective_radius());
         Ok(Self {
             resolution: Resolution { press_steps: press_steps(&case), shear_steps: shear_steps(&case) },
             settings: Settings {
@@ -123,6 +132,7 @@ impl Problem {
             zone,
             fully_plastic: lambda >= FULLY_PLASTIC,
             equal_pair,
+            rigid,
             bodies,
             model: CaseModel {
                 mesh: Arc::new(mesh),
@@ -134,6 +144,15 @@ impl Problem {
             },
             case,
         })
+    }
+
+    /// The same problem on a mesh with another fine zone.
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn on_zone(&self, zone: Zone) -> Result<Self, SimulationError> {
+        // The scaled case is that of one body: it does not say that there are two.
+        Ok(Self { equal_pair: self.equal_pair, bodies: self.bodies, ..Self::on(&self.case, Some(zone))? })
     }
 
     /// The fine zone that a case (in the user's units) asks for.
@@ -164,6 +183,10 @@ impl Problem {
             case::Linear::Direct => SolverKind::Direct,
         };
         let linear = LinearSolver::new(kind, &pattern, &mesh.hierarchy).map_err(SolverError::from)?;
-        Ok(Newton::new(mesh, linear, self.settings))
+        let newton = Newton::new(mesh, linear, self.settings);
+        Ok(match self.rigid {
+            Some(rigid) => newton.against(rigid),
+            None => newton,
+        })
     }
 }

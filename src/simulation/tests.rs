@@ -8,6 +8,7 @@ use super::record::StepRecord;
 use crate::case::{Case, Hold, Segment, ShearTarget};
 use crate::compute::cpu::Cpu;
 use crate::compute::{CaseState, Compute, ComputeError};
+use crate::contact::rigid::Rigid;
 use crate::real::Real;
 
 /// Every kind of segment, there and back.
@@ -127,6 +128,28 @@ fn so_it_is_between_equal_spheres() {
     problem.case.path.truncate(3);
     problem.equal_pair = true;
     stop_and_go::<f64>(&problem);
+}
+
+#[test]
+fn so_it_is_against_a_rigid_sphere() {
+    let mut problem = problem("0.3", "");
+    problem.case.path.truncate(3);
+    problem.rigid = Some(Rigid { curvature: 1.0 });
+    stop_and_go::<f64>(&problem);
+}
+
+#[test]
+fn on_a_larger_zone_the_opponent_is_the_same() {
+    let text = include_str!("../../fixtures/cases/ideal.toml");
+    for opponent in ["opponent.equal=true", "opponent={rigid=true,radius=2.0}"] {
+        let sets = ["mesh.elements_per_contact_radius=4".to_owned(), opponent.to_owned()];
+        let problem = Problem::new(&Case::parse(text, "case.toml", &sets).unwrap()).unwrap();
+        let zone = problem.zone.grown(1.2 * problem.zone.radius(), 0.0, 1.0).unwrap();
+        let grown = problem.on_zone(zone).unwrap();
+        assert_eq!((grown.equal_pair, grown.bodies, grown.rigid), (problem.equal_pair, problem.bodies, problem.rigid));
+        assert_eq!((&grown.case, grown.zone), (&problem.case, zone));
+        assert!(grown.equal_pair || grown.rigid == Some(Rigid { curvature: 0.5 }));
+    }
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! From one accepted state to the next: a semismooth Newton iteration with a merit line search.
 //!
-//! `newton` iterates one step, `system` holds its residual and matrix, `pair` the linear systems of two equal spheres, `phases` what its parts cost. Choosing steps and bisecting them is the
-//! simulation's business.
+//! `newton` iterates one step, `system` holds its residual and matrix, `rigid` those of a rigid sphere as the opponent, `pair` the linear systems of two
+//! equal spheres, `phases` what its parts cost. Choosing steps and bisecting them is the simulation's business.
 
 pub mod newton;
 pub mod pair;
 pub mod phases;
+pub mod rigid;
 pub mod system;
 
 #[cfg(test)]

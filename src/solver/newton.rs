@@ -2,11 +2,13 @@
 
 use super::pair::Systems;
 use super::phases::{Lap, Phase, PhaseTimes};
+use super::rigid::{Against, turn};
 use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
 use super::{Control, Iteration, Settings, SolverError, StepFailure};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
 use crate::contact::coulomb::{Friction, Status};
+use crate::contact::rigid::Rigid;
 use crate::linalg::LinalgError;
 use crate::mesh::Mesh;
 
@@ -126,6 +128,12 @@ impl Newton {
         }
     }
 
+    /// The same against a rigid sphere in place of the plane.
+    pub fn against(mut self, rigid: Rigid) -> Self {
+        self.boundary.against = Some(Against::new(rigid));
+        self
+    }
+
     /// The last accepted trial.
     pub fn accepted(&self) -> &Trial {
         &self.current
@@ -201,6 +209,9 @@ impl Newton {
     ) -> Result<Result<StepReport, StepFailure>, SolverError> {
         let mesh = case.model().mesh.clone();
         self.came_off.fill(false);
+        if let Some(against) = &mut self.boundary.against {
+            against.set_out(&mesh, start);
+        }
         self.begin(case, start, start_h, guess, control)?;
         let mut report = StepReport::default();
         let mut previous = f64::INFINITY;
@@ -390,6 +401,9 @@ impl Newton {
             plate_functional(matrix, &self.boundary.plate, &mut self.functional);
         }
         fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
+        if self.boundary.against.is_some() {
+            turn(matrix, mesh, &self.current.frames);
+        }
         if self.boundary.pair.is_none() {
             apply_contact(matrix, mesh, &self.current.rows);
         }
@@ -416,20 +430,18 @@ impl Newton {
             for &n in &self.boundary.plate {
                 self.unit_rhs[3 * n as usize + 2] = -1.0;
             }
-            let tolerance = self.unit_tolerance(eta, first)?;
+            let tolerance = self.unit_tolerance(mesh, eta, first)?;
             // It only says how far to move the plate: an answer that is not quite so good is not worth a direct solution.
             match self.linear.solve(&self.unit_rhs, tolerance, &mut self.unit_response, false) {
                 Ok(report) => krylov += report.iterations,
                 Err(LinalgError::Stalled { iterations, .. }) => krylov += iterations,
                 Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
             }
-            let interface = self.boundary.pair.as_ref().map(|pair| pair.interface.clone());
+            let (current, boundary, delta) = (&self.current, &self.boundary, &mut self.delta);
             let mut along = |x: &[f64]| {
-                self.delta.copy_from_slice(x);
-                if let Some(interface) = &interface {
-                    interface.expand(&mut self.delta);
-                }
-                self.functional.iter().zip(&self.delta).map(|(w, x)| w * x).sum::<f64>()
+                delta.copy_from_slice(x);
+                current.expand(mesh, boundary, delta);
+                self.functional.iter().zip(&*delta).map(|(w, x)| w * x).sum::<f64>()
             };
             let (by_delta, by_unit) = (along(&self.correction), along(&self.unit_response));
             delta_h = (target - self.current.plate_force + by_delta) / -by_unit;
@@ -441,9 +453,7 @@ impl Newton {
             }
         }
         self.delta.copy_from_slice(&self.correction);
-        if let Some(pair) = &self.boundary.pair {
-            pair.interface.expand(&mut self.delta);
-        }
+        self.current.expand(mesh, &self.boundary, &mut self.delta);
         if let Systems::Pair(solver) = &self.linear {
             solver.symmetrise(&mut self.delta);
         }
@@ -454,14 +464,12 @@ impl Newton {
     /// The relative residual to which the response to a unit indentation is solved, and the guess for it: the response of the iteration before, or at first a
     /// body that moves as one. What that leaves at the contact is the measure: the forces of the large elements at a plate that moves alone are R/a times as
     /// large, and a residual that is small beside those is not so beside the contact's.
-    fn unit_tolerance(&mut self, eta: f64, first: bool) -> Result<f64, SolverError> {
+    fn unit_tolerance(&mut self, mesh: &Mesh, eta: f64, first: bool) -> Result<f64, SolverError> {
         if first {
             let mut guess = vec![0.0; self.unit_rhs.len()];
             let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             guess.iter_mut().skip(2).step_by(3).for_each(|z| *z = -1.0);
-            if let Some(pair) = &self.boundary.pair {
-                pair.interface.contract(&mut guess);
-            }
+            self.current.contract(mesh, &self.boundary, &mut guess);
             let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };
             self.unit_response.copy_from_slice(&guess);

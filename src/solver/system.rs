@@ -5,10 +5,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::phases::{Lap, Phase, PhaseTimes};
+use super::rigid::{Against, position};
 use super::{Control, Worst};
 use crate::compute::handle::Evaluate;
 use crate::compute::{CaseModel, ComputeError, Outcome};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
+use crate::contact::frame::Frame;
 use crate::contact::pair::{Interface, leave_even};
 use crate::contact::plane::gap;
 use crate::linalg::bsr::BlockMatrix;
@@ -28,6 +30,8 @@ pub struct Boundary {
     pub weight: f64,
     /// The interface with the body's own image, in place of the plane.
     pub pair: Option<Meeting>,
+    /// A rigid sphere in place of the plane.
+    pub against: Option<Against>,
     /// Of an equal pair: the node opposite in x of each node.
     pub mirror: Vec<u32>,
 }
@@ -90,6 +94,7 @@ impl Boundary {
             frictionless,
             weight: 0.1 * mean_size,
             pair: None,
+            against: None,
             mirror: Vec::new(),
         }
     }
@@ -115,6 +120,8 @@ pub struct Trial {
     pub residual: Vec<f64>,
     /// Of an equal pair: the force that the interface carries at each slave node, in its frame.
     pub interface_force: Vec<[f64; 3]>,
+    /// Against a rigid sphere: the frame of its surface at each contact node.
+    pub frames: Vec<Frame>,
     /// Indentation (an unknown when the normal force is held).
     pub h: f64,
     /// Normal force by which merits are scaled: the sum of f_z over the closed points.
@@ -139,6 +146,7 @@ impl Trial {
             rows: vec![open; mesh.contact_nodes.len()],
             residual: vec![0.0; n],
             interface_force: Vec::new(),
+            frames: Vec::new(),
             h: 0.0,
             force_scale: 0.0,
             merit: f64::INFINITY,
@@ -176,6 +184,8 @@ impl Trial {
         let mesh = case.model().mesh.clone();
         if let Some(pair) = &boundary.pair {
             self.meet(case.model(), boundary, pair);
+        } else if let Some(against) = &boundary.against {
+            self.meet_rigid(case.model(), boundary, against);
         } else {
             self.meet_plane(case, &mesh, boundary)?;
         }
@@ -302,11 +312,15 @@ impl Trial {
         [tangential(0), across, self.force[3 * node + 2].max(0.0)]
     }
 
-    /// What contact exerts on each contact node: of a plane [`Trial::point_force`]; of an equal pair what the interface's forces, projected as those are, come
+    /// What contact exerts on each contact node, along the axes: of a plane [`Trial::point_force`], of a rigid sphere the same in its frame; of an equal pair what the interface's forces, projected as those are, come
     /// to at the nodes of both sides.
     pub fn point_forces(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<[f64; 3]> {
         let Some(pair) = &boundary.pair else {
-            return (0..self.rows.len()).map(|i| self.point_force(mesh, i)).collect();
+            let points = 0..self.rows.len();
+            return match &boundary.against {
+                None => points.map(|i| self.point_force(mesh, i)).collect(),
+                Some(_) => points.map(|i| self.rigid_point_force(mesh, i)).collect(),
+            };
         };
         let interface = &pair.interface;
         let projected = |(k, force): (usize, &[f64; 3])| {
@@ -333,8 +347,29 @@ impl Trial {
         }
     }
 
-    /// Gap at each contact node: to the plane, or between the bodies of an equal pair.
+    /// Turns corrections from the unknowns of the linear system to displacements.
+    pub(super) fn expand(&self, mesh: &Mesh, boundary: &Boundary, x: &mut [f64]) {
+        if let Some(pair) = &boundary.pair {
+            pair.interface.expand(x);
+        } else if boundary.against.is_some() {
+            self.to_axes(mesh, x);
+        }
+    }
+
+    /// Turns displacements into the unknowns of the linear system.
+    pub(super) fn contract(&self, mesh: &Mesh, boundary: &Boundary, x: &mut [f64]) {
+        if let Some(pair) = &boundary.pair {
+            pair.interface.contract(x);
+        } else if boundary.against.is_some() {
+            self.to_frames(mesh, x);
+        }
+    }
+
+    /// Gap at each contact node: to the plane or the rigid sphere, or between the bodies of an equal pair.
     pub fn gaps(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<f64> {
+        if let Some(against) = &boundary.against {
+            return mesh.contact_nodes.iter().map(|&n| against.rigid.gap(&position(mesh, &self.u, n))).collect();
+        }
         match &boundary.pair {
             None => mesh.contact_nodes.iter().map(|&n| gap(mesh.nodes[n as usize][2], self.u[3 * n as usize + 2])).collect(),
             Some(pair) => {

@@ -16,6 +16,7 @@
 //! | `pressure` | the profile of an axisymmetric code at the end of the press, with friction and without | 4 % |
 //! | `energy` | work = elastic + plastic + friction, with doubled steps | what is missing more than 1.6 times smaller |
 //! | `jaeger-ciavarella` | elastic shear after a plastic preload, from the unloading curve | 3 % of mu F_N |
+//! | `rigid-sphere` | the plane at a radius of 1e9 R; Hertz with R*; the hardness of a flat; friction, energies and cost of a shear | 1e-6; 1 %; 4 % |
 //! | `invariance` | F_N(d) = F_N(-d), F_T(d) = -F_T(-d); other units | a hundred times the solver's tolerance |
 
 pub mod check;
@@ -31,6 +32,7 @@ mod jaeger_ciavarella;
 mod models;
 mod plastic;
 mod pressure;
+mod rigid;
 
 use std::time::{Duration, Instant};
 
@@ -64,7 +66,7 @@ pub struct Family {
 }
 
 /// All families, in the order in which they run.
-pub const FAMILIES: [Family; 8] = [
+pub const FAMILIES: [Family; 9] = [
     Family { name: "hertz", run: hertz::checks },
     Family { name: "cattaneo-mindlin", run: cattaneo_mindlin::checks },
     Family { name: "models", run: models::checks },
@@ -72,6 +74,7 @@ pub const FAMILIES: [Family; 8] = [
     Family { name: "pressure", run: pressure::checks },
     Family { name: "energy", run: plastic::step_convergence },
     Family { name: "jaeger-ciavarella", run: jaeger_ciavarella::checks },
+    Family { name: "rigid-sphere", run: rigid::checks },
     Family { name: "invariance", run: invariance::checks },
 ];
 

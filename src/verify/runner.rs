@@ -124,7 +124,7 @@ impl History {
 pub fn sphere(poissons_ratio: f64, hardening: Hardening, friction: f64, elements: usize, path: Vec<Segment>) -> Case {
     Case {
         opponent: None,
-        sphere: Sphere { radius: RADIUS },
+        sphere: Sphere { radius: RADIUS, flat: false },
         material: Material { youngs_modulus: YOUNGS_MODULUS, poissons_ratio, hardening },
         contact: Contact { friction: Friction::Coefficient(friction) },
         mesh: Mesh { elements_per_contact_radius: elements, ..Mesh::default() },

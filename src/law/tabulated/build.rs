@@ -58,7 +58,7 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
         });
     }
     // Each of two equal bodies gives way by half of h.
-    let bodies = Against::of(case).bodies();
+    let bodies = Against::of(case)?.bodies();
     let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
         _ => deepest,
@@ -124,7 +124,7 @@ pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result
         Friction::Coefficient(mu) => mu,
         Friction::Stick => f64::NAN,
     };
-    let against = Against::of(&scaled);
+    let against = Against::of(&scaled)?;
     let sphere = against.equivalent(&body.sphere);
     let mut levels: Vec<Level> = depths.iter().map(|one| level(&sphere, friction, one)).collect();
     smoothed(&mut levels);

@@ -45,10 +45,17 @@ pub enum Against {
 
 impl Against {
     /// What the sphere of a case meets.
-    pub fn of(case: &Case) -> Self {
+    ///
+    /// # Errors
+    /// [`LawError::NotCovered`] if that is a rigid sphere.
+    pub fn of(case: &Case) -> Result<Self, LawError> {
         match case.opponent {
-            None => Self::Plane,
-            Some(Opponent::Equal) => Self::EqualSphere,
+            None => Ok(Self::Plane),
+            Some(Opponent::Equal) => Ok(Self::EqualSphere),
+            Some(Opponent::Rigid { .. }) => Err(LawError::NotCovered {
+                problem: "the case is against a rigid sphere, and tables are of a plane or of an equal sphere",
+                remedy: "leave out [opponent] or give it equal = true, or simulate the case with `asperity run`",
+            }),
         }
     }
 
@@ -193,8 +200,9 @@ impl Tabulated {
         if !matches!(case.contact.friction, Friction::Coefficient(_)) {
             return Err("is a tabulated law without a friction coefficient".to_owned());
         }
-        if Against::of(&case) != self.body {
-            return Err(format!("says that it is against {}, and its case is against {}", self.body, Against::of(&case)));
+        let body = Against::of(&case).map_err(|error| format!("has a case that no table is of: {error}"))?;
+        if body != self.body {
+            return Err(format!("says that it is against {}, and its case is against {body}", self.body));
         }
         if self.levels.len() < 3 || !self.levels.windows(2).all(|pair| pair[0].h < pair[1].h) {
             return Err("has fewer than three levels, or they do not increase".to_owned());
@@ -249,8 +257,9 @@ impl Tabulated {
         let own = self.material()?;
         let other = case.scaled().material;
         let refuse = |what: String| Err(LawError::OtherMaterial { what });
-        if Against::of(case) != self.body {
-            return refuse(format!("it is a contact with {}, and the table is of one with {}", Against::of(case), self.body));
+        let body = Against::of(case)?;
+        if body != self.body {
+            return refuse(format!("it is a contact with {body}, and the table is of one with {}", self.body));
         }
         let differ = |a: f64, b: f64| (a - b).abs() > SAME * a.abs().max(b.abs());
         if differ(own.poissons_ratio, other.poissons_ratio) {

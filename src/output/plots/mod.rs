@@ -32,7 +32,7 @@ pub const RUN_PICTURES: [&str; 8] = ["indentation", "pressure", "forces", "ratio
 /// What the plots show beside the computed curves, in the user's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlotInputs {
-    /// The sphere, for Hertz's curve.
+    /// The sphere, for Hertz's curve; against a rigid sphere that of radius R*.
     pub sphere: ElasticSphere,
     /// The law for Olsson & Larsson's curve; `None` where theirs has no counterpart.
     pub hardening: Option<Hardening>,

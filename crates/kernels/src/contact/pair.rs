@@ -6,6 +6,7 @@
 //! `u = T y`. The forces that belong to y are `T^T f`: at a slave node the force that the interface carries there, at a master node the body's own and what
 //! the image exerts on it, which is nothing together in equilibrium.
 
+use super::frame::{Frame, frame, from_frame, to_frame, unit};
 use super::mortar::{Weights, self_image_weights};
 use crate::mesh::Mesh;
 
@@ -32,7 +33,7 @@ pub struct Interface {
     /// Per contact node: the slave that it is, if it is one.
     pub slave_of: Vec<Option<usize>>,
     /// Per slave: frame [t_1, t_2, n].
-    pub frames: Vec<[[f64; 3]; 3]>,
+    pub frames: Vec<Frame>,
     /// Area of the interface that belongs to each slave.
     pub area: Vec<f64>,
     /// Per contact node: the slave that it has most to do with.
@@ -332,26 +333,6 @@ fn inward_normals(positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<[f64; 3]>
     }
     normals.iter_mut().for_each(|n| *n = unit(*n));
     normals
-}
-
-fn unit(v: [f64; 3]) -> [f64; 3] {
-    let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
-    if length > 0.0 { v.map(|v| v / length) } else { [0.0, 0.0, 1.0] }
-}
-
-fn frame(normal: [f64; 3]) -> [[f64; 3]; 3] {
-    let n = unit(normal);
-    let t1 = unit(std::array::from_fn(|i| if i == 0 { 1.0 } else { 0.0 } - n[0] * n[i]));
-    let t2 = [n[1] * t1[2] - n[2] * t1[1], n[2] * t1[0] - n[0] * t1[2], n[0] * t1[1] - n[1] * t1[0]];
-    [t1, t2, n]
-}
-
-fn to_frame(frame: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
-    frame.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2])
-}
-
-fn from_frame(frame: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| frame[0][i] * v[0] + frame[1][i] * v[1] + frame[2][i] * v[2])
 }
 
 /// The inverse of a small dense matrix, with partial pivoting.

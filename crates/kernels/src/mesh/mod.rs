@@ -1,7 +1,7 @@
 //! The mesh: hex8 elements of half the lower hemisphere, connectivity, node-to-element lists and the index hierarchy.
 //!
 //! Lengths are in sphere radii. The pole is the origin, the rigid plane is z = 0, the centre of the sphere is (0, 0, 1), the symmetry
-//! plane is y = 0 and the body fills y >= 0, 0 <= z <= 1.
+//! plane is y = 0 and the body fills y >= 0, 0 <= z <= 1. A flat is half of a half ball of radius 2 about the origin.
 //!
 //! `sphere` builds the body, `brick` a box for tests. Both lay logical blocks of cells (`hierarchy`) whose indices give the numbering,
 //! the coordinates and the multigrid levels; `connectivity` derives lists and areas, `quality` measures elements.
@@ -13,7 +13,7 @@ pub mod quality;
 pub mod sphere;
 
 pub use brick::brick;
-pub use sphere::{SphereSpec, estimated_elements, sphere_mesh};
+pub use sphere::{SphereSpec, estimated_elements, flat_mesh, sphere_mesh};
 
 /// What is wrong with the description of a mesh, and what to do about it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

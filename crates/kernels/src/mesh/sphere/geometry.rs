@@ -3,11 +3,12 @@
 //! The half ball |X| <= 2, Z >= 0 is mapped onto the lower hemisphere by the inversion that takes the plane Z = 0 to the sphere's
 //! surface, the half sphere |X| = 2 to the equator plane and the origin to the pole, where its scale is one. Inversions are conformal, so
 //! the mesh is laid out in the half ball, where the contact surface is a plane: what is orthogonal there stays orthogonal here. With
-//! N = 1 + Z + |X|^2/4,
+//! N = 1 + kappa Z + kappa^2 |X|^2/4 and the body's curvature kappa = 1,
 //!
-//!   x = X/N,   y = Y/N,   z = (Z + |X|^2/2)/N;
+//!   x = X/N,   y = Y/N,   z = (Z + kappa |X|^2/2)/N;
 //!
-//! on Z = 0 this is the stereographic projection, |X| = 2 tan(theta/2).
+//! on Z = 0 this is the stereographic projection, |X| = 2 tan(theta/2). With kappa = 0 it is the half ball itself: a flat, whose plate is the half
+//! sphere |X| = 2.
 
 use super::butterfly::{BOTTOM, Butterfly, CORE, SIDE};
 use super::layout::Layout;
@@ -68,10 +69,17 @@ impl<'a> Geometry<'a> {
             return [-x, y, z];
         }
         let [x, y, z] = self.in_half_ball(site);
+        if self.layout.flat {
+            return [x, y, z];
+        }
         let square = x * x + y * y + z * z;
         let n = 1.0 + z + 0.25 * square;
-        let on_equator = site.block != BOTTOM && site.at[if site.block == SIDE { 1 } else { 2 }] == self.blocks.nr;
-        [x / n, y / n, if on_equator { 1.0 } else { (z + 0.5 * square) / n }]
+        [x / n, y / n, if self.is_on_plate(site) { 1.0 } else { (z + 0.5 * square) / n }]
+    }
+
+    /// Whether a node lies on the half sphere |X| = 2, which moves as the rigid plate: the sphere's equator.
+    pub fn is_on_plate(&self, site: Site) -> bool {
+        site.block != BOTTOM && site.at[if site.block == SIDE { 1 } else { 2 }] == self.blocks.nr
     }
 
     /// Position of a node with x >= 0 in the half ball.

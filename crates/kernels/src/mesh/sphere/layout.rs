@@ -16,6 +16,8 @@ const LARGEST_FINE_RADIUS: f64 = 0.85;
 /// Counts and gradings of a sphere's mesh; lengths in the half ball of `geometry`.
 #[derive(Clone, Debug)]
 pub struct Layout {
+    /// The body is a flat, the half ball itself, not a sphere.
+    pub flat: bool,
     /// Half the cells across the centre block.
     pub m: usize,
     /// Cells along the index classes.
@@ -78,11 +80,20 @@ impl Layout {
         self
     }
 
-    /// The layout for a description, its surface nodes not moved yet.
+    /// The layout of a sphere for a description, its surface nodes not moved yet.
     ///
     /// # Errors
     /// A value out of range.
     pub fn new(spec: &SphereSpec) -> Result<Layout, MeshError> {
+        Self::of(spec, false)
+    }
+
+    /// The layout of a sphere or a flat, its surface nodes not moved yet.
+    ///
+    /// # Errors
+    /// A value out of range.
+    pub fn of(spec: &SphereSpec, flat: bool) -> Result<Layout, MeshError> {
+        let projected = |rho: f64| if flat { rho } else { stereographic(rho) };
         let &SphereSpec { contact_radius, elements_per_contact_radius: count, fine_zone } = spec;
         if !(0.005..=0.65).contains(&contact_radius) {
             return Err(MeshError::ContactRadius(contact_radius));
@@ -93,10 +104,10 @@ impl Layout {
         if !(1.1..=3.0).contains(&fine_zone) {
             return Err(MeshError::FineZone(fine_zone));
         }
-        let spacing = stereographic(contact_radius) / count as f64;
+        let spacing = projected(contact_radius) / count as f64;
         let fine_radius = (fine_zone * contact_radius).min(LARGEST_FINE_RADIUS);
         let m = nearest_even(0.5 * count as f64);
-        let fine_rings = (stereographic(fine_radius) / spacing - 1e-9).ceil() as usize - m;
+        let fine_rings = (projected(fine_radius) / spacing - 1e-9).ceil() as usize - m;
         let fine_end = (m + fine_rings) as f64 * spacing;
 
         let remaining = (2.0 - fine_end) / spacing;
@@ -114,7 +125,7 @@ impl Layout {
         }
         radii[nr] = 2.0;
 
-        let shell_depth = SHELL_DEPTH * stereographic(contact_radius);
+        let shell_depth = SHELL_DEPTH * projected(contact_radius);
         let layers = shell_depth / spacing;
         let nd = nearest_even(sizes_for(layers, LAYER_GROWTH));
         let q = growth(nd, layers);
@@ -127,6 +138,7 @@ impl Layout {
         depths[nd] = 1.0;
 
         Ok(Layout {
+            flat,
             m,
             blocks: Butterfly { nx: 2 * m, ny: m, nr, nd },
             spacing,

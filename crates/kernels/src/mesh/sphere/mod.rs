@@ -1,4 +1,4 @@
-//! The sphere's mesh: an O-grid of half the lower hemisphere, graded from the pole.
+//! The sphere's mesh: an O-grid of half the lower hemisphere, graded from the pole; and the same of a flat.
 
 mod butterfly;
 mod entry;
@@ -16,7 +16,7 @@ use layout::Layout;
 /// Contact is watched this many fine radii from the pole.
 const CONTACT_MARGIN: f64 = 1.3;
 
-/// Description of a sphere's mesh.
+/// Description of the mesh of a sphere, or of a flat, with lengths in radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereSpec {
     /// Predicted contact radius a/R, 0.005 to 0.65.
@@ -33,6 +33,14 @@ pub struct SphereSpec {
 /// A value of `spec` out of range.
 pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
     Ok(mesh_of(&Layout::new(spec)?.touching_evenly()))
+}
+
+/// The mesh of a flat: half of the half ball |X| <= 2, z >= 0, with the plane z = 0 in place of the sphere's surface and the half sphere |X| = 2 as its plate.
+///
+/// # Errors
+/// A value of `spec` out of range.
+pub fn flat_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
+    Ok(mesh_of(&Layout::of(spec, true)?.touching_evenly()))
 }
 
 /// Number of elements that [`sphere_mesh`] will make, without making them.
@@ -66,7 +74,7 @@ fn mesh_of(layout: &Layout) -> Mesh {
     };
     Mesh {
         node_elements: node_elements(nodes.len(), &elements),
-        plate_nodes: on(&|x| x[2] == 1.0),
+        plate_nodes: (0..).zip(&sites).filter(|(_, site)| geometry.is_on_plate(**site)).map(|(n, _)| n).collect(),
         symmetry_nodes: on(&|x| x[1] == 0.0),
         nodes,
         elements,

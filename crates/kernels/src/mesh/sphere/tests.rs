@@ -121,6 +121,26 @@ fn the_mesh_is_symmetric_bit_by_bit_and_repeatable() {
     assert_eq!(mesh, sphere_mesh(&spec).unwrap());
 }
 
+#[test]
+fn a_flat_is_a_half_ball_whose_half_sphere_is_the_plate() {
+    for spec in [spec(0.2087, 8, 1.3), spec(0.01, 6, 1.3), spec(0.65, 8, 1.1), spec(0.1, 5, 3.0)] {
+        let (mesh, ball) = (flat_mesh(&spec).unwrap(), sphere_mesh(&spec).unwrap());
+        let (fine, all, positive) = quality_of(&mesh, spec.contact_radius);
+        assert!(positive && fine > 0.58 && all > 0.5, "{spec:?}: scaled Jacobians {fine} and {all}");
+        // A quarter of the ball of radius 2, less what its facets cut off.
+        let share = quality::volume(&mesh) / (8.0 * PI / 3.0);
+        assert!((0.94..1.0).contains(&share), "{spec:?}: {share}");
+        assert!(mesh.contact_nodes.iter().all(|&n| mesh.nodes[n as usize][2] == 0.0));
+        let distance = |x: [f64; 3]| x[0].hypot(x[1]).hypot(x[2]);
+        let far: Vec<u32> = (0..).zip(&mesh.nodes).filter(|(_, x)| distance(**x) > 2.0 - 1e-12).map(|(n, _)| n).collect();
+        assert_eq!(far, mesh.plate_nodes);
+        assert!(mesh.nodes.iter().all(|x| x[1] >= 0.0 && x[2] >= 0.0 && distance(*x) < 2.0 + 1e-12));
+        let half_disc = PI * (mesh.fine_radius * CONTACT_MARGIN).powi(2) / 2.0;
+        assert!(mesh.contact_area.iter().sum::<f64>() > 0.9 * half_disc);
+        assert_eq!((mesh.hierarchy.len(), ball.plate_nodes.is_empty()), (ball.hierarchy.len(), false));
+    }
+}
+
 /// A face turned so that its smallest node comes first.
 fn turned(mut face: [u32; 4]) -> [u32; 4] {
     let first = (0..4).min_by_key(|&k| face[k]).unwrap();
