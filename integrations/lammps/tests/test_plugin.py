@@ -148,7 +148,7 @@ def refusals():
     refuses(atoms + pair + f"pair_coeff 1 1 {TABLE} 1000\n", "is the table of a sphere on a plane, and types 1 and 1 need that of two spheres")
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder, "pair.asperity")
-        made.write_text(Path(TABLE).read_text().replace("body plane", "body equal-pair", 1).replace("share 1.0", "share 0.5", 1))
+        made.write_text(Path(TABLE).read_text().replace("body plane", "body equal-pair", 1))
         refuses(atoms + f"fix w all wall/asperity 0 0 0 0 0 1 type 1 {made} 1000\n", "is the table of two spheres, and a wall needs that of a sphere on a plane")
         cut = Path(folder, "cut.asperity")
         cut.write_text(Path(TABLE).read_text()[:5000])

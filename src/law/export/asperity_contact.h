@@ -85,7 +85,8 @@ typedef struct asperity_table {
     asperity_real share;             /* h and d over what the centres move */
     asperity_real poissons_ratio;
     asperity_real friction;          /* mu */
-    asperity_real effective_modulus; /* E/(1 - nu^2), over E */
+    asperity_real effective_modulus; /* E*, over E: 1/(1 - nu^2) on a plane, half of it between two spheres */
+    asperity_real effective_radius;  /* of Hertz's contact, over R: 1 on a plane, 1/2 between two spheres */
     asperity_real deepest;           /* h up to which the law was made */
     asperity_real log_first;         /* ln h of the first knot */
     asperity_real log_step;
@@ -308,7 +309,7 @@ ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h
     v->big_n = column[6];
     v->k_t = exponential[3];
     /* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
-    force = ASPERITY_R(4.0) * t->effective_modulus * a * a * a / ASPERITY_R(3.0);
+    force = ASPERITY_R(4.0) * t->effective_modulus * a * a * a / (ASPERITY_R(3.0) * t->effective_radius);
     v->gamma = ASPERITY_R(1.2732395447351628) + ASPERITY_R(1.5 - 1.2732395447351628) * (v->f_n0 < force ? v->f_n0 / force : ASPERITY_R(1.0));
     v->depth = v->gamma * v->f_n0 / (ASPERITY_R(2.0) * t->effective_modulus * a);
     v->slope = v->f_n0 * slope / (t->log_step * h);
@@ -904,6 +905,7 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
     t->plane = strcmp(body, "plane") == 0;
     good = asperity_read_number(file, "share", &t->share) && asperity_read_number(file, "poissons_ratio", &t->poissons_ratio) &&
            asperity_read_number(file, "friction", &t->friction) && asperity_read_number(file, "effective_modulus", &t->effective_modulus) &&
+           asperity_read_number(file, "effective_radius", &t->effective_radius) &&
            asperity_read_number(file, "deepest", &t->deepest) && asperity_read_number(file, "form", &form) &&
            asperity_read_number(file, "log_first", &t->log_first) && asperity_read_number(file, "log_step", &t->log_step);
     t->form = good ? (int)form : 0;

@@ -6,7 +6,7 @@ use super::vectors::{SEED, unit_vectors};
 use super::{ExportedFile, fill, plain, sizes};
 use crate::case::Case;
 use crate::law::contact::{ContactParameters, KNOTS};
-use crate::law::tabulated::PLANE;
+use crate::law::tabulated::Against;
 use crate::law::{LawError, LawFile};
 
 const CONTACT: &str = include_str!("asperity_contact.h");
@@ -23,7 +23,7 @@ struct Unit {
     /// Its case, in those units.
     case: Case,
     /// What the sphere is pressed against.
-    body: String,
+    body: Against,
     /// h/R up to which the law was made; 0 where nothing of this material is within its range.
     deepest: f64,
     /// What it is, in words.
@@ -42,9 +42,9 @@ impl Unit {
                 let nu = case.material.poissons_ratio;
                 Ok(Self {
                     parameters: table.unit_parameters()?,
-                    body: table.body.clone(),
+                    body: table.body,
                     deepest: table.range.to,
-                    source: format!("a table of one material (nu = {nu}), mu = {}, on: {}", table.friction(), plain(&table.body)),
+                    source: format!("a table of one material (nu = {nu}), mu = {}, on: {}", table.friction(), table.body),
                     case,
                 })
             }
@@ -70,7 +70,7 @@ impl Unit {
                     ),
                     parameters,
                     case: unit,
-                    body: PLANE.to_owned(),
+                    body: Against::Plane,
                 })
             }
             (LawFile::Formulas(_), None) => Err(LawError::NotCovered {
@@ -82,12 +82,12 @@ impl Unit {
 
     /// Whether it is of a sphere on a plane.
     fn plane(&self) -> bool {
-        self.body == PLANE
+        self.body == Against::Plane
     }
 
-    /// What h and the tangential displacement are of what the two centres move: a plane does not, and of two spheres each moves half.
+    /// What h and the tangential displacement are of what the two centres move: all of it, whatever the sphere meets.
     fn share(&self) -> f64 {
-        if self.plane() { 1.0 } else { 0.5 }
+        1.0
     }
 
     /// Values and slopes at the knots, in the order in which the update reads them.
@@ -97,13 +97,14 @@ impl Unit {
     }
 
     /// The single numbers by the names that they have in the file.
-    fn numbers(&self) -> [(&'static str, f64); 8] {
+    fn numbers(&self) -> [(&'static str, f64); 9] {
         let p = &self.parameters;
         [
             ("share", self.share()),
             ("poissons_ratio", self.case.material.poissons_ratio),
             ("friction", p.friction),
             ("effective_modulus", p.effective_modulus),
+            ("effective_radius", p.radius),
             ("deepest", self.deepest),
             ("form", p.form),
             ("log_first", p.log_first),
@@ -113,7 +114,7 @@ impl Unit {
 
     /// As a file that `asperity_read_table` reads.
     fn file(&self) -> String {
-        let mut text = format!("asperity-contact-table {VERSION}\nbody {}\n", self.body.replace(char::is_whitespace, "-"));
+        let mut text = format!("asperity-contact-table {VERSION}\nbody {}\n", if self.plane() { "plane" } else { "equal-pair" });
         // Writing to a String cannot fail.
         for (name, value) in self.numbers() {
             let _ = writeln!(text, "{name} {value:?}");
@@ -132,10 +133,10 @@ impl Unit {
         let number = |x: f64| format!("ASPERITY_R({x:?})");
         let row = |values: &[f64]| format!("{{{}}}", values.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "));
         let numbers = self.numbers().map(|(_, value)| number(value));
-        let [share, nu, friction, modulus, deepest, _, log_first, log_step] = numbers;
+        let [share, nu, friction, modulus, curvature, deepest, _, log_first, log_step] = numbers;
         let mut text = format!(
             "/* asperity_law.h: {}, h/R up to {}. Written by asperity {}. */\n#ifndef ASPERITY_LAW_H\n#define ASPERITY_LAW_H\n\n\
-             #include \"asperity_contact.h\"\n\nstatic const asperity_table asperity_law = {{\n    {}, {}, {share}, {nu}, {friction}, {modulus}, \
+             #include \"asperity_contact.h\"\n\nstatic const asperity_table asperity_law = {{\n    {}, {}, {share}, {nu}, {friction}, {modulus}, {curvature}, \
              {deepest}, {log_first}, {log_step},\n    {{\n",
             self.source,
             self.deepest,

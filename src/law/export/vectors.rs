@@ -95,7 +95,7 @@ pub fn unit_vectors(unit: &ContactParameters, material: &Material, deepest: f64,
         let radius = (10f64).powf(random.between(-4.0, 1.0));
         let pair = unit.scaled(radius, e);
         let numbers = std::array::from_fn(|i| if stresses[i] { numbers[i] * e } else { numbers[i] });
-        let contact = Contact { e, nu: material.poissons_ratio, kind: kind.into(), numbers, pair };
+        let contact = Contact { e, nu: material.poissons_ratio, kind: kind.into(), numbers, radius, pair };
         let deepest = 1.2 * deepest * (10f64).powf(random.between(-2.0, 0.0));
         write_steps(path, &contact, deepest * radius, &mut random, &mut text);
     }
@@ -108,6 +108,7 @@ struct Contact {
     nu: f64,
     kind: usize,
     numbers: [f64; 3],
+    radius: f64,
     pair: ContactParameters,
 }
 
@@ -120,14 +121,14 @@ fn write_path(law: &Law, path: usize, random: &mut Random, text: &mut String) ->
     let body = Body { sphere: ElasticSphere { radius, youngs_modulus: e, poissons_ratio: nu }, hardening };
     let pair = ContactParameters::new(law, &body, friction).ok()?;
     let deepest = radius * (10f64).powf(random.between(-4.0, -1.3));
-    write_steps(path, &Contact { e, nu, kind, numbers, pair }, deepest, random, text);
+    write_steps(path, &Contact { e, nu, kind, numbers, radius, pair }, deepest, random, text);
     Some(())
 }
 
 /// Writes the steps of one path that goes to about `deepest`.
 fn write_steps(path: usize, contact: &Contact, deepest: f64, random: &mut Random, text: &mut String) {
-    let &Contact { e, nu, kind, numbers, ref pair } = contact;
-    let (radius, friction) = (pair.radius, pair.friction);
+    let &Contact { e, nu, kind, numbers, radius, ref pair } = contact;
+    let friction = pair.friction;
     let slip = pair.virgin(deepest).point.delta_t_slip;
     let depth = pair.virgin(deepest).depth;
     let mut state = ContactState::default();
