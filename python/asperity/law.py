@@ -103,11 +103,18 @@ class Law:
             warnings.warn(f"the case lies outside of what the law was fitted to: {', '.join(outside)}. compare with a run", stacklevel=2)
         return Table(columns)
 
-    def export(self, format: str, out: str | os.PathLike[str] | None = None) -> str | list[Path]:
-        """The law for other programs, ``"c"`` or ``"python"``: its source, or with ``out`` the files that were written there, with test vectors."""
+    def export(
+        self,
+        format: str,
+        out: str | os.PathLike[str] | None = None,
+        case: Case | Mapping[str, Any] | str | os.PathLike[str] | None = None,
+    ) -> str | list[Path]:
+        """The law for other programs, ``"c"`` (of the material and the friction of ``case``) or ``"python"``: its source, or with ``out`` the files that were written
+        there, with test vectors."""
+        native = None if case is None else as_case(case)._native
         if out is None:
-            return self._native.source(format)
-        return [Path(file) for file in self._native.export(format, os.fspath(out))]
+            return self._native.source(format, native)
+        return [Path(file) for file in self._native.export(format, os.fspath(out), native)]
 
     def contacts(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], number: int = 1) -> Contacts:
         """``number`` contacts of a case's sphere, material and friction, before first touch."""

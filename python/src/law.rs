@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use asperity::law::contact::{ContactParameters, ContactState};
-use asperity::law::export::{Language, files, source};
+use asperity::law::export::{Language, law_files, law_source};
 use asperity::law::predict::{NormalSource, predict};
 use asperity::law::prior::{Prior, built_in};
 use asperity::law::variables::Body;
-use asperity::law::{Law, LawError, fit};
+use asperity::law::{Law, LawError, LawFile, fit};
 use asperity::output::write_atomically;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -75,16 +75,19 @@ impl NativeLaw {
         Ok((columns, prediction.out_of_range.iter().map(ToString::to_string).collect()))
     }
 
-    /// The law as source.
-    fn source(&self, format: &str) -> PyResult<String> {
-        Ok(source(&self.law, language(format)?))
+    /// The law as source; for C of the material and the friction of a case.
+    #[pyo3(signature = (format, case=None))]
+    fn source(&self, format: &str, case: Option<&NativeCase>) -> PyResult<String> {
+        law_source(&self.file(), language(format)?, case.map(|case| &case.case)).map_err(failed)
     }
 
     /// The law as source with its test vectors in a directory.
-    fn export(&self, format: &str, dir: PathBuf) -> PyResult<Vec<PathBuf>> {
+    #[pyo3(signature = (format, dir, case=None))]
+    fn export(&self, format: &str, dir: PathBuf, case: Option<&NativeCase>) -> PyResult<Vec<PathBuf>> {
+        let files = law_files(&self.file(), language(format)?, case.map(|case| &case.case)).map_err(failed)?;
         std::fs::create_dir_all(&dir)?;
         let mut written = Vec::new();
-        for file in files(&self.law, language(format)?) {
+        for file in files {
             let path = dir.join(file.name);
             write_atomically(&path, |out| out.write_all(file.content.as_bytes())).map_err(failed)?;
             written.push(path);
@@ -105,6 +108,12 @@ impl NativeLaw {
         let body = Body::from_case(&case.case).map_err(refused)?;
         let parameters = ContactParameters::new(&self.law, &body, friction).map_err(failed)?;
         Ok(Contacts { parameters: Box::new(parameters), states: vec![ContactState::default(); number] })
+    }
+}
+
+impl NativeLaw {
+    fn file(&self) -> LawFile {
+        LawFile::Formulas(Box::new(self.law.clone()))
     }
 }
 

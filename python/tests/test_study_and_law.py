@@ -99,10 +99,12 @@ def test_a_law_predicts(law: asperity.Law, case: asperity.Case, done: asperity.R
         law.predict(case.replace({"contact.friction": "stick", "path.1.shear": 0.001}))
 
 
-def test_an_export_is_the_programs(law: asperity.Law, tmp_path: Path) -> None:
-    files = law.export("c", tmp_path)
-    assert [file.name for file in files] == ["asperity_law.h", "asperity_law_vectors.csv", "asperity_law_check.c"]
-    assert files[0].read_text() == law.export("c")
+def test_an_export_is_the_programs(law: asperity.Law, case: asperity.Case, tmp_path: Path) -> None:
+    files = law.export("c", tmp_path, case)
+    assert [file.name for file in files][:4] == ["asperity_law.h", "law.asperity", "asperity_contact.h", "asperity_contact3d.h"]
+    assert files[0].read_text() == law.export("c", case=case)
+    with pytest.raises(asperity.AsperityError, match="the law of one material and one friction"):
+        law.export("c")
     with pytest.raises(asperity.CaseError, match='format: is "fortran"'):
         law.export("fortran")
 

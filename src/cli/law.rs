@@ -43,7 +43,7 @@ pub enum LawCommand {
     Predict(PredictArgs),
     /// Simulate a protocol of paths and print how far the law's contact update is from each.
     Check(CheckArgs),
-    /// Write the law for a DEM code: an incremental contact update as a C header or a Python module, to stdout or with test vectors to a directory.
+    /// Write the law for a DEM code: an incremental contact update as C headers with a table, or as a Python module, to stdout or with test vectors to a directory.
     Export(ExportArgs),
 }
 
@@ -89,11 +89,18 @@ pub struct ExportArgs {
     /// A law, as `law fit` or `law tabulate` writes it.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
+    /// The material and the friction, for C: a law of formulas needs them, a table refuses others; `-` for standard input.
+    #[arg(value_name = "CASE.toml")]
+    pub case: Option<PathBuf>,
+    /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE", requires = "case")]
+    pub set: Vec<String>,
     /// The language.
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     pub format: Language,
-    /// Write asperity_law.h or asperity_law.py there, with asperity_law_vectors.csv and, for C, the program that checks them; files of these names are
-    /// replaced [default: the header or module alone, to stdout].
+    /// Write the files there: for C asperity_law.h (the table as a constant), law.asperity (the same, to be read when an engine starts), asperity_contact.h (the update),
+    /// asperity_contact3d.h (spheres and walls) and the program that checks them; for Python asperity_law.py; with asperity_law_vectors.csv. Files of these names are
+    /// replaced [default: asperity_law.h or asperity_law.py alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -105,7 +112,7 @@ impl ValueEnum for Language {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(match self {
-            Self::C => PossibleValue::new("c").help("One header, C99 and C++17"),
+            Self::C => PossibleValue::new("c").help("Headers and a table, C99, C++17 and CUDA"),
             Self::Python => PossibleValue::new("python").help("One module, Python 3.8 or later"),
         })
     }
@@ -228,19 +235,25 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
 
 fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
     let law = LawFile::read(&args.law)?;
+    let input = args.case.as_deref().map(Input::read).transpose()?;
+    let case = input.as_ref().map(|input| input.case(&args.set)).transpose()?;
+    let in_case = |source: LawError| match &input {
+        Some(input) => CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) },
+        None => source.into(),
+    };
     let Some(dir) = &args.out else {
-        print(&law_source(&law, args.format)?)?;
+        print(&law_source(&law, args.format, case.as_ref()).map_err(in_case)?)?;
         return Ok(Outcome::Done);
     };
     let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
     fs::create_dir_all(dir).map_err(failed("be created"))?;
-    for file in law_files(&law, args.format)? {
+    for file in law_files(&law, args.format, case.as_ref()).map_err(in_case)? {
         let path = dir.join(file.name);
         write_atomically(&path, |out| out.write_all(file.content.as_bytes()))?;
         print(&format!("{}\n", path.display()))?;
     }
     let check = match args.format {
-        Language::C => "cc -std=c99 asperity_law_check.c -lm -o check && ./check asperity_law_vectors.csv",
+        Language::C => "cc -std=c99 -O2 asperity_contact_check.c -lm -o check && ./check asperity_law_vectors.csv",
         Language::Python => "python3 asperity_law.py asperity_law_vectors.csv",
     };
     print(&format!("to check it against the vectors: cd {} && {check}\n", dir.display()))?;

@@ -279,7 +279,7 @@ impl ContactParameters {
 
     /// Slope of a column at a knot, per step. The steeper secant for the force and the flatter one for the radius: so neither kink at yield makes
     /// a virgin contact store more energy than was put in. The mean for the others.
-    fn knot_slope(&self, column: usize, i: usize) -> f64 {
+    pub(in crate::law) fn knot_slope(&self, column: usize, i: usize) -> f64 {
         let value = |i: usize| self.table[i][column];
         if i == 0 {
             return value(1) - value(0);

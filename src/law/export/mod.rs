@@ -1,11 +1,13 @@
-//! The law for other programs: a C header and a Python module with the incremental contact update, and test vectors for both.
+//! The law for other programs: C headers and a table for engines, a Python module with the incremental contact update, and test vectors for both.
 //!
-//! Header, module and [`ContactParameters`] are triplets: the same functions in the same order with the same operations. Only the
-//! constants of the law are filled in here.
+//! Headers, module and [`ContactParameters`] are triplets: the same functions with the same operations. The Python module fills in the constants of the law, and makes its
+//! tables itself; the C headers get the tables of one material and one friction.
 
+mod contact;
 mod vectors;
 
-pub use vectors::{table_vectors, vectors};
+pub use contact::{contact_header, engine_files, engine_source};
+pub use vectors::{table_vectors, unit_vectors, vectors};
 
 use super::contact::{COLUMNS, ContactParameters, KNOTS, LEVELS, POINTS, SLIDERS};
 use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
@@ -13,18 +15,15 @@ use super::model::Law;
 use super::normal::NormalForm;
 use super::tabulated::Tabulated;
 use super::{LawError, LawFile};
-use crate::case::Hardening;
+use crate::case::{Case, Hardening};
 
-const HEADER: &str = include_str!("asperity_law.h");
 const MODULE: &str = include_str!("asperity_law.py");
-const TABLE_HEADER: &str = include_str!("asperity_law_table.h");
 const TABLE_MODULE: &str = include_str!("asperity_law_table.py");
-const CHECK: &str = include_str!("asperity_law_check.c");
 
 /// A language of the export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
-    /// One header, C99 and C++17.
+    /// Headers and a table, C99, C++17 and CUDA.
     C,
     /// One module, Python 3.8 or later.
     Python,
@@ -39,55 +38,48 @@ pub struct ExportedFile {
     pub content: String,
 }
 
-/// The files of an export, the law itself first: then the test vectors and, for C, the program that checks them (the Python module checks
-/// itself).
-pub fn files(law: &Law, language: Language) -> Vec<ExportedFile> {
-    files_of(source(law, language), vectors(law, vectors::SEED), language)
+/// The files of the Python export, the law itself first: then the test vectors; the module checks itself.
+pub fn files(law: &Law) -> Vec<ExportedFile> {
+    python_files(source(law), vectors(law, vectors::SEED))
 }
 
-/// The files of either kind of law.
+/// The files of either kind of law. For C a law of formulas needs the case of a material and a friction.
 ///
 /// # Errors
-/// A table without numbers.
-pub fn law_files(law: &LawFile, language: Language) -> Result<Vec<ExportedFile>, LawError> {
-    let vectors = match law {
-        LawFile::Formulas(law) => vectors(law, vectors::SEED),
-        LawFile::Table(table) => table_vectors(table, vectors::SEED)?,
-    };
-    Ok(files_of(law_source(law, language)?, vectors, language))
-}
-
-/// Either kind of law as source of a language.
-///
-/// # Errors
-/// A table without numbers.
-pub fn law_source(law: &LawFile, language: Language) -> Result<String, LawError> {
-    match law {
-        LawFile::Formulas(law) => Ok(source(law, language)),
-        LawFile::Table(table) => table_source(table, language),
+/// A table without numbers; what [`engine_files`] has.
+pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
+    match (language, law) {
+        (Language::C, law) => engine_files(law, case),
+        (Language::Python, LawFile::Formulas(law)) => Ok(files(law)),
+        (Language::Python, LawFile::Table(table)) => Ok(python_files(table_source(table)?, table_vectors(table, vectors::SEED)?)),
     }
 }
 
-fn files_of(source: String, vectors: String, language: Language) -> Vec<ExportedFile> {
-    let vectors = ExportedFile { name: "asperity_law_vectors.csv", content: vectors };
-    match language {
-        Language::C => {
-            let check = ExportedFile { name: "asperity_law_check.c", content: CHECK.to_owned() };
-            vec![ExportedFile { name: "asperity_law.h", content: source }, vectors, check]
-        }
-        Language::Python => vec![ExportedFile { name: "asperity_law.py", content: source }, vectors],
+/// Either kind of law as source of a language: for C the table, which includes the update's header.
+///
+/// # Errors
+/// As [`law_files`].
+pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Result<String, LawError> {
+    match (language, law) {
+        (Language::C, law) => engine_source(law, case),
+        (Language::Python, LawFile::Formulas(law)) => Ok(source(law)),
+        (Language::Python, LawFile::Table(table)) => table_source(table),
     }
 }
 
-/// The law as source of a language.
-pub fn source(law: &Law, language: Language) -> String {
+fn python_files(source: String, vectors: String) -> Vec<ExportedFile> {
+    vec![
+        ExportedFile { name: "asperity_law.py", content: source },
+        ExportedFile { name: "asperity_law_vectors.csv", content: vectors },
+    ]
+}
+
+/// The law as a Python module.
+pub fn source(law: &Law) -> String {
     let number = |x: f64| format!("{x:.16e}");
     let mut constants = String::new();
     let mut constant = |name: &str, value: f64| {
-        constants.push_str(&match language {
-            Language::C => format!("#define ASPERITY_{name} {}\n", number(value)),
-            Language::Python => format!("{name} = {}\n", number(value)),
-        });
+        constants.push_str(&format!("{name} = {}\n", number(value)));
     };
     let mut list = |name: &str, values: &[f64], length: usize| {
         for i in 0..length {
@@ -138,14 +130,7 @@ pub fn source(law: &Law, language: Language) -> String {
         ("NORMAL_FORM", normal_form(law.normal.form).to_string()),
         ("CONSTANTS", constants.trim_end().to_owned()),
     ];
-    fill(template(language), values.into_iter().chain(sizes()))
-}
-
-fn template(language: Language) -> &'static str {
-    match language {
-        Language::C => HEADER,
-        Language::Python => MODULE,
-    }
+    fill(MODULE, values.into_iter().chain(sizes()))
 }
 
 fn sizes() -> [(&'static str, String); 5] {
@@ -157,38 +142,27 @@ fn fill<'a>(template: &str, values: impl IntoIterator<Item = (&'a str, String)>)
     values.into_iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), &value))
 }
 
-/// A table as source of a language.
-fn table_source(table: &Tabulated, language: Language) -> Result<String, LawError> {
+/// A table as a Python module.
+fn table_source(table: &Tabulated) -> Result<String, LawError> {
     let ContactParameters { effective_modulus, friction, log_first, log_step, table: rows, shapes, .. } =
         table.unit_parameters()?;
     let material = table.material()?;
     let number = |x: f64| format!("{x:.16e}");
     let list = |values: &[f64]| values.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", ");
-    let (open, close) = match language {
-        Language::C => ('{', '}'),
-        Language::Python => ('(', ')'),
-    };
     let lines = |all: &mut dyn Iterator<Item = String>| all.map(|line| format!("    {line},\n")).collect::<String>();
     let shape_lines = |shape: &[[f64; POINTS]; 2]| {
-        let [t, n] = shape.map(|values| format!("{open}{}{close}", list(&values)));
-        format!("{open}{t}, {n}{close}")
+        let [t, n] = shape.map(|values| format!("({})", list(&values)));
+        format!("({t}, {n})")
     };
     let (kind, numbers, stresses) = hardening_numbers(&material.hardening);
     let points: Vec<f64> = match &material.hardening {
         Hardening::Table { points } => points.iter().flatten().copied().collect(),
         _ => Vec::new(),
     };
-    let words = match language {
-        Language::C => ["0", "1"],
-        Language::Python => ["False", "True"],
-    };
-    let fragment = match language {
-        Language::C => TABLE_HEADER,
-        Language::Python => TABLE_MODULE,
-    };
+    let words = ["False", "True"];
     let point_list: String = points.iter().map(|&x| format!("{}, ", number(x))).collect();
     let fragment = fill(
-        fragment,
+        TABLE_MODULE,
         [
             ("NU", number(material.poissons_ratio)),
             ("FRICTION", number(friction)),
@@ -201,7 +175,7 @@ fn table_source(table: &Tabulated, language: Language) -> Result<String, LawErro
             ("NUMBERS", list(&numbers)),
             ("STRESSES", stresses.map(|stress| words[usize::from(stress)]).join(", ")),
             ("POINT_LIST", point_list.trim_end().to_owned()),
-            ("ROWS", lines(&mut rows.iter().map(|row| format!("{open}{}{close}", list(row))))),
+            ("ROWS", lines(&mut rows.iter().map(|row| format!("({})", list(row))))),
             ("SHAPES", lines(&mut shapes.iter().map(shape_lines))),
         ],
     );
@@ -218,7 +192,7 @@ fn table_source(table: &Tabulated, language: Language) -> Result<String, LawErro
         ("CONSTANTS", String::new()),
         ("TABLE", fragment),
     ];
-    Ok(fill(template(language), values.into_iter().chain(sizes())))
+    Ok(fill(MODULE, values.into_iter().chain(sizes())))
 }
 
 /// The number that a hardening law has in the exports, its numbers there, and which of them are stresses.

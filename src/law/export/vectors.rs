@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use crate::analytical::ElasticSphere;
+use crate::case::Material;
 use crate::law::LawError;
 use crate::law::contact::{ContactParameters, ContactState};
 use crate::law::folds::splitmix;
@@ -80,20 +81,25 @@ pub fn vectors(law: &Law, seed: u64) -> String {
 /// # Errors
 /// A table without numbers.
 pub fn table_vectors(table: &Tabulated, seed: u64) -> Result<String, LawError> {
+    Ok(unit_vectors(&table.unit_parameters()?, &table.material()?, table.range.to, seed))
+}
+
+/// The vectors of one material and one friction: paths with spheres of any radius and units, to and beyond `deepest` over R. `unit` and `material` are those of
+/// a sphere with R = 1 and E = 1.
+pub fn unit_vectors(unit: &ContactParameters, material: &Material, deepest: f64, seed: u64) -> String {
     let mut text = format!("{COLUMNS}\n");
     let mut random = Random(seed);
-    let material = table.material()?;
     let (kind, numbers, stresses) = super::hardening_numbers(&material.hardening);
     for path in 0..6 * PATHS {
         let e = (10f64).powf(random.between(0.0, 12.0));
         let radius = (10f64).powf(random.between(-4.0, 1.0));
-        let pair = table.contact_parameters(radius, e)?;
+        let pair = unit.scaled(radius, e);
         let numbers = std::array::from_fn(|i| if stresses[i] { numbers[i] * e } else { numbers[i] });
-        let contact = Contact { e, nu: material.poissons_ratio, kind: kind.into(), numbers, pair };
-        let deepest = 1.2 * table.range.to * (10f64).powf(random.between(-2.0, 0.0));
+        let contact = Contact { e, nu: material.poissons_ratio, kind: kind.into(), numbers, radius, pair };
+        let deepest = 1.2 * deepest * (10f64).powf(random.between(-2.0, 0.0));
         write_steps(path, &contact, deepest * radius, &mut random, &mut text);
     }
-    Ok(text)
+    text
 }
 
 /// What a path is of.
@@ -102,6 +108,7 @@ struct Contact {
     nu: f64,
     kind: usize,
     numbers: [f64; 3],
+    radius: f64,
     pair: ContactParameters,
 }
 
@@ -114,14 +121,14 @@ fn write_path(law: &Law, path: usize, random: &mut Random, text: &mut String) ->
     let body = Body { sphere: ElasticSphere { radius, youngs_modulus: e, poissons_ratio: nu }, hardening };
     let pair = ContactParameters::new(law, &body, friction).ok()?;
     let deepest = radius * (10f64).powf(random.between(-4.0, -1.3));
-    write_steps(path, &Contact { e, nu, kind, numbers, pair }, deepest, random, text);
+    write_steps(path, &Contact { e, nu, kind, numbers, radius, pair }, deepest, random, text);
     Some(())
 }
 
 /// Writes the steps of one path that goes to about `deepest`.
 fn write_steps(path: usize, contact: &Contact, deepest: f64, random: &mut Random, text: &mut String) {
-    let &Contact { e, nu, kind, numbers, ref pair } = contact;
-    let (radius, friction) = (pair.radius, pair.friction);
+    let &Contact { e, nu, kind, numbers, radius, ref pair } = contact;
+    let friction = pair.friction;
     let slip = pair.virgin(deepest).point.delta_t_slip;
     let depth = pair.virgin(deepest).depth;
     let mut state = ContactState::default();

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# From two hardening curves to the compaction picture: bash integrations/lammps/compaction/run.sh [OUT] [options of compact.py]
+# Tables of each material and friction with the program, the plug-in, twelve compactions, figures.
+set -euo pipefail
+here="$(cd "$(dirname "$0")" && pwd)"
+root="$(cd "$here/../../.." && pwd)"
+out="${1:-$root/target/lammps/compaction}"
+[ $# -eq 0 ] || shift
+work="${ASPERITY_LAMMPS_DIR:-$root/target/lammps}"
+elements="${ELEMENTS:-6}"
+mkdir -p "$out/tables"
+
+program="${ASPERITY_PROGRAM:-}"
+if [ -z "$program" ]; then
+    (cd "$root" && cargo build --quiet --release)
+    program="$root/target/release/asperity"
+fi
+export ASPERITY_PROGRAM="$program"
+bash "$here/../run.sh" --build
+for material in copper steel; do
+    for mu in 0.1 0.5; do
+        table="$out/tables/$material-$mu"
+        mkdir -p "$table"
+        sed "s/^friction = .*/friction = $mu/" "$here/$material.toml" >"$table/plane.toml"
+        { cat "$table/plane.toml"; printf '\n[opponent]\nequal = true\n'; } >"$table/pair.toml"
+        for kind in plane pair; do
+            [ ! -e "$table/$kind.asperity" ] || continue
+            if "$program" law tabulate "$table/$kind.toml" --out "$table/$kind" --elements "$elements" --resume >"$table/$kind.txt" 2>&1; then
+                "$program" law export "$table/$kind/law.json" --format c --out "$table/$kind-export" >/dev/null
+                cp "$table/$kind-export/law.asperity" "$table/$kind.asperity"
+            elif [ "$kind" = pair ]; then
+                echo "no table of two spheres for $material, mu = $mu: that of a plane stands in (F_N some 3 % low)" >&2
+            else
+                cat "$table/$kind.txt" >&2
+                exit 1
+            fi
+        done
+    done
+done
+export LD_LIBRARY_PATH="$work/venv/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+"$work/venv/bin/python" "$here/compact.py" "$work/asperityplugin.so" "$out/tables" "$out" "$@"
+echo "pictures and tables in $out"

@@ -1,0 +1,274 @@
+/* asperity_contact3d.h: two spheres, or a sphere and a plane wall, in three dimensions: what an engine wraps round the update of asperity_contact.h.
+ *
+ * A contact's memory is one asperity_contact: 40 numbers, all zero before first contact; copy it, write it to a restart file as it is. Each step, for each pair that is kept:
+ *     asperity_spheres(&law, &i, &j, dt, &contact, &contact, &out);
+ * and add out.force_i, out.torque_i, out.force_j, out.torque_j. With `wall` in place of j: asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
+ *
+ * - The tangent frame is carried along: e1 is stored with the contact, turned by the mean spin of the two bodies and laid into the new tangent plane, e2 = n x e1. Any rigid motion of
+ *   the pair gives the same forces.
+ * - Exchanged particles: asperity_exchange().
+ * - Two radii of one material: R = 2 R_i R_j/(R_i + R_j), as in Hertz's contact, each sphere taking half of the overlap.
+ * - A rigid plane wall needs a table of a sphere on a plane, two spheres one of a pair; the other is refused with the flag ASPERITY_WRONG_TABLE and no force. A table of
+ *   a plane that is to stand for a pair has to be made into one, by hand: asperity_stand_in().
+ */
+#ifndef ASPERITY_CONTACT3D_H
+#define ASPERITY_CONTACT3D_H
+
+#include "asperity_contact.h"
+
+/* Flags of asperity_forces. */
+enum {
+    ASPERITY_TOUCHES = 1,
+    ASPERITY_OUT_OF_RANGE = 2, /* has been deeper than the law was made for */
+    ASPERITY_WRONG_TABLE = 4
+};
+
+/* The law of a pair of materials, in the units of the engine. */
+typedef struct asperity_law3d {
+    const asperity_table *table;
+    asperity_real modulus; /* Young's */
+    asperity_real damping; /* of asperity_damping(), 0: none but the law's own losses */
+} asperity_law3d;
+
+typedef struct asperity_body {
+    asperity_real position[3], velocity[3], spin[3]; /* spin: angular velocity */
+    asperity_real radius, mass;
+} asperity_body;
+
+/* A rigid plane through `point`; the unit normal points to where the spheres are. */
+typedef struct asperity_wall {
+    asperity_real point[3], normal[3], velocity[3], spin[3]; /* velocity: that of `point` */
+} asperity_wall;
+
+/* The memory of a contact: lengths over R, work in the engine's units. */
+typedef struct asperity_contact {
+    asperity_state state;
+    asperity_real axis[2]; /* e1, packed */
+    asperity_real plastic; /* work dissipated since first contact: by plastic flow, */
+    asperity_real slip;    /* by slip */
+} asperity_contact;
+
+typedef struct asperity_forces {
+    asperity_real force_i[3], torque_i[3], force_j[3], torque_j[3];
+    asperity_real f_n, f_t, overlap;
+    asperity_real stored; /* elastic energy */
+    asperity_real damped; /* work that the damping has taken in this step */
+    int flags;
+} asperity_forces;
+
+ASPERITY_FN asperity_real asperity_dot(const asperity_real a[3], const asperity_real b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+ASPERITY_FN void asperity_cross(const asperity_real a[3], const asperity_real b[3], asperity_real c[3]) {
+    asperity_real c0 = a[1] * b[2] - a[2] * b[1], c1 = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+    c[0] = c0;
+    c[1] = c1;
+}
+
+/* A direction as two numbers: the octahedron |x| + |y| + |z| = 1, its lower half folded out. (0, 0) is the direction z. */
+ASPERITY_FN void asperity_pack(const asperity_real v[3], asperity_real packed[2]) {
+    asperity_real one = ASPERITY_R(1.0), inverse = one / (ASPERITY_ABS(v[0]) + ASPERITY_ABS(v[1]) + ASPERITY_ABS(v[2])), p = v[0] * inverse, q = v[1] * inverse;
+    packed[0] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(q)) * (p < ASPERITY_R(0.0) ? -one : one) : p;
+    packed[1] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(p)) * (q < ASPERITY_R(0.0) ? -one : one) : q;
+}
+
+/* The direction, of any length. */
+ASPERITY_FN void asperity_unpack(const asperity_real packed[2], asperity_real v[3]) {
+    asperity_real one = ASPERITY_R(1.0), p = packed[0], q = packed[1];
+    v[2] = one - ASPERITY_ABS(p) - ASPERITY_ABS(q);
+    v[0] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(q)) * (p < ASPERITY_R(0.0) ? -one : one) : p;
+    v[1] = v[2] < ASPERITY_R(0.0) ? (one - ASPERITY_ABS(p)) * (q < ASPERITY_R(0.0) ? -one : one) : q;
+}
+
+/* Carries the frame of a contact into the step: e1 turned by spin dt and laid into the plane across n. */
+ASPERITY_FN void asperity_carry(asperity_real axis[2], const asperity_real spin[3], asperity_real dt, const asperity_real n[3], asperity_real e1[3], asperity_real e2[3]) {
+    asperity_real v[3], turn[3], once[3], twice[3], angle2 = ASPERITY_R(0.0), s, c, along, size;
+    int k;
+    asperity_unpack(axis, v);
+    for (k = 0; k < 3; k++) {
+        turn[k] = spin[k] * dt;
+        angle2 += turn[k] * turn[k];
+    }
+    /* Rodrigues; (sin a)/a and (1 - cos a)/a^2 by their series while the angle of a step is small. */
+    if (angle2 < ASPERITY_R(1e-4)) {
+        s = ASPERITY_R(1.0) - angle2 / ASPERITY_R(6.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(20.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(42.0)));
+        c = ASPERITY_R(0.5) - angle2 / ASPERITY_R(24.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(30.0) * (ASPERITY_R(1.0) - angle2 / ASPERITY_R(56.0)));
+    } else {
+        asperity_real angle = ASPERITY_SQRT(angle2);
+        s = ASPERITY_SIN(angle) / angle;
+        c = (ASPERITY_R(1.0) - ASPERITY_COS(angle)) / angle2;
+    }
+    asperity_cross(turn, v, once);
+    asperity_cross(turn, once, twice);
+    for (k = 0; k < 3; k++) {
+        v[k] += s * once[k] + c * twice[k];
+    }
+    along = asperity_dot(v, n);
+    for (k = 0; k < 3; k++) {
+        e1[k] = v[k] - along * n[k];
+    }
+    size = ASPERITY_SQRT(asperity_dot(e1, e1));
+    if (!(size > ASPERITY_R(1e-3) * ASPERITY_SQRT(asperity_dot(v, v)))) {
+        /* e1 would be n, as in a fresh contact along z: any other will do. */
+        v[0] = ASPERITY_R(1.0);
+        v[1] = v[2] = ASPERITY_R(0.0);
+        if (ASPERITY_ABS(n[0]) > ASPERITY_R(0.9)) {
+            v[0] = ASPERITY_R(0.0);
+            v[1] = ASPERITY_R(1.0);
+        }
+        along = asperity_dot(v, n);
+        for (k = 0; k < 3; k++) {
+            e1[k] = v[k] - along * n[k];
+        }
+        size = ASPERITY_SQRT(asperity_dot(e1, e1));
+    }
+    for (k = 0; k < 3; k++) {
+        e1[k] /= size;
+    }
+    asperity_cross(n, e1, e2);
+    asperity_pack(e1, axis);
+}
+
+/* The memory as the other particle has it, where an engine has exchanged i and j: n, and with it e2, turns round and so do displacements. */
+ASPERITY_FN void asperity_exchange(asperity_contact *contact) {
+    int k;
+    for (k = 0; k < ASPERITY_SLIDERS; k++) {
+        contact->state.deflection[0][k] = -contact->state.deflection[0][k];
+    }
+}
+
+/* Whether a contact's memory may go: it never touched, or the gap is wider than the dent is deep, so that a next contact lands elsewhere. */
+ASPERITY_FN int asperity_may_forget(const asperity_contact *contact) {
+    return contact->state.h < ASPERITY_R(0.0) && -contact->state.h >= contact->state.h_max;
+}
+
+/* The factor of a dashpot, force = factor sqrt(m k) v, with k = 2 E* a the stiffness of an unloading, that gives an impact which stays elastic the restitution coefficient e,
+ * 0.1 <= e <= 1. The dashpot never pulls. A fit to the integrated motion, to 1e-5 in e. */
+ASPERITY_FN asperity_real asperity_damping(asperity_real restitution) {
+    asperity_real l = -ASPERITY_LOG(restitution);
+    return l * (ASPERITY_R(0.581190906) + l * (ASPERITY_R(0.117495308) + l * (ASPERITY_R(0.0188778198) + l * (ASPERITY_R(0.00178313741) + l * ASPERITY_R(0.000432561374)))));
+}
+
+/* The critical time step of a sphere that makes one contact of the indentation h over R (0: as deep as the law goes) with an immovable body: 2 sqrt(m/k), k the greater of the
+ * normal stiffness and of the tangential one, which also turns the sphere. A packing has several contacts a sphere: take a tenth. */
+ASPERITY_FN asperity_real asperity_time_step(const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real h) {
+    asperity_curve v;
+    asperity_real normal, tangential;
+    asperity_first_loading(law->table, h > ASPERITY_R(0.0) ? h : law->table->deepest, 0, &v);
+    normal = v.gamma * v.f_n0 / v.depth;
+    normal = v.slope > normal ? v.slope : normal;
+    tangential = ASPERITY_R(3.5) * v.k_t;
+    return ASPERITY_R(2.0) * ASPERITY_SQRT(mass / ((normal > tangential ? normal : tangential) * law->modulus * radius * law->table->share));
+}
+
+/* A table of a plane as that of two equal spheres. They do not hold each other's surface as a plane does: see the head of asperity_contact.h. */
+ASPERITY_FN void asperity_stand_in(asperity_table *table) {
+    table->plane = 0;
+    table->share = ASPERITY_R(0.5);
+}
+
+/* What both kinds of contact do once normal, lever arms and relative velocity are known: n from j to i, v that of i's point of contact relative to j's. */
+ASPERITY_FN void asperity_contact_forces(
+    const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real overlap, const asperity_real n[3], const asperity_real v[3],
+    const asperity_real spin[3], asperity_real arm_i, asperity_real arm_j, asperity_real dt, const asperity_contact *before, asperity_contact *after, asperity_forces *out) {
+    asperity_contact c = *before;
+    asperity_response answer;
+    asperity_real e1[3], e2[3], d[2], share = law->table->share, approaching = -asperity_dot(v, n), tangential[3], turn[3], f_n, dashpot = ASPERITY_R(0.0);
+    int k;
+    memset(out, 0, sizeof *out);
+    out->overlap = overlap;
+    asperity_carry(c.axis, spin, dt, n, e1, e2);
+    d[0] = share * asperity_dot(v, e1) * dt;
+    d[1] = share * asperity_dot(v, e2) * dt;
+    asperity_update(law->table, radius, law->modulus, &c.state, share * overlap, d, &c.state, &answer, NULL);
+    /* The law's work is that of h and d: of what the centres move, `share`. */
+    c.plastic += answer.plastic / share;
+    c.slip += answer.friction / share;
+    out->stored = answer.stored / share;
+    f_n = answer.f_n;
+    if (f_n > ASPERITY_R(0.0) && law->damping > ASPERITY_R(0.0)) {
+        dashpot = law->damping * ASPERITY_SQRT(mass * answer.stiffness * share) * approaching;
+        dashpot = dashpot < -f_n ? -f_n : dashpot; /* never a pull */
+        out->damped = dashpot * approaching * dt;
+        f_n += dashpot;
+    }
+    out->f_n = f_n;
+    out->f_t = ASPERITY_SQRT(answer.f_t[0] * answer.f_t[0] + answer.f_t[1] * answer.f_t[1]);
+    out->flags = (answer.f_n > ASPERITY_R(0.0) ? ASPERITY_TOUCHES : 0) | (asperity_out_of_range(law->table, &c.state) ? ASPERITY_OUT_OF_RANGE : 0);
+    for (k = 0; k < 3; k++) {
+        tangential[k] = -(answer.f_t[0] * e1[k] + answer.f_t[1] * e2[k]);
+        out->force_i[k] = f_n * n[k] + tangential[k];
+        out->force_j[k] = -out->force_i[k];
+    }
+    asperity_cross(n, tangential, turn);
+    for (k = 0; k < 3; k++) {
+        out->torque_i[k] = -arm_i * turn[k];
+        out->torque_j[k] = -arm_j * turn[k];
+    }
+    *after = c;
+}
+
+/* Two spheres of one material. `after` may be `before`. */
+ASPERITY_FN void asperity_spheres(
+    const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+    asperity_forces *out) {
+    asperity_real n[3], spin[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j;
+    int k;
+    if (law->table->plane) {
+        memset(out, 0, sizeof *out);
+        out->flags = ASPERITY_WRONG_TABLE;
+        *after = *before;
+        return;
+    }
+    for (k = 0; k < 3; k++) {
+        n[k] = i->position[k] - j->position[k];
+        spin[k] = ASPERITY_R(0.5) * (i->spin[k] + j->spin[k]);
+    }
+    distance = ASPERITY_SQRT(asperity_dot(n, n));
+    overlap = i->radius + j->radius - distance;
+    arm_i = i->radius - ASPERITY_R(0.5) * overlap;
+    arm_j = j->radius - ASPERITY_R(0.5) * overlap;
+    for (k = 0; k < 3; k++) {
+        n[k] /= distance;
+    }
+    asperity_cross(i->spin, n, across_i);
+    asperity_cross(j->spin, n, across_j);
+    for (k = 0; k < 3; k++) {
+        v[k] = i->velocity[k] - j->velocity[k] - arm_i * across_i[k] - arm_j * across_j[k];
+    }
+    asperity_contact_forces(
+        law, ASPERITY_R(2.0) * i->radius * j->radius / (i->radius + j->radius), i->mass * j->mass / (i->mass + j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
+}
+
+/* A sphere on a rigid plane; force_j and torque_j are those on the wall, about the point of contact. */
+ASPERITY_FN void asperity_sphere_wall(
+    const asperity_law3d *law, const asperity_body *i, const asperity_wall *wall, asperity_real dt, const asperity_contact *before, asperity_contact *after,
+    asperity_forces *out) {
+    asperity_real spin[3], v[3], across_i[3], across_wall[3], from[3], distance, arm;
+    int k;
+    if (!law->table->plane) {
+        memset(out, 0, sizeof *out);
+        out->flags = ASPERITY_WRONG_TABLE;
+        *after = *before;
+        return;
+    }
+    for (k = 0; k < 3; k++) {
+        from[k] = i->position[k] - wall->point[k];
+        spin[k] = ASPERITY_R(0.5) * (i->spin[k] + wall->spin[k]);
+    }
+    distance = asperity_dot(from, wall->normal);
+    arm = distance < i->radius ? distance : i->radius;
+    for (k = 0; k < 3; k++) {
+        from[k] -= arm * wall->normal[k];
+    }
+    asperity_cross(i->spin, wall->normal, across_i);
+    asperity_cross(wall->spin, from, across_wall);
+    for (k = 0; k < 3; k++) {
+        v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
+    }
+    asperity_contact_forces(law, i->radius, i->mass, i->radius - distance, wall->normal, v, spin, arm, ASPERITY_R(0.0), dt, before, after, out);
+}
+
+#endif

@@ -1,0 +1,109 @@
+/* asperity_contact_check.c: compares asperity_contact.h with the test vectors, as C99 or C++17, in double or (-DASPERITY_SINGLE) in float.
+ *     cc -std=c99 -O2 asperity_contact_check.c -lm && ./a.out asperity_law_vectors.csv [law.asperity]
+ * Uses the constant of asperity_law.h, or the file. Prints the rows and the greatest errors of forces and energy, and of derivatives and radius, relative to each path's greatest value of the quantity; exits 0 if they
+ * are at most 1e-12 and 1e-10 in double (sums in another order: derivatives lose digits next to full slip), and if the former are at most 1e-5 in float. */
+#include "asperity_law.h"
+
+#include <stdlib.h>
+
+enum { INPUTS = 14, OUTPUTS = 12, TOTAL = INPUTS + OUTPUTS };
+
+/* Greatest errors of the path that ends, over the greatest value there: 1 of the derivatives and the radius (columns 3 to 10), 0 of forces and energy. */
+static void close_path(double worst[2], double error[OUTPUTS], double size[OUTPUTS]) {
+    int k;
+    double slip = size[1] > size[2] ? size[1] : size[2], stiffness = size[3] > size[6] ? size[3] : size[6];
+    size[1] = size[2] = slip;
+    size[3] = size[4] = size[5] = size[6] = stiffness;
+    for (k = 0; k < OUTPUTS; k++) {
+        double relative = size[k] > 0.0 ? error[k] / size[k] : error[k];
+        int derivative = k >= 3 && k <= 10;
+        if (relative > worst[derivative]) {
+            worst[derivative] = relative;
+        }
+        error[k] = size[k] = 0.0;
+    }
+}
+
+int main(int argc, char **argv) {
+    char line[4096];
+    double column[TOTAL], error[OUTPUTS] = {0.0}, size[OUTPUTS] = {0.0}, worst[2] = {0.0, 0.0}, path = -1.0;
+    static asperity_table read;
+    const asperity_table *table = &asperity_law;
+    asperity_state state;
+    long rows = 0;
+    FILE *file = argc == 2 || argc == 3 ? fopen(argv[1], "r") : NULL;
+    if (!file || !fgets(line, sizeof line, file)) {
+        fprintf(stderr, "usage: asperity_contact_check VECTORS.csv [law.asperity]\n");
+        return 2;
+    }
+    if (argc == 3) {
+        int code = asperity_read_table(argv[2], &read);
+        if (code != 0) {
+            fprintf(stderr, "%s: %s\n", argv[2], code == 1 ? "cannot be opened" : code == 2 ? "is no contact table of this version" : "is damaged");
+            return 2;
+        }
+        table = &read;
+    }
+    memset(&state, 0, sizeof state);
+    while (fgets(line, sizeof line, file)) {
+        char *at = line;
+        double ours[OUTPUTS];
+        asperity_real d[2];
+        asperity_response out;
+        asperity_tangent tangent;
+        asperity_state saved;
+        int k;
+        for (k = 0; k < TOTAL; k++) {
+            char *end;
+            column[k] = strtod(at, &end);
+            if (end == at) {
+                fprintf(stderr, "row %ld: column %d is no number\n", rows + 1, k + 1);
+                return 2;
+            }
+            at = *end == ',' ? end + 1 : end;
+        }
+        if (column[0] != path) {
+            close_path(worst, error, size);
+            path = column[0];
+            memset(&state, 0, sizeof state);
+        }
+        asperity_rotate(&state, ASPERITY_R(column[12]), ASPERITY_R(column[13]));
+        d[0] = ASPERITY_R(column[10]);
+        d[1] = ASPERITY_R(column[11]);
+        asperity_update(table, ASPERITY_R(column[7]), ASPERITY_R(column[1]), &state, ASPERITY_R(column[9]), d, &saved, &out, &tangent);
+        memcpy(&state, &saved, sizeof state);
+        ours[0] = out.f_n;
+        ours[1] = out.f_t[0];
+        ours[2] = out.f_t[1];
+        ours[3] = tangent.df_t_ddelta[0][0];
+        ours[4] = tangent.df_t_ddelta[0][1];
+        ours[5] = tangent.df_t_ddelta[1][0];
+        ours[6] = tangent.df_t_ddelta[1][1];
+        ours[7] = tangent.df_n_dh;
+        ours[8] = tangent.df_n_ddelta[0];
+        ours[9] = tangent.df_n_ddelta[1];
+        ours[10] = tangent.a;
+        ours[11] = asperity_stored_energy(table, ASPERITY_R(column[7]), ASPERITY_R(column[1]), &state);
+        for (k = 0; k < OUTPUTS; k++) {
+            double difference = fabs(ours[k] - column[INPUTS + k]), value = fabs(column[INPUTS + k]);
+            if (!(difference < HUGE_VAL)) {
+                fprintf(stderr, "row %ld: not a finite number\n", rows + 1);
+                return 1;
+            }
+            if (difference > error[k]) {
+                error[k] = difference;
+            }
+            if (value > size[k]) {
+                size[k] = value;
+            }
+        }
+        rows++;
+    }
+    close_path(worst, error, size);
+    fclose(file);
+    printf("%ld rows, greatest relative error of forces %.3g, of derivatives %.3g\n", rows, worst[0], worst[1]);
+    if (sizeof(asperity_real) == sizeof(float)) {
+        return rows > 0 && worst[0] <= 1e-5 ? 0 : 1;
+    }
+    return rows > 0 && worst[0] <= 1e-12 && worst[1] <= 1e-10 ? 0 : 1;
+}
