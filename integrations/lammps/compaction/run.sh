@@ -22,7 +22,8 @@ for material in copper steel; do
         table="$out/tables/$material-$mu"
         mkdir -p "$table"
         sed "s/^friction = .*/friction = $mu/" "$here/$material.toml" >"$table/plane.toml"
-        { cat "$table/plane.toml"; printf '\n[opponent]\nequal = true\n'; } >"$table/pair.toml"
+        # Between two spheres h is what both give way together.
+        { awk '/^indentation = /{ $3 *= 2 } { print }' "$table/plane.toml"; printf '\n[opponent]\nequal = true\n'; } >"$table/pair.toml"
         for kind in plane pair; do
             [ ! -e "$table/$kind.asperity" ] || continue
             if "$program" law tabulate "$table/$kind.toml" --out "$table/$kind" --elements "$elements" --resume >"$table/$kind.txt" 2>&1; then
