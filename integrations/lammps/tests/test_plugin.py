@@ -219,7 +219,8 @@ def packing():
             expect(shift < 1e-9 and forces < 1e-6 and pressure < 1e-9 and plastic < 1e-9,
                    f"{ranks} rank(s), newton {newton}, restarted from one: places, forces, pressure, plastic work", f"{shift:.1e} {forces:.1e} {pressure:.1e} {plastic:.1e}")
         # Each of the runs above has written a restart file at its end: that of two ranks goes on as that of one does.
-        ends = [die(folder, f"end{name}", again=True, half=RANK_STEPS, file=f"{name}.restart")[0] for name in ("one", "other2on")]
+        # A few steps show it; over hundreds the packing itself makes 1e-8 of what the order of two ranks' sums rounds off.
+        ends = [die(folder, f"end{name}", again=True, half=20, file=f"{name}.restart")[0] for name in ("one", "other2on")]
         shift = difference(*ends, place)
         expect(shift < 1e-9, "one rank from the restart file of two: places", f"{shift:.1e}")
 
