@@ -177,7 +177,7 @@ fn a_device_asked_for_and_lost_ends_the_run_with_one_message() {
     let errors: Vec<&str> = said.lines().filter(|line| line.contains("error") || line.contains("device")).collect();
     let [error] = &errors[..] else { panic!("{said}") };
     for part in
-        [&format!("broke off after {LOST_AFTER} steps"), "device failed", "--device cpu", "what was computed until then is kept"]
+        [&format!("broke off after {LOST_AFTER} steps"), "device failed", "--device cpu", "What was computed until then is kept"]
     {
         assert!(error.starts_with("error: ") && error.contains(part), "{part}: {error}");
     }

@@ -56,7 +56,7 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
     if case.contact.friction == Friction::Stick {
         return Err(LawError::NotCovered {
             problem: "the case has friction = \"stick\", and the law describes slip",
-            remedy: "give contact.friction a number",
+            remedy: "Give contact.friction a number",
         });
     }
     let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
