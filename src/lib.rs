@@ -74,3 +74,8 @@ pub mod verify;
 
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
+
+/// The Rust of the documents, which runs.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/rust.md")]
+pub mod documents {}
