@@ -9,7 +9,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 
 // The tests use more of it.
 #[allow(dead_code)]
-#[path = "../src/linalg/tests/problem.rs"]
+#[path = "../crates/kernels/src/linalg/tests/problem.rs"]
 mod problem;
 
 fn linalg(criterion: &mut Criterion) {

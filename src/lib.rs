@@ -44,8 +44,8 @@
 //! # The rooms
 //!
 //! From the kernels up; each knows only those named before it:
-//! `analytical` (closed forms), `case` (the case file), `mesh`, `material`, `element`, `contact`, `compute` (one trait, CPU and
-//! GPU behind it), `linalg`, `solver`, `simulation`, `output`, `session` (one run from case to results), `law`, `study`, `verify` (closed-form checks), `bench` (rates), `cli`.
+//! `mesh`, `material`, `element`, `contact` and `linalg` (of the crate `asperity-kernels`, which has no overflow checks in release), `analytical` (closed
+//! forms), `case` (the case file), `compute` (one trait, CPU and GPU behind it), `solver`, `simulation`, `output`, `session` (one run from case to results), `law`, `study`, `verify` (closed-form checks), `bench` (rates), `cli`.
 //! ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
@@ -56,22 +56,17 @@ pub mod case;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compute;
-pub mod contact;
-pub mod element;
-pub mod lanes;
 pub mod law;
-pub mod linalg;
-pub mod material;
-pub mod mesh;
 pub mod output;
 pub mod processor;
-pub mod real;
 pub mod session;
 pub mod simulation;
 pub mod solver;
 pub mod study;
 pub mod verify;
 
+#[doc(inline)]
+pub use asperity_kernels::{contact, element, lanes, linalg, material, mesh, real};
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
 

@@ -66,6 +66,23 @@ fn every_link_leads_somewhere() {
     }
 }
 
+/// Files of the repository that the documents name in backticks.
+#[test]
+fn every_file_that_is_named_is_there() {
+    for page in pages() {
+        for (number, line) in page.prose() {
+            for name in line.split('`').skip(1).step_by(2) {
+                let folder = name.split('/').next().unwrap_or_default();
+                let ours = ["src", "crates", "tests", "docs", "shaders", "examples", "benches", "fixtures"].contains(&folder);
+                // Patterns such as src/law/export/asperity_law.{h,py} name several.
+                if ours && name.contains('/') && !name.contains(['{', '*', ' ']) {
+                    assert!(Path::new(name).exists(), "{}:{number}: no {name}", page.path.display());
+                }
+            }
+        }
+    }
+}
+
 /// mdBook takes along what lies below docs/.
 #[test]
 fn pictures_of_the_book_lie_in_it() {

@@ -161,7 +161,7 @@ fn table(hardening: &str) -> LawFile {
     LawFile::Table(Box::new(Tabulated {
         format: tabulated::FORMAT.to_owned(),
         version: tabulated::VERSION,
-        body: tabulated::PLANE.to_owned(),
+        body: tabulated::Against::Plane,
         program: "a test".to_owned(),
         case: format!(
             "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1.0\npoissons_ratio = 0.25\n[material.hardening]\n{hardening}\n[contact]\n\

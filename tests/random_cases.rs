@@ -26,15 +26,7 @@ fn random_cases_end_by_themselves_and_say_what_is_true() {
     }
     let sum = |of: fn(&Measured) -> usize| all.iter().map(of).sum::<usize>();
     assert!(100 * sum(|one| one.relaxed_steps) <= sum(|one| one.steps), "{}", summary(&all));
-    // Nine in ten. Full stick sheared far in a very soft material takes more; so does an oblique press in which all slides, which ends but is bisected often:
-    // those are counted by themselves.
-    let (oblique, straight): (Vec<&Measured>, Vec<&Measured>) = all.iter().partition(|one| one.what.contains(" and "));
-    let hard = |cases: &[&Measured]| cases.iter().filter(|one| one.per_step() > 6.0).count();
-    assert!(
-        !oblique.is_empty() && 2 * hard(&oblique) <= oblique.len() + 1,
-        "{} hard oblique cases: {}",
-        hard(&oblique),
-        summary(&all)
-    );
-    assert!(10 * hard(&straight) <= straight.len(), "{} hard cases: {}", hard(&straight), summary(&all));
+    // Nine in ten. Full stick sheared far in a very soft material takes more.
+    let hard = all.iter().filter(|one| one.per_step() > 6.0).count();
+    assert!(10 * hard <= all.len(), "{hard} hard cases: {}", summary(&all));
 }

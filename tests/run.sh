@@ -11,8 +11,9 @@ begin() {
     echo "== $step"
 }
 
-# A Vulkan driver that runs on the CPU, for the GPU tests, spirv-val, strace, which kills at chosen system calls, and what compiles and runs the exported laws. Only where apt-get is
-# there and something is missing.
+# A Vulkan driver that runs on the CPU, for the GPU tests, spirv-val, strace, which kills at chosen
+# system calls, and what compiles and runs the exported laws. Only where apt-get is there and
+# something is missing.
 install_packages() {
     local package missing=()
     command -v apt-get >/dev/null && command -v dpkg-query >/dev/null || return 0
@@ -35,7 +36,8 @@ install_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}"
 }
 
-# meshio, which opens the fields as ParaView would; the tests look for it in target/python. Without it they say that they skip.
+# meshio, which opens the fields as ParaView would; the tests look for it in target/python. Without
+# it they say that they skip.
 install_meshio() {
     local python=target/python/bin/python
     "$python" -c "import meshio" 2>/dev/null || python3 -c "import meshio" 2>/dev/null && return 0
@@ -56,8 +58,8 @@ if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
     export XDG_RUNTIME_DIR
 fi
 
-begin "cargo fmt --check"
-cargo fmt --check
+begin "cargo fmt --all --check"
+cargo fmt --all --check
 
 begin "cargo clippy --all-targets"
 cargo clippy --all-targets -- -D warnings
@@ -65,17 +67,17 @@ cargo clippy --all-targets -- -D warnings
 begin "cargo doc"
 RUSTDOCFLAGS="-Dwarnings" cargo doc --no-deps
 
-# Licences, versions, sources, and known faults where their database can be had. To build cargo-deny takes longer than all tests: only where it is, or with
-# ASPERITY_DENY=install.
+# Licences, versions, sources, and known faults where their database can be had. To build cargo-deny
+# takes longer than all tests: only where it is, or with ASPERITY_DENY=install.
 begin "cargo deny"
 if [ "${ASPERITY_DENY:-}" = install ] && ! command -v cargo-deny >/dev/null; then
     cargo install cargo-deny --locked --debug --root target/tools
 fi
 PATH="$PATH:$PWD/target/tools/bin"
 if command -v cargo-deny >/dev/null; then
-    cargo deny check licenses bans sources
+    cargo deny --workspace check licenses bans sources
     if timeout 120 cargo deny fetch db >/dev/null 2>&1; then
-        cargo deny check advisories
+        cargo deny --workspace check advisories
     else
         echo "SKIPPED cargo deny check advisories: their database cannot be had" >&2
     fi
@@ -85,7 +87,8 @@ fi
 
 if compgen -G "benches/*.rs" >/dev/null; then
     begin "benches, once each"
-    cargo bench --benches -- --test
+    # As the tests are compiled, which is optimised too: so the dependencies are compiled once.
+    cargo bench --benches --profile dev -- --test
 fi
 
 # A real Slurm on this machine; says so where it cannot be had.

@@ -176,9 +176,12 @@ fn a_device_asked_for_and_lost_ends_the_run_with_one_message() {
     // the driver of the tests may speak as well
     let errors: Vec<&str> = said.lines().filter(|line| line.contains("error") || line.contains("device")).collect();
     let [error] = &errors[..] else { panic!("{said}") };
-    for part in
-        [&format!("broke off after {LOST_AFTER} steps"), "device failed", "--device cpu", "What was computed until then is kept"]
-    {
+    for part in [
+        &format!("broke off after {LOST_AFTER} steps"),
+        "device failed: it was lost",
+        "--device cpu",
+        "What was computed until then is kept",
+    ] {
         assert!(error.starts_with("error: ") && error.contains(part), "{part}: {error}");
     }
     assert_eq!(history.len(), LOST_AFTER);

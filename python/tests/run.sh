@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Builds the wheel, installs it into a fresh environment and tests it there. Where there is no Python, venv or pip, or nothing can be downloaded, it says that it skips;
-# with ASPERITY_REQUIRE_PYTHON=1 it fails.
-# The wheel is the one that `pip install ./python` makes but for the kernels of the GPU, which take most of the time to compile; with ASPERITY_REQUIRE_PYTHON=1 it has them.
+# Builds the wheel, installs it into a fresh environment and tests it there. Where there is no Python,
+# venv or pip, or nothing can be downloaded, it says that it skips; with ASPERITY_REQUIRE_PYTHON=1 it
+# fails. The wheel is the one that `pip install ./python` makes, but compiled as the tests are, so that
+# the dependencies are compiled once, and without the kernels of the GPU, which take most of the time;
+# with ASPERITY_REQUIRE_PYTHON=1 it has them.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -21,10 +23,11 @@ python3 -m venv "$place/venv" 2>"$place/log" || skip "python3 -m venv fails: $(t
 pip() { timeout 300 "$python" -m pip --disable-pip-version-check --quiet "$@"; }
 pip install "maturin>=1.9,<2" numpy pytest matplotlib pandas meshio 2>"$place/log" || skip "pip cannot install: $(tail -1 "$place/log")"
 
-settings=(--config-settings=build-args=--no-default-features)
-[ "${ASPERITY_REQUIRE_PYTHON:-0}" != 1 ] || settings=()
+arguments="--profile dev --no-default-features"
+[ "${ASPERITY_REQUIRE_PYTHON:-0}" != 1 ] || arguments="--profile dev"
 export PATH="$PWD/$place/venv/bin:$PATH"
-timeout 3600 "$python" -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps ${settings[@]+"${settings[@]}"} --wheel-dir "$place" ./python
+timeout 3600 "$python" -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+    --config-settings="build-args=$arguments" --wheel-dir "$place" ./python
 pip install --no-index --no-deps "$place"/asperity-*.whl
 # Not from python/, where the sources would be imported.
 cd "$place"

@@ -1,4 +1,4 @@
-// Unilateral contact with Coulomb friction: the twin of src/contact/coulomb.rs, where the conditions and their source are.
+// Unilateral contact with Coulomb friction: the twin of crates/kernels/src/contact/coulomb.rs, where the conditions and their source are.
 
 const OPEN: u32 = 0u;
 const STICK: u32 = 1u;

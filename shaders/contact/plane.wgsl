@@ -1,4 +1,4 @@
-// The rigid plane z = 0: the twin of src/contact/plane.rs. Both are taken from the start of the step, where the host has formed them
+// The rigid plane z = 0: the twin of crates/kernels/src/contact/plane.rs. Both are taken from the start of the step, where the host has formed them
 // in double precision: at a touching point the gap there is next to nothing, and the sum keeps its digits.
 
 // Gap: height over the plane.

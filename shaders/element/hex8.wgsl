@@ -1,4 +1,4 @@
-// Eight-node hexahedron with mean dilatation: the twin of src/element/hex8.rs, where the formulation and its sources are. A thread
+// Eight-node hexahedron with mean dilatation: the twin of crates/kernels/src/element/hex8.rs, where the formulation and its sources are. A thread
 // has one quadrature point; point q of element e is 8 e + q.
 
 @group(0) @binding(2) var<storage, read> element_nodes: array<u32>;     // [element][local node]

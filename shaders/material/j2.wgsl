@@ -1,4 +1,4 @@
-// Finite-strain J2 plasticity at one point: the twin of src/material/j2.rs, where the formulas and their sources are.
+// Finite-strain J2 plasticity at one point: the twin of crates/kernels/src/material/j2.rs, where the formulas and their sources are.
 
 // The answer of a point to one increment.
 struct Response {

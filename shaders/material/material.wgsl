@@ -1,4 +1,4 @@
-// The elastic half of the material and its parameters: the twin of src/material/mod.rs.
+// The elastic half of the material and its parameters: the twin of crates/kernels/src/material/mod.rs.
 
 // Why a point has no answer, or what it did. The numbers are those of src/compute/gpu/material.rs.
 const STATUS_ELASTIC: u32 = 0u;

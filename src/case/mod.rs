@@ -4,6 +4,7 @@
 //! simulated and names the file, the line and the key. It is in the user's units until
 //! [`Case::scaled`] divides lengths by the sphere's radius and stresses by Young's modulus.
 
+mod constants;
 mod document;
 mod error;
 mod estimate;

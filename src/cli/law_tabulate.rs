@@ -1,29 +1,25 @@
-//! `asperity law tabulate`: the law of one material and one friction as curves in h.
+//! `asperity law tabulate`: the law of one material and one friction as curves in h, on a plane or between two equal
+//! spheres.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 use clap::Args;
 
-use super::backend::{device_wish, precision_wish};
 use super::options::{DeviceArgs, Verbosity};
-use super::signals::stop_flag;
+use super::study::{compute, options};
 use super::{CliError, Outcome, print};
 use crate::case::Case;
-use crate::compute::ComputeError;
 use crate::law::LawError;
 use crate::law::tabulated::{Built, build, case_of, depths, picture};
-use crate::study::{self, Options, Study, StudyError, StudyProgress};
+use crate::study::{Options, Study};
 
 /// The arguments of `law tabulate`.
 #[derive(Clone, Debug, Args)]
 pub struct TabulateArgs {
-    /// The case: its material, its friction, and its indentation, which is the deepest of the
-    /// table. The rest of its path is not used.
+    /// The case: its material, its friction, its opponent (a plane or an equal sphere), and its
+    /// indentation, which is the deepest of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Directory for the study and its law.json: new or empty, or one with an earlier table if
@@ -59,27 +55,14 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     let elements = args.elements as usize;
     let depths = depths(&case).map_err(in_case)?;
     let study = Study::parse(&study_text(&case, elements, &depths), "tabulate")?;
-    let all_cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    let options = Options {
-        device: device_wish(&args.device),
-        precision: precision_wish(&args.device),
-        threads: args.device.threads.unwrap_or_else(all_cores).get(),
-        shard: None,
-        resume: args.resume,
-        retry: false,
-        force: args.force,
-    };
-    let progress = Arc::new(StudyProgress::new(args.verbosity.quiet));
-    let stop = stop_flag()?;
-    let report = study::run(&study, &args.out, &options, progress, stop.clone()).map_err(|error| match error {
-        StudyError::Compute(ComputeError::Device(what)) => CliError::Device { what },
-        error => error.into(),
-    })?;
-    if report.pending > 0 || stop.load(Ordering::Relaxed) {
+    let options = Options { resume: args.resume, force: args.force, ..options(&args.device) };
+    let (report, interrupted) = compute(&study, &args.out, &options, args.verbosity.quiet)?;
+    if report.pending > 0 || interrupted {
         // A closed stderr does not change how it went.
         let _ = writeln!(
             std::io::stderr(),
-            "error: interrupted with {} depths to go. What was computed is kept in {}; to go on, run the same command with --resume",
+            "error: interrupted with {} depths to go. What was computed is kept in {}; to go on, run the same command \
+             with --resume",
             report.pending,
             args.out.display()
         );
@@ -112,7 +95,7 @@ fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
 fn summary(built: &Built) -> String {
     let table = &built.table;
     let mut text = format!(
-        "{} levels from h/R = {:.2e} to {:.2e}, {} elements along the contact radius, for a {}\n\n\
+        "{} levels from h/R = {:.2e} to {:.2e}, {} elements along the contact radius, against {}\n\n\
          Errors of a table of every other depth at the depths between, in per cent (F_T of its peak, F_N of F_N0)\n\n\
          {:>10} {:>7} {:>7} {:>8} {:>7} {:>8} {:>7}\n",
         table.levels.len(),

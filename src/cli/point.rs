@@ -7,7 +7,6 @@ use clap::{Args, ValueEnum};
 
 use super::{CliError, Outcome};
 use crate::case;
-use crate::material::Material;
 use crate::material::point::{DriveError, PointRecord, along, simple_shear, uniaxial};
 
 /// Strain that is reached unless `--strain` says otherwise.
@@ -59,8 +58,7 @@ pub struct PointArgs {
 /// [`Outcome::NotConverged`], after the rows before it.
 pub fn point(args: &PointArgs) -> Result<Outcome, CliError> {
     let constants = case::Material::load(&args.material, &args.set)?;
-    let material =
-        Material::from_case(&constants).map_err(|source| CliError::Hardening { file: args.material.clone(), source })?;
+    let material = constants.constants::<f64>().map_err(|source| CliError::Hardening { file: args.material.clone(), source })?;
     let (strain, steps) = (args.strain.unwrap_or(STRAIN), args.steps.unwrap_or(STEPS) as usize);
     if !strain.is_finite() {
         return Err(CliError::Deformation { what: format!("--strain {strain}: is not finite. Give a number, such as 0.1") });

@@ -14,7 +14,7 @@ use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, cluster};
 use crate::compute::ComputeError;
-use crate::study::{self, Options, Report, Shard, StudyError, StudyProgress};
+use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgress};
 
 /// Simulate every combination of a grid of cases, with a directory and a row of study.csv for each.
 ///
@@ -77,23 +77,35 @@ pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
     if let Some(arguments) = &args.slurm {
         return cluster::slurm(&study, arguments, args);
     }
+    let options =
+        Options { shard: args.shard, resume: args.resume, retry: args.retry, force: args.force, ..options(&args.device) };
+    let (report, interrupted) = compute(&study, &args.out, &options, args.verbosity.quiet)?;
+    conclude(&report, interrupted, args)
+}
+
+/// A whole study, begun anew, on the device and the threads that the arguments name.
+pub(super) fn options(device: &DeviceArgs) -> Options {
     let all_cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    let options = Options {
-        device: device_wish(&args.device),
-        precision: precision_wish(&args.device),
-        threads: args.device.threads.unwrap_or_else(all_cores).get(),
-        shard: args.shard,
-        resume: args.resume,
-        retry: args.retry,
-        force: args.force,
-    };
-    let progress = Arc::new(StudyProgress::new(args.verbosity.quiet));
+    Options {
+        device: device_wish(device),
+        precision: precision_wish(device),
+        threads: device.threads.unwrap_or_else(all_cores).get(),
+        shard: None,
+        resume: false,
+        retry: false,
+        force: false,
+    }
+}
+
+/// Computes what there is to compute of a study until that is done or a signal stops it; returns whether one did.
+pub(super) fn compute(study: &Study, out: &Path, options: &Options, quiet: bool) -> Result<(Report, bool), CliError> {
     let stop = stop_flag()?;
-    let report = study::run(&study, &args.out, &options, progress, stop.clone()).map_err(|error| match error {
-        StudyError::Compute(ComputeError::Device(what)) => CliError::Device { what },
-        error => error.into(),
-    })?;
-    conclude(&report, stop.load(Ordering::Relaxed), args)
+    let report =
+        study::run(study, out, options, Arc::new(StudyProgress::new(quiet)), stop.clone()).map_err(|error| match error {
+            StudyError::Compute(ComputeError::Device(what)) => CliError::Device { what },
+            error => error.into(),
+        })?;
+    Ok((report, stop.load(Ordering::Relaxed)))
 }
 
 /// Says how it went and gives the exit code.

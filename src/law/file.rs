@@ -2,15 +2,13 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
-
 use super::contact::ContactParameters;
+use super::json;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
 use super::predict::over_a_plane;
 use super::tabulated::{self, Tabulated};
 use super::variables::{Body, yield_lambda};
 use super::{Law, LawError};
-use crate::bounded;
 use crate::case::{Case, Friction};
 
 /// What a `law.json` may be.
@@ -28,17 +26,12 @@ impl LawFile {
     /// # Errors
     /// [`LawError::BadLaw`] with what the file is instead.
     pub fn read(path: &Path) -> Result<Self, LawError> {
-        #[derive(Deserialize)]
-        struct Head {
-            format: String,
-        }
-        let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
-        let text = bounded::read_to_string(path, bounded::RESULT).map_err(|error| bad(format!("cannot be read: {error}")))?;
-        let head: Head = serde_json::from_str(&text).map_err(|error| bad(format!("is not a law: {error}")))?;
-        if head.format == tabulated::FORMAT {
-            return Ok(Self::Table(Box::new(Tabulated::from_json(&text).map_err(bad)?)));
-        }
-        Ok(Self::Formulas(Box::new(Law::from_json(&text).map_err(bad)?)))
+        json::read(path, |text| {
+            if json::head(text)?.format == tabulated::FORMAT {
+                return Ok(Self::Table(Box::new(Tabulated::from_json(text)?)));
+            }
+            Ok(Self::Formulas(Box::new(Law::from_json(text)?)))
+        })
     }
 
     /// What the contact update needs for the sphere of a case, in the case's units.
@@ -46,7 +39,6 @@ impl LawFile {
     /// # Errors
     /// [`LawError::NotCovered`] for full stick; [`LawError::OtherMaterial`] for a case that a table is not of; no numbers for this material.
     pub fn contact_parameters(&self, case: &Case) -> Result<ContactParameters, LawError> {
-        over_a_plane(case)?;
         let Friction::Coefficient(friction) = case.contact.friction else {
             return Err(LawError::NotCovered {
                 problem: "the case has friction = \"stick\", and the law describes slip",
@@ -54,7 +46,10 @@ impl LawFile {
             });
         };
         match self {
-            Self::Formulas(law) => Ok(ContactParameters::new(law, &Body::from_case(case)?, friction)?),
+            Self::Formulas(law) => {
+                over_a_plane(case)?;
+                Ok(ContactParameters::new(law, &Body::from_case(case)?, friction)?)
+            }
             Self::Table(table) => {
                 table.covers(case)?;
                 table.contact_parameters(case.sphere.radius, case.material.youngs_modulus)

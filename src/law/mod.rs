@@ -28,6 +28,7 @@ mod baseline;
 mod error;
 mod folds;
 mod formulas;
+mod json;
 mod least_squares;
 mod own_fit;
 

@@ -1,18 +1,16 @@
 //! The law: forms, constants, where they come from, where they hold and how well, as `law.json` has them.
 
-use std::io;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::LawError;
 use super::forms::{self, Constants, Forms, Plasticity};
+use super::json;
 use super::normal::NormalModel;
 use super::report::{Candidate, FittedCase, NormalCandidate, RegionError};
 use super::variables::{c_squared, yield_lambda};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
-use crate::bounded;
-use crate::output::write_atomically;
 
 /// The first key of a law file, by which it is recognised.
 pub const FORMAT: &str = "asperity-law";
@@ -246,10 +244,7 @@ impl Law {
     /// # Errors
     /// The place cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), LawError> {
-        Ok(write_atomically(path, |out| {
-            serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
-            out.write_all(b"\n")
-        })?)
+        json::write(path, self)
     }
 
     /// Reads a `law.json` and checks it.
@@ -257,27 +252,12 @@ impl Law {
     /// # Errors
     /// [`LawError::BadLaw`]: no such file, not a law, another version, constants that are none.
     pub fn read(path: &Path) -> Result<Self, LawError> {
-        let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
-        let text = bounded::read_to_string(path, bounded::RESULT).map_err(|error| bad(format!("cannot be read: {error}")))?;
-        Self::from_json(&text).map_err(bad)
+        json::read(path, Self::from_json)
     }
 
     /// A law from the text of its file; the error is what is wrong, in words.
     pub(super) fn from_json(text: &str) -> Result<Self, String> {
-        /// Read first, so that a file of another version is called that.
-        #[derive(Deserialize)]
-        struct Head {
-            format: String,
-            version: u32,
-        }
-        let head: Head = serde_json::from_str(text).map_err(|error| format!("is not a law: {error}"))?;
-        if head.format != FORMAT {
-            return Err(format!("is not a law: its format is {:?}", head.format));
-        }
-        if head.version != VERSION {
-            return Err(format!("is a law of version {}, and this program reads version {VERSION}", head.version));
-        }
-        let law: Self = serde_json::from_str(text).map_err(|error| format!("is not a law: {error}"))?;
+        let law: Self = json::parse(text, "law", FORMAT, VERSION)?;
         if !law.constants.all().all(|x| x > 0.0 && x.is_finite()) {
             return Err("has a constant that is not a positive number".to_owned());
         }

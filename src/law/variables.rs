@@ -47,7 +47,7 @@ impl Body {
         let (youngs_modulus, poissons_ratio) = (material.youngs_modulus, material.poissons_ratio);
         Ok(Self {
             sphere: ElasticSphere { radius, youngs_modulus, poissons_ratio },
-            hardening: Hardening::from_case(&material.hardening, youngs_modulus)?,
+            hardening: material.hardening.law(youngs_modulus)?,
         })
     }
 

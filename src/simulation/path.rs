@@ -147,7 +147,7 @@ pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolut
     let length = (delta_t - start.delta_t).abs();
     let pressed: Vec<Target> = indentation_targets(start, h, resolution);
     // Where the segment stands at the end of each step, as shares of it.
-    let mut ends: Vec<[f64; 2]> = pressed.iter().map(|t| [(t.h - start.h) / rise, f64::from(t.extrapolate)]).collect();
+    let mut ends: Vec<f64> = pressed.iter().map(|t| (t.h - start.h) / rise).collect();
     let sheared: Vec<f64> = if start.a > 0.0 {
         let steps = ShearSteps::new(start, length, false, resolution);
         (1..).map(|i| steps.distance(i) / length).take_while(|&share| share < 1.0 - 1e-9).chain([1.0]).collect()
@@ -158,7 +158,7 @@ pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolut
         (1..=count as usize).map(|i| i as f64 / count).collect()
     };
     if let Some(last) = ends.last_mut() {
-        last[0] = 1.0;
+        *last = 1.0;
     }
     // Beyond 1.5 recoveries nothing touches any more, and no step is too long.
     let free = if rise < 0.0 { (1.5 * start.recovery() / -rise).min(1.0) } else { 1.0 };
@@ -174,17 +174,16 @@ pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolut
     };
     let (mut at, mut targets) = (0.0, Vec::new());
     while at < 1.0 {
-        let press = around(&mut ends.iter().map(|end| end[0]), at);
+        let press = around(&mut ends.iter().copied(), at);
         let shear = if at < free - 1e-9 { around(&mut sheared.iter().copied(), at) } else { 1.0 };
         let step = press.min(shear);
         // A rest of less than a third of a step goes with it.
         at = if at + 1.33 * step >= 1.0 { 1.0 } else { at + step };
-        let extrapolate = ends.iter().find(|end| end[0] > at - 1e-9).is_some_and(|end| end[1] > 0.0);
         targets.push(Target {
             h: start.h + at * rise,
             delta_t: start.delta_t + at * (delta_t - start.delta_t),
             hold_force: false,
-            extrapolate,
+            extrapolate: true,
         });
     }
     if let Some(last) = targets.last_mut() {

@@ -10,14 +10,13 @@ use crate::case::{self, Case, Opponent, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::linalg::{LinearSolver, SolverKind};
-use crate::material::Material;
 use crate::material::hardening::Hardening;
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::solver::newton::Newton;
 use crate::solver::pair::{PairSolver, mirror_nodes};
 use crate::solver::system::Boundary;
-use crate::solver::{Settings, SolverError, first_linear, loosest_linear};
+use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_linear};
 
 /// A case ready to be simulated.
 #[derive(Clone, Debug)]
@@ -36,6 +35,8 @@ pub struct Problem {
     pub spacing: f64,
     /// The part of the surface that is finely meshed.
     pub zone: Zone,
+    /// Share of the last step by which a press step is extrapolated.
+    pub press_extrapolation: f64,
     /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a plane.
     pub equal_pair: bool,
     /// Bodies that deform, see [`Case::bodies`]: displacements of the path and the record are those of one.
@@ -82,6 +83,15 @@ fn johnson_parameter(law: &Hardening<f64>, nu: f64, a: f64) -> f64 {
     }
 }
 
+/// Share of the last step by which a press step is extrapolated, for a contact whose Johnson parameter grows to
+/// `lambda`: a part, so that points that are about to touch come down but are not pushed through the plane (0.45 to
+/// 0.75 need the same iterations, a third fewer than none); all of it where the contact is fully plastic, so that what
+/// flows is found flowing. Without friction, at E/sigma_Y = 15,000 and h = 0.085 R, a press took 2,200 iterations and
+/// 37 cuts at 0.6, and takes 170 and one.
+fn press_extrapolation(lambda: f64) -> f64 {
+    if lambda >= FULLY_PLASTIC { 1.0 } else { 0.6 }
+}
+
 impl Problem {
     /// Scales a case (in the user's units) and makes the mesh that it asks for.
     ///
@@ -99,9 +109,10 @@ impl Problem {
         let (equal_pair, bodies) = (case.opponent == Some(Opponent::Equal), case.bodies());
         let case = case.scaled();
         let nu = case.material.poissons_ratio;
-        let material = Material::<f64>::from_case(&case.material)?;
+        let material = case.material.constants::<f64>()?;
         let zone = zone.unwrap_or_else(|| asked_zone(&case, &material.hardening));
         let elements = case.mesh.elements_per_contact_radius;
+        let lambda = johnson_parameter(&material.hardening, nu, zone.contact_radius);
         let mesh = sphere_mesh(&SphereSpec {
             contact_radius: zone.contact_radius,
             elements_per_contact_radius: elements,
@@ -113,11 +124,12 @@ impl Problem {
                 tolerance: case.solver.tolerance,
                 max_iterations: case.solver.max_iterations,
                 loosest_linear: loosest_linear(nu),
-                first_linear: first_linear(johnson_parameter(&material.hardening, nu, zone.contact_radius)),
+                first_linear: first_linear(lambda),
             },
             max_cutbacks: case.solver.max_cutbacks,
             spacing: zone.contact_radius / elements as f64,
             zone,
+            press_extrapolation: press_extrapolation(lambda),
             equal_pair,
             bodies,
             model: CaseModel {
@@ -138,7 +150,7 @@ impl Problem {
     /// [`SimulationError::Hardening`].
     pub fn zone_of(case: &Case) -> Result<Zone, SimulationError> {
         let case = case.scaled();
-        Ok(asked_zone(&case, &Material::<f64>::from_case(&case.material)?.hardening))
+        Ok(asked_zone(&case, &case.material.constants::<f64>()?.hardening))
     }
 
     /// Number of displacements that are not prescribed.

@@ -30,7 +30,7 @@ pub struct Settings {
 }
 
 /// From this Johnson parameter E a/((1 - nu^2) sigma_rep R) on a contact is fully plastic (Olsson & Larsson 2016).
-const FULLY_PLASTIC: f64 = 160.0;
+pub const FULLY_PLASTIC: f64 = 160.0;
 
 /// How far the first linear system of a step is solved, for a contact whose Johnson parameter grows to `lambda`.
 ///

@@ -17,7 +17,6 @@ use std::path::Path;
 use super::StudyError;
 use crate::bounded;
 use crate::case::{Case, CaseError, Document, Entry, Place, Reader, Value, short};
-use crate::material::Material;
 
 /// Most combinations that a grid may have.
 const MOST_CASES: usize = 100_000;
@@ -232,7 +231,7 @@ fn check_all(base: &Document, grid: &[GridKey], count: usize, file: &str) -> Res
         });
         match set.and_then(|()| Case::from_document(&document)) {
             Ok(case) => {
-                Material::<f64>::from_case(&case.material).map_err(|source| StudyError::Hardening {
+                case.material.constants::<f64>().map_err(|source| StudyError::Hardening {
                     file: file.to_owned(),
                     source,
                     combination: combination(),

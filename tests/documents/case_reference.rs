@@ -9,15 +9,16 @@ const HEAD: &str = "\
 
 <!-- Made from src/case/keys.rs: ASPERITY_BLESS=1 cargo test --test documents -->
 
-A case file is TOML. `asperity init` writes one with every key explained, `asperity check` prints one with every
-default, `asperity explain KEY` says on the terminal what is said here, and `asperity schema case` prints a JSON
-Schema for editors. In a study file the same tables stand under `base`; see [Studies](studies.md).
+A case file is TOML. `asperity init` writes one with every key explained, `asperity check` prints one
+with every default, `asperity explain KEY` says on the terminal what is said here, and `asperity schema
+case` prints a JSON Schema for editors. In a study file the same tables stand under `base`; see
+[Studies](studies.md).
 
-Any one consistent system of units will do: `radius` sets the unit of length and `youngs_modulus` that of stress;
-forces are stress times length squared. With millimetres and MPa, forces are in newtons.
+Any one consistent system of units will do: `radius` sets the unit of length and `youngs_modulus` that of
+stress; forces are stress times length squared. With millimetres and MPa, forces are in newtons.
 
-On the command line, `--set KEY=VALUE` replaces a value by its dotted key. Segments of the path count from 0:
-`--set path.0.indentation=0.01`.
+On the command line, `--set KEY=VALUE` replaces a value by its dotted key. Segments of the path count
+from 0: `--set path.0.indentation=0.01`.
 
 A whole case:
 
@@ -56,9 +57,9 @@ release = true
 ";
 
 const PATH: &str = "\
-The path is an array of tables, one for each segment. A segment has `indentation`, `shear`, both, or `release`. With
-both, h and delta_T move in proportion; `hold` goes with `shear` alone. Displacements are totals from first touch,
-not increments.
+The path is an array of tables, one for each segment. A segment has `indentation`, `shear`, both, or
+`release`. With both, h and delta_T move in proportion; `hold` goes with `shear` alone. Displacements are
+totals from first touch, not increments.
 
 ```toml
 [[path]]

@@ -9,8 +9,9 @@ const HEAD: &str = "\
 
 <!-- Made from the command line: ASPERITY_BLESS=1 cargo test --test documents -->
 
-`asperity COMMAND --help` says on the terminal what is said here. In place of a case file, `-` is standard input.
-Errors go to standard error and name file, line and key. For exit codes, see [Results](results.md#exit-codes).
+`asperity COMMAND --help` says on the terminal what is said here. In place of a case file, `-` is
+standard input. Errors go to standard error and name file, line and key. For exit codes, see
+[Results](results.md#exit-codes).
 ";
 
 /// Prose is at most this wide.

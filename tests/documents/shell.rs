@@ -71,7 +71,7 @@ fn names_a_target(place: &str, line: &str) -> bool {
             "--bench" => vec![format!("benches/{}.rs", pair[1])],
             "--test" => vec![format!("tests/{}.rs", pair[1])],
             "--example" => vec![format!("examples/{}.rs", pair[1]), format!("examples/{}/main.rs", pair[1])],
-            "bash" if !pair[1].starts_with("DIR") => vec![pair[1].to_owned()],
+            "bash" if pair[1].ends_with(".sh") && !pair[1].starts_with("DIR") => vec![pair[1].to_owned()],
             _ => continue,
         };
         assert!(found(&file), "{place}: {line}: no {file:?}");

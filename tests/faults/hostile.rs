@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use asperity::case::Case;
 use asperity::law::Law;
 use asperity::law::table::StudyTable;
-use asperity::material::Material;
 use asperity::output::{Checkpoint, Summary, read_contact, read_history};
 use asperity::study::Study;
 use rand::{RngExt, SeedableRng};
@@ -185,7 +184,7 @@ fn parse(kind: Kind, bytes: &[u8], path: &Path) -> bool {
         Kind::Case => Case::parse(&text(), "case.toml", &[]).is_ok_and(|case| {
             let again = Case::parse(&case.to_toml(), "again.toml", &[]).expect("a resolved case is a case");
             assert_eq!(again, case);
-            let _ = Material::<f64>::from_case(&case.material);
+            let _ = case.material.constants::<f64>();
             true
         }),
         Kind::Study => Study::parse(&text(), "study.toml").is_ok(),

@@ -5,6 +5,7 @@ use std::fs;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::Instant;
 
 use super::common::{Scratch, difference, program, stderr};
 use super::program::{scratch, skipped, whole};
@@ -74,27 +75,36 @@ fn a_run_killed_at_any_call_that_changes_a_file_goes_on_to_the_same_bits() {
     assert!(4 * killed >= 3 * chosen.len(), "{killed} of {}", chosen.len());
 }
 
-/// Many kills of one and the same run, wherever it stands.
+/// Many kills of one and the same run, wherever it stands; what comes to its end in between is compared, removed, and begun anew.
 #[test]
 fn a_run_that_is_killed_again_and_again_comes_to_its_end() {
     let scratch = scratch();
     let out = scratch.path("out");
     let many = if super::all() { 200 } else { 12 };
-    let mut kills = 0;
-    for attempt in 0..many {
+    let ends_alike = |kills: usize| {
+        let output = scratch.run(&out, &["-q", "--resume"]);
+        assert_eq!(output.status.code(), Some(0), "after {kills} kills: {}", stderr(&output));
+        assert_eq!(difference(&out, whole()), None, "after {kills} kills");
+    };
+    // Over the whole of a run, early and late, however fast this machine is just now.
+    let begun = Instant::now();
+    assert_eq!(scratch.run(scratch.path("alone"), &["-q"]).status.code(), Some(0));
+    let moment = begun.elapsed() / 16;
+    let (mut kills, mut starts, mut ends) = (0, 0, 0);
+    while kills < many {
         let mut child = program().args(scratch.args(&out, &["-q", "--resume"])).spawn().expect("the program runs");
-        // Over the whole of a start, early and late.
-        std::thread::sleep(std::time::Duration::from_millis(7 + 13 * (attempt % 17)));
+        std::thread::sleep(moment * (starts % 17) as u32);
         kills += usize::from(child.try_wait().expect("its state").is_none());
+        starts += 1;
         let _ = child.kill();
         child.wait().expect("it ends");
-        if out.join("summary.json").exists() && attempt % 3 == 0 {
+        if out.join("summary.json").exists() {
+            ends_alike(kills);
+            ends += 1;
             fs::remove_dir_all(&out).expect("removed");
         }
+        assert!(starts < 20 * many, "{kills} kills of {starts} starts");
     }
-    let output = scratch.run(&out, &["-q", "--resume"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert_eq!(difference(&out, whole()), None);
-    println!("{kills} kills of {many} starts");
-    assert!(kills > 0);
+    ends_alike(kills);
+    println!("{kills} kills of {starts} starts; {} runs came to their end, all with the same bits", ends + 1);
 }

@@ -10,6 +10,7 @@ mod directory;
 mod full_disk;
 mod hostile;
 mod kills;
+mod profile;
 mod program;
 
 /// Whether all is to be run and not a share.

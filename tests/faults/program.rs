@@ -50,7 +50,9 @@ pub fn whole() -> &'static Path {
     static WHOLE: OnceLock<PathBuf> = OnceLock::new();
     WHOLE.get_or_init(|| {
         let scratch = scratch();
-        let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("faults-whole");
+        // The two profiles have one such folder, and may be tested at once.
+        let name = if cfg!(debug_assertions) { "faults-whole" } else { "faults-whole-release" };
+        let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let output = scratch.run(&dir, &["-q", "--force"]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         dir

@@ -81,7 +81,7 @@ impl GpuContext {
         }));
         let on_loss = Arc::clone(&health);
         device.set_device_lost_callback(move |reason, message| {
-            on_loss.fail(GpuError::Lost { reason: one_line(&format!("device lost ({reason:?}) {message}")) });
+            on_loss.fail(GpuError::Lost { reason: one_line(&format!("it was lost ({reason:?}) {message}")) });
         });
         let budget = Arc::new(MemoryBudget::for_adapter(description.kind));
         let (pipelines, staging, checked) = (PipelineCache::default(), Mutex::new(None), cfg!(debug_assertions));
@@ -170,7 +170,11 @@ impl GpuContext {
         match waited {
             Ok(_) => Ok(()),
             Err(wgpu::PollError::Timeout) => Err(self.fault(GpuError::Timeout { what: what.to_owned(), seconds: PATIENCE_S })),
-            Err(e) => Err(self.fault(GpuError::Lost { reason: one_line(&e.to_string()) })),
+            // To a lost device nothing is submitted any more, without a word.
+            Err(wgpu::PollError::WrongSubmissionIndex(..)) => {
+                Err(self
+                    .fault(GpuError::Lost { reason: "it was lost, and took nothing that was submitted to it since".to_owned() }))
+            }
         }
     }
 

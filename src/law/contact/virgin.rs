@@ -25,9 +25,9 @@ const ELASTIC_POWERS: [f64; COLUMNS] = [1.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5];
 /// What the update needs to know of a pair of materials. Plain data, shared by all contacts of the pair; any one consistent system of units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactParameters {
-    /// Radius R, length.
+    /// Radius R, length; of a contact of two equal spheres R* = R/2.
     pub radius: f64,
-    /// E* = E/(1 - nu^2), stress.
+    /// E* = E/(1 - nu^2), stress; half of it for two equal spheres.
     pub effective_modulus: f64,
     /// Coulomb's coefficient mu.
     pub friction: f64,
@@ -205,14 +205,14 @@ impl ContactParameters {
         given
     }
 
-    /// Those of a sphere with R = 1 and E = 1 for a sphere of this radius and this Young's modulus.
+    /// What belongs to R = 1 and E = 1 for a sphere of this radius and this Young's modulus.
     #[must_use]
     pub fn scaled(self, radius: f64, youngs_modulus: f64) -> Self {
         let length = radius.ln();
         let force = (youngs_modulus * radius * radius).ln();
         let stiffness = (youngs_modulus * radius).ln();
         let mut scaled = Self {
-            radius,
+            radius: self.radius * radius,
             effective_modulus: self.effective_modulus * youngs_modulus,
             log_first: self.log_first + length,
             ..self

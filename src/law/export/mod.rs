@@ -206,7 +206,7 @@ fn table_source(table: &Tabulated, language: Language) -> Result<String, LawErro
         ],
     );
     let short = |x: f64| format!("{x:.4}").trim_end_matches('0').trim_end_matches('.').to_owned();
-    let what = format!("one material (nu = {}), mu = {}, on a {}", short(material.poissons_ratio), short(friction), table.body);
+    let what = format!("one material (nu = {}), mu = {}, on {}", short(material.poissons_ratio), short(friction), table.body);
     let values = [
         ("VERSION", env!("CARGO_PKG_VERSION").to_owned()),
         ("SOURCE", format!("a table of {what}")),

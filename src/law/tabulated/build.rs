@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::super::predict::over_a_plane;
 use super::measure::{Measured, Missing, measured};
 use super::spline::{Spline, smooth};
-use super::{BACKBONE, Curves, DepthErrors, FORMAT, Level, PLANE, Tabulated, VERSION, columns_of, level_of};
+use super::{Against, BACKBONE, Curves, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, level_of};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
@@ -15,7 +14,7 @@ use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
 use crate::law::variables::{Body, yield_lambda};
 
-/// Least depth that is simulated: the mesh has a contact radius of 0.005 R at least.
+/// Least depth of one body that is simulated: the mesh has a contact radius of 0.005 R at least.
 const SHALLOWEST: f64 = 2e-5;
 /// Where an elastic contact is one on a half-space still.
 const HALF_SPACE: f64 = 1e-3;
@@ -52,24 +51,25 @@ pub struct Built {
 /// # Errors
 /// [`LawError::NotCovered`] for a case that presses into nothing or sticks; a hardening law that is none.
 pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
-    over_a_plane(case)?;
     if case.contact.friction == Friction::Stick {
         return Err(LawError::NotCovered {
             problem: "the case has friction = \"stick\", and the law describes slip",
             remedy: "Give contact.friction a number",
         });
     }
+    // Each of two equal bodies gives way by half of h.
+    let bodies = Against::of(case).bodies();
     let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
         _ => deepest,
-    }) / case.sphere.radius;
+    }) / (bodies * case.sphere.radius);
     let first = first_yield(&Body::from_case(case)?).unwrap_or(HALF_SPACE).clamp(SHALLOWEST, HALF_SPACE).min(SPAN * deepest);
     let count = (((deepest / first).ln() / RATIO.ln()).ceil() as usize + 1).max(FEWEST);
     let last = 2 * count - 2;
-    Ok((0..=last).map(|i| first * (deepest / first).powf(i as f64 / last as f64)).collect())
+    Ok((0..=last).map(|i| bodies * first * (deepest / first).powf(i as f64 / last as f64)).collect())
 }
 
-/// h/R at first yield; `None` for an elastic sphere.
+/// h/R of one body at first yield; `None` for an elastic sphere.
 fn first_yield(body: &Body) -> Option<f64> {
     let sphere = body.sphere;
     let a = yield_lambda(sphere.poissons_ratio) * body.hardening.flow_stress(0.0) / sphere.effective_modulus();
@@ -117,22 +117,26 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
 }
 
 pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
-    let scaled = case_of(&case.scaled(), elements);
+    // In units of R and E, with what it meets.
+    let scaled = Case { opponent: case.opponent, ..case_of(&case.scaled(), elements) };
     let body = Body::from_case(&scaled)?;
     let friction = match scaled.contact.friction {
         Friction::Coefficient(mu) => mu,
         Friction::Stick => f64::NAN,
     };
-    let mut levels: Vec<Level> = depths.iter().map(|one| level(&body.sphere, friction, one)).collect();
+    let against = Against::of(&scaled);
+    let sphere = against.equivalent(&body.sphere);
+    let mut levels: Vec<Level> = depths.iter().map(|one| level(&sphere, friction, one)).collect();
     smoothed(&mut levels);
-    if let Some(yielding) = first_yield(&body).filter(|&h| NEAR * h < levels[0].h) {
-        levels.insert(0, hertzian(&body.sphere, friction, yielding));
+    let yielding = first_yield(&body).map(|h| against.bodies() * h);
+    if let Some(yielding) = yielding.filter(|&h| NEAR * h < levels[0].h) {
+        levels.insert(0, hertzian(&sphere, friction, yielding));
     }
     let (from, to) = (levels[0].h, levels[levels.len() - 1].h);
     Ok(Tabulated {
         format: FORMAT.to_owned(),
         version: VERSION,
-        body: PLANE.to_owned(),
+        body: against,
         program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
         case: scaled.to_toml(),
         range: Interval { from, to },

@@ -1,4 +1,5 @@
-//! The law of one material and one friction on a rigid plane as curves in h, from simulations at some depths: exact where formulas for all materials are not.
+//! The law of one material and one friction as curves in h, from simulations at some depths: exact where formulas
+//! for all materials are not. It is of a sphere on a rigid plane or of two equal spheres, and says which.
 //!
 //! Lengths are over R and forces over E R^2, so that one table serves every radius. [`Tabulated::contact_parameters`] hands the curves to the contact update,
 //! and everything that uses a table goes through it: what is checked is what is exported.
@@ -8,7 +9,7 @@ mod measure;
 mod picture;
 pub mod spline;
 
-use std::io;
+use std::fmt;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -17,11 +18,10 @@ use self::spline::Spline;
 use super::LawError;
 use super::contact::{Axial, ContactParameters, KNOTS, LEVELS, POINTS, Shapes};
 use super::forms::NormalCurve;
+use super::json;
 use super::model::{Interval, OutOfRange, Parameters};
 use crate::analytical::ElasticSphere;
-use crate::bounded;
-use crate::case::{self, Case, Friction};
-use crate::output::write_atomically;
+use crate::case::{self, Case, Friction, Opponent};
 
 pub use build::{Built, build, case_of, depths};
 pub use measure::Missing;
@@ -31,8 +31,54 @@ pub use picture::picture;
 pub const FORMAT: &str = "asperity-law-table";
 /// Version of its layout.
 pub const VERSION: u32 = 1;
-/// What the sphere is pressed against.
-pub const PLANE: &str = "plane";
+
+/// What the sphere of a table meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Against {
+    /// A rigid plane.
+    #[serde(rename = "plane")]
+    Plane,
+    /// A sphere like itself; h and delta_T are then relative displacements, twice what each of the two moves.
+    #[serde(rename = "equal pair")]
+    EqualSphere,
+}
+
+impl Against {
+    /// What the sphere of a case meets.
+    pub fn of(case: &Case) -> Self {
+        match case.opponent {
+            None => Self::Plane,
+            Some(Opponent::Equal) => Self::EqualSphere,
+        }
+    }
+
+    /// Number of bodies that deform.
+    pub fn bodies(self) -> f64 {
+        match self {
+            Self::Plane => 1.0,
+            Self::EqualSphere => 2.0,
+        }
+    }
+
+    /// The sphere that makes the same elastic contact on a rigid plane: two equal bodies in series have R* = R/2 and
+    /// E* = E/(2 (1 - nu^2)), and half the tangential stiffness of one (Johnson 1985, sections 4.2 and 7.2).
+    pub fn equivalent(self, sphere: &ElasticSphere) -> ElasticSphere {
+        ElasticSphere {
+            radius: sphere.radius / self.bodies(),
+            youngs_modulus: sphere.youngs_modulus / self.bodies(),
+            poissons_ratio: sphere.poissons_ratio,
+        }
+    }
+}
+
+impl fmt::Display for Against {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Plane => "a rigid plane",
+            Self::EqualSphere => "an equal sphere",
+        })
+    }
+}
 
 /// The law at one depth; lengths over R, forces over E R^2.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,8 +141,8 @@ pub struct Tabulated {
     pub format: String,
     /// [`VERSION`].
     pub version: u32,
-    /// [`PLANE`].
-    pub body: String,
+    /// What the sphere meets.
+    pub body: Against,
     /// The program and its version.
     pub program: String,
     /// The case that it was made of, in units in which R and E are 1: material and friction are those of the table.
@@ -124,10 +170,7 @@ impl Tabulated {
     /// # Errors
     /// The place cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), LawError> {
-        Ok(write_atomically(path, |out| {
-            serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
-            out.write_all(b"\n")
-        })?)
+        json::write(path, self)
     }
 
     /// Reads one and checks it.
@@ -135,41 +178,23 @@ impl Tabulated {
     /// # Errors
     /// [`LawError::BadLaw`]: no such file, no table, another version.
     pub fn read(path: &Path) -> Result<Self, LawError> {
-        let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
-        let text = bounded::read_to_string(path, bounded::RESULT).map_err(|error| bad(format!("cannot be read: {error}")))?;
-        Self::from_json(&text).map_err(bad)
+        json::read(path, Self::from_json)
     }
 
     /// A table from the text of its file; the error is what is wrong, in words.
     pub(super) fn from_json(text: &str) -> Result<Self, String> {
-        /// Read first, so that a file of another version is called that.
-        #[derive(Deserialize)]
-        struct Head {
-            format: String,
-            version: u32,
-        }
-        let head: Head = serde_json::from_str(text).map_err(|error| format!("is not a law: {error}"))?;
-        if head.format != FORMAT {
-            return Err(format!("is not a tabulated law: its format is {:?}", head.format));
-        }
-        if head.version != VERSION {
-            return Err(format!("is a tabulated law of version {}, and this program reads version {VERSION}", head.version));
-        }
-        let table: Self = serde_json::from_str(text).map_err(|error| format!("is not a tabulated law: {error}"))?;
+        let table: Self = json::parse(text, "tabulated law", FORMAT, VERSION)?;
         table.check()?;
         Ok(table)
     }
 
     fn check(&self) -> Result<(), String> {
-        if self.body != PLANE {
-            return Err(format!(
-                "is a tabulated law for the body {:?}, and this program has the one for a \"{PLANE}\"",
-                self.body
-            ));
-        }
         let case = self.case()?;
         if !matches!(case.contact.friction, Friction::Coefficient(_)) {
             return Err("is a tabulated law without a friction coefficient".to_owned());
+        }
+        if Against::of(&case) != self.body {
+            return Err(format!("says that it is against {}, and its case is against {}", self.body, Against::of(&case)));
         }
         if self.levels.len() < 3 || !self.levels.windows(2).all(|pair| pair[0].h < pair[1].h) {
             return Err("has fewer than three levels, or they do not increase".to_owned());
@@ -216,7 +241,7 @@ impl Tabulated {
         Ok(self.case().map_err(bad)?.material)
     }
 
-    /// Refuses a case of another material or another friction.
+    /// Refuses a case of another material, of another friction, or against something else.
     ///
     /// # Errors
     /// [`LawError::OtherMaterial`] with what differs.
@@ -224,6 +249,9 @@ impl Tabulated {
         let own = self.material()?;
         let other = case.scaled().material;
         let refuse = |what: String| Err(LawError::OtherMaterial { what });
+        if Against::of(case) != self.body {
+            return refuse(format!("it is a contact with {}, and the table is of one with {}", Against::of(case), self.body));
+        }
         let differ = |a: f64, b: f64| (a - b).abs() > SAME * a.abs().max(b.abs());
         if differ(own.poissons_ratio, other.poissons_ratio) {
             return refuse(format!("nu = {}, and the table is of nu = {}", other.poissons_ratio, own.poissons_ratio));
@@ -273,10 +301,10 @@ impl Tabulated {
             };
             Axial { a: level.unloading_radius, k_t: level.k_t, law }
         };
-        let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: nu };
+        let sphere = self.body.equivalent(&ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: nu });
         let range = [self.range.from, self.range.to];
         let curve = NormalCurve::PowerOfComplement;
-        let parameters = ContactParameters::tabulate(1.0, sphere.effective_modulus(), mu, curve, range, contact)?;
+        let parameters = ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), mu, curve, range, contact)?;
         let mut shapes: [Shapes; LEVELS] = [[[0.0; POINTS]; 2]; LEVELS];
         for (i, shape) in shapes.iter_mut().enumerate() {
             let position = i as f64 * (KNOTS as f64 - 1.0) / (LEVELS as f64 - 1.0);

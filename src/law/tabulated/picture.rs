@@ -26,9 +26,10 @@ pub fn picture(built: &Built) -> Result<Picture, LawError> {
 }
 
 fn normal(built: &Built) -> Result<Chart, LawError> {
-    let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: built.table.material()?.poissons_ratio };
+    let one = ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: built.table.material()?.poissons_ratio };
+    let sphere = built.table.body.equivalent(&one);
     let force = |h: f64, f_n0: f64| f_n0 / hertz::force(&sphere, h);
-    let area = |h: f64, a0: f64| a0 * a0 / h;
+    let area = |h: f64, a0: f64| a0 * a0 / (sphere.radius * h);
     let levels: Vec<Level> = built.curve(150);
     let series = vec![
         Series::marks(
@@ -38,7 +39,7 @@ fn normal(built: &Built) -> Result<Chart, LawError> {
             built.measured.iter().map(|one| (one.h, force(one.h, one.f_n0))).collect(),
         ),
         Series::marks(
-            "a_0² / (R h)",
+            "a_0² / (R* h)",
             VERMILION,
             Mark::Ring,
             built.measured.iter().map(|one| (one.h, area(one.h, one.a0))).collect(),
@@ -50,7 +51,7 @@ fn normal(built: &Built) -> Result<Chart, LawError> {
     Ok(Chart {
         title: "Pressing".into(),
         x: Axis::logarithmic("h / R", built.table.range.from, built.table.range.to),
-        y: Axis::linear("F_N0 / Hertz and a_0² / (R h)", 0.0, 1.06 * y.1),
+        y: Axis::linear("F_N0 / Hertz and a_0² / (R* h)", 0.0, 1.06 * y.1),
         series,
         bar: None,
     })

@@ -97,17 +97,6 @@ impl Material<f64> {
     }
 }
 
-impl<R: Real> Material<R> {
-    /// The material of a case file, with stresses divided by Young's modulus: E = 1.
-    ///
-    /// # Errors
-    /// [`HardeningError`] for parameters that no law has; the checks of a case file that was read leave none.
-    pub fn from_case(material: &crate::case::Material) -> Result<Self, HardeningError> {
-        let hardening = Hardening::from_case(&material.hardening.scaled(material.youngs_modulus), 1.0)?;
-        Ok(Self { elasticity: Elasticity::new(1.0, material.poissons_ratio), hardening })
-    }
-}
-
 /// U'(J) and U''(J) from J - 1: the pressure-like stress (positive in tension) and its derivative, both in units of stress.
 ///
 /// `U' = kappa/2 (J - 1/J)`, written as `kappa/2 j (2 + j)/(1 + j)` with `j = J - 1` so that small volume changes keep their

@@ -13,7 +13,6 @@
 
 // `!(x > 0)` is true for a NaN, which is what it is written for.
 
-use crate::case;
 use crate::lanes::Number;
 use crate::real::Real;
 
@@ -240,19 +239,6 @@ impl<R: Real> Hardening<R> {
             rows.push([R::of(alpha), R::of(stress), R::of(work)]);
         }
         Ok(Self::Table { points: rows })
-    }
-
-    /// The law of a case file; `youngs_modulus` in the unit of its stresses.
-    pub fn from_case(law: &case::Hardening, youngs_modulus: f64) -> Result<Self, HardeningError> {
-        match *law {
-            case::Hardening::Elastic => Ok(Self::Elastic),
-            case::Hardening::Ideal { yield_stress } => Self::ideal(yield_stress),
-            case::Hardening::Linear { yield_stress, modulus } => Self::linear(yield_stress, modulus),
-            case::Hardening::Power { yield_stress, coefficient, exponent } => Self::power(yield_stress, coefficient, exponent),
-            case::Hardening::Hollomon { coefficient, exponent } => Self::hollomon(coefficient, exponent, youngs_modulus),
-            case::Hardening::Voce { yield_stress, saturation_stress, rate } => Self::voce(yield_stress, saturation_stress, rate),
-            case::Hardening::Table { ref points } => Self::table(points),
-        }
     }
 
     /// sigma(alpha), stress; infinite for the elastic law.
