@@ -219,7 +219,12 @@ impl Lines {
     /// The place of a key and its value, on the line of the key.
     fn place(&self, key: Range<usize>, value: Range<usize>) -> Place {
         let line = 1 + self.ends.partition_point(|end| *end < key.start);
-        Place::Line { file: self.file.clone(), line, key, value }
+        // A file that is read is far shorter than this could count.
+        let short = |span: Range<usize>| {
+            let [start, end] = [span.start, span.end].map(|at| u32::try_from(at).unwrap_or(u32::MAX));
+            start..end
+        };
+        Place::Line { file: self.file.clone(), line, key: short(key), value: short(value) }
     }
 }
 

@@ -15,9 +15,9 @@ pub enum Place {
         /// Line number, from 1.
         line: usize,
         /// Where in the text the key stands, in bytes; of an item of an array, the item.
-        key: Range<usize>,
+        key: Range<u32>,
         /// Where in the text its value stands, in bytes.
-        value: Range<usize>,
+        value: Range<u32>,
     },
     /// A `--set key=value` argument; the key.
     Set(Arc<str>),
@@ -151,10 +151,11 @@ impl CaseError {
     /// The part of the file's text that is wrong, in bytes: a key that is unknown or lacks something, otherwise a value.
     pub fn span(&self) -> Option<Range<usize>> {
         let Some(Place::Line { key, value, .. }) = self.place() else { return None };
-        match self {
-            CaseError::UnknownKey { .. } | CaseError::Missing { .. } => Some(key.clone()),
-            _ => Some(value.clone()),
-        }
+        let wrong = match self {
+            CaseError::UnknownKey { .. } | CaseError::Missing { .. } => key,
+            _ => value,
+        };
+        Some(wrong.start as usize..wrong.end as usize)
     }
 }
 
