@@ -1,4 +1,4 @@
-//! Runs against a reference, and the errors that they estimate of themselves: the accuracy tables of the README.
+//! Runs against a reference, and the errors that they estimate of themselves: the accuracy tables of docs/accuracy.md.
 //!
 //! `cargo bench --bench accuracy [-- --meshes 8 --reference 16 --cases 10]`: the first so many of ten cases on the given meshes, with the default
 //! steps, against the reference mesh with twice the default steps. With `--test` (as the test script runs it) one case on coarse meshes.

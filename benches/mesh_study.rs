@@ -1,4 +1,4 @@
-//! The mesh study of the README: one case on meshes of increasing fineness, as a table.
+//! The mesh study of docs/accuracy.md: one case on meshes of increasing fineness, as a table.
 //!
 //! `cargo bench --bench mesh_study [-- CASE.toml] [-- --epr 4,6,8]`; with `--test` (as the test script runs it) on the coarsest mesh alone.
 

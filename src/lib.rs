@@ -69,3 +69,8 @@ pub mod verify;
 pub use asperity_kernels::{contact, element, lanes, linalg, material, mesh, real};
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
+
+/// The Rust of the documents, which runs.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/rust.md")]
+pub mod documents {}

@@ -6,7 +6,7 @@
 /// The program was compiled for a newer processor.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "this processor lacks {missing}, for which this program was compiled. build it on this machine with RUSTFLAGS=-Ctarget-cpu=native"
+    "this processor lacks {missing}, for which this program was compiled. Build it on this machine with RUSTFLAGS=-Ctarget-cpu=native"
 )]
 pub struct TooOld {
     /// The missing instruction sets.

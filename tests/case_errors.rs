@@ -96,11 +96,49 @@ fn each_mistake_is_named_with_its_place_and_remedy() {
         assert!(output.stdout.is_empty(), "{file}: a case was printed");
         let place = if key.is_empty() { format!("error: {file}:{line}: ") } else { format!("error: {file}:{line}: {key}: ") };
         assert!(message.starts_with(&place), "{file}: expected {place:?} in front of {message}");
-        let (wrong, remedy) = message.split_once(" allowed: ").unwrap_or((&message, ""));
+        let (wrong, remedy) = message.split_once(" Allowed: ").unwrap_or((&message, ""));
         assert!(wrong.contains(what), "{file}: expected {what:?} in {message}");
-        assert!(remedy.contains(allowed), "{file}: expected {allowed:?} after `allowed:` in {message}");
-        assert_eq!(message.trim_end().lines().count(), 1, "{file}: one line: {message}");
+        assert!(remedy.contains(allowed), "{file}: expected {allowed:?} after `Allowed:` in {message}");
+        // One mistake, and below it the line with a caret, except where a table is missing as a whole.
+        assert_eq!(message.matches("error: ").count(), 1, "{file}: {message}");
+        assert_eq!(message.contains('^'), *line > 1, "{file}: {message}");
     }
+}
+
+#[test]
+fn every_mistake_of_a_file_is_told_with_its_line_and_a_caret() {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let good = std::fs::read_to_string("fixtures/cases/ideal.toml").expect("a case");
+    let bad = good.replace("poissons_ratio = 0.3", "poissons_ratio = 0.5").replace("yield_stress", "yield_stres");
+    let bad = bad.replace("friction = 0.3", "friction = \"glue\"");
+    let file = scratch.path().join("bad.toml");
+    std::fs::write(&file, bad).expect("a case");
+    let name = file.to_string_lossy();
+    let message = stderr(&asperity(&["check", &name]));
+    let expected = format!(
+        "\
+error: {name}:7: material.poissons_ratio: is 0.5. Allowed: a number > -1 and < 0.5
+ --> {name}:7:18
+  |
+7 | poissons_ratio = 0.5
+  |                  ^^^
+
+error: {name}:11: material.hardening.yield_stres: unknown key, did you mean `yield_stress`? Allowed: law, yield_stress
+  --> {name}:11:1
+   |
+11 | yield_stres = 400.0
+   | ^^^^^^^^^^^
+
+error: {name}:14: contact.friction: is \"glue\". Allowed: a number >= 0, or \"stick\"
+  --> {name}:14:12
+   |
+14 | friction = \"glue\"
+   |            ^^^^^^
+
+3 mistakes; `asperity explain KEY` says more about a key
+"
+    );
+    assert_eq!(message, expected);
 }
 
 #[test]
@@ -124,9 +162,9 @@ fn run_refuses_what_check_refuses_and_makes_no_directory() {
 #[test]
 fn a_value_from_the_command_line_is_named_as_such() {
     for (argument, place, what) in [
-        ("contact.friction=-1", "--set contact.friction: ", "is -1.0. allowed: a number >= 0"),
+        ("contact.friction=-1", "--set contact.friction: ", "is -1.0. Allowed: a number >= 0"),
         ("contact.friction=glue", "--set contact.friction: ", "is \"glue\""),
-        ("solver.linear=multgrid", "--set solver.linear: ", "is \"multgrid\" (did you mean \"multigrid\"?). allowed"),
+        ("solver.linear=multgrid", "--set solver.linear: ", "is \"multgrid\" (did you mean \"multigrid\"?). Allowed"),
         ("path.0.indentation=0.4", "--set path.0.indentation: ", "is 0.4"),
         ("mesh.elements=8", "--set mesh.elements: ", "unknown key, did you mean `elements_per_contact_radius`?"),
         ("path.2={shear=1.0}", "--set path.2: path.2.shear: ", "is 1.0"),

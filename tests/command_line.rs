@@ -59,7 +59,7 @@ fn run_never_touches_a_directory_of_the_users() {
         assert_eq!(output.status.code(), Some(2));
         let message = stderr(&output);
         assert!(message.starts_with(&format!("error: --out {}: ", out.display())), "{message}");
-        assert!(message.contains("give a new or an empty directory"), "{message}");
+        assert!(message.contains("Give a new or an empty directory"), "{message}");
     }
     assert_eq!(fs::read_to_string(&notes).expect("still there"), "mine");
     assert_eq!(fs::read_dir(scratch.path()).expect("still there").count(), 1);

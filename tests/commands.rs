@@ -39,7 +39,9 @@ fn json(output: &Output) -> Value {
 fn refused(output: &Output) -> String {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(output));
     let message = stderr(output);
-    assert!(message.starts_with("error: ") && message.lines().count() == 1, "{message}");
+    // Below a mistake of a file stands its line.
+    let lines = message.lines().count();
+    assert!(message.starts_with("error: ") && (lines == 1 || message.contains('^')), "{message}");
     message
 }
 

@@ -180,7 +180,7 @@ fn a_device_asked_for_and_lost_ends_the_run_with_one_message() {
         &format!("broke off after {LOST_AFTER} steps"),
         "device failed: it was lost",
         "--device cpu",
-        "what was computed until then is kept",
+        "What was computed until then is kept",
     ] {
         assert!(error.starts_with("error: ") && error.contains(part), "{part}: {error}");
     }

@@ -60,7 +60,7 @@ pub fn to_table(table: &Bound<'_, PyDict>, at: &str) -> PyResult<toml::Table> {
     let mut converted = toml::Table::new();
     for (key, value) in table {
         let key: String =
-            key.extract().map_err(|_| refused(format!("case: {at}: has a key that is not a string. allowed: strings")))?;
+            key.extract().map_err(|_| refused(format!("case: {at}: has a key that is not a string. Allowed: strings")))?;
         let below = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
         if !value.is_none() {
             converted.insert(key, to_value(&value, &below)?);
@@ -97,7 +97,7 @@ fn to_value(value: &Bound<'_, PyAny>, at: &str) -> PyResult<toml::Value> {
     }
     let kind = value.get_type().name()?;
     Err(refused(format!(
-        "case: {at}: is a {kind}, which is the wrong type. allowed: numbers, strings, booleans, lists and dictionaries"
+        "case: {at}: is a {kind}, which is the wrong type. Allowed: numbers, strings, booleans, lists and dictionaries"
     )))
 }
 

@@ -101,7 +101,7 @@ impl NativeLaw {
             asperity::case::Friction::Coefficient(mu) => mu,
             asperity::case::Friction::Stick => {
                 return Err(failed(
-                    "the case has friction = \"stick\", and the law describes slip. give contact.friction a number",
+                    "the case has friction = \"stick\", and the law describes slip. Give contact.friction a number",
                 ));
             }
         };
@@ -121,7 +121,7 @@ fn language(word: &str) -> PyResult<Language> {
     match word {
         "c" => Ok(Language::C),
         "python" => Ok(Language::Python),
-        other => Err(refused(format!("format: is {other:?}. allowed: \"c\", \"python\""))),
+        other => Err(refused(format!("format: is {other:?}. Allowed: \"c\", \"python\""))),
     }
 }
 
@@ -163,7 +163,7 @@ impl Contacts {
         let memory = memory.as_array();
         if memory.shape() != [self.states.len(), Self::width()] {
             let (found, rows, width) = (memory.shape(), self.states.len(), Self::width());
-            return Err(refused(format!("state: has the shape {found:?}. allowed: ({rows}, {width})")));
+            return Err(refused(format!("state: has the shape {found:?}. Allowed: ({rows}, {width})")));
         }
         for (state, row) in self.states.iter_mut().zip(memory.rows()) {
             *state = of_row(&row.to_vec());
@@ -192,7 +192,7 @@ impl Contacts {
         let number = self.states.len();
         check_length("h", h.len(), number)?;
         if delta.shape() != [number, 2] {
-            return Err(refused(format!("delta: has the shape {:?}. allowed: ({number}, 2)", delta.shape())));
+            return Err(refused(format!("delta: has the shape {:?}. Allowed: ({number}, 2)", delta.shape())));
         }
         let (h, delta) = (h.as_array(), delta.as_array());
         let Self { parameters, states } = self;
@@ -218,7 +218,7 @@ impl Contacts {
 }
 
 fn check_length(name: &str, found: usize, wanted: usize) -> PyResult<()> {
-    if found == wanted { Ok(()) } else { Err(refused(format!("{name}: has {found} numbers. allowed: {wanted}, one a contact"))) }
+    if found == wanted { Ok(()) } else { Err(refused(format!("{name}: has {found} numbers. Allowed: {wanted}, one a contact"))) }
 }
 
 /// The numbers of a state in a row, as they lie in memory.

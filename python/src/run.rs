@@ -19,7 +19,7 @@ fn device(word: &str) -> PyResult<DeviceWish> {
         "auto" => Ok(DeviceWish::Auto),
         "cpu" => Ok(DeviceWish::Cpu),
         "gpu" => Ok(DeviceWish::Gpu),
-        other => Err(refused(format!("device: is {other:?}. allowed: \"auto\", \"cpu\", \"gpu\""))),
+        other => Err(refused(format!("device: is {other:?}. Allowed: \"auto\", \"cpu\", \"gpu\""))),
     }
 }
 
@@ -28,7 +28,7 @@ fn precision(word: &str) -> PyResult<PrecisionWish> {
         "auto" => Ok(PrecisionWish::Auto),
         "f32" => Ok(PrecisionWish::F32),
         "f64" => Ok(PrecisionWish::F64),
-        other => Err(refused(format!("precision: is {other:?}. allowed: \"auto\", \"f32\", \"f64\""))),
+        other => Err(refused(format!("precision: is {other:?}. Allowed: \"auto\", \"f32\", \"f64\""))),
     }
 }
 
@@ -40,7 +40,7 @@ fn threads(number: Option<usize>) -> PyResult<NonZeroUsize> {
         None => Ok(all),
         Some(number) => NonZeroUsize::new(number)
             .filter(|number| number.get() <= most)
-            .ok_or_else(|| refused(format!("threads: is {number}. allowed: a number of threads from 1 to {most}"))),
+            .ok_or_else(|| refused(format!("threads: is {number}. Allowed: a number of threads from 1 to {most}"))),
     }
 }
 
@@ -69,7 +69,7 @@ pub fn run(
             (true, false) => Earlier::Replace,
             (false, true) => Earlier::Resume,
             (false, false) => Earlier::Keep,
-            (true, true) => return Err(refused("force: stands beside resume. allowed: one of resume and force")),
+            (true, true) => return Err(refused("force: stands beside resume. Allowed: one of resume and force")),
         },
         canceller: canceller.clone(),
         ..Options::default()

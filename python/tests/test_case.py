@@ -49,9 +49,9 @@ def test_values_by_their_keys() -> None:
 @pytest.mark.parametrize(
     ("tables", "text"),
     [
-        ({"contact": {"friction": -0.1}}, 'case: contact.friction: is -0.1. allowed: a number >= 0, or "stick"'),
-        ({"contact": {"friktion": 0.1}}, "case: contact.friktion: unknown key, did you mean `friction`? allowed: friction"),
-        ({"contact": {}}, 'case: contact.friction: missing. allowed: a number >= 0, or "stick"'),
+        ({"contact": {"friction": -0.1}}, 'case: contact.friction: is -0.1. Allowed: a number >= 0, or "stick"'),
+        ({"contact": {"friktion": 0.1}}, "case: contact.friktion: unknown key, did you mean `friction`? Allowed: friction"),
+        ({"contact": {}}, 'case: contact.friction: missing. Allowed: a number >= 0, or "stick"'),
         ({"mesh": {"elements_per_contact_radius": 2.5}}, "case: mesh.elements_per_contact_radius: is the number 2.5, which is the wrong type."),
         ({"contact": {"friction": object()}}, "case: contact.friction: is a object, which is the wrong type."),
         ({"contact": {1: 2}}, "case: contact: has a key that is not a string."),

@@ -44,7 +44,7 @@ pub enum BenchError {
     #[error("the bench's own materials cannot be built: {0}")]
     Material(#[from] HardeningError),
     /// A pool of threads.
-    #[error("--threads {threads}: cannot start that many threads: {what}. give fewer")]
+    #[error("--threads {threads}: cannot start that many threads: {what}. Give fewer")]
     Threads {
         /// The number asked for.
         threads: usize,

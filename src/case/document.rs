@@ -5,12 +5,13 @@
 //! (`read.rs`).
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::{CaseError, Place};
+use super::error::{CaseError, Place, Spans};
 
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,13 +69,18 @@ impl Document {
         let lines = Lines::of(text, file);
         if let Some(offset) = too_deep(text) {
             let what = format!("tables within tables, more than {DEEPEST} deep");
-            return Err(CaseError::Syntax { place: lines.place(offset), what });
+            return Err(CaseError::Syntax { place: lines.place(offset..offset + 1, offset..offset + 1), what });
         }
         let table = DeTable::parse(text).map_err(|error| CaseError::Syntax {
-            place: lines.place(error.span().map_or(0, |span| span.start)),
+            place: error.span().map_or_else(|| lines.place(0..0, 0..0), |span| lines.place(span.clone(), span)),
             what: one_line(error.message()),
         })?;
-        Ok(Self { root: Entry { place: lines.place(0), value: table_value(table.get_ref(), &|at| lines.place(at))? } })
+        Ok(Self {
+            root: Entry {
+                place: lines.place(0..0, 0..0),
+                value: table_value(table.get_ref(), &|key, value| lines.place(key, value))?,
+            },
+        })
     }
 
     /// The document of a table that a program has made: a value has no line then, so that errors name the key alone.
@@ -89,7 +95,7 @@ impl Document {
         let (key, text) = (key.trim(), text.trim());
         let place = Place::Set(key.into());
         let value = match DeValue::parse(text) {
-            Ok(parsed) => value(parsed.get_ref(), &|_| place.clone())?,
+            Ok(parsed) => value(parsed.get_ref(), &|_, _| place.clone())?,
             Err(_) if text.is_empty() => return Err(refuse("has no value".to_owned())),
             Err(error) if text.starts_with(['[', '{', '"', '\'']) => {
                 return Err(refuse(format!("the value is not valid TOML: {}", one_line(error.message()))));
@@ -140,6 +146,29 @@ impl Document {
         Ok(())
     }
 
+    /// What stands at a dotted key.
+    pub fn at(&self, key: &str) -> Option<&Entry> {
+        key.split('.').try_fold(&self.root, |at, part| match &at.value {
+            Value::Table(table) => table.get(part),
+            Value::Array(items) => items.get(part.parse::<usize>().ok()?),
+            _ => None,
+        })
+    }
+
+    /// Takes away what stands at a dotted key of tables; whether there was anything.
+    pub fn remove(&mut self, key: &str) -> bool {
+        let (above, name) = key.rsplit_once('.').unwrap_or(("", key));
+        let above = above.split('.').filter(|part| !part.is_empty()).try_fold(&mut self.root, |at, part| match &mut at.value {
+            Value::Table(table) => table.get_mut(part),
+            Value::Array(items) => items.get_mut(part.parse::<usize>().ok()?),
+            _ => None,
+        });
+        match above.map(|entry| &mut entry.value) {
+            Some(Value::Table(table)) => table.remove(name).is_some(),
+            _ => false,
+        }
+    }
+
     /// The table under a top-level key as a document of its own, such as the `base` case of a study.
     pub fn table(&self, key: &str) -> Option<Document> {
         match &self.root.value {
@@ -187,20 +216,25 @@ impl Lines {
         Self { file: file.into(), ends }
     }
 
-    fn place(&self, offset: usize) -> Place {
-        Place::Line { file: self.file.clone(), line: 1 + self.ends.partition_point(|end| *end < offset) }
+    /// The place of a key and its value, on the line of the key.
+    fn place(&self, key: Range<usize>, value: Range<usize>) -> Place {
+        let line = 1 + self.ends.partition_point(|end| *end < key.start);
+        Place::Line { file: self.file.clone(), line, spans: Box::new(Spans { key, value }) }
     }
 }
 
-fn table_value(table: &DeTable<'_>, place: &dyn Fn(usize) -> Place) -> Result<Value, CaseError> {
+/// Makes a place of where a key and its value stand.
+type Places<'p> = &'p dyn Fn(Range<usize>, Range<usize>) -> Place;
+
+fn table_value(table: &DeTable<'_>, place: Places<'_>) -> Result<Value, CaseError> {
     let entry = |(key, item): (&Spanned<std::borrow::Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
         let value = value(item.get_ref(), place)?;
-        Ok((key.get_ref().to_string(), Entry { place: place(key.span().start), value }))
+        Ok((key.get_ref().to_string(), Entry { place: place(key.span(), item.span()), value }))
     };
     table.iter().map(entry).collect::<Result<_, _>>().map(Value::Table)
 }
 
-fn value(parsed: &DeValue<'_>, place: &dyn Fn(usize) -> Place) -> Result<Value, CaseError> {
+fn value(parsed: &DeValue<'_>, place: Places<'_>) -> Result<Value, CaseError> {
     Ok(match parsed {
         DeValue::String(text) => Value::String(text.to_string()),
         // An integer beyond 64 bits is still a number.
@@ -214,7 +248,7 @@ fn value(parsed: &DeValue<'_>, place: &dyn Fn(usize) -> Place) -> Result<Value, 
         DeValue::Array(items) => Value::Array(
             items
                 .iter()
-                .map(|item| Ok(Entry { place: place(item.span().start), value: value(item.get_ref(), place)? }))
+                .map(|item| Ok(Entry { place: place(item.span(), item.span()), value: value(item.get_ref(), place)? }))
                 .collect::<Result<_, CaseError>>()?,
         ),
         DeValue::Table(table) => table_value(table, place)?,

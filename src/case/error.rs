@@ -2,7 +2,17 @@
 
 use std::borrow::Cow;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
+
+/// Where in a text a key and its value stand, in bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spans {
+    /// The key; of an item of an array, the item.
+    pub key: Range<usize>,
+    /// Its value.
+    pub value: Range<usize>,
+}
 
 /// Where a value was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,6 +23,8 @@ pub enum Place {
         file: Arc<str>,
         /// Line number, from 1.
         line: usize,
+        /// Where in the text the key and its value stand.
+        spans: Box<Spans>,
     },
     /// A `--set key=value` argument; the key.
     Set(Arc<str>),
@@ -20,10 +32,20 @@ pub enum Place {
     Given,
 }
 
+impl Place {
+    /// The line, by which places of one file are ordered; what stands in no file comes last.
+    pub fn line(&self) -> usize {
+        match self {
+            Place::Line { line, .. } => *line,
+            Place::Set(_) | Place::Given => usize::MAX,
+        }
+    }
+}
+
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Line { file, line } => write!(f, "{}:{line}", short(file)),
+            Place::Line { file, line, .. } => write!(f, "{}:{line}", short(file)),
             Place::Set(key) => write!(f, "--set {}", short(key)),
             Place::Given => f.write_str("case"),
         }
@@ -34,7 +56,7 @@ impl fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 pub enum CaseError {
     /// The file cannot be read.
-    #[error("{}: cannot be read: {source}. give the path of a readable case file", short(.file))]
+    #[error("{}: cannot be read: {source}. Give the path of a readable case file", short(.file))]
     Unreadable {
         /// The file as the user named it.
         file: String,
@@ -50,7 +72,7 @@ pub enum CaseError {
         what: String,
     },
     /// A key that no case has.
-    #[error("{}: unknown key{} allowed: {allowed}", at(.place, .key), did_you_mean(.nearest))]
+    #[error("{}: unknown key{} Allowed: {allowed}", at(.place, .key), did_you_mean(.nearest))]
     UnknownKey {
         /// Where the key stands.
         place: Place,
@@ -62,7 +84,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A key without which there is no case.
-    #[error("{}: missing. allowed: {allowed}", at(.place, .key))]
+    #[error("{}: missing. Allowed: {allowed}", at(.place, .key))]
     Missing {
         /// The table that lacks the key.
         place: Place,
@@ -72,7 +94,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A value of another type than the key takes.
-    #[error("{}: is {}, which is the wrong type. allowed: {allowed}", at(.place, .key), short(.found))]
+    #[error("{}: is {}, which is the wrong type. Allowed: {allowed}", at(.place, .key), short(.found))]
     WrongType {
         /// Where the value stands.
         place: Place,
@@ -84,7 +106,7 @@ pub enum CaseError {
         allowed: String,
     },
     /// A value out of range, or one that does not go with the rest of the case.
-    #[error("{}: {}. allowed: {allowed}", at(.place, .key), short(.what))]
+    #[error("{}: {}. Allowed: {allowed}", at(.place, .key), short(.what))]
     NotAllowed {
         /// Where the value stands.
         place: Place,
@@ -97,7 +119,7 @@ pub enum CaseError {
     },
     /// A `--set` argument that cannot be applied.
     #[error(
-        "--set {}: {}. allowed: KEY=VALUE with a dotted key, as in contact.friction=0.1 or path.0.indentation=0.01",
+        "--set {}: {}. Allowed: KEY=VALUE with a dotted key, as in contact.friction=0.1 or path.0.indentation=0.01",
         short(.argument),
         short(.what)
     )]
@@ -107,6 +129,41 @@ pub enum CaseError {
         /// What is wrong with it.
         what: String,
     },
+}
+
+impl CaseError {
+    /// Where it is, if it is anywhere.
+    pub fn place(&self) -> Option<&Place> {
+        match self {
+            CaseError::Syntax { place, .. }
+            | CaseError::UnknownKey { place, .. }
+            | CaseError::Missing { place, .. }
+            | CaseError::WrongType { place, .. }
+            | CaseError::NotAllowed { place, .. } => Some(place),
+            CaseError::Unreadable { .. } | CaseError::Set { .. } => None,
+        }
+    }
+
+    /// The dotted key that it is about, if there is one.
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            CaseError::UnknownKey { key, .. }
+            | CaseError::Missing { key, .. }
+            | CaseError::WrongType { key, .. }
+            | CaseError::NotAllowed { key, .. } => Some(key),
+            CaseError::Unreadable { .. } | CaseError::Syntax { .. } | CaseError::Set { .. } => None,
+        }
+    }
+
+    /// The part of the file's text that is wrong, in bytes: a key that is unknown or lacks something, otherwise a value.
+    pub fn span(&self) -> Option<Range<usize>> {
+        let Some(Place::Line { spans, .. }) = self.place() else { return None };
+        let wrong = match self {
+            CaseError::UnknownKey { .. } | CaseError::Missing { .. } => &spans.key,
+            _ => &spans.value,
+        };
+        Some(wrong.clone())
+    }
 }
 
 /// A text as a message gives it: whole, or if it is long its beginning, its end and how much is left out.

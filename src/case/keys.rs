@@ -142,7 +142,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"elastic\", \"ideal\", \"linear\", \"power\", \"hollomon\", \"voce\" or \"table\"",
-        meaning: "hardening law; it decides on the other keys of this table",
+        meaning: "hardening law; it decides which other keys this table has",
         example: "\"ideal\"",
         ..key("material.hardening", "law", Word(&LAWS), Required)
     },
@@ -154,7 +154,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "> 0, at most the stress of the first point",
-        meaning: "stress at alpha = 0, where the points begin later",
+        meaning: "stress at alpha = 0, if the first point is at alpha > 0",
         presence: Optional("the points begin at alpha = 0"),
         example: "400.0",
         ..hardening("yield_stress", &["table"])
@@ -224,7 +224,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "the same sphere; indentation and shear, and h and delta_T in all results, are then the relative displacements of the two equators, twice what each moves",
+        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the relative displacements of the two equators, twice what each moves",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
@@ -243,7 +243,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "4 to 32",
-        meaning: "elements along the contact radius; 8 is quick, 16 has F_N to 0.5 %; the time grows as its power 2.5",
+        meaning: "elements along the contact radius; 8 is quick, 16 gives F_N to 0.5 %; the time grows as the 2.5th power",
         example: "16",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("16"))
     },
@@ -262,7 +262,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"multigrid\" or \"direct\"",
-        meaning: "solver of the linear systems: FGMRES with multigrid, or a sparse factorisation, which is slower",
+        meaning: "solver of the linear systems: FGMRES with multigrid, or a sparse direct factorisation, which is slower",
         example: "\"multigrid\"",
         ..key("solver", "linear", Word(&["multigrid", "direct"]), Defaults("\"multigrid\""))
     },
@@ -275,13 +275,13 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1 to 100000",
-        meaning: "load steps of a press from first touch; one that goes on takes its share and two more",
+        meaning: "load steps of a press from first touch; a press that goes on from there takes its share and two more",
         example: "26",
         ..key("solver", "press_steps", Whole(1, 100_000), Optional("as many as the mesh asks for, 26 at 16 elements"))
     },
     Key {
         range: "1 to 100000",
-        meaning: "steps of the first part of a shear, in which points come to slip",
+        meaning: "steps of the first part of a shear, in which points begin to slip",
         example: "15",
         ..key("solver", "shear_steps", Whole(1, 100_000), Optional("15"))
     },
@@ -299,14 +299,14 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether a coarse run goes first, a tenth of the work: it finds the reach of the contact and gives error estimates",
+        meaning: "whether a coarse run goes first, for a tenth of the work; it finds how far the contact will reach and gives error estimates",
         example: "true",
         ..key("solver", "error_estimate", Truth, Defaults("true"))
     },
     Key {
         unit: "GiB",
         range: "> 0",
-        meaning: "memory that mesh and linear systems may take; a case that needs more is refused before it runs",
+        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs",
         example: "8.0",
         ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Defaults("8.0"))
     },
@@ -318,14 +318,14 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether plots/*.svg are drawn; in a study they are not, unless its base says so",
+        meaning: "whether plots/*.svg are drawn; in a study only if its base says so",
         example: "true",
         ..key("output", "plots", Truth, Defaults("true"))
     },
     Key {
         unit: LENGTH,
         range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0",
-        meaning: "press to this indentation h, a total from first touch; a smaller one than the current one unloads to it",
+        meaning: "press to this indentation h, a total from first touch, or unload to it if it is smaller than the present one",
         example: "0.02",
         ..key(
             "path",
@@ -337,7 +337,7 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: "-0.5 R to 0.5 R, or \"full-slip\"",
-        meaning: "shear to this delta_T, a total of either sign; \"full-slip\" goes on until every point slips",
+        meaning: "shear to this delta_T, a total of either sign; with \"full-slip\", until every point slips",
         example: "\"full-slip\"",
         ..key("path", "shear", Number(Free, Free, &["full-slip"]), Optional("the segment presses or releases"))
     },
@@ -349,7 +349,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true, or a share between 0 and 1",
-        meaning: "unload until contact is lost, or until F_N has fallen to this share of what it was when the segment began",
+        meaning: "unload until contact is lost, or until F_N has fallen to this share of its value at the start of the segment",
         example: "true",
         ..key("path", "release", ShareOrTrue, Optional("the segment presses or shears"))
     },

@@ -37,6 +37,13 @@ impl Case {
 
     /// Gives the keys of a document their meaning and checks them.
     pub fn from_document(document: &Document) -> Result<Self, CaseError> {
+        let case = Self::of_any_size(document)?;
+        estimate::check_memory(&case, &Reader::new(document)?)?;
+        Ok(case)
+    }
+
+    /// The same for a case that may need more memory than it may take.
+    pub(super) fn of_any_size(document: &Document) -> Result<Self, CaseError> {
         let root = Reader::new(document)?;
         root.only(&["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "path"])?;
         let opponent = read_opponent(&root)?;
@@ -61,7 +68,6 @@ impl Case {
                 field.refuse("is \"direct\", which solves for one body alone", "\"multigrid\" with an opponent that deforms")
             );
         }
-        estimate::check_memory(&case, &root)?;
         Ok(case)
     }
 
@@ -81,7 +87,7 @@ impl Case {
     /// let mut case = Case::parse(text, "ideal.toml", &[])?;
     /// case.contact.friction = Friction::Coefficient(-0.1);
     /// let error = case.validate().unwrap_err().to_string();
-    /// assert_eq!(error, "case: contact.friction: is -0.1. allowed: a number >= 0, or \"stick\"");
+    /// assert_eq!(error, "case: contact.friction: is -0.1. Allowed: a number >= 0, or \"stick\"");
     /// # Ok::<(), asperity::case::CaseError>(())
     /// ```
     ///

@@ -23,11 +23,7 @@ impl<'d> Reader<'d> {
     /// is reported as such and not as a missing one.
     pub fn only(&self, known: &[&str]) -> Result<(), CaseError> {
         let unknown = self.table.into_iter().flatten().filter(|(name, _)| !known.contains(&name.as_str()));
-        let line = |place: &Place| match place {
-            Place::Line { line, .. } => *line,
-            Place::Set(_) | Place::Given => usize::MAX,
-        };
-        match unknown.min_by_key(|(_, entry)| line(&entry.place)) {
+        match unknown.min_by_key(|(_, entry)| entry.place.line()) {
             None => Ok(()),
             Some((name, entry)) => Err(CaseError::UnknownKey {
                 place: entry.place.clone(),

@@ -11,12 +11,13 @@ use super::{CliError, Outcome};
 use crate::bench::{self, BenchError, Options, table};
 use crate::output::write_atomically;
 
-/// Measure the kernels: return mapping, internal force, tangent, contact and commit, on a GPU and beside it on the CPU.
+/// Measure the kernels (return mapping, internal force, tangent, contact, commit) on a GPU and on
+/// the CPU.
 ///
-/// Needs nothing but this program (and a driver for the GPU): no files, no sources. The whole takes some minutes.
+/// Needs nothing but this program, and a driver for the GPU. Takes some minutes.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
-    /// What is measured beside the CPU.
+    /// What to measure beside the CPU.
     #[arg(long, value_enum, default_value_t, value_name = "DEVICE")]
     pub device: Device,
     /// Small meshes, small batches, few repetitions: a minute.
@@ -25,10 +26,10 @@ pub struct BenchArgs {
     /// Elements along the contact radius of the mesh, 2 to 32; by default 8, with --quick 4.
     #[arg(long, value_name = "N")]
     pub elements: Option<usize>,
-    /// Write the numbers to this file, as JSON.
+    /// Write the results to this file, as JSON.
     #[arg(long, alias = "export", value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Print that JSON in place of the table.
+    /// Print that JSON instead of the table.
     #[arg(long)]
     pub json: bool,
     /// Threads of the rows on all cores; by default all of the machine's.

@@ -11,17 +11,18 @@ use crate::case::{Case, estimated_elements, estimated_memory};
 use crate::simulation::problem::{press_steps, shear_steps};
 use crate::study::{Study, StudyCase, estimated_seconds};
 
-/// Check a case and print it with every default and its size, without running it; of a study, check every combination and print how many there are, and
-/// the first.
+/// Check a case without running it, and print it with every default and its size; of a study, check
+/// every combination, print how many there are, and the first.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArgs {
-    /// The case file, or a study file; `-` for standard input.
+    /// A case or study file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01; may be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
+    /// repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Print JSON in place of TOML.
+    /// Print JSON instead of TOML.
     #[arg(long)]
     pub json: bool,
 }

@@ -11,16 +11,16 @@ use crate::case::Case;
 use crate::output::plots::{OverlaidRun, plot_overlay};
 use crate::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 
-/// Compare runs: a table of their results with differences, and their curves in one picture.
+/// Compare runs: a table of results with differences, and the curves in one picture.
 ///
-/// Differences are in per cent of the first run. Runs of other sizes or materials are compared
-/// without units: forces over E R^2, lengths over R, stiffnesses over E R.
+/// Differences are in per cent of the first run. Runs of different radius or Young's modulus are
+/// compared without units: forces over E R^2, lengths over R, stiffnesses over E R.
 #[derive(Clone, Debug, Args)]
 pub struct CompareArgs {
-    /// Directories of runs; the first is what the others are compared with.
+    /// Directories of runs; the others are compared with the first.
     #[arg(value_name = "DIR", required = true, num_args = 2..)]
     pub dirs: Vec<PathBuf>,
-    /// Where to draw the curves; a picture that is there is replaced.
+    /// File for the picture of the curves; an existing file is replaced.
     #[arg(long, value_name = "FILE.svg", default_value = "compare.svg")]
     pub out: PathBuf,
     /// Print the table as JSON.

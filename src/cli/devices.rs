@@ -8,7 +8,7 @@ use crate::compute::gpu::{
     report::{report, report_json},
 };
 
-/// List the GPU adapters, what they can do, and which would be chosen and why.
+/// List GPU adapters, what they can do, and which would be chosen and why.
 #[derive(Clone, Debug, Args)]
 pub struct DevicesArgs {
     /// Print JSON.

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::snippet;
 use crate::bench::BenchError;
 use crate::case::CaseError;
 use crate::law::LawError;
@@ -25,8 +26,16 @@ pub enum CliError {
     /// The case file.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// What is wrong with a case or study file, with the text of the file.
+    #[error("{}", snippet::plain(.errors, .text))]
+    Mistakes {
+        /// The mistakes, at least one, in the order of the file.
+        errors: Vec<CaseError>,
+        /// The text in which their places are.
+        text: String,
+    },
     /// The directory of `--out` cannot be made, read or written.
-    #[error("--out {}: cannot {what}: {source}. give a directory that you may write to", .dir.display())]
+    #[error("--out {}: cannot {what}: {source}. Give a directory that you may write to", .dir.display())]
     Out {
         /// The directory.
         dir: PathBuf,
@@ -36,7 +45,7 @@ pub enum CliError {
         source: io::Error,
     },
     /// Scripts that cannot be submitted.
-    #[error("--submit: {what}. the scripts are written; submit them with `bash {}` where sbatch is", .script.display())]
+    #[error("--submit: {what}. The scripts are written; submit them with `bash {}` where sbatch is", .script.display())]
     Submit {
         /// The script that submits.
         script: PathBuf,
@@ -44,7 +53,7 @@ pub enum CliError {
         what: String,
     },
     /// An environment variable.
-    #[error("{name}={value}: {what}. unset it, or correct it")]
+    #[error("{name}={value}: {what}. Unset it, or correct it")]
     Variable {
         /// Its name.
         name: &'static str,
@@ -68,7 +77,7 @@ pub enum CliError {
         what: String,
     },
     /// The pool of threads.
-    #[error("--threads {threads}: cannot start that many threads: {what}. give fewer")]
+    #[error("--threads {threads}: cannot start that many threads: {what}. Give fewer")]
     Threads {
         /// The number asked for.
         threads: usize,
@@ -76,7 +85,7 @@ pub enum CliError {
         what: String,
     },
     /// Standard output cannot be written.
-    #[error("stdout: cannot be written: {source}. redirect it to a place with room")]
+    #[error("stdout: cannot be written: {source}. Redirect it to a place with room")]
     Stdout {
         /// What the system says.
         source: io::Error,
@@ -94,7 +103,7 @@ pub enum CliError {
     #[error("bench: {0}")]
     Bench(#[from] BenchError),
     /// The signals cannot be caught.
-    #[error("cannot listen for signals: {source}. this system allows no signal handlers, which a run needs")]
+    #[error("cannot listen for signals: {source}. This system allows no signal handlers, which a run needs")]
     Signals {
         /// What the system says.
         source: io::Error,
@@ -119,7 +128,7 @@ pub enum CliError {
         source: Box<LawError>,
     },
     /// The directory of `plot` holds nothing that can be drawn.
-    #[error("{}: {what}. give the directory that was given to `asperity run --out` or `asperity study --out`", .dir.display())]
+    #[error("{}: {what}. Give the directory that was given to `asperity run --out` or `asperity study --out`", .dir.display())]
     NothingToPlot {
         /// The directory.
         dir: PathBuf,
@@ -158,13 +167,13 @@ pub enum CliError {
         nearest: Option<String>,
     },
     /// A file that `init` would replace.
-    #[error("{}: is there already. give another name, or --force to replace it (nothing was changed)", .file.display())]
+    #[error("{}: is there already. Give another name, or --force to replace it (nothing was changed)", .file.display())]
     FileThere {
         /// The file.
         file: PathBuf,
     },
     /// Results that cannot be compared.
-    #[error("{}: {what}. give directories that `asperity run` wrote", .dir.display())]
+    #[error("{}: {what}. Give directories that `asperity run` wrote", .dir.display())]
     NothingToCompare {
         /// The directory.
         dir: PathBuf,
@@ -172,7 +181,7 @@ pub enum CliError {
         what: String,
     },
     /// A study where `--set` was given.
-    #[error("--set {argument}: {} is a study, whose values are those of its file. edit the file, or give a case", .file.display())]
+    #[error("--set {argument}: {} is a study, whose values are those of its file. Edit the file, or give a case", .file.display())]
     SetInStudy {
         /// The argument.
         argument: String,

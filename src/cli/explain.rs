@@ -24,7 +24,8 @@ const STUDY: [(&str, &str); 2] = [
 /// Explain a key of case and study files: meaning, unit, range and default.
 #[derive(Clone, Debug, Args)]
 pub struct ExplainArgs {
-    /// The key, as contact.friction or friction, or a table, as mesh; without one every key is listed.
+    /// A key such as contact.friction or friction, or a table such as mesh. Without one, all keys
+    /// are listed.
     #[arg(value_name = "KEY")]
     pub key: Option<String>,
 }

@@ -12,17 +12,17 @@ use crate::output::write_atomically;
 
 /// Write a commented case file that runs as it stands.
 ///
-/// Every key is there with its meaning, unit and range; optional ones as comments with their
+/// It has every key with its meaning, unit and range; optional keys are comments with their
 /// defaults.
 #[derive(Clone, Debug, Args)]
 pub struct InitArgs {
-    /// The file to write; `.toml` is added if it has no ending. `-` writes to stdout.
+    /// The file to write; `.toml` is added if it has no extension. `-` writes to stdout.
     #[arg(value_name = "NAME", default_value = "case.toml")]
     pub name: PathBuf,
-    /// The hardening law of its material.
+    /// The hardening law of the material.
     #[arg(long, value_name = "LAW", default_value = "ideal", value_parser = PossibleValuesParser::new(LAWS))]
     pub material: String,
-    /// Replace a file that is there.
+    /// Replace an existing file.
     #[arg(long)]
     pub force: bool,
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::CliError;
 use crate::bounded;
-use crate::case::{Case, CaseError, Document, Value};
-use crate::study::Study;
+use crate::case::{Case, CaseError, Document, Value, mistakes};
+use crate::study::{Study, StudyError};
 
 /// A case or study file, read and not yet parsed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,7 +41,16 @@ impl Input {
         if self.is_study() {
             return Err(CliError::StudyGiven { file: self.name.clone() });
         }
-        Ok(Case::parse(&self.text, &self.name, settings)?)
+        let told = |errors| CliError::Mistakes { errors, text: self.text.clone() };
+        let mut document = Document::parse(&self.text, &self.name).map_err(|error| told(vec![error]))?;
+        for argument in settings {
+            document.set_argument(argument)?;
+        }
+        Case::from_document(&document).map_err(|first| match mistakes(&document) {
+            // Never empty: the parser has just found one.
+            errors if errors.is_empty() => first.into(),
+            errors => told(errors),
+        })
     }
 
     /// The study.
@@ -53,7 +62,10 @@ impl Input {
         if !self.is_study() && ["sphere", "material", "path"].into_iter().any(is_case) {
             return Err(CliError::CaseGiven { file: self.name.clone() });
         }
-        Ok(Study::parse(&self.text, &self.name)?)
+        Study::parse(&self.text, &self.name).map_err(|error| match error {
+            StudyError::File(error) => CliError::Mistakes { errors: vec![error], text: self.text.clone() },
+            error => error.into(),
+        })
     }
 
     /// Whether it is meant as a study. What cannot be read as TOML is not.

@@ -23,7 +23,7 @@ use crate::law::prior::Prior;
 use crate::law::{Law, LawError, LawFile, fit, report};
 use crate::output::write_atomically;
 
-/// Fit a contact law to a study, and use it.
+/// Make a contact law and use it.
 #[derive(Clone, Debug, Args)]
 pub struct LawArgs {
     /// What to do.
@@ -34,16 +34,18 @@ pub struct LawArgs {
 /// The subcommands of `asperity law`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum LawCommand {
-    /// Fit a law to a study: writes DIR/law.json and prints the forms that were compared and the errors.
+    /// Fit a law to a study: writes DIR/law.json and prints the candidate forms and their errors.
     Fit(FitArgs),
-    /// Make the law of one material and one friction as curves in h: simulates depths up to the case's as a study, writes DIR/law.json and prints its errors at
-    /// depths between.
+    /// Tabulate the law of one material and one friction coefficient as curves in h: simulates
+    /// depths up to that of the case as a study, writes DIR/law.json and prints the errors in
+    /// between.
     Tabulate(TabulateArgs),
-    /// Predict F_N and F_T along the path of a case, without simulating it; prints CSV.
+    /// Predict F_N and F_T along the path of a case without simulating it; prints CSV.
     Predict(PredictArgs),
-    /// Simulate a protocol of paths and print how far the law's contact update is from each.
+    /// Simulate a protocol of paths and print how far the law is from each.
     Check(CheckArgs),
-    /// Write the law for a DEM code: an incremental contact update as C headers with a table, or as a Python module, to stdout or with test vectors to a directory.
+    /// Export the law for a DEM code: an incremental contact update as C headers with a table or as a
+    /// Python module, to stdout, or with test vectors to a directory.
     Export(ExportArgs),
 }
 
@@ -53,11 +55,11 @@ pub struct FitArgs {
     /// The directory of a study.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
-    /// Constants to start from, which count as much as cross-validation allows: built-in (for a study with less than a quarter of its cases), none, or
-    /// another law.json.
+    /// Constants to start from, weighted by cross-validation: built-in (used if the study has less
+    /// than a quarter of its cases), none, or another law.json.
     #[arg(long, value_name = "PRIOR", default_value = "built-in")]
     pub prior: String,
-    /// Print the law as JSON, as it stands in DIR/law.json, in place of the tables.
+    /// Print the law as JSON, as in DIR/law.json, instead of the tables.
     #[arg(long)]
     pub json: bool,
 }
@@ -65,20 +67,20 @@ pub struct FitArgs {
 /// The arguments of `law predict`.
 #[derive(Clone, Debug, Args)]
 pub struct PredictArgs {
-    /// A law, as `law fit` or `law tabulate` writes it.
+    /// A law file that `law fit` or `law tabulate` wrote.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The case, with any path; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Take F_N0 and a0 from a simulation of the press alone, not from the law's formulas; for a case that is pressed once and sheared once at constant
-    /// indentation.
+    /// Take F_N0 and a0 from a simulation of the press, not from the formulas of the law; for a
+    /// case with one press and one shear at constant indentation.
     #[arg(long)]
     pub press: bool,
-    /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Print JSON in place of CSV: the curve, what the law was given, its parameters, and what lies outside of its range.
+    /// Print JSON instead of CSV: the curve, and what lies outside the range of the law.
     #[arg(long)]
     pub json: bool,
 }
@@ -86,7 +88,7 @@ pub struct PredictArgs {
 /// The arguments of `law export`.
 #[derive(Clone, Debug, Args)]
 pub struct ExportArgs {
-    /// A law, as `law fit` or `law tabulate` writes it.
+    /// A law file that `law fit` or `law tabulate` wrote.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The material and the friction, for C: a law of formulas needs them, a table refuses others; `-` for standard input.
@@ -98,8 +100,10 @@ pub struct ExportArgs {
     /// The language.
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     pub format: Language,
-    /// Write the files there: for C asperity_law.h (the table as a constant), law.asperity (the same, to be read when an engine starts), asperity_contact.h (the update),
-    /// asperity_contact3d.h (spheres and walls) and the program that checks them; for Python asperity_law.py; with asperity_law_vectors.csv. Files of these names are
+    /// Write the files to this directory: for C asperity_law.h (the table as a constant),
+    /// law.asperity (the same, read when an engine starts), asperity_contact.h (the update),
+    /// asperity_contact3d.h (spheres and walls) and a program that checks them; for Python
+    /// asperity_law.py; both with asperity_law_vectors.csv. Existing files of these names are
     /// replaced [default: asperity_law.h or asperity_law.py alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -250,14 +254,35 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
     for file in law_files(&law, args.format, case.as_ref()).map_err(in_case)? {
         let path = dir.join(file.name);
         write_atomically(&path, |out| out.write_all(file.content.as_bytes()))?;
-        print(&format!("{}\n", path.display()))?;
+        print(&format!("{}: {}\n", path.display(), purpose(file.name)))?;
     }
-    let check = match args.format {
-        Language::C => "cc -std=c99 -O2 asperity_contact_check.c -lm -o check && ./check asperity_law_vectors.csv",
-        Language::Python => "python3 asperity_law.py asperity_law_vectors.csv",
+    let dir = dir.display();
+    let (using, checking) = match args.format {
+        Language::C => (
+            format!(
+                "#include \"asperity_contact3d.h\" and \"asperity_law.h\", and compile with: cc -std=c99 -I {dir} YOURS.c -lm \
+                 (or c++ -std=c++17)"
+            ),
+            "cc -std=c99 -O2 asperity_contact_check.c -lm -o check && ./check asperity_law_vectors.csv",
+        ),
+        Language::Python => {
+            (format!("import asperity_law, with {dir} on PYTHONPATH"), "python3 asperity_law.py asperity_law_vectors.csv")
+        }
     };
-    print(&format!("to check it against the vectors: cd {} && {check}\n", dir.display()))?;
+    print(&format!("To use it: {using}\nTo check it here: cd {dir} && {checking}\n"))?;
     Ok(Outcome::Done)
+}
+
+/// What a file of an export is for.
+fn purpose(file: &str) -> &'static str {
+    match file {
+        "asperity_contact.h" => "the update of one contact",
+        "asperity_contact3d.h" => "two spheres, or a sphere and a wall, in three dimensions",
+        "asperity_law.h" | "asperity_law.py" => "the law",
+        "law.asperity" => "the law, to be read when an engine starts",
+        csv if csv.ends_with(".csv") => "paths with the forces that the law gives along them",
+        _ => "compares the law with these",
+    }
 }
 
 /// Says on stderr what of a case lies outside of a law's range.
@@ -267,7 +292,7 @@ pub(super) fn warn_out_of_range(case: &Path, out_of_range: &[OutOfRange]) {
         // A closed stderr does not change the prediction.
         let _ = writeln!(
             std::io::stderr(),
-            "warning: {} lies outside of what the law was fitted to: {}. compare with `asperity run`",
+            "warning: {} lies outside of what the law was fitted to: {}. Compare with `asperity run`",
             case.display(),
             list.join(", ")
         );

@@ -17,19 +17,21 @@ use crate::output::write_atomically;
 /// The arguments of `law check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArgs {
-    /// A law, as `law fit` or `law tabulate` writes it.
+    /// A law file that `law fit` or `law tabulate` wrote.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// Material, friction and depth to check [default: those of a table; for formulas three materials with mu = 0.1, 0.3 and 0.6 each].
+    /// Material, friction and depth to check [default: those of the table; for formulas, three
+    /// materials with mu = 0.1, 0.3 and 0.6 each].
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
     /// Elements along the contact radius of the simulations.
     #[arg(long, default_value_t = 6, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=32))]
     pub elements: u32,
-    /// Replace a value of the case; may be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
     #[arg(long, value_name = "KEY=VALUE", requires = "case")]
     pub set: Vec<String>,
-    /// Write the simulated steps and the law's forces there, a CSV a path; files of these names are replaced.
+    /// Write the simulated steps and the forces of the law to this directory, a CSV file for each
+    /// path. Existing files of these names are replaced.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Threads; the simulations are done on the CPU.

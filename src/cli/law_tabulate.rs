@@ -18,23 +18,24 @@ use crate::study::{Options, Study};
 /// The arguments of `law tabulate`.
 #[derive(Clone, Debug, Args)]
 pub struct TabulateArgs {
-    /// The case: its material, its friction, what it meets (a plane, or with [opponent] equal = true its equal), and how deep the
-    /// table goes; nothing else of its path is used.
+    /// The case: its material, its friction, its opponent (a plane or an equal sphere), and its
+    /// indentation, which is the deepest of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Directory of the study and its law.json: a new or an empty one, or with --resume or --force one that holds an earlier one.
+    /// Directory for the study and its law.json: new or empty, or one with an earlier table if
+    /// --resume or --force is given.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Elements along the contact radius of every depth.
+    /// Elements along the contact radius, at every depth.
     #[arg(long, default_value_t = 8, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=32))]
     pub elements: u32,
-    /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Go on in a directory with results of this table: depths that are done stay.
+    /// Continue a table in DIR; finished depths are kept.
     #[arg(long)]
     pub resume: bool,
-    /// Replace an earlier study in DIR, whatever it is of.
+    /// Replace an earlier study in DIR, whatever it is.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
     /// Device, precision, threads.
@@ -60,7 +61,7 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
         // A closed stderr does not change how it went.
         let _ = writeln!(
             std::io::stderr(),
-            "error: interrupted with {} depths to go. what was computed is kept in {}; to go on, run the same command \
+            "error: interrupted with {} depths to go. What was computed is kept in {}; to go on, run the same command \
              with --resume",
             report.pending,
             args.out.display()

@@ -21,6 +21,7 @@ pub mod run;
 pub mod schema;
 pub mod shell;
 pub mod signals;
+mod snippet;
 pub mod study;
 pub mod verify;
 
@@ -40,8 +41,8 @@ struct Cli {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 2 bad input or usage, 3 did not converge (what was computed is kept) or a check failed, \
-                          75 interrupted (likewise; --resume goes on).";
+const EXIT_CODES: &str = "Exit codes: 0 done; 2 bad input or usage; 3 did not converge (what was computed is kept), or a check failed; \
+                          75 interrupted (--resume goes on).";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -124,13 +125,25 @@ pub fn main() -> ExitCode {
         }
     });
     outcome.unwrap_or_else(|error| {
-        let _ = writeln!(std::io::stderr(), "error: {error}");
+        report(&error);
         ExitCode::from(error.exit_code())
     })
 }
 
-/// The definition of the command line, for completions and man pages.
-fn command() -> clap::Command {
+/// Writes an error to stderr, in clap's colours where that is a terminal. A closed stderr changes nothing.
+fn report(error: &CliError) {
+    let mut stderr = anstream::stderr().lock();
+    let _ = match error {
+        CliError::Mistakes { errors, text } => writeln!(stderr, "{}", snippet::coloured(errors, text)),
+        error => {
+            let red = clap::builder::Styles::styled().get_error().to_owned();
+            writeln!(stderr, "{red}error:{red:#} {error}")
+        }
+    };
+}
+
+/// The definition of the command line, for completions, man pages and the command reference.
+pub fn command() -> clap::Command {
     Cli::command()
 }
 

@@ -10,7 +10,7 @@ use super::CliError;
 /// Where the kernels run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Device {
-    /// A GPU if there is one worth it, else the CPU; never a software adapter.
+    /// A GPU if one is worth using, otherwise the CPU; never a software adapter.
     #[default]
     Auto,
     /// The CPU.
@@ -40,7 +40,7 @@ pub struct DeviceArgs {
     /// Floating-point precision of the kernels.
     #[arg(long, value_enum, default_value_t, value_name = "PRECISION")]
     pub precision: Precision,
-    /// Threads to use; by default all of the machine's.
+    /// Number of threads; by default all of the machine's.
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
 }
@@ -48,10 +48,10 @@ pub struct DeviceArgs {
 /// How much to say on stderr.
 #[derive(Clone, Debug, Args)]
 pub struct Verbosity {
-    /// No progress, only errors.
+    /// Print errors only, no progress.
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Say more; twice for every Newton iteration.
+    /// Print more; given twice, every Newton iteration.
     #[arg(short, long, action = ArgAction::Count)]
     pub verbose: u8,
 }

@@ -14,15 +14,15 @@ use crate::output::plots::replot;
 use crate::output::{OutputDirectory, read_history};
 use crate::study::{StudyDirectory, report};
 
-/// Draw the results in a directory: of a run into DIR/plots, of a study into DIR/plots and DIR/report.html.
+/// Draw the results in a directory: DIR/plots, and DIR/report.html for a study.
 ///
-/// A run may be unfinished, and of a study the cases that are done are drawn.
+/// A run may be unfinished; of a study, the finished cases are drawn.
 #[derive(Clone, Debug, Args)]
 pub struct PlotArgs {
     /// The directory of a run or of a study.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
-    /// A law to draw beside the simulations; for a study DIR/law.json, if it is there, is taken without being named.
+    /// A law to draw beside the simulations. For a study, DIR/law.json is used if it exists.
     #[arg(long, value_name = "LAW.json")]
     pub law: Option<PathBuf>,
 }

@@ -44,11 +44,12 @@ pub struct PointArgs {
     /// Number of equal steps [default: 100].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub steps: Option<u32>,
-    /// CSV of deformation gradients from the undeformed point on, a step a row: F11,F12,F13,F21,F22,F23,F31,F32,F33. A row of
-    /// names may come first; lines that start with # are comments.
+    /// CSV file of deformation gradients, counted from the undeformed point, a row for each step:
+    /// F11,F12,F13,F21,F22,F23,F31,F32,F33. A row of names may come first; lines that start with #
+    /// are comments.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["strain", "steps"], required_if_eq("mode", "path"))]
     pub path: Option<PathBuf>,
-    /// Replace a value of the file, as in material.hardening.yield_stress=300; may be repeated.
+    /// Replace a value of the file, as in material.hardening.yield_stress=300. May be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
 }
@@ -60,17 +61,17 @@ pub fn point(args: &PointArgs) -> Result<Outcome, CliError> {
     let material = constants.constants::<f64>().map_err(|source| CliError::Hardening { file: args.material.clone(), source })?;
     let (strain, steps) = (args.strain.unwrap_or(STRAIN), args.steps.unwrap_or(STEPS) as usize);
     if !strain.is_finite() {
-        return Err(CliError::Deformation { what: format!("--strain {strain}: is not finite. give a number, such as 0.1") });
+        return Err(CliError::Deformation { what: format!("--strain {strain}: is not finite. Give a number, such as 0.1") });
     }
     let unit = constants.youngs_modulus;
     match (args.mode, &args.path) {
         (None | Some(Mode::Path), Some(file)) => print(along(&material, read_path(file)?), unit),
         (Some(mode), Some(_)) => {
-            let what = format!("--path: cannot go with --mode {mode:?}. leave one of them out").to_lowercase();
+            let what = format!("--path: cannot go with --mode {}. Leave one of them out", format!("{mode:?}").to_lowercase());
             Err(CliError::Deformation { what })
         }
         (Some(Mode::Path), None) => {
-            Err(CliError::Deformation { what: "--mode path: needs --path. give --path FILE.csv".to_owned() })
+            Err(CliError::Deformation { what: "--mode path: needs --path. Give --path FILE.csv".to_owned() })
         }
         (None | Some(Mode::Uniaxial), None) => print(uniaxial(&material, strain, steps), unit),
         (Some(Mode::Shear), None) => print(simple_shear(&material, strain, steps), unit),
@@ -87,12 +88,12 @@ pub fn read_path(file: &Path) -> Result<Vec<[[f64; 3]; 3]>, CliError> {
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .from_path(file)
-        .map_err(|error| refuse(String::new(), format!("cannot be read: {error}. give a CSV file")))?;
+        .map_err(|error| refuse(String::new(), format!("cannot be read: {error}. Give a CSV file")))?;
     let mut gradients = Vec::new();
     for (index, row) in reader.records().enumerate() {
-        let row = row.map_err(|error| refuse(String::new(), format!("cannot be read: {error}. give a CSV file")))?;
+        let row = row.map_err(|error| refuse(String::new(), format!("cannot be read: {error}. Give a CSV file")))?;
         let line = row.position().map_or(0, csv::Position::line);
-        let columns = "give 9 numbers, F11,F12,F13,F21,F22,F23,F31,F32,F33";
+        let columns = "Give 9 numbers, F11,F12,F13,F21,F22,F23,F31,F32,F33";
         if row.len() != 9 {
             return Err(refuse(format!(", line {line}"), format!("has {} columns. {columns}", row.len())));
         }
@@ -111,7 +112,7 @@ pub fn read_path(file: &Path) -> Result<Vec<[[f64; 3]; 3]>, CliError> {
         gradients.push(gradient);
     }
     if gradients.is_empty() {
-        return Err(refuse(String::new(), "has no rows. give one deformation gradient a row".to_owned()));
+        return Err(refuse(String::new(), "has no rows. Give one deformation gradient a row".to_owned()));
     }
     Ok(gradients)
 }

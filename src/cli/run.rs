@@ -17,20 +17,23 @@ use crate::session::{Canceller, Earlier, Options, SessionError, Simulation};
 /// Simulate one case.
 #[derive(Clone, Debug, Args)]
 pub struct RunArgs {
-    /// The case file; `-` reads it from standard input.
+    /// The case file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Directory for the results: a new one, an empty one, or with --resume or --force one that holds an earlier result.
+    /// Directory for the results: new or empty, or one with earlier results if --resume or --force
+    /// is given.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01; may be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
+    /// repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Go on with an unfinished run of the same case in DIR, from its last checkpoint and to the same results as if it had never stopped. Without one
-    /// the run starts from its beginning; one that is done stays as it is. So batch scripts may always give it.
+    /// Continue an unfinished run of the same case in DIR from its last checkpoint, with the same
+    /// results as if it had never stopped. Without a checkpoint the run starts from the beginning,
+    /// and a finished run is left as it is, so a batch script can always give this option.
     #[arg(long)]
     pub resume: bool,
-    /// Replace an earlier result in DIR, whatever it is of and however far it is.
+    /// Replace earlier results in DIR, of whatever case and however complete.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
     /// Seconds between checkpoints, for tests.
@@ -102,7 +105,7 @@ fn report(outcome: &crate::session::Outcome, steps: usize, args: &RunArgs) -> Re
         }
         let reason = outcome.message.clone().unwrap_or_else(|| summary.status.to_string());
         format!(
-            "ended before: {reason}. what was computed is kept in {dir} ({} steps); to compute it again, run with --force and without --resume",
+            "ended before: {reason}. What was computed is kept in {dir} ({} steps); to compute it again, run with --force and without --resume",
             summary.steps
         )
     } else {
@@ -110,7 +113,7 @@ fn report(outcome: &crate::session::Outcome, steps: usize, args: &RunArgs) -> Re
             super::print(&format!("{}results in {dir}\n", summary.report()))?;
         }
         let message = outcome.message.clone().unwrap_or_default();
-        format!("{message}. what was computed is kept in {dir} ({steps} steps)")
+        format!("{message}. What was computed is kept in {dir} ({steps} steps)")
     };
     if !outcome.is_done() {
         // A closed stderr does not change how the run went.

@@ -14,10 +14,10 @@ pub enum FileKind {
     Study,
 }
 
-/// Print the JSON Schema of case or study files, by which editors complete and check TOML.
+/// Print the JSON Schema of case or study files, with which editors complete and check them.
 ///
-/// Editors with Even Better TOML (taplo) read it from a first line `#:schema ./case.schema.json`.
-/// Ranges that depend on other keys are checked by `asperity check` alone.
+/// Editors with Even Better TOML (taplo) find it through a first line `#:schema
+/// ./case.schema.json`. Ranges that depend on other keys are checked by `asperity check` only.
 #[derive(Clone, Debug, Args)]
 pub struct SchemaArgs {
     /// The kind of file.

@@ -19,10 +19,10 @@ pub struct CompletionsArgs {
     pub shell: Shell,
 }
 
-/// Write man pages into a directory, one for each subcommand.
+/// Write man pages to a directory, one for each subcommand.
 #[derive(Clone, Debug, Args)]
 pub struct ManArgs {
-    /// The directory; it is made if it is not there, and pages of the same names are replaced.
+    /// The directory; it is created if necessary, and existing pages are replaced.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
 }

@@ -16,39 +16,45 @@ use super::{CliError, Outcome, cluster};
 use crate::compute::ComputeError;
 use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgress};
 
-/// Simulate every combination of a grid of cases, one directory and one row of study.csv each.
+/// Simulate every combination of a grid of cases, with a directory and a row of study.csv for each.
 ///
-/// A case that fails stops no other: its row says why. An interrupted study goes on with --resume.
+/// A case that fails does not stop the others: its row says why. An interrupted study goes on with
+/// --resume.
 #[derive(Clone, Debug, Args)]
 pub struct StudyArgs {
-    /// The study file: a case under base, and a grid of dotted keys with lists of values.
+    /// The study file: a case under `base`, and a `grid` of dotted keys with lists of values.
     #[arg(value_name = "STUDY.toml", required_unless_present = "merge", conflicts_with = "merge")]
     pub study: Option<PathBuf>,
-    /// Directory for the results: a new one, an empty one, or with --resume, --shard or --force one that holds an earlier study.
+    /// Directory for the results: new or empty, or one with an earlier study if --resume, --shard
+    /// or --force is given.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Only the I-th of N shares of about the same size; several machines may work into one directory, a share each. `--resume` without a share then
-    /// gathers all rows.
+    /// Compute only the I-th of N shares of about equal size. Several machines may work in one
+    /// directory, a share each; `--resume` without a share then gathers all rows.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
-    /// Go on in a directory with results of this study: cases that are done stay, interrupted ones and those that broke off go on from their checkpoints
-    /// (from their beginning where there is none). A study whose grid has grown keeps what it has; cases that belong to it no more are named, and stay.
+    /// Continue a study in DIR. Finished cases are kept; interrupted ones go on from their
+    /// checkpoints, or from the beginning if there is none. The grid may have grown; cases that no
+    /// longer belong to it are named and kept.
     #[arg(long)]
     pub resume: bool,
-    /// Replace an earlier study in DIR, whatever it is of and however far it is.
+    /// Replace an earlier study in DIR, whatever it is and however complete.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
-    /// With --resume: compute also those cases again that did not converge or outgrew their mesh.
+    /// With --resume: also repeat cases that did not converge or whose contact outgrew the mesh.
     #[arg(long, requires = "resume")]
     pub retry: bool,
-    /// Do not compute, but write scripts for Slurm into DIR/slurm: a job array of shares, and a job after it for the table. tasks=N (4) shares, at-once=N of
-    /// them at a time, warning=SECONDS (60) before the time limit, and options of sbatch, as in time=02:00:00 partition=long mem=4G cpus-per-task=2.
+    /// Compute nothing, but write scripts for Slurm to DIR/slurm: a job array of shares, and a job
+    /// after it that makes the table. tasks=N sets the number of shares (4), at-once=N how many run
+    /// at a time, warning=SECONDS how long before the time limit a task is told to stop (60); other
+    /// keys are options of sbatch, as in time=02:00:00 partition=long mem=4G cpus-per-task=2.
     #[arg(long, value_name = "KEY=VALUE", num_args = 0.., conflicts_with_all = ["shard", "force", "merge"])]
     pub slurm: Option<Vec<String>>,
     /// With --slurm: submit the scripts.
     #[arg(long, requires = "slurm")]
     pub submit: bool,
-    /// Do not compute, but join these directories, in which shares of one study were computed, in --out (which may be one of them): the cases and study.csv.
+    /// Compute nothing, but join these directories, each with shares of one study, in the directory
+    /// of --out, which may be one of them.
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["shard", "force", "resume"])]
     pub merge: Option<Vec<PathBuf>>,
     /// Device, precision, threads.
@@ -118,7 +124,7 @@ fn conclude(report: &Report, interrupted: bool, args: &StudyArgs) -> Result<Outc
         let why = busy.map_or("interrupted by a signal".to_owned(), |reason| format!("ended ({reason})"));
         let _ = writeln!(
             std::io::stderr(),
-            "error: {why} with {pending} cases to go. what was computed is kept in {dir}; to go on, run the same command with --resume"
+            "error: {why} with {pending} cases to go. What was computed is kept in {dir}; to go on, run the same command with --resume"
         );
         return Ok(Outcome::Interrupted);
     }

@@ -80,7 +80,7 @@ fn on_device(device: DeviceWish, precision: PrecisionWish, models: Vec<CaseModel
 fn opens(device: DeviceWish) -> Result<bool, ComputeError> {
     match device {
         DeviceWish::Gpu => Err(ComputeError::Device(
-            "this build computes on the CPU only. build it with the feature gpu, or ask for the CPU".to_owned(),
+            "this build computes on the CPU only. Build it with the feature gpu, or ask for the CPU".to_owned(),
         )),
         DeviceWish::Auto | DeviceWish::Cpu => Ok(false),
     }

@@ -13,7 +13,7 @@ use crate::simulation::SimulationError;
 #[derive(Debug, thiserror::Error)]
 pub enum LawError {
     /// There is no study where one was named.
-    #[error("{}: is not a study: {source}. give the directory of `asperity study --out`, with its study.csv", .path.display())]
+    #[error("{}: is not a study: {source}. Give the directory of `asperity study --out`, with its study.csv", .path.display())]
     NoStudy {
         /// The file that should be there.
         path: PathBuf,
@@ -50,7 +50,7 @@ pub enum LawError {
         skipped: String,
     },
     /// A fit that ends nowhere.
-    #[error("{what} could not be fitted: {problem}. look at the study's curves for cases that went wrong")]
+    #[error("{what} could not be fitted: {problem}. Look at the study's curves for cases that went wrong")]
     Fit {
         /// Which correlation.
         what: &'static str,
@@ -58,7 +58,7 @@ pub enum LawError {
         problem: String,
     },
     /// A law file that is none.
-    #[error("{}: {problem}. give a law.json that `asperity law fit` of this version wrote", .path.display())]
+    #[error("{}: {problem}. Give a law.json that `asperity law fit` of this version wrote", .path.display())]
     BadLaw {
         /// The file.
         path: PathBuf,
@@ -74,13 +74,13 @@ pub enum LawError {
         remedy: &'static str,
     },
     /// A case of which a table says nothing.
-    #[error("the table is of another material: {what}. tabulate this one with `asperity law tabulate`, or use a law of formulas")]
+    #[error("the table is of another material: {what}. Tabulate this one with `asperity law tabulate`, or use a law of formulas")]
     OtherMaterial {
         /// What differs.
         what: String,
     },
     /// A table for what takes formulas.
-    #[error("{}: is a tabulated law, and {what} takes formulas. give a law.json that `asperity law fit` wrote", .path.display())]
+    #[error("{}: is a tabulated law, and {what} takes formulas. Give a law.json that `asperity law fit` wrote", .path.display())]
     IsTable {
         /// The file.
         path: PathBuf,
@@ -88,7 +88,7 @@ pub enum LawError {
         what: &'static str,
     },
     /// Too few depths for a table.
-    #[error("{}: {done} of {of} depths were computed to their end, too few for a table{reason}. run it again with --resume", .path.display())]
+    #[error("{}: {done} of {of} depths were computed to their end, too few for a table{reason}. Run it again with --resume", .path.display())]
     TooFewDepths {
         /// The study.
         path: PathBuf,

@@ -42,7 +42,7 @@ impl LawFile {
         let Friction::Coefficient(friction) = case.contact.friction else {
             return Err(LawError::NotCovered {
                 problem: "the case has friction = \"stick\", and the law describes slip",
-                remedy: "give contact.friction a number, or simulate the case with `asperity run`",
+                remedy: "Give contact.friction a number, or simulate the case with `asperity run`",
             });
         };
         match self {

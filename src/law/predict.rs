@@ -86,7 +86,7 @@ pub fn over_a_plane(case: &Case) -> Result<(), LawError> {
         None => Ok(()),
         Some(_) => Err(LawError::NotCovered {
             problem: "the case has an [opponent], and laws describe a sphere on a rigid plane",
-            remedy: "leave the table [opponent] out, or simulate the case with `asperity run`",
+            remedy: "Leave the table [opponent] out, or simulate the case with `asperity run`",
         }),
     }
 }
@@ -98,7 +98,7 @@ fn covered(case: &Case) -> Result<(f64, ShearTarget, f64), LawError> {
     let Friction::Coefficient(friction) = case.contact.friction else {
         return refuse(
             "the case has friction = \"stick\", and the law describes slip",
-            "give contact.friction a number, or simulate the case with `asperity run`",
+            "Give contact.friction a number, or simulate the case with `asperity run`",
         );
     };
     match case.path.as_slice() {

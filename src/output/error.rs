@@ -42,7 +42,7 @@ pub enum OutputError {
     },
     /// Somebody else writes there.
     #[error(
-        "--out {}: is being written by {}. wait for it to end, or give another directory (nothing was changed)",
+        "--out {}: is being written by {}. Wait for it to end, or give another directory (nothing was changed)",
         dir.display(),
         holder.as_deref().unwrap_or("another process")
     )]

@@ -43,7 +43,7 @@ pub use history::{HistoryWriter, history_columns, read_history};
 pub use lock::{DirectoryLock, LOCK_NAME};
 pub use path_share::PathShare;
 pub use plots::{Picture, PlotInputs, write_plots};
-pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, progress};
+pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, in_words, last_line, progress};
 pub use recorder::Recorder;
 pub use results::{ResultWriter, Setting};
 pub use run_log::LoggedProgress;

@@ -1,5 +1,6 @@
 //! How far the run is: a bar on a terminal, plain lines elsewhere, nothing with `-q`. All of it on stderr.
 
+use super::Status;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -36,6 +37,38 @@ pub trait Progress: Send {
     fn finish(&mut self, text: &str);
 }
 
+/// A time to come, in words that promise no more than they can hold: `15 s`, `4 min`, `3.5 h`.
+pub fn in_words(seconds: f64) -> String {
+    match seconds {
+        seconds if seconds < 60.0 => format!("{seconds:.0} s"),
+        seconds if seconds < 90.0 * 60.0 => format!("{:.0} min", seconds / 60.0),
+        seconds => format!("{:.1} h", seconds / 3600.0),
+    }
+}
+
+/// The last line of a run: of one that is done, that all of its path is behind.
+pub fn last_line(status: Status, steps: usize) -> String {
+    let share = if status == Status::Done { "100.0 %  " } else { "" };
+    format!("{share}{status}: {steps} steps")
+}
+
+/// Tells from the steps so far how long the rest of the path will take.
+#[derive(Debug, Default)]
+struct Remaining {
+    /// When the first step was shown, and the share of the path that was behind then: not 0 in a run that was resumed.
+    first: Option<(Instant, f64)>,
+}
+
+impl Remaining {
+    /// `, about 4 min left`; nothing as long as too little is behind to tell.
+    fn after(&mut self, fraction: f64) -> String {
+        let (begun, at) = *self.first.get_or_insert((Instant::now(), fraction));
+        let (elapsed, gone) = (begun.elapsed().as_secs_f64(), fraction - at);
+        let known = elapsed >= 1.0 && gone >= 0.02 && fraction < 1.0;
+        if known { format!(", about {} left", in_words(elapsed * (1.0 - fraction) / gone)) } else { String::new() }
+    }
+}
+
 /// What suits the place: nothing if `quiet`, a bar if stderr is a terminal, plain lines otherwise.
 pub fn progress(quiet: bool) -> Box<dyn Progress> {
     if quiet {
@@ -61,6 +94,7 @@ impl Progress for SilentProgress {
 #[derive(Debug)]
 pub struct BarProgress {
     bar: ProgressBar,
+    remaining: Remaining,
 }
 
 /// The bar counts in these parts of the path.
@@ -75,10 +109,10 @@ impl BarProgress {
     fn on(target: ProgressDrawTarget) -> Self {
         let bar = ProgressBar::with_draw_target(Some(BAR_PARTS), target);
         // The template is fixed; should it ever be refused, the default style serves.
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {elapsed} + {eta}  {msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}") {
             bar.set_style(style);
         }
-        Self { bar }
+        Self { bar, remaining: Remaining::default() }
     }
 }
 
@@ -90,7 +124,8 @@ impl Default for BarProgress {
 
 impl Progress for BarProgress {
     fn step(&mut self, position: &Position) {
-        self.bar.set_message(format!("{}  {}", position.place(), position.detail));
+        let left = self.remaining.after(position.fraction);
+        self.bar.set_message(format!("{}  {}{left}", position.place(), position.detail));
         self.bar.set_position((position.fraction.clamp(0.0, 1.0) * BAR_PARTS as f64) as u64);
     }
 
@@ -113,12 +148,13 @@ pub struct PlainProgress<W: Write> {
     out: W,
     interval: Duration,
     last: Option<Instant>,
+    remaining: Remaining,
 }
 
 impl<W: Write> PlainProgress<W> {
     /// Lines to `out`, steps at most once in `interval`, but always the last one of the path.
     pub fn new(out: W, interval: Duration) -> Self {
-        Self { out, interval, last: None }
+        Self { out, interval, last: None, remaining: Remaining::default() }
     }
 
     fn line(&mut self, text: &str) {
@@ -129,11 +165,12 @@ impl<W: Write> PlainProgress<W> {
 
 impl<W: Write + Send> Progress for PlainProgress<W> {
     fn step(&mut self, position: &Position) {
+        let left = self.remaining.after(position.fraction);
         let due = self.last.is_none_or(|last| last.elapsed() >= self.interval);
         if due || position.fraction >= 1.0 {
             self.last = Some(Instant::now());
             let percent = 100.0 * position.fraction.clamp(0.0, 1.0);
-            self.line(&format!("{percent:5.1} %  step {}  {}  {}", position.step, position.place(), position.detail));
+            self.line(&format!("{percent:5.1} %  step {}  {}  {}{left}", position.step, position.place(), position.detail));
         }
     }
 
@@ -172,6 +209,17 @@ mod tests {
         let text = String::from_utf8(text).unwrap();
         assert_eq!(text.lines().count(), 2);
         assert!(text.lines().last().unwrap().starts_with("100.0 %"));
+    }
+
+    #[test]
+    fn what_is_left_is_told_in_words_once_it_can_be() {
+        assert_eq!([12.4, 89.0, 5400.0, 20_000.0].map(in_words), ["12 s", "1 min", "1.5 h", "5.6 h"]);
+        let mut remaining = Remaining { first: Some((Instant::now() - Duration::from_secs(100), 0.5)) };
+        // A quarter of the path took 100 s, and a quarter is to come.
+        assert_eq!(remaining.after(0.75), ", about 2 min left");
+        assert_eq!(remaining.after(0.51), "", "too little to tell");
+        assert_eq!(remaining.after(1.0), "");
+        assert_eq!(Remaining::default().after(0.5), "", "the first step of a run that was resumed");
     }
 
     #[test]

@@ -12,7 +12,7 @@ use super::ledger::Ledger;
 use super::path_share::PathShare;
 use super::{
     Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, write_contact, write_fields, write_plots,
+    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields, write_plots,
 };
 use crate::case::{Case, Fields, Segment};
 use crate::compute::{ComputeError, Description};
@@ -188,7 +188,7 @@ impl ResultWriter {
     /// fails, whose error is then returned. Of a run that has ended for good the checkpoint is removed.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
         self.history.check_there()?;
-        self.progress.finish(&format!("{status}: {} steps", self.ledger.rows.len()));
+        self.progress.finish(&last_line(status, self.ledger.rows.len()));
         self.ledger.messages.extend(message.map(str::to_owned));
         let begun = Instant::now();
         let plots = match &self.plots {

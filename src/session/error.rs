@@ -14,7 +14,7 @@ pub enum SessionError {
     #[error(transparent)]
     Case(#[from] CaseError),
     /// The directory of results holds something else.
-    #[error("--out {}: holds {found:?}, and is not an Asperity result. give a new or an empty directory (nothing was changed)", .dir.display())]
+    #[error("--out {}: holds {found:?}, and is not an Asperity result. Give a new or an empty directory (nothing was changed)", .dir.display())]
     NotAResult {
         /// The directory.
         dir: PathBuf,
@@ -22,13 +22,13 @@ pub enum SessionError {
         found: String,
     },
     /// The directory of results is something else.
-    #[error("--out {}: is not a directory. give a new or an empty directory (nothing was changed)", .dir.display())]
+    #[error("--out {}: is not a directory. Give a new or an empty directory (nothing was changed)", .dir.display())]
     NotADirectory {
         /// The path.
         dir: PathBuf,
     },
     /// The directory of results cannot be made, read or written.
-    #[error("--out {}: cannot {what}: {source}. give a directory that you may write to", .dir.display())]
+    #[error("--out {}: cannot {what}: {source}. Give a directory that you may write to", .dir.display())]
     Out {
         /// The directory.
         dir: PathBuf,
@@ -61,7 +61,7 @@ pub enum SessionError {
         difference: String,
     },
     /// The pool of threads.
-    #[error("--threads {threads}: cannot start that many threads: {what}. give fewer")]
+    #[error("--threads {threads}: cannot start that many threads: {what}. Give fewer")]
     Threads {
         /// The number asked for.
         threads: usize,
@@ -92,7 +92,7 @@ pub enum SessionError {
     },
     /// A simulation that broke off was asked to go on.
     #[error(
-        "the run has broken off before: there is no state to go on from. make a new simulation; with results in a directory it may resume them"
+        "the run has broken off before: there is no state to go on from. Make a new simulation; with results in a directory it may resume them"
     )]
     Over,
 }
@@ -103,5 +103,5 @@ fn kept(dir: &Path) -> String {
     if super::claim::is_absent(&dir.join("case.toml")) {
         return format!(". nothing of it is left in {dir_name}; run it again from the beginning");
     }
-    format!(". what was computed until then is kept in {dir_name}; to go on, run the same command with --resume")
+    format!(". What was computed until then is kept in {dir_name}; to go on, run the same command with --resume")
 }

@@ -4,7 +4,7 @@ use super::Canceller;
 use crate::case::{Case, Segment};
 use crate::output::{
     Clock, ErrorEstimate, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary, SummaryInputs,
-    TimeByPhase, Units,
+    TimeByPhase, Units, last_line,
 };
 use crate::simulation::drive::{Observer, StepView};
 use crate::simulation::problem::Problem;
@@ -70,7 +70,7 @@ impl Memory {
 
     /// The summary of the run, as it would be written.
     pub fn finish(mut self, rows: &[StepRecord], status: Status, message: Option<&str>) -> Summary {
-        self.progress.finish(&format!("{status}: {} steps", rows.len()));
+        self.progress.finish(&last_line(status, rows.len()));
         let wall_s = self.clock.wall_seconds();
         let mut summary = Summary {
             status,

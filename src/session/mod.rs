@@ -7,6 +7,7 @@ mod claim;
 mod error;
 mod memory;
 mod pacer;
+mod plan;
 mod prepare;
 mod simulation;
 mod standing;

@@ -7,10 +7,11 @@ use rayon::ThreadPool;
 use super::claim::{Claim, claim, tidy};
 use super::memory::Memory;
 use super::pacer::{Pace, Pacer};
+use super::plan::{forecast, plan};
 use super::prepare::prepare;
 use super::standing::{Standing, refused, standing};
 use super::{Canceller, Earlier, Options, Outcome, SessionError};
-use crate::case::{BYTES_PER_ELEMENT, Case};
+use crate::case::Case;
 use crate::compute::select::{Selected, select};
 use crate::compute::{ComputeError, Description};
 use crate::output::{
@@ -21,10 +22,7 @@ use crate::simulation::SimulationError;
 use crate::simulation::drive::{Ending, Observer};
 use crate::simulation::follow::{Follower, Seat, seats};
 use crate::simulation::problem::Problem;
-use crate::simulation::scout::{Scout, scout};
-
-/// The cost of a Newton iteration grows with this power of the number of elements.
-const COST_EXPONENT: f64 = 1.1;
+use crate::simulation::scout::scout;
 
 /// One case on its way along its path.
 ///
@@ -353,10 +351,11 @@ impl Simulation {
         let case = &self.case;
         let canceller = self.options.canceller.clone();
         let mut progress = self.progress.take().unwrap_or_else(|| Box::new(SilentProgress));
+        progress.message(&plan(case, &computed_on));
         let begun = std::time::Instant::now();
         let scouts = checkpoint.is_none() && case.solver.error_estimate;
         let scout = if scouts {
-            log::info!("coarse run, for the reach of the contact and the error estimate:");
+            progress.message("coarse run first, for the reach of the contact and the error estimate");
             scout(case, &canceller.flag).map_err(SessionError::Simulation)?
         } else {
             None
@@ -481,16 +480,4 @@ impl Iterator for Steps<'_> {
         self.failed = matches!(step, Some(Err(_)));
         step
     }
-}
-
-/// What the coarse run tells of the run: its size, and about how long it will take in the same place.
-fn forecast(scout: &Scout, problem: &Problem, scout_seconds: f64) -> String {
-    let elements = problem.model.mesh.elements.len();
-    let refinement = scout.spacing / problem.spacing;
-    let seconds = scout_seconds * refinement * (elements as f64 / scout.mesh_elements.max(1) as f64).powf(COST_EXPONENT);
-    format!(
-        "{elements} elements; about {:.1} GiB and, if the coarse run on {} elements is a measure, {seconds:.0} s",
-        elements as f64 * BYTES_PER_ELEMENT / f64::from(1 << 30),
-        scout.mesh_elements
-    )
 }

@@ -152,7 +152,7 @@ fn a_case_that_is_none_and_a_directory_of_the_users_are_refused() {
     wrong = case();
     wrong.path.clear();
     let error = Simulation::new(&wrong).err().expect("no case").to_string();
-    assert!(error.starts_with("case: path: is empty. allowed: at least one [[path]] segment"), "{error}");
+    assert!(error.starts_with("case: path: is empty. Allowed: at least one [[path]] segment"), "{error}");
     let scratch = tempfile::tempdir().expect("a scratch directory");
     std::fs::write(scratch.path().join("thesis.tex"), "mine").expect("a file");
     let refused = Simulation::with(&case(), Options { out: Some(scratch.path().to_owned()), ..on_cpu() }).err().expect("refused");

@@ -39,7 +39,7 @@ pub enum StudyError {
         combination: String,
     },
     /// The directory holds something else.
-    #[error("--out {}: holds {found:?}, and is not an Asperity study. give a new or an empty directory (nothing was changed)", .dir.display())]
+    #[error("--out {}: holds {found:?}, and is not an Asperity study. Give a new or an empty directory (nothing was changed)", .dir.display())]
     NotAStudy {
         /// The directory.
         dir: PathBuf,
@@ -47,14 +47,14 @@ pub enum StudyError {
         found: String,
     },
     /// The directory is something else.
-    #[error("--out {}: is not a directory. give a new or an empty directory (nothing was changed)", .dir.display())]
+    #[error("--out {}: is not a directory. Give a new or an empty directory (nothing was changed)", .dir.display())]
     NotADirectory {
         /// The path.
         dir: PathBuf,
     },
     /// The directory holds another study, to which results cannot be added.
     #[error(
-        "--out {}: holds another study: {what}. go on with the study.toml in there, or give a new directory (nothing was changed)",
+        "--out {}: holds another study: {what}. Go on with the study.toml in there, or give a new directory (nothing was changed)",
         .dir.display()
     )]
     OtherStudy {
@@ -91,7 +91,7 @@ pub enum StudyError {
         what: String,
     },
     /// The directory cannot be made or read.
-    #[error("--out {}: cannot {what}: {source}. give a directory that you may write to", .dir.display())]
+    #[error("--out {}: cannot {what}: {source}. Give a directory that you may write to", .dir.display())]
     Directory {
         /// The directory.
         dir: PathBuf,
@@ -113,7 +113,7 @@ pub enum StudyError {
     #[error(transparent)]
     Compute(#[from] ComputeError),
     /// The threads cannot be started.
-    #[error("cannot start {threads} threads: {what}. give fewer with --threads")]
+    #[error("cannot start {threads} threads: {what}. Give fewer with --threads")]
     Threads {
         /// How many were asked for.
         threads: usize,
@@ -121,7 +121,7 @@ pub enum StudyError {
         what: String,
     },
     /// The study broke off while cases were computed.
-    #[error("the study broke off: {source}. the cases that are done are kept in {}; --resume goes on from there", .dir.display())]
+    #[error("the study broke off: {source}. The cases that are done are kept in {}; --resume goes on from there", .dir.display())]
     BrokeOff {
         /// What went wrong and what to do.
         source: Box<StudyError>,

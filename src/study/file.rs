@@ -140,11 +140,7 @@ fn read_grid(document: &Document) -> Result<Vec<GridKey>, CaseError> {
             return Err(not_allowed(&grid.place, "grid", "is empty", GRID));
         }
     }
-    let line = |place: &Place| match place {
-        Place::Line { line, .. } => *line,
-        Place::Set(_) | Place::Given => usize::MAX,
-    };
-    keys.sort_by(|a, b| line(&a.place).cmp(&line(&b.place)).then_with(|| a.name.cmp(&b.name)));
+    keys.sort_by(|a, b| a.place.line().cmp(&b.place.line()).then_with(|| a.name.cmp(&b.name)));
     let mut seen = BTreeSet::new();
     match keys.iter().find(|key| !seen.insert(&key.name)) {
         Some(twice) => Err(not_allowed(&twice.place, &grid_key(&twice.name), "is there twice", "each key once")),

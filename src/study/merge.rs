@@ -36,20 +36,20 @@ pub fn merge(sources: &[PathBuf], out: &Path) -> Result<Merged, StudyError> {
     for dir in sources {
         let directory = StudyDirectory::new(dir);
         if !directory.holds_study() {
-            return Err(refused(dir, "is not a study. give directories of `asperity study --out`".to_owned()));
+            return Err(refused(dir, "is not a study. Give directories of `asperity study --out`".to_owned()));
         }
         let study = Study::load(&directory.study()).map_err(|error| refused(dir, error.to_string()))?;
         if let Some((first, other)) = studies.first()
             && !other.cases_are(&study)
         {
             let what = format!("holds another study ({}) than {} ({})", study.size(), first.root().display(), other.size());
-            return Err(refused(dir, format!("{what}. merge directories of one study")));
+            return Err(refused(dir, format!("{what}. Merge directories of one study")));
         }
         let placed = place(&directory, &study)?.study;
         studies.push((directory, placed));
     }
     let Some((_, first)) = studies.first() else {
-        return Err(refused(out, "there is nothing to merge. give directories of `asperity study --out`".to_owned()));
+        return Err(refused(out, "there is nothing to merge. Give directories of `asperity study --out`".to_owned()));
     };
     let target = StudyDirectory::new(out);
     let (study, mut rows) = begin(&target, first, Earlier::Keep, |_| Ok(()))?;

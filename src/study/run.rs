@@ -140,7 +140,7 @@ pub fn run(
     };
     let mut table = Table { study, directory, rows, written: Instant::now(), took: Duration::ZERO };
     let mut finished = |case: usize, result: Result<Summary, String>| {
-        let fault = |what| format!("the program panicked: {what}. this is a fault of the program, please report it");
+        let fault = |what| format!("the program panicked: {what}. This is a fault of the program, please report it");
         let row = Row::of(result.unwrap_or_else(|what| simulator.broke_off(case, &fault(what))));
         simulator.release(case);
         progress.finished(case, &study.cases[case].id, &row);

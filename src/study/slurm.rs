@@ -61,10 +61,10 @@ impl Slurm {
         for argument in arguments {
             let refuse = |what: String| StudyError::Slurm { argument: crate::case::short(argument).into_owned(), what };
             let (key, value) =
-                argument.split_once('=').ok_or_else(|| refuse("has no `=`. give key=value, as in time=02:00:00".to_owned()))?;
+                argument.split_once('=').ok_or_else(|| refuse("has no `=`. Give key=value, as in time=02:00:00".to_owned()))?;
             let count = |most: usize| {
                 let number = value.parse::<usize>().ok().filter(|number| (1..=most).contains(number));
-                number.ok_or_else(|| refuse(format!("is not a whole number from 1 to {most}. correct it")))
+                number.ok_or_else(|| refuse(format!("is not a whole number from 1 to {most}. Correct it")))
             };
             match key {
                 "tasks" => slurm.tasks = count(MOST_TASKS)?,
@@ -72,12 +72,12 @@ impl Slurm {
                 "warning" => slurm.warning = count(65535)?,
                 _ if !DIRECTIVES.contains(&key) => {
                     let known = DIRECTIVES.join(", ");
-                    return Err(refuse(format!("is unknown. give tasks, at-once, warning or an option of sbatch: {known}")));
+                    return Err(refuse(format!("is unknown. Give tasks, at-once, warning or an option of sbatch: {known}")));
                 }
                 _ if value.is_empty()
                     || !value.chars().all(|c| c.is_ascii_alphanumeric() || "-_.,:;@%/+=[]()*&|!".contains(c)) =>
                 {
-                    return Err(refuse("has a value that no option of sbatch takes. correct it".to_owned()));
+                    return Err(refuse("has a value that no option of sbatch takes. Correct it".to_owned()));
                 }
                 _ => slurm.directives.push((key.to_owned(), value.to_owned())),
             }
@@ -104,7 +104,7 @@ pub fn write(directory: &StudyDirectory, slurm: &Slurm, program: &Path, options:
     let [dir, program] = [root.as_path(), program].map(|path| path.to_str().unwrap_or("\n").to_owned());
     for path in [&dir, &program] {
         if path.chars().any(|c| c.is_control() || "\"\\%".contains(c)) {
-            let what = "has characters that Slurm does not take in a path. give another directory".to_owned();
+            let what = "has characters that Slurm does not take in a path. Give another directory".to_owned();
             return Err(StudyError::Slurm { argument: format!("{path:?}"), what });
         }
     }

@@ -62,20 +62,26 @@ pub enum VerifyError {
 pub struct Family {
     /// Its name, for `--only`.
     pub name: &'static str,
+    /// The names of its checks, which stand in the table; `--only` takes them as well.
+    pub checks: &'static [&'static str],
     run: fn(&mut Runner<'_>) -> Result<Vec<Check>, VerifyError>,
 }
 
 /// All families, in the order in which they run.
 pub const FAMILIES: [Family; 9] = [
-    Family { name: "hertz", run: hertz::checks },
-    Family { name: "cattaneo-mindlin", run: cattaneo_mindlin::checks },
-    Family { name: "models", run: models::checks },
-    Family { name: "plastic", run: plastic::checks },
-    Family { name: "pressure", run: pressure::checks },
-    Family { name: "energy", run: plastic::step_convergence },
-    Family { name: "jaeger-ciavarella", run: jaeger_ciavarella::checks },
-    Family { name: "rigid-sphere", run: rigid::checks },
-    Family { name: "invariance", run: invariance::checks },
+    Family { name: "hertz", checks: &["hertz", "first yield", "equator"], run: hertz::checks },
+    Family {
+        name: "cattaneo-mindlin",
+        checks: &["cattaneo-mindlin", "mindlin-deresiewicz", "equator", "nu = 0.3", "equal pair"],
+        run: cattaneo_mindlin::checks,
+    },
+    Family { name: "models", checks: &["olsson-larsson, jackson-green", "unloading"], run: models::checks },
+    Family { name: "plastic", checks: &["plastic press", "plastic shear", "energy"], run: plastic::checks },
+    Family { name: "pressure", checks: &["pressure"], run: pressure::checks },
+    Family { name: "energy", checks: &["energy"], run: plastic::step_convergence },
+    Family { name: "jaeger-ciavarella", checks: &["jaeger-ciavarella"], run: jaeger_ciavarella::checks },
+    Family { name: "rigid-sphere", checks: &["rigid sphere"], run: rigid::checks },
+    Family { name: "invariance", checks: &["symmetry", "units"], run: invariance::checks },
 ];
 
 /// Rows of one family and how long they took.
@@ -90,6 +96,16 @@ pub struct FamilyReport {
 }
 
 impl Family {
+    /// Whether `only`, the name of a family or of a check, names any of its checks.
+    pub fn has(&self, only: &str) -> bool {
+        self.name == only || !is_family(only) && self.checks.contains(&only)
+    }
+
+    /// Whether `only` names a check of this family: all of them, if it is the family's own name.
+    pub fn names(&self, only: &str, check: &Check) -> bool {
+        self.name == only || !is_family(only) && check.check == only
+    }
+
     /// Runs the family. A path that cannot be followed is a failed row, not an error: the other families still run.
     ///
     /// # Errors
@@ -98,10 +114,29 @@ impl Family {
         let start = Instant::now();
         let checks = match (self.run)(runner) {
             Err(VerifyError::Stopped(reason)) => vec![stopped(self.name, &reason)],
-            other => other?,
+            other => {
+                let checks = other?;
+                debug_assert!(checks.iter().all(|check| self.checks.contains(&check.check)), "{}: {checks:?}", self.name);
+                checks
+            }
         };
         Ok(FamilyReport { name: self.name, checks, took: start.elapsed() })
     }
+}
+
+fn is_family(name: &str) -> bool {
+    FAMILIES.iter().any(|family| family.name == name)
+}
+
+/// What `--only` takes: every family, and every check that stands in the table.
+pub fn names() -> Vec<&'static str> {
+    let mut names: Vec<&str> = FAMILIES.iter().map(|family| family.name).collect();
+    for check in FAMILIES.iter().flat_map(|family| family.checks) {
+        if !names.contains(check) {
+            names.push(check);
+        }
+    }
+    names
 }
 
 /// The row of a family whose path ended early.

@@ -71,7 +71,7 @@ pub enum ContactError {
     },
     /// Something is not a positive, finite number.
     #[error(
-        "contact at h/R = {relative_indentation:e}: {what} = {value:e} is no positive number. check the material and the law"
+        "contact at h/R = {relative_indentation:e}: {what} = {value:e} is no positive number. Check the material and the law"
     )]
     Value {
         /// Indentation over R.

@@ -54,7 +54,7 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
     if case.contact.friction == Friction::Stick {
         return Err(LawError::NotCovered {
             problem: "the case has friction = \"stick\", and the law describes slip",
-            remedy: "give contact.friction a number",
+            remedy: "Give contact.friction a number",
         });
     }
     // Each of two equal bodies gives way by half of h.

@@ -216,7 +216,7 @@ impl Canvas {
         // The line ends after the text.
         let end = svg.trim_end().len();
         svg.truncate(end);
-        svg.push_str(&subscripts(&quick_xml::escape::partial_escape(text.trim())));
+        svg.push_str(&subscripts(&quick_xml::escape::partial_escape(text.trim()), writing.size / LINE_HEIGHT));
         svg.push_str("</text>\n");
         Ok(())
     }
@@ -257,8 +257,9 @@ fn number(x: f64) -> String {
     if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
-/// Turns `_x` and `_{xyz}` of a text into subscripts of an SVG, `^x` and `^{xyz}` into superscripts: what follows a `_` is lowered and what follows a `^` is raised, up to the end of the word or of the braces.
-pub fn subscripts(text: &str) -> String {
+/// Turns `_x` and `_{xyz}` of a text into subscripts of an SVG, `^x` and `^{xyz}` into superscripts: what follows a `_` is lowered and what follows a `^` is
+/// raised, up to the end of the word or of the braces. `size` is that of the letters, in pixels: sizes in per cent or in ems are not read alike everywhere.
+pub fn subscripts(text: &str, size: f64) -> String {
     /// Size of what is off the line.
     const SMALL: f64 = 0.75;
     let mut out = String::new();
@@ -268,7 +269,7 @@ pub fn subscripts(text: &str) -> String {
         let (plain, after) = rest.split_at(rest.find(['_', '^']).unwrap_or(rest.len()));
         if height != 0.0 && !plain.is_empty() {
             // Back to the line; without the attribute some readers drop a space at the start of a span.
-            out.push_str(&format!("<tspan dy=\"{}em\" xml:space=\"preserve\">{plain}</tspan>", -height));
+            out.push_str(&format!("<tspan dy=\"{}\" xml:space=\"preserve\">{plain}</tspan>", number(-height * size)));
             height = 0.0;
         } else {
             out.push_str(plain);
@@ -284,9 +285,8 @@ pub fn subscripts(text: &str) -> String {
             None => after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len())),
         };
         if !inner.is_empty() {
-            // Ems are those of the small letters.
-            let shift = (target - height) / SMALL;
-            out.push_str(&format!("<tspan dy=\"{shift:.3}em\" style=\"font-size:75%\">{inner}</tspan>"));
+            let (shift, small) = (number((target - height) * size), number(SMALL * size));
+            out.push_str(&format!("<tspan dy=\"{shift}\" font-size=\"{small}\">{inner}</tspan>"));
             height = target;
         }
         rest = after;
@@ -340,13 +340,14 @@ mod tests {
 
     #[test]
     fn subscripts_are_lowered_and_the_line_goes_on() {
-        let low = |text: &str| format!("<tspan dy=\"0.333em\" style=\"font-size:75%\">{text}</tspan>");
-        let back = |text: &str| format!("<tspan dy=\"-0.25em\" xml:space=\"preserve\">{text}</tspan>");
+        let low = |text: &str| format!("<tspan dy=\"3\" font-size=\"9\">{text}</tspan>");
+        let back = |text: &str| format!("<tspan dy=\"-3\" xml:space=\"preserve\">{text}</tspan>");
+        let subscripts = |text: &str| subscripts(text, 12.0);
         assert_eq!(subscripts("plain &amp; simple"), "plain &amp; simple");
         assert_eq!(subscripts("F_N"), format!("F{}", low("N")));
         assert_eq!(subscripts("F_N/δ_{T,slip} x"), format!("F{}{}{}{}", low("N"), back("/δ"), low("T,slip"), back(" x")));
-        let up = "<tspan dy=\"-0.500em\" style=\"font-size:75%\">n</tspan>";
-        assert_eq!(subscripts("(1 − x)^n b"), format!("(1 − x){up}<tspan dy=\"0.375em\" xml:space=\"preserve\"> b</tspan>"));
+        let up = "<tspan dy=\"-4.5\" font-size=\"9\">n</tspan>";
+        assert_eq!(subscripts("(1 − x)^n b"), format!("(1 − x){up}<tspan dy=\"4.5\" xml:space=\"preserve\"> b</tspan>"));
         assert_eq!(subscripts("a_"), "a");
     }
 }

@@ -69,8 +69,9 @@ pub fn plot_ratio(history: &[StepRecord], friction: Option<f64>) -> Result<Pictu
     let (low, high) = extent(points.iter().map(|point| point.0));
     let mut series = Vec::new();
     for sign in [1.0, -1.0] {
-        let reached = points.iter().any(|point| point.1 * sign > 0.0);
-        if let Some(mu) = friction.filter(|_| reached) {
+        // Rounding is no friction: a shear to the right needs no room for -mu.
+        let reached = |mu: f64| points.iter().any(|point| point.1 * sign > 0.05 * mu);
+        if let Some(mu) = friction.filter(|&mu| reached(mu)) {
             let label = if sign > 0.0 { format!("μ = {}", tick(mu)) } else { format!("−μ = −{}", tick(mu)) };
             series.push(Series::dashed(label, INK, 6.0, vec![(low, sign * mu), (high, sign * mu)]));
         }

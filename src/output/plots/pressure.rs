@@ -39,16 +39,20 @@ pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, inputs: &Plot
         top = top.max(p_hertz);
         let elastic = over(a_hertz, &|r| hertz::pressure(sphere, a_hertz, r));
         series.push(Series::dashed("Hertz, elastic at the same h", GREY, 3.0, elastic));
-    } else {
-        let label = format!("Hertz, elastic at the same h: up to {}, off the scale", tick(rounded(p_hertz)));
-        series.push(Series::dashed(label, GREY, 3.0, Vec::new()));
     }
+    let off_scale = if p_hertz < OFF_SCALE * computed {
+        String::new()
+    } else {
+        format!(", up to {}, which is off the scale", tick(rounded(p_hertz)))
+    };
     let y = from_zero("contact pressure p (case's unit of stress)", [top]);
     series.insert(0, Series::dashed("contact radius a", INK, 2.0, vec![(record.a, 0.0), (record.a, y.range.1)]));
     let x = Axis::linear("distance r from the axis (case's unit of length)", 0.0, reach);
     let chart = Chart { title: "Pressure at the end of the press".into(), x, y, series, bar: None };
-    let caption = "Pressure of every contact point over its distance from the axis, before the shear. Plastic flow levels it: an elastic \
-                   sphere at the same h would press harder, and Hertz's shape at the same force and radius is higher in the middle. Where it dips on the \
-                   axis friction does that: the surface sticks where it first touched, and does not spread as it would without.";
+    let caption = format!(
+        "Pressure of every contact point over its distance from the axis, before the shear. Plastic flow levels it: an elastic \
+                   sphere at the same h would press harder{off_scale}, and Hertz's shape at the same force and radius is higher in the middle. Where it dips on the \
+                   axis friction does that: the surface sticks where it first touched, and does not spread as it would without."
+    );
     Picture::draw("pressure", caption, (760, 480), |root| draw_chart(root, &chart))
 }

@@ -1,0 +1,83 @@
+//! What a run says before it starts: what it will do, and how long that will take.
+
+use crate::case::{BYTES_PER_ELEMENT, Case, Friction, Hold, Opponent, Segment, ShearTarget};
+use crate::compute::Description;
+use crate::output::in_words;
+use crate::simulation::problem::Problem;
+use crate::simulation::scout::Scout;
+
+/// The cost of a Newton iteration grows with this power of the number of elements.
+const COST_EXPONENT: f64 = 1.1;
+/// Segments that are named; of a longer path the rest is counted.
+const NAMED: usize = 4;
+
+/// The run in a line: `press to h = 0.02, shear to full slip; mu = 0.3; 16 elements along the contact radius; on CPU (2 threads) in f64`.
+pub(super) fn plan(case: &Case, computed_on: &Description) -> String {
+    let mut segments: Vec<String> = case.path.iter().take(NAMED).map(segment).collect();
+    if case.path.len() > NAMED {
+        segments.push(format!("{} more segments", case.path.len() - NAMED));
+    }
+    let friction = match case.contact.friction {
+        Friction::Coefficient(mu) => format!("mu = {mu}"),
+        Friction::Stick => "full stick".to_owned(),
+    };
+    let against = match case.opponent {
+        None => String::new(),
+        Some(Opponent::Equal) => " against an equal sphere".to_owned(),
+        Some(Opponent::Rigid { radius }) => format!(" against a rigid sphere of radius {radius}"),
+    };
+    format!(
+        "{}{against}; {friction}; {} elements along the contact radius; on {} in {}",
+        segments.join(", "),
+        case.mesh.elements_per_contact_radius,
+        computed_on.device,
+        computed_on.precision
+    )
+}
+
+fn segment(segment: &Segment) -> String {
+    match segment {
+        Segment::Indentation { indentation } => format!("press to h = {indentation}"),
+        Segment::Oblique { indentation, shear } => format!("press to h = {indentation} and shear to {shear}"),
+        Segment::Shear { shear, hold } => {
+            let target = match shear {
+                ShearTarget::FullSlip => "full slip".to_owned(),
+                ShearTarget::Displacement(shear) => shear.to_string(),
+            };
+            let held = if *hold == Hold::NormalForce { " at constant F_N" } else { "" };
+            format!("shear to {target}{held}")
+        }
+        Segment::Release { share } if *share > 0.0 => format!("release to {share} F_N"),
+        Segment::Release { .. } => "release".to_owned(),
+    }
+}
+
+/// What the coarse run tells of the run: its size, and about how long it will take in the same place.
+pub(super) fn forecast(scout: &Scout, problem: &Problem, scout_seconds: f64) -> String {
+    let elements = problem.model.mesh.elements.len();
+    let refinement = scout.spacing / problem.spacing;
+    let seconds = scout_seconds * refinement * (elements as f64 / scout.mesh_elements.max(1) as f64).powf(COST_EXPONENT);
+    format!(
+        "{elements} elements, {:.2} GiB; about {} to go, going by the coarse run on {} elements",
+        elements as f64 * BYTES_PER_ELEMENT / f64::from(1 << 30),
+        in_words(seconds),
+        scout.mesh_elements
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_names_what_is_done() {
+        let text = include_str!("../../fixtures/cases/reversal.toml");
+        let case = Case::parse(text, "reversal.toml", &[]).expect("a case");
+        let device = Description { device: "CPU (2 threads)".to_owned(), precision: "f64" };
+        let said = "press to h = 0.02, shear to 0.002, shear to -0.002, press to h = 0.025, 2 more segments; mu = 0.3; \
+                    16 elements along the contact radius; on CPU (2 threads) in f64";
+        assert_eq!(plan(&case, &device), said);
+        let case = Case::parse(text, "", &["path=[{indentation=0.01},{release=0.5}]".into(), "contact.friction=stick".into()]);
+        assert!(plan(&case.expect("a case"), &device).starts_with("press to h = 0.01, release to 0.5 F_N; full stick; "));
+    }
+}

@@ -1,0 +1,186 @@
+//! The documents: their commands and snippets are run, their references made from the code, their
+//! links followed.
+#![cfg(unix)]
+
+#[path = "documents/case_reference.rs"]
+mod case_reference;
+#[path = "documents/command_reference.rs"]
+mod command_reference;
+mod common;
+#[path = "documents/page.rs"]
+mod page;
+#[path = "documents/results.rs"]
+mod results;
+#[path = "documents/shell.rs"]
+mod shell;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use asperity::case::Case;
+use asperity::study::Study;
+use page::{Page, pages};
+
+/// Holds a generated page to what it would be made to now; ASPERITY_BLESS=1 rewrites it.
+fn held(path: &str, text: &str) {
+    if std::env::var_os("ASPERITY_BLESS").is_some() {
+        fs::write(path, text).expect("the page");
+    }
+    let stands = fs::read_to_string(path).unwrap_or_default();
+    assert!(stands == text, "{path} is out of date: ASPERITY_BLESS=1 cargo test --test documents rewrites it");
+}
+
+#[test]
+fn the_case_reference_is_that_of_the_keys() {
+    held("docs/cases.md", &case_reference::text());
+}
+
+#[test]
+fn the_command_reference_is_that_of_the_command_line() {
+    held("docs/commands.md", &command_reference::text());
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    let pages = pages();
+    for page in &pages {
+        for link in page.links() {
+            if link.contains("://") {
+                continue;
+            }
+            let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
+            let path = if file.is_empty() { page.path.clone() } else { page.path.parent().expect("a folder").join(file) };
+            assert!(path.exists(), "{}: no {link}", page.path.display());
+            if !anchor.is_empty() {
+                let anchors = Page::read(&path).anchors();
+                assert!(anchors.contains(anchor), "{}: no {link}; there are {anchors:?}", page.path.display());
+            }
+        }
+    }
+    let links = Page::read(Path::new("docs/SUMMARY.md")).links();
+    let listed: BTreeSet<&str> = links.iter().map(String::as_str).collect();
+    for page in pages.iter().filter(|page| page.path.starts_with("docs") && !page.path.ends_with("SUMMARY.md")) {
+        let name = page.path.file_name().expect("a name").to_string_lossy();
+        assert!(listed.contains(name.as_ref()), "docs/SUMMARY.md lacks {name}");
+    }
+}
+
+/// Files of the repository that the documents name in backticks.
+#[test]
+fn every_file_that_is_named_is_there() {
+    for page in pages() {
+        for (number, line) in page.prose() {
+            for name in line.split('`').skip(1).step_by(2) {
+                let folder = name.split('/').next().unwrap_or_default();
+                let ours = ["src", "crates", "tests", "docs", "shaders", "examples", "benches", "fixtures"].contains(&folder);
+                // Patterns such as src/law/export/asperity_law.{h,py} name several.
+                if ours && name.contains('/') && !name.contains(['{', '*', ' ']) {
+                    assert!(Path::new(name).exists(), "{}:{number}: no {name}", page.path.display());
+                }
+            }
+        }
+    }
+}
+
+/// mdBook takes along what lies below docs/.
+#[test]
+fn pictures_of_the_book_lie_in_it() {
+    for page in pages().iter().filter(|page| page.path.starts_with("docs")) {
+        let pictures = page.text.split("![").skip(1).filter_map(|rest| rest.split("](").nth(1)?.split(')').next());
+        pictures.for_each(|picture| assert!(!picture.starts_with(".."), "{}: {picture}", page.path.display()));
+    }
+    for name in ["collapse-normal.svg", "collapse-tangential.svg"] {
+        let [here, there] =
+            ["docs/gallery", "fixtures/law"].map(|folder| fs::read(Path::new(folder).join(name)).expect("a picture"));
+        assert!(here == there, "docs/gallery/{name} is not that of fixtures/law");
+    }
+}
+
+#[test]
+fn lines_are_at_most_110_wide_and_the_readme_is_short() {
+    for page in pages() {
+        for (number, line) in page.prose() {
+            // A table or a picture cannot be broken.
+            let whole = line.starts_with(['|', '!']);
+            assert!(whole || line.chars().count() <= 110, "{}:{number}: {line}", page.path.display());
+        }
+    }
+    let readme = Page::read(Path::new("README.md"));
+    assert!(readme.text.lines().count() <= 110);
+    // What a newcomer copies first.
+    for command in ["cargo run --release -- run fixtures/cases/ideal.toml --out out\n", "bash tests/run.sh\n"] {
+        assert!(readme.text.contains(command), "{command}");
+    }
+}
+
+#[test]
+fn every_case_and_study_is_taken() {
+    let mut seen = 0;
+    for page in pages() {
+        for block in page.blocks.iter().filter(|block| block.language == "toml") {
+            let place = format!("{}:{}", page.path.display(), block.line);
+            if block.text.contains("[grid]") {
+                Study::parse(&block.text, &place).unwrap_or_else(|error| panic!("{error}"));
+            } else if block.text.contains("[sphere]") {
+                Case::parse(&block.text, &place, &[]).unwrap_or_else(|error| panic!("{error}"));
+            } else {
+                with_fragment(&block.text).unwrap_or_else(|error| panic!("{place}: {error}"));
+            }
+            seen += 1;
+        }
+    }
+    assert!(seen > 5, "{seen} blocks of TOML");
+}
+
+/// The main case with these tables in place of its own.
+fn with_fragment(text: &str) -> Result<Case, Box<dyn std::error::Error>> {
+    let mut case: toml::Table = fs::read_to_string("fixtures/cases/ideal.toml")?.parse()?;
+    case.extend(text.parse::<toml::Table>()?);
+    Ok(Case::from_table(&case)?)
+}
+
+#[test]
+fn the_result_reference_has_every_column() {
+    results::check();
+}
+
+/// A test for each page, so that they run side by side and a failure names its page.
+macro_rules! commands_of {
+    ($($name:ident: $path:literal;)+) => {
+        $(
+            #[test]
+            fn $name() {
+                shell::run(&Page::read(Path::new($path)));
+            }
+        )+
+
+        const RUN: &[&str] = &[$($path),+];
+    };
+}
+
+commands_of! {
+    commands_of_the_readme: "README.md";
+    commands_of_contributing: "CONTRIBUTING.md";
+    commands_of_accuracy: "docs/accuracy.md";
+    commands_of_clusters: "docs/clusters.md";
+    commands_of_dem: "docs/dem.md";
+    commands_of_equal_spheres: "docs/equal-spheres.md";
+    commands_of_full_stick: "docs/full-stick.md";
+    commands_of_installation: "docs/installation.md";
+    commands_of_laws: "docs/laws.md";
+    commands_of_performance: "docs/performance.md";
+    commands_of_rust: "docs/rust.md";
+    commands_of_studies: "docs/studies.md";
+    commands_of_troubleshooting: "docs/troubleshooting.md";
+    commands_of_the_tutorial: "docs/tutorial.md";
+}
+
+#[test]
+fn every_page_with_commands_is_run() {
+    for page in pages() {
+        let path = page.path.to_string_lossy().into_owned();
+        let listed = RUN.contains(&path.as_str());
+        assert_eq!(page.blocks.iter().any(|block| block.language == "sh"), listed, "{path} and the list above");
+    }
+}

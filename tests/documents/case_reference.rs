@@ -1,0 +1,125 @@
+//! `docs/cases.md`, made from the table of keys.
+
+use std::fmt::Write as _;
+
+use asperity::case::keys::{KEYS, Key, Presence, TABLES};
+
+const HEAD: &str = "\
+# Case files
+
+<!-- Made from src/case/keys.rs: ASPERITY_BLESS=1 cargo test --test documents -->
+
+A case file is TOML. `asperity init` writes one with every key explained, `asperity check` prints one
+with every default, `asperity explain KEY` says on the terminal what is said here, and `asperity schema
+case` prints a JSON Schema for editors. In a study file the same tables stand under `base`; see
+[Studies](studies.md).
+
+Any one consistent system of units will do: `radius` sets the unit of length and `youngs_modulus` that of
+stress; forces are stress times length squared. With millimetres and MPa, forces are in newtons.
+
+On the command line, `--set KEY=VALUE` replaces a value by its dotted key. Segments of the path count
+from 0: `--set path.0.indentation=0.01`.
+
+A whole case:
+
+```toml
+[sphere]
+radius = 1.0
+
+[material]
+youngs_modulus = 200e3
+poissons_ratio = 0.3
+
+[material.hardening]
+law = \"voce\"
+yield_stress = 400.0
+saturation_stress = 700.0
+rate = 20.0
+
+[contact]
+friction = 0.3
+
+[mesh]
+elements_per_contact_radius = 8
+
+[[path]]
+indentation = 0.02
+
+[[path]]
+shear = 0.005
+
+[[path]]
+shear = -0.005
+
+[[path]]
+release = true
+```
+";
+
+const PATH: &str = "\
+The path is an array of tables, one for each segment. A segment has `indentation`, `shear`, both, or
+`release`. With both, h and delta_T move in proportion; `hold` goes with `shear` alone. Displacements are
+totals from first touch, not increments.
+
+```toml
+[[path]]
+indentation = 0.02                      # press
+
+[[path]]
+shear = 0.002                           # shear at constant F_N
+hold = \"normal-force\"
+
+[[path]]
+indentation = 0.025                     # press on and shear further, in proportion
+shear = 0.004
+
+[[path]]
+release = 0.5                           # unload to half of F_N
+```
+";
+
+pub fn text() -> String {
+    let mut text = HEAD.to_owned();
+    for (table, about) in TABLES {
+        let brackets = if table == "path" { "[[path]]".to_owned() } else { format!("[{table}]") };
+        // Writing to a String cannot fail.
+        let _ = write!(text, "\n## {brackets}\n\n{}.\n\n", capital(about));
+        if table == "path" {
+            text += PATH;
+            text.push('\n');
+        }
+        text += "| key | unit | range | default | meaning |\n|---|---|---|---|---|\n";
+        KEYS.iter().filter(|key| key.table == table).for_each(|key| text += &row(key));
+    }
+    text
+}
+
+fn row(key: &Key) -> String {
+    let default = match key.presence {
+        Presence::Required => "required".to_owned(),
+        Presence::Defaults(value) => format!("`{value}`"),
+        Presence::Optional(words) => format!("none: {words}"),
+    };
+    let laws = match key.laws {
+        [] => String::new(),
+        laws => format!(" (law {})", laws.iter().map(|law| format!("`{law}`")).collect::<Vec<_>>().join(", ")),
+    };
+    let cells = [&format!("`{}`{laws}", key.name), key.unit, key.range, &default, &capital(key.meaning)];
+    // A bar would end the cell.
+    format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | "))
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    // A symbol such as `n` in a formula stays as it is.
+    match letters.next() {
+        Some(first)
+            if text.len() > 1
+                && text[first.len_utf8()..].starts_with(|c: char| c.is_ascii_lowercase())
+                && !text.starts_with("sigma") =>
+        {
+            first.to_uppercase().chain(letters).collect()
+        }
+        _ => text.to_owned(),
+    }
+}
