@@ -219,7 +219,7 @@ impl Lines {
     /// The place of a key and its value, on the line of the key.
     fn place(&self, key: Range<usize>, value: Range<usize>) -> Place {
         let line = 1 + self.ends.partition_point(|end| *end < key.start);
-        Place::Line { file: self.file.clone(), line, spans: Box::new(Spans { key, value }) }
+        Place::Line { file: self.file.clone(), spans: Box::new(Spans { line, key, value }) }
     }
 }
 

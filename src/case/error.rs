@@ -5,12 +5,14 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Where in a text a key and its value stand, in bytes.
+/// Where in a text a key and its value stand.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spans {
-    /// The key; of an item of an array, the item.
+    /// Line number of the key, from 1.
+    pub line: usize,
+    /// The key, in bytes; of an item of an array, the item.
     pub key: Range<usize>,
-    /// Its value.
+    /// Its value, in bytes.
     pub value: Range<usize>,
 }
 
@@ -21,8 +23,6 @@ pub enum Place {
     Line {
         /// The file as the user named it.
         file: Arc<str>,
-        /// Line number, from 1.
-        line: usize,
         /// Where in the text the key and its value stand.
         spans: Box<Spans>,
     },
@@ -36,7 +36,7 @@ impl Place {
     /// The line, by which places of one file are ordered; what stands in no file comes last.
     pub fn line(&self) -> usize {
         match self {
-            Place::Line { line, .. } => *line,
+            Place::Line { spans, .. } => spans.line,
             Place::Set(_) | Place::Given => usize::MAX,
         }
     }
@@ -45,7 +45,7 @@ impl Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Line { file, line, .. } => write!(f, "{}:{line}", short(file)),
+            Place::Line { file, spans } => write!(f, "{}:{}", short(file), spans.line),
             Place::Set(key) => write!(f, "--set {}", short(key)),
             Place::Given => f.write_str("case"),
         }
