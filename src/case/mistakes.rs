@@ -26,7 +26,13 @@ pub fn mistakes(document: &Document) -> Vec<CaseError> {
             CaseError::UnknownKey { nearest, .. } => Some(nearest.clone()),
             _ => None,
         };
-        if !replaced.iter().any(|before| depends(&key, before)) {
+        // A key that nobody knows, and a whole table that is missing, are mistakes whatever the values.
+        let by_itself = match &error {
+            CaseError::UnknownKey { .. } => true,
+            CaseError::Missing { .. } => !key.contains('.'),
+            _ => false,
+        };
+        if by_itself || !replaced.iter().any(|before| depends(&key, before)) {
             found.push(error);
         }
         if let Some(meant) = meant
@@ -93,7 +99,7 @@ fn mend(document: &mut Document, key: &str, replaced: &[String]) -> Vec<String> 
     if top == "path" || mended == "sphere" {
         // Lengths of the starter are those of its sphere.
         for table in ["sphere", "path"] {
-            if let Some(entry) = starter.at(table) {
+            if let Some(entry) = starter.at(table).filter(|_| table == top || document.at(table).is_some()) {
                 // Both are tables of every case.
                 let _ = document.set(table, entry.clone());
             }

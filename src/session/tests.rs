@@ -148,7 +148,7 @@ fn a_case_that_is_none_and_a_directory_of_the_users_are_refused() {
     let mut wrong = case();
     wrong.contact.friction = Friction::Coefficient(f64::NAN);
     let error = Simulation::new(&wrong).err().expect("no case").to_string();
-    assert_eq!(error, "case: contact.friction: is NaN. allowed: a number >= 0, or \"stick\"");
+    assert_eq!(error, "case: contact.friction: is NaN. Allowed: a number >= 0, or \"stick\"");
     wrong = case();
     wrong.path.clear();
     let error = Simulation::new(&wrong).err().expect("no case").to_string();
