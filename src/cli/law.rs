@@ -91,7 +91,8 @@ pub struct ExportArgs {
     /// A law file that `law fit` or `law tabulate` wrote.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The material and the friction, for C: a law of formulas needs them, a table refuses others; `-` for standard input.
+    /// The material and the friction, for C: with them a law of formulas is written for an engine, as a
+    /// table is; without, as one header for all materials. `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
     /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
@@ -100,10 +101,10 @@ pub struct ExportArgs {
     /// The language.
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     pub format: Language,
-    /// Write the files to this directory: for C asperity_law.h (the table as a constant),
+    /// Write the files to this directory: for C of one material asperity_law.h (the table as a constant),
     /// law.asperity (the same, read when an engine starts), asperity_contact.h (the update),
-    /// asperity_contact3d.h (spheres and walls) and a program that checks them; for Python
-    /// asperity_law.py; both with asperity_law_vectors.csv. Existing files of these names are
+    /// asperity_contact3d.h (spheres and walls) and a program that checks them; for C of all materials
+    /// asperity_law.h and its checking program; for Python asperity_law.py; both with asperity_law_vectors.csv. Existing files of these names are
     /// replaced [default: asperity_law.h or asperity_law.py alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -257,7 +258,12 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
         print(&format!("{}: {}\n", path.display(), purpose(file.name)))?;
     }
     let dir = dir.display();
+    let whole_law = case.is_none() && matches!(law, LawFile::Formulas(_));
     let (using, checking) = match args.format {
+        Language::C if whole_law => (
+            format!("#include \"asperity_law.h\", and compile with: cc -std=c99 -I {dir} YOURS.c -lm (or c++ -std=c++17)"),
+            "cc -std=c99 -O2 asperity_law_check.c -lm -o check && ./check asperity_law_vectors.csv",
+        ),
         Language::C => (
             format!(
                 "#include \"asperity_contact3d.h\" and \"asperity_law.h\", and compile with: cc -std=c99 -I {dir} YOURS.c -lm \

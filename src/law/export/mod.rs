@@ -1,7 +1,8 @@
 //! The law for other programs: C headers and a table for engines, a Python module with the incremental contact update, and test vectors for both.
 //!
 //! Headers, module and [`ContactParameters`] are triplets: the same functions with the same operations. The Python module fills in the constants of the law, and makes its
-//! tables itself; the C headers get the tables of one material and one friction.
+//! tables itself; the C headers for engines get the tables of one material
+//! and one friction, the C header of a whole law makes them too.
 
 mod contact;
 mod vectors;
@@ -17,7 +18,9 @@ use super::tabulated::Tabulated;
 use super::{LawError, LawFile};
 use crate::case::{Case, Hardening};
 
+const HEADER: &str = include_str!("asperity_law.h");
 const MODULE: &str = include_str!("asperity_law.py");
+const CHECK: &str = include_str!("asperity_law_check.c");
 const TABLE_MODULE: &str = include_str!("asperity_law_table.py");
 
 /// A language of the export.
@@ -40,15 +43,17 @@ pub struct ExportedFile {
 
 /// The files of the Python export, the law itself first: then the test vectors; the module checks itself.
 pub fn files(law: &Law) -> Vec<ExportedFile> {
-    python_files(source(law), vectors(law, vectors::SEED))
+    python_files(source(law, Language::Python), vectors(law, vectors::SEED))
 }
 
-/// The files of either kind of law. For C a law of formulas needs the case of a material and a friction.
+/// The files of either kind of law. For C a law of formulas gives the headers and the table of a case's material and friction;
+/// without a case, one header for all materials that makes its tables itself.
 ///
 /// # Errors
 /// A table without numbers; what [`engine_files`] has.
 pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
     match (language, law) {
+        (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(header_files(law)),
         (Language::C, law) => engine_files(law, case),
         (Language::Python, LawFile::Formulas(law)) => Ok(files(law)),
         (Language::Python, LawFile::Table(table)) => Ok(python_files(table_source(table)?, table_vectors(table, vectors::SEED)?)),
@@ -61,10 +66,20 @@ pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Resu
 /// As [`law_files`].
 pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Result<String, LawError> {
     match (language, law) {
+        (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(source(law, Language::C)),
         (Language::C, law) => engine_source(law, case),
-        (Language::Python, LawFile::Formulas(law)) => Ok(source(law)),
+        (Language::Python, LawFile::Formulas(law)) => Ok(source(law, Language::Python)),
         (Language::Python, LawFile::Table(table)) => table_source(table),
     }
+}
+
+/// The header for all materials, test vectors, and the program that checks it against them.
+fn header_files(law: &Law) -> Vec<ExportedFile> {
+    vec![
+        ExportedFile { name: "asperity_law.h", content: source(law, Language::C) },
+        ExportedFile { name: "asperity_law_vectors.csv", content: vectors(law, vectors::SEED) },
+        ExportedFile { name: "asperity_law_check.c", content: CHECK.to_owned() },
+    ]
 }
 
 fn python_files(source: String, vectors: String) -> Vec<ExportedFile> {
@@ -74,12 +89,15 @@ fn python_files(source: String, vectors: String) -> Vec<ExportedFile> {
     ]
 }
 
-/// The law as a Python module.
-pub fn source(law: &Law) -> String {
+/// The law for all materials as source of a language.
+pub fn source(law: &Law, language: Language) -> String {
     let number = |x: f64| format!("{x:.16e}");
     let mut constants = String::new();
     let mut constant = |name: &str, value: f64| {
-        constants.push_str(&format!("{name} = {}\n", number(value)));
+        constants.push_str(&match language {
+            Language::C => format!("#define ASPERITY_{name} {}\n", number(value)),
+            Language::Python => format!("{name} = {}\n", number(value)),
+        });
     };
     let mut list = |name: &str, values: &[f64], length: usize| {
         for i in 0..length {
@@ -130,7 +148,11 @@ pub fn source(law: &Law) -> String {
         ("NORMAL_FORM", normal_form(law.normal.form).to_string()),
         ("CONSTANTS", constants.trim_end().to_owned()),
     ];
-    fill(MODULE, values.into_iter().chain(sizes()))
+    let template = match language {
+        Language::C => HEADER,
+        Language::Python => MODULE,
+    };
+    fill(template, values.into_iter().chain(sizes()))
 }
 
 fn sizes() -> [(&'static str, String); 5] {
