@@ -1,41 +1,19 @@
 //! What the points of the contact do and carry, at every step of small runs: Coulomb's bound, the sums over both halves, and full stick.
 
+mod paths;
+
 use asperity::case::{Case, Friction};
-use asperity::compute::cpu::Cpu;
-use asperity::output::{ContactPoint, ContactStatus, Half, StepRecord, Units};
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
+use asperity::output::{ContactPoint, ContactStatus, Half};
+use paths::Steps;
 use rayon::prelude::*;
 
-/// Every accepted step with its whole contact, in the case's units.
-struct Steps {
-    units: Units,
-    taken: Vec<(StepRecord, Vec<ContactPoint>)>,
-}
-
-impl Observer for Steps {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.taken.push((view.record.in_units(&self.units), ContactPoint::whole_of(view.points, &self.units)));
-        Ok(())
-    }
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        Ok(())
-    }
-    fn note(&mut self, _: &str) {}
-}
-
 /// Follows the path of fixtures/cases/ideal.toml, or another, on a mesh of 4 elements a contact radius.
-fn follow(settings: &[&str]) -> (Case, Vec<(StepRecord, Vec<ContactPoint>)>) {
+fn follow(settings: &[&str]) -> (Case, Steps) {
     let mut all: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
     all.push("mesh.elements_per_contact_radius=4".to_owned());
     let case = Case::parse(include_str!("../fixtures/cases/ideal.toml"), "ideal.toml", &all).expect("a case");
-    let problem = Problem::new(&case).expect("a problem");
-    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
-    let mut steps = Steps { units: Units::of(&case), taken: Vec::new() };
-    let newton = problem.newton().expect("a solver");
-    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut steps).expect("no failure of the program");
-    assert_eq!(ending, Ending::Done, "{settings:?}");
-    (case, steps.taken)
+    let steps = paths::follow(&case);
+    (case, steps)
 }
 
 const CASES: [&[&str]; 8] = [

@@ -1,40 +1,17 @@
 //! Two equal spheres: the press of one over a frictionless plane, the same forwards and back, energies that balance.
 
+mod paths;
+
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
-use asperity::output::{ContactPoint, ContactStatus, StepRecord, Units};
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
+use asperity::output::{ContactPoint, ContactStatus, StepRecord};
+use paths::Steps;
 use rayon::prelude::*;
 
-/// Every accepted step with its whole contact, in the case's units.
-struct Steps {
-    units: Units,
-    taken: Vec<(StepRecord, Vec<ContactPoint>)>,
-}
-
-impl Observer for Steps {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.taken.push((view.record.in_units(&self.units), ContactPoint::whole_of(view.points, &self.units)));
-        Ok(())
-    }
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        Ok(())
-    }
-    fn note(&mut self, _: &str) {}
-}
-
 /// Follows the path of a case file of `fixtures/cases` with these settings.
-fn follow(text: &str, settings: &[&str]) -> Vec<(StepRecord, Vec<ContactPoint>)> {
+fn follow(text: &str, settings: &[&str]) -> Steps {
     let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
     let case = Case::parse(text, "case.toml", &settings).expect("a case");
-    let problem = Problem::new(&case).expect("a problem");
-    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
-    let mut steps = Steps { units: Units::of(&case), taken: Vec::new() };
-    let newton = problem.newton().expect("a solver");
-    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut steps).expect("no failure of the program");
-    assert_eq!(ending, Ending::Done, "{settings:?}");
-    steps.taken
+    paths::follow(&case)
 }
 
 const PLANE: &str = include_str!("../fixtures/cases/ideal.toml");
@@ -64,7 +41,7 @@ fn the_press_is_that_of_one_sphere_over_a_frictionless_plane_whatever_the_fricti
 #[test]
 fn forwards_and_back_are_the_same() {
     // Slaves and masters change places: what carries the force is then the other half of the surface.
-    let both: Vec<Vec<(StepRecord, Vec<ContactPoint>)>> = ["0.012", "-0.012"]
+    let both: Vec<Steps> = ["0.012", "-0.012"]
         .into_par_iter()
         .map(|shear| follow(PAIR, &[COARSE, "solver.tolerance=1e-5", &format!("path=[{{indentation=0.04}},{{shear={shear}}}]")]))
         .collect();

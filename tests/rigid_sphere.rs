@@ -1,28 +1,11 @@
 //! A rigid sphere as the opponent, of a sphere and of a flat: forces, friction at every point, energies, held forces, stick, release; and resumed runs.
 
+mod paths;
+
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
-use asperity::output::{ContactPoint, ContactStatus, StepRecord, Units};
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
+use asperity::output::{ContactPoint, ContactStatus};
+use paths::Steps;
 use rayon::prelude::*;
-
-/// Every accepted step with its whole contact, in the case's units.
-struct Steps {
-    units: Units,
-    taken: Vec<(StepRecord, Vec<ContactPoint>)>,
-}
-
-impl Observer for Steps {
-    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.taken.push((view.record.in_units(&self.units), ContactPoint::whole_of(view.points, &self.units)));
-        Ok(())
-    }
-    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        Ok(())
-    }
-    fn note(&mut self, _: &str) {}
-}
 
 const BRINELL: &str = include_str!("../fixtures/cases/brinell.toml");
 
@@ -32,15 +15,9 @@ fn case(settings: &[&str]) -> Case {
     Case::parse(BRINELL, "brinell.toml", &settings).expect("a case")
 }
 
-fn follow(settings: &[&str]) -> Vec<(StepRecord, Vec<ContactPoint>)> {
+fn follow(settings: &[&str]) -> Steps {
     let case = case(settings);
-    let problem = Problem::new(&case).expect("a problem");
-    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
-    let mut steps = Steps { units: Units::of(&case), taken: Vec::new() };
-    let newton = problem.newton().expect("a solver");
-    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut steps).expect("no failure of the program");
-    assert_eq!(ending, Ending::Done, "{settings:?}");
-    steps.taken
+    paths::follow(&case)
 }
 
 /// Pressure and traction of a point in contact across and along the surface of a sphere with this radius.
@@ -101,7 +78,7 @@ fn coulomb_holds_at_every_point_and_the_energies_balance() {
 
 #[test]
 fn forwards_and_back_are_the_same() {
-    let both: Vec<Vec<(StepRecord, Vec<ContactPoint>)>> = ["0.004", "-0.004"]
+    let both: Vec<Steps> = ["0.004", "-0.004"]
         .into_par_iter()
         .map(|shear| follow(&["solver.tolerance=1e-6", &format!("path=[{{indentation=0.01}},{{shear={shear}}}]")]))
         .collect();

@@ -1,4 +1,5 @@
-// Unilateral contact with Coulomb friction: the twin of crates/kernels/src/contact/coulomb.rs, where the conditions and their source are.
+// Unilateral contact with Coulomb friction: the twin of crates/kernels/src/contact/coulomb.rs,
+// where the conditions and their source are.
 
 const OPEN: u32 = 0u;
 const STICK: u32 = 1u;

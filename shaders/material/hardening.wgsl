@@ -1,4 +1,5 @@
-// Isotropic hardening: the twin of crates/kernels/src/material/hardening.rs, where the laws, the equation and its convex forms are described.
+// Isotropic hardening: the twin of crates/kernels/src/material/hardening.rs,
+// where the laws, the equation and its convex forms are described.
 
 const ELASTIC: u32 = 0u;
 const IDEAL: u32 = 1u;

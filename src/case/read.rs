@@ -12,7 +12,8 @@ use crate::bounded;
 
 /// Radius and Young's modulus, in the units of the case: between these energies, of the order of E R^3, are neither infinite nor nothing.
 const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
-/// Smallest radius of a rigid sphere over that of the body: a contact of 0.005 R, the smallest that is meshed for, should not be a large part of it.
+/// Smallest radius of a rigid sphere over that of the body: a contact of 0.005 R, the smallest that is meshed for,
+/// should not be a large part of it.
 const SMALLEST_OPPONENT: f64 = 0.05;
 /// Smallest and largest a/R that the sphere is meshed for.
 const CONTACT_RADII: (f64, f64) = (0.005, 0.65);

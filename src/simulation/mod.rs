@@ -1,6 +1,7 @@
 //! One case from its first touch to the end of its path.
 //!
-//! `problem` turns a case file into a scaled model, `path` cuts segments into steps, `drive` takes the steps (bisecting those that fail; `observer` watches),
+//! `problem` turns a case file into a scaled model, `path` cuts segments into steps, `drive` takes the steps
+//! (bisecting those that fail), `observer` watches,
 //! `follow` starts a run over on a larger `zone` of fine mesh when the contact leaves it, `scout` finds before how far it will reach, on a coarse mesh,
 //! `footprint` measures the contact, `record` holds what is remembered of each step, `checkpoint` what the next one depends on.
 

@@ -385,7 +385,8 @@ fn draw_bar(root: &Canvas, bar: &ColourBar, left: f64, [top, bottom]: [f64; 2]) 
     Ok(())
 }
 
-/// The colours of a bar, from 0 at its foot to 1 at its head, a line a pixel. Each line reaches down to the foot and is covered by the next one: where
+/// The colours of a bar, from 0 at its foot to 1 at its head, a line a pixel.
+/// Each line reaches down to the foot and is covered by the next one: where
 /// lines only met, a reader that smooths edges would let the card shine through.
 pub(super) fn ramp(root: &Canvas, left: f64, width: f64, [top, bottom]: [f64; 2], colour: impl Fn(f64) -> Colour) -> Drawn {
     for line in 0..(bottom - top).floor() as u32 {

@@ -122,7 +122,8 @@ fn every_plot_is_sound_xml_with_its_labels() {
     assert!(of(Half::Meshed) == of(Half::Mirrored) && of(Half::Both) == 48);
     let circles = |name: &str| fs::read_to_string(out.plot(name)).unwrap().matches("<circle").count();
     assert!(circles("pressure") <= of(Half::Meshed) + of(Half::Both) + 1, "{}", circles("pressure"));
-    // Hertz's elastic pressure is a curve or, where it is off the scale, a word in the caption; never an entry of the legend without a curve.
+    // Hertz's elastic pressure is a curve or, where it is off the scale, a word in the caption; never an entry of the
+    // legend without a curve.
     let pictures = run_pictures(&history(), &tables(), &INPUTS).unwrap();
     let pressure = pictures.iter().find(|picture| picture.name == "pressure").unwrap();
     assert_ne!(

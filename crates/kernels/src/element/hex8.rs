@@ -22,16 +22,7 @@ pub const QUADRATURE_POINTS: usize = 8;
 pub const PAIRS: usize = 36;
 
 /// Local coordinates of the nodes in VTK order; the quadrature points are these over sqrt(3), in the same order.
-pub const CORNERS: [[f64; 3]; NODES] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
+pub use crate::mesh::quality::CORNERS;
 
 /// Three displacements (or forces) for each node of an element.
 pub type Nodal<R> = [[R; 3]; NODES];

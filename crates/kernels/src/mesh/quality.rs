@@ -2,8 +2,8 @@
 
 use super::Mesh;
 
-/// Natural coordinates of the corners of a VTK_HEXAHEDRON.
-const CORNERS: [[f64; 3]; 8] = [
+/// Natural coordinates of the corners of a VTK_HEXAHEDRON, in its order.
+pub const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
