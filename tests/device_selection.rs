@@ -3,7 +3,7 @@
 mod device;
 
 use asperity::compute::gpu::{GpuError, Precision};
-use asperity::compute::select::{DeviceWish, PrecisionWish, Selected, select, select_on};
+use asperity::compute::select::{DeviceChoice, PrecisionChoice, Selected, select, select_on};
 use asperity::compute::{CaseModel, Compute, ComputeError, ForceRequest, Outcome};
 use asperity::contact::coulomb::Friction;
 use asperity::material::{Elasticity, Hardening, Material};
@@ -36,8 +36,8 @@ fn message(selected: Result<Selected, ComputeError>) -> String {
 
 #[test]
 fn the_cpu_is_what_was_asked_for() {
-    for (wish, precision) in [(PrecisionWish::Auto, "f64"), (PrecisionWish::F64, "f64"), (PrecisionWish::F32, "f32")] {
-        let selected = select(DeviceWish::Cpu, wish, models()).unwrap();
+    for (choice, precision) in [(PrecisionChoice::Auto, "f64"), (PrecisionChoice::F64, "f64"), (PrecisionChoice::F32, "f32")] {
+        let selected = select(DeviceChoice::Cpu, choice, models()).unwrap();
         assert!(selected.notes.is_empty() && selected.backend.description().device.starts_with("CPU"));
         assert_eq!(selected.backend.description().precision, precision);
     }
@@ -49,18 +49,18 @@ fn a_bad_batch_is_no_fault_of_the_device() {
     let mut bad = models();
     bad[1].mesh = Arc::new(brick(2, 2, 1, [1.0; 3]).unwrap());
     let refused = |s: Result<Selected, _>| matches!(s, Err(ComputeError::Connectivity { case: 1 }));
-    assert!(refused(select(DeviceWish::Cpu, PrecisionWish::Auto, bad.clone())));
+    assert!(refused(select(DeviceChoice::Cpu, PrecisionChoice::Auto, bad.clone())));
     let Some(context) = device("a_bad_batch_is_no_fault_of_the_device", Precision::F32) else { return };
-    assert!(refused(select_on(Ok(Some(context)), DeviceWish::Auto, PrecisionWish::F32, bad)));
+    assert!(refused(select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, bad)));
 }
 
 #[test]
 fn the_device_is_named_with_its_precision() {
     let name = "the_device_is_named_with_its_precision";
-    for (wish, precision) in [(PrecisionWish::Auto, "f64"), (PrecisionWish::F32, "f32")] {
+    for (choice, precision) in [(PrecisionChoice::Auto, "f64"), (PrecisionChoice::F32, "f32")] {
         let Some(context) = device(name, Precision::F64) else { return };
         let adapter = context.adapter().name.clone();
-        let mut selected = select_on(Ok(Some(context)), DeviceWish::Gpu, wish, models()).unwrap();
+        let mut selected = select_on(Ok(Some(context)), DeviceChoice::Gpu, choice, models()).unwrap();
         let description = selected.backend.description();
         assert!(description.device.contains(&adapter) && description.precision == precision, "{description:?}");
         assert!(selected.notes.is_empty() && force(selected.backend.as_mut()).is_ok());
@@ -70,11 +70,11 @@ fn the_device_is_named_with_its_precision() {
 #[test]
 fn without_double_precision_the_residual_comes_from_the_cpu() {
     let name = "without_double_precision_the_residual_comes_from_the_cpu";
-    let mut reference = select(DeviceWish::Cpu, PrecisionWish::Auto, models()).unwrap();
-    for device_wish in [DeviceWish::Auto, DeviceWish::Gpu] {
+    let mut reference = select(DeviceChoice::Cpu, PrecisionChoice::Auto, models()).unwrap();
+    for device_choice in [DeviceChoice::Auto, DeviceChoice::Gpu] {
         let Some(context) = device(name, Precision::F32) else { return };
         let context = context.without_double_precision();
-        let mut selected = select_on(Ok(Some(context)), device_wish, PrecisionWish::Auto, models()).unwrap();
+        let mut selected = select_on(Ok(Some(context)), device_choice, PrecisionChoice::Auto, models()).unwrap();
         let description = selected.backend.description();
         assert!(description.device.contains("tangents in f32") && description.precision == "f64", "{description:?}");
         assert!(selected.notes.len() == 1 && selected.notes[0].contains("no double precision"), "{:?}", selected.notes);
@@ -89,13 +89,13 @@ fn a_budget_too_small_is_the_cpus_turn_or_an_error() {
     for budget in [1000, 40_000] {
         let Some(context) = device(name, Precision::F32) else { return };
         let context = context.with_budget(budget);
-        let mut selected = select_on(Ok(Some(context)), DeviceWish::Auto, PrecisionWish::F32, models()).unwrap();
+        let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, models()).unwrap();
         assert!(selected.backend.description().device.starts_with("CPU"));
         let [note] = &selected.notes[..] else { panic!("{:?}", selected.notes) };
         assert!(note.contains("ASPERITY_GPU_MEMORY") && note.contains("the CPU was taken instead"), "{note}");
         assert!(force(selected.backend.as_mut()).is_ok());
         let Some(context) = device(name, Precision::F32) else { return };
-        let text = message(select_on(Ok(Some(context.with_budget(budget))), DeviceWish::Gpu, PrecisionWish::F32, models()));
+        let text = message(select_on(Ok(Some(context.with_budget(budget))), DeviceChoice::Gpu, PrecisionChoice::F32, models()));
         assert!(text.contains("ASPERITY_GPU_MEMORY") && text.contains("device memory"), "{text}");
     }
 }
@@ -103,10 +103,10 @@ fn a_budget_too_small_is_the_cpus_turn_or_an_error() {
 #[test]
 fn a_driver_that_opens_no_device_is_the_cpus_turn_or_an_error() {
     let broken = || Err(GpuError::NoDevice { adapter: "Some GPU".into(), reason: "no".into() });
-    let selected = select_on(broken(), DeviceWish::Auto, PrecisionWish::Auto, models()).unwrap();
+    let selected = select_on(broken(), DeviceChoice::Auto, PrecisionChoice::Auto, models()).unwrap();
     assert!(selected.backend.description().device.starts_with("CPU"));
     assert!(selected.notes.len() == 1 && selected.notes[0].contains("Some GPU"), "{:?}", selected.notes);
-    assert!(message(select_on(broken(), DeviceWish::Gpu, PrecisionWish::Auto, models())).contains("Some GPU"));
+    assert!(message(select_on(broken(), DeviceChoice::Gpu, PrecisionChoice::Auto, models())).contains("Some GPU"));
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn a_device_lost_before_its_first_step_is_the_cpus_turn() {
     let name = "a_device_lost_before_its_first_step_is_the_cpus_turn";
     let Some(context) = device(name, Precision::F32) else { return };
     context.destroy();
-    let mut selected = select_on(Ok(Some(context)), DeviceWish::Auto, PrecisionWish::F32, models()).unwrap();
+    let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, models()).unwrap();
     assert!(selected.notes.len() == 1 && selected.notes[0].contains("failed"), "{:?}", selected.notes);
     assert!(force(selected.backend.as_mut()).is_ok());
 }
@@ -132,10 +132,10 @@ fn without_a_driver_auto_is_the_cpu_and_gpu_is_one_clear_error() {
         assert!(output.status.success() && text.contains("child: done"), "{text}");
         return;
     }
-    let mut selected = select(DeviceWish::Auto, PrecisionWish::Auto, models()).unwrap();
+    let mut selected = select(DeviceChoice::Auto, PrecisionChoice::Auto, models()).unwrap();
     assert!(selected.backend.description().device.starts_with("CPU"));
     assert!(force(selected.backend.as_mut()).is_ok());
-    let text = message(select(DeviceWish::Gpu, PrecisionWish::Auto, models()));
+    let text = message(select(DeviceChoice::Gpu, PrecisionChoice::Auto, models()));
     assert!(text.contains("no GPU found") && text.contains("--device cpu"), "{text}");
     println!("child: done");
 }

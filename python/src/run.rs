@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use asperity::compute::select::{DeviceWish, PrecisionWish};
+use asperity::compute::select::{DeviceChoice, PrecisionChoice};
 use asperity::study::{Shard, Study, StudyError, StudyProgress};
 use asperity::{Canceller, Earlier, Options, SessionError, Simulation};
 use pyo3::prelude::*;
@@ -14,20 +14,20 @@ use crate::case::NativeCase;
 use crate::errors::{failed, refused};
 use crate::wait::{News, Told, wait};
 
-fn device(word: &str) -> PyResult<DeviceWish> {
+fn device(word: &str) -> PyResult<DeviceChoice> {
     match word {
-        "auto" => Ok(DeviceWish::Auto),
-        "cpu" => Ok(DeviceWish::Cpu),
-        "gpu" => Ok(DeviceWish::Gpu),
+        "auto" => Ok(DeviceChoice::Auto),
+        "cpu" => Ok(DeviceChoice::Cpu),
+        "gpu" => Ok(DeviceChoice::Gpu),
         other => Err(refused(format!("device: is {other:?}. Allowed: \"auto\", \"cpu\", \"gpu\""))),
     }
 }
 
-fn precision(word: &str) -> PyResult<PrecisionWish> {
+fn precision(word: &str) -> PyResult<PrecisionChoice> {
     match word {
-        "auto" => Ok(PrecisionWish::Auto),
-        "f32" => Ok(PrecisionWish::F32),
-        "f64" => Ok(PrecisionWish::F64),
+        "auto" => Ok(PrecisionChoice::Auto),
+        "f32" => Ok(PrecisionChoice::F32),
+        "f64" => Ok(PrecisionChoice::F64),
         other => Err(refused(format!("precision: is {other:?}. Allowed: \"auto\", \"f32\", \"f64\""))),
     }
 }

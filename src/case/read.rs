@@ -152,8 +152,8 @@ fn read_opponent(root: &Reader<'_>) -> Result<Option<Opponent>, CaseError> {
     let Some(field) = root.get("opponent") else { return Ok(None) };
     let table = field.table()?;
     table.only(&["equal", "rigid", "radius"])?;
-    let says = |name| table.get(name).map_or(Ok(false), |field| field.boolean());
-    let (equal, rigid) = (says("equal")?, says("rigid")?);
+    let flag = |name| table.get(name).map_or(Ok(false), |field| field.boolean());
+    let (equal, rigid) = (flag("equal")?, flag("rigid")?);
     let length = "a length > 0 (from 1e-75 to 1e75)";
     match (equal, rigid, table.get("radius")) {
         (true, true, _) => Err(table.refuse("is both equal and rigid", "one of equal = true and rigid = true")),

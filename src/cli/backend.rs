@@ -1,24 +1,24 @@
 //! Where a case is computed: turns `--device` and `--precision` into a backend.
 
 use super::options::{Device, DeviceArgs, Precision};
-use crate::compute::select::{DeviceWish, PrecisionWish, Selected, select};
+use crate::compute::select::{DeviceChoice, PrecisionChoice, Selected, select};
 use crate::compute::{CaseModel, ComputeError};
 
 /// `--device` as `compute` has it.
-pub fn device_wish(args: &DeviceArgs) -> DeviceWish {
+pub fn device_choice(args: &DeviceArgs) -> DeviceChoice {
     match args.device {
-        Device::Auto => DeviceWish::Auto,
-        Device::Cpu => DeviceWish::Cpu,
-        Device::Gpu => DeviceWish::Gpu,
+        Device::Auto => DeviceChoice::Auto,
+        Device::Cpu => DeviceChoice::Cpu,
+        Device::Gpu => DeviceChoice::Gpu,
     }
 }
 
 /// `--precision` as `compute` has it.
-pub fn precision_wish(args: &DeviceArgs) -> PrecisionWish {
+pub fn precision_choice(args: &DeviceArgs) -> PrecisionChoice {
     match args.precision {
-        Precision::Auto => PrecisionWish::Auto,
-        Precision::F32 => PrecisionWish::F32,
-        Precision::F64 => PrecisionWish::F64,
+        Precision::Auto => PrecisionChoice::Auto,
+        Precision::F32 => PrecisionChoice::F32,
+        Precision::F64 => PrecisionChoice::F64,
     }
 }
 
@@ -27,5 +27,5 @@ pub fn precision_wish(args: &DeviceArgs) -> PrecisionWish {
 /// # Errors
 /// As [`select`].
 pub fn choose_backend(args: &DeviceArgs, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
-    select(device_wish(args), precision_wish(args), models)
+    select(device_choice(args), precision_choice(args), models)
 }

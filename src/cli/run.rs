@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::backend::{device_wish, precision_wish};
+use super::backend::{device_choice, precision_choice};
 use super::input::Input;
 use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
@@ -54,8 +54,8 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
     let options = Options {
-        device: device_wish(&args.device),
-        precision: precision_wish(&args.device),
+        device: device_choice(&args.device),
+        precision: precision_choice(&args.device),
         // The pool of the whole program has their number.
         threads: None,
         out: Some(args.out.clone()),

@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 
-use super::backend::{device_wish, precision_wish};
+use super::backend::{device_choice, precision_choice};
 use super::input::Input;
 use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
@@ -87,8 +87,8 @@ pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
 pub(super) fn options(device: &DeviceArgs) -> Options {
     let all_cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     Options {
-        device: device_wish(device),
-        precision: precision_wish(device),
+        device: device_choice(device),
+        precision: precision_choice(device),
         threads: device.threads.unwrap_or_else(all_cores).get(),
         shard: None,
         resume: false,

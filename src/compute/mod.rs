@@ -152,7 +152,7 @@ pub struct Description {
 }
 
 /// An evaluation that failed for a reason that no smaller step cures.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum ComputeError {
     /// An element of the undeformed mesh is inverted.
     #[error(

@@ -1,4 +1,4 @@
-//! Where a batch is computed: the one place that turns a wish for a device and a precision into a backend.
+//! Where a batch is computed: the one place that turns a choice of device and precision into a backend.
 
 use super::cpu::Cpu;
 use super::{CaseModel, Compute, ComputeError};
@@ -10,7 +10,7 @@ use device::{on_device, opens};
 
 /// The device wished for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DeviceWish {
+pub enum DeviceChoice {
     /// A GPU worth it, else the CPU; never a software adapter. Whatever fails there, the CPU takes over.
     #[default]
     Auto,
@@ -22,7 +22,7 @@ pub enum DeviceWish {
 
 /// The precision wished for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PrecisionWish {
+pub enum PrecisionChoice {
     /// f64, at the least for the residual: a device without f64 computes tangents only.
     #[default]
     Auto,
@@ -45,10 +45,10 @@ pub struct Selected {
 /// # Errors
 /// [`ComputeError::InvertedMesh`] and [`ComputeError::Connectivity`] from any device; [`ComputeError::Device`] if a GPU was asked for
 /// and there is none, or the batch does not fit.
-pub fn select(device: DeviceWish, precision: PrecisionWish, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+pub fn select(device: DeviceChoice, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
     match device {
-        DeviceWish::Cpu => Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
-        wish => on_device(wish, precision, models),
+        DeviceChoice::Cpu => Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
+        choice => on_device(choice, precision, models),
     }
 }
 
@@ -56,33 +56,33 @@ pub fn select(device: DeviceWish, precision: PrecisionWish, models: Vec<CaseMode
 ///
 /// # Errors
 /// [`ComputeError::Device`] if a GPU was asked for and cannot be had.
-pub fn is_there(device: DeviceWish) -> Result<bool, ComputeError> {
+pub fn is_there(device: DeviceChoice) -> Result<bool, ComputeError> {
     match device {
-        DeviceWish::Cpu => Ok(false),
-        wish => opens(wish),
+        DeviceChoice::Cpu => Ok(false),
+        choice => opens(choice),
     }
 }
 
-fn cpu(precision: PrecisionWish, models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
+fn cpu(precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
     Ok(match precision {
-        PrecisionWish::F32 => Box::new(Cpu::<f32>::new(models)?),
-        PrecisionWish::Auto | PrecisionWish::F64 => Box::new(Cpu::<f64>::new(models)?),
+        PrecisionChoice::F32 => Box::new(Cpu::<f32>::new(models)?),
+        PrecisionChoice::Auto | PrecisionChoice::F64 => Box::new(Cpu::<f64>::new(models)?),
     })
 }
 
 #[cfg(not(feature = "gpu"))]
-fn on_device(device: DeviceWish, precision: PrecisionWish, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+fn on_device(device: DeviceChoice, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
     opens(device)?;
     Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() })
 }
 
 #[cfg(not(feature = "gpu"))]
-fn opens(device: DeviceWish) -> Result<bool, ComputeError> {
+fn opens(device: DeviceChoice) -> Result<bool, ComputeError> {
     match device {
-        DeviceWish::Gpu => Err(ComputeError::Device(
+        DeviceChoice::Gpu => Err(ComputeError::Device(
             "this build computes on the CPU only. Build it with the feature gpu, or ask for the CPU".to_owned(),
         )),
-        DeviceWish::Auto | DeviceWish::Cpu => Ok(false),
+        DeviceChoice::Auto | DeviceChoice::Cpu => Ok(false),
     }
 }
 
@@ -91,34 +91,34 @@ fn opens(device: DeviceWish) -> Result<bool, ComputeError> {
 mod device {
     use std::sync::Arc;
 
-    use super::{DeviceWish, PrecisionWish, Selected, cpu};
+    use super::{DeviceChoice, PrecisionChoice, Selected, cpu};
     use crate::compute::fallback::Fallback;
     use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, Mixed, Precision};
     use crate::compute::lost::hooked;
     use crate::compute::{CaseModel, Compute, ComputeError};
 
-    fn open(device: DeviceWish) -> Result<Option<GpuContext>, GpuError> {
+    fn open(device: DeviceChoice) -> Result<Option<GpuContext>, GpuError> {
         match device {
-            DeviceWish::Cpu => Ok(None),
-            DeviceWish::Gpu => GpuContext::open(DeviceRequest::Gpu),
-            DeviceWish::Auto => GpuContext::open(DeviceRequest::Auto),
+            DeviceChoice::Cpu => Ok(None),
+            DeviceChoice::Gpu => GpuContext::open(DeviceRequest::Gpu),
+            DeviceChoice::Auto => GpuContext::open(DeviceRequest::Auto),
         }
     }
 
     pub(super) fn on_device(
-        device: DeviceWish,
-        precision: PrecisionWish,
+        device: DeviceChoice,
+        precision: PrecisionChoice,
         models: Vec<CaseModel>,
     ) -> Result<Selected, ComputeError> {
         select_on(open(device), device, precision, models)
     }
 
-    pub(super) fn opens(device: DeviceWish) -> Result<bool, ComputeError> {
+    pub(super) fn opens(device: DeviceChoice) -> Result<bool, ComputeError> {
         match open(device) {
             Ok(Some(_)) => Ok(true),
-            Ok(None) if device == DeviceWish::Gpu => Err(GpuError::NoAdapter.into()),
+            Ok(None) if device == DeviceChoice::Gpu => Err(GpuError::NoAdapter.into()),
             Ok(None) => Ok(false),
-            Err(error) if device == DeviceWish::Gpu => Err(error.into()),
+            Err(error) if device == DeviceChoice::Gpu => Err(error.into()),
             Err(error) => {
                 log::info!("the GPU could not be used ({error}); the CPU was taken instead");
                 Ok(false)
@@ -132,22 +132,22 @@ mod device {
     /// As [`super::select`].
     pub fn select_on(
         context: Result<Option<GpuContext>, GpuError>,
-        device: DeviceWish,
-        precision: PrecisionWish,
+        device: DeviceChoice,
+        precision: PrecisionChoice,
         models: Vec<CaseModel>,
     ) -> Result<Selected, ComputeError> {
         let reason = match context {
-            Ok(None) if device == DeviceWish::Gpu => ComputeError::from(GpuError::NoAdapter),
+            Ok(None) if device == DeviceChoice::Gpu => ComputeError::from(GpuError::NoAdapter),
             Ok(None) => return Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
             Err(error) => error.into(),
             Ok(Some(context)) => match gpu(Arc::new(context), precision, models.clone()) {
-                Ok((backend, notes)) if device == DeviceWish::Gpu => return Ok(Selected { backend, notes }),
+                Ok((backend, notes)) if device == DeviceChoice::Gpu => return Ok(Selected { backend, notes }),
                 Ok((backend, notes)) => return Ok(Selected { backend: Box::new(Fallback::new(backend)), notes }),
                 Err(error) => error,
             },
         };
         match reason {
-            ComputeError::Device(reason) if device != DeviceWish::Gpu => {
+            ComputeError::Device(reason) if device != DeviceChoice::Gpu => {
                 let note = format!("the GPU could not be used ({reason}); the CPU was taken instead");
                 log::info!("{note}");
                 Ok(Selected { backend: cpu(precision, models)?, notes: vec![note] })
@@ -158,10 +158,10 @@ mod device {
 
     fn gpu(
         context: Arc<GpuContext>,
-        precision: PrecisionWish,
+        precision: PrecisionChoice,
         models: Vec<CaseModel>,
     ) -> Result<(Box<dyn Compute>, Vec<String>), ComputeError> {
-        if precision == PrecisionWish::F32 {
+        if precision == PrecisionChoice::F32 {
             return Ok((hooked(Box::new(Gpu::<f32>::new(context.clone(), models)?), context), Vec::new()));
         }
         if context.supports(Precision::F64).is_ok() {

@@ -1,6 +1,6 @@
 //! One run from its case to its results: what `asperity run` does, as a value that a program of its own may step, watch and cancel.
 //!
-//! `claim` takes the directory of results, `prepare` recognises and clears it, `standing` says whether there is a run in it to go on with, `pacer` watches the
+//! `claim` takes the directory of results, `prepare` recognises and clears it, `prior` finds whether there is a run in it to go on with, `pacer` watches the
 //! steps, `memory` keeps what would be written where there is no directory. [`Simulation`] puts them together.
 
 mod claim;
@@ -9,8 +9,8 @@ mod memory;
 mod pacer;
 mod plan;
 mod prepare;
+mod prior;
 mod simulation;
-mod standing;
 
 #[cfg(test)]
 mod tests;
@@ -24,7 +24,7 @@ use std::time::Duration;
 pub use error::SessionError;
 pub use simulation::{Simulation, StepFields, Steps};
 
-use crate::compute::select::{DeviceWish, PrecisionWish};
+use crate::compute::select::{DeviceChoice, PrecisionChoice};
 use crate::output::{Status, Summary};
 
 /// What to do with an earlier result in the directory.
@@ -43,9 +43,9 @@ pub enum Earlier {
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Where the kernels run.
-    pub device: DeviceWish,
+    pub device: DeviceChoice,
     /// Their precision.
-    pub precision: PrecisionWish,
+    pub precision: PrecisionChoice,
     /// Threads of a pool of its own; without a number the simulation computes in the pool from which it is called. Results do not depend on it.
     pub threads: Option<NonZeroUsize>,
     /// Directory for the results, with all the files of `asperity run`; without one nothing is written.

@@ -9,7 +9,7 @@ use super::memory::Memory;
 use super::pacer::{Pace, Pacer};
 use super::plan::{forecast, plan};
 use super::prepare::prepare;
-use super::standing::{Standing, refused, standing};
+use super::prior::{PriorRun, prior_run, refused};
 use super::{Canceller, Earlier, Options, Outcome, SessionError};
 use crate::case::Case;
 use crate::compute::select::{Selected, select};
@@ -266,10 +266,10 @@ impl Simulation {
             let claim = self.claim.insert(claim(out, case, options.earlier)?);
             self.notes.extend(claim.note().map(|note| format!("note: {note}")));
             if options.earlier == Earlier::Resume {
-                match standing(out, case)? {
-                    Standing::Ended(summary) => return self.ended_before(*summary),
-                    Standing::Unfinished(found) => checkpoint = Some(found),
-                    Standing::NotBegun => {}
+                match prior_run(out, case)? {
+                    PriorRun::Ended(summary) => return self.ended_before(*summary),
+                    PriorRun::Unfinished(found) => checkpoint = Some(found),
+                    PriorRun::NotBegun => {}
                 }
             }
         }

@@ -2,7 +2,7 @@ use std::sync::Mutex;
 
 use super::*;
 use crate::case::{Case, Friction};
-use crate::compute::select::DeviceWish;
+use crate::compute::select::DeviceChoice;
 use crate::output::{OutputDirectory, StepRecord, read_contact, read_history};
 
 /// Pressed, sheared at constant force and back: steps of every kind, on a coarse mesh.
@@ -19,7 +19,7 @@ fn case() -> Case {
 }
 
 fn on_cpu() -> Options {
-    Options { device: DeviceWish::Cpu, threads: NonZeroUsize::new(1), ..Options::default() }
+    Options { device: DeviceChoice::Cpu, threads: NonZeroUsize::new(1), ..Options::default() }
 }
 
 fn whole(case: &Case) -> Vec<StepRecord> {

@@ -273,7 +273,7 @@ impl<'a> Drive<'a> {
             self.place.wasted += failure.iterations();
             attempted = self.slide_beyond(ratio, target)?.map(|report| StepReport { relaxed: true, ..report });
         }
-        self.newton.let_slide(&[]);
+        self.newton.set_sliding(&[]);
         Ok(attempted)
     }
 
@@ -281,7 +281,7 @@ impl<'a> Drive<'a> {
     fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
         let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
         let sliding: Vec<bool> = self.state.points.iter().map(beyond).collect();
-        self.newton.let_slide(&sliding);
+        self.newton.set_sliding(&sliding);
         self.attempt(target)
     }
 

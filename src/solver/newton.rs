@@ -165,7 +165,7 @@ impl Newton {
     }
 
     /// Lets the contact points that `points` marks slide without friction until it is called again; none of them for an empty list.
-    pub fn let_slide(&mut self, points: &[bool]) {
+    pub fn set_sliding(&mut self, points: &[bool]) {
         self.boundary.frictionless.fill(false);
         self.boundary.frictionless.iter_mut().zip(points).for_each(|(slides, &point)| *slides = point);
     }

@@ -124,7 +124,9 @@ impl Host {
             }
             let result = call(backend, &mut requests);
             answers.extend(
-                requests.into_iter().map(|Request { ask, reply, .. }| (reply, result.as_ref().map(|()| ask).map_err(again))),
+                requests
+                    .into_iter()
+                    .map(|Request { ask, reply, .. }| (reply, result.as_ref().map(|()| ask).map_err(ComputeError::clone))),
             );
         }
         answers.extend(others.into_iter().map(|Request { case, ask, reply }| (reply, single(backend, case, ask))));
@@ -203,15 +205,6 @@ fn single(backend: &mut dyn Compute, case: usize, ask: Ask) -> Result<Ask, Compu
         }
         other => other,
     })
-}
-
-/// The error of a call, for each of its guests.
-fn again(error: &ComputeError) -> ComputeError {
-    match *error {
-        ComputeError::InvertedMesh { element, point } => ComputeError::InvertedMesh { element, point },
-        ComputeError::Connectivity { case } => ComputeError::Connectivity { case },
-        ComputeError::Device(ref what) => ComputeError::Device(what.clone()),
-    }
 }
 
 fn lock(told: &Mutex<Told>) -> MutexGuard<'_, Told> {

@@ -19,9 +19,9 @@ use super::place::{Placed, alone};
 use super::progress::StudyProgress;
 use super::row::{Row, RowStatus, write_table};
 use super::schedule::{pools, side_by_side};
-use super::shard::{Shard, cost, dearest_first};
+use super::shard::{Shard, by_descending_cost, cost};
 use super::simulate::Simulator;
-use crate::compute::select::{DeviceWish, PrecisionWish, Selected, is_there, select};
+use crate::compute::select::{DeviceChoice, PrecisionChoice, Selected, is_there, select};
 use crate::compute::{CaseModel, Compute, ComputeError};
 use crate::mesh::Mesh;
 use crate::output::Summary;
@@ -32,9 +32,9 @@ use crate::simulation::problem::Problem;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Where the kernels run.
-    pub device: DeviceWish,
+    pub device: DeviceChoice,
     /// Their precision.
-    pub precision: PrecisionWish,
+    pub precision: PrecisionChoice,
     /// Cores to use: that many cases side by side, and twice as many where a device serves them.
     pub threads: usize,
     /// Only this share of the cases.
@@ -129,7 +129,8 @@ pub fn run(
         before.done,
         before.failed,
     );
-    let order: Vec<usize> = dearest_first(&costs).into_iter().filter(|case| to_compute.binary_search(case).is_ok()).collect();
+    let order: Vec<usize> =
+        by_descending_cost(&costs).into_iter().filter(|case| to_compute.binary_search(case).is_ok()).collect();
     let simulator = Simulator {
         cases: &study.cases,
         directory,
@@ -280,7 +281,7 @@ type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Result<(), Stud
 /// Every case on a core of its own.
 fn on_cores(
     simulator: &Simulator<'_>,
-    precision: PrecisionWish,
+    precision: PrecisionChoice,
     pools: &[ThreadPool],
     order: &[usize],
     finished: &mut Finished<'_>,
@@ -291,7 +292,7 @@ fn on_cores(
             return Ok(summary);
         }
         let problem = simulator.problem(case)?;
-        let open = |problem: &Problem| select(DeviceWish::Cpu, precision, vec![problem.model.clone()]);
+        let open = |problem: &Problem| select(DeviceChoice::Cpu, precision, vec![problem.model.clone()]);
         let Selected { backend, notes } = open(&problem)?;
         let computed_on = backend.description();
         let mut seat = seats((backend, 0), problem.zone, open);

@@ -32,7 +32,7 @@ impl Shard {
     pub fn of(&self, costs: &[f64]) -> Vec<usize> {
         let mut loads = vec![0.0; self.count];
         let mut mine = Vec::new();
-        for case in dearest_first(costs) {
+        for case in by_descending_cost(costs) {
             let (least, _) = loads.iter().enumerate().fold(
                 (0, f64::INFINITY),
                 |best, (share, &load)| {
@@ -50,7 +50,7 @@ impl Shard {
 }
 
 /// Indices by falling cost, equal ones in their order.
-pub fn dearest_first(costs: &[f64]) -> Vec<usize> {
+pub fn by_descending_cost(costs: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..costs.len()).collect();
     order.sort_by(|&a, &b| costs[b].total_cmp(&costs[a]));
     order
@@ -135,6 +135,6 @@ mod tests {
         assert!(with("mesh.elements_per_contact_radius=20") > base);
         assert!(with("material.hardening.yield_stress=100") > base);
         assert!(with("contact.friction=0.1") < base);
-        assert_eq!(dearest_first(&[1.0, 3.0, 1.0, 2.0]), [1, 3, 0, 2]);
+        assert_eq!(by_descending_cost(&[1.0, 3.0, 1.0, 2.0]), [1, 3, 0, 2]);
     }
 }

@@ -55,7 +55,7 @@ pub trait Number:
     /// Whether any says yes.
     fn any(mask: Self::Mask) -> bool;
     /// What the mask says of the `i`-th.
-    fn says(mask: Self::Mask, i: usize) -> bool;
+    fn is_set(mask: Self::Mask, i: usize) -> bool;
 
     /// The same number everywhere, rounded from `f64`.
     #[inline(always)]
@@ -128,7 +128,7 @@ impl<R: Real> Number for R {
         mask
     }
     #[inline(always)]
-    fn says(mask: bool, _: usize) -> bool {
+    fn is_set(mask: bool, _: usize) -> bool {
         mask
     }
 }
@@ -271,7 +271,7 @@ impl<R: Real> Number for Lanes<R> {
         mask.iter().fold(false, |any, &x| any | x)
     }
     #[inline(always)]
-    fn says(mask: [bool; 8], i: usize) -> bool {
+    fn is_set(mask: [bool; 8], i: usize) -> bool {
         mask[i]
     }
 }

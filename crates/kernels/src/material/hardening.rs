@@ -353,7 +353,7 @@ impl<R: Real> Hardening<R> {
             _ => {
                 let mut steps = [PlasticStep { increment: R::ZERO, flow_stress: R::ZERO, slope: R::ZERO }; 8];
                 for (i, step) in steps.iter_mut().enumerate().take(T::COUNT) {
-                    if T::says(yielding, i) {
+                    if T::is_set(yielding, i) {
                         *step = self.curved_step(alpha.lane(i), flow_stress.lane(i), trial.lane(i), stiffness.lane(i));
                     }
                 }

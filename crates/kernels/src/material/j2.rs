@@ -54,7 +54,7 @@ impl<T: Number> Response<T> {
         Response {
             stress: six(&self.stress),
             state: PointState { be: six(&self.state.be), alpha: self.state.alpha.lane(i) },
-            yielding: T::says(self.yielding, i),
+            yielding: T::is_set(self.yielding, i),
             mu_bar: self.mu_bar.lane(i),
             norm: self.norm.lane(i),
             normal: six(&self.normal),

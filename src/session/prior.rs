@@ -6,9 +6,9 @@ use super::SessionError;
 use crate::case::Case;
 use crate::output::{Checkpoint, OutputDirectory, OutputError, Status, Summary, case_difference};
 
-/// How a run stands that `--resume` asks for.
+/// What `--resume` finds of an earlier run.
 #[derive(Debug)]
-pub enum Standing {
+pub enum PriorRun {
     /// There is nothing to go on with: no directory, an empty one, or a run that was killed before its first checkpoint.
     NotBegun,
     /// It is under way.
@@ -21,10 +21,10 @@ pub enum Standing {
 ///
 /// # Errors
 /// [`SessionError::OtherRun`] for the results of another case; [`SessionError::Output`] for a checkpoint that is damaged, of another version or another case.
-pub fn standing(dir: &Path, case: &Case) -> Result<Standing, SessionError> {
+pub fn prior_run(dir: &Path, case: &Case) -> Result<PriorRun, SessionError> {
     let out = OutputDirectory::existing(dir);
     // Anything that is not a result is left to those who prepare the directory.
-    let Some(found) = out.read_case() else { return Ok(Standing::NotBegun) };
+    let Some(found) = out.read_case() else { return Ok(PriorRun::NotBegun) };
     let ended = |summary: &Summary| match summary.status {
         Status::Done | Status::NotConverged | Status::ContactOutgrewMesh => true,
         Status::Interrupted | Status::Failed => false,
@@ -32,15 +32,15 @@ pub fn standing(dir: &Path, case: &Case) -> Result<Standing, SessionError> {
     // A summary that cannot be read is none.
     if let Some(summary) = Summary::read(&out.summary()).ok().filter(ended) {
         return match case_difference(&found, &case.to_toml()) {
-            None => Ok(Standing::Ended(Box::new(summary))),
+            None => Ok(PriorRun::Ended(Box::new(summary))),
             Some(difference) => Err(SessionError::OtherRun { dir: dir.to_owned(), difference }),
         };
     }
     let path = out.checkpoint();
-    let Some(checkpoint) = Checkpoint::read(&path)? else { return Ok(Standing::NotBegun) };
+    let Some(checkpoint) = Checkpoint::read(&path)? else { return Ok(PriorRun::NotBegun) };
     checkpoint.check_case(&path, case)?;
     checkpoint.check_files(&out, case)?;
-    Ok(Standing::Unfinished(Box::new(checkpoint)))
+    Ok(PriorRun::Unfinished(Box::new(checkpoint)))
 }
 
 /// An error of the checkpoint in `dir` that only the simulation can see.
