@@ -287,7 +287,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1 to 1000",
-        meaning: "Newton iterations of a step before it is cut in half",
+        meaning: "Newton iterations of a step before it is cut in half; up to twice as many while it converges fast",
         example: "25",
         ..key("solver", "max_iterations", Whole(1, 1000), Defaults("25"))
     },
@@ -367,7 +367,7 @@ pub fn find(name: &str) -> Vec<&'static Key> {
     KEYS.iter().filter(|key| meant(key)).collect()
 }
 
-/// The known name most like one that is none.
+/// The known name closest to an unknown one.
 pub fn nearest(name: &str) -> Option<String> {
     let names: Vec<String> = KEYS.iter().flat_map(|key| [key.dotted(), key.name.to_owned()]).collect();
     super::reader::nearest(name, &names.iter().map(String::as_str).collect::<Vec<_>>())

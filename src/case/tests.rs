@@ -204,7 +204,7 @@ fn both_at_once_and_a_share_of_the_force_read_back() {
     ];
     assert_eq!(case.path, expected);
     assert_eq!(parse(&case.to_toml(), &[]).expect("it reads back"), case);
-    // What has a unit is scaled, a share is none.
+    // What has a unit is scaled, a ratio is not.
     let scaled = ideal(&["sphere.radius=2", "path=[{indentation=0.02,shear=-0.01},{release=0.5}]"]).scaled();
     assert_eq!(scaled.path, [Segment::Oblique { indentation: 0.01, shear: -0.005 }, Segment::Release { share: 0.5 }]);
 }

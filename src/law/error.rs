@@ -21,7 +21,7 @@ pub enum LawError {
         source: io::Error,
     },
     /// The table of a study is not one.
-    #[error("{}, line {line}: {problem}. restore the file, or run the study again with --resume", .path.display())]
+    #[error("{}, line {line}: {problem}. Restore the file, or run the study again with --resume", .path.display())]
     Table {
         /// The table.
         path: PathBuf,

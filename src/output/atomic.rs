@@ -34,7 +34,7 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Re
     Ok(())
 }
 
-/// The name of the file for which a name is that of a draft; `None` if it is none.
+/// The name of the file for which a name is that of a draft; `None` if it is not one.
 pub fn draft_of(name: &str) -> Option<&str> {
     let (name, number) = name.strip_prefix('.')?.strip_suffix(".tmp")?.rsplit_once('.')?;
     number.bytes().all(|byte| byte.is_ascii_digit()).then_some(name)

@@ -23,7 +23,7 @@ pub enum OutputError {
         source: io::Error,
     },
     /// A file is not what its name promises.
-    #[error("{}, line {line}: {problem}; restore the file or run the case again into an empty folder", path.display())]
+    #[error("{}, line {line}: {problem}. Restore the file or run the case again into an empty folder", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,

@@ -38,7 +38,7 @@ impl HistoryWriter {
     }
 
     /// Appends a row and hands it to the system.
-    /// A number that is none is refused, and so is a file that is not there any more.
+    /// A value that is not a number is refused, and so is a file that has gone.
     pub fn append(&mut self, record: &StepRecord) -> Result<(), OutputError> {
         check_row(&self.path, record)?;
         self.check_there()?;

@@ -29,7 +29,7 @@ pub fn prior_run(dir: &Path, case: &Case) -> Result<PriorRun, SessionError> {
         Status::Done | Status::NotConverged | Status::ContactOutgrewMesh => true,
         Status::Interrupted | Status::Failed => false,
     };
-    // A summary that cannot be read is none.
+    // A summary that cannot be read counts as missing.
     if let Some(summary) = Summary::read(&out.summary()).ok().filter(ended) {
         return match case_difference(&found, &case.to_toml()) {
             None => Ok(PriorRun::Ended(Box::new(summary))),

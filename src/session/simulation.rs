@@ -118,7 +118,7 @@ impl Simulation {
     /// A simulation of `case` in the pool of threads from which it is called, on a GPU if there is one worth it, that writes nothing.
     ///
     /// # Errors
-    /// [`SessionError`]: a case that is none, with the name of the key.
+    /// [`SessionError`]: an invalid case, with the name of the key.
     pub fn new(case: &Case) -> Result<Self, SessionError> {
         Self::with(case, Options::default())
     }
@@ -126,7 +126,7 @@ impl Simulation {
     /// The same with options. The directory is taken, and an earlier result is recognised, before anything is computed.
     ///
     /// # Errors
-    /// [`SessionError`]: a case that is none, a directory that is not to be used, a device that is not there.
+    /// [`SessionError`]: an invalid case, a directory that must not be used, a missing device.
     pub fn with(case: &Case, options: Options) -> Result<Self, SessionError> {
         let clock = Clock::start();
         case.validate()?;

@@ -52,6 +52,8 @@ const SLIDING_RATIOS: [f64; 3] = [3.0, 1.0, 0.3];
 const SHALLOW: usize = 3;
 /// After a step that failed the targets are taken in half as long parts, until a step takes no more iterations than this.
 const EASY: usize = 6;
+/// The same after a step under full stick that took more iterations than this: points come off and land in it one by one.
+const SLOW: usize = 12;
 /// Targets are taken in 2^2 parts at most.
 const FINEST: u32 = 2;
 
@@ -207,9 +209,7 @@ impl<'a> Drive<'a> {
                 Ok(report) => {
                     self.place.waiting.pop();
                     self.place.depth = self.place.depth.saturating_sub(1);
-                    if report.iterations.len() <= EASY {
-                        self.place.pace = self.place.pace.saturating_sub(1);
-                    }
+                    self.pace(report.iterations.len());
                     self.accept(&next, report, observer)?;
                     self.checkpoint(false, observer);
                 }
@@ -245,6 +245,16 @@ impl<'a> Drive<'a> {
         self.place.under_way = false;
         self.place.reached += 1;
         Ok(Ending::Done)
+    }
+
+    /// Adapts the length of the next steps to the iterations of the last one.
+    fn pace(&mut self, iterations: usize) {
+        let pace = &mut self.place.pace;
+        if iterations <= EASY {
+            *pace = pace.saturating_sub(1);
+        } else if iterations > SLOW && self.problem.model.friction == Friction::Stick {
+            *pace = (*pace + 1).min(FINEST);
+        }
     }
 
     /// Makes `target` the next one, in as many equal parts as hard steps before it ask for.

@@ -45,6 +45,8 @@ pub struct Resolution {
     pub press_steps: usize,
     /// Steps of the first, growing part of a shear.
     pub shear_steps: usize,
+    /// By how much all other steps, which no number of the case says, are longer than usual.
+    pub coarseness: f64,
 }
 
 /// Increments of a shear grow as i^1.3: its resolution is needed at the start, where sticking points begin to slip.
@@ -61,6 +63,13 @@ const RELEASE_STEPS: f64 = 12.0;
 const LARGEST_SHEAR_STEP: f64 = 0.05;
 /// Most steps after the first part of a shear of given length: where nothing touches, say, the slip displacement says nothing.
 const MOST_LATER_STEPS: f64 = 120.0;
+
+impl Resolution {
+    /// Step of h of an unloading.
+    pub fn release_step(&self, start: &Start) -> f64 {
+        start.recovery() / RELEASE_STEPS * self.coarseness
+    }
+}
 
 impl Start {
     /// Elastic modulus E/(1 - nu^2), scaled.
@@ -115,7 +124,11 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         let length = (to - from).abs();
         // Beyond 1.5 recoveries nothing touches any more: one step does for the rest.
         let elastic = if recovery > 0.0 { length.min(1.5 * recovery) } else { 0.0 };
-        let n = if recovery > 0.0 { (RELEASE_STEPS * elastic / recovery).ceil().max(1.0) as usize } else { 0 };
+        let n = if recovery > 0.0 {
+            (RELEASE_STEPS / resolution.coarseness * elastic / recovery).ceil().max(1.0) as usize
+        } else {
+            0
+        };
         let sign = (to - from).signum();
         targets.extend((1..=n).map(|i| target(from + sign * elastic * i as f64 / n as f64, false)));
         if length > elastic {
@@ -153,8 +166,8 @@ pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolut
         (1..).map(|i| steps.distance(i) / length).take_while(|&share| share < 1.0 - 1e-9).chain([1.0]).collect()
     } else {
         // What begins to touch has no slip displacement yet; where all of it slips, steps of a share of its radius do.
-        let longest = LARGEST_SHEAR_STEP * h.max(0.0).sqrt();
-        let count = (length / longest.max(1e-12)).ceil().clamp(1.0, MOST_LATER_STEPS);
+        let longest = LARGEST_SHEAR_STEP * resolution.coarseness * h.max(0.0).sqrt();
+        let count = (length / longest.max(1e-12)).ceil().clamp(1.0, MOST_LATER_STEPS / resolution.coarseness);
         (1..=count as usize).map(|i| i as f64 / count).collect()
     };
     if let Some(last) = ends.last_mut() {
@@ -212,12 +225,13 @@ impl ShearSteps {
         let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
         let total: f64 = (1..=count).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
         let last = range * (count as f64).powf(SHEAR_GROWTH) / total;
+        let longest = LARGEST_SHEAR_STEP * resolution.coarseness * start.a;
         let (least, largest) = if length.is_finite() {
-            let least = last.max((length - range) / MOST_LATER_STEPS);
-            (least, least.max(LARGEST_SHEAR_STEP * start.a))
+            let least = last.max((length - range) / MOST_LATER_STEPS * resolution.coarseness);
+            (least, least.max(longest))
         } else if held {
             // The contact grows until it bears the friction: that is far away where the normal force does not fall.
-            (last, last.max(LARGEST_SHEAR_STEP * start.a))
+            (last, last.max(longest))
         } else {
             (last, last)
         };
@@ -254,13 +268,13 @@ mod tests {
 
     /// Ends of the steps of a shear.
     fn ends(start: &Start, length: f64) -> Vec<f64> {
-        let steps = ShearSteps::new(start, length, false, &Resolution { press_steps: 20, shear_steps: 15 });
+        let steps = ShearSteps::new(start, length, false, &Resolution { press_steps: 20, shear_steps: 15, coarseness: 1.0 });
         (1..).map(|i| steps.distance(i)).take_while(|d| *d < length).collect()
     }
 
     #[test]
     fn a_press_starts_with_small_steps_and_ends_with_equal_ones() {
-        let resolution = |press_steps| Resolution { press_steps, shear_steps: 15 };
+        let resolution = |press_steps| Resolution { press_steps, shear_steps: 15, coarseness: 1.0 };
         for n in [1, 2, 3, 5, 9, 24] {
             let first = Start { h: 0.0, h_max: 0.0, ..start(0.0, 0.3) };
             let ends: Vec<f64> = indentation_targets(&first, 0.02, &resolution(n)).iter().map(|t| t.h).collect();
@@ -282,7 +296,7 @@ mod tests {
 
     #[test]
     fn an_oblique_segment_is_cut_as_finely_as_a_press_and_a_shear() {
-        let resolution = Resolution { press_steps: 20, shear_steps: 15 };
+        let resolution = Resolution { press_steps: 20, shear_steps: 15, coarseness: 1.0 };
         let first = Start { h: 0.0, h_max: 0.0, f_n: 0.0, ..start(0.0, 0.3) };
         let later = start(0.2, 0.3);
         for (from, h, d) in [
@@ -337,7 +351,12 @@ mod tests {
 
     #[test]
     fn waiting_for_full_slip_goes_on_in_equal_steps() {
-        let steps = ShearSteps::new(&start(0.2, 0.3), f64::INFINITY, false, &Resolution { press_steps: 20, shear_steps: 15 });
+        let steps = ShearSteps::new(
+            &start(0.2, 0.3),
+            f64::INFINITY,
+            false,
+            &Resolution { press_steps: 20, shear_steps: 15, coarseness: 1.0 },
+        );
         let increment = |i: usize| steps.distance(i + 1) - steps.distance(i);
         assert!((increment(20) / increment(40) - 1.0).abs() < 1e-9 && increment(2) < increment(10));
     }

@@ -119,7 +119,7 @@ impl Problem {
         // Of two spheres it knows R* alone.
         let lambda = johnson_parameter(&material.hardening, nu, zone.contact_radius / case.effective_radius());
         Ok(Self {
-            resolution: Resolution { press_steps: press_steps(&case), shear_steps: shear_steps(&case) },
+            resolution: Resolution { press_steps: press_steps(&case), shear_steps: shear_steps(&case), coarseness: 1.0 },
             settings: Settings {
                 tolerance: case.solver.tolerance,
                 max_iterations: case.solver.max_iterations,
@@ -151,8 +151,9 @@ impl Problem {
     /// # Errors
     /// As [`Problem::new`].
     pub fn on_zone(&self, zone: Zone) -> Result<Self, SimulationError> {
-        // The scaled case is that of one body: it does not say that there are two.
-        Ok(Self { equal_pair: self.equal_pair, bodies: self.bodies, ..Self::on(&self.case, Some(zone))? })
+        // The scaled case is that of one body: it does not say that there are two, nor that it is a scout's.
+        let Self { equal_pair, bodies, resolution, .. } = *self;
+        Ok(Self { equal_pair, bodies, resolution, ..Self::on(&self.case, Some(zone))? })
     }
 
     /// The fine zone that a case (in the user's units) asks for.

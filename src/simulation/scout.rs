@@ -49,12 +49,15 @@ pub fn scout_case(case: &Case) -> Case {
 /// # Errors
 /// [`SimulationError`] if the case cannot be set up.
 pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, SimulationError> {
+    let finer = case.mesh.elements_per_contact_radius;
     let case = scout_case(case);
     let elements = case.mesh.elements_per_contact_radius;
     let asked = Problem::zone_of(&case)?;
     // Elements at the edge are larger here than in the run: a contact that fits there has to fit here.
     let roomy = Zone { fine_zone: (asked.fine_zone + ROOM / elements as f64).min(LARGEST_FINE_ZONE), ..asked };
-    let problem = Problem::on(&case, Some(roomy))?;
+    let mut problem = Problem::on(&case, Some(roomy))?;
+    // Releases and what follows the first part of a shear have no number of steps in the case.
+    problem.resolution.coarseness = finer as f64 / elements as f64;
     let mut watch = Watch { stop: stop.clone(), ..Watch::default() };
     watch.set_out(&problem);
     let ending = follow(problem, None, &mut |problem| on_cpu(problem), &mut watch);

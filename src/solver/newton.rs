@@ -30,14 +30,20 @@ const TIGHT_LINEAR: f64 = 0.01;
 const UNIT_RESPONSE: f64 = 0.01;
 /// Tangential residuals of points in contact against the friction that the normal force can bear. At mu = 0.3 the tolerance of the merit is the same.
 const TANGENTIAL: f64 = 10.0 / 3.0;
-/// Where points are about to flow, the whole correction may raise the merit although the energy falls along it (the tangent is elastic, the
-/// answer plastic). It is taken then, if the line search found nothing longer than this and the merit does not grow by more than this factor:
-/// the next tangent knows of the flow.
+/// Where points are about to flow, the whole correction may raise the merit although the energy falls along it (the
+/// tangent is elastic, the answer plastic). It is taken then, if the line search found nothing longer than this and the
+/// merit does not grow by more than this factor: the next tangent knows of the flow. Under full stick it is taken
+/// whatever the energy does: the next active set knows of the points that come off.
 const CREEPING: f64 = 0.03;
 const DOWNHILL_MERIT: f64 = 4.0;
 /// At a kink of the merit, where a point at the edge changes its status whatever the step length, no step lowers it, and the iteration would go round in
 /// circles until the step is given up. An iterate so many tolerances away is then taken as it is.
 const KINK: f64 = 3.0;
+
+/// A step that has used up its iterations goes on, up to twice as many, as long as so many of them lowered the merit by
+/// this factor.
+const LAST_ITERATIONS: usize = 3;
+const CONVERGING: f64 = 0.2;
 
 /// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
 const ROUNDING: f64 = 1e-14;
@@ -217,7 +223,8 @@ impl Newton {
         let mut previous = f64::INFINITY;
         let mut highest = 0.0_f64;
         let mut at_kink = false;
-        for iteration in 0..=self.settings.max_iterations {
+        let most = self.settings.max_iterations;
+        for iteration in 0..=2 * most {
             let scale = self.scale();
             // The plate moves with the first linear solve; until then the merit knows of what is missing.
             if at_kink || self.has_converged(case, control) {
@@ -226,7 +233,7 @@ impl Newton {
                 report.times = std::mem::take(&mut self.times);
                 return Ok(Ok(report));
             }
-            if iteration == self.settings.max_iterations {
+            if iteration >= most && !self.is_about_to_converge(&report) || iteration == 2 * most {
                 break;
             }
             let eta = self.forcing(previous).min(if control.normal_force.is_some() { TIGHT_LINEAR } else { 1.0 });
@@ -281,7 +288,13 @@ impl Newton {
                 self.current.merit / self.scale().max(f64::MIN_POSITIVE),
             );
         }
-        Ok(Err(self.exhausted(&mesh, self.settings.max_iterations)))
+        Ok(Err(self.exhausted(&mesh, report.iterations.len())))
+    }
+
+    /// The merit has fallen so much in the last iterations that a few more will do: a step is not given up then.
+    fn is_about_to_converge(&self, report: &StepReport) -> bool {
+        let before = report.iterations.len().checked_sub(LAST_ITERATIONS).map(|i| report.iterations[i].merit);
+        before.is_some_and(|before| self.current.merit < CONVERGING * before * self.scale())
     }
 
     /// Sets the first iterate: the guess if it can be evaluated, the start otherwise.
@@ -487,9 +500,11 @@ impl Newton {
         delta_h: f64,
     ) -> Result<Result<(f64, usize), Outcome>, SolverError> {
         let mut best: Option<f64> = None;
+        let mut best_merit = f64::INFINITY;
         let mut invalid = Outcome::Valid;
         let slope = self.slope(&self.current, control, delta_h);
-        let mut downhill = false;
+        let stick = case.model().friction == Friction::Stick;
+        let mut leap = false;
         for s in STEP_LENGTHS {
             for ((u, u0), d) in self.candidate.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
                 *u = u0 + s * d;
@@ -506,18 +521,19 @@ impl Newton {
             }
             if s == 1.0 && self.candidate.merit < DOWNHILL_MERIT * self.current.merit {
                 let left = self.slope(&self.candidate, control, delta_h) / slope;
-                downhill = left < 1.0 && left > -0.25;
+                leap = stick || reference <= self.current.merit && left < 1.0 && left > -0.25;
             }
-            if best.is_none() || self.candidate.merit < self.best.merit {
-                best = Some(s);
+            let merit = if stick { self.merit_without_releases() } else { self.candidate.merit };
+            if best.is_none() || merit < best_merit {
+                (best, best_merit) = (Some(s), merit);
                 std::mem::swap(&mut self.candidate, &mut self.best);
             }
-            if self.best.merit <= (1.0 - 1e-4 * s) * reference {
+            if best_merit <= (1.0 - 1e-4 * s) * reference {
                 break;
             }
         }
         let Some(mut s) = best else { return Ok(Err(invalid)) };
-        if s <= CREEPING && downhill && reference <= self.current.merit {
+        if s <= CREEPING && leap {
             s = 1.0;
             for ((u, u0), d) in self.best.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
                 *u = u0 + d;
@@ -529,6 +545,22 @@ impl Newton {
         let changed = self.best.rows.iter().zip(&self.current.rows).filter(|(a, b)| a.status != b.status).count();
         std::mem::swap(&mut self.current, &mut self.best);
         Ok(Ok((s, changed)))
+    }
+
+    /// Merit of the candidate without the tangential forces of points that come off in it. Under full stick a point that
+    /// comes off lets go of whatever it held: the merit jumps by it, however short the step, and a line search that
+    /// counts the jump creeps up to it and stays there. No point does so twice in a step (see `land_again`).
+    fn merit_without_releases(&self) -> f64 {
+        let released: f64 = (self.candidate.rows.iter().zip(&self.current.rows).zip(&self.boundary.frictionless))
+            .filter(|((after, before), frictionless)| {
+                before.status == Status::Stick && after.status == Status::Open && !**frictionless
+            })
+            .map(|((after, _), _)| {
+                let across = if after.fixed[1] { 0.0 } else { after.residual[1] };
+                after.residual[0] * after.residual[0] + across * across
+            })
+            .sum();
+        (self.candidate.merit * self.candidate.merit - released).max(0.0).sqrt()
     }
 
     /// Work of the residual forces of a trial on the correction: the slope of the potential energy along it, where there is one.

@@ -86,7 +86,7 @@ mod tests {
             };
             assert_eq!([1.0, 1.039, 0.961, 1.05, 0.95].map(failed), [0, 0, 0, judged, judged], "mu = {friction}");
         }
-        // A profile without the dip is none of a contact with friction.
+        // A profile without the dip does not belong to a contact with friction.
         let flat = against(0.3, WITHOUT_FRICTION, WITH_FRICTION);
         assert!(flat.iter().filter(|check| check.verdict() == Verdict::Fail).count() >= 3);
     }

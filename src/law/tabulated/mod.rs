@@ -229,7 +229,7 @@ impl Tabulated {
 
     /// The case of the table, R = 1 and E = 1.
     fn case(&self) -> Result<Case, String> {
-        Case::parse(&self.case, "case", &[]).map_err(|error| format!("is of a case that is none: {error}"))
+        Case::parse(&self.case, "case", &[]).map_err(|error| format!("holds an invalid case: {error}"))
     }
 
     /// mu.

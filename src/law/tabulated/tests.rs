@@ -114,7 +114,7 @@ fn a_file_is_read_back_and_others_are_refused() {
         ("\"body\": \"plane\"", "\"body\": \"equal pair\"", "its case is against a rigid plane"),
         ("\"asperity-law-table\"", "\"asperity-law-3\"", "its format is \"asperity-law-3\""),
         ("\"levels\"", "\"lewels\"", "is not a tabulated law"),
-        ("friction = 0.3", "friction = -0.3", "of a case that is none"),
+        ("friction = 0.3", "friction = -0.3", "holds an invalid case"),
     ] {
         assert!(text.contains(from), "{from}");
         std::fs::write(&path, text.replacen(from, to, 1)).unwrap();

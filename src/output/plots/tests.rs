@@ -152,7 +152,7 @@ fn odd_histories_do_not_break_the_plots() {
     let folder = tempfile::tempdir().unwrap();
     let out = OutputDirectory::create(folder.path()).unwrap();
     let mut rows = history();
-    // To the left, with a lost contact, a number that is none and a last point in mid-air.
+    // To the left, with a lost contact, a NaN and a last point in mid-air.
     for row in &mut rows {
         (row.delta_t, row.f_t) = (-row.delta_t, -row.f_t);
     }

@@ -28,7 +28,7 @@ impl Drive<'_> {
 
     /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that the residual indentation is sharp.
     pub(super) fn release(&mut self, start: &Start, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
-        let step = start.recovery() / 12.0;
+        let step = self.resolution().release_step(start);
         if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
             observer.note("release: nothing touches, so there is nothing to release");
             return Ok(Ending::Done);
@@ -53,7 +53,7 @@ impl Drive<'_> {
         observer: &mut dyn Observer,
     ) -> Result<Ending, SimulationError> {
         let wanted = share * start.f_n;
-        let step = start.recovery() / 12.0;
+        let step = self.resolution().release_step(start);
         if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
             observer.note("release: nothing touches, so there is nothing to release");
             return Ok(Ending::Done);
