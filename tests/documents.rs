@@ -16,7 +16,7 @@ mod shell;
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity::case::Case;
 use asperity::study::Study;
@@ -112,6 +112,28 @@ fn lines_are_at_most_110_wide_and_the_readme_is_short() {
     for command in ["cargo run --release -- run fixtures/cases/ideal.toml --out out\n", "bash tests/run.sh\n"] {
         assert!(readme.text.contains(command), "{command}");
     }
+}
+
+/// Comments of the source are read in terminals, side by side and in reviews.
+#[test]
+fn comments_are_at_most_100_wide() {
+    let mut folders: Vec<PathBuf> = ["src", "crates", "tests", "benches", "examples", "python/src"].map(PathBuf::from).into();
+    let mut files = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs" || extension == "wgsl") {
+                files += 1;
+                for (number, line) in fs::read_to_string(&path).expect("source").lines().enumerate() {
+                    let comment = line.trim_start().starts_with("//");
+                    assert!(!comment || line.chars().count() <= 100, "{}:{}: {line}", path.display(), number + 1);
+                }
+            }
+        }
+    }
+    assert!(files > 300, "{files} files");
 }
 
 #[test]

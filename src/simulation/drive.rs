@@ -52,8 +52,11 @@ const SLIDING_RATIOS: [f64; 3] = [3.0, 1.0, 0.3];
 const SHALLOW: usize = 3;
 /// After a step that failed the targets are taken in half as long parts, until a step takes no more iterations than this.
 const EASY: usize = 6;
-/// The same after a step under full stick that took more iterations than this: points come off and land in it one by one.
+/// The same after a step under full stick that took more iterations than this, because points come off and land in it
+/// one by one; but not where the normal force is down to a tenth of what it was: what is left there is dragged
+/// along by a few points, and short steps only make it last.
 const SLOW: usize = 12;
+const LOADED: f64 = 0.1;
 /// Targets are taken in 2^2 parts at most.
 const FINEST: u32 = 2;
 
@@ -249,10 +252,13 @@ impl<'a> Drive<'a> {
 
     /// Adapts the length of the next steps to the iterations of the last one.
     fn pace(&mut self, iterations: usize) {
+        let stick = self.problem.model.friction == Friction::Stick;
+        let [last, largest] = self.newton.force_scales();
+        let loaded = last > LOADED * largest;
         let pace = &mut self.place.pace;
-        if iterations <= EASY {
+        if iterations <= EASY || stick && !loaded {
             *pace = pace.saturating_sub(1);
-        } else if iterations > SLOW && self.problem.model.friction == Friction::Stick {
+        } else if stick && iterations > SLOW {
             *pace = (*pace + 1).min(FINEST);
         }
     }
