@@ -38,8 +38,15 @@
 //!
 //! # Features
 //!
-//! All are on by default, for the program. `default-features = false` leaves a library that computes on the CPU; `gpu` adds the kernels for Vulkan, Metal and DX12 and the
-//! largest part of the time to compile, `cli` (with `gpu`) the command line.
+//! All are on by default, because cargo has no defaults of a program alone. A library writes `default-features = false`, which leaves a run on the CPU with its files,
+//! and names what it needs beside that:
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `law` | [`study`] and [`law`](crate::law): grids of cases, fits, tables, the update of a contact, exports |
+//! | `plots` | pictures of runs, with `law` those of studies and laws, and their report |
+//! | `gpu` | Vulkan, Metal and DX12; half of the time to compile everything |
+//! | `cli` | the program, with all of the others |
 //!
 //! # The rooms
 //!
@@ -49,20 +56,23 @@
 //! ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
-#[cfg(feature = "gpu")]
+#[cfg(feature = "cli")]
 pub mod bench;
 pub mod bounded;
 pub mod case;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compute;
+#[cfg(feature = "law")]
 pub mod law;
 pub mod output;
 pub mod processor;
 pub mod session;
 pub mod simulation;
 pub mod solver;
+#[cfg(feature = "law")]
 pub mod study;
+#[cfg(feature = "cli")]
 pub mod verify;
 
 #[doc(inline)]

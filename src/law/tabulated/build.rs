@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::measure::{Measured, Missing, measured};
 use super::spline::{Spline, smooth};
-use super::{Against, BACKBONE, Curves, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, level_of};
+use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, level_of};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
@@ -313,13 +313,4 @@ fn errors(table: &Tabulated, one: &Measured) -> Result<DepthErrors, LawError> {
         f_n_rms: rms[1],
         f_n_max: most[1],
     })
-}
-
-impl Built {
-    /// The levels of the table over h, for a picture.
-    pub(super) fn curve(&self, count: usize) -> Vec<Level> {
-        let curves = Curves::new(&self.table.levels);
-        let (from, to) = (self.table.range.from, self.table.range.to);
-        (0..=count).map(|i| from * (to / from).powf(i as f64 / count as f64)).map(|h| curves.at(h)).collect()
-    }
 }

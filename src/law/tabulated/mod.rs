@@ -6,6 +6,7 @@
 
 mod build;
 mod measure;
+#[cfg(feature = "plots")]
 mod picture;
 pub mod spline;
 
@@ -25,6 +26,7 @@ use crate::case::{self, Case, Friction, Opponent};
 
 pub use build::{Built, build, case_of, depths};
 pub use measure::Missing;
+#[cfg(feature = "plots")]
 pub use picture::picture;
 
 /// The first key of a table, by which it is recognised.
