@@ -56,29 +56,25 @@
 //! ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
-#[cfg(feature = "cli")]
-pub mod bench;
-pub mod bounded;
 pub mod case;
-#[cfg(feature = "cli")]
-pub mod cli;
-pub mod compute;
 #[cfg(feature = "law")]
 pub mod law;
 pub mod output;
-pub mod processor;
 pub mod session;
-pub mod simulation;
-pub mod solver;
 #[cfg(feature = "law")]
 pub mod study;
-#[cfg(feature = "cli")]
-pub mod verify;
+
+#[doc(hidden)]
+pub mod internals;
 
 #[doc(inline)]
-pub use asperity_kernels::{contact, element, lanes, linalg, material, mesh, real};
+pub use asperity_kernels::material;
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
+
+#[cfg(feature = "cli")]
+pub(crate) use internals::{bench, verify};
+pub(crate) use internals::{bounded, compute, contact, element, lanes, linalg, mesh, processor, real, simulation, solver};
 
 /// The Rust of the documents, which runs.
 #[cfg(doctest)]

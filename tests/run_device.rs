@@ -2,8 +2,8 @@
 
 mod device;
 
-use asperity::compute::gpu::Precision;
-use asperity::compute::lost::LOSE_VARIABLE;
+use asperity::internals::compute::gpu::Precision;
+use asperity::internals::compute::lost::LOSE_VARIABLE;
 use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 use std::fs;
 use std::path::Path;

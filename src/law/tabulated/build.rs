@@ -93,6 +93,20 @@ pub fn case_of(case: &Case, elements: usize) -> Case {
     case
 }
 
+/// The study that [`build`] makes a table of, as a study file: [`case_of`] with the depths, over R, as its grid.
+pub fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
+    let radius = case.sphere.radius;
+    let base = toml::Value::String(String::new());
+    let base = toml::Table::try_from(case_of(case, elements)).map_or(base, toml::Value::Table);
+    let depths = depths.iter().map(|h| toml::Value::Float(h * radius)).collect();
+    let mut grid = toml::Table::new();
+    grid.insert("path.0.indentation".to_owned(), toml::Value::Array(depths));
+    let mut study = toml::Table::new();
+    study.insert("base".to_owned(), base);
+    study.insert("grid".to_owned(), toml::Value::Table(grid));
+    study.to_string()
+}
+
 /// Makes the table of the study in `dir`, which has the depths of [`depths`] for `case`.
 ///
 /// # Errors

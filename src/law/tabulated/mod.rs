@@ -24,7 +24,7 @@ use super::model::{Interval, OutOfRange, Parameters};
 use crate::analytical::ElasticSphere;
 use crate::case::{self, Case, Friction, Opponent};
 
-pub use build::{Built, build, case_of, depths};
+pub use build::{Built, build, case_of, depths, study_text};
 pub use measure::Missing;
 #[cfg(feature = "plots")]
 pub use picture::picture;
