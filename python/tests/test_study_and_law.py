@@ -103,7 +103,9 @@ def test_a_law_predicts(law: asperity.Law, case: asperity.Case, done: asperity.R
 def test_a_case_that_goes_back_is_predicted_whole(law: asperity.Law, case: asperity.Case) -> None:
     base = case.to_dict() | {"path": [{"indentation": 0.01}, {"shear": 0.001}, {"shear": -0.001}, {"release": True}]}
     curve = law.predict(base)
-    assert set(curve["segment"]) == {0, 1, 2, 3} and curve["F_T"].min() < 0.0 and curve["F_N"][-1] == 0.0
+    assert set(curve["segment"]) == {0, 1, 2, 3} and curve["F_T"].min() < 0.0
+    # Released to where the force is nothing but rounding.
+    assert abs(curve["F_N"][-1]) < 1e-12 * curve["F_N"].max()
     with pytest.raises(asperity.AsperityError, match="goes on after its first shear"):
         law.predict(base, press=True)
 
@@ -126,7 +128,7 @@ def test_a_table_is_a_law_of_one_material(table: asperity.Law, case: asperity.Ca
         again.formulas()
     with pytest.raises(asperity.CaseError, match="press: is True"):
         again.predict(case, press=True)
-    with pytest.raises(asperity.AsperityError, match="friction"):
+    with pytest.raises(asperity.AsperityError, match="of another material: mu = 0.1"):
         again.predict(case.replace({"contact.friction": 0.1}))
     with pytest.raises(asperity.CaseError, match="elements: is 3. Allowed: 4 to 32"):
         asperity.Law.tabulate(case, elements=3)
