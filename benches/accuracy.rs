@@ -6,11 +6,11 @@
 use std::path::Path;
 
 use asperity::case::Case;
+use asperity::internals::simulation::drive::Ending;
+use asperity::internals::simulation::follow::{follow, on_cpu};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::simulation::scout::scout_case;
 use asperity::output::{ErrorEstimate, Recorder, StepRecord, Summary, SummaryInputs, ripple};
-use asperity::simulation::drive::Ending;
-use asperity::simulation::follow::{follow, on_cpu};
-use asperity::simulation::problem::Problem;
-use asperity::simulation::scout::scout_case;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 

@@ -3,7 +3,7 @@
 //! `cargo bench --bench device` takes minutes; with `-- --quick` or `-- --test` the small one. An empty `MESA_SHADER_CACHE_DIR` shows what
 //! compiling costs on software Vulkan.
 
-use asperity::bench::{BenchError, Device, Options, run, table};
+use asperity::internals::bench::{BenchError, Device, Options, run, table};
 
 fn main() {
     let quick = std::env::args().any(|a| a == "--test" || a == "--quick");

@@ -2,9 +2,9 @@
 
 #![allow(missing_docs)]
 
-use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
-use asperity::mesh::sphere::{SphereSpec, sphere_mesh};
-use asperity::mesh::{Mesh, Prolongation};
+use asperity::internals::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
+use asperity::internals::mesh::sphere::{SphereSpec, sphere_mesh};
+use asperity::internals::mesh::{Mesh, Prolongation};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 // The tests use more of it.

@@ -5,10 +5,10 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::simulation::drive::{Drive, Ending};
+use asperity::internals::simulation::problem::Problem;
 use asperity::output::{Clock, Recorder, Summary, SummaryInputs};
-use asperity::simulation::drive::{Drive, Ending};
-use asperity::simulation::problem::Problem;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 

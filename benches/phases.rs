@@ -7,15 +7,15 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
-use asperity::compute::handle::{CaseHandle, Evaluate};
-use asperity::compute::{Compute, Outcome};
-use asperity::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
-use asperity::simulation::drive::{Drive, Observer, StepView};
-use asperity::simulation::problem::Problem;
-use asperity::solver::Control;
-use asperity::solver::phases::PhaseTimes;
-use asperity::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, right_hand_side};
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::compute::handle::{CaseHandle, Evaluate};
+use asperity::internals::compute::{Compute, Outcome};
+use asperity::internals::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
+use asperity::internals::simulation::drive::{Drive, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::solver::Control;
+use asperity::internals::solver::phases::PhaseTimes;
+use asperity::internals::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, right_hand_side};
 use criterion::{BatchSize, Criterion};
 use processor::Processor;
 

@@ -5,10 +5,10 @@
 
 use std::hint::black_box;
 
-use asperity::bench::input::{laws, material_points, side_by_side};
-use asperity::bench::material::{EightAnswers, map};
+use asperity::internals::bench::input::{laws, material_points, side_by_side};
+use asperity::internals::bench::material::{EightAnswers, map};
+use asperity::internals::real::Real;
 use asperity::material::{Material, deviatoric_tangent, return_mapping};
-use asperity::real::Real;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use processor::Processor;
 

@@ -6,11 +6,11 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::solver::phases::{Phase, PhaseTimes};
 use asperity::output::{Clock, OutsideSteps, TimeByPhase};
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
-use asperity::solver::phases::{Phase, PhaseTimes};
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 

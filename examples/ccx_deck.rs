@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use asperity::case::{Case, Friction, Hold, Segment, ShearTarget};
+use asperity::internals::mesh::Mesh;
+use asperity::internals::mesh::connectivity::FACES;
+use asperity::internals::simulation::problem::Problem;
 use asperity::material::Hardening;
-use asperity::mesh::Mesh;
-use asperity::mesh::connectivity::FACES;
-use asperity::simulation::problem::Problem;
 
 /// Slope of the pressure-overclosure law, in E/R.
 const OVERCLOSURE_SLOPE: f64 = 100.0;

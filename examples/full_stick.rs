@@ -9,11 +9,11 @@ use std::process::ExitCode;
 
 use asperity::analytical::{ElasticSphere, brizmer, predicted_contact_radius};
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
-use asperity::contact::coulomb::Status;
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
-use asperity::simulation::record::StepRecord;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::contact::coulomb::Status;
+use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::simulation::record::StepRecord;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 

@@ -38,37 +38,48 @@
 //!
 //! # Features
 //!
-//! All are on by default, for the program. `default-features = false` leaves a library that computes on the CPU; `gpu` adds the kernels for Vulkan, Metal and DX12 and the
-//! largest part of the time to compile, `cli` (with `gpu`) the command line.
+//! All are on by default, because cargo has no defaults of a program alone. A library writes `default-features = false`, which leaves a run on the CPU with its files,
+//! and names what it needs beside that:
 //!
-//! # The rooms
+//! | feature | adds |
+//! |---|---|
+//! | `law` | [`study`] and [`law`](crate::law): grids of cases, fits, tables, the update of a contact, exports |
+//! | `plots` | pictures of runs, with `law` those of studies and laws, and their report |
+//! | `gpu` | Vulkan, Metal and DX12; the largest part of the time to compile |
+//! | `cli` | the program, with all of the others |
 //!
-//! From the kernels up; each knows only those named before it:
-//! `mesh`, `material`, `element`, `contact` and `linalg` (of the crate `asperity-kernels`, which has no overflow checks in release), `analytical` (closed
-//! forms), `case` (the case file), `compute` (one trait, CPU and GPU behind it), `solver`, `simulation`, `output`, `session` (one run from case to results), `law`, `study`, `verify` (closed-form checks), `bench` (rates), `cli`.
+//! # Units and signs
+//!
+//! Lengths and stresses are in any one consistent system of units, forces in stress times length squared; mm and MPa give N. h is positive when the
+//! sphere is pressed, F_N in compression; F_T is the force that has to be applied along delta_T to move the sphere, so that their signs agree as long as it is sheared one way.
+//! All forces, energies and contact tables are of the whole sphere, although half of it is meshed. Of two equal spheres h and delta_T are the relative
+//! displacements of their equators.
+//!
+//! # What is not here
+//!
+//! Mesh, elements, contact rows, linear algebra, backends, Newton's method and the path's steps lie behind a hidden module and may change with any version.
 //! ARCHITECTURE.md follows one case through them.
 
 pub mod analytical;
-#[cfg(feature = "gpu")]
-pub mod bench;
-pub mod bounded;
 pub mod case;
-#[cfg(feature = "cli")]
-pub mod cli;
-pub mod compute;
+#[cfg(feature = "law")]
 pub mod law;
 pub mod output;
-pub mod processor;
 pub mod session;
-pub mod simulation;
-pub mod solver;
+#[cfg(feature = "law")]
 pub mod study;
-pub mod verify;
+
+#[doc(hidden)]
+pub mod internals;
 
 #[doc(inline)]
-pub use asperity_kernels::{contact, element, lanes, linalg, material, mesh, real};
+pub use asperity_kernels::material;
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
+
+#[cfg(feature = "cli")]
+pub(crate) use internals::{bench, lanes, processor, verify};
+pub(crate) use internals::{bounded, compute, contact, element, linalg, mesh, real, simulation, solver};
 
 /// The Rust of the documents, which runs.
 #[cfg(doctest)]

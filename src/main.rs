@@ -2,7 +2,7 @@
 
 fn main() -> std::process::ExitCode {
     quiet_drivers();
-    asperity::cli::main()
+    asperity::internals::cli::main()
 }
 
 /// Mesa's Vulkan layer that asks the display for its preferred adapter complains on stderr where there is no display. This program has no

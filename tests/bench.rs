@@ -2,7 +2,7 @@
 
 mod device;
 
-use asperity::compute::gpu::Precision;
+use asperity::internals::compute::gpu::Precision;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::process::{Command, Output};

@@ -1,7 +1,7 @@
 //! The case room's estimate of the mesh, and the range of contact radii that it allows, against the meshes themselves.
 
 use asperity::case::{Case, estimated_elements, estimated_memory};
-use asperity::mesh::{self, SphereSpec};
+use asperity::internals::mesh::{self, SphereSpec};
 
 fn case(elements: usize, fine_zone: f64, contact_radius: f64) -> Case {
     let settings = [

@@ -29,13 +29,13 @@ macro_rules! for_every_backend {
         }
         mod gpu_f64 {
             $(#[test] fn $body() {
-                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F64) else { return };
+                let Some(context) = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64) else { return };
                 super::$body::<f64, _>(&super::Gpu(context), &super::Bounds::F64);
             })+
         }
         mod gpu_f32 {
             $(#[test] fn $body() {
-                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F32) else { return };
+                let Some(context) = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F32) else { return };
                 super::$body::<f32, _>(&super::Gpu(context), &super::Bounds::F32);
             })+
         }

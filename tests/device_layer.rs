@@ -2,9 +2,9 @@
 
 mod device;
 
-use asperity::compute::gpu::material::{self, Answers};
-use asperity::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
-use asperity::compute::gpu::{DeviceRequest, GpuContext, GpuError};
+use asperity::internals::compute::gpu::material::{self, Answers};
+use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
+use asperity::internals::compute::gpu::{DeviceRequest, GpuContext, GpuError};
 use asperity::material::{Elasticity, Hardening, Material};
 use device::device;
 use std::process::Command;
@@ -220,7 +220,8 @@ fn without_a_driver_the_cpu_is_chosen_and_gpu_is_one_clear_error() {
     let error = GpuContext::open(DeviceRequest::Gpu).unwrap_err();
     assert_eq!(error, GpuError::NoAdapter);
     assert!(
-        asperity::compute::gpu::report::report(&asperity::compute::gpu::adapters::adapters(), None).contains("No GPU adapter")
+        asperity::internals::compute::gpu::report::report(&asperity::internals::compute::gpu::adapters::adapters(), None)
+            .contains("No GPU adapter")
     );
     println!("child: done");
 }

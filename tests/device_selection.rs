@@ -2,12 +2,12 @@
 
 mod device;
 
-use asperity::compute::gpu::{GpuError, Precision};
-use asperity::compute::select::{DeviceChoice, PrecisionChoice, Selected, select, select_on};
-use asperity::compute::{CaseModel, Compute, ComputeError, ForceRequest, Outcome};
-use asperity::contact::coulomb::Friction;
+use asperity::internals::compute::gpu::{GpuError, Precision};
+use asperity::internals::compute::select::{DeviceChoice, PrecisionChoice, Selected, select, select_on};
+use asperity::internals::compute::{CaseModel, Compute, ComputeError, ForceRequest, Outcome};
+use asperity::internals::contact::coulomb::Friction;
+use asperity::internals::mesh::brick::brick;
 use asperity::material::{Elasticity, Hardening, Material};
-use asperity::mesh::brick::brick;
 use device::device;
 use std::process::Command;
 use std::sync::Arc;

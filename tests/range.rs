@@ -5,10 +5,10 @@
 use std::error::Error;
 
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
-use asperity::simulation::record::StepRecord;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::simulation::record::StepRecord;
 use rayon::prelude::*;
 
 const E: f64 = 200e3;

@@ -13,13 +13,13 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use asperity::case::Case;
-use asperity::compute::Compute;
-use asperity::compute::cpu::Cpu;
-use asperity::compute::gpu::Precision;
+use asperity::internals::compute::Compute;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::compute::gpu::Precision;
+use asperity::internals::simulation::drive::{Drive, Ending};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::simulation::scout::scout;
 use asperity::output::{Clock, OutputDirectory, Position, Progress, ResultWriter, Setting, Summary, read_history};
-use asperity::simulation::drive::{Drive, Ending};
-use asperity::simulation::problem::Problem;
-use asperity::simulation::scout::scout;
 use common::{Scratch, difference, files, program, stderr};
 use rustix::process::{Pid, Signal, kill_process};
 

@@ -64,6 +64,12 @@ cargo fmt --all --check
 begin "cargo clippy --all-targets"
 cargo clippy --all-targets -- -D warnings
 
+# What a library may ask for, where it does not compile wgpu once more.
+for features in "" law plots law,plots; do
+    begin "cargo clippy --no-default-features --features '$features'"
+    cargo clippy --quiet --lib --no-default-features --features "$features" -- -D warnings
+done
+
 begin "cargo doc"
 RUSTDOCFLAGS="-Dwarnings" cargo doc --no-deps
 

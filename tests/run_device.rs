@@ -2,8 +2,8 @@
 
 mod device;
 
-use asperity::compute::gpu::Precision;
-use asperity::compute::lost::LOSE_VARIABLE;
+use asperity::internals::compute::gpu::Precision;
+use asperity::internals::compute::lost::LOSE_VARIABLE;
 use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 use std::fs;
 use std::path::Path;
@@ -134,6 +134,7 @@ fn gap(ours: &[StepRecord], reference: &[StepRecord]) -> f64 {
 }
 
 #[test]
+#[cfg_attr(not(debug_assertions), ignore = "only builds with debug assertions lose a device on demand")]
 fn a_device_lost_on_the_way_costs_no_step() {
     let Some(context) = device::device("a_device_lost_on_the_way_costs_no_step", Precision::F64) else { return };
     let adapter = context.adapter().name.as_str();
@@ -164,6 +165,7 @@ fn a_device_lost_on_the_way_costs_no_step() {
 }
 
 #[test]
+#[cfg_attr(not(debug_assertions), ignore = "only builds with debug assertions lose a device on demand")]
 fn a_device_asked_for_and_lost_ends_the_run_with_one_message() {
     let name = "a_device_asked_for_and_lost_ends_the_run_with_one_message";
     let Some(context) = device::device(name, Precision::F64) else { return };

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::compute::Compute;
-use asperity::compute::cpu::Cpu;
-use asperity::real::Real;
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
-use asperity::simulation::record::StepRecord;
+use asperity::internals::compute::Compute;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::real::Real;
+use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::simulation::record::StepRecord;
 
 #[derive(Default)]
 struct Records(Vec<StepRecord>);

@@ -5,8 +5,8 @@
 
 mod device;
 
-use asperity::compute::gpu::shader_sources::{Binding, Kernel, MATH, Source};
-use asperity::compute::gpu::{DeviceReal, GpuContext};
+use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, MATH, Source};
+use asperity::internals::compute::gpu::{DeviceReal, GpuContext};
 use device::device;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

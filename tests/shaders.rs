@@ -1,8 +1,8 @@
 //! Every shader in both precisions, without a device: it compiles, does not contain what compiles and is wrong, and is what the
 //! kernel list says of it.
 
-use asperity::compute::gpu::lint::{self, Checked, Rule};
-use asperity::compute::gpu::shader_sources::{Assembled, Binding, KERNELS, Kernel, MATH, Precision, Source, TENSOR};
+use asperity::internals::compute::gpu::lint::{self, Checked, Rule};
+use asperity::internals::compute::gpu::shader_sources::{Assembled, Binding, KERNELS, Kernel, MATH, Precision, Source, TENSOR};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;

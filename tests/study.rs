@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
 use asperity::case::Case;
-use asperity::compute::gpu::Precision;
+use asperity::internals::compute::gpu::Precision;
 use asperity::output::{OutputDirectory, Status, Summary, read_contact, read_history};
 use common::{stderr, stdout};
 use tempfile::TempDir;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Output;
 
-use asperity::verify::FAMILIES;
+use asperity::internals::verify::FAMILIES;
 use assert_cmd::Command;
 use serde_json::Value;
 

@@ -6,11 +6,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use asperity::case::{Case, Friction};
-use asperity::simulation::drive::{Ending, Observer, StepView};
-use asperity::simulation::follow::{follow, on_cpu};
-use asperity::simulation::problem::Problem;
-use asperity::simulation::record::StepRecord;
-use asperity::simulation::scout::scout;
+use asperity::internals::simulation::drive::{Ending, Observer, StepView};
+use asperity::internals::simulation::follow::{follow, on_cpu};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::simulation::record::StepRecord;
+use asperity::internals::simulation::scout::scout;
 use serde::Serialize;
 
 use crate::generator::{Against, case_text};

@@ -9,7 +9,7 @@ from ._table import Table
 from .case import Case
 from .errors import AsperityError, CaseError, Interrupted, MissingPackage, NotConverged
 from .fields import Fields, Mesh
-from .law import Contacts, Law
+from .law import Check, Contacts, Law
 
 # The functions come after the modules of the same names: `asperity.run` is the function.
 from .run import Run, run
@@ -19,6 +19,7 @@ __all__ = [
     "AsperityError",
     "Case",
     "CaseError",
+    "Check",
     "Contacts",
     "Fields",
     "Interrupted",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,12 +13,32 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._asperity import NativeContacts, NativeLaw, fit_law
+from ._asperity import NativeContacts, NativeLaw, fit_law, table_law, table_study
 from ._table import Table
 from .case import Case, as_case
+from .errors import Interrupted
 from .study import Study
+from .study import study as run_study
 
-__all__ = ["Contacts", "Law"]
+__all__ = ["Check", "Contacts", "Law"]
+
+
+class Check:
+    """A law beside simulations of a set of paths; made by :meth:`Law.check`.
+
+    ``table`` has a row a path: ``path``, its name; ``F_T_rms``, ``F_T_worst``, ``F_N_rms``, ``F_N_worst``, errors over the greatest size of the force on the path;
+    ``dissipated`` by the simulation and ``law_dissipated``, energies; ``within``, whether the errors are at most 5 % (rms) and 12 %; ``failure``, why a simulation did
+    not come to the end of its path, or nothing. ``paths`` has the columns ``segment``, ``h``, ``delta_T``, ``F_N``, ``F_T``, ``law_F_N``, ``law_F_T`` of each path by its name,
+    in the units of the case.
+    """
+
+    def __init__(self, paths: list[dict[str, Any]]) -> None:
+        self.paths: dict[str, Table] = {path["path"]: Table(path["columns"]) for path in paths}
+        names = [name for name in paths[0] if name != "columns"] if paths else []
+        self.table = Table({name: np.array([path[name] for path in paths]) for name in names})
+
+    def __repr__(self) -> str:
+        return f"<Check: {int(self.table['within'].sum())} of {len(self.paths)} paths within 5 % rms and 12 %>"
 
 
 class Contacts:
@@ -69,8 +90,41 @@ class Law:
         return cls(fit_law(os.fspath(directory), prior))
 
     @classmethod
+    def tabulate(
+        cls,
+        case: Case | Mapping[str, Any] | str | os.PathLike[str],
+        out: str | os.PathLike[str] | None = None,
+        elements: int = 8,
+        device: str = "auto",
+        threads: int | None = None,
+        progress: bool | None = None,
+        *,
+        precision: str = "auto",
+        resume: bool = False,
+        force: bool = False,
+    ) -> Law:
+        """The law of one material, one friction and one opponent (a plane or an equal sphere) as curves over h, from a simulation at each of some ten to twenty
+        depths up to the greatest indentation of the case. A minute or two of processor time.
+
+        :param out: directory for the simulations and ``law.json``; without one nothing is kept but the law.
+        :param elements: elements along the contact radius, at every depth, 4 to 32.
+        :param device: as of :func:`asperity.study`, like ``threads``, ``progress``, ``precision``, ``resume`` and ``force``.
+        :raises CaseError: the case has no law (``friction = "stick"``, a rigid sphere as the opponent), or an argument is refused.
+        :raises Interrupted: as :func:`asperity.study`; with ``resume`` it goes on.
+        """
+        native = as_case(case)._native
+        text = table_study(native, elements)
+        with tempfile.TemporaryDirectory(prefix="asperity-") as scratch:
+            directory = Path(scratch) / "table" if out is None else Path(out)
+            run_study(text, None, directory, device, threads, progress, precision=precision, resume=resume, force=force)
+            law, missing = table_law(os.fspath(directory), native, elements)
+        if missing:
+            warnings.warn(f"the table does without depths that were not reached: {'; '.join(missing)}", stacklevel=2)
+        return cls(law)
+
+    @classmethod
     def load(cls, file: str | os.PathLike[str]) -> Law:
-        """Reads a ``law.json``."""
+        """Reads a ``law.json``, of ``asperity law fit`` or ``law tabulate``."""
         return cls(NativeLaw.load(os.fspath(file)))
 
     @classmethod
@@ -88,15 +142,16 @@ class Law:
         return law
 
     def formulas(self) -> str:
-        """The formulas with their constants."""
+        """The formulas with their constants; a table has none."""
         return self._native.formulas()
 
     def predict(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], press: bool = False) -> Table:
-        """``delta_T``, ``F_T``, ``F_N`` of a case that is pressed once and sheared once at constant indentation, in its units, without simulating its shear.
+        """``segment``, ``h``, ``delta_T``, ``F_N``, ``F_T`` along the whole path of a case, in its units, without simulating any of it: what ``asperity law predict`` prints.
 
         Warns where the case lies outside of what the law was fitted to.
 
-        :param press: take F_N0 and a0 from a simulation of the press, not from the law's formulas.
+        :param press: take F_N0 and a0 from a simulation of the press, not from the law's formulas, and give the shear alone; for a case that is pressed once and
+            sheared once at constant indentation.
         """
         columns, outside = self._native.predict(as_case(case)._native, press)
         if outside:
@@ -116,6 +171,19 @@ class Law:
             return self._native.source(format, native)
         return [Path(file) for file in self._native.export(format, os.fspath(out), native)]
 
+    def check(self, case: Case | Mapping[str, Any] | str | os.PathLike[str] | None = None, elements: int = 6) -> Check:
+        """Simulates eleven paths (presses, shears, reversals, unloadings, oblique ones) with the material, the friction and the greatest indentation of a case, and
+        follows them with :meth:`update`. Some minutes of processor time at 6 elements.
+
+        :param case: for a table by default its own material, friction and greatest indentation.
+        :param elements: elements along the contact radius of the simulations, 4 to 32.
+        :raises Interrupted: a :class:`KeyboardInterrupt`; of the paths nothing is kept.
+        """
+        paths, raised = self._native.check(None if case is None else as_case(case)._native, elements)
+        if raised is not None:
+            raise Interrupted("interrupted; a check cannot go on") if isinstance(raised, KeyboardInterrupt) else raised
+        return Check(paths)
+
     def contacts(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], number: int = 1) -> Contacts:
         """``number`` contacts of a case's sphere, material and friction, before first touch."""
         return Contacts(self._native.contacts(as_case(case)._native, number))
@@ -133,5 +201,8 @@ class Law:
         return Table(state._native.update(depth, increment))
 
     def __repr__(self) -> str:
-        provenance = self.to_dict()["provenance"]
+        law = self.to_dict()
+        if "provenance" not in law:
+            return f"<Law: a table of {len(law['levels'])} depths>"
+        provenance = law["provenance"]
         return f"<Law: fitted to {provenance['cases']} cases of {provenance['materials']} materials>"

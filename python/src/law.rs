@@ -1,26 +1,34 @@
 //! Laws, and contacts that follow them.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
+use asperity::Canceller;
+use asperity::law::check::{Checked, check_until};
+use asperity::law::contact::path::PathPoint;
 use asperity::law::contact::{ContactParameters, ContactState};
+use asperity::law::data::Point;
 use asperity::law::export::{Language, law_files, law_source};
-use asperity::law::predict::{NormalSource, predict};
+use asperity::law::model::OutOfRange;
+use asperity::law::predict::{NormalSource, Prediction, predict};
 use asperity::law::prior::{Prior, built_in};
-use asperity::law::variables::Body;
+use asperity::law::tabulated::{build, depths, study_text};
 use asperity::law::{Law, LawError, LawFile, fit};
-use asperity::output::write_atomically;
+use asperity::output::{StepRecord, write_atomically};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList};
 use rayon::prelude::*;
 
 use crate::case::NativeCase;
 use crate::errors::{failed, refused};
+use crate::wait::wait;
 
-/// A fitted law.
+/// A law of either kind.
 #[pyclass(name = "NativeLaw", frozen)]
 pub struct NativeLaw {
-    law: Law,
+    law: LawFile,
 }
 
 /// Fits a law to the study in a directory, and writes `law.json` there.
@@ -31,7 +39,28 @@ pub fn fit_law(py: Python<'_>, dir: PathBuf, prior: &str) -> PyResult<NativeLaw>
         law.write(&dir.join("law.json"))?;
         Ok(law)
     });
-    law.map(|law| NativeLaw { law }).map_err(failed)
+    law.map(NativeLaw::formulas_of).map_err(failed)
+}
+
+/// The study file of a table of a case's material and friction, up to its depth.
+#[pyfunction]
+pub fn table_study(case: &NativeCase, elements: usize) -> PyResult<String> {
+    check_elements(elements)?;
+    Ok(study_text(&case.case, elements, &depths(&case.case).map_err(refused)?))
+}
+
+/// Makes the table of that study, which lies in a directory, and writes `law.json` there; and the depths that were not reached, with the reasons.
+#[pyfunction]
+pub fn table_law(dir: PathBuf, case: &NativeCase, elements: usize) -> PyResult<(NativeLaw, Vec<String>)> {
+    let built = build(&dir, &case.case, elements).map_err(failed)?;
+    let missing = built.missing.iter().map(|missing| format!("{} ended with: {}", missing.id, missing.reason)).collect();
+    let law = LawFile::Table(Box::new(built.table));
+    law.write(&dir.join("law.json")).map_err(failed)?;
+    Ok((NativeLaw { law }, missing))
+}
+
+fn check_elements(elements: usize) -> PyResult<()> {
+    if (4..=32).contains(&elements) { Ok(()) } else { Err(refused(format!("elements: is {elements}. Allowed: 4 to 32"))) }
 }
 
 #[pymethods]
@@ -39,13 +68,13 @@ impl NativeLaw {
     /// Reads a `law.json`.
     #[staticmethod]
     fn load(file: PathBuf) -> PyResult<Self> {
-        Law::read(&file).map(|law| Self { law }).map_err(failed)
+        LawFile::read(&file).map(|law| Self { law }).map_err(failed)
     }
 
     /// The law that comes with the program.
     #[staticmethod]
     fn built_in() -> PyResult<Self> {
-        built_in().map(|law| Self { law }).map_err(failed)
+        built_in().map(Self::formulas_of).map_err(failed)
     }
 
     /// Writes a `law.json`.
@@ -55,36 +84,73 @@ impl NativeLaw {
 
     /// The text of `law.json`.
     fn to_json(&self) -> PyResult<String> {
-        serde_json::to_string(&self.law).map_err(failed)
+        match &self.law {
+            LawFile::Formulas(law) => serde_json::to_string(law),
+            LawFile::Table(table) => serde_json::to_string(table),
+        }
+        .map_err(failed)
     }
 
-    /// The formulas with their constants, as `law fit` prints them.
-    fn formulas(&self) -> String {
-        self.law.formulas()
+    /// The formulas with their constants, as `law fit` prints them; a table has none.
+    fn formulas(&self) -> PyResult<String> {
+        match &self.law {
+            LawFile::Formulas(law) => Ok(law.formulas()),
+            LawFile::Table(_) => Err(failed("the law is a table of one material, which has no formulas. Fit a law to a study")),
+        }
     }
 
-    /// delta_T, F_T, F_N of a case, and what of it lies outside of the law's range.
+    /// segment, h, delta_T, F_N, F_T along the path of a case, and what of it lies outside of the law's range. With `press` one shear of a simulated press.
     fn predict<'py>(&self, py: Python<'py>, case: &NativeCase, press: bool) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
-        let source = if press { NormalSource::Press } else { NormalSource::Formulas };
-        let prediction = py.detach(|| predict(&self.law, &case.case, source)).map_err(failed)?;
+        let case = &case.case;
+        let (points, outside) = py.detach(|| if press { self.pressed(case) } else { self.law.follow(case).map_err(failed) })?;
         let columns = PyDict::new(py);
-        let column = |of: fn(&asperity::law::data::Point) -> f64| PyArray1::from_iter(py, prediction.curve.iter().map(of));
+        let column = |of: fn(&PathPoint) -> f64| PyArray1::from_iter(py, points.iter().map(of));
+        columns.set_item("segment", PyArray1::from_iter(py, points.iter().map(|point| point.segment as i64)))?;
+        columns.set_item("h", column(|point| point.h))?;
         columns.set_item("delta_T", column(|point| point.delta_t))?;
-        columns.set_item("F_T", column(|point| point.f_t))?;
         columns.set_item("F_N", column(|point| point.f_n))?;
-        Ok((columns, prediction.out_of_range.iter().map(ToString::to_string).collect()))
+        columns.set_item("F_T", column(|point| point.f_t))?;
+        Ok((columns, outside.iter().map(ToString::to_string).collect()))
+    }
+
+    /// Simulates the paths of `law check` for the material, the friction and the depth of a case (without one, of the table) and follows them with the law: a
+    /// dictionary a path; and the exception that interrupted it.
+    #[pyo3(signature = (case, elements))]
+    fn check<'py>(
+        &self,
+        py: Python<'py>,
+        case: Option<&NativeCase>,
+        elements: usize,
+    ) -> PyResult<(Bound<'py, PyList>, Option<PyErr>)> {
+        check_elements(elements)?;
+        let case = match (case, &self.law) {
+            (Some(case), _) => case.case.clone(),
+            (None, LawFile::Table(table)) => table.deepest_case().map_err(failed)?,
+            (None, LawFile::Formulas(_)) => {
+                return Err(refused("case: is missing, and the law is for all materials. Allowed: the case to check it for"));
+            }
+        };
+        let stop = Arc::new(AtomicBool::new(false));
+        let canceller = Canceller::on_signal(stop.clone());
+        let work = |news| {
+            let _news: std::sync::mpsc::Sender<_> = news;
+            check_until(&self.law, &case, elements, &stop)
+        };
+        let (checked, raised) = wait(py, None, &canceller, work)?;
+        let paths = checked.map_err(failed)?.iter().map(|one| path(py, one)).collect::<PyResult<Vec<_>>>()?;
+        Ok((PyList::new(py, paths)?, raised))
     }
 
     /// The law as source; for C of the material and the friction of a case.
     #[pyo3(signature = (format, case=None))]
     fn source(&self, format: &str, case: Option<&NativeCase>) -> PyResult<String> {
-        law_source(&self.file(), language(format)?, case.map(|case| &case.case)).map_err(failed)
+        law_source(&self.law, language(format)?, case.map(|case| &case.case)).map_err(failed)
     }
 
     /// The law as source with its test vectors in a directory.
     #[pyo3(signature = (format, dir, case=None))]
     fn export(&self, format: &str, dir: PathBuf, case: Option<&NativeCase>) -> PyResult<Vec<PathBuf>> {
-        let files = law_files(&self.file(), language(format)?, case.map(|case| &case.case)).map_err(failed)?;
+        let files = law_files(&self.law, language(format)?, case.map(|case| &case.case)).map_err(failed)?;
         std::fs::create_dir_all(&dir)?;
         let mut written = Vec::new();
         for file in files {
@@ -97,24 +163,51 @@ impl NativeLaw {
 
     /// `number` contacts of a case's sphere, before first touch.
     fn contacts(&self, case: &NativeCase, number: usize) -> PyResult<Contacts> {
-        let friction = match case.case.contact.friction {
-            asperity::case::Friction::Coefficient(mu) => mu,
-            asperity::case::Friction::Stick => {
-                return Err(failed(
-                    "the case has friction = \"stick\", and the law describes slip. Give contact.friction a number",
-                ));
-            }
-        };
-        let body = Body::from_case(&case.case).map_err(refused)?;
-        let parameters = ContactParameters::new(&self.law, &body, friction).map_err(failed)?;
+        let parameters = self.law.contact_parameters(&case.case).map_err(failed)?;
         Ok(Contacts { parameters: Box::new(parameters), states: vec![ContactState::default(); number] })
     }
 }
 
 impl NativeLaw {
-    fn file(&self) -> LawFile {
-        LawFile::Formulas(Box::new(self.law.clone()))
+    fn formulas_of(law: Law) -> Self {
+        Self { law: LawFile::Formulas(Box::new(law)) }
     }
+
+    fn pressed(&self, case: &asperity::Case) -> PyResult<(Vec<PathPoint>, Vec<OutOfRange>)> {
+        let LawFile::Formulas(law) = &self.law else {
+            return Err(refused("press: is True, and the law is a table, which has F_N0 and a0. Allowed: False"));
+        };
+        let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press).map_err(failed)?;
+        let point = |p: &Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };
+        Ok((curve.iter().map(point).collect(), out_of_range))
+    }
+}
+
+/// One checked path for Python.
+fn path<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>> {
+    let answer = PyDict::new(py);
+    let column = |of: fn(&StepRecord) -> f64| PyArray1::from_iter(py, checked.rows.iter().map(of));
+    let law = |i: usize| PyArray1::from_iter(py, checked.law.iter().map(|forces| forces[i]));
+    let columns = PyDict::new(py);
+    columns.set_item("segment", PyArray1::from_iter(py, checked.rows.iter().map(|row| row.segment as i64)))?;
+    columns.set_item("h", column(|row| row.h))?;
+    columns.set_item("delta_T", column(|row| row.delta_t))?;
+    columns.set_item("F_N", column(|row| row.f_n))?;
+    columns.set_item("F_T", column(|row| row.f_t))?;
+    columns.set_item("law_F_N", law(0))?;
+    columns.set_item("law_F_T", law(1))?;
+    let [tangential, normal] = checked.errors();
+    answer.set_item("path", checked.name)?;
+    answer.set_item("columns", columns)?;
+    answer.set_item("F_T_rms", tangential.rms)?;
+    answer.set_item("F_T_worst", tangential.worst)?;
+    answer.set_item("F_N_rms", normal.rms)?;
+    answer.set_item("F_N_worst", normal.worst)?;
+    answer.set_item("dissipated", checked.dissipated[0])?;
+    answer.set_item("law_dissipated", checked.dissipated[1])?;
+    answer.set_item("within", tangential.within() && normal.within())?;
+    answer.set_item("failure", checked.failure.as_deref().unwrap_or_default())?;
+    Ok(answer)
 }
 
 fn language(word: &str) -> PyResult<Language> {

@@ -16,7 +16,7 @@ mod _asperity {
     #[pymodule_export]
     use super::case::NativeCase;
     #[pymodule_export]
-    use super::law::{Contacts, NativeLaw, fit_law};
+    use super::law::{Contacts, NativeLaw, fit_law, table_law, table_study};
     #[pymodule_export]
     use super::results::{history, resolved_case};
     #[pymodule_export]
@@ -26,7 +26,7 @@ mod _asperity {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         // Compiled for AVX2: on an older processor the first run would die of an illegal instruction.
-        asperity::processor::check().map_err(|error| PyImportError::new_err(error.to_string()))?;
+        asperity::internals::processor::check().map_err(|error| PyImportError::new_err(error.to_string()))?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

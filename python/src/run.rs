@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use asperity::compute::select::{DeviceChoice, PrecisionChoice};
+use asperity::session::{DeviceChoice, PrecisionChoice};
 use asperity::study::{Shard, Study, StudyError, StudyProgress};
 use asperity::{Canceller, Earlier, Options, SessionError, Simulation};
 use pyo3::prelude::*;

@@ -21,7 +21,7 @@ command -v python3 >/dev/null || skip "there is no python3"
 python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' || skip "$(python3 --version) is older than 3.10"
 python3 -m venv "$place/venv" 2>"$place/log" || skip "python3 -m venv fails: $(tail -1 "$place/log")"
 pip() { timeout 300 "$python" -m pip --disable-pip-version-check --quiet "$@"; }
-pip install "maturin>=1.9,<2" numpy pytest matplotlib pandas meshio 2>"$place/log" || skip "pip cannot install: $(tail -1 "$place/log")"
+pip install "maturin>=1.9,<2" numpy pytest matplotlib pandas meshio nbclient ipykernel 2>"$place/log" || skip "pip cannot install: $(tail -1 "$place/log")"
 
 arguments="--profile dev --no-default-features"
 [ "${ASPERITY_REQUIRE_PYTHON:-0}" != 1 ] || arguments="--profile dev"
@@ -31,4 +31,14 @@ timeout 3600 "$python" -m pip wheel --quiet --disable-pip-version-check --no-bui
 pip install --no-index --no-deps "$place"/asperity-*.whl
 # Not from python/, where the sources would be imported.
 cd "$place"
+
+# What the page of the documents says to a newcomer: an environment with nothing but the wheel and what it asks for, and one block of the page.
+python3 -m venv newcomer
+wheel=$(ls asperity-*.whl)
+timeout 300 newcomer/bin/python -m pip install --quiet --disable-pip-version-check "./$wheel[plot]"
+rm -f forces.png
+awk '/^```python$/ { inside = 1; next } /^```$/ && inside { exit } inside' ../../docs/python.md >block.py
+MPLBACKEND=agg newcomer/bin/python block.py
+[ -s forces.png ] || { echo "the first block of docs/python.md has drawn no forces.png" >&2; exit 1; }
+
 exec venv/bin/python -m pytest -q --rootdir ../../python -p no:cacheprovider ../../python/tests

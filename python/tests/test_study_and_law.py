@@ -91,12 +91,64 @@ def test_a_law_needs_enough_cases(study: asperity.Study) -> None:
 
 def test_a_law_predicts(law: asperity.Law, case: asperity.Case, done: asperity.Run) -> None:
     curve = law.predict(case)
-    assert list(curve) == ["delta_T", "F_T", "F_N"] and curve["F_T"][0] == 0.0
+    assert list(curve) == ["segment", "h", "delta_T", "F_N", "F_T"] and curve["F_T"][0] == 0.0
+    assert set(curve["segment"]) == {0, 1}
     assert curve["F_T"].max() == pytest.approx(done.summary["F_T_max"], rel=0.12)
     with pytest.warns(UserWarning, match="lies outside of what the law was fitted to"):
         law.predict(case.replace({"contact.friction": 0.9}))
     with pytest.raises(asperity.AsperityError, match='the case has friction = "stick"'):
         law.predict(case.replace({"contact.friction": "stick", "path.1.shear": 0.001}))
+
+
+def test_a_case_that_goes_back_is_predicted_whole(law: asperity.Law, case: asperity.Case) -> None:
+    base = case.to_dict() | {"path": [{"indentation": 0.01}, {"shear": 0.001}, {"shear": -0.001}, {"release": True}]}
+    curve = law.predict(base)
+    assert set(curve["segment"]) == {0, 1, 2, 3} and curve["F_T"].min() < 0.0
+    # Released to where the force is nothing but rounding.
+    assert abs(curve["F_N"][-1]) < 1e-12 * curve["F_N"].max()
+    with pytest.raises(asperity.AsperityError, match="goes on after its first shear"):
+        law.predict(base, press=True)
+
+
+@pytest.fixture(scope="module")
+def table(case: asperity.Case, tmp_path_factory: pytest.TempPathFactory) -> asperity.Law:
+    return asperity.Law.tabulate(case, out=tmp_path_factory.mktemp("laws") / "table", elements=4)
+
+
+def test_a_table_is_a_law_of_one_material(table: asperity.Law, case: asperity.Case, done: asperity.Run, tmp_path: Path) -> None:
+    table.save(tmp_path / "law.json")
+    again = asperity.Law.load(tmp_path / "law.json")
+    assert again.to_dict() == table.to_dict() and "a table of" in repr(again)
+    curve = again.predict(case)
+    # The same mesh: what is left is the table's interpolation.
+    assert curve["F_T"].max() == pytest.approx(done.summary["F_T_max"], rel=0.03)
+    assert curve["F_N"].max() == pytest.approx(done.summary["F_N0"], rel=0.02)
+    assert "asperity_" in again.export("c", case=case)
+    with pytest.raises(asperity.AsperityError, match="no formulas"):
+        again.formulas()
+    with pytest.raises(asperity.CaseError, match="press: is True"):
+        again.predict(case, press=True)
+    with pytest.raises(asperity.AsperityError, match="of another material: mu = 0.1"):
+        again.predict(case.replace({"contact.friction": 0.1}))
+    with pytest.raises(asperity.CaseError, match="elements: is 3. Allowed: 4 to 32"):
+        asperity.Law.tabulate(case, elements=3)
+    with pytest.raises(asperity.CaseError, match='friction = "stick"'):
+        asperity.Law.tabulate(case.replace({"contact.friction": "stick", "path.1.shear": 0.001}))
+
+
+def test_a_law_is_checked_path_by_path(table: asperity.Law, law: asperity.Law) -> None:
+    check = table.check(elements=4)
+    assert check.table.rows == len(check.paths) == 11 and not any(check.table["failure"])
+    worst = check.table["F_N_worst"]
+    for row, name in enumerate(check.table["path"]):
+        path = check.paths[name]
+        greatest = np.abs(path["F_N"]).max()
+        assert worst[row] == pytest.approx(np.abs(path["law_F_N"] - path["F_N"]).max() / greatest, rel=1e-12)
+    # The press, its release and the press after it are what a table knows best.
+    assert check.table["within"][0] and worst[0] < 0.05
+    assert f"of {len(check.paths)} paths within" in repr(check)
+    with pytest.raises(asperity.CaseError, match="case: is missing"):
+        law.check()
 
 
 def test_an_export_is_the_programs(law: asperity.Law, case: asperity.Case, tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
 pub use hardening::Hardening;
 pub use mistakes::mistakes;
 pub use path::{Hold, Segment, ShearTarget};
+pub(crate) use read::CONTACT_RADII;
 pub use reader::{Field, Reader};
 pub use schema::{case_schema, study_schema};
 pub use starter::starter_case;

@@ -16,7 +16,7 @@ const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
 /// should not be a large part of it.
 const SMALLEST_OPPONENT: f64 = 0.05;
 /// Smallest and largest a/R that the sphere is meshed for.
-const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
+pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
 
 impl Case {
     /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the result.

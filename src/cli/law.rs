@@ -15,7 +15,7 @@ use super::law_check::{CheckArgs, check_law};
 use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print, print_json};
 use crate::case::Case;
-use crate::law::contact::path::{PathPoint, follow};
+use crate::law::contact::path::PathPoint;
 use crate::law::export::{Language, law_files, law_source};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
@@ -188,8 +188,7 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
     let in_case = |source: LawError| CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) };
-    let (points, out_of_range) =
-        if args.press { pressed(&law, &case, &args.law) } else { followed(&law, &case) }.map_err(in_case)?;
+    let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { law.follow(&case) }.map_err(in_case)?;
     warn_out_of_range(Path::new(&input.name), &out_of_range);
     if args.json {
         print_json(&as_json(&points, &out_of_range))?;
@@ -218,14 +217,6 @@ fn as_json(points: &[PathPoint], out_of_range: &[OutOfRange]) -> Value {
         },
         "out_of_range": outside.collect::<Vec<_>>(),
     })
-}
-
-/// The whole path with the contact update, and what of its deepest contact is out of the law's range.
-fn followed(law: &LawFile, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
-    let points = follow(&law.contact_parameters(case)?, &case.path);
-    let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
-    let out_of_range = if deepest > 0.0 { law.out_of_range(case, deepest)? } else { Vec::new() };
-    Ok((points, out_of_range))
 }
 
 /// One shear from a simulated press.

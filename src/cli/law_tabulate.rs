@@ -12,7 +12,7 @@ use super::study::{compute, options};
 use super::{CliError, Outcome, print};
 use crate::case::Case;
 use crate::law::LawError;
-use crate::law::tabulated::{Built, build, case_of, depths, picture};
+use crate::law::tabulated::{Built, build, depths, picture, study_text};
 use crate::study::{Options, Study};
 
 /// The arguments of `law tabulate`.
@@ -75,20 +75,6 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     picture(&built)?.write(&drawn)?;
     print(&format!("{}\nlaw in {}, picture in {}\n", summary(&built), law.display(), drawn.display()))?;
     Ok(if built.missing.is_empty() { Outcome::Done } else { Outcome::CasesFailed })
-}
-
-/// The study: the case with one press and one shear, and the depths as its grid.
-fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
-    let radius = case.sphere.radius;
-    let base = toml::Value::String(String::new());
-    let base = toml::Table::try_from(case_of(case, elements)).map_or(base, toml::Value::Table);
-    let depths = depths.iter().map(|h| toml::Value::Float(h * radius)).collect();
-    let mut grid = toml::Table::new();
-    grid.insert("path.0.indentation".to_owned(), toml::Value::Array(depths));
-    let mut study = toml::Table::new();
-    study.insert("base".to_owned(), base);
-    study.insert("grid".to_owned(), toml::Value::Table(grid));
-    study.to_string()
 }
 
 /// What the command prints.

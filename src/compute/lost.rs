@@ -8,7 +8,7 @@ use super::{
     TangentRequest,
 };
 
-/// The environment variable of the hook, for tests alone: a number N of calls that commit (of one case: N accepted steps), after which
+/// The environment variable of the hook, which only builds with debug assertions look at, those of the tests: a number N of calls that commit (of one case: N accepted steps), after which
 /// the device is given up as a driver reset would. Not set, or no number: nothing is hooked in.
 pub const LOSE_VARIABLE: &str = "ASPERITY_TEST_LOSE_DEVICE_AFTER";
 
@@ -21,6 +21,9 @@ struct LostAfter {
 
 /// The backend as it is, or with [`LOSE_VARIABLE`] one whose device will be lost.
 pub fn hooked(backend: Box<dyn Compute>, context: Arc<GpuContext>) -> Box<dyn Compute> {
+    if !cfg!(debug_assertions) {
+        return backend;
+    }
     match std::env::var(LOSE_VARIABLE).ok().and_then(|text| text.parse().ok()) {
         None => backend,
         Some(commits) => {

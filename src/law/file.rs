@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::contact::ContactParameters;
+use super::contact::path::{PathPoint, follow};
 use super::json;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
 use super::predict::over_a_plane;
@@ -54,6 +55,29 @@ impl LawFile {
                 table.covers(case)?;
                 table.contact_parameters(case.sphere.radius, case.material.youngs_modulus)
             }
+        }
+    }
+
+    /// Indentation, displacement and forces along the whole path of a case, in its units, without simulating any of it; and what of its deepest contact
+    /// lies outside of the law's range.
+    ///
+    /// # Errors
+    /// Those of [`LawFile::contact_parameters`].
+    pub fn follow(&self, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
+        let points = follow(&self.contact_parameters(case)?, &case.path);
+        let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
+        let out_of_range = if deepest > 0.0 { self.out_of_range(case, deepest)? } else { Vec::new() };
+        Ok((points, out_of_range))
+    }
+
+    /// Writes either kind.
+    ///
+    /// # Errors
+    /// [`LawError`] with what the system says.
+    pub fn write(&self, path: &Path) -> Result<(), LawError> {
+        match self {
+            Self::Formulas(law) => law.write(path),
+            Self::Table(table) => table.write(path),
         }
     }
 

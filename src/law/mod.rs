@@ -16,6 +16,7 @@ pub mod fit;
 pub mod forms;
 pub mod model;
 pub mod normal;
+#[cfg(feature = "plots")]
 pub mod plots;
 pub mod predict;
 pub mod prior;

@@ -2,7 +2,7 @@
 
 use super::atomic::draft_of;
 use super::lock::LOCK_NAME;
-use super::plots::RUN_PICTURES;
+use super::tables::RUN_PICTURES;
 use super::{OutputError, write_atomically};
 use crate::bounded;
 use std::fs;

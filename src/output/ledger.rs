@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::plots::Tables;
+use super::tables::Tables;
 use super::{OutsideSteps, StepRecord};
 use crate::simulation::scout::Scout;
 use crate::simulation::zone::Zone;

@@ -5,6 +5,7 @@
 //! beside its place and moved there when it is whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job
 //! keeps what it computed.
 
+#[cfg(feature = "plots")]
 pub mod plots;
 
 mod atomic;
@@ -26,6 +27,7 @@ mod report;
 mod results;
 mod run_log;
 mod summary;
+mod tables;
 mod time_by_phase;
 mod units;
 mod vtu;
@@ -42,8 +44,11 @@ pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, history_columns, read_history};
 pub use lock::{DirectoryLock, LOCK_NAME};
 pub use path_share::PathShare;
+#[cfg(feature = "plots")]
 pub use plots::{Picture, PlotInputs, write_plots};
-pub use progress::{BarProgress, PlainProgress, Position, Progress, SilentProgress, in_words, last_line, progress};
+#[cfg(feature = "bars")]
+pub use progress::BarProgress;
+pub use progress::{PlainProgress, Position, Progress, SilentProgress, in_words, last_line, progress};
 pub use recorder::Recorder;
 pub use results::{ResultWriter, Setting};
 pub use run_log::LoggedProgress;

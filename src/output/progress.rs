@@ -1,6 +1,7 @@
 //! How far the run is: a bar on a terminal, plain lines elsewhere, nothing with `-q`. All of it on stderr.
 
 use super::Status;
+#[cfg(feature = "bars")]
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -74,10 +75,20 @@ pub fn progress(quiet: bool) -> Box<dyn Progress> {
     if quiet {
         Box::new(SilentProgress)
     } else if io::stderr().is_terminal() {
-        Box::new(BarProgress::new())
+        on_a_terminal()
     } else {
         Box::new(PlainProgress::new(io::stderr(), Duration::from_secs(2)))
     }
+}
+
+#[cfg(feature = "bars")]
+fn on_a_terminal() -> Box<dyn Progress> {
+    Box::new(BarProgress::new())
+}
+
+#[cfg(not(feature = "bars"))]
+fn on_a_terminal() -> Box<dyn Progress> {
+    Box::new(PlainProgress::new(io::stderr(), Duration::from_secs(2)))
 }
 
 /// Says nothing.
@@ -92,14 +103,17 @@ impl Progress for SilentProgress {
 
 /// A bar that is redrawn in place, with the time that is left.
 #[derive(Debug)]
+#[cfg(feature = "bars")]
 pub struct BarProgress {
     bar: ProgressBar,
     remaining: Remaining,
 }
 
 /// The bar counts in these parts of the path.
+#[cfg(feature = "bars")]
 const BAR_PARTS: u64 = 1000;
 
+#[cfg(feature = "bars")]
 impl BarProgress {
     /// A bar at zero on stderr.
     pub fn new() -> Self {
@@ -116,12 +130,14 @@ impl BarProgress {
     }
 }
 
+#[cfg(feature = "bars")]
 impl Default for BarProgress {
     fn default() -> Self {
         Self::new()
     }
 }
 
+#[cfg(feature = "bars")]
 impl Progress for BarProgress {
     fn step(&mut self, position: &Position) {
         let left = self.remaining.after(position.fraction);
@@ -238,6 +254,7 @@ mod tests {
         plain.finish("done");
     }
 
+    #[cfg(feature = "bars")]
     #[test]
     fn the_bar_follows_the_fraction() {
         let mut bar = BarProgress::on(ProgressDrawTarget::hidden());

@@ -11,8 +11,8 @@ use super::finite::{check_saved, check_summary};
 use super::ledger::Ledger;
 use super::path_share::PathShare;
 use super::{
-    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, PlotInputs, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields, write_plots,
+    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, Position, Progress, Status, StepRecord,
+    Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields,
 };
 use crate::case::{Case, Fields, Segment};
 use crate::compute::{ComputeError, Description};
@@ -46,7 +46,10 @@ pub struct ResultWriter {
     fields: Fields,
     /// Write the contact table at the end of each segment though no fields are written.
     contact_tables: bool,
-    plots: Option<PlotInputs>,
+    /// Keep what the pictures show, and draw them at the end where this build can.
+    plots: bool,
+    #[cfg(feature = "plots")]
+    plot_inputs: super::PlotInputs,
     inputs: SummaryInputs,
     setting: Setting,
     clock: Clock,
@@ -109,7 +112,9 @@ impl ResultWriter {
             units: Units::of(case),
             fields: case.output.fields,
             contact_tables: false,
-            plots: case.output.plots.then(|| PlotInputs::of(case)),
+            plots: case.output.plots,
+            #[cfg(feature = "plots")]
+            plot_inputs: super::PlotInputs::of(case),
             inputs: SummaryInputs::of(case),
             began_on: setting.computed_on.clone(),
             setting,
@@ -184,6 +189,20 @@ impl ResultWriter {
         self.ledger.rows.len()
     }
 
+    #[cfg(feature = "plots")]
+    fn draw(&self) -> Result<(), OutputError> {
+        if self.plots {
+            super::write_plots(&self.out, &self.ledger.rows, &self.ledger.tables, &self.plot_inputs)?;
+        }
+        Ok(())
+    }
+
+    /// Contact tables and history are there for `asperity plot`, which draws the same pictures.
+    #[cfg(not(feature = "plots"))]
+    fn draw(&self) -> Result<(), OutputError> {
+        Ok(())
+    }
+
     /// Draws the plots and writes the summary of a run that ended as `status` for the reason `message`. The summary is written even if a plot
     /// fails, whose error is then returned. Of a run that has ended for good the checkpoint is removed.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
@@ -191,10 +210,7 @@ impl ResultWriter {
         self.progress.finish(&last_line(status, self.ledger.rows.len()));
         self.ledger.messages.extend(message.map(str::to_owned));
         let begun = Instant::now();
-        let plots = match &self.plots {
-            Some(inputs) => write_plots(&self.out, &self.ledger.rows, &self.ledger.tables, inputs).map(drop),
-            None => Ok(()),
-        };
+        let plots = self.draw();
         let mut status = if self.failed { Status::Failed } else { status };
         if let Err(error) = &plots {
             self.ledger.messages.push(error.to_string());
@@ -327,7 +343,7 @@ impl Observer for ResultWriter {
             write_contact(&self.out.contact(view.record.step), &contact)?;
             self.ledger.saved.push(view.record.step);
         }
-        if self.plots.is_some() {
+        if self.plots {
             self.ledger.tables.add(&self.ledger.rows, contact);
         }
         self.ledger.outside.output += begun.elapsed().as_secs_f64();

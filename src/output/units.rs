@@ -1,13 +1,10 @@
 //! From the scaled results of the simulation (lengths by R, stresses by E, the meshed half) to the user's units and the whole sphere.
 
 use super::{ContactPoint, ContactStatus, Half, StepRecord};
-use crate::analytical::ElasticSphere;
-use crate::analytical::olsson_larsson::Hardening;
 use crate::case::{self, Case, Segment};
 use crate::contact::coulomb::Status;
 use crate::simulation::record;
 
-use super::plots::PlotInputs;
 use super::summary::SummaryInputs;
 
 /// The numbers by which everything is scaled.
@@ -101,7 +98,7 @@ impl From<Status> for ContactStatus {
     }
 }
 
-fn coefficient(friction: case::Friction) -> Option<f64> {
+pub(super) fn coefficient(friction: case::Friction) -> Option<f64> {
     match friction {
         case::Friction::Coefficient(mu) => Some(mu),
         case::Friction::Stick => None,
@@ -116,37 +113,6 @@ impl SummaryInputs {
             youngs_modulus: case.material.youngs_modulus,
             friction: coefficient(case.contact.friction),
             oblique: (0..case.path.len()).filter(|&i| matches!(case.path[i], Segment::Oblique { .. })).collect(),
-        }
-    }
-}
-
-impl PlotInputs {
-    /// Those of a case in the user's units. Olsson & Larsson's laws cover ideal, power (k = K/sigma_Y, m = 1/n), linear (m = 1) and Hollomon.
-    pub fn of(case: &Case) -> Self {
-        let material = &case.material;
-        let three = |yield_stress: f64, coefficient: f64, exponent: f64| Hardening::ThreeParameter {
-            yield_stress,
-            coefficient: coefficient / yield_stress,
-            exponent,
-        };
-        let hardening = match material.hardening {
-            case::Hardening::Ideal { yield_stress } => Some(Hardening::Ideal { yield_stress }),
-            case::Hardening::Linear { yield_stress, modulus } => Some(three(yield_stress, modulus, 1.0)),
-            case::Hardening::Power { yield_stress, coefficient, exponent } => {
-                Some(three(yield_stress, coefficient, 1.0 / exponent))
-            }
-            case::Hardening::Hollomon { coefficient, exponent } => Some(Hardening::TwoParameter { coefficient, exponent }),
-            case::Hardening::Elastic | case::Hardening::Voce { .. } | case::Hardening::Table { .. } => None,
-        };
-        Self {
-            sphere: ElasticSphere {
-                radius: case.body_radius(),
-                youngs_modulus: material.youngs_modulus,
-                poissons_ratio: material.poissons_ratio,
-            },
-            hardening,
-            bodies: case.bodies(),
-            friction: coefficient(case.contact.friction),
         }
     }
 }
@@ -172,30 +138,6 @@ mod tests {
         let row = scaled.in_units(&UNITS);
         assert_eq!((row.h, row.f_n, row.a, row.work_plastic), (2.0, 400.0, 2.0, 800.0));
         assert_eq!((row.merit, row.max_alpha, row.contact_points), (1.0, 1.0, 3));
-    }
-
-    #[test]
-    fn olsson_larsson_has_the_stress_of_the_case() {
-        let text = |law: &str| {
-            format!(
-                "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n[material.hardening]\n{law}\n\
-                 [contact]\nfriction = 0.3\n[[path]]\nindentation = 0.02\n"
-            )
-        };
-        for (law, expected) in [
-            ("law = \"ideal\"\nyield_stress = 400.0", Some(400.0)),
-            ("law = \"linear\"\nyield_stress = 400.0\nmodulus = 1000.0", Some(400.0 + 1000.0 * 0.05)),
-            ("law = \"power\"\nyield_stress = 400.0\ncoefficient = 300.0\nexponent = 0.5", Some(400.0 + 300.0 * 0.05f64.sqrt())),
-            ("law = \"voce\"\nyield_stress = 400.0\nsaturation_stress = 600.0\nrate = 10.0", None),
-        ] {
-            let inputs = PlotInputs::of(&Case::parse(&text(law), "case.toml", &[]).unwrap());
-            let stress = inputs.hardening.map(|law| law.stress_at_total_strain(200e3, 0.05 + expected.unwrap_or(0.0) / 200e3));
-            assert_eq!(stress.is_some(), expected.is_some(), "{law}");
-            if let (Some(stress), Some(expected)) = (stress, expected) {
-                assert!((stress / expected - 1.0).abs() < 1e-12, "{law}: {stress}");
-            }
-            assert_eq!(inputs.friction, Some(0.3));
-        }
     }
 
     #[test]

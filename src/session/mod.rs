@@ -24,7 +24,7 @@ use std::time::Duration;
 pub use error::SessionError;
 pub use simulation::{Simulation, StepFields, Steps};
 
-use crate::compute::select::{DeviceChoice, PrecisionChoice};
+pub use crate::compute::select::{DeviceChoice, PrecisionChoice};
 use crate::output::{Status, Summary};
 
 /// What to do with an earlier result in the directory.

@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Smallest contact radius that is meshed for: below it the sphere is a half-space anyway.
-const SMALLEST_CONTACT: f64 = 0.005;
-/// Largest contact radius that the mesh can resolve on a half ball.
-const LARGEST_CONTACT: f64 = 0.65;
+use crate::case::CONTACT_RADII;
+
+/// Below the smallest the sphere is a half-space anyway; the largest is what the mesh can resolve on a half ball.
+const SMALLEST_CONTACT: f64 = CONTACT_RADII.0;
+const LARGEST_CONTACT: f64 = CONTACT_RADII.1;
 /// Radius beyond which no fine zone reaches.
 const LARGEST_FINE_RADIUS: f64 = 0.85;
 /// Smallest fine zone in contact radii.

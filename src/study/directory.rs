@@ -9,9 +9,12 @@ use super::StudyError;
 use super::file::Study;
 use super::place::{Placed, place};
 use super::row::FIRST_COLUMNS;
-use crate::law::plots::STUDY_PICTURES;
 use crate::law::table::StudyTable;
 use crate::output::{DirectoryLock, LOCK_NAME, OutputDirectory, draft_of, write_atomically};
+
+/// Names of all pictures of a study, by which an earlier study's are removed.
+const STUDY_PICTURES: [&str; 8] =
+    ["johnson", "area", "fall", "parameters", "collapse-tangential", "collapse-normal", "cases", "errors"];
 
 /// The folder of one study.
 #[derive(Clone, Debug, PartialEq, Eq)]

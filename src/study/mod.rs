@@ -11,6 +11,7 @@ mod file;
 mod merge;
 mod place;
 mod progress;
+#[cfg(feature = "plots")]
 pub mod report;
 mod row;
 mod run;

@@ -12,30 +12,59 @@ use crate::output::{OutputDirectory, Status, Summary, write_atomically};
 /// First columns of `study.csv`; the grid's keys follow, and then [`NUMBERS`].
 pub const FIRST_COLUMNS: [&str; 4] = ["case", "directory", "status", "reason"];
 
+/// What the last columns are made of.
+struct Numbers<'a> {
+    case: &'a Case,
+    summary: Option<&'a Summary>,
+    /// Those just before the shear.
+    variables: Option<Variables>,
+}
+
+impl Numbers<'_> {
+    fn friction(&self) -> Option<f64> {
+        match self.case.contact.friction {
+            Friction::Coefficient(mu) => Some(mu),
+            Friction::Stick => None,
+        }
+    }
+}
+
+/// A column by its name, and how it is read.
+type Column = (&'static str, fn(&Numbers<'_>) -> Option<f64>);
+
+const COLUMNS: [Column; 20] = [
+    ("E", |n| Some(n.case.material.youngs_modulus)),
+    ("nu", |n| Some(n.case.material.poissons_ratio)),
+    ("sigma_Y", |n| n.case.material.hardening.yield_stress(n.case.material.youngs_modulus)),
+    ("mu", |n| n.friction()),
+    ("R", |n| Some(n.case.sphere.radius)),
+    ("h0", |n| n.summary?.h0),
+    ("a0", |n| n.summary?.a0),
+    ("F_N0", |n| n.summary?.f_n0),
+    ("F_N_slip", |n| n.summary?.f_n_slip),
+    ("F_T_max", |n| n.summary?.f_t_max),
+    ("delta_T_slip", |n| n.summary?.delta_t_slip),
+    ("k_T0", |n| n.summary?.k_t0),
+    ("sigma_rep", |n| Some(n.variables?.sigma_rep)),
+    ("Lambda", |n| Some(n.variables?.lambda)),
+    ("Hbar", |n| Some(n.variables?.hardness)),
+    ("c2", |n| Some(n.variables?.c_squared)),
+    ("elements_per_contact_radius", |n| Some(n.case.mesh.elements_per_contact_radius as f64)),
+    ("newton_iterations", |n| Some(n.summary?.newton_iterations as f64)),
+    ("cutbacks", |n| Some(n.summary?.cutbacks as f64)),
+    ("cpu_s", |n| n.summary?.cpu_s),
+];
+
 /// Last columns of `study.csv`, in the case's own units; the four normalised variables are those just before the shear. What does not exist
 /// is empty: mu of full stick, sigma_Y and sigma_rep of an elastic sphere, the slip of a shear that stopped early.
-pub const NUMBERS: [&str; 20] = [
-    "E",
-    "nu",
-    "sigma_Y",
-    "mu",
-    "R",
-    "h0",
-    "a0",
-    "F_N0",
-    "F_N_slip",
-    "F_T_max",
-    "delta_T_slip",
-    "k_T0",
-    "sigma_rep",
-    "Lambda",
-    "Hbar",
-    "c2",
-    "elements_per_contact_radius",
-    "newton_iterations",
-    "cutbacks",
-    "cpu_s",
-];
+pub const NUMBERS: [&str; COLUMNS.len()] = {
+    let (mut names, mut i) = ([""; COLUMNS.len()], 0);
+    while i < names.len() {
+        names[i] = COLUMNS[i].0;
+        i += 1;
+    }
+    names
+};
 
 /// How a case of a study stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,46 +139,12 @@ impl Row {
     }
 
     /// The numbers of [`NUMBERS`] for a case, in its own units.
-    fn numbers(&self, case: &Case) -> [Option<f64>; 20] {
-        let material = &case.material;
-        let mu = match case.contact.friction {
-            Friction::Coefficient(mu) => Some(mu),
-            Friction::Stick => None,
-        };
-        let of = |read: &dyn Fn(&Summary) -> Option<f64>| self.summary.as_ref().and_then(read);
-        let [sigma_rep, lambda, hardness, c_squared] = self.normalised(case);
-        [
-            Some(material.youngs_modulus),
-            Some(material.poissons_ratio),
-            material.hardening.yield_stress(material.youngs_modulus),
-            mu,
-            Some(case.sphere.radius),
-            of(&|s| s.h0),
-            of(&|s| s.a0),
-            of(&|s| s.f_n0),
-            of(&|s| s.f_n_slip),
-            of(&|s| s.f_t_max),
-            of(&|s| s.delta_t_slip),
-            of(&|s| s.k_t0),
-            sigma_rep,
-            lambda,
-            hardness,
-            c_squared,
-            Some(case.mesh.elements_per_contact_radius as f64),
-            of(&|s| Some(s.newton_iterations as f64)),
-            of(&|s| Some(s.cutbacks as f64)),
-            of(&|s| s.cpu_s),
-        ]
-    }
-
-    /// sigma_rep, Lambda, Hbar and c^2 just before the shear.
-    fn normalised(&self, case: &Case) -> [Option<f64>; 4] {
-        let state = self.summary.as_ref().and_then(|s| Some((s.h0?, s.a0?, s.f_n0?)));
-        let (Some((h, a, force)), Ok(body)) = (state, Body::from_case(case)) else {
-            return [None; 4];
-        };
-        let Variables { sigma_rep, lambda, hardness, c_squared } = body.variables(h, a, force);
-        [sigma_rep, lambda, hardness, c_squared].map(Some)
+    fn numbers(&self, case: &Case) -> [Option<f64>; COLUMNS.len()] {
+        let summary = self.summary.as_ref();
+        let state = summary.and_then(|s| Some((s.h0?, s.a0?, s.f_n0?)));
+        let variables = state.and_then(|(h, a, force)| Some(Body::from_case(case).ok()?.variables(h, a, force)));
+        let numbers = Numbers { case, summary, variables };
+        COLUMNS.map(|(_, read)| read(&numbers))
     }
 }
 

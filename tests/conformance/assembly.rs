@@ -1,9 +1,9 @@
 //! A batch as a whole: what a case gets depends neither on the others, nor on the run, nor on how scratch memory cuts the batch up.
 
 use crate::batch::{Backend, commits, displaced, for_every_batch, forces, models, random, tangents};
-use asperity::compute::Compute;
-use asperity::compute::gpu::{Gpu, Precision};
-use asperity::real::Real;
+use asperity::internals::compute::Compute;
+use asperity::internals::compute::gpu::{Gpu, Precision};
+use asperity::internals::real::Real;
 
 pub struct Bounds;
 

@@ -1,14 +1,16 @@
 //! Batches of cases for the conformance bodies, and who evaluates them.
 
-use asperity::compute::cpu::Cpu;
-use asperity::compute::gpu::{DeviceReal, Gpu, GpuContext};
-use asperity::compute::{CaseModel, CommitRequest, Compute, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest};
-use asperity::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::compute::gpu::{DeviceReal, Gpu, GpuContext};
+use asperity::internals::compute::{
+    CaseModel, CommitRequest, Compute, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
+};
+use asperity::internals::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use asperity::internals::mesh::Mesh;
+use asperity::internals::mesh::brick::brick;
+use asperity::internals::mesh::pattern::Pattern;
+use asperity::internals::real::Real;
 use asperity::material::{Elasticity, Hardening, Material};
-use asperity::mesh::Mesh;
-use asperity::mesh::brick::brick;
-use asperity::mesh::pattern::Pattern;
-use asperity::real::Real;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
@@ -44,13 +46,13 @@ macro_rules! for_every_batch {
         }
         mod gpu_f64 {
             $(#[test] fn $body() {
-                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F64) else { return };
+                let Some(context) = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64) else { return };
                 super::$body::<f64, _>(&crate::batch::OnGpu(context.into()), &super::Bounds::F64);
             })+
         }
         mod gpu_f32 {
             $(#[test] fn $body() {
-                let Some(context) = crate::device::device(stringify!($body), asperity::compute::gpu::Precision::F32) else { return };
+                let Some(context) = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F32) else { return };
                 super::$body::<f32, _>(&crate::batch::OnGpu(context.into()), &super::Bounds::F32);
             })+
         }

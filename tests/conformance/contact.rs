@@ -1,9 +1,9 @@
 //! The contact conditions of points that are open, stick, slip, or sit on an edge between them, against the CPU in f64.
 
 use crate::batch::{Backend, OnCpu, commits, contacts, difference, displaced, for_every_batch, models, random};
-use asperity::compute::Outcome;
-use asperity::contact::coulomb::Status;
-use asperity::real::Real;
+use asperity::internals::compute::Outcome;
+use asperity::internals::contact::coulomb::Status;
+use asperity::internals::real::Real;
 use rand::RngExt;
 
 pub struct Bounds(f64);
@@ -16,7 +16,7 @@ impl Bounds {
 const CELLS: [usize; 3] = [6, 4, 1];
 
 /// Displacements and forces that put the contact points of a mesh into every status.
-fn trials<R: Real>(mesh: &asperity::mesh::Mesh, committed: &[f64], seed: u64) -> (Vec<f64>, Vec<f64>) {
+fn trials<R: Real>(mesh: &asperity::internals::mesh::Mesh, committed: &[f64], seed: u64) -> (Vec<f64>, Vec<f64>) {
     let mut rng = random(seed);
     let mut u = displaced::<R>(committed, 1e-3, &mut rng);
     let mut force = vec![0.0; u.len()];

@@ -1,8 +1,8 @@
 //! The element on small distorted meshes: forces, tangents, commits and energies of every law against the CPU in f64.
 
 use crate::batch::{Backend, OnCpu, commits, difference, displaced, for_every_batch, forces, models, random, tangents};
-use asperity::compute::{CaseState, Compute, Outcome};
-use asperity::real::Real;
+use asperity::internals::compute::{CaseState, Compute, Outcome};
+use asperity::internals::real::Real;
 
 /// How far from the reference a backend may be, relative to the largest number of the answer.
 pub struct Bounds {
@@ -131,7 +131,7 @@ fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     }
     let Some(bound) = bounds.differences else { return };
     let mesh = ours.models()[0].mesh.clone();
-    let pattern = asperity::mesh::pattern::Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
+    let pattern = asperity::internals::mesh::pattern::Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     // The moduli of plastic flow are the symmetrised ones: their part of the tangent is exact only where the flow is radial.
     let elastic = vec![trials[0].clone()];
     let blocks = tangents(ours.as_mut(), &elastic).remove(0).1;

@@ -4,10 +4,10 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use crate::for_every_backend;
-use asperity::compute::gpu::material::{ANSWER, Answers, PointStatus, RELATIVE, STATE, TANGENT, return_mapping};
-use asperity::compute::gpu::{DeviceReal, GpuContext};
+use asperity::internals::compute::gpu::material::{ANSWER, Answers, PointStatus, RELATIVE, STATE, TANGENT, return_mapping};
+use asperity::internals::compute::gpu::{DeviceReal, GpuContext};
+use asperity::internals::real::Real;
 use asperity::material::{self, Elasticity, Hardening, Material, PointError, PointState, j2};
-use asperity::real::Real;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

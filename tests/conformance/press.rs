@@ -2,13 +2,13 @@
 //! written down in fixtures/precision.json.
 
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
-use asperity::compute::fallback::Fallback;
-use asperity::compute::gpu::{Gpu, GpuContext, Mixed, Precision};
-use asperity::compute::{CaseModel, Compute};
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
-use asperity::simulation::record::StepRecord;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::compute::fallback::Fallback;
+use asperity::internals::compute::gpu::{Gpu, GpuContext, Mixed, Precision};
+use asperity::internals::compute::{CaseModel, Compute};
+use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
+use asperity::internals::simulation::record::StepRecord;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! A device for tests: every test states what it needs and is skipped aloud where that is missing.
 
-use asperity::compute::gpu::{DeviceRequest, GpuContext, GpuError, Precision};
+use asperity::internals::compute::gpu::{DeviceRequest, GpuContext, GpuError, Precision};
 use std::io::Write;
 
 /// The device, or none after a line on stderr that no test runner swallows.

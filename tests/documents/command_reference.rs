@@ -19,7 +19,7 @@ const WIDTH: usize = 110;
 
 pub fn text() -> String {
     let mut text = HEAD.to_owned();
-    let mut program = asperity::cli::command();
+    let mut program = asperity::internals::cli::command();
     program.build();
     let listed: Vec<(String, Command)> = commands(&program, "asperity");
     text += "\n| command | |\n|---|---|\n";

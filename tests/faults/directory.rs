@@ -7,11 +7,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use asperity::case::{Case, Segment};
-use asperity::compute::Compute;
-use asperity::compute::cpu::Cpu;
+use asperity::internals::compute::Compute;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::simulation::drive::Drive;
+use asperity::internals::simulation::problem::Problem;
 use asperity::output::{Clock, OutputDirectory, ResultWriter, Setting, SilentProgress, Status, read_history};
-use asperity::simulation::drive::Drive;
-use asperity::simulation::problem::Problem;
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::common::{Scratch, difference, files, program, stderr};

@@ -1,10 +1,10 @@
 //! What tests that follow a path share: every accepted step with its whole contact.
 
 use asperity::case::Case;
-use asperity::compute::cpu::Cpu;
+use asperity::internals::compute::cpu::Cpu;
+use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
 use asperity::output::{ContactPoint, StepRecord, Units};
-use asperity::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::simulation::problem::Problem;
 
 /// The steps of a path, in the case's units.
 pub type Steps = Vec<(StepRecord, Vec<ContactPoint>)>;

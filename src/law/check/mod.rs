@@ -3,6 +3,7 @@
 mod protocol;
 
 use std::fmt::Write as _;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
@@ -104,21 +105,29 @@ impl Checked {
 /// # Errors
 /// The law says nothing of the case; a simulation cannot be set up.
 pub fn check(law: &LawFile, case: &Case, elements: usize) -> Result<Vec<Checked>, LawError> {
-    let parameters = law.contact_parameters(case)?;
-    protocol(case, &parameters, elements).par_iter().with_max_len(1).map(|path| run(path, &parameters)).collect()
+    check_until(law, case, elements, &AtomicBool::new(false))
 }
 
-fn run(path: &Path, parameters: &ContactParameters) -> Result<Checked, LawError> {
+/// As [`check`]; once `stop` is set, the simulations end after their present step, which their `failure` says.
+///
+/// # Errors
+/// Those of [`check`].
+pub fn check_until(law: &LawFile, case: &Case, elements: usize, stop: &AtomicBool) -> Result<Vec<Checked>, LawError> {
+    let parameters = law.contact_parameters(case)?;
+    protocol(case, &parameters, elements).par_iter().with_max_len(1).map(|path| run(path, &parameters, stop)).collect()
+}
+
+fn run(path: &Path, parameters: &ContactParameters, stop: &AtomicBool) -> Result<Checked, LawError> {
     /// Keeps the steps of the last start.
-    #[derive(Default)]
-    struct Watch {
+    struct Watch<'a> {
         rows: Vec<StepRecord>,
-        units: Option<Units>,
+        units: Units,
+        stop: &'a AtomicBool,
     }
     type Failed = Box<dyn std::error::Error + Send + Sync>;
-    impl Observer for Watch {
+    impl Observer for Watch<'_> {
         fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-            self.rows.extend(self.units.as_ref().map(|units| view.record.in_units(units)));
+            self.rows.push(view.record.in_units(&self.units));
             Ok(())
         }
         fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
@@ -131,8 +140,11 @@ fn run(path: &Path, parameters: &ContactParameters) -> Result<Checked, LawError>
             self.rows.clear();
             Ok(())
         }
+        fn stop_requested(&self) -> bool {
+            self.stop.load(Ordering::Relaxed)
+        }
     }
-    let mut watch = Watch { units: Some(Units::of(&path.case)), ..Watch::default() };
+    let mut watch = Watch { rows: Vec::new(), units: Units::of(&path.case), stop };
     let followed = follow(Problem::new(&path.case)?, None, &mut |problem| on_cpu(problem), &mut watch)?;
     let failure = match followed.ending {
         Ending::Done => None,

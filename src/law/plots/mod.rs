@@ -22,10 +22,6 @@ use super::{Law, LawError};
 use crate::case::Case;
 use crate::output::{OutputDirectory, Picture, Summary, SummaryInputs, read_history};
 
-/// Names of all pictures of a study, by which an earlier study's are removed.
-pub const STUDY_PICTURES: [&str; 8] =
-    ["johnson", "area", "fall", "parameters", "collapse-tangential", "collapse-normal", "cases", "errors"];
-
 /// The normal contact of a case before its shear, normalised: what Johnson's map and that of c^2 show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalContact {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::measure::{Measured, Missing, measured};
 use super::spline::{Spline, smooth};
-use super::{Against, BACKBONE, Curves, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, level_of};
+use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, level_of};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
@@ -91,6 +91,20 @@ pub fn case_of(case: &Case, elements: usize) -> Case {
     }
     case.path.push(Segment::Release { share: LEFT });
     case
+}
+
+/// The study that [`build`] makes a table of, as a study file: [`case_of`] with the depths, over R, as its grid.
+pub fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
+    let radius = case.sphere.radius;
+    let base = toml::Value::String(String::new());
+    let base = toml::Table::try_from(case_of(case, elements)).map_or(base, toml::Value::Table);
+    let depths = depths.iter().map(|h| toml::Value::Float(h * radius)).collect();
+    let mut grid = toml::Table::new();
+    grid.insert("path.0.indentation".to_owned(), toml::Value::Array(depths));
+    let mut study = toml::Table::new();
+    study.insert("base".to_owned(), base);
+    study.insert("grid".to_owned(), toml::Value::Table(grid));
+    study.to_string()
 }
 
 /// Makes the table of the study in `dir`, which has the depths of [`depths`] for `case`.
@@ -313,13 +327,4 @@ fn errors(table: &Tabulated, one: &Measured) -> Result<DepthErrors, LawError> {
         f_n_rms: rms[1],
         f_n_max: most[1],
     })
-}
-
-impl Built {
-    /// The levels of the table over h, for a picture.
-    pub(super) fn curve(&self, count: usize) -> Vec<Level> {
-        let curves = Curves::new(&self.table.levels);
-        let (from, to) = (self.table.range.from, self.table.range.to);
-        (0..=count).map(|i| from * (to / from).powf(i as f64 / count as f64)).map(|h| curves.at(h)).collect()
-    }
 }

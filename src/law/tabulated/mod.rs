@@ -6,6 +6,7 @@
 
 mod build;
 mod measure;
+#[cfg(feature = "plots")]
 mod picture;
 pub mod spline;
 
@@ -23,8 +24,9 @@ use super::model::{Interval, OutOfRange, Parameters};
 use crate::analytical::ElasticSphere;
 use crate::case::{self, Case, Friction, Opponent};
 
-pub use build::{Built, build, case_of, depths};
+pub use build::{Built, build, case_of, depths, study_text};
 pub use measure::Missing;
+#[cfg(feature = "plots")]
 pub use picture::picture;
 
 /// The first key of a table, by which it is recognised.

@@ -1,7 +1,7 @@
 //! The table beside the simulations, and its errors.
 
 use super::build::Built;
-use super::{DepthErrors, Level};
+use super::{Curves, DepthErrors, Level};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::law::LawError;
 use crate::law::contact::path::drive;
@@ -104,5 +104,14 @@ fn errors(errors: &[DepthErrors]) -> Chart {
         y: Axis::linear("error (%)", 0.0, 1.06 * y.1),
         series,
         bar: None,
+    }
+}
+
+impl Built {
+    /// The levels of the table over h, for a picture.
+    fn curve(&self, count: usize) -> Vec<Level> {
+        let curves = Curves::new(&self.table.levels);
+        let (from, to) = (self.table.range.from, self.table.range.to);
+        (0..=count).map(|i| from * (to / from).powf(i as f64 / count as f64)).map(|h| curves.at(h)).collect()
     }
 }

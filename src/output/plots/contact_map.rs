@@ -1,10 +1,10 @@
 //! The contact surface seen along its normal: status above the symmetry line, pressure below it.
 
+use super::super::tables::SlipPanel;
 use super::super::{ContactPoint, ContactStatus, Half, OutputError};
 use super::canvas::{Anchor, Canvas, Colour, Drawn, Paint, Place, Stroke, Writing};
 use super::chart::{nice_step, ramp};
 use super::style::{BLUE, INK, ORANGE, Picture, WHITE, rounded, tick, viridis};
-use serde::{Deserialize, Serialize};
 
 const OPEN: Colour = Colour(0xdd, 0xdd, 0xdd);
 
@@ -23,17 +23,6 @@ pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
         status_names(root, points, (640.0, top + 14.0), true)?;
         pressure_bar(root, map.highest, 640.0, [top + 0.5 * side + 8.0, top + side])
     })
-}
-
-/// One panel of [`plot_slip`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SlipPanel {
-    /// delta_T.
-    pub delta_t: f64,
-    /// F_T over F_N; `None` without a normal force.
-    pub ratio: Option<f64>,
-    /// The surface then.
-    pub points: Vec<ContactPoint>,
 }
 
 /// Maps of some steps of a shear side by side, all to one scale: how slip eats into the contact from its edge.

@@ -1,5 +1,6 @@
 //! Forces, ratio and stick radius over the displacements.
 
+use super::super::tables::split;
 use super::super::{OutputError, StepRecord};
 use super::PlotInputs;
 use super::chart::{Axis, Chart, Line, Mark, Series, draw_chart, extent};
@@ -13,19 +14,6 @@ const CURVE_POINTS: usize = 120;
 
 /// A run's numbers are in the units of its case file, whatever they are.
 pub(super) const SHEAR_AXIS: &str = "tangential displacement δ_T (case's unit of length)";
-
-/// The records up to the start of the first shear, and those from there on with the starting one first; the latter are empty without a shear.
-pub(super) fn split(history: &[StepRecord]) -> (&[StepRecord], &[StepRecord]) {
-    match history.windows(2).position(|pair| pair[1].delta_t != pair[0].delta_t) {
-        // Pressed and sheared at once from the start: all that presses is both.
-        Some(0) => {
-            let pressing = history.windows(2).take_while(|pair| pair[1].h > pair[0].h).count();
-            (&history[..=pressing], history)
-        }
-        Some(begin) => (&history[..=begin], &history[begin..]),
-        None => (history, &[]),
-    }
-}
 
 /// The vertical axis over some values and zero, with room above and below.
 pub(super) fn from_zero(label: &str, values: impl IntoIterator<Item = f64>) -> Axis {

@@ -9,25 +9,23 @@ pub mod style;
 
 mod contact_map;
 mod curves;
+mod inputs;
 mod overlay;
 mod pressure;
 mod replot;
 
-pub use contact_map::{SlipPanel, plot_contact, plot_slip};
+pub use super::tables::{SlipPanel, Tables};
+pub use contact_map::{plot_contact, plot_slip};
 pub use curves::{plot_forces, plot_indentation, plot_law, plot_ratio, plot_stick};
 pub use overlay::{OverlaidRun, plot_overlay};
 pub use pressure::plot_pressure;
 pub use replot::replot;
 pub use style::Picture;
 
-use super::{ContactPoint, ContactStatus, OutputDirectory, OutputError, StepRecord};
+use super::{OutputDirectory, OutputError, StepRecord};
 use crate::analytical::ElasticSphere;
 use crate::analytical::olsson_larsson::Hardening;
-use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-
-/// Names of all pictures of a run, by which an earlier run's are removed.
-pub const RUN_PICTURES: [&str; 8] = ["indentation", "pressure", "forces", "ratio", "stick", "slip", "contact", "law"];
 
 /// What the plots show beside the computed curves, in the user's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,33 +38,6 @@ pub struct PlotInputs {
     pub friction: Option<f64>,
     /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them, over a plane.
     pub bodies: f64,
-}
-
-/// The contact tables of a run that are shown.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Tables {
-    /// At the end of the press, with the row of the history.
-    pub pressed: Option<(StepRecord, Vec<ContactPoint>)>,
-    /// Some of the shear.
-    pub shear: Vec<SlipPanel>,
-    /// The last one in contact.
-    pub last: Vec<ContactPoint>,
-}
-
-impl Tables {
-    /// Takes the table of the last step of a history, where it is one that is shown.
-    pub fn add(&mut self, history: &[StepRecord], points: Vec<ContactPoint>) {
-        let Some(record) = history.last().copied() else { return };
-        if points.iter().any(|point| point.status != ContactStatus::Open) {
-            self.last.clone_from(&points);
-        }
-        if !curves::split(history).1.is_empty() {
-            let ratio = (record.f_n > 0.0).then(|| record.f_t / record.f_n);
-            self.shear.push(SlipPanel { delta_t: record.delta_t, ratio, points });
-        } else if self.pressed.as_ref().is_none_or(|(deepest, _)| record.h >= deepest.h) {
-            self.pressed = Some((record, points));
-        }
-    }
 }
 
 /// Most panels of the stick/slip picture.
@@ -87,7 +58,7 @@ fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
 /// A drawing fails.
 pub fn run_pictures(history: &[StepRecord], tables: &Tables, inputs: &PlotInputs) -> Result<Vec<Picture>, OutputError> {
     let mut pictures = Vec::new();
-    let (pressing, shear) = curves::split(history);
+    let (pressing, shear) = super::tables::split(history);
     if !pressing.is_empty() {
         pictures.push(plot_indentation(history, inputs)?);
     }

@@ -1,8 +1,9 @@
 //! The curves of several runs in one diagram.
 
+use super::super::tables::split;
 use super::super::{OutputError, StepRecord};
 use super::chart::{Axis, Chart, Line, Series, draw_chart, extent};
-use super::curves::{from_zero, split};
+use super::curves::from_zero;
 use super::style::{GROUPS, Picture};
 
 /// A run beside others.

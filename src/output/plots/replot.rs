@@ -1,8 +1,8 @@
 //! The pictures of a run made again from what its directory holds.
 
-use super::curves::split;
 use super::{PANELS, Picture, PlotInputs, Tables, run_pictures, spread};
 use crate::case::Case;
+use crate::output::tables::split;
 use crate::output::{OutputDirectory, OutputError, StepRecord, read_contact};
 
 /// Draws the pictures of a run of `case` from its history and the contact tables in its directory; the run may be unfinished.

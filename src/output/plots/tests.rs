@@ -1,4 +1,5 @@
-use super::super::{ContactStatus, Half};
+use super::super::tables::RUN_PICTURES;
+use super::super::{ContactPoint, ContactStatus, Half};
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::analytical::olsson_larsson::OlssonLarsson;
