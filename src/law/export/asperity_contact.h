@@ -81,7 +81,7 @@ typedef uint64_t asperity_bits;
 
 #define ASPERITY_KNOTS @KNOTS@
 #define ASPERITY_COLUMNS @COLUMNS@
-#define ASPERITY_SLIDERS 16 /* asperity_sliders() is written for this number */
+#define ASPERITY_SLIDERS 16 /* asperity_weights() and asperity_sliders() are written for this number */
 #define ASPERITY_POINTS @POINTS@   /* of a shape that is given by numbers, x = (j/points)^2 */
 #define ASPERITY_LEVELS @LEVELS@
 
@@ -137,7 +137,6 @@ typedef struct asperity_curve {
     asperity_real depth;
     asperity_real backbone; /* exponent of the sliders' */
     int elastic;            /* whether shear costs no normal force */
-    asperity_real weight[ASPERITY_SLIDERS];
     asperity_real lost[ASPERITY_SLIDERS]; /* approach over depth at which a slider's annulus loses contact */
     const asperity_real (*shallow)[ASPERITY_POINTS]; /* shapes by numbers: those of the level above and of the one below, */
     const asperity_real (*deep)[ASPERITY_POINTS];
@@ -259,21 +258,37 @@ ASPERITY_FN asperity_real asperity_no_number(void) {
     return x;
 }
 
-/* Shares of k_T and points of loss of sliders whose backbone is 1 - (1 - x)^backbone. The cells end at (k/16)^(3/2); the powers of k come from those of the primes. */
-ASPERITY_FN void asperity_sliders(asperity_real backbone, int whole, asperity_real weight[ASPERITY_SLIDERS], asperity_real lost[ASPERITY_SLIDERS]) {
-    /* (k/16)^(3/2) */
-    static const asperity_real end[ASPERITY_SLIDERS + 1] = {
-        ASPERITY_R(0.0), ASPERITY_R(0.015625), ASPERITY_R(0.04419417382415922), ASPERITY_R(0.08118988160479113),
-        ASPERITY_R(0.125), ASPERITY_R(0.17469281074217108), ASPERITY_R(0.22963966338592295), ASPERITY_R(0.2893790496476896),
-        ASPERITY_R(0.3535533905932738), ASPERITY_R(0.421875), ASPERITY_R(0.49410588440130926), ASPERITY_R(0.5700448858423344),
-        ASPERITY_R(0.649519052838329), ASPERITY_R(0.7323776028286229), ASPERITY_R(0.8184875533567997),
-        ASPERITY_R(0.9077304717673633), ASPERITY_R(1.0)};
-    asperity_real p = ASPERITY_R(1.5) * (backbone - ASPERITY_R(1.0)), above[ASPERITY_SLIDERS + 1], share = (backbone - ASPERITY_R(1.0)) / backbone;
+/* Shares of the sliders in k_T, the same for every backbone: (k/16)^0.65 is that of the annuli inside the end of cell k. So a contact that grows keeps the forces of all its
+ * sliders by one factor. */
+ASPERITY_FN const asperity_real *asperity_weights(void) {
+    static const asperity_real weight[ASPERITY_SLIDERS] = {
+        ASPERITY_R(0.16493848884661177), ASPERITY_R(0.09387774211373257), ASPERITY_R(0.07804484139822254), ASPERITY_R(0.06926512581955085), ASPERITY_R(0.0633920910623787),
+        ASPERITY_R(0.059073391905460126), ASPERITY_R(0.055708118352608804), ASPERITY_R(0.05298051416106575), ASPERITY_R(0.05070575232217012), ASPERITY_R(0.048767100837759925),
+        ASPERITY_R(0.04708653450214806), ASPERITY_R(0.04560955329354521), ASPERITY_R(0.04429672468331203), ASPERITY_R(0.043118682883102055), ASPERITY_R(0.04205302593053484),
+        ASPERITY_R(0.04108231188779665)};
+    return weight;
+}
+
+/* Points of loss of sliders whose backbone is 1 - (1 - x)^backbone: each stands for a cell of the annuli at its centre of gravity. The cells end at (k/16)^(0.65/(backbone - 1)); the
+ * powers of k come from those of the primes. */
+ASPERITY_FN void asperity_sliders(asperity_real backbone, asperity_real lost[ASPERITY_SLIDERS]) {
+    /* What is inside the end of a cell, and inside its beginning, over its weight. */
+    static const asperity_real to[ASPERITY_SLIDERS] = {
+        ASPERITY_R(1.0), ASPERITY_R(2.7569498917729547), ASPERITY_R(4.316250328958178), ASPERITY_R(5.86335754642467), ASPERITY_R(7.406575195295008),
+        ASPERITY_R(8.948050282805905), ASPERITY_R(10.488593346488479), ASPERITY_R(12.028579256936597), ASPERITY_R(13.568205469283463), ASPERITY_R(15.10758593730263),
+        ASPERITY_R(16.64679105415904), ASPERITY_R(18.18586665992715), ASPERITY_R(19.724843891849506), ASPERITY_R(21.263744643298974), ASPERITY_R(22.802584758019282),
+        ASPERITY_R(24.34137598514864)};
+    static const asperity_real from[ASPERITY_SLIDERS] = {
+        ASPERITY_R(0.0), ASPERITY_R(1.7569498917729547), ASPERITY_R(3.316250328958178), ASPERITY_R(4.86335754642467), ASPERITY_R(6.406575195295008),
+        ASPERITY_R(7.948050282805905), ASPERITY_R(9.488593346488479), ASPERITY_R(11.028579256936597), ASPERITY_R(12.568205469283463), ASPERITY_R(14.10758593730263),
+        ASPERITY_R(15.646791054159038), ASPERITY_R(17.18586665992715), ASPERITY_R(18.724843891849506), ASPERITY_R(20.263744643298974), ASPERITY_R(21.802584758019282),
+        ASPERITY_R(23.34137598514864)};
+    asperity_real p = ASPERITY_R(0.65) / (backbone - ASPERITY_R(1.0)), end[ASPERITY_SLIDERS + 1], share = (backbone - ASPERITY_R(1.0)) / backbone;
     /* (1/2)^p, (3/4)^p, (5/8)^p, (7/8)^p, (11/16)^p, (13/16)^p, and two for the lanes */
     asperity_real prime[8] = {
         ASPERITY_R(-0.6931471805599453), ASPERITY_R(-0.2876820724517809), ASPERITY_R(-0.4700036292457356), ASPERITY_R(-0.13353139262452263),
         ASPERITY_R(-0.3746934494414107), ASPERITY_R(-0.2076393647782445), ASPERITY_R(0.0), ASPERITY_R(0.0)};
-    asperity_real half, quarter, eighth, sixteenth, three, five, seven, eleven, thirteen;
+    asperity_real half, quarter, three, five, seven;
     int k;
     for (k = 0; k < 8; k++) {
         prime[k] *= p;
@@ -281,49 +296,42 @@ ASPERITY_FN void asperity_sliders(asperity_real backbone, int whole, asperity_re
     asperity_exponentials(prime, 8);
     half = prime[0];
     quarter = half * half;
-    eighth = half * quarter;
-    sixteenth = quarter * quarter;
     three = prime[1];
     five = prime[2];
     seven = prime[3];
-    eleven = prime[4];
-    thirteen = prime[5];
-    above[0] = ASPERITY_R(0.0);
-    above[1] = sixteenth;
-    above[2] = eighth;
-    above[3] = three * quarter;
-    above[4] = quarter;
-    above[5] = five * half;
-    above[6] = three * half;
-    above[7] = seven * half;
-    above[8] = half;
-    above[9] = three * three;
-    above[10] = five;
-    above[11] = eleven;
-    above[12] = three;
-    above[13] = thirteen;
-    above[14] = seven;
-    above[15] = three * five / half;
-    above[16] = ASPERITY_R(1.0);
+    end[0] = ASPERITY_R(0.0);
+    end[1] = quarter * quarter;
+    end[2] = half * quarter;
+    end[3] = three * quarter;
+    end[4] = quarter;
+    end[5] = five * half;
+    end[6] = three * half;
+    end[7] = seven * half;
+    end[8] = half;
+    end[9] = three * three;
+    end[10] = five;
+    end[11] = prime[4];
+    end[12] = three;
+    end[13] = prime[5];
+    end[14] = seven;
+    end[15] = three * five / half;
+    end[16] = ASPERITY_R(1.0);
     ASPERITY_LANES
     for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        weight[k] = above[k + 1] - above[k];
-    }
-    if (!whole) {
-        return;
-    }
-    ASPERITY_LANES
-    for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        lost[k] = share * (above[k + 1] * end[k + 1] - above[k] * end[k]) / weight[k];
+        lost[k] = share * (to[k] * end[k + 1] - from[k] * end[k]);
     }
 }
 
-/* First loading at the indentation h > 0, over R, whose logarithm is given; where it is not to be `whole`, without what only sliding and shapes need. */
-ASPERITY_FN void asperity_loading_curve(const asperity_table *t, asperity_real h, asperity_real log_h, int whole, asperity_curve *v) {
+/* A row of the table at ln h: its position, its columns, the slope of the first, and the logarithms among them, whose exponentials are then taken together. */
+typedef struct asperity_row {
+    asperity_real position, slope, column[ASPERITY_COLUMNS];
+} asperity_row;
+
+ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h, asperity_row *row, asperity_real logarithm[4]) {
     /* Powers of h in Hertz's contact, for what lies below the first knot. */
     static const asperity_real hertz[ASPERITY_COLUMNS] = {
         ASPERITY_R(1.5), ASPERITY_R(0.5), ASPERITY_R(0.0), ASPERITY_R(1.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.5)};
-    asperity_real position = (log_h - t->log_first) / t->log_step, last = ASPERITY_R(ASPERITY_KNOTS - 1), column[ASPERITY_COLUMNS], exponential[4], slope, a, start, end, force;
+    asperity_real position = (log_h - t->log_first) / t->log_step, last = ASPERITY_R(ASPERITY_KNOTS - 1), slope, *column = row->column;
     int c;
     if (position < ASPERITY_R(0.0)) {
         for (c = 0; c < ASPERITY_COLUMNS; c++) {
@@ -350,11 +358,18 @@ ASPERITY_FN void asperity_loading_curve(const asperity_table *t, asperity_real h
             slope = s0[0] + u * (ASPERITY_R(2.0) * quadratic + ASPERITY_R(3.0) * u * cubic);
         }
     }
-    exponential[0] = column[0];
-    exponential[1] = column[1];
-    exponential[2] = column[3];
-    exponential[3] = column[7];
-    asperity_exponentials(exponential, 4);
+    row->position = position;
+    row->slope = slope;
+    logarithm[0] = column[0];
+    logarithm[1] = column[1];
+    logarithm[2] = column[3];
+    logarithm[3] = column[7];
+}
+
+/* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need. */
+ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_curve *v) {
+    const asperity_real *column = row->column;
+    asperity_real a, start, end, force;
     v->f_n0 = exponential[0];
     a = exponential[1];
     v->f_n_slip = column[2] * v->f_n0;
@@ -367,7 +382,7 @@ ASPERITY_FN void asperity_loading_curve(const asperity_table *t, asperity_real h
     force = ASPERITY_R(4.0) * t->effective_modulus * a * a * a / (ASPERITY_R(3.0) * t->effective_radius);
     v->gamma = ASPERITY_R(1.2732395447351628) + ASPERITY_R(1.5 - 1.2732395447351628) * (v->f_n0 < force ? v->f_n0 / force : ASPERITY_R(1.0));
     v->depth = v->gamma * v->f_n0 / (ASPERITY_R(2.0) * t->effective_modulus * a);
-    v->slope = v->f_n0 * slope / (t->log_step * h);
+    v->slope = v->f_n0 * row->slope / (t->log_step * h);
     if (t->form == 2) {
         v->backbone = v->big_n;
         v->contact_radius = v->m * a;
@@ -381,9 +396,12 @@ ASPERITY_FN void asperity_loading_curve(const asperity_table *t, asperity_real h
     end = v->backbone * t->friction * v->f_n0 / v->delta_t_slip;
     v->k_t = v->k_t < start ? start : v->k_t;
     v->k_t = v->k_t < end ? end : v->k_t;
-    asperity_sliders(v->backbone, whole, v->weight, v->lost);
-    if (whole && t->form == 2) {
-        asperity_real level = position * (ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1)), most = ASPERITY_R(ASPERITY_LEVELS - 1);
+    if (!whole) {
+        return;
+    }
+    asperity_sliders(v->backbone, v->lost);
+    if (t->form == 2) {
+        asperity_real level = row->position * (ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1)), most = ASPERITY_R(ASPERITY_LEVELS - 1);
         int i;
         level = level < most ? level : most;
         level = level > ASPERITY_R(0.0) ? level : ASPERITY_R(0.0);
@@ -394,8 +412,13 @@ ASPERITY_FN void asperity_loading_curve(const asperity_table *t, asperity_real h
     }
 }
 
+/* First loading at the indentation h > 0, over R. */
 ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h, int whole, asperity_curve *v) {
-    asperity_loading_curve(t, h, ASPERITY_LOG(h), whole, v);
+    asperity_row row;
+    asperity_real exponential[4];
+    asperity_read_row(t, ASPERITY_LOG(h), &row, exponential);
+    asperity_exponentials(exponential, 4);
+    asperity_make_curve(t, h, &row, exponential, whole, v);
 }
 
 /* x at point j of a shape that is given by numbers, */
@@ -413,27 +436,31 @@ ASPERITY_FN asperity_real asperity_point(const asperity_curve *v, int kind, int 
     return low + v->between * (v->deep[kind][j - 1] - low);
 }
 
-/* Such a shape, straight from point to point, 0 <= x <= 1. */
+/* It at an x between point j and the next. */
+ASPERITY_FN asperity_real asperity_given_after(const asperity_curve *v, int kind, asperity_real x, int j, asperity_real *derivative) {
+    asperity_real below = asperity_point(v, kind, j);
+    *derivative = (asperity_point(v, kind, j + 1) - below) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1));
+    return below + *derivative * (x - asperity_point_x(j));
+}
+
+/* It anywhere, 0 <= x <= 1. */
 ASPERITY_FN asperity_real asperity_given(const asperity_curve *v, int kind, asperity_real x, asperity_real *derivative) {
-    asperity_real below, slope;
     int j;
-    *derivative = ASPERITY_R(0.0);
     if (x >= ASPERITY_R(1.0)) {
+        *derivative = ASPERITY_R(0.0);
         return asperity_point(v, kind, ASPERITY_POINTS);
     }
     j = (int)(ASPERITY_R(ASPERITY_POINTS) * ASPERITY_SQRT(x));
     j = j > ASPERITY_POINTS - 1 ? ASPERITY_POINTS - 1 : j;
-    below = asperity_point(v, kind, j);
-    slope = (asperity_point(v, kind, j + 1) - below) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1));
-    *derivative = slope;
-    return below + slope * (x - asperity_point_x(j));
+    return asperity_given_after(v, kind, x, j, derivative);
 }
 
-/* The least x at which it has the value f, or that of its peak. */
-ASPERITY_FN asperity_real asperity_given_inverse(const asperity_curve *v, int kind, asperity_real f) {
+/* The least x at which it has the value f, or that of its peak; `after`: the point before it, -1 at a peak. */
+ASPERITY_FN asperity_real asperity_given_inverse(const asperity_curve *v, int kind, asperity_real f, int *after) {
     const asperity_real *shallow = v->shallow[kind], *deep = v->deep[kind];
     asperity_real between = v->between, below, peak = ASPERITY_R(0.0), place = ASPERITY_R(0.0);
     int j, first = ASPERITY_POINTS;
+    *after = 0;
     if (f <= ASPERITY_R(0.0)) {
         return ASPERITY_R(0.0);
     }
@@ -442,6 +469,7 @@ ASPERITY_FN asperity_real asperity_given_inverse(const asperity_curve *v, int ki
         int here = shallow[j] + between * (deep[j] - shallow[j]) >= f ? j : ASPERITY_POINTS;
         first = here < first ? here : first;
     }
+    *after = first < ASPERITY_POINTS ? first : -1;
     if (first < ASPERITY_POINTS) {
         below = asperity_point(v, kind, first);
         return asperity_point_x(first) + (f - below) / (asperity_point(v, kind, first + 1) - below) * (asperity_point_x(first + 1) - asperity_point_x(first));
@@ -471,15 +499,16 @@ ASPERITY_FN asperity_real asperity_tangential_shape(int form, const asperity_cur
     return ASPERITY_R(1.0) - power * rest;
 }
 
-ASPERITY_FN asperity_real asperity_tangential_shape_inverse(int form, const asperity_curve *v, asperity_real f) {
+ASPERITY_FN asperity_real asperity_tangential_shape_inverse(int form, const asperity_curve *v, asperity_real f, int *after) {
+    *after = -1;
     if (form == 2) {
-        return asperity_given_inverse(v, 0, f);
+        return asperity_given_inverse(v, 0, f, after);
     }
     return f >= ASPERITY_R(1.0) ? ASPERITY_R(1.0) : ASPERITY_R(1.0) - asperity_power(ASPERITY_R(1.0) - f, ASPERITY_R(1.0) / v->n);
 }
 
-/* f_N(x), 0 <= x <= 1; its derivative is 0 at both ends. */
-ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *v, asperity_real x, asperity_real *derivative) {
+/* f_N(x), 0 <= x <= 1; its derivative is 0 at both ends. `after`: the point before x of a shape by numbers, -1 where it is not known. */
+ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *v, asperity_real x, int after, asperity_real *derivative) {
     asperity_real rest, risen, power;
     *derivative = ASPERITY_R(0.0);
     if (x <= ASPERITY_R(0.0)) {
@@ -489,7 +518,7 @@ ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *
         return ASPERITY_R(1.0);
     }
     if (form == 2) {
-        return asperity_given(v, 1, x, derivative);
+        return after < 0 ? asperity_given(v, 1, x, derivative) : asperity_given_after(v, 1, x, after, derivative);
     }
     if (form == 0) {
         rest = asperity_power(ASPERITY_R(1.0) - x, v->m);
@@ -507,6 +536,7 @@ ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *
 
 ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity_curve *v, asperity_real f) {
     asperity_real one = ASPERITY_R(1.0), inner;
+    int after;
     if (f <= ASPERITY_R(0.0)) {
         return ASPERITY_R(0.0);
     }
@@ -514,7 +544,7 @@ ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity
         return one;
     }
     if (form == 2) {
-        return asperity_given_inverse(v, 1, f);
+        return asperity_given_inverse(v, 1, f, &after);
     }
     if (form == 0) {
         inner = one - asperity_power(f, one / v->big_n);
@@ -525,9 +555,9 @@ ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity
 }
 
 /* F_N on the virgin curve at x. */
-ASPERITY_FN asperity_real asperity_cap(int form, const asperity_curve *v, asperity_real x) {
+ASPERITY_FN asperity_real asperity_cap(int form, const asperity_curve *v, asperity_real x, int after) {
     asperity_real derivative;
-    return v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(form, v, x, &derivative);
+    return v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(form, v, x, after, &derivative);
 }
 
 /* The x of the virgin curve that has the normal force f_n. */
@@ -560,7 +590,7 @@ ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v
         limit[i] = (eta > v->lost[i] ? eta : v->lost[i]) - v->lost[i];
     }
     limit[0] = limit[0] < ASPERITY_R(0.1) * eta ? ASPERITY_R(0.1) * eta : limit[0]; /* the innermost carries what little force there is */
-    scale = friction * f_n / (v->k_t * asperity_sum(v->weight, limit));
+    scale = friction * f_n / (v->k_t * asperity_sum(asperity_weights(), limit));
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         limit[i] *= scale;
@@ -569,8 +599,8 @@ ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v
 
 /* Moves the sliders from `from` and holds each to its limit; returns what they dissipate over k_T. */
 ASPERITY_FN asperity_real asperity_slide(
-    asperity_real from[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], const asperity_real weight[ASPERITY_SLIDERS], asperity_real d0,
-    asperity_real d1, asperity_real to[2][ASPERITY_SLIDERS]) {
+    asperity_real from[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], asperity_real d0, asperity_real d1,
+    asperity_real to[2][ASPERITY_SLIDERS]) {
     asperity_real q0[ASPERITY_SLIDERS], q1[ASPERITY_SLIDERS], square[ASPERITY_SLIDERS], over[ASPERITY_SLIDERS];
     int i, beyond = 0;
     ASPERITY_LANES
@@ -582,8 +612,11 @@ ASPERITY_FN asperity_real asperity_slide(
         square[i] = size > most ? size : most;
     }
     if (!beyond) {
-        memcpy(to[0], q0, sizeof q0);
-        memcpy(to[1], q1, sizeof q1);
+        ASPERITY_LANES
+        for (i = 0; i < ASPERITY_SLIDERS; i++) {
+            to[0][i] = q0[i];
+            to[1][i] = q1[i];
+        }
         return ASPERITY_R(0.0);
     }
     ASPERITY_LANES
@@ -591,18 +624,26 @@ ASPERITY_FN asperity_real asperity_slide(
         /* 1, but for rounding, of one within its limit. */
         asperity_real inverse = asperity_inverse_root(square[i]), keep = limit[i] * inverse;
         over[i] = limit[i] * (square[i] * inverse - limit[i]);
-        q0[i] *= keep;
-        q1[i] *= keep;
+        to[0][i] = keep * q0[i];
+        to[1][i] = keep * q1[i];
     }
-    memcpy(to[0], q0, sizeof q0);
-    memcpy(to[1], q1, sizeof q1);
-    return asperity_sum(weight, over);
+    return asperity_sum(asperity_weights(), over);
+}
+
+/* Whether a slider is beyond its limit. */
+ASPERITY_FN int asperity_exceeds(asperity_real deflection[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS]) {
+    int i, beyond = 0;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        beyond |= deflection[0][i] * deflection[0][i] + deflection[1][i] * deflection[1][i] > limit[i] * limit[i];
+    }
+    return beyond;
 }
 
 /* Tangential force of the sliders. */
 ASPERITY_FN void asperity_slider_force(const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real force[2]) {
-    force[0] = v->k_t * asperity_sum(v->weight, deflection[0]);
-    force[1] = v->k_t * asperity_sum(v->weight, deflection[1]);
+    force[0] = v->k_t * asperity_sum(asperity_weights(), deflection[0]);
+    force[1] = v->k_t * asperity_sum(asperity_weights(), deflection[1]);
 }
 
 /* Their energy. */
@@ -613,18 +654,19 @@ ASPERITY_FN asperity_real asperity_slider_energy(const asperity_curve *v, asperi
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         square[i] = (deflection[0][i] * deflection[0][i] + deflection[1][i] * deflection[1][i]);
     }
-    return ASPERITY_R(0.5) * v->k_t * asperity_sum(v->weight, square);
+    return ASPERITY_R(0.5) * v->k_t * asperity_sum(asperity_weights(), square);
 }
 
 /* Their stiffness after an increment: a slider at its limit only turns. */
 ASPERITY_FN void asperity_slider_stiffness(
     const asperity_curve *v, asperity_real before[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], asperity_real d0, asperity_real d1,
     asperity_real stiffness[2][2]) {
+    const asperity_real *weight = asperity_weights();
     asperity_real sum0 = ASPERITY_R(0.0), sum1 = ASPERITY_R(0.0), sum2 = ASPERITY_R(0.0);
     int i;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real q0 = before[0][i] + d0, q1 = before[1][i] + d1, size = ASPERITY_SQRT(q0 * q0 + q1 * q1), k = v->k_t * v->weight[i];
+        asperity_real q0 = before[0][i] + d0, q1 = before[1][i] + d1, size = ASPERITY_SQRT(q0 * q0 + q1 * q1), k = v->k_t * weight[i];
         if (size > ASPERITY_AT_BOUND * limit[i]) {
             asperity_real m0 = q0 / size, m1 = q1 / size;
             k = k * limit[i] / size;
@@ -655,7 +697,8 @@ ASPERITY_FN void asperity_scale(asperity_real deflection[2][ASPERITY_SLIDERS], a
 typedef struct asperity_pressed {
     asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
     asperity_real level;                 /* ln(F_N/F_N0) */
-    asperity_real approach;              /* elastic, of that F_N */
+    asperity_real approach;              /* elastic, of that F_N; negative: not asked yet */
+    asperity_real force[2];              /* of the sliders */
     asperity_real limit[ASPERITY_SLIDERS];
 } asperity_pressed;
 
@@ -663,19 +706,15 @@ typedef struct asperity_pressed {
 ASPERITY_FN void asperity_press(
     const asperity_table *t, asperity_state *s, const asperity_curve *v, const asperity_curve *old, asperity_real level, asperity_real h, int derivatives, asperity_pressed *p) {
     const asperity_real zero = ASPERITY_R(0.0);
-    int grown = h > s->h_max, first = grown && (s->x == zero || !(s->h_max > zero)), i;
+    int grown = h > s->h_max, first = grown && (s->x == zero || !(s->h_max > zero)), after;
     asperity_real dh = h - s->h, e = s->approach + dh, trial = v->f_n0, stiffness = v->slope, elastic, f_t, slip_force, bound, cap, share, soft, rate, flow, most;
-    asperity_real rises, falls, gain, along, slope, raised, keep, derivative, force[2], shape, at_trial = zero, eta;
+    asperity_real rises, falls, gain, along, slope, raised, keep, derivative, shape, at_trial = zero;
     p->slip = zero;
     if (grown && s->h_max > zero) {
         /* The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it. */
-        asperity_real ratio = old->k_t / v->k_t;
-        ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-            keep = ratio * old->weight[i] / v->weight[i];
-            keep = keep < ASPERITY_R(1.0) ? keep : ASPERITY_R(1.0);
-            s->deflection[0][i] *= keep;
-            s->deflection[1][i] *= keep;
+        keep = old->k_t / v->k_t;
+        if (keep < ASPERITY_R(1.0)) {
+            asperity_scale(s->deflection, keep);
         }
     }
     if (!first) {
@@ -686,9 +725,12 @@ ASPERITY_FN void asperity_press(
     }
     p->f_n = trial < v->f_n0 ? trial : v->f_n0;
     p->level = trial < v->f_n0 ? (grown ? asperity_log_ratio(trial, v->f_n0) : at_trial) : zero;
-    p->approach = trial < v->f_n0 ? (grown ? v->depth * asperity_exponential(p->level / v->gamma) : e) : v->depth;
+    p->approach = trial < v->f_n0 ? (grown ? -ASPERITY_R(1.0) : e) : v->depth;
     p->df_n_dh = stiffness;
-    asperity_limits(t->friction, v, p->f_n, asperity_exponential(p->level / v->backbone), p->limit);
+    asperity_limits(t->friction, v, p->f_n, p->level < zero ? asperity_exponential(p->level / v->backbone) : ASPERITY_R(1.0), p->limit);
+    if (dh <= zero) {
+        asperity_slider_force(v, s->deflection, p->force);
+    }
     if (dh == zero) {
         p->x = s->x;
         p->df_n_dh = s->x == zero && s->h == s->h_max ? v->slope : stiffness;
@@ -702,10 +744,12 @@ ASPERITY_FN void asperity_press(
     if (trial >= v->f_n0 && grown) {
         stiffness = v->slope;
     }
-    p->slip = v->k_t * asperity_slide(s->deflection, p->limit, v->weight, zero, zero, s->deflection);
+    if (asperity_exceeds(s->deflection, p->limit)) {
+        p->slip = v->k_t * asperity_slide(s->deflection, p->limit, zero, zero, s->deflection);
+    }
     p->df_n_dh = stiffness;
-    asperity_slider_force(v, s->deflection, force);
-    f_t = ASPERITY_SQRT(force[0] * force[0] + force[1] * force[1]);
+    asperity_slider_force(v, s->deflection, p->force);
+    f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
     slip_force = t->friction * v->f_n_slip;
     if (t->form == 2 || v->elastic) {
         p->x = asperity_mobilisation(t->form, v, p->f_n);
@@ -714,8 +758,8 @@ ASPERITY_FN void asperity_press(
             return;
         }
     }
-    bound = asperity_tangential_shape_inverse(t->form, v, f_t / slip_force);
-    cap = asperity_cap(t->form, v, bound);
+    bound = asperity_tangential_shape_inverse(t->form, v, f_t / slip_force, &after);
+    cap = asperity_cap(t->form, v, bound, after);
     if (t->form != 2 && p->f_n <= cap) {
         p->x = asperity_mobilisation(t->form, v, p->f_n); /* the same, as these curves only rise, and cheaper on it */
         return;
@@ -725,10 +769,10 @@ ASPERITY_FN void asperity_press(
     soft = soft > zero ? soft * soft : zero;
     rate = ASPERITY_R(2.6) * (soft * soft) * (ASPERITY_R(1.0) - ASPERITY_R(0.5) * (share * share));
     flow = trial > cap ? rate * (trial - cap) / v->f_n0 : zero;
-    most = t->form == 2 ? slip_force * asperity_tangential_shape(t->form, v, bound, &derivative) : slip_force;
+    most = t->form == 2 && after < 0 ? slip_force * asperity_tangential_shape(t->form, v, bound, &derivative) : (t->form == 2 ? f_t : slip_force);
     keep = asperity_exponential(-flow) * (most < f_t ? most / f_t : ASPERITY_R(1.0));
-    p->x = asperity_tangential_shape_inverse(t->form, v, keep * f_t / slip_force);
-    shape = asperity_normal_shape(t->form, v, p->x, &derivative);
+    p->x = asperity_tangential_shape_inverse(t->form, v, keep * f_t / slip_force, &after);
+    shape = asperity_normal_shape(t->form, v, p->x, after, &derivative);
     raised = v->f_n0 - (v->f_n0 - v->f_n_slip) * shape;
     if (derivatives) {
         falls = (v->f_n0 - v->f_n_slip) * derivative;
@@ -740,16 +784,13 @@ ASPERITY_FN void asperity_press(
         p->df_n_dh = raised < p->f_n && slope < stiffness ? slope : stiffness;
     }
     asperity_scale(s->deflection, keep);
+    p->force[0] *= keep;
+    p->force[1] *= keep;
     if (raised < p->f_n) {
-        asperity_real levels[2];
         p->level += asperity_log_ratio(raised, p->f_n);
         p->f_n = raised;
-        levels[0] = p->level / v->backbone;
-        levels[1] = p->level / v->gamma;
-        asperity_exponentials(levels, 2);
-        eta = levels[0];
-        p->approach = v->depth * levels[1];
-        asperity_limits(t->friction, v, p->f_n, eta, p->limit);
+        p->approach = -ASPERITY_R(1.0);
+        asperity_limits(t->friction, v, p->f_n, asperity_exponential(p->level / v->backbone), p->limit);
     }
 }
 
@@ -757,11 +798,15 @@ ASPERITY_FN void asperity_press(
 ASPERITY_FN asperity_real asperity_shear(
     const asperity_table *t, asperity_state *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
     asperity_real d0, asperity_real d1) {
-    asperity_real before[2][ASPERITY_SLIDERS], force_before[2], held[2], stiffness[2][2], direction[2], m[2], slip;
+    asperity_real before[2][ASPERITY_SLIDERS], held[2], stiffness[2][2], direction[2], m[2], slip;
     asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, x, cap, shape_slope, normal_slope, size, per_x, loss, keep, rate, radial, f_n = p->f_n;
     int i, j;
-    memcpy(before, s->deflection, sizeof before);
-    slip = v->k_t * asperity_slide(before, p->limit, v->weight, d0, d1, s->deflection);
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        before[0][i] = s->deflection[0][i];
+        before[1][i] = s->deflection[1][i];
+    }
+    slip = v->k_t * asperity_slide(before, p->limit, d0, d1, s->deflection);
     out->f_n = f_n;
     asperity_slider_force(v, s->deflection, out->f_t);
     if (tangent) {
@@ -776,10 +821,9 @@ ASPERITY_FN asperity_real asperity_shear(
     if (trial <= ASPERITY_AT_BOUND * bound) {
         return slip;
     }
-    asperity_slider_force(v, before, force_before);
     direction[0] = out->f_t[0] / trial;
     direction[1] = out->f_t[1] / trial;
-    along = direction[0] * force_before[0] + direction[1] * force_before[1];
+    along = direction[0] * p->force[0] + direction[1] * p->force[1];
     excess = trial - bound;
     travel = trial - along;
     beyond = excess < travel ? excess / travel : ASPERITY_R(1.0); /* share of the increment that is beyond the curve */
@@ -787,7 +831,7 @@ ASPERITY_FN asperity_real asperity_shear(
     forward = forward > ASPERITY_R(0.0) ? forward : ASPERITY_R(0.0);
     x = s->x + beyond * forward / v->delta_t_slip;
     s->x = x < ASPERITY_R(1.0) ? x : ASPERITY_R(1.0);
-    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(t->form, v, s->x, &normal_slope);
+    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(t->form, v, s->x, -1, &normal_slope);
     out->f_n = cap < f_n ? cap : f_n;
     if (out->f_n != f_n) {
         asperity_real levels[2];
@@ -797,7 +841,7 @@ ASPERITY_FN asperity_real asperity_shear(
         asperity_exponentials(levels, 2);
         p->approach = v->depth * levels[1];
         asperity_limits(t->friction, v, out->f_n, levels[0], p->limit);
-        slip = v->k_t * asperity_slide(before, p->limit, v->weight, d0, d1, s->deflection);
+        slip = v->k_t * asperity_slide(before, p->limit, d0, d1, s->deflection);
     }
     asperity_slider_force(v, s->deflection, held);
     bound = slip_force * asperity_tangential_shape(t->form, v, s->x, &shape_slope);
@@ -844,6 +888,20 @@ ASPERITY_FN asperity_real asperity_energy(const asperity_curve *v, asperity_real
     return f_n * approach / (v->gamma + ASPERITY_R(1.0)) + asperity_slider_energy(v, deflection);
 }
 
+/* *to = *from, without the string instruction that compilers make of it. */
+ASPERITY_FN void asperity_copy(const asperity_state *from, asperity_state *to) {
+    int i;
+    to->h = from->h;
+    to->h_max = from->h_max;
+    to->approach = from->approach;
+    to->x = from->x;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        to->deflection[0][i] = from->deflection[0][i];
+        to->deflection[1][i] = from->deflection[1][i];
+    }
+}
+
 /* Moves a contact to the indentation h and along the plane by `increment`, the press first. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
  * nothing in the answer is a number and the state stays as it was. */
 ASPERITY_FN void asperity_update(
@@ -851,10 +909,11 @@ ASPERITY_FN void asperity_update(
     asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
     const asperity_real zero = ASPERITY_R(0.0);
     asperity_state s;
+    asperity_row row, old_row;
     asperity_curve v, old;
     const asperity_curve *before = &v;
     asperity_pressed p;
-    asperity_real inverse = ASPERITY_R(1.0) / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, log_h, level, old_n, old_t[2], stored, total, slip;
+    asperity_real inverse = ASPERITY_R(1.0) / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, log_h, exponential[8], level, old_n, old_t[2], stored, total, slip;
     memset(out, 0, sizeof *out);
     if (tangent) {
         memset(tangent, 0, sizeof *tangent);
@@ -895,13 +954,18 @@ ASPERITY_FN void asperity_update(
         next->x = place;
         return;
     }
-    s = *state;
+    asperity_copy(state, &s);
     log_h = ASPERITY_LOG(greatest);
-    asperity_loading_curve(t, greatest, log_h, 1, &v);
+    asperity_read_row(t, log_h, &row, exponential);
     if (h > s.h_max && s.h_max > zero) {
-        asperity_loading_curve(t, s.h_max, log_h + asperity_log_ratio(s.h_max, h), 0, &old);
+        asperity_read_row(t, log_h + asperity_log_ratio(s.h_max, h), &old_row, exponential + 4);
+        asperity_exponentials(exponential, 8);
+        asperity_make_curve(t, s.h_max, &old_row, exponential + 4, 0, &old);
         before = &old;
+    } else {
+        asperity_exponentials(exponential, 4);
     }
+    asperity_make_curve(t, greatest, &row, exponential, 1, &v);
     level = s.h_max > zero && s.approach > zero ? asperity_level_at(before, s.approach) : zero;
     old_n = s.h_max > zero && s.approach > zero ? before->f_n0 * asperity_exponential(level) : zero;
     asperity_slider_force(before, s.deflection, old_t);
@@ -923,7 +987,7 @@ ASPERITY_FN void asperity_update(
     s.x = p.x;
     slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, d0, d1);
     if (dh != zero || out->f_n != p.f_n) {
-        s.approach = p.approach;
+        s.approach = p.approach >= zero ? p.approach : v.depth * asperity_exponential(p.level / v.gamma);
     }
     if (tangent) {
         tangent->df_n_dh = p.df_n_dh * modulus * radius;
@@ -946,7 +1010,7 @@ ASPERITY_FN void asperity_update(
     out->f_n *= force;
     out->f_t[0] *= force;
     out->f_t[1] *= force;
-    *next = s;
+    asperity_copy(&s, next);
 }
 
 /* Elastic energy that a contact stores. */
