@@ -162,7 +162,6 @@ fn the_header_of_all_materials_agrees() {
     for compiler in [
         &["gcc", "-std=c99", "-O1"][..],
         &["g++", "-std=c++17", "-O1"],
-        &["gcc", "-std=c99", "-O1", "-DASPERITY_SINGLE"],
         &["gcc", "-std=c99", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"],
     ] {
         if !has(compiler[0], test) {
