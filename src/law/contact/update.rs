@@ -273,10 +273,10 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     if grown && state.h_max > 0.0 {
         let old = p.virgin(state.h_max);
         // The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it.
-        for i in 0..SLIDERS {
-            let keep = old.point.k_t * old.weight[i] / (virgin.point.k_t * virgin.weight[i]);
-            if keep < 1.0 {
-                state.deflection[i] = [keep * state.deflection[i][0], keep * state.deflection[i][1]];
+        let keep = old.point.k_t / virgin.point.k_t;
+        if keep < 1.0 {
+            for q in &mut state.deflection {
+                *q = [keep * q[0], keep * q[1]];
             }
         }
         if !first {

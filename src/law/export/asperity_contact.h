@@ -35,6 +35,13 @@ typedef unsigned long long uint64_t;
 typedef long long int64_t;
 #endif
 
+/* Before a loop over sliders: gcc would take it apart before it thinks of lanes. */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && __GNUC__ >= 8
+#define ASPERITY_LANES _Pragma("GCC unroll 1")
+#else
+#define ASPERITY_LANES
+#endif
+
 #ifdef __CUDACC__
 #define ASPERITY_FN static inline __host__ __device__
 #else
@@ -51,7 +58,7 @@ typedef uint32_t asperity_bits;
 #define ASPERITY_SIN sinf
 #define ASPERITY_COS cosf
 #define ASPERITY_INFINITE_BITS 0x7f800000u
-#define ASPERITY_LEAST 1e-35f
+#define ASPERITY_ROOT_BITS 0x5f375a86u
 #define ASPERITY_MOST 1e15f      /* its square is still finite */
 #define ASPERITY_AT_CAP (1.0f - 1e-6f)
 #define ASPERITY_AT_BOUND (1.0f + 1e-6f)
@@ -65,7 +72,7 @@ typedef uint64_t asperity_bits;
 #define ASPERITY_SIN sin
 #define ASPERITY_COS cos
 #define ASPERITY_INFINITE_BITS 0x7ff0000000000000ull
-#define ASPERITY_LEAST 1e-300
+#define ASPERITY_ROOT_BITS 0x5fe6eb50c7b537a9ull
 #define ASPERITY_MOST 1e150
 #define ASPERITY_AT_CAP (1.0 - 1e-9) /* rounding is not taken for unloading */
 #define ASPERITY_AT_BOUND (1.0 + 1e-10)
@@ -74,7 +81,7 @@ typedef uint64_t asperity_bits;
 
 #define ASPERITY_KNOTS @KNOTS@
 #define ASPERITY_COLUMNS @COLUMNS@
-#define ASPERITY_SLIDERS 16 /* asperity_sliders() is written for this number */
+#define ASPERITY_SLIDERS 16 /* asperity_weights() and asperity_sliders() are written for this number */
 #define ASPERITY_POINTS @POINTS@   /* of a shape that is given by numbers, x = (j/points)^2 */
 #define ASPERITY_LEVELS @LEVELS@
 
@@ -130,9 +137,10 @@ typedef struct asperity_curve {
     asperity_real depth;
     asperity_real backbone; /* exponent of the sliders' */
     int elastic;            /* whether shear costs no normal force */
-    asperity_real weight[ASPERITY_SLIDERS];
     asperity_real lost[ASPERITY_SLIDERS]; /* approach over depth at which a slider's annulus loses contact */
-    asperity_real shapes[2][ASPERITY_POINTS];
+    const asperity_real (*shallow)[ASPERITY_POINTS]; /* shapes by numbers: those of the level above and of the one below, */
+    const asperity_real (*deep)[ASPERITY_POINTS];
+    asperity_real between;                           /* and the place between them */
 } asperity_curve;
 
 /* e^x of several numbers at once, |x| < 700 (80 in float; beyond it what it has there): 2^k e^r with |r| <= ln(2)/2, e^r by its series. No call, no branch: a compiler does it for
@@ -140,30 +148,40 @@ typedef struct asperity_curve {
 ASPERITY_FN void asperity_exponentials(asperity_real *x, int count) {
 #ifdef ASPERITY_SINGLE
     const float most = 80.0f;
+#else
+    const double most = 700.0;
+#endif
     int i;
+    /* Loops of their own: beside what follows, a bound that is a constant becomes a branch. */
+    ASPERITY_LANES
     for (i = 0; i < count; i++) {
-        float y = x[i] < most ? x[i] : most, t, r, p;
-        int k;
+        asperity_real y = x[i];
+        x[i] = y < most ? y : most;
+    }
+    ASPERITY_LANES
+    for (i = 0; i < count; i++) {
+        asperity_real y = x[i];
+        x[i] = y > -most ? y : -most;
+    }
+#ifdef ASPERITY_SINGLE
+    ASPERITY_LANES
+    for (i = 0; i < count; i++) {
+        float y = x[i], r, p;
+        int k = (int)(y * 1.44269504f + 128.5f) - 128;
         uint32_t bits;
-        y = y > -most ? y : -most;
-        t = y * 1.44269504f;
-        k = (int)(t < 0.0f ? t - 0.5f : t + 0.5f);
         r = (y - (float)k * 0.693359375f) + (float)k * 2.12194440e-4f;
         p = 1.0f + r * (1.0f + r * (0.5f + r * (1.6666667e-1f + r * (4.1666667e-2f + r * (8.3333333e-3f + r * (1.3888889e-3f + r * 1.984127e-4f))))));
         memcpy(&bits, &p, sizeof bits);
         bits += (uint32_t)k << 23;
-        memcpy(&x[i], &bits, sizeof bits);
+        memcpy(&p, &bits, sizeof bits);
+        x[i] = p;
     }
 #else
-    const double most = 700.0;
-    int i;
+    ASPERITY_LANES
     for (i = 0; i < count; i++) {
-        double y = x[i] < most ? x[i] : most, t, r, r2, r4, p;
-        int k;
+        double y = x[i], r, r2, r4, p;
+        int k = (int)(y * 1.4426950408889634 + 1024.5) - 1024;
         uint64_t bits;
-        y = y > -most ? y : -most;
-        t = y * 1.4426950408889634;
-        k = (int)(t < 0.0 ? t - 0.5 : t + 0.5);
         r = (y - (double)k * 6.93147180369123816490e-01) - (double)k * 1.90821492927058770002e-10;
         r2 = r * r;
         r4 = r2 * r2;
@@ -171,24 +189,58 @@ ASPERITY_FN void asperity_exponentials(asperity_real *x, int count) {
             r4 * r4 * ((1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0)) + r4 * (1.0 / 479001600.0 + r * (1.0 / 6227020800.0)));
         memcpy(&bits, &p, sizeof bits);
         bits += (uint64_t)(int64_t)k << 52;
-        memcpy(&x[i], &bits, sizeof bits);
+        memcpy(&p, &bits, sizeof bits);
+        x[i] = p;
     }
 #endif
 }
 
-/* Sum in a fixed order that compilers do in lanes. */
-ASPERITY_FN asperity_real asperity_sum(const asperity_real terms[ASPERITY_SLIDERS]) {
+/* Sum of a[i] b[i] over the sliders, in a fixed order that compilers do in lanes. */
+ASPERITY_FN asperity_real asperity_sum(const asperity_real a[ASPERITY_SLIDERS], const asperity_real b[ASPERITY_SLIDERS]) {
     asperity_real lane[4];
     int i;
+    ASPERITY_LANES
     for (i = 0; i < 4; i++) {
-        lane[i] = (terms[i] + terms[i + 4]) + (terms[i + 8] + terms[i + 12]);
+        lane[i] = (a[i] * b[i] + a[i + 4] * b[i + 4]) + (a[i + 8] * b[i + 8] + a[i + 12] * b[i + 12]);
     }
     return (lane[0] + lane[2]) + (lane[1] + lane[3]);
+}
+
+/* 1/sqrt(x), x >= 0, finite at 0: a first guess by the exponent's bits and Newton's steps. No call, no division: a compiler does it for several lanes whatever its flags. */
+ASPERITY_FN asperity_real asperity_inverse_root(asperity_real x) {
+    asperity_real half = ASPERITY_R(0.5) * x, y;
+    asperity_bits bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = ASPERITY_ROOT_BITS - (bits >> 1);
+    memcpy(&y, &bits, sizeof bits);
+    y *= ASPERITY_R(1.5) - half * y * y;
+    y *= ASPERITY_R(1.5) - half * y * y;
+    y *= ASPERITY_R(1.5) - half * y * y;
+#ifndef ASPERITY_SINGLE
+    y *= ASPERITY_R(1.5) - half * y * y;
+#endif
+    return y;
 }
 
 /* base^exponent, 0 <= base. */
 ASPERITY_FN asperity_real asperity_power(asperity_real base, asperity_real exponent) {
     return base > ASPERITY_R(0.0) ? ASPERITY_EXP(exponent * ASPERITY_LOG(base)) : ASPERITY_R(0.0);
+}
+
+/* e^x. */
+ASPERITY_FN asperity_real asperity_exponential(asperity_real x) {
+    asperity_exponentials(&x, 1);
+    return x;
+}
+
+/* ln(a/b), a, b > 0: by its series where they are near to each other, as from one step of time to the next. */
+ASPERITY_FN asperity_real asperity_log_ratio(asperity_real a, asperity_real b) {
+    asperity_real z = (a - b) / b, z2 = z * z, z4 = z2 * z2;
+    if (ASPERITY_ABS(z) > ASPERITY_R(0.015625)) {
+        return ASPERITY_LOG(a / b);
+    }
+    return z - z2 * ((ASPERITY_R(1.0 / 2.0) - z * ASPERITY_R(1.0 / 3.0)) + z2 * (ASPERITY_R(1.0 / 4.0) - z * ASPERITY_R(1.0 / 5.0)) +
+                     z4 * ((ASPERITY_R(1.0 / 6.0) - z * ASPERITY_R(1.0 / 7.0)) + z2 * (ASPERITY_R(1.0 / 8.0) - z * ASPERITY_R(1.0 / 9.0))));
 }
 
 /* Whether a number is finite, also where the compiler was told that all are. */
@@ -206,21 +258,37 @@ ASPERITY_FN asperity_real asperity_no_number(void) {
     return x;
 }
 
-/* Shares of k_T and points of loss of sliders whose backbone is 1 - (1 - x)^backbone. The cells end at (k/16)^(3/2); the powers of k come from those of the primes. */
-ASPERITY_FN void asperity_sliders(asperity_real backbone, int whole, asperity_real weight[ASPERITY_SLIDERS], asperity_real lost[ASPERITY_SLIDERS]) {
-    /* (k/16)^(3/2) */
-    static const asperity_real end[ASPERITY_SLIDERS + 1] = {
-        ASPERITY_R(0.0), ASPERITY_R(0.015625), ASPERITY_R(0.04419417382415922), ASPERITY_R(0.08118988160479113),
-        ASPERITY_R(0.125), ASPERITY_R(0.17469281074217108), ASPERITY_R(0.22963966338592295), ASPERITY_R(0.2893790496476896),
-        ASPERITY_R(0.3535533905932738), ASPERITY_R(0.421875), ASPERITY_R(0.49410588440130926), ASPERITY_R(0.5700448858423344),
-        ASPERITY_R(0.649519052838329), ASPERITY_R(0.7323776028286229), ASPERITY_R(0.8184875533567997),
-        ASPERITY_R(0.9077304717673633), ASPERITY_R(1.0)};
-    asperity_real p = ASPERITY_R(1.5) * (backbone - ASPERITY_R(1.0)), above[ASPERITY_SLIDERS + 1], share = (backbone - ASPERITY_R(1.0)) / backbone;
+/* Shares of the sliders in k_T, the same for every backbone: (k/16)^0.65 is that of the annuli inside the end of cell k. So a contact that grows keeps the forces of all its
+ * sliders by one factor. */
+ASPERITY_FN const asperity_real *asperity_weights(void) {
+    static const asperity_real weight[ASPERITY_SLIDERS] = {
+        ASPERITY_R(0.16493848884661177), ASPERITY_R(0.09387774211373257), ASPERITY_R(0.07804484139822254), ASPERITY_R(0.06926512581955085), ASPERITY_R(0.0633920910623787),
+        ASPERITY_R(0.059073391905460126), ASPERITY_R(0.055708118352608804), ASPERITY_R(0.05298051416106575), ASPERITY_R(0.05070575232217012), ASPERITY_R(0.048767100837759925),
+        ASPERITY_R(0.04708653450214806), ASPERITY_R(0.04560955329354521), ASPERITY_R(0.04429672468331203), ASPERITY_R(0.043118682883102055), ASPERITY_R(0.04205302593053484),
+        ASPERITY_R(0.04108231188779665)};
+    return weight;
+}
+
+/* Points of loss of sliders whose backbone is 1 - (1 - x)^backbone: each stands for a cell of the annuli at its centre of gravity. The cells end at (k/16)^(0.65/(backbone - 1)); the
+ * powers of k come from those of the primes. */
+ASPERITY_FN void asperity_sliders(asperity_real backbone, asperity_real lost[ASPERITY_SLIDERS]) {
+    /* What is inside the end of a cell, and inside its beginning, over its weight. */
+    static const asperity_real to[ASPERITY_SLIDERS] = {
+        ASPERITY_R(1.0), ASPERITY_R(2.7569498917729547), ASPERITY_R(4.316250328958178), ASPERITY_R(5.86335754642467), ASPERITY_R(7.406575195295008),
+        ASPERITY_R(8.948050282805905), ASPERITY_R(10.488593346488479), ASPERITY_R(12.028579256936597), ASPERITY_R(13.568205469283463), ASPERITY_R(15.10758593730263),
+        ASPERITY_R(16.64679105415904), ASPERITY_R(18.18586665992715), ASPERITY_R(19.724843891849506), ASPERITY_R(21.263744643298974), ASPERITY_R(22.802584758019282),
+        ASPERITY_R(24.34137598514864)};
+    static const asperity_real from[ASPERITY_SLIDERS] = {
+        ASPERITY_R(0.0), ASPERITY_R(1.7569498917729547), ASPERITY_R(3.316250328958178), ASPERITY_R(4.86335754642467), ASPERITY_R(6.406575195295008),
+        ASPERITY_R(7.948050282805905), ASPERITY_R(9.488593346488479), ASPERITY_R(11.028579256936597), ASPERITY_R(12.568205469283463), ASPERITY_R(14.10758593730263),
+        ASPERITY_R(15.646791054159038), ASPERITY_R(17.18586665992715), ASPERITY_R(18.724843891849506), ASPERITY_R(20.263744643298974), ASPERITY_R(21.802584758019282),
+        ASPERITY_R(23.34137598514864)};
+    asperity_real p = ASPERITY_R(0.65) / (backbone - ASPERITY_R(1.0)), end[ASPERITY_SLIDERS + 1], share = (backbone - ASPERITY_R(1.0)) / backbone;
     /* (1/2)^p, (3/4)^p, (5/8)^p, (7/8)^p, (11/16)^p, (13/16)^p, and two for the lanes */
     asperity_real prime[8] = {
         ASPERITY_R(-0.6931471805599453), ASPERITY_R(-0.2876820724517809), ASPERITY_R(-0.4700036292457356), ASPERITY_R(-0.13353139262452263),
         ASPERITY_R(-0.3746934494414107), ASPERITY_R(-0.2076393647782445), ASPERITY_R(0.0), ASPERITY_R(0.0)};
-    asperity_real half, quarter, eighth, sixteenth, three, five, seven, eleven, thirteen;
+    asperity_real half, quarter, three, five, seven;
     int k;
     for (k = 0; k < 8; k++) {
         prime[k] *= p;
@@ -228,47 +296,42 @@ ASPERITY_FN void asperity_sliders(asperity_real backbone, int whole, asperity_re
     asperity_exponentials(prime, 8);
     half = prime[0];
     quarter = half * half;
-    eighth = half * quarter;
-    sixteenth = quarter * quarter;
     three = prime[1];
     five = prime[2];
     seven = prime[3];
-    eleven = prime[4];
-    thirteen = prime[5];
-    above[0] = ASPERITY_R(0.0);
-    above[1] = sixteenth;
-    above[2] = eighth;
-    above[3] = three * quarter;
-    above[4] = quarter;
-    above[5] = five * half;
-    above[6] = three * half;
-    above[7] = seven * half;
-    above[8] = half;
-    above[9] = three * three;
-    above[10] = five;
-    above[11] = eleven;
-    above[12] = three;
-    above[13] = thirteen;
-    above[14] = seven;
-    above[15] = three * five / half;
-    above[16] = ASPERITY_R(1.0);
+    end[0] = ASPERITY_R(0.0);
+    end[1] = quarter * quarter;
+    end[2] = half * quarter;
+    end[3] = three * quarter;
+    end[4] = quarter;
+    end[5] = five * half;
+    end[6] = three * half;
+    end[7] = seven * half;
+    end[8] = half;
+    end[9] = three * three;
+    end[10] = five;
+    end[11] = prime[4];
+    end[12] = three;
+    end[13] = prime[5];
+    end[14] = seven;
+    end[15] = three * five / half;
+    end[16] = ASPERITY_R(1.0);
+    ASPERITY_LANES
     for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        weight[k] = above[k + 1] - above[k];
-    }
-    if (!whole) {
-        return;
-    }
-    for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        lost[k] = share * (above[k + 1] * end[k + 1] - above[k] * end[k]) / weight[k];
+        lost[k] = share * (to[k] * end[k + 1] - from[k] * end[k]);
     }
 }
 
-/* First loading at the indentation h > 0, over R; where it is not to be `whole`, without what only sliding and shapes need. */
-ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h, int whole, asperity_curve *v) {
+/* A row of the table at ln h: its position, its columns, the slope of the first, and the logarithms among them, whose exponentials are then taken together. */
+typedef struct asperity_row {
+    asperity_real position, slope, column[ASPERITY_COLUMNS];
+} asperity_row;
+
+ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h, asperity_row *row, asperity_real logarithm[4]) {
     /* Powers of h in Hertz's contact, for what lies below the first knot. */
     static const asperity_real hertz[ASPERITY_COLUMNS] = {
         ASPERITY_R(1.5), ASPERITY_R(0.5), ASPERITY_R(0.0), ASPERITY_R(1.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.5)};
-    asperity_real position = (ASPERITY_LOG(h) - t->log_first) / t->log_step, last = ASPERITY_R(ASPERITY_KNOTS - 1), column[ASPERITY_COLUMNS], exponential[4], slope, a, start, end, force;
+    asperity_real position = (log_h - t->log_first) / t->log_step, last = ASPERITY_R(ASPERITY_KNOTS - 1), slope, *column = row->column;
     int c;
     if (position < ASPERITY_R(0.0)) {
         for (c = 0; c < ASPERITY_COLUMNS; c++) {
@@ -295,11 +358,18 @@ ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h
             slope = s0[0] + u * (ASPERITY_R(2.0) * quadratic + ASPERITY_R(3.0) * u * cubic);
         }
     }
-    exponential[0] = column[0];
-    exponential[1] = column[1];
-    exponential[2] = column[3];
-    exponential[3] = column[7];
-    asperity_exponentials(exponential, 4);
+    row->position = position;
+    row->slope = slope;
+    logarithm[0] = column[0];
+    logarithm[1] = column[1];
+    logarithm[2] = column[3];
+    logarithm[3] = column[7];
+}
+
+/* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need. */
+ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_curve *v) {
+    const asperity_real *column = row->column;
+    asperity_real a, start, end, force;
     v->f_n0 = exponential[0];
     a = exponential[1];
     v->f_n_slip = column[2] * v->f_n0;
@@ -312,7 +382,7 @@ ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h
     force = ASPERITY_R(4.0) * t->effective_modulus * a * a * a / (ASPERITY_R(3.0) * t->effective_radius);
     v->gamma = ASPERITY_R(1.2732395447351628) + ASPERITY_R(1.5 - 1.2732395447351628) * (v->f_n0 < force ? v->f_n0 / force : ASPERITY_R(1.0));
     v->depth = v->gamma * v->f_n0 / (ASPERITY_R(2.0) * t->effective_modulus * a);
-    v->slope = v->f_n0 * slope / (t->log_step * h);
+    v->slope = v->f_n0 * row->slope / (t->log_step * h);
     if (t->form == 2) {
         v->backbone = v->big_n;
         v->contact_radius = v->m * a;
@@ -326,61 +396,89 @@ ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h
     end = v->backbone * t->friction * v->f_n0 / v->delta_t_slip;
     v->k_t = v->k_t < start ? start : v->k_t;
     v->k_t = v->k_t < end ? end : v->k_t;
-    asperity_sliders(v->backbone, whole, v->weight, v->lost);
-    if (whole && t->form == 2) {
-        asperity_real level = position * ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1), most = ASPERITY_R(ASPERITY_LEVELS - 1), u;
-        const asperity_real *low, *high;
-        asperity_real *shapes = v->shapes[0];
-        int i, j;
+    if (!whole) {
+        return;
+    }
+    asperity_sliders(v->backbone, v->lost);
+    if (t->form == 2) {
+        asperity_real level = row->position * (ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1)), most = ASPERITY_R(ASPERITY_LEVELS - 1);
+        int i;
         level = level < most ? level : most;
         level = level > ASPERITY_R(0.0) ? level : ASPERITY_R(0.0);
         i = (int)level < ASPERITY_LEVELS - 2 ? (int)level : ASPERITY_LEVELS - 2;
-        u = level - ASPERITY_R(i);
-        low = t->shapes[i][0];
-        high = t->shapes[i + 1][0];
-        for (j = 0; j < 2 * ASPERITY_POINTS; j++) {
-            shapes[j] = low[j] + u * (high[j] - low[j]);
-        }
+        v->between = level - ASPERITY_R(i);
+        v->shallow = t->shapes[i];
+        v->deep = t->shapes[i + 1];
     }
 }
 
-/* x at point j of a shape that is given by numbers. */
-ASPERITY_FN asperity_real asperity_point_x(int j) {
-    asperity_real share = ASPERITY_R(j) / ASPERITY_R(ASPERITY_POINTS);
-    return share * share;
+/* First loading at the indentation h > 0, over R. */
+ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h, int whole, asperity_curve *v) {
+    asperity_row row;
+    asperity_real exponential[4];
+    asperity_read_row(t, ASPERITY_LOG(h), &row, exponential);
+    asperity_exponentials(exponential, 4);
+    asperity_make_curve(t, h, &row, exponential, whole, v);
 }
 
-/* Such a shape, straight from point to point, 0 <= x <= 1. */
-ASPERITY_FN asperity_real asperity_given(const asperity_real shape[ASPERITY_POINTS], asperity_real x, asperity_real *derivative) {
-    asperity_real below, slope;
+/* x at point j of a shape that is given by numbers, */
+ASPERITY_FN asperity_real asperity_point_x(int j) {
+    return ASPERITY_R(j * j) * (ASPERITY_R(1.0) / ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS));
+}
+
+/* and the shape there: 0 is f_T, 1 is f_N. */
+ASPERITY_FN asperity_real asperity_point(const asperity_curve *v, int kind, int j) {
+    asperity_real low;
+    if (j == 0) {
+        return ASPERITY_R(0.0);
+    }
+    low = v->shallow[kind][j - 1];
+    return low + v->between * (v->deep[kind][j - 1] - low);
+}
+
+/* It at an x between point j and the next. */
+ASPERITY_FN asperity_real asperity_given_after(const asperity_curve *v, int kind, asperity_real x, int j, asperity_real *derivative) {
+    asperity_real below = asperity_point(v, kind, j);
+    *derivative = (asperity_point(v, kind, j + 1) - below) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1));
+    return below + *derivative * (x - asperity_point_x(j));
+}
+
+/* It anywhere, 0 <= x <= 1. */
+ASPERITY_FN asperity_real asperity_given(const asperity_curve *v, int kind, asperity_real x, asperity_real *derivative) {
     int j;
-    *derivative = ASPERITY_R(0.0);
     if (x >= ASPERITY_R(1.0)) {
-        return shape[ASPERITY_POINTS - 1];
+        *derivative = ASPERITY_R(0.0);
+        return asperity_point(v, kind, ASPERITY_POINTS);
     }
     j = (int)(ASPERITY_R(ASPERITY_POINTS) * ASPERITY_SQRT(x));
     j = j > ASPERITY_POINTS - 1 ? ASPERITY_POINTS - 1 : j;
-    below = j == 0 ? ASPERITY_R(0.0) : shape[j - 1];
-    slope = (shape[j] - below) / (asperity_point_x(j + 1) - asperity_point_x(j));
-    *derivative = slope;
-    return below + slope * (x - asperity_point_x(j));
+    return asperity_given_after(v, kind, x, j, derivative);
 }
 
-/* The least x at which it has the value f, or that of its peak. */
-ASPERITY_FN asperity_real asperity_given_inverse(const asperity_real shape[ASPERITY_POINTS], asperity_real f) {
-    asperity_real below = ASPERITY_R(0.0), peak = ASPERITY_R(0.0), place = ASPERITY_R(0.0);
-    int j;
+/* The least x at which it has the value f, or that of its peak; `after`: the point before it, -1 at a peak. */
+ASPERITY_FN asperity_real asperity_given_inverse(const asperity_curve *v, int kind, asperity_real f, int *after) {
+    const asperity_real *shallow = v->shallow[kind], *deep = v->deep[kind];
+    asperity_real between = v->between, below, peak = ASPERITY_R(0.0), place = ASPERITY_R(0.0);
+    int j, first = ASPERITY_POINTS;
+    *after = 0;
     if (f <= ASPERITY_R(0.0)) {
         return ASPERITY_R(0.0);
     }
+    ASPERITY_LANES
     for (j = 0; j < ASPERITY_POINTS; j++) {
-        if (shape[j] >= f) {
-            return asperity_point_x(j) + (f - below) / (shape[j] - below) * (asperity_point_x(j + 1) - asperity_point_x(j));
-        }
-        below = shape[j];
+        int here = shallow[j] + between * (deep[j] - shallow[j]) >= f ? j : ASPERITY_POINTS;
+        first = here < first ? here : first;
+    }
+    *after = first < ASPERITY_POINTS ? first : -1;
+    if (first < ASPERITY_POINTS) {
+        below = asperity_point(v, kind, first);
+        return asperity_point_x(first) + (f - below) / (asperity_point(v, kind, first + 1) - below) * (asperity_point_x(first + 1) - asperity_point_x(first));
+    }
+    for (j = 1; j <= ASPERITY_POINTS; j++) {
+        below = asperity_point(v, kind, j);
         if (below > peak) {
             peak = below;
-            place = asperity_point_x(j + 1);
+            place = asperity_point_x(j);
         }
     }
     return place;
@@ -390,7 +488,7 @@ ASPERITY_FN asperity_real asperity_given_inverse(const asperity_real shape[ASPER
 ASPERITY_FN asperity_real asperity_tangential_shape(int form, const asperity_curve *v, asperity_real x, asperity_real *derivative) {
     asperity_real rest = ASPERITY_R(1.0) - x, power;
     if (form == 2) {
-        return asperity_given(v->shapes[0], x, derivative);
+        return asperity_given(v, 0, x, derivative);
     }
     *derivative = ASPERITY_R(0.0);
     if (rest <= ASPERITY_R(0.0)) {
@@ -401,15 +499,16 @@ ASPERITY_FN asperity_real asperity_tangential_shape(int form, const asperity_cur
     return ASPERITY_R(1.0) - power * rest;
 }
 
-ASPERITY_FN asperity_real asperity_tangential_shape_inverse(int form, const asperity_curve *v, asperity_real f) {
+ASPERITY_FN asperity_real asperity_tangential_shape_inverse(int form, const asperity_curve *v, asperity_real f, int *after) {
+    *after = -1;
     if (form == 2) {
-        return asperity_given_inverse(v->shapes[0], f);
+        return asperity_given_inverse(v, 0, f, after);
     }
     return f >= ASPERITY_R(1.0) ? ASPERITY_R(1.0) : ASPERITY_R(1.0) - asperity_power(ASPERITY_R(1.0) - f, ASPERITY_R(1.0) / v->n);
 }
 
-/* f_N(x), 0 <= x <= 1; its derivative is 0 at both ends. */
-ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *v, asperity_real x, asperity_real *derivative) {
+/* f_N(x), 0 <= x <= 1; its derivative is 0 at both ends. `after`: the point before x of a shape by numbers, -1 where it is not known. */
+ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *v, asperity_real x, int after, asperity_real *derivative) {
     asperity_real rest, risen, power;
     *derivative = ASPERITY_R(0.0);
     if (x <= ASPERITY_R(0.0)) {
@@ -419,7 +518,7 @@ ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *
         return ASPERITY_R(1.0);
     }
     if (form == 2) {
-        return asperity_given(v->shapes[1], x, derivative);
+        return after < 0 ? asperity_given(v, 1, x, derivative) : asperity_given_after(v, 1, x, after, derivative);
     }
     if (form == 0) {
         rest = asperity_power(ASPERITY_R(1.0) - x, v->m);
@@ -437,6 +536,7 @@ ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *
 
 ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity_curve *v, asperity_real f) {
     asperity_real one = ASPERITY_R(1.0), inner;
+    int after;
     if (f <= ASPERITY_R(0.0)) {
         return ASPERITY_R(0.0);
     }
@@ -444,7 +544,7 @@ ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity
         return one;
     }
     if (form == 2) {
-        return asperity_given_inverse(v->shapes[1], f);
+        return asperity_given_inverse(v, 1, f, &after);
     }
     if (form == 0) {
         inner = one - asperity_power(f, one / v->big_n);
@@ -455,9 +555,9 @@ ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity
 }
 
 /* F_N on the virgin curve at x. */
-ASPERITY_FN asperity_real asperity_cap(int form, const asperity_curve *v, asperity_real x) {
+ASPERITY_FN asperity_real asperity_cap(int form, const asperity_curve *v, asperity_real x, int after) {
     asperity_real derivative;
-    return v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(form, v, x, &derivative);
+    return v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(form, v, x, after, &derivative);
 }
 
 /* The x of the virgin curve that has the normal force f_n. */
@@ -471,23 +571,27 @@ ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *
     return asperity_normal_shape_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
 }
 
-/* Elastic unloading: F_N at the approach e. */
-ASPERITY_FN asperity_real asperity_force_at(const asperity_curve *v, asperity_real e) {
-    return e <= ASPERITY_R(0.0) ? ASPERITY_R(0.0) : v->f_n0 * asperity_power(e / v->depth, v->gamma);
+/* Elastic unloading: ln(F_N/F_N0) at the approach e > 0. */
+ASPERITY_FN asperity_real asperity_level_at(const asperity_curve *v, asperity_real e) {
+    return e == v->depth ? ASPERITY_R(0.0) : v->gamma * ASPERITY_LOG(e / v->depth);
 }
 
-/* Greatest deflection of each slider under the normal force f_n > 0, so that their forces add up to mu F_N. */
-ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v, asperity_real f_n, asperity_real limit[ASPERITY_SLIDERS]) {
-    asperity_real eta = f_n < v->f_n0 ? asperity_power(f_n / v->f_n0, ASPERITY_R(1.0) / v->backbone) : ASPERITY_R(1.0), term[ASPERITY_SLIDERS], scale;
+/* F_N at the approach e. */
+ASPERITY_FN asperity_real asperity_force_at(const asperity_curve *v, asperity_real e) {
+    return e <= ASPERITY_R(0.0) ? ASPERITY_R(0.0) : v->f_n0 * asperity_exponential(asperity_level_at(v, e));
+}
+
+/* Greatest deflection of each slider under the normal force f_n > 0, so that their forces add up to mu F_N; eta = (F_N/F_N0)^(1/backbone). */
+ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v, asperity_real f_n, asperity_real eta, asperity_real limit[ASPERITY_SLIDERS]) {
+    asperity_real scale;
     int i;
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        limit[i] = eta > v->lost[i] ? eta - v->lost[i] : ASPERITY_R(0.0);
+        limit[i] = (eta > v->lost[i] ? eta : v->lost[i]) - v->lost[i];
     }
     limit[0] = limit[0] < ASPERITY_R(0.1) * eta ? ASPERITY_R(0.1) * eta : limit[0]; /* the innermost carries what little force there is */
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        term[i] = v->weight[i] * limit[i];
-    }
-    scale = friction * f_n / (v->k_t * asperity_sum(term));
+    scale = friction * f_n / (v->k_t * asperity_sum(asperity_weights(), limit));
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         limit[i] *= scale;
     }
@@ -495,65 +599,74 @@ ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v
 
 /* Moves the sliders from `from` and holds each to its limit; returns what they dissipate over k_T. */
 ASPERITY_FN asperity_real asperity_slide(
-    asperity_real from[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], const asperity_real weight[ASPERITY_SLIDERS], asperity_real d0,
-    asperity_real d1, asperity_real to[2][ASPERITY_SLIDERS]) {
-    asperity_real q0[ASPERITY_SLIDERS], q1[ASPERITY_SLIDERS], lost[ASPERITY_SLIDERS];
+    asperity_real from[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], asperity_real d0, asperity_real d1,
+    asperity_real to[2][ASPERITY_SLIDERS]) {
+    asperity_real q0[ASPERITY_SLIDERS], q1[ASPERITY_SLIDERS], square[ASPERITY_SLIDERS], over[ASPERITY_SLIDERS];
     int i, beyond = 0;
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        q0[i] = from[0][i] + d0;
-        q1[i] = from[1][i] + d1;
-        lost[i] = q0[i] * q0[i] + q1[i] * q1[i];
-        beyond |= lost[i] > limit[i] * limit[i];
+        asperity_real p0 = from[0][i] + d0, p1 = from[1][i] + d1, size = p0 * p0 + p1 * p1, most = limit[i] * limit[i];
+        q0[i] = p0;
+        q1[i] = p1;
+        beyond |= size > most;
+        square[i] = size > most ? size : most;
     }
     if (!beyond) {
-        memcpy(to[0], q0, sizeof q0);
-        memcpy(to[1], q1, sizeof q1);
+        ASPERITY_LANES
+        for (i = 0; i < ASPERITY_SLIDERS; i++) {
+            to[0][i] = q0[i];
+            to[1][i] = q1[i];
+        }
         return ASPERITY_R(0.0);
     }
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        /* Divided whether needed or not, so that no lane branches; a size of zero is within any limit. */
-        asperity_real size = ASPERITY_SQRT(lost[i]), keep = limit[i] / (size > ASPERITY_LEAST ? size : ASPERITY_LEAST), over = size - limit[i];
-        keep = over > ASPERITY_R(0.0) ? keep : ASPERITY_R(1.0);
-        over = over > ASPERITY_R(0.0) ? over : ASPERITY_R(0.0);
-        lost[i] = weight[i] * limit[i] * over;
-        q0[i] *= keep;
-        q1[i] *= keep;
+        /* 1, but for rounding, of one within its limit. */
+        asperity_real inverse = asperity_inverse_root(square[i]), keep = limit[i] * inverse;
+        over[i] = limit[i] * (square[i] * inverse - limit[i]);
+        to[0][i] = keep * q0[i];
+        to[1][i] = keep * q1[i];
     }
-    memcpy(to[0], q0, sizeof q0);
-    memcpy(to[1], q1, sizeof q1);
-    return asperity_sum(lost);
+    return asperity_sum(asperity_weights(), over);
+}
+
+/* Whether a slider is beyond its limit. */
+ASPERITY_FN int asperity_exceeds(asperity_real deflection[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS]) {
+    int i, beyond = 0;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        beyond |= deflection[0][i] * deflection[0][i] + deflection[1][i] * deflection[1][i] > limit[i] * limit[i];
+    }
+    return beyond;
 }
 
 /* Tangential force of the sliders. */
 ASPERITY_FN void asperity_slider_force(const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real force[2]) {
-    asperity_real term[2][ASPERITY_SLIDERS];
-    int i;
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        term[0][i] = v->weight[i] * deflection[0][i];
-        term[1][i] = v->weight[i] * deflection[1][i];
-    }
-    force[0] = v->k_t * asperity_sum(term[0]);
-    force[1] = v->k_t * asperity_sum(term[1]);
+    force[0] = v->k_t * asperity_sum(asperity_weights(), deflection[0]);
+    force[1] = v->k_t * asperity_sum(asperity_weights(), deflection[1]);
 }
 
 /* Their energy. */
 ASPERITY_FN asperity_real asperity_slider_energy(const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS]) {
-    asperity_real term[ASPERITY_SLIDERS];
+    asperity_real square[ASPERITY_SLIDERS];
     int i;
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        term[i] = v->weight[i] * (deflection[0][i] * deflection[0][i] + deflection[1][i] * deflection[1][i]);
+        square[i] = (deflection[0][i] * deflection[0][i] + deflection[1][i] * deflection[1][i]);
     }
-    return ASPERITY_R(0.5) * v->k_t * asperity_sum(term);
+    return ASPERITY_R(0.5) * v->k_t * asperity_sum(asperity_weights(), square);
 }
 
 /* Their stiffness after an increment: a slider at its limit only turns. */
 ASPERITY_FN void asperity_slider_stiffness(
     const asperity_curve *v, asperity_real before[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], asperity_real d0, asperity_real d1,
     asperity_real stiffness[2][2]) {
+    const asperity_real *weight = asperity_weights();
     asperity_real sum0 = ASPERITY_R(0.0), sum1 = ASPERITY_R(0.0), sum2 = ASPERITY_R(0.0);
     int i;
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real q0 = before[0][i] + d0, q1 = before[1][i] + d1, size = ASPERITY_SQRT(q0 * q0 + q1 * q1), k = v->k_t * v->weight[i];
+        asperity_real q0 = before[0][i] + d0, q1 = before[1][i] + d1, size = ASPERITY_SQRT(q0 * q0 + q1 * q1), k = v->k_t * weight[i];
         if (size > ASPERITY_AT_BOUND * limit[i]) {
             asperity_real m0 = q0 / size, m1 = q1 / size;
             k = k * limit[i] / size;
@@ -573,6 +686,7 @@ ASPERITY_FN void asperity_slider_stiffness(
 
 ASPERITY_FN void asperity_scale(asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real keep) {
     int i;
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         deflection[0][i] *= keep;
         deflection[1][i] *= keep;
@@ -582,37 +696,41 @@ ASPERITY_FN void asperity_scale(asperity_real deflection[2][ASPERITY_SLIDERS], a
 /* What the press leaves for the shear. */
 typedef struct asperity_pressed {
     asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
+    asperity_real level;                 /* ln(F_N/F_N0) */
+    asperity_real approach;              /* elastic, of that F_N; negative: not asked yet */
+    asperity_real force[2];              /* of the sliders */
     asperity_real limit[ASPERITY_SLIDERS];
 } asperity_pressed;
 
-/* Moves h with delta_T held. `old` is the curve at the h_max before, where h has grown beyond it. */
+/* Moves h with delta_T held. `old` is the curve at the h_max before, `level` ln(F_N/F_N0) there. */
 ASPERITY_FN void asperity_press(
-    const asperity_table *t, asperity_state *s, const asperity_curve *v, const asperity_curve *old, asperity_real h, int derivatives, asperity_pressed *p) {
+    const asperity_table *t, asperity_state *s, const asperity_curve *v, const asperity_curve *old, asperity_real level, asperity_real h, int derivatives, asperity_pressed *p) {
     const asperity_real zero = ASPERITY_R(0.0);
-    int grown = h > s->h_max, first = grown && (s->x == zero || !(s->h_max > zero)), i;
+    int grown = h > s->h_max, first = grown && (s->x == zero || !(s->h_max > zero)), after;
     asperity_real dh = h - s->h, e = s->approach + dh, trial = v->f_n0, stiffness = v->slope, elastic, f_t, slip_force, bound, cap, share, soft, rate, flow, most;
-    asperity_real rises, falls, gain, along, slope, raised, keep, derivative, force[2], shape, limits_of;
+    asperity_real rises, falls, gain, along, slope, raised, keep, derivative, shape, at_trial = zero;
     p->slip = zero;
     if (grown && s->h_max > zero) {
         /* The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it. */
-        asperity_real ratio = old->k_t / v->k_t;
-        for (i = 0; i < ASPERITY_SLIDERS; i++) {
-            keep = ratio * old->weight[i] / v->weight[i];
-            keep = keep < ASPERITY_R(1.0) ? keep : ASPERITY_R(1.0);
-            s->deflection[0][i] *= keep;
-            s->deflection[1][i] *= keep;
+        keep = old->k_t / v->k_t;
+        if (keep < ASPERITY_R(1.0)) {
+            asperity_scale(s->deflection, keep);
         }
-        if (!first) {
-            trial = asperity_force_at(old, e);
-            stiffness = e > zero ? old->gamma * trial / e : zero;
-        }
-    } else if (!grown) {
-        trial = asperity_force_at(v, e);
-        stiffness = e > zero ? v->gamma * trial / e : zero;
+    }
+    if (!first) {
+        /* Most steps are small: what F_N was is near to what it is. */
+        at_trial = e > zero ? (s->approach > zero ? level + old->gamma * asperity_log_ratio(e, s->approach) : asperity_level_at(old, e)) : zero;
+        trial = e > zero ? old->f_n0 * asperity_exponential(at_trial) : zero;
+        stiffness = e > zero ? old->gamma * trial / e : zero;
     }
     p->f_n = trial < v->f_n0 ? trial : v->f_n0;
+    p->level = trial < v->f_n0 ? (grown ? asperity_log_ratio(trial, v->f_n0) : at_trial) : zero;
+    p->approach = trial < v->f_n0 ? (grown ? -ASPERITY_R(1.0) : e) : v->depth;
     p->df_n_dh = stiffness;
-    asperity_limits(t->friction, v, p->f_n, p->limit);
+    asperity_limits(t->friction, v, p->f_n, p->level < zero ? asperity_exponential(p->level / v->backbone) : ASPERITY_R(1.0), p->limit);
+    if (dh <= zero) {
+        asperity_slider_force(v, s->deflection, p->force);
+    }
     if (dh == zero) {
         p->x = s->x;
         p->df_n_dh = s->x == zero && s->h == s->h_max ? v->slope : stiffness;
@@ -626,10 +744,12 @@ ASPERITY_FN void asperity_press(
     if (trial >= v->f_n0 && grown) {
         stiffness = v->slope;
     }
-    p->slip = v->k_t * asperity_slide(s->deflection, p->limit, v->weight, zero, zero, s->deflection);
+    if (asperity_exceeds(s->deflection, p->limit)) {
+        p->slip = v->k_t * asperity_slide(s->deflection, p->limit, zero, zero, s->deflection);
+    }
     p->df_n_dh = stiffness;
-    asperity_slider_force(v, s->deflection, force);
-    f_t = ASPERITY_SQRT(force[0] * force[0] + force[1] * force[1]);
+    asperity_slider_force(v, s->deflection, p->force);
+    f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
     slip_force = t->friction * v->f_n_slip;
     if (t->form == 2 || v->elastic) {
         p->x = asperity_mobilisation(t->form, v, p->f_n);
@@ -638,8 +758,8 @@ ASPERITY_FN void asperity_press(
             return;
         }
     }
-    bound = asperity_tangential_shape_inverse(t->form, v, f_t / slip_force);
-    cap = asperity_cap(t->form, v, bound);
+    bound = asperity_tangential_shape_inverse(t->form, v, f_t / slip_force, &after);
+    cap = asperity_cap(t->form, v, bound, after);
     if (t->form != 2 && p->f_n <= cap) {
         p->x = asperity_mobilisation(t->form, v, p->f_n); /* the same, as these curves only rise, and cheaper on it */
         return;
@@ -649,10 +769,10 @@ ASPERITY_FN void asperity_press(
     soft = soft > zero ? soft * soft : zero;
     rate = ASPERITY_R(2.6) * (soft * soft) * (ASPERITY_R(1.0) - ASPERITY_R(0.5) * (share * share));
     flow = trial > cap ? rate * (trial - cap) / v->f_n0 : zero;
-    most = t->form == 2 ? slip_force * asperity_tangential_shape(t->form, v, bound, &derivative) : slip_force;
-    keep = ASPERITY_EXP(-flow) * (most < f_t ? most / f_t : ASPERITY_R(1.0));
-    p->x = asperity_tangential_shape_inverse(t->form, v, keep * f_t / slip_force);
-    shape = asperity_normal_shape(t->form, v, p->x, &derivative);
+    most = t->form == 2 && after < 0 ? slip_force * asperity_tangential_shape(t->form, v, bound, &derivative) : (t->form == 2 ? f_t : slip_force);
+    keep = asperity_exponential(-flow) * (most < f_t ? most / f_t : ASPERITY_R(1.0));
+    p->x = asperity_tangential_shape_inverse(t->form, v, keep * f_t / slip_force, &after);
+    shape = asperity_normal_shape(t->form, v, p->x, after, &derivative);
     raised = v->f_n0 - (v->f_n0 - v->f_n_slip) * shape;
     if (derivatives) {
         falls = (v->f_n0 - v->f_n_slip) * derivative;
@@ -663,25 +783,31 @@ ASPERITY_FN void asperity_press(
         slope = along + rate * gain * (stiffness - along);
         p->df_n_dh = raised < p->f_n && slope < stiffness ? slope : stiffness;
     }
-    limits_of = p->f_n;
-    p->f_n = raised < p->f_n ? raised : p->f_n;
     asperity_scale(s->deflection, keep);
-    if (p->f_n != limits_of) {
-        asperity_limits(t->friction, v, p->f_n, p->limit);
+    p->force[0] *= keep;
+    p->force[1] *= keep;
+    if (raised < p->f_n) {
+        p->level += asperity_log_ratio(raised, p->f_n);
+        p->f_n = raised;
+        p->approach = -ASPERITY_R(1.0);
+        asperity_limits(t->friction, v, p->f_n, asperity_exponential(p->level / v->backbone), p->limit);
     }
 }
 
 /* Moves delta_T with h held; returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_shear(
     const asperity_table *t, asperity_state *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
-    asperity_real d0, asperity_real d1, asperity_real f_n_approach[1]) {
-    asperity_real before[2][ASPERITY_SLIDERS], force_before[2], held[2], stiffness[2][2], direction[2], m[2], slip;
+    asperity_real d0, asperity_real d1) {
+    asperity_real before[2][ASPERITY_SLIDERS], held[2], stiffness[2][2], direction[2], m[2], slip;
     asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, x, cap, shape_slope, normal_slope, size, per_x, loss, keep, rate, radial, f_n = p->f_n;
     int i, j;
-    memcpy(before, s->deflection, sizeof before);
-    slip = v->k_t * asperity_slide(before, p->limit, v->weight, d0, d1, s->deflection);
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        before[0][i] = s->deflection[0][i];
+        before[1][i] = s->deflection[1][i];
+    }
+    slip = v->k_t * asperity_slide(before, p->limit, d0, d1, s->deflection);
     out->f_n = f_n;
-    *f_n_approach = f_n;
     asperity_slider_force(v, s->deflection, out->f_t);
     if (tangent) {
         asperity_slider_stiffness(v, before, p->limit, d0, d1, tangent->df_t_ddelta);
@@ -695,10 +821,9 @@ ASPERITY_FN asperity_real asperity_shear(
     if (trial <= ASPERITY_AT_BOUND * bound) {
         return slip;
     }
-    asperity_slider_force(v, before, force_before);
     direction[0] = out->f_t[0] / trial;
     direction[1] = out->f_t[1] / trial;
-    along = direction[0] * force_before[0] + direction[1] * force_before[1];
+    along = direction[0] * p->force[0] + direction[1] * p->force[1];
     excess = trial - bound;
     travel = trial - along;
     beyond = excess < travel ? excess / travel : ASPERITY_R(1.0); /* share of the increment that is beyond the curve */
@@ -706,13 +831,18 @@ ASPERITY_FN asperity_real asperity_shear(
     forward = forward > ASPERITY_R(0.0) ? forward : ASPERITY_R(0.0);
     x = s->x + beyond * forward / v->delta_t_slip;
     s->x = x < ASPERITY_R(1.0) ? x : ASPERITY_R(1.0);
-    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(t->form, v, s->x, &normal_slope);
+    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(t->form, v, s->x, -1, &normal_slope);
     out->f_n = cap < f_n ? cap : f_n;
     if (out->f_n != f_n) {
-        asperity_limits(t->friction, v, out->f_n, p->limit);
-        slip = v->k_t * asperity_slide(before, p->limit, v->weight, d0, d1, s->deflection);
+        asperity_real levels[2];
+        p->level += asperity_log_ratio(out->f_n, f_n);
+        levels[0] = p->level / v->backbone;
+        levels[1] = p->level / v->gamma;
+        asperity_exponentials(levels, 2);
+        p->approach = v->depth * levels[1];
+        asperity_limits(t->friction, v, out->f_n, levels[0], p->limit);
+        slip = v->k_t * asperity_slide(before, p->limit, d0, d1, s->deflection);
     }
-    *f_n_approach = out->f_n;
     asperity_slider_force(v, s->deflection, held);
     bound = slip_force * asperity_tangential_shape(t->form, v, s->x, &shape_slope);
     size = ASPERITY_SQRT(held[0] * held[0] + held[1] * held[1]);
@@ -745,6 +875,7 @@ ASPERITY_FN asperity_real asperity_shear(
 /* Turns the memory into axes that are turned by an angle: new components of a vector v are (c v0 + s v1, -s v0 + c v1). */
 ASPERITY_FN void asperity_rotate(asperity_state *state, asperity_real cosine, asperity_real sine) {
     int i;
+    ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         asperity_real q0 = state->deflection[0][i], q1 = state->deflection[1][i];
         state->deflection[0][i] = cosine * q0 + sine * q1;
@@ -757,6 +888,20 @@ ASPERITY_FN asperity_real asperity_energy(const asperity_curve *v, asperity_real
     return f_n * approach / (v->gamma + ASPERITY_R(1.0)) + asperity_slider_energy(v, deflection);
 }
 
+/* *to = *from, without the string instruction that compilers make of it. */
+ASPERITY_FN void asperity_copy(const asperity_state *from, asperity_state *to) {
+    int i;
+    to->h = from->h;
+    to->h_max = from->h_max;
+    to->approach = from->approach;
+    to->x = from->x;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        to->deflection[0][i] = from->deflection[0][i];
+        to->deflection[1][i] = from->deflection[1][i];
+    }
+}
+
 /* Moves a contact to the indentation h and along the plane by `increment`, the press first. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
  * nothing in the answer is a number and the state stays as it was. */
 ASPERITY_FN void asperity_update(
@@ -764,10 +909,11 @@ ASPERITY_FN void asperity_update(
     asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
     const asperity_real zero = ASPERITY_R(0.0);
     asperity_state s;
+    asperity_row row, old_row;
     asperity_curve v, old;
     const asperity_curve *before = &v;
     asperity_pressed p;
-    asperity_real inverse = ASPERITY_R(1.0) / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, at, old_n, old_t[2], stored, total, slip;
+    asperity_real inverse = ASPERITY_R(1.0) / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, log_h, exponential[8], level, old_n, old_t[2], stored, total, slip;
     memset(out, 0, sizeof *out);
     if (tangent) {
         memset(tangent, 0, sizeof *tangent);
@@ -808,13 +954,20 @@ ASPERITY_FN void asperity_update(
         next->x = place;
         return;
     }
-    s = *state;
-    asperity_first_loading(t, greatest, 1, &v);
+    asperity_copy(state, &s);
+    log_h = ASPERITY_LOG(greatest);
+    asperity_read_row(t, log_h, &row, exponential);
     if (h > s.h_max && s.h_max > zero) {
-        asperity_first_loading(t, s.h_max, 0, &old);
+        asperity_read_row(t, log_h + asperity_log_ratio(s.h_max, h), &old_row, exponential + 4);
+        asperity_exponentials(exponential, 8);
+        asperity_make_curve(t, s.h_max, &old_row, exponential + 4, 0, &old);
         before = &old;
+    } else {
+        asperity_exponentials(exponential, 4);
     }
-    old_n = s.h_max > zero ? asperity_force_at(before, s.approach) : zero;
+    asperity_make_curve(t, greatest, &row, exponential, 1, &v);
+    level = s.h_max > zero && s.approach > zero ? asperity_level_at(before, s.approach) : zero;
+    old_n = s.h_max > zero && s.approach > zero ? before->f_n0 * asperity_exponential(level) : zero;
     asperity_slider_force(before, s.deflection, old_t);
     stored = old_n > zero ? asperity_energy(before, old_n, s.approach, s.deflection) : zero;
     if (h <= s.h_max && s.approach + dh <= zero) {
@@ -828,13 +981,13 @@ ASPERITY_FN void asperity_update(
         memset(next->deflection, 0, sizeof next->deflection);
         return;
     }
-    asperity_press(t, &s, &v, &old, h, tangent != NULL, &p);
+    asperity_press(t, &s, &v, before, level, h, tangent != NULL, &p);
     s.h = h;
     s.h_max = greatest;
     s.x = p.x;
-    slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, d0, d1, &at);
-    if (dh != zero || at != p.f_n) {
-        s.approach = at >= v.f_n0 ? v.depth : v.depth * asperity_power(at / v.f_n0, ASPERITY_R(1.0) / v.gamma);
+    slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, d0, d1);
+    if (dh != zero || out->f_n != p.f_n) {
+        s.approach = p.approach >= zero ? p.approach : v.depth * asperity_exponential(p.level / v.gamma);
     }
     if (tangent) {
         tangent->df_n_dh = p.df_n_dh * modulus * radius;
@@ -857,7 +1010,7 @@ ASPERITY_FN void asperity_update(
     out->f_n *= force;
     out->f_t[0] *= force;
     out->f_t[1] *= force;
-    *next = s;
+    asperity_copy(&s, next);
 }
 
 /* Elastic energy that a contact stores. */

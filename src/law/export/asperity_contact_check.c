@@ -1,6 +1,6 @@
-/* asperity_contact_check.c: compares asperity_contact.h with the test vectors, as C99 or C++17, in double or (-DASPERITY_SINGLE) in float.
- *     cc -std=c99 -O2 asperity_contact_check.c -lm && ./a.out asperity_law_vectors.csv [law.asperity]
- * Uses the constant of asperity_law.h, or the file. Prints the rows and the greatest errors of forces and energy, and of derivatives and radius, relative to each path's greatest value of the quantity; exits 0 if they
+/* @NAME@: compares asperity_contact.h with the test vectors, as C99 or C++17, in double or (-DASPERITY_SINGLE) in float.
+ *     cc -std=c99 -O2 @NAME@ -lm && ./a.out asperity_law_vectors.csv [law.asperity]
+ * Uses the constant of asperity_law.h, or the tables that it makes of each path's material, or the file. Prints the rows and the greatest errors of forces and energy, and of derivatives and radius, relative to each path's greatest value of the quantity; exits 0 if they
  * are at most 1e-12 and 1e-10 in double (sums in another order: derivatives lose digits next to full slip), and if the former are at most 1e-5 in float. */
 #include "asperity_law.h"
 
@@ -28,7 +28,11 @@ int main(int argc, char **argv) {
     char line[4096];
     double column[TOTAL], error[OUTPUTS] = {0.0}, size[OUTPUTS] = {0.0}, worst[2] = {0.0, 0.0}, path = -1.0;
     static asperity_table read;
+#ifdef ASPERITY_ANY_MATERIAL
+    const asperity_table *table = &read;
+#else
     const asperity_table *table = &asperity_law;
+#endif
     asperity_state state;
     long rows = 0;
     FILE *file = argc == 2 || argc == 3 ? fopen(argv[1], "r") : NULL;
@@ -64,6 +68,18 @@ int main(int argc, char **argv) {
         }
         if (column[0] != path) {
             close_path(worst, error, size);
+#ifdef ASPERITY_ANY_MATERIAL
+            asperity_material material;
+            memset(&material, 0, sizeof material);
+            material.youngs_modulus = column[1];
+            material.poissons_ratio = column[2];
+            material.hardening = (int)column[3];
+            memcpy(material.hardening_numbers, column + 4, sizeof material.hardening_numbers);
+            if (argc == 2 && asperity_setup(&read, &material, column[8]) != 0) {
+                fprintf(stderr, "row %ld: no set-up\n", rows + 1);
+                return 1;
+            }
+#endif
             path = column[0];
             memset(&state, 0, sizeof state);
         }

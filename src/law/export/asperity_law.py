@@ -453,18 +453,24 @@ def column_at(p, column, position):
     return y0 + u * (s0 + u * (quadratic + u * cubic)), s0 + u * (2.0 * quadratic + 3.0 * u * cubic)
 
 
+# (k/16)^0.65: shares of k_T of the annuli inside the end of cell k.
+INSIDE = (
+    0.0, 0.16493848884661177, 0.25881623096034434, 0.3368610723585669, 0.40612619817811774, 0.46951828924049643,
+    0.5285916811459566, 0.5842997994985654, 0.6372803136596311, 0.6879860659818012, 0.7367531668195612, 0.7838397013217092,
+    0.8294492546152544, 0.8737459792985665, 0.9168646621816685, 0.9589176881122033, 1.0,
+)
+
+
 def sliders(backbone):
     """Shares and points of loss of the sliders."""
     weight, lost = [], []
-    below = below_moment = 0.0
+    power = 0.65 / (backbone - 1.0)
+    below_moment = 0.0
     for i in range(SLIDERS):
-        end = float(i + 1) / SLIDERS
-        end = end * math.sqrt(end)
-        above = 1.0 if i == SLIDERS - 1 else end ** (backbone - 1.0)
-        above_moment = above * end
-        weight.append(above - below)
+        end = 1.0 if i == SLIDERS - 1 else (float(i + 1) / SLIDERS) ** power
+        above_moment = INSIDE[i + 1] * end
+        weight.append(INSIDE[i + 1] - INSIDE[i])
         lost.append((backbone - 1.0) / backbone * (above_moment - below_moment) / weight[i])
-        below = above
         below_moment = above_moment
     return weight, lost
 
@@ -706,10 +712,9 @@ def press(p, s, v, h):
     e = s.approach + dh
     if grown and s.h_max > 0.0:
         old = virgin(p, s.h_max)
-        for i in range(SLIDERS):
-            keep = old.k_t * old.weight[i] / (v.k_t * v.weight[i])
-            if keep < 1.0:
-                s.deflection[i] = [keep * s.deflection[i][0], keep * s.deflection[i][1]]
+        keep = old.k_t / v.k_t
+        if keep < 1.0:
+            s.deflection = [[keep * q[0], keep * q[1]] for q in s.deflection]
         if not first:
             trial = force_at(old, e)
             stiffness = old.gamma * trial / e if e > 0.0 else 0.0

@@ -10,7 +10,7 @@ use crate::law::tabulated::Against;
 use crate::law::{LawError, LawFile};
 
 const CONTACT: &str = include_str!("asperity_contact.h");
-const CONTACT_3D: &str = include_str!("asperity_contact3d.h");
+pub(super) const CONTACT_3D: &str = include_str!("asperity_contact3d.h");
 const CHECK: &str = include_str!("asperity_contact_check.c");
 
 /// Version of the table's file.
@@ -161,6 +161,11 @@ pub fn contact_header() -> String {
     fill(CONTACT, [("VERSION", env!("CARGO_PKG_VERSION").to_owned())].into_iter().chain(sizes()))
 }
 
+/// The program that compares a C export with the test vectors, under a name.
+pub(super) fn check_program(name: &str) -> String {
+    fill(CHECK, [("NAME", name.to_owned())])
+}
+
 /// The law as a C constant. A law of formulas needs the case of a material and a friction.
 ///
 /// # Errors
@@ -182,7 +187,7 @@ pub fn engine_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFi
         ("asperity_contact.h", contact_header()),
         ("asperity_contact3d.h", CONTACT_3D.to_owned()),
         ("asperity_law_vectors.csv", vectors),
-        ("asperity_contact_check.c", CHECK.to_owned()),
+        ("asperity_contact_check.c", check_program("asperity_contact_check.c")),
     ]
     .map(|(name, content)| ExportedFile { name, content })
     .into())

@@ -1,8 +1,7 @@
 //! The law for other programs: C headers and a table for engines, a Python module with the incremental contact update, and test vectors for both.
 //!
 //! Headers, module and [`ContactParameters`] are triplets: the same functions with the same operations. The Python module fills in the constants of the law, and makes its
-//! tables itself; the C headers for engines get the tables of one material
-//! and one friction, the C header of a whole law makes them too.
+//! tables itself. In C the update is one header; it gets the tables of one material and one friction, or a second header of the whole law makes them.
 
 mod contact;
 mod vectors;
@@ -20,7 +19,6 @@ use crate::case::{Case, Hardening};
 
 const HEADER: &str = include_str!("asperity_law.h");
 const MODULE: &str = include_str!("asperity_law.py");
-const CHECK: &str = include_str!("asperity_law_check.c");
 const TABLE_MODULE: &str = include_str!("asperity_law_table.py");
 
 /// A language of the export.
@@ -73,12 +71,14 @@ pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Res
     }
 }
 
-/// The header for all materials, test vectors, and the program that checks it against them.
+/// The header for all materials, the update that it includes, test vectors, and the program that checks them.
 fn header_files(law: &Law) -> Vec<ExportedFile> {
     vec![
         ExportedFile { name: "asperity_law.h", content: source(law, Language::C) },
+        ExportedFile { name: "asperity_contact.h", content: contact_header() },
+        ExportedFile { name: "asperity_contact3d.h", content: contact::CONTACT_3D.to_owned() },
         ExportedFile { name: "asperity_law_vectors.csv", content: vectors(law, vectors::SEED) },
-        ExportedFile { name: "asperity_law_check.c", content: CHECK.to_owned() },
+        ExportedFile { name: "asperity_law_check.c", content: contact::check_program("asperity_law_check.c") },
     ]
 }
 
