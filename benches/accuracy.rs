@@ -1,7 +1,9 @@
-//! Runs against a reference, and the errors that they estimate of themselves: the accuracy tables of docs/accuracy.md.
+//! Runs against a reference, and the errors that they estimate of themselves: the accuracy tables
+//! of docs/accuracy.md.
 //!
-//! `cargo bench --bench accuracy [-- --meshes 8 --reference 16 --cases 10]`: the first so many of ten cases on the given meshes, with the default
-//! steps, against the reference mesh with twice the default steps. With `--test` (as the test script runs it) one case on coarse meshes.
+//! `cargo bench --bench accuracy [-- --meshes 8 --reference 16 --cases 10]`: the first so many of
+//! ten cases on the given meshes, with the default steps, against the reference mesh with twice the
+//! default steps. With `--test` (as the test script runs it) one case on coarse meshes.
 
 use std::path::Path;
 
@@ -14,7 +16,8 @@ use asperity::output::{ErrorEstimate, Recorder, StepRecord, Summary, SummaryInpu
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
-/// Name and settings on top of `fixtures/cases/ideal.toml`: from elastic to deeply plastic, all hardening laws, shallow and deep.
+/// Name and settings on top of `fixtures/cases/ideal.toml`: from elastic to deeply plastic, all
+/// hardening laws, shallow and deep.
 const CASES: [(&str, &[&str]); 10] = [
     ("ideal 400, mu 0.3, h 0.02", &[]),
     (

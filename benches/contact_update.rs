@@ -1,5 +1,6 @@
-//! Processor time of the exported contact update beside Hertz and Mindlin's: `cargo bench --bench contact_update [-- LAW.json]`, the fitted law of the repository or a table.
-//! Compiled by gcc, in double and in float.
+//! Processor time of the exported contact update beside Hertz and Mindlin's: `cargo bench --bench
+//! contact_update [-- LAW.json]`, the fitted law of the repository or a table. Compiled by gcc, in
+//! double and in float.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,7 +1,8 @@
-//! `asperity bench` as a bench target: the table of all evaluations on CPU and device, a software adapter included.
+//! `asperity bench` as a bench target: the table of all evaluations on CPU and device, a software
+//! adapter included.
 //!
-//! `cargo bench --bench device` takes minutes; with `-- --quick` or `-- --test` the small one. An empty `MESA_SHADER_CACHE_DIR` shows what
-//! compiling costs on software Vulkan.
+//! `cargo bench --bench device` takes minutes; with `-- --quick` or `-- --test` the small one. An
+//! empty `MESA_SHADER_CACHE_DIR` shows what compiling costs on software Vulkan.
 
 use asperity::internals::bench::{BenchError, Device, Options, run, table};
 

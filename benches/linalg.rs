@@ -1,4 +1,5 @@
-//! The linear solver at the default size: product, update, V-cycle, whole solves. `cargo bench --bench linalg`.
+//! The linear solver at the default size: product, update, V-cycle, whole solves. `cargo
+//! bench --bench linalg`.
 
 #![allow(missing_docs)]
 

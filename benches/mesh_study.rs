@@ -1,6 +1,7 @@
 //! The mesh study of docs/accuracy.md: one case on meshes of increasing fineness, as a table.
 //!
-//! `cargo bench --bench mesh_study [-- CASE.toml] [-- --epr 4,6,8]`; with `--test` (as the test script runs it) on the coarsest mesh alone.
+//! `cargo bench --bench mesh_study [-- CASE.toml] [-- --epr 4,6,8]`; with `--test` (as the test
+//! script runs it) on the coarsest mesh alone.
 
 use std::path::Path;
 

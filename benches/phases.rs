@@ -1,8 +1,9 @@
-//! The phases of one Newton iteration at the default mesh, in the middle of the main job's press: element forces and tangents, contact,
-//! multigrid, Krylov.
+//! The phases of one Newton iteration at the default mesh, in the middle of the main job's press:
+//! element forces and tangents, contact, multigrid, Krylov.
 //!
-//! `cargo bench --bench phases`: processor time of the whole process, whatever else the machine does (time on the wall where the system does not
-//! tell). With `--test` on the coarsest mesh, each once.
+//! `cargo bench --bench phases`: processor time of the whole process, whatever else the machine
+//! does (time on the wall where the system does not tell). With `--test` on the coarsest mesh, each
+//! once.
 
 use std::path::Path;
 
@@ -23,11 +24,13 @@ mod processor;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
-/// The press is cut into so many steps, of which all but the last are made: the bench's iteration is on the way to the last.
+/// The press is cut into so many steps, of which all but the last are made: the bench's iteration
+/// is on the way to the last.
 const PRESS_STEPS: usize = 8;
 const LINEAR_TOLERANCE: f64 = 1e-2;
 
-/// Displacements of the last two steps, and the indentation; asks to stop one step before the press ends.
+/// Displacements of the last two steps, and the indentation; asks to stop one step before the press
+/// ends.
 #[derive(Default)]
 struct Pressed {
     last: Vec<f64>,

@@ -1,7 +1,8 @@
-//! Points per second of the material kernel on one core: return mapping and consistent tangent, every point yielding, eight side by side as
-//! the element calls it and one at a time.
+//! Points per second of the material kernel on one core: return mapping and consistent tangent,
+//! every point yielding, eight side by side as the element calls it and one at a time.
 //!
-//! `cargo bench --bench return_mapping`: by processor time, so that other work on the machine counts less.
+//! `cargo bench --bench return_mapping`: by processor time, so that other work on the machine
+//! counts less.
 
 use std::hint::black_box;
 

@@ -1,7 +1,8 @@
-//! What a job costs: the main job by phase, and the cost of a Newton iteration against the number of unknowns.
+//! What a job costs: the main job by phase, and the cost of a Newton iteration against the number
+//! of unknowns.
 //!
-//! `cargo bench --bench whole_job [-- --only job|size]`; with `--test` on coarse meshes alone. Processor seconds are of the whole process,
-//! `RAYON_NUM_THREADS` sets the threads.
+//! `cargo bench --bench whole_job [-- --only job|size]`; with `--test` on coarse meshes alone.
+//! Processor seconds are of the whole process, `RAYON_NUM_THREADS` sets the threads.
 
 use std::path::Path;
 

@@ -1,9 +1,11 @@
-//! Writes a case as an input deck for CalculiX: the same mesh, material and path, for the comparison in `benches/against_ccx`.
+//! Writes a case as an input deck for CalculiX: the same mesh, material and path, for the
+//! comparison in `benches/against_ccx`.
 //!
 //! `cargo run --release --example ccx_deck -- CASE.toml OUT.inp [--set KEY=VALUE]`
 //!
-//! Contact is what CalculiX has: surface to surface, a linear pressure-overclosure law of slope 100 E/R and a stick slope of 5 E/R, settings
-//! with which it is known to finish. The rigid plane is one large element whose nodes are all held.
+//! Contact is what CalculiX has: surface to surface, a linear pressure-overclosure law of slope 100
+//! E/R and a stick slope of 5 E/R, settings with which it is known to finish. The rigid plane is
+//! one large element whose nodes are all held.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -23,7 +25,8 @@ const STICK_SLOPE: f64 = 5.0;
 const LARGEST_INCREMENT: f64 = 0.1;
 /// Faces in CalculiX' numbering, S1 to S6, as positions in [`FACES`].
 const FACE_ORDER: [usize; 6] = [4, 5, 2, 1, 3, 0];
-/// Equivalent plastic strains at which a smooth hardening law is tabulated: from here to here, and so many.
+/// Equivalent plastic strains at which a smooth hardening law is tabulated: from here to here, and
+/// so many.
 const TABLE: (f64, f64, usize) = (1e-5, 3.0, 80);
 
 type Failed = Box<dyn std::error::Error>;

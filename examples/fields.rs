@@ -1,4 +1,5 @@
-//! What a step shows: contact pressure and stresses at the end of a press: `cargo run --release --example fields`.
+//! What a step shows: contact pressure and stresses at the end of a press: `cargo
+//! run --release --example fields`.
 
 use asperity::case::Segment;
 use asperity::output::ContactStatus;

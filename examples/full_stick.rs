@@ -1,9 +1,12 @@
-//! Static friction under full stick: a sphere pressed, then sheared at constant normal force, on meshes of increasing fineness, as a table.
+//! Static friction under full stick: a sphere pressed, then sheared at constant normal force, on
+//! meshes of increasing fineness, as a table.
 //!
-//! `cargo run --release --example full_stick -- [--meshes 4,6,8,12] [--tangent 0,0.02] [--indentation 2.8e-4] [--stiffness 500] [--shear 0.04] [--shear-steps 15]`
+//! `cargo run --release --example full_stick -- [--meshes 4,6,8,12] [--tangent 0,0.02]
+//! [--indentation 2.8e-4] [--stiffness 500] [--shear 0.04] [--shear-steps 15]`
 //!
-//! `tangent` is E_t/E of the linear hardening (0: none), `indentation` h/R, `stiffness` E/sigma_Y, `shear` the length of the shear over the predicted contact
-//! radius. What the columns say, and what they are held against, is in `docs/full-stick.md`.
+//! `tangent` is E_t/E of the linear hardening (0: none), `indentation` h/R, `stiffness` E/sigma_Y,
+//! `shear` the length of the shear over the predicted contact radius. What the columns say, and
+//! what they are held against, is in `docs/full-stick.md`.
 
 use std::process::ExitCode;
 
@@ -20,11 +23,13 @@ type Failed = Box<dyn std::error::Error + Send + Sync>;
 const NU: f64 = 0.3;
 /// Shares of the first tangential stiffness at which F_T/F_N is read.
 const LEVELS: [f64; 4] = [0.5, 0.3, 0.2, brizmer::SLIDING_STIFFNESS];
-/// A slope is taken over the last part of the way, from delta_T over this number: over single steps it jumps whenever a point comes down.
+/// A slope is taken over the last part of the way, from delta_T over this number: over single steps
+/// it jumps whenever a point comes down.
 const STRETCH: f64 = 1.3;
 /// Points nearer to the middle than this share of the contact radius are the inner ones.
 const INNER: f64 = 0.7;
-/// The fine mesh reaches this much beyond the predicted contact radius: the contact grows in the shear.
+/// The fine mesh reaches this much beyond the predicted contact radius: the contact grows in the
+/// shear.
 const ROOM: f64 = 1.375;
 
 /// What is varied.
@@ -72,7 +77,8 @@ impl Setup {
     }
 }
 
-/// Tangential traction over the flow stress in shear, k = sigma(alpha)/sqrt(3) of the elements below.
+/// Tangential traction over the flow stress in shear, k = sigma(alpha)/sqrt(3) of the elements
+/// below.
 #[derive(Clone, Copy, Debug, Default)]
 struct Traction {
     /// F_T over the integral of k on the contact.
@@ -106,7 +112,8 @@ impl Observer for Watch {
                 let around = &lists.entry[lists.list(p.node)];
                 let mean = around.iter().map(|&entry| alpha[entry as usize / 8]).sum::<f64>() / around.len() as f64;
                 force -= p.force[0];
-                // Scaled by E. Areas are undeformed ones: the surface stretches by less than a per cent.
+                // Scaled by E. Areas are undeformed ones: the surface stretches by less than a per
+                // cent.
                 strength += p.area * self.setup.flow_stress(mean) / (3f64.sqrt() * self.setup.stiffness);
             }
             force / strength
@@ -127,7 +134,8 @@ struct Outcome {
     load: f64,
     /// First tangential stiffness over 8 G a/(2 - nu).
     first_stiffness: f64,
-    /// F_T/F_N where the stiffness has first fallen to the shares [`LEVELS`]; none where it has not.
+    /// F_T/F_N where the stiffness has first fallen to the shares [`LEVELS`]; none where it has
+    /// not.
     friction: [Option<f64>; 4],
     /// Least share that the stiffness fell to.
     least_stiffness: f64,
@@ -137,7 +145,8 @@ struct Outcome {
     growth: f64,
     /// Tractions at the end.
     traction: Traction,
-    /// Steps in which points slid, against the stick condition, because there was no solution otherwise.
+    /// Steps in which points slid, against the stick condition, because there was no solution
+    /// otherwise.
     slid: usize,
 }
 
@@ -248,8 +257,8 @@ mod tests {
         outcome
     }
 
-    /// Limit analysis: no more than k A can be carried once everything flows in shear. On a mesh the points at the edge carry more, in proportion to their spacing;
-    /// the inner ones do not.
+    /// Limit analysis: no more than k A can be carried once everything flows in shear. On a mesh
+    /// the points at the edge carry more, in proportion to their spacing; the inner ones do not.
     #[test]
     fn the_traction_tends_to_the_flow_stress_in_shear() {
         let [coarse, fine] = [4, 8].map(|elements| pressed_to_42(elements, 0.0));
@@ -257,18 +266,21 @@ mod tests {
         // Half as large on a mesh of half the spacing, if k A is the limit; 0.52 and 0.23 measured.
         assert!(excess[1] > 0.1 && (0.35..0.6).contains(&(excess[1] / excess[0])), "{excess:?}");
         assert!((0.96..1.005).contains(&fine.traction.inner), "{}", fine.traction.inner);
-        // Without hardening the stiffness does fall to a tenth. Where it does comes down with the mesh.
+        // Without hardening the stiffness does fall to a tenth. Where it does comes down with the
+        // mesh.
         let [coarse, fine] = [coarse, fine].map(|o| o.friction[3].expect("a tenth is reached"));
         assert!(fine < 0.85 * coarse, "{coarse} {fine}");
     }
 
-    /// With E_t = 0.02 E the stiffness levels off near a tenth instead of vanishing: where it crosses a tenth is no property of the contact.
+    /// With E_t = 0.02 E the stiffness levels off near a tenth instead of vanishing: where it
+    /// crosses a tenth is no property of the contact.
     #[test]
     fn hardening_keeps_the_stiffness_near_a_tenth() {
         let [ideal, hardening] = [0.0, 0.02].map(|tangent| pressed_to_42(4, tangent));
         assert!(ideal.least_stiffness < 0.05, "{}", ideal.least_stiffness);
         assert!((0.07..0.13).contains(&hardening.least_stiffness), "{}", hardening.least_stiffness);
-        // And yet the inner points carry no more than the flow stress that the strain has left behind.
+        // And yet the inner points carry no more than the flow stress that the strain has left
+        // behind.
         assert!((0.9..1.03).contains(&hardening.traction.inner), "{}", hardening.traction.inner);
         assert!(hardening.last_friction > 1.2 * ideal.last_friction);
     }

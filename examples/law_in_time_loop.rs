@@ -1,7 +1,8 @@
-//! A contact in a loop over time: a sphere hits a plane at an angle and bounces: `cargo run --release --example law_in_time_loop`.
+//! A contact in a loop over time: a sphere hits a plane at an angle and bounces: `cargo
+//! run --release --example law_in_time_loop`.
 //!
-//! The contact is the incremental update of the built-in law: an indentation and an increment along the plane go in, forces come out, and the
-//! memory of the contact is one small struct.
+//! The contact is the incremental update of the built-in law: an indentation and an increment along
+//! the plane go in, forces come out, and the memory of the contact is one small struct.
 
 use asperity::Case;
 use asperity::law::contact::{ContactParameters, ContactState};

@@ -1,6 +1,8 @@
-//! A study in one's own program: friction and yield stress varied, a case a core: `cargo run --release --example parallel_study`.
+//! A study in one's own program: friction and yield stress varied, a case a core: `cargo
+//! run --release --example parallel_study`.
 //!
-//! `asperity::study` does this for a study file, with a directory and a row of a table for each case; here the results stay in memory.
+//! `asperity::study` does this for a study file, with a directory and a row of a table for each
+//! case; here the results stay in memory.
 
 use asperity::case::{Friction, Hardening};
 use asperity::{Case, Options, Simulation};
@@ -19,7 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             cases.push((yield_stress, friction, case));
         }
     }
-    // A pool of one thread for each, so that a case is not split up among the cores that the others use.
+    // A pool of one thread for each, so that a case is not split up among the cores that the others
+    // use.
     let options = Options { threads: std::num::NonZeroUsize::new(1), ..Options::default() };
     let outcomes: Vec<_> = cases
         .par_iter()

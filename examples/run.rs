@@ -1,7 +1,8 @@
 //! One case from its file to its curve: `cargo run --release --example run [CASE.toml] [DIR]`.
 //!
-//! Without a directory nothing is written; with one the results lie there as `asperity run` leaves them, and Ctrl-C would lose the last seconds only, as
-//! `Earlier::Resume` goes on from the last checkpoint.
+//! Without a directory nothing is written; with one the results lie there as `asperity run` leaves
+//! them, and Ctrl-C would lose the last seconds only, as `Earlier::Resume` goes on from the last
+//! checkpoint.
 
 use std::path::{Path, PathBuf};
 

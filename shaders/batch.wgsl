@@ -1,5 +1,6 @@
-// The shape of a batch: what every kernel of it knows. A dispatch runs along x over the items of a case and along y over its
-// slots, the cases that were asked for; what stays on the device is indexed by case, what a dispatch makes by slot.
+// The shape of a batch: what every kernel of it knows. A dispatch runs along x over the items of a
+// case and along y over its slots, the cases that were asked for; what stays on the device is
+// indexed by case, what a dispatch makes by slot.
 struct Dimensions {
     cases: u32,             // in the resident arrays
     in_dispatch: u32,       // slots in use

@@ -1,6 +1,7 @@
-// Elementary functions in either precision, from + - * / sqrt and ldexp alone: naga accepts WGSL's own transcendental functions
-// in f64 and miscompiles them, and in f32 drivers are free to be wrong in the fourth digit. Names end in an underscore so that
-// they shadow no builtin. Errors are measured against the CPU in tests/shader_math.rs.
+// Elementary functions in either precision, from + - * / sqrt and ldexp alone: naga accepts WGSL's
+// own transcendental functions in f64 and miscompiles them, and in f32 drivers are free to be wrong
+// in the fourth digit. Names end in an underscore so that they shadow no builtin. Errors are
+// measured against the CPU in tests/shader_math.rs.
 
 const INVERSE_LN2: real = 1.4426950408889634;
 
@@ -65,8 +66,9 @@ fn expm1_(x: real) -> real {
     return 2.0 * (power * expm1_series(r) + (power - 0.5));
 }
 
-// ln(1 + f) for sqrt(1/2) <= 1 + f <= sqrt(2): f - (f^2/2 - s (f^2/2 + R)), s = f/(2 + f) (fdlibm e_log.c, with the series of
-// 2 atanh(s) in place of its fitted polynomial); the first term left out is 2 s^24/25 < 1e-19.
+// ln(1 + f) for sqrt(1/2) <= 1 + f <= sqrt(2): f - (f^2/2 - s (f^2/2 + R)), s = f/(2 + f) (fdlibm
+// e_log.c, with the series of 2 atanh(s) in place of its fitted polynomial); the first term left
+// out is 2 s^24/25 < 1e-19.
 fn log1p_series(f: real) -> real {
     let s = f / (2.0 + f);
     let z = s * s;
@@ -126,16 +128,18 @@ fn log1p_(x: real) -> real {
     if !(u > 0.0) || u > REAL_MAX {
         return log_(u);
     }
-    // 1 + x = (1 + f) 2^e with f = x/2^e + (1/2^e - 1), which rounds once where 1 + x has lost digits of x for good
+    // 1 + x = (1 + f) 2^e with f = x/2^e + (1/2^e - 1), which rounds once where 1 + x has lost
+    // digits of x for good
     let e = split_(u).exponent;
     let unit = scale_(real(1.0), -e);
     let k = real(e);
     return k * LN2_HIGH + (log1p_series(x * unit + (unit - 1.0)) + k * LN2_LOW);
 }
 
-// x^y for x >= 0: 0^0 = 1, 0^y = 0 for y > 0 and infinite for y < 0, NaN for x < 0 unless y = 0. With x = m 2^e the power of two
-// is taken exactly, 2^(e y) = 2^k 2^(e y - k), so that for |y| <= 1 (every hardening exponent) the error is that of exp and log
-// over the whole range of x; beyond that it grows as |y|.
+// x^y for x >= 0: 0^0 = 1, 0^y = 0 for y > 0 and infinite for y < 0, NaN for x < 0 unless y = 0.
+// With x = m 2^e the power of two is taken exactly, 2^(e y) = 2^k 2^(e y - k), so that for |y| <= 1
+// (every hardening exponent) the error is that of exp and log over the whole range of x; beyond
+// that it grows as |y|.
 fn pow_(x: real, y: real) -> real {
     if y == 0.0 {
         return real(1.0);

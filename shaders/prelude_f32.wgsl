@@ -20,7 +20,8 @@ fn head(x: real) -> real {
     return bitcast<f32>(bitcast<u32>(x) & 0xfffff000u);
 }
 
-// Neither infinite nor NaN. A bit test: comparisons may be compiled on the assumption that there are no NaNs.
+// Neither infinite nor NaN. A bit test: comparisons may be compiled on the assumption that there
+// are no NaNs.
 fn is_finite(x: real) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }

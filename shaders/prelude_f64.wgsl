@@ -10,8 +10,9 @@ const LN2_HIGH: real = 6.93147180369123816490e-01;  // ln 2 in two parts; k * LN
 const LN2_LOW: real = 1.90821492927058770002e-10;
 const SCALE_LIMIT: i32 = 2044;                      // two halves of it are exponents of normal numbers
 
-// floor(log2(x)) of x > 0, or one more where x rounds up to a power of two in f32. WGSL has no bits of an f64: x is brought into
-// the range of f32 (in no step at all for 1e-30 < x < 1e30) and read there.
+// floor(log2(x)) of x > 0, or one more where x rounds up to a power of two in f32. WGSL has no bits
+// of an f64: x is brought into the range of f32 (in no step at all for 1e-30 < x < 1e30) and read
+// there.
 fn exponent(x: real) -> i32 {
     var y = x;
     var e = 0i;
@@ -31,8 +32,8 @@ fn head(x: real) -> real {
     return real(f32(x));
 }
 
-// Neither infinite nor NaN. A NaN stays one in f32, where a bit test sees it: comparisons may be compiled on the assumption that
-// there are none.
+// Neither infinite nor NaN. A NaN stays one in f32, where a bit test sees it: comparisons may be
+// compiled on the assumption that there are none.
 fn is_finite(x: real) -> bool {
     return abs(x) <= REAL_MAX && (bitcast<u32>(f32(x)) & 0x7fffffffu) <= 0x7f800000u;
 }

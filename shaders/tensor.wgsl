@@ -1,4 +1,5 @@
-// Symmetric second-order tensors: tensor components, no engineering factors, in the order xx, yy, zz | xy, yz, zx.
+// Symmetric second-order tensors: tensor components, no engineering factors, in the order xx, yy,
+// zz | xy, yz, zx.
 struct Sym {
     diagonal: vec3<real>,
     shear: vec3<real>,

@@ -1,4 +1,5 @@
-//! Files read whole, but never more of one than it may have: what is given may be a device or a file of another kind that has no end.
+//! Files read whole, but never more of one than it may have: what is given may be a device or a
+//! file of another kind that has no end.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -15,7 +16,8 @@ pub const CHECKPOINT: u64 = 4096 * MIB;
 /// The bytes of a file that has `most` at most.
 ///
 /// # Errors
-/// Those of the system; [`ErrorKind::FileTooLarge`] for a file that has more, of which no more than `most` is read.
+/// Those of the system; [`ErrorKind::FileTooLarge`] for a file that has more, of which no more than
+/// `most` is read.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let told = file.metadata()?.len();

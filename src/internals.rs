@@ -1,4 +1,5 @@
-//! The rooms behind those of the front page, for this project's own program, tests, benches and tools: no part of what a version promises.
+//! The rooms behind those of the front page, for this project's own program, tests, benches and
+//! tools: no part of what a version promises.
 
 #[cfg(feature = "cli")]
 #[path = "bench/mod.rs"]

@@ -1,7 +1,8 @@
 //! Asperity: force-displacement laws for elastic-plastic spheres, computed instead of guessed.
 //!
-//! One sphere is pressed onto a rigid plane and sheared along it, with finite-strain J2 plasticity and exact Coulomb friction, by implicit finite elements.
-//! The plane stands for a second, equal sphere only without friction. A [`Case`] says what is simulated, a [`Simulation`] does it:
+//! One sphere is pressed onto a rigid plane and sheared along it, with finite-strain J2 plasticity
+//! and exact Coulomb friction, by implicit finite elements. The plane stands for a second, equal
+//! sphere only without friction. A [`Case`] says what is simulated, a [`Simulation`] does it:
 //!
 //! ```
 //! use asperity::{Case, Simulation};
@@ -22,9 +23,11 @@
 //! # Ok(()) }
 //! ```
 //!
-//! Lengths and stresses are in any one consistent system of units; forces are of the whole sphere, F_N positive in compression. With
-//! [`Options::out`] a simulation leaves the files of `asperity run`; [`Simulation::steps`] takes one step at a time, [`Simulation::canceller`] ends it from
-//! another thread. A case that a program has put together is held to the rules of a case file by [`Case::validate`].
+//! Lengths and stresses are in any one consistent system of units; forces are of the whole sphere,
+//! F_N positive in compression. With [`Options::out`] a simulation leaves the files of `asperity
+//! run`; [`Simulation::steps`] takes one step at a time, [`Simulation::canceller`] ends it from
+//! another thread. A case that a program has put together is held to the rules of a case file by
+//! [`Case::validate`].
 //!
 //! # Where to look
 //!
@@ -38,27 +41,31 @@
 //!
 //! # Features
 //!
-//! All are on by default, because cargo has no defaults of a program alone. A library writes `default-features = false`, which leaves a run on the CPU with its files,
-//! and names what it needs beside that:
+//! All are on by default, because cargo has no defaults of a program alone. A library writes
+//! `default-features = false`, which leaves a run on the CPU with its files, and names what it
+//! needs beside that:
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `law` | [`study`] and [`law`](crate::law): grids of cases, fits, tables, the update of a contact, exports |
+//! | `law` | [`study`] and [`law`]: grids of cases, fits, tables, the update of a contact, exports |
 //! | `plots` | pictures of runs, with `law` those of studies and laws, and their report |
 //! | `gpu` | Vulkan, Metal and DX12; the largest part of the time to compile |
 //! | `cli` | the program, with all of the others |
 //!
 //! # Units and signs
 //!
-//! Lengths and stresses are in any one consistent system of units, forces in stress times length squared; mm and MPa give N. h is positive when the
-//! sphere is pressed, F_N in compression; F_T is the force that has to be applied along delta_T to move the sphere, so that their signs agree as long as it is sheared one way.
-//! All forces, energies and contact tables are of the whole sphere, although half of it is meshed. Of two equal spheres h and delta_T are the relative
-//! displacements of their equators.
+//! Lengths and stresses are in any one consistent system of units, forces in stress times length
+//! squared; mm and MPa give N. h is positive when the sphere is pressed, F_N in compression; F_T is
+//! the force that has to be applied along delta_T to move the sphere, so that their signs agree as
+//! long as it is sheared one way. All forces, energies and contact tables are of the whole sphere,
+//! although half of it is meshed. Of two equal spheres h and delta_T are the relative displacements
+//! of their equators.
 //!
 //! # What is not here
 //!
-//! Mesh, elements, contact rows, linear algebra, backends, Newton's method and the path's steps lie behind a hidden module and may change with any version.
-//! ARCHITECTURE.md follows one case through them.
+//! Mesh, elements, contact rows, linear algebra, backends, Newton's method and the path's steps lie
+//! behind a hidden module and may change with any version. ARCHITECTURE.md follows one case through
+//! them.
 
 pub mod analytical;
 pub mod case;

@@ -1,7 +1,7 @@
 //! Whether the processor has the instructions that the program was compiled for.
 //!
-//! On x86-64 the program is compiled for AVX2 and FMA (`.cargo/config.toml`); without them it would die of an illegal instruction
-//! in the middle of a run.
+//! On x86-64 the program is compiled for AVX2 and FMA (`.cargo/config.toml`); without them it would
+//! die of an illegal instruction in the middle of a run.
 
 /// The program was compiled for a newer processor.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -27,18 +27,21 @@ fn missing() -> Vec<&'static str> {
     Vec::new()
 }
 
-/// `is_x86_feature_detected!` is constantly true for what was compiled in, so the processor itself is asked.
+/// `is_x86_feature_detected!` is constantly true for what was compiled in, so the processor itself
+/// is asked.
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
 fn missing() -> Vec<&'static str> {
     use std::arch::x86_64::{__cpuid, __cpuid_count};
-    // SAFETY: every x86-64 processor has the CPUID instruction. (Newer compilers call these functions safe.)
+    // SAFETY: every x86-64 processor has the CPUID instruction. (Newer compilers call these
+    // functions safe.)
     #[allow(unsafe_code, unused_unsafe)]
     let (highest, features, extended) = unsafe { (__cpuid(0).eax, __cpuid(1).ecx, __cpuid_count(7, 0).ebx) };
     // A processor without leaf 7 answers it with another leaf's bits.
     missing_in(features, if highest >= 7 { extended } else { 0 })
 }
 
-/// What of x86-64-v3 is not among the feature bits of CPUID leaf 1, ECX, and leaf 7, EBX (Intel SDM, volume 2A, CPUID).
+/// What of x86-64-v3 is not among the feature bits of CPUID leaf 1, ECX, and leaf 7, EBX (Intel
+/// SDM, volume 2A, CPUID).
 #[cfg(target_arch = "x86_64")]
 #[cfg_attr(not(target_feature = "avx2"), allow(dead_code))]
 fn missing_in(leaf_1_ecx: u32, leaf_7_ebx: u32) -> Vec<&'static str> {
@@ -61,7 +64,8 @@ mod tests {
 
     #[test]
     fn names_what_older_processors_lack() {
-        // An Ivy Bridge: AVX and F16C, but neither FMA, MOVBE, BMI nor AVX2; and a Haswell, which has all of them.
+        // An Ivy Bridge: AVX and F16C, but neither FMA, MOVBE, BMI nor AVX2; and a Haswell, which
+        // has all of them.
         let (ivy_bridge, haswell) = ((0x7fba_e3bf, 0x0000_0281), (0x7ffa_fbff, 0x0000_27ab));
         assert_eq!(missing_in(ivy_bridge.0, ivy_bridge.1), ["FMA", "MOVBE", "BMI1", "AVX2", "BMI2"]);
         assert_eq!(missing_in(haswell.0, haswell.1), Vec::<&str>::new());

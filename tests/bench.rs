@@ -36,7 +36,8 @@ fn number(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("{key} in {value}"))
 }
 
-/// Every evaluation, law, precision and batch size in each of `places`, and nothing else; every measured number finite and positive.
+/// Every evaluation, law, precision and batch size in each of `places`, and nothing else; every
+/// measured number finite and positive.
 fn complete(report: &Value, places: &[&str]) -> usize {
     let mut found: BTreeMap<(String, String, String, u64), Vec<String>> = BTreeMap::new();
     let mut skipped = 0;

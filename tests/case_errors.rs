@@ -1,4 +1,5 @@
-//! Every mistake in a case file ends with exit code 2 and one message that names file, line, key and what is allowed.
+//! Every mistake in a case file ends with exit code 2 and one message that names file, line, key
+//! and what is allowed.
 
 mod common;
 
@@ -99,7 +100,8 @@ fn each_mistake_is_named_with_its_place_and_remedy() {
         let (wrong, remedy) = message.split_once(" Allowed: ").unwrap_or((&message, ""));
         assert!(wrong.contains(what), "{file}: expected {what:?} in {message}");
         assert!(remedy.contains(allowed), "{file}: expected {allowed:?} after `Allowed:` in {message}");
-        // One mistake, and below it the line with a caret, except where a table is missing as a whole.
+        // One mistake, and below it the line with a caret, except where a table is missing as a
+        // whole.
         assert_eq!(message.matches("error: ").count(), 1, "{file}: {message}");
         assert_eq!(message.contains('^'), *line > 1, "{file}: {message}");
     }

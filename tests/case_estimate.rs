@@ -1,4 +1,5 @@
-//! The case room's estimate of the mesh, and the range of contact radii that it allows, against the meshes themselves.
+//! The case room's estimate of the mesh, and the range of contact radii that it allows, against the
+//! meshes themselves.
 
 use asperity::case::{Case, estimated_elements, estimated_memory};
 use asperity::internals::mesh::{self, SphereSpec};

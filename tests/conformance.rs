@@ -1,7 +1,8 @@
 //! One body for every backend: CPU f64, CPU f32, GPU f64, GPU f32.
 //!
-//! The reference is the CPU in f64, fed with what the backend under test was fed with after rounding. Each backend has to stay
-//! within its bound of the reference *and* to obey the equations by itself, so that a fault shared with the reference shows too.
+//! The reference is the CPU in f64, fed with what the backend under test was fed with after
+//! rounding. Each backend has to stay within its bound of the reference *and* to obey the equations
+//! by itself, so that a fault shared with the reference shows too.
 
 #[path = "conformance/assembly.rs"]
 mod assembly;

@@ -1,4 +1,5 @@
-//! What the points of the contact do and carry, at every step of small runs: Coulomb's bound, the sums over both halves, and full stick.
+//! What the points of the contact do and carry, at every step of small runs: Coulomb's bound, the
+//! sums over both halves, and full stick.
 
 mod paths;
 
@@ -7,7 +8,8 @@ use asperity::output::{ContactPoint, ContactStatus, Half};
 use paths::Steps;
 use rayon::prelude::*;
 
-/// Follows the path of fixtures/cases/ideal.toml, or another, on a mesh of 4 elements a contact radius.
+/// Follows the path of fixtures/cases/ideal.toml, or another, on a mesh of 4 elements a contact
+/// radius.
 fn follow(settings: &[&str]) -> (Case, Steps) {
     let mut all: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
     all.push("mesh.elements_per_contact_radius=4".to_owned());
@@ -42,8 +44,10 @@ fn no_point_carries_more_than_friction_allows_and_both_halves_add_up() {
                 for p in points.iter().filter(|p| p.status != ContactStatus::Open) {
                     (closed, slipping) = (closed + 1, slipping + usize::from(p.status == ContactStatus::Slip));
                     let (traction, bound) = (p.traction_x.hypot(p.traction_y), mu * p.pressure * (1.0 + 1e-3));
-                    // Where the pressure is next to nothing, and wherever the step was accepted with a residual, the bound is known to that: no force is more
-                    // beyond it than the merit, which counts all of them, times F_N. A point on the symmetry plane is two halves.
+                    // Where the pressure is next to nothing, and wherever the step was accepted
+                    // with a residual, the bound is known to that: no force is more beyond it than
+                    // the merit, which counts all of them, times F_N. A point on the symmetry plane
+                    // is two halves.
                     let residual = row.merit * 0.5 * row.f_n * if p.half == Half::Both { 2.0 } else { 1.0 };
                     assert!((traction - bound) * p.area <= residual * (1.0 + 1e-9), "{at}: {traction} beyond {bound}, {p:?}");
                     assert!(tolerance.is_none() || residual < 2e-7 * row.f_n);
@@ -66,8 +70,9 @@ fn no_point_carries_more_than_friction_allows_and_both_halves_add_up() {
     });
 }
 
-/// Under full stick a point stays where it has touched down: it carries no tangential force at the end of the step in which it comes down, and does not move from
-/// then on. A point that came off and down again within a step does the same; such points are counted.
+/// Under full stick a point stays where it has touched down: it carries no tangential force at the
+/// end of the step in which it comes down, and does not move from then on. A point that came off
+/// and down again within a step does the same; such points are counted.
 #[test]
 fn full_stick_holds_every_point_from_where_it_touched_down() {
     let counts: Vec<(usize, usize, usize)> = [5, 12, 16, 17, 20, 24]
@@ -98,9 +103,11 @@ fn full_stick_holds_every_point_from_where_it_touched_down() {
                 landed_again += row.landed_again;
             }
             let last = steps.last().expect("steps").0;
-            // What slides does so without friction: nothing is dissipated but for the residual at which a step is accepted.
+            // What slides does so without friction: nothing is dissipated but for the residual at
+            // which a step is accepted.
             assert!(steps.iter().all(|(row, _)| row.work_friction.abs() < 1e-5 * last.work_external), "{press_steps}: {last:?}");
-            // More than any coefficient of the other cases: only the yield stress in shear limits it.
+            // More than any coefficient of the other cases: only the yield stress in shear limits
+            // it.
             assert!(last.f_t / last.f_n > 0.4, "{last:?}");
             (press_steps, landed_again, steps.len() - 1)
         })

@@ -1,4 +1,5 @@
-//! The device layer on a device: round trips, limits, and above all that nothing stale is ever handed on.
+//! The device layer on a device: round trips, limits, and above all that nothing stale is ever
+//! handed on.
 
 mod device;
 

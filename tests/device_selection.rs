@@ -1,4 +1,5 @@
-//! Which backend a run gets, and what it is told, where a device is missing, small, imprecise, or lost.
+//! Which backend a run gets, and what it is told, where a device is missing, small, imprecise, or
+//! lost.
 
 mod device;
 
@@ -43,7 +44,8 @@ fn the_cpu_is_what_was_asked_for() {
     }
 }
 
-/// Two cases that cannot share a batch are an error of the caller on every device, not a reason to change it.
+/// Two cases that cannot share a batch are an error of the caller on every device, not a reason to
+/// change it.
 #[test]
 fn a_bad_batch_is_no_fault_of_the_device() {
     let mut bad = models();

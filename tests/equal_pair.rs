@@ -1,4 +1,5 @@
-//! Two equal spheres: the press of one over a frictionless plane, the same forwards and back, energies that balance.
+//! Two equal spheres: the press of one over a frictionless plane, the same forwards and back,
+//! energies that balance.
 
 mod paths;
 
@@ -40,7 +41,8 @@ fn the_press_is_that_of_one_sphere_over_a_frictionless_plane_whatever_the_fricti
 
 #[test]
 fn forwards_and_back_are_the_same() {
-    // Slaves and masters change places: what carries the force is then the other half of the surface.
+    // Slaves and masters change places: what carries the force is then the other half of the
+    // surface.
     let both: Vec<Steps> = ["0.012", "-0.012"]
         .into_par_iter()
         .map(|shear| follow(PAIR, &[COARSE, "solver.tolerance=1e-5", &format!("path=[{{indentation=0.04}},{{shear={shear}}}]")]))
@@ -89,7 +91,8 @@ fn the_contact_carries_the_force_and_the_energies_balance() {
 
 #[test]
 fn friction_shears_a_pair_otherwise_than_a_plane() {
-    // The plane's press lacks 3 % of the force and 6 % of the radius at mu = 0.3, as an axisymmetric code says too (153.6 and 148.2 for a fine mesh).
+    // The plane's press lacks 3 % of the force and 6 % of the radius at mu = 0.3, as an
+    // axisymmetric code says too (153.6 and 148.2 for a fine mesh).
     let mesh = "mesh.elements_per_contact_radius=8";
     let last = |text: &str, path: &str| follow(text, &[mesh, path]).last().map(|(row, _)| *row).unwrap_or_default();
     let (pair, plane) = (last(PAIR, "path=[{indentation=0.04}]"), last(PLANE, "path=[{indentation=0.02}]"));

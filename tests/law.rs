@@ -1,4 +1,5 @@
-//! The contact law from the outside: fitted to studies that follow a known law, and applied through the program.
+//! The contact law from the outside: fitted to studies that follow a known law, and applied through
+//! the program.
 
 #[path = "law/synthetic.rs"]
 mod synthetic;
@@ -24,8 +25,8 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("a path in UTF-8")
 }
 
-/// Greatest differences to the synthetic truth over materials, friction and indentations that the study does not have, as shares of the peak of F_T and of
-/// F_N0.
+/// Greatest differences to the synthetic truth over materials, friction and indentations that the
+/// study does not have, as shares of the peak of F_T and of F_N0.
 fn unseen(law: &Law) -> [f64; 2] {
     let hardenings = ["law = \"ideal\"\nyield_stress = 800.0", "law = \"hollomon\"\ncoefficient = 1200.0\nexponent = 6.0"];
     let mut greatest = [0.0_f64; 2];
@@ -49,7 +50,8 @@ fn a_known_law_is_found_again() {
     let folder = tempfile::tempdir().expect("a folder");
     synthetic::write_study(folder.path(), 0.0);
     let law = fit(folder.path(), &Prior::BuiltIn).expect("a law");
-    // The two forms of f_N differ by less than the weak pull of the constants to their start costs (0.1 % of F_N0): either may be kept.
+    // The two forms of f_N differ by less than the weak pull of the constants to their start costs
+    // (0.1 % of F_N0): either may be kept.
     let kept = Forms { normal_curve: synthetic::FORMS.normal_curve, ..law.forms };
     assert_eq!(kept, synthetic::FORMS, "{}", asperity::law::report::candidate_table(&law.candidates));
     assert_eq!(law.normal.form, synthetic::normal().form);

@@ -1,6 +1,8 @@
-//! The exported law, compiled by the compilers and run by the interpreter that users have, against the vectors of the Rust update.
+//! The exported law, compiled by the compilers and run by the interpreter that users have, against
+//! the vectors of the Rust update.
 //!
-//! A missing gcc, g++ or python3 skips its test, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is a failure.
+//! A missing gcc, g++ or python3 skips its test, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is
+//! a failure.
 
 use std::fs;
 use std::io::Write;
@@ -155,7 +157,8 @@ fn compiled_headers_agree(compiler: &[&str], test: &str) {
     }
 }
 
-/// A whole law as C, without a case: a header that makes the tables of any material, for the same update.
+/// A whole law as C, without a case: a header that makes the tables of any material, for the same
+/// update.
 #[test]
 fn the_header_of_all_materials_agrees() {
     let test = "the_header_of_all_materials_agrees";
@@ -178,7 +181,8 @@ fn the_header_of_all_materials_agrees() {
     }
 }
 
-/// The headers as CUDA sees them: device code of the whole update, in double and in float, by clang's front end, which needs no CUDA.
+/// The headers as CUDA sees them: device code of the whole update, in double and in float, by
+/// clang's front end, which needs no CUDA.
 #[test]
 fn the_headers_are_device_code() {
     let test = "the_headers_are_device_code";
@@ -488,7 +492,8 @@ fn the_update_follows_the_law_it_is_made_of() {
                     let (next, out) = pair.update(&state, h, [0.0, increment]);
                     state = next;
                     let (f_t, f_n) = law.forces(&expected, friction, delta);
-                    // The table over ln h is good for some 1e-3; the sliders of an elastic contact for 3e-3.
+                    // The table over ln h is good for some 1e-3; the sliders of an elastic contact
+                    // for 3e-3.
                     assert!((out.f_t[1] - f_t).abs() < 8e-3 * friction * f_n, "{:?} {h} {k}: {} {f_t}", law.forms, out.f_t[1]);
                     assert!((out.f_n - f_n).abs() < 5e-3 * f_n, "{:?} {h} {k}: {} {f_n}", law.forms, out.f_n);
                 }
@@ -497,7 +502,8 @@ fn the_update_follows_the_law_it_is_made_of() {
     }
 }
 
-/// Every step of a path, however it turns, takes at least the stored energy that it adds; so no closed path returns work.
+/// Every step of a path, however it turns, takes at least the stored energy that it adds; so no
+/// closed path returns work.
 #[test]
 fn no_path_extracts_work() {
     let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
@@ -540,7 +546,8 @@ fn no_path_extracts_work() {
                         let gain = pair.stored_energy(&next) - pair.stored_energy(&state) - done;
                         through += done.abs();
                         work += done;
-                        // Between the knots of the table next to yield a step may gain a little of what others lost.
+                        // Between the knots of the table next to yield a step may gain a little of
+                        // what others lost.
                         assert!(gain <= 1e-3 * through, "{:?} {stress} leg {leg}: {gain:e} of {through:e}", law.forms);
                         (state, f) = (next, now);
                         let lost = work - pair.stored_energy(&state);
@@ -548,7 +555,8 @@ fn no_path_extracts_work() {
                         assert!(lost >= -1e-4 * through, "{:?} {stress} leg {leg}: {lost:e} of {through:e}", law.forms);
                     }
                 }
-                // All that was stored is given back where the contact is lost; work in is what is left.
+                // All that was stored is given back where the contact is lost; work in is what is
+                // left.
                 assert!(f == [0.0; 3] && work > 0.0, "{:?} {stress}: {f:?} {work:e} of {through:e}", law.forms);
             }
         }
@@ -647,8 +655,9 @@ fn the_command_writes_what_the_library_makes() {
     assert!(refused.stdout.is_empty() && text(&refused).contains("law.json"), "{}", text(&refused));
 }
 
-/// Beside the vectors, which are all finite: what is no number gives none and leaves the contact as it was, also where the compiler was told that every number
-/// is one; an increment beyond all bounds is full slip.
+/// Beside the vectors, which are all finite: what is no number gives none and leaves the contact as
+/// it was, also where the compiler was told that every number is one; an increment beyond all
+/// bounds is full slip.
 const HOSTILE_C: &str = r#"
 #include "asperity_law.h"
 #include <stdio.h>

@@ -1,4 +1,5 @@
-//! `asperity plot`: the pictures of a run and of a study, the report, and directories that are neither.
+//! `asperity plot`: the pictures of a run and of a study, the report, and directories that are
+//! neither.
 
 #[path = "law/synthetic.rs"]
 mod synthetic;
@@ -51,7 +52,8 @@ fn stderr(assert: &assert_cmd::assert::Assert) -> String {
     String::from_utf8(assert.get_output().stderr.clone()).expect("messages are UTF-8")
 }
 
-/// What there is in a well-formed document: its words, the names of its elements, and its attributes.
+/// What there is in a well-formed document: its words, the names of its elements, and its
+/// attributes.
 #[derive(Default)]
 struct Parsed {
     words: String,
@@ -93,7 +95,8 @@ impl Parsed {
     }
 }
 
-/// The names of the pictures that were written, each of which parses, is where it was said to be and has a white card below dark text.
+/// The names of the pictures that were written, each of which parses, is where it was said to be
+/// and has a white card below dark text.
 fn pictures(printed: &str) -> Vec<String> {
     let mut names = Vec::new();
     for path in printed.lines().map(PathBuf::from).filter(|path| path.extension().is_some_and(|end| end == "svg")) {
@@ -123,7 +126,8 @@ fn a_run_is_drawn_from_its_directory() {
     let slip = Parsed::of(&out.join("plots/slip.svg")).words;
     assert_eq!(slip.matches("along the shear").count(), 3, "the lowest of each column: {slip}");
     let pressure = Parsed::of(&out.join("plots/pressure.svg")).words;
-    // An elastic contact's pressure would be far above the scale, and what is not drawn has no entry in the legend.
+    // An elastic contact's pressure would be far above the scale, and what is not drawn has no
+    // entry in the legend.
     assert!(pressure.contains("Hertz's shape, same") && !pressure.contains("Hertz, elastic"), "{pressure}");
 
     // With a law beside it.
@@ -180,7 +184,8 @@ fn a_study_is_drawn_into_one_report() {
     }
     let style = fs::read_to_string(study.join("report.html")).expect("the report");
     assert!(!style.contains("@import") && !style.contains("url("), "the style fetches nothing");
-    // A row a case and the one that failed with its reason, the formulas, the errors, the range, the study.
+    // A row a case and the one that failed with its reason, the formulas, the errors, the range,
+    // the study.
     for told in [
         "37 cases: 36 done, 1 failed",
         "Cases that failed",

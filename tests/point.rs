@@ -46,7 +46,8 @@ fn uniaxial_stress_is_in_the_units_of_the_file() {
     // Kirchhoff stress on the flow curve.
     let kirchhoff = stress * f11 * f22 * f22;
     assert!((kirchhoff - (400.0 + 2000.0 * alpha)).abs() < 1e-9, "{kirchhoff}");
-    // The plastic part of the logarithmic strain, but for a share of the order of the elastic strain.
+    // The plastic part of the logarithmic strain, but for a share of the order of the elastic
+    // strain.
     assert!((alpha / (0.05 - kirchhoff / 200e3) - 1.0).abs() < 0.004, "{alpha}");
     // Plastic work: the area under the flow curve.
     assert!((last[18] - (400.0 + 1000.0 * alpha) * alpha).abs() < 1e-9);

@@ -1,4 +1,5 @@
-//! Cases from one end of what may be asked for to the other: each is followed to the end of its path.
+//! Cases from one end of what may be asked for to the other: each is followed to the end of its
+//! path.
 //!
 //! Prints a table of iterations and cut-backs (`cargo test --test range -- --nocapture`).
 

@@ -1,4 +1,5 @@
-//! `asperity run --resume`: a run that was interrupted or killed goes on to the results of one that never stopped, bit for bit.
+//! `asperity run --resume`: a run that was interrupted or killed goes on to the results of one that
+//! never stopped, bit for bit.
 #![cfg(unix)]
 
 mod common;
@@ -92,7 +93,8 @@ fn steps(dir: &Path) -> usize {
     read_history(&dir.join("history.csv")).map_or(0, |rows| rows.len())
 }
 
-/// Both hold the same files with the same bytes; the summaries but for times and the number of threads.
+/// Both hold the same files with the same bytes; the summaries but for times and the number of
+/// threads.
 fn assert_same(found: &Path, expected: &Path) {
     assert_eq!(difference(found, expected), None);
 }
@@ -203,7 +205,8 @@ fn a_run_killed_at_any_step_goes_on() {
         .with_checkpoints_every(Duration::ZERO);
     results.meshed(&problem);
     results.scouted(scout(&case, &Arc::default()).expect("a scout").expect("to its end"), 0.0);
-    // What is told of a step comes before its checkpoint: that of each copy is one step old, or older if writing it took long.
+    // What is told of a step comes before its checkpoint: that of each copy is one step old, or
+    // older if writing it took long.
     assert_eq!(Drive::new(&problem, &mut backend, 0, newton).run(&mut results).expect("a run"), Ending::Done);
     drop(results);
 
@@ -388,7 +391,8 @@ fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() 
     }
 }
 
-/// A limit on the size of a file stands for a full disk; nothing else that this run writes is as large as its checkpoint.
+/// A limit on the size of a file stands for a full disk; nothing else that this run writes is as
+/// large as its checkpoint.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_disk_that_fills_costs_the_checkpoint_and_not_the_run() {

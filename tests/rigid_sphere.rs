@@ -1,4 +1,5 @@
-//! A rigid sphere as the opponent, of a sphere and of a flat: forces, friction at every point, energies, held forces, stick, release; and resumed runs.
+//! A rigid sphere as the opponent, of a sphere and of a flat: forces, friction at every point,
+//! energies, held forces, stick, release; and resumed runs.
 
 mod paths;
 
@@ -20,7 +21,8 @@ fn follow(settings: &[&str]) -> Steps {
     paths::follow(&case)
 }
 
-/// Pressure and traction of a point in contact across and along the surface of a sphere with this radius.
+/// Pressure and traction of a point in contact across and along the surface of a sphere with this
+/// radius.
 fn in_its_frame(point: &ContactPoint, radius: f64) -> [f64; 2] {
     let distance = radius + point.gap;
     let (x, y) = (point.current_x / distance, point.current_y / distance);

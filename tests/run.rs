@@ -317,7 +317,8 @@ fn full_stick_has_no_full_slip() {
     let scratch = scratch(SHEAR);
     let (history, summary) = done(&scratch, "out", &["--set", "contact.friction=\"stick\""]);
     let last = history[history.len() - 1];
-    // More than the coefficient of the other cases: only the yield stress in shear limits it. What the points do is in contact_points.rs.
+    // More than the coefficient of the other cases: only the yield stress in shear limits it. What
+    // the points do is in contact_points.rs.
     assert!(last.f_t / last.f_n > 0.4 && last.slipping_points == 0, "{last:?}");
     assert!(!summary.full_slip_reached && summary.f_n_slip.is_none() && summary.delta_t_slip.is_none());
 }
@@ -486,7 +487,8 @@ fn bad_places_and_devices_end_with_2_and_touch_nothing() {
     assert!(!scratch.path("new").exists());
 }
 
-/// A limit on the size of a file stands for a full disk: the system refuses the first write beyond it.
+/// A limit on the size of a file stands for a full disk: the system refuses the first write beyond
+/// it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {

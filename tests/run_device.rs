@@ -105,7 +105,8 @@ fn without_a_driver_auto_is_the_cpu_and_gpu_ends_with_2() {
     assert!(!dir.path().join("out").exists());
 }
 
-/// Press and shear on a device that is lost after the sixth step; `ASPERITY_TEST_LOSE_DEVICE_AFTER` is the hook for it.
+/// Press and shear on a device that is lost after the sixth step; `ASPERITY_TEST_LOSE_DEVICE_AFTER`
+/// is the hook for it.
 const LOST_AFTER: usize = 6;
 const SHEAR: [&str; 4] = ["--set", "solver.shear_steps=4", "--set", "solver.error_estimate=false"];
 

@@ -1,4 +1,5 @@
-//! Small runs from the case to the last step, on the coarsest mesh: energies, threads, precisions, failures.
+//! Small runs from the case to the last step, on the coarsest mesh: energies, threads, precisions,
+//! failures.
 
 use std::path::Path;
 
@@ -40,7 +41,8 @@ fn follow<R: Real>(problem: &Problem) -> (Ending, Vec<StepRecord>) {
     (ending, records.0)
 }
 
-/// A run in `n` press and `n` shear steps, solved so tightly that the steps are all that is left of the error.
+/// A run in `n` press and `n` shear steps, solved so tightly that the steps are all that is left of
+/// the error.
 fn run(case: &str, n: usize, sets: &[&str]) -> Vec<StepRecord> {
     let mut all = vec![format!("solver.press_steps={n}"), format!("solver.shear_steps={n}"), "solver.tolerance=1e-6".to_string()];
     all.extend(sets.iter().map(|s| s.to_string()));
@@ -61,7 +63,8 @@ fn ends(records: &[StepRecord]) -> Vec<StepRecord> {
 
 #[test]
 fn an_elastic_sphere_stores_the_work_that_friction_leaves() {
-    // Pressed, then sheared at constant normal force (the plate's work is then F_N dh + F_T d delta_T).
+    // Pressed, then sheared at constant normal force (the plate's work is then F_N dh + F_T d
+    // delta_T).
     let errors: Vec<Vec<f64>> = [10, 20]
         .map(|n| {
             let records = run("elastic.toml", n, &["path.1.shear=0.0014"]);
@@ -94,9 +97,11 @@ fn a_plastic_sphere_dissipates_what_it_does_not_store() {
         }
         errors.push([imbalance(&press).abs(), imbalance(&shear).abs()]);
     }
-    // Falls faster than the step, down to what the flow rule's dissipation and sigma d alpha differ by: at most |dev b_e|/sqrt(6) of the
-    // plastic work, |dev b_e| = sqrt(2/3) sigma_Y/mu (see the element's energy tests). Points that stop flowing leave as much again: they are
-    // committed from where they were before the step (measured: 0.2 % missing for vanishing steps at 6 elements, 0.4 % at 4).
+    // Falls faster than the step, down to what the flow rule's dissipation and sigma d alpha differ
+    // by: at most |dev b_e|/sqrt(6) of the plastic work, |dev b_e| = sqrt(2/3) sigma_Y/mu (see the
+    // element's energy tests). Points that stop flowing leave as much again: they are committed
+    // from where they were before the step (measured: 0.2 % missing for vanishing steps at 6
+    // elements, 0.4 % at 4).
     let floor = (2.0_f64 / 3.0).sqrt() * (400.0 * 2.6 / 200e3) / 6.0_f64.sqrt();
     for segment in 0..2 {
         let e: Vec<f64> = errors.iter().map(|e| e[segment]).collect();
@@ -116,12 +121,14 @@ fn reversal_unloading_and_release_keep_the_balance() {
         let signs: Vec<f64> = ends.iter().map(|r| r.f_t.signum()).collect();
         assert_eq!(signs[1..3], [1.0, -1.0], "friction turns with the shear");
         let last = ends[ends.len() - 1];
-        // Nothing touches any more: no force, self-stress, and a permanent dent less deep than the deepest h.
+        // Nothing touches any more: no force, self-stress, and a permanent dent less deep than the
+        // deepest h.
         assert_eq!((last.contact_points, last.f_n, last.f_t), (0, 0.0, 0.0));
         assert!(last.energy_elastic > 0.0 && last.h > 0.02 && last.h < 0.024, "{last:?}");
         errors.push(imbalance(&last).abs());
     }
-    // With finer steps it tends to 0.2 %, where the flow rule dissipates otherwise than the integral of sigma d alpha by the order of the elastic strain.
+    // With finer steps it tends to 0.2 %, where the flow rule dissipates otherwise than the
+    // integral of sigma d alpha by the order of the elastic strain.
     assert!(errors[0] < 0.01 && errors[1] < 0.004, "{errors:?}");
 }
 
@@ -169,12 +176,14 @@ fn single_precision_follows_double() {
         let (n, t) = ((b.f_n - a.f_n) / a.f_n, (b.f_t - a.f_t) / a.f_n);
         assert!(n.abs() < 2e-6 && t.abs() < 2e-6, "step {}: {n:e} {t:e}", a.step);
     }
-    // Unloading makes points change status in another order; the default tolerance, 3e-4, is what holds then. Contact is lost all the
-    // same, where f32 leaves residual forces that no normal force outweighs.
+    // Unloading makes points change status in another order; the default tolerance, 3e-4, is what
+    // holds then. Contact is lost all the same, where f32 leaves residual forces that no normal
+    // force outweighs.
     let problem = problem_of("reversal.toml", "output.plots=false");
     let ((_, wide), (ending, narrow)) = (follow::<f64>(&problem), follow::<f32>(&problem));
     assert_eq!(ending, Ending::Done);
-    // A release ends with the step in which nothing touches any more: one may be closer to it than the other.
+    // A release ends with the step in which nothing touches any more: one may be closer to it than
+    // the other.
     assert!(wide.len().abs_diff(narrow.len()) <= 1, "{} and {}", wide.len(), narrow.len());
     for (a, b) in ends(&wide).iter().zip(&ends(&narrow)) {
         assert_eq!(a.contact_points == 0, b.contact_points == 0);

@@ -1,4 +1,5 @@
-//! The elementary functions of `shaders/math.wgsl` on the device against the CPU's, over their whole range.
+//! The elementary functions of `shaders/math.wgsl` on the device against the CPU's, over their
+//! whole range.
 
 // `!(error <= bound)` is true for a NaN, which is what it is written for.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
@@ -58,7 +59,8 @@ fn tabulate<R: DeviceReal>(context: &GpuContext, arguments: &[[R; 2]]) -> Vec<Ve
     context.download(&output).unwrap().chunks(arguments.len()).map(<[R]>::to_vec).collect()
 }
 
-/// What the function should give, computed in f64 (whose own error is below one ulp) from the rounded arguments.
+/// What the function should give, computed in f64 (whose own error is below one ulp) from the
+/// rounded arguments.
 fn reference(function: usize, x: f64, y: f64) -> f64 {
     match function {
         0 => x.exp(),
@@ -69,7 +71,8 @@ fn reference(function: usize, x: f64, y: f64) -> f64 {
     }
 }
 
-/// Largest relative error of one function over arguments from `draw`; results outside the normal range are left out.
+/// Largest relative error of one function over arguments from `draw`; results outside the normal
+/// range are left out.
 fn worst<R: DeviceReal>(
     context: &GpuContext,
     function: usize,

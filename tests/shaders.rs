@@ -1,5 +1,5 @@
-//! Every shader in both precisions, without a device: it compiles, does not contain what compiles and is wrong, and is what the
-//! kernel list says of it.
+//! Every shader in both precisions, without a device: it compiles, does not contain what compiles
+//! and is wrong, and is what the kernel list says of it.
 
 use asperity::internals::compute::gpu::lint::{self, Checked, Rule};
 use asperity::internals::compute::gpu::shader_sources::{Assembled, Binding, KERNELS, Kernel, MATH, Precision, Source, TENSOR};
@@ -51,8 +51,8 @@ fn entry_points_and_bindings_are_as_listed() {
         assert_eq!(module.entry_points.len(), 1, "{}", kernel.name);
         let entry = &module.entry_points[0];
         assert_eq!((entry.name.as_str(), entry.workgroup_size), (kernel.name, [kernel.workgroup, 1, 1]));
-        // A source shared with other kernels may declare more than this one calls for: what it calls for must be listed, and what is
-        // listed declared, of the same kind.
+        // A source shared with other kernels may declare more than this one calls for: what it
+        // calls for must be listed, and what is listed declared, of the same kind.
         let mut called_for = 0;
         for (handle, variable) in module.global_variables.iter() {
             let Some(binding) = variable.binding else { continue };
@@ -135,7 +135,8 @@ fn the_lint_rejects_what_it_must() {
     }
 }
 
-/// frexp needs 64-bit integers in naga's eyes, which no kernel asks for: refused before the lint sees it.
+/// frexp needs 64-bit integers in naga's eyes, which no kernel asks for: refused before the lint
+/// sees it.
 #[test]
 fn frexp_is_refused_in_f64() {
     let prelude = KERNELS[0].assemble(Precision::F64);

@@ -1,4 +1,5 @@
-//! `asperity study`: a directory and a row a case, whatever becomes of the others; shares; interruption; bad files.
+//! `asperity study`: a directory and a row a case, whatever becomes of the others; shares;
+//! interruption; bad files.
 
 mod common;
 mod device;
@@ -149,7 +150,8 @@ fn a_directory_and_a_row_for_every_case_and_shares_give_the_same() {
     ]) {
         assert_eq!([&row["case"], &row["material.hardening.yield_stress"], &row["contact.friction"]], [id, stress, friction]);
         assert_eq!((row["status"].as_str(), row["reason"].as_str()), ("done", ""));
-        // An ordinary run's directory, without fields and plots but with the contact at the ends of the two segments.
+        // An ordinary run's directory, without fields and plots but with the contact at the ends of
+        // the two segments.
         let out = scratch.case("whole", id);
         let case = Case::load(&out.case(), &[]).expect("a case");
         assert_eq!(case.material.hardening.yield_stress(200e3), stress.parse().ok());
@@ -168,7 +170,8 @@ fn a_directory_and_a_row_for_every_case_and_shares_give_the_same() {
         assert_eq!(row["mu"].is_empty(), friction == "stick");
     }
 
-    // One share after the other into one directory, one core each; then all rows are gathered and nothing is left to do.
+    // One share after the other into one directory, one core each; then all rows are gathered and
+    // nothing is left to do.
     scratch.ends_with(0, "shares", &["--threads", "1", "--shard", "1/2", "-q"]);
     let first = statuses(&scratch.out("shares"));
     assert_eq!(first.iter().filter(|status| *status == "done").count(), 2, "{first:?}");

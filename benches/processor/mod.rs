@@ -1,4 +1,5 @@
-//! Criterion's clock: processor time of the whole process, whatever else the machine does (time on the wall where the system does not tell).
+//! Criterion's clock: processor time of the whole process, whatever else the machine does (time on
+//! the wall where the system does not tell).
 
 use asperity::output::Clock;
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};

@@ -8,7 +8,8 @@ const YIELD_RATIO: [f64; 2] = [20.0, 20_000.0]; // E/sigma_Y, evenly in its loga
 const POISSON: [f64; 2] = [0.0, 0.45];
 const DEPTH: [f64; 2] = [1e-4, 0.1]; // h/R, evenly in its logarithm
 const FRICTION: [f64; 2] = [0.0, 1.0];
-/// Displacements of a shear of given length over sqrt(2 R h), evenly in the logarithm: from well within stick to far into slip.
+/// Displacements of a shear of given length over sqrt(2 R h), evenly in the logarithm: from well
+/// within stick to far into slip.
 const SHEAR: [f64; 2] = [2e-4, 0.5];
 
 /// Radius of a rigid sphere over that of the body, evenly in its logarithm.
@@ -20,7 +21,8 @@ pub enum Against {
     Plane,
     /// Its equal; its spheres move as far as the one does.
     Equal,
-    /// A rigid sphere, and every second body a flat; it moves as far in R*, or in the smaller radius.
+    /// A rigid sphere, and every second body a flat; it moves as far in R*, or in the smaller
+    /// radius.
     Rigid,
 }
 

@@ -1,11 +1,13 @@
-//! Random cases over everything that a case file can say: does each end by itself, at what cost, and is what it says true?
+//! Random cases over everything that a case file can say: does each end by itself, at what cost,
+//! and is what it says true?
 //!
 //! ```text
 //! cargo run --release --example random_cases -- --seed 1 --count 100 --elements 5
 //! cargo run --release --example random_cases -- --seed 1 --only 17 > case.toml    # one of them, as a case file
 //! ```
-//! Each case is run as `asperity run` would: a scout first, then the case on a mesh that is large enough. Prints a row a case and a summary; exit code 1 if a
-//! case did not get to the end of its path.
+//! Each case is run as `asperity run` would: a scout first, then the case on a mesh that is large
+//! enough. Prints a row a case and a summary; exit code 1 if a case did not get to the end of its
+//! path.
 
 mod generator;
 mod measure;

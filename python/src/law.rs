@@ -49,7 +49,8 @@ pub fn table_study(case: &NativeCase, elements: usize) -> PyResult<String> {
     Ok(study_text(&case.case, elements, &depths(&case.case).map_err(refused)?))
 }
 
-/// Makes the table of that study, which lies in a directory, and writes `law.json` there; and the depths that were not reached, with the reasons.
+/// Makes the table of that study, which lies in a directory, and writes `law.json` there; and the
+/// depths that were not reached, with the reasons.
 #[pyfunction]
 pub fn table_law(dir: PathBuf, case: &NativeCase, elements: usize) -> PyResult<(NativeLaw, Vec<String>)> {
     let built = build(&dir, &case.case, elements).map_err(failed)?;
@@ -99,7 +100,8 @@ impl NativeLaw {
         }
     }
 
-    /// segment, h, delta_T, F_N, F_T along the path of a case, and what of it lies outside of the law's range. With `press` one shear of a simulated press.
+    /// segment, h, delta_T, F_N, F_T along the path of a case, and what of it lies outside of the
+    /// law's range. With `press` one shear of a simulated press.
     fn predict<'py>(&self, py: Python<'py>, case: &NativeCase, press: bool) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
         let case = &case.case;
         let (points, outside) = py.detach(|| if press { self.pressed(case) } else { self.law.follow(case).map_err(failed) })?;
@@ -113,8 +115,9 @@ impl NativeLaw {
         Ok((columns, outside.iter().map(ToString::to_string).collect()))
     }
 
-    /// Simulates the paths of `law check` for the material, the friction and the depth of a case (without one, of the table) and follows them with the law: a
-    /// dictionary a path; and the exception that interrupted it.
+    /// Simulates the paths of `law check` for the material, the friction and the depth of a case
+    /// (without one, of the table) and follows them with the law: a dictionary a path; and the
+    /// exception that interrupted it.
     #[pyo3(signature = (case, elements))]
     fn check<'py>(
         &self,
@@ -264,7 +267,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// Turns the tangential memory of each contact into axes that are turned by an angle with that cosine and sine.
+    /// Turns the tangential memory of each contact into axes that are turned by an angle with that
+    /// cosine and sine.
     fn rotate(&mut self, cosine: PyReadonlyArray1<'_, f64>, sine: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let number = self.states.len();
         check_length("cosine", cosine.len(), number)?;

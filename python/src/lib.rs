@@ -1,4 +1,5 @@
-//! The native half of the Python package: cases, runs, studies and laws of the `asperity` library. What only reads files and shapes answers is Python.
+//! The native half of the Python package: cases, runs, studies and laws of the `asperity` library.
+//! What only reads files and shapes answers is Python.
 
 mod case;
 mod errors;
@@ -25,7 +26,8 @@ mod _asperity {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        // Compiled for AVX2: on an older processor the first run would die of an illegal instruction.
+        // Compiled for AVX2: on an older processor the first run would die of an illegal
+        // instruction.
         asperity::internals::processor::check().map_err(|error| PyImportError::new_err(error.to_string()))?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 
 use crate::errors::failed;
 
-/// The columns of a history, in the order of the file, as names and arrays: whole numbers as int64, others as float64.
+/// The columns of a history, in the order of the file, as names and arrays: whole numbers as int64,
+/// others as float64.
 #[pyfunction]
 pub fn history(py: Python<'_>, dir: PathBuf) -> PyResult<Vec<(String, Py<PyAny>)>> {
     let rows = read_history(&OutputDirectory::existing(dir).history()).map_err(failed)?;

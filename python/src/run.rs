@@ -44,7 +44,8 @@ fn threads(number: Option<usize>) -> PyResult<NonZeroUsize> {
     }
 }
 
-/// Simulates a case into a directory; gives the status, the message, and the exception that interrupted it.
+/// Simulates a case into a directory; gives the status, the message, and the exception that
+/// interrupted it.
 #[pyfunction]
 #[pyo3(signature = (case, out, device, precision, threads, resume, force, listener))]
 #[allow(clippy::too_many_arguments)] // keywords in Python
@@ -88,7 +89,8 @@ pub fn run(
     Ok((status.as_str().unwrap_or_default().to_owned(), outcome.message, raised))
 }
 
-/// Computes a study into a directory; gives the numbers of cases that are done, failed and pending, the first failure, and the exception that interrupted it.
+/// Computes a study into a directory; gives the numbers of cases that are done, failed and pending,
+/// the first failure, and the exception that interrupted it.
 #[pyfunction]
 #[pyo3(signature = (text, name, out, device, precision, threads, shard, resume, retry, force, quiet))]
 #[allow(clippy::too_many_arguments, clippy::type_complexity)] // keywords in Python

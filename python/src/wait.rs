@@ -1,4 +1,5 @@
-//! Long work beside Python: the interpreter is free while it goes on, hears of its steps, and can end it with Ctrl-C.
+//! Long work beside Python: the interpreter is free while it goes on, hears of its steps, and can
+//! end it with Ctrl-C.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -36,8 +37,10 @@ impl Progress for Told {
     fn finish(&mut self, _: &str) {}
 }
 
-/// Does `work` in a thread of its own. Meanwhile `listener` is called with the share that is behind, the number of the step and a text (a message has the
-/// share -1). An exception of the listener, or of a signal handler of Python (Ctrl-C), cancels the work; once that has ended it is given beside the result.
+/// Does `work` in a thread of its own. Meanwhile `listener` is called with the share that is
+/// behind, the number of the step and a text (a message has the share -1). An exception of the
+/// listener, or of a signal handler of Python (Ctrl-C), cancels the work; once that has ended it is
+/// given beside the result.
 pub fn wait<T: Send>(
     py: Python<'_>,
     listener: Option<&Py<PyAny>>,
@@ -47,7 +50,8 @@ pub fn wait<T: Send>(
     let (sender, news) = channel();
     py.detach(move || {
         std::thread::scope(|scope| {
-            // Results and meshes of a thousand elements are on the heap, but the parser and the direct solver recurse.
+            // Results and meshes of a thousand elements are on the heap, but the parser and the
+            // direct solver recurse.
             let worker = std::thread::Builder::new().name("asperity".to_owned()).stack_size(16 << 20);
             let worker = worker.spawn_scoped(scope, move || work(sender)).map_err(failed)?;
             let raised = listen(&news, listener, canceller);

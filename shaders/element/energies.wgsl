@@ -1,5 +1,5 @@
-// Elastic energy, plastic work since the start and largest equivalent plastic strain of every element at the end of a step: a
-// thread an element, its points in order.
+// Elastic energy, plastic work since the start and largest equivalent plastic strain of every
+// element at the end of a step: a thread an element, its points in order.
 
 @group(0) @binding(9) var<storage, read> jacobian: array<real>;         // [slot][point]: det F - 1
 @group(0) @binding(10) var<storage, read> next_history: array<real>;    // [slot][component][point], as hex8_update wrote it

@@ -1,5 +1,6 @@
-// Eight-node hexahedron with mean dilatation: the twin of crates/kernels/src/element/hex8.rs, where the formulation and its sources are. A thread
-// has one quadrature point; point q of element e is 8 e + q.
+// Eight-node hexahedron with mean dilatation: the twin of crates/kernels/src/element/hex8.rs, where
+// the formulation and its sources are. A thread has one quadrature point; point q of element e is 8
+// e + q.
 
 @group(0) @binding(2) var<storage, read> element_nodes: array<u32>;     // [element][local node]
 @group(0) @binding(3) var<storage, read> gradient: array<real>;         // [geometry][3 a + j][point]: dN_a/dX_j
@@ -47,7 +48,8 @@ fn invert(m: mat3x3<real>) -> mat3x3<real> {
     return transpose(mat3x3<real>(s * c0, s * cross(m[2], m[0]), s * cross(m[0], m[1])));
 }
 
-// det(I + h) - 1, expanded so that small h keep their digits. Matrices are columns: h[k][i] is d u_i/d X_k.
+// det(I + h) - 1, expanded so that small h keep their digits. Matrices are columns: h[k][i] is d
+// u_i/d X_k.
 fn jacobian_minus_one(h: mat3x3<real>) -> real {
     let minors = (h[0].x * h[1].y - h[0].y * h[1].x) + (h[1].y * h[2].z - h[1].z * h[2].y) + (h[0].x * h[2].z - h[0].z * h[2].x);
     return (h[0].x + h[1].y + h[2].z) + minors + dot(h[0], cross(h[1], h[2]));
@@ -61,7 +63,8 @@ fn identity_plus(h: mat3x3<real>) -> mat3x3<real> {
     );
 }
 
-// Gradients with respect to the reference position: of the committed displacement and of the increment.
+// Gradients with respect to the reference position: of the committed displacement and of the
+// increment.
 struct DisplacementGradients {
     committed: mat3x3<real>,
     increment: mat3x3<real>,

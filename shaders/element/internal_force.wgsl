@@ -1,5 +1,6 @@
-// The stress of every quadrature point, ready to be gathered into nodal forces: V tau F^-T, so that the force on node a is its
-// product with the reference gradient of N_a, summed over the points around the node.
+// The stress of every quadrature point, ready to be gathered into nodal forces: V tau F^-T, so that
+// the force on node a is its product with the reference gradient of N_a, summed over the points
+// around the node.
 
 @group(0) @binding(12) var<storage, read_write> stress: array<real>;    // [slot][3 k + i][point]: component (i, k)
 

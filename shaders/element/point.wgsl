@@ -2,7 +2,8 @@
 
 @group(0) @binding(9) var<storage, read> state: array<real>;            // [case][component][point]: b_e_bar - I (6), alpha
 @group(0) @binding(10) var<storage, read> jacobian: array<real>;        // [slot][point]: det F - 1
-// [slot]: smallest 16 element + 8 (refused by the material) + point of what has no answer; all ones if there is none.
+// [slot]: smallest 16 element + 8 (refused by the material) + point of what has no answer; all ones
+// if there is none.
 @group(0) @binding(11) var<storage, read_write> first_invalid: array<atomic<u32>>;
 
 const REFUSED_BY_KINEMATICS: u32 = 0u;
@@ -79,7 +80,8 @@ fn evaluate_point(at: Place, material: Material) -> PointAnswer {
     return answer;
 }
 
-// The Kirchhoff stress of an answer: the deviatoric one of the point and the pressure of the element, as J p.
+// The Kirchhoff stress of an answer: the deviatoric one of the point and the pressure of the
+// element, as J p.
 fn kirchhoff_stress(a: PointAnswer, p: real) -> Sym {
     return sym_add_identity(a.response.stress, p * (1.0 + a.k.j_minus_1));
 }

@@ -1,5 +1,6 @@
-// What the tangent needs of every quadrature point, ready to be gathered into block rows: the moduli in the form in which they
-// are applied, the stress of the geometric term, all times the reference volume, and F^-1.
+// What the tangent needs of every quadrature point, ready to be gathered into block rows: the
+// moduli in the form in which they are applied, the stress of the geometric term, all times the
+// reference volume, and F^-1.
 
 @group(0) @binding(12) var<storage, read_write> moduli: array<real>;    // [slot][component][point], 31 components
 

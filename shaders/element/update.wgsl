@@ -1,4 +1,5 @@
-// The state of every quadrature point at the end of a step and what flowed, with its elastic energy and its plastic work in the step.
+// The state of every quadrature point at the end of a step and what flowed, with its elastic energy
+// and its plastic work in the step.
 
 @group(0) @binding(12) var<storage, read> history: array<real>;             // [case][component][point]: committed state (7), last flow (7)
 @group(0) @binding(13) var<storage, read_write> next_history: array<real>;  // [slot][component][point], as history

@@ -1,5 +1,6 @@
-// Internal forces: a thread a node gathers from the points of the elements around it, in the order of the mesh's list. One writer
-// and one order for each sum: no atomics, the same bits in every run.
+// Internal forces: a thread a node gathers from the points of the elements around it, in the order
+// of the mesh's list. One writer and one order for each sum: no atomics, the same bits in every
+// run.
 
 @group(0) @binding(7) var<storage, read> node_start: array<u32>;        // starts of the nodes' lists
 @group(0) @binding(8) var<storage, read> node_entry: array<u32>;        // 8 element + local node

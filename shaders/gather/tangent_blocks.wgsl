@@ -1,6 +1,7 @@
-// The tangent's upper block triangle: a thread a block d f_i/d u_j gathers from the elements that hold both nodes, in the order of
-// a list made once. The moduli are applied and never formed:
-//   g_a . c . g_b = m/2 (g_a.g_b 1 + g_b (x) g_a) - m/3 g_a (x) g_b + (n g_a) (x) (x g_b) + (x g_a) (x) (n g_b).
+// The tangent's upper block triangle: a thread a block d f_i/d u_j gathers from the elements that
+// hold both nodes, in the order of a list made once. The moduli are applied and never formed:
+//   g_a . c . g_b = m/2 (g_a.g_b 1 + g_b (x) g_a) - m/3 g_a (x) g_b
+//                   + (n g_a) (x) (x g_b) + (x g_a) (x) (n g_b).
 
 @group(0) @binding(7) var<storage, read> block_start: array<u32>;       // starts of the blocks' lists
 @group(0) @binding(8) var<storage, read> block_entry: array<u32>;       // 64 element + 8 a + b

@@ -112,7 +112,8 @@ fn plastic_work(h: Hardening, alpha: real, flow_stress: real) -> real {
     }
 }
 
-// Solves trial - sigma(alpha + da) - stiffness da = 0 for da, trial above flow_stress = sigma(alpha).
+// Solves trial - sigma(alpha + da) - stiffness da = 0 for da, trial above flow_stress =
+// sigma(alpha).
 fn plastic_strain_increment(h: Hardening, alpha: real, flow_stress: real, trial: real, stiffness: real) -> PlasticStep {
     let excess = trial - flow_stress;
     switch h.law {

@@ -1,4 +1,5 @@
-// Finite-strain J2 plasticity at one point: the twin of crates/kernels/src/material/j2.rs, where the formulas and their sources are.
+// Finite-strain J2 plasticity at one point: the twin of crates/kernels/src/material/j2.rs, where
+// the formulas and their sources are.
 
 // The answer of a point to one increment.
 struct Response {
@@ -72,7 +73,8 @@ fn square(a: Sym) -> Sym {
     );
 }
 
-// u = t - 1 where t is the largest root of det(D + t I) = 1, by Newton's iteration from a guess at or above it.
+// u = t - 1 where t is the largest root of det(D + t I) = 1, by Newton's iteration from a guess at
+// or above it.
 fn isochoric_mean(d: Sym, guess: real) -> real {
     let p = 0.5 * norm_squared(d);
     let determinant_d = sym_determinant(d);
@@ -101,7 +103,8 @@ fn trial(d: mat3x3<real>, be: Sym, r: real) -> Sym {
     );
 }
 
-// The deviatoric Kirchhoff stress and the new state after the relative deformation f = I + relative.
+// The deviatoric Kirchhoff stress and the new state after the relative deformation f = I +
+// relative.
 fn return_mapping(material: Material, relative: mat3x3<real>, state: PointState) -> Response {
     var response: Response;
     let j = determinant_minus_one(relative);
@@ -163,7 +166,8 @@ fn return_mapping(material: Material, relative: mat3x3<real>, state: PointState)
     return response;
 }
 
-// The spatial moduli in the form that they are applied in: modulus (I - 1/3 1 (x) 1) + n (x) x + x (x) n.
+// The spatial moduli in the form that they are applied in: modulus (I - 1/3 1 (x) 1) + n (x) x + x
+// (x) n.
 struct DeviatoricTangent {
     modulus: real,
     normal: Sym,
@@ -198,7 +202,8 @@ fn deviatoric_tangent_apply(c: DeviatoricTangent, d: Sym) -> Sym {
     );
 }
 
-// Component ab of c, a and b counting xx, yy, zz, xy, yz, zx: no factors in it (the identity has 1/2 at [3][3]).
+// Component ab of c, a and b counting xx, yy, zz, xy, yz, zx: no factors in it (the identity has
+// 1/2 at [3][3]).
 fn deviatoric_tangent_component(c: DeviatoricTangent, a: u32, b: u32) -> real {
     var entry = sym_component(c.normal, a) * sym_component(c.x, b) + sym_component(c.x, a) * sym_component(c.normal, b);
     if a < 3u && b < 3u {

@@ -1,4 +1,5 @@
-// The elastic half of the material and its parameters: the twin of crates/kernels/src/material/mod.rs.
+// The elastic half of the material and its parameters: the twin of
+// crates/kernels/src/material/mod.rs.
 
 // Why a point has no answer, or what it did. The numbers are those of src/compute/gpu/material.rs.
 const STATUS_ELASTIC: u32 = 0u;
@@ -22,7 +23,8 @@ struct Material {
     hardening: Hardening,
 }
 
-// Parameter p of case c at p * cases + c, in the order of load_material; whole numbers are stored as reals.
+// Parameter p of case c at p * cases + c, in the order of load_material; whole numbers are stored
+// as reals.
 @group(0) @binding(7) var<storage, read> material_parameters: array<real>;
 
 fn load_material(case_index: u32, cases: u32) -> Material {

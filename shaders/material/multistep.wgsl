@@ -1,4 +1,5 @@
-// Plastic flow to second order in the step (BDF2): the twin of crates/kernels/src/material/multistep.rs, which has the derivation.
+// Plastic flow to second order in the step (BDF2): the twin of
+// crates/kernels/src/material/multistep.rs, which has the derivation.
 
 // What flowed at a point in its last step: what dev b_e_bar lost to it, and the increment of alpha.
 struct Flow {

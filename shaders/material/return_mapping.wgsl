@@ -1,4 +1,5 @@
-// The return mapping at every point of every active case: a thread a point. Arrays are [case][component][point].
+// The return mapping at every point of every active case: a thread a point. Arrays are
+// [case][component][point].
 
 struct Dimensions {
     cases: u32,          // in the arrays
@@ -15,7 +16,8 @@ struct Dimensions {
 @group(0) @binding(5) var<storage, read_write> tangent: array<real>;        // 36: c_ab at 6 a + b
 @group(0) @binding(6) var<storage, read_write> point_status: array<u32>;
 
-// Index of component 0 of a point in an array of `components`; the next component is `points` further.
+// Index of component 0 of a point in an array of `components`; the next component is `points`
+// further.
 fn first_component(case_index: u32, components: u32, point: u32) -> u32 {
     return case_index * components * dimensions.points + point;
 }

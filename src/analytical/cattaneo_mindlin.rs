@@ -1,8 +1,10 @@
-//! Elastic shear at constant normal force: Cattaneo (1938), Mindlin (1949); reversal after Mindlin & Deresiewicz (1953).
+//! Elastic shear at constant normal force: Cattaneo (1938), Mindlin (1949); reversal after Mindlin
+//! & Deresiewicz (1953).
 //!
-//! Exact for a Hertz contact without normal-tangential coupling (Dundurs' beta = 0, against a rigid plane only nu = 0.5) and with slip
-//! taken along the shear direction only. Displacements are those of the contact region relative to distant points; a
-//! displacement prescribed at the equator includes the body's own compliance, of relative size a/R.
+//! Exact for a Hertz contact without normal-tangential coupling (Dundurs' beta = 0, against a rigid
+//! plane only nu = 0.5) and with slip taken along the shear direction only. Displacements are those
+//! of the contact region relative to distant points; a displacement prescribed at the equator
+//! includes the body's own compliance, of relative size a/R.
 
 use super::{ElasticSphere, hertz};
 
@@ -34,7 +36,8 @@ impl CattaneoMindlin {
         1.5 * self.friction * self.normal_force / self.initial_stiffness()
     }
 
-    /// First loading, F_T = mu F_N [1 - (1 - d/d_s)^1.5], and mu F_N from d_s on; odd in `displacement`.
+    /// First loading, F_T = mu F_N [1 - (1 - d/d_s)^1.5], and mu F_N from d_s on; odd in
+    /// `displacement`.
     pub fn force(&self, displacement: f64) -> f64 {
         let limit = self.friction * self.normal_force;
         let d = displacement.abs();
@@ -43,8 +46,9 @@ impl CattaneoMindlin {
         size.copysign(displacement)
     }
 
-    /// Shear forward to `turning` > 0 and then back: F = F_1 - 2 mu F_N {1 - [1 - (d_1 - d)/(2 d_s)]^1.5} until -d_1, where first loading in
-    /// the other direction goes on (Mindlin & Deresiewicz 1953). A turning point beyond d_s counts as d_s from the point of return.
+    /// Shear forward to `turning` > 0 and then back: F = F_1 - 2 mu F_N {1 - [1 - (d_1 - d)/(2
+    /// d_s)]^1.5} until -d_1, where first loading in the other direction goes on (Mindlin &
+    /// Deresiewicz 1953). A turning point beyond d_s counts as d_s from the point of return.
     pub fn reversed_force(&self, turning: f64, displacement: f64) -> f64 {
         let limit = self.friction * self.normal_force;
         let slip = self.slip_displacement();
@@ -52,20 +56,23 @@ impl CattaneoMindlin {
         if fall <= 0.0 {
             return self.force(displacement);
         }
-        // Past d_s the whole contact has slid along: the elastic branch starts from the turning point all the same.
+        // Past d_s the whole contact has slid along: the elastic branch starts from the turning
+        // point all the same.
         if fall >= 2.0 * turning.min(slip) {
             return self.force(displacement - (turning - turning.min(slip)));
         }
         self.force(turning) - 2.0 * limit * (1.0 - (1.0 - fall / (2.0 * slip)).powf(1.5))
     }
 
-    /// Radius of the stick zone, c = a (1 - F_T/(mu F_N))^(1/3), on first loading; zero once everything slips.
+    /// Radius of the stick zone, c = a (1 - F_T/(mu F_N))^(1/3), on first loading; zero once
+    /// everything slips.
     pub fn stick_radius(&self, tangential_force: f64) -> f64 {
         let share = 1.0 - tangential_force.abs() / (self.friction * self.normal_force);
         self.contact_radius * share.max(0.0).cbrt()
     }
 
-    /// Shear traction on first loading, q = mu p_0 sqrt(1 - r^2/a^2), less mu p_0 (c/a) sqrt(1 - r^2/c^2) inside the stick radius c.
+    /// Shear traction on first loading, q = mu p_0 sqrt(1 - r^2/a^2), less mu p_0 (c/a) sqrt(1 -
+    /// r^2/c^2) inside the stick radius c.
     pub fn traction(&self, tangential_force: f64, r: f64) -> f64 {
         let a = self.contact_radius;
         let c = self.stick_radius(tangential_force);
@@ -75,8 +82,8 @@ impl CattaneoMindlin {
     }
 }
 
-/// Initial tangential stiffness of any circular contact without slip, k_T0 = 8 G a / (2 - nu) (Mindlin 1949); an upper bound where
-/// shear starts from a plastic contact at its greatest load.
+/// Initial tangential stiffness of any circular contact without slip, k_T0 = 8 G a / (2 - nu)
+/// (Mindlin 1949); an upper bound where shear starts from a plastic contact at its greatest load.
 pub fn initial_stiffness(sphere: &ElasticSphere, a: f64) -> f64 {
     8.0 * sphere.shear_modulus() * a / (2.0 - sphere.poissons_ratio)
 }

@@ -3,19 +3,24 @@
 use super::olsson_larsson::{c_squared, plastic_c_squared, plastic_share};
 use super::{ElasticSphere, bisect, johnson};
 
-/// Largest contact radius that is ever predicted: beyond it the hemisphere has no surface left to touch with.
+/// Largest contact radius that is ever predicted: beyond it the hemisphere has no surface left to
+/// touch with.
 const LARGEST_RADIUS: f64 = 0.95;
 
-/// Contact radius a/R expected at the indentation `h` (in sphere radii), an upper estimate, for any isotropic hardening.
+/// Contact radius a/R expected at the indentation `h` (in sphere radii), an upper estimate, for any
+/// isotropic hardening.
 ///
-/// `flow_stress`(eps_p) is the flow stress at the equivalent plastic strain in the units of `youngs_modulus`, at zero the initial yield stress;
-/// `f64::INFINITY` for an elastic sphere. The greater of
+/// `flow_stress`(eps_p) is the flow stress at the equivalent plastic strain in the units of
+/// `youngs_modulus`, at zero the initial yield stress; `f64::INFINITY` for an elastic sphere. The
+/// greater of
 /// - Hertz, a^2 = R h, and
-/// - Olsson & Larsson (2016), a^2 = c^2(Lambda) (2 R h - h^2): their c^2 with sigma_rep at eps_rep = 0.2 a/R, on the true section of a sphere cut at
-///   h instead of its parabola; the hardening exponent that c^2 needs is the secant one, ln\[sigma(eps_p)/sigma(eps_p/4)\]/ln 4.
+/// - Olsson & Larsson (2016), a^2 = c^2(Lambda) (2 R h - h^2): their c^2 with sigma_rep at
+///   eps_rep = 0.2 a/R, on the true section of a sphere cut at h instead of its parabola; the
+///   hardening exponent that c^2 needs is the secant one, ln\[sigma(eps_p)/sigma(eps_p/4)\]/ln 4.
 ///
-/// Continuous and increasing in `h` up to its bound, 0.95, from elastic to fully plastic. Ideal plastic, h/R = 0.005 to 0.02: 3-7 % above
-/// axisymmetric computations (0.096, 0.141, 0.2087). Meant for h/R from 1e-4 to 0.3.
+/// Continuous and increasing in `h` up to its bound, 0.95, from elastic to fully plastic. Ideal
+/// plastic, h/R = 0.005 to 0.02: 3-7 % above axisymmetric computations (0.096, 0.141, 0.2087).
+/// Meant for h/R from 1e-4 to 0.3.
 pub fn predicted_contact_radius(youngs_modulus: f64, nu: f64, flow_stress: impl Fn(f64) -> f64, h: f64) -> f64 {
     let h = h.clamp(0.0, 1.0);
     let sphere = ElasticSphere { radius: 1.0, youngs_modulus, poissons_ratio: nu };

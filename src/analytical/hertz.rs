@@ -1,6 +1,7 @@
 //! Elastic normal contact: Hertz (1882), as in Johnson, *Contact Mechanics* (1985), section 4.2.
 //!
-//! Exact as a/R -> 0 for a frictionless (or nu = 0.5) contact; expect departures of order (a/R)^2, about 1 % in the force at a/R = 0.1.
+//! Exact as a/R -> 0 for a frictionless (or nu = 0.5) contact; expect departures of order (a/R)^2,
+//! about 1 % in the force at a/R = 0.1.
 
 use super::ElasticSphere;
 use std::f64::consts::PI;
@@ -30,8 +31,9 @@ pub fn pressure(sphere: &ElasticSphere, a: f64, r: f64) -> f64 {
     if r.abs() < a { maximum_pressure(sphere, a) * (1.0 - (r / a).powi(2)).sqrt() } else { 0.0 }
 }
 
-/// Normal stiffness dF/dh = 2 E* a. It holds for any axisymmetric elastic contact, so also where unloading of a plastic one starts
-/// (Johnson 1985, section 5.4 with Sneddon 1965; Oliver & Pharr 1992).
+/// Normal stiffness dF/dh = 2 E* a. It holds for any axisymmetric elastic contact, so also where
+/// unloading of a plastic one starts (Johnson 1985, section 5.4 with Sneddon 1965; Oliver & Pharr
+/// 1992).
 pub fn stiffness(sphere: &ElasticSphere, a: f64) -> f64 {
     2.0 * sphere.effective_modulus() * a
 }

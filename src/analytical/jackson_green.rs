@@ -1,7 +1,8 @@
-//! Elastic-plastic normal contact without hardening: Jackson & Green, *J. Tribology* 127 (2005) 343-354.
+//! Elastic-plastic normal contact without hardening: Jackson & Green, *J. Tribology* 127 (2005)
+//! 343-354.
 //!
-//! In omega* = h/h_c (see [`yielding`]). Fitted for 1.9 < omega* < 1000 and a/R <= 0.41; Hertz below 1.9, where the force jumps by half a per
-//! cent and the area is continuous.
+//! In omega* = h/h_c (see [`yielding`]). Fitted for 1.9 < omega* < 1000 and a/R <= 0.41; Hertz
+//! below 1.9, where the force jumps by half a per cent and the area is continuous.
 
 use super::{ElasticSphere, yielding};
 use std::f64::consts::PI;
@@ -29,7 +30,8 @@ impl JacksonGreen {
         h / yielding::critical_indentation(&self.sphere, self.yield_stress, self.constant())
     }
 
-    /// Contact area: A/A_c = omega* (omega*/1.9)^B with B = 0.14 exp(23 sigma_Y/E*); omega* below 1.9.
+    /// Contact area: A/A_c = omega* (omega*/1.9)^B with B = 0.14 exp(23 sigma_Y/E*); omega* below
+    /// 1.9.
     pub fn area(&self, h: f64) -> f64 {
         let omega = self.interference(h.max(0.0));
         let b = 0.14 * (23.0 * self.yield_stress / self.sphere.effective_modulus()).exp();
@@ -47,7 +49,8 @@ impl JacksonGreen {
         2.84 * (1.0 - (-0.82 * (a / self.sphere.radius).powf(-0.7)).exp())
     }
 
-    /// Normal force: F/F_c = exp(-omega*^(5/12)/4) omega*^1.5 + (4 H_G/(C sigma_Y)) (1 - exp(-omega*^(5/9)/25)) omega*; omega*^1.5 below 1.9.
+    /// Normal force: F/F_c = exp(-omega*^(5/12)/4) omega*^1.5 + (4 H_G/(C sigma_Y)) (1 -
+    /// exp(-omega*^(5/9)/25)) omega*; omega*^1.5 below 1.9.
     pub fn force(&self, h: f64) -> f64 {
         let omega = self.interference(h.max(0.0));
         let elastic = omega.powf(1.5);
@@ -96,7 +99,8 @@ mod tests {
 
     #[test]
     fn the_three_models_agree_in_their_band() {
-        // At equal Lambda and a small a/R, so that no large-deformation effect enters; differences from Olsson & Larsson.
+        // At equal Lambda and a small a/R, so that no large-deformation effect enters; differences
+        // from Olsson & Larsson.
         let yield_stress = 40.0;
         let green = JacksonGreen { sphere: STEEL, yield_stress };
         let etsion = KogutEtsion { sphere: STEEL, yield_stress };

@@ -1,14 +1,15 @@
 //! Elastic shear after any axisymmetric, also plastic, preload: Jaeger (1998), Ciavarella (1998).
 //!
-//! With F_u(h) the elastic *unloading* curve from h0, F_T = mu [F_u(h0) - F_u(h0 - d/(mu kappa))], kappa = (2 - nu)/(2 (1 - nu)).
-//! Exact for Dundurs' beta = 0 and an elastic response to the shear. It needs axisymmetric data only: the natural baseline that a plastic
-//! law is compared with.
+//! With F_u(h) the elastic *unloading* curve from h0, F_T = mu [F_u(h0) - F_u(h0 - d/(mu kappa))],
+//! kappa = (2 - nu)/(2 (1 - nu)). Exact for Dundurs' beta = 0 and an elastic response to the shear.
+//! It needs axisymmetric data only: the natural baseline that a plastic law is compared with.
 
 use super::ElasticSphere;
 use std::f64::consts::PI;
 
-/// Tangential force at the displacement `d` after pressing to `h0`, from the elastic unloading curve `unloading`: h -> F_u(h), which must
-/// be non-decreasing and zero where the contact is lost. Odd in `d`.
+/// Tangential force at the displacement `d` after pressing to `h0`, from the elastic unloading
+/// curve `unloading`: h -> F_u(h), which must be non-decreasing and zero where the contact is lost.
+/// Odd in `d`.
 pub fn force(sphere: &ElasticSphere, friction: f64, h0: f64, unloading: impl Fn(f64) -> f64, d: f64) -> f64 {
     if friction <= 0.0 {
         return 0.0;
@@ -17,13 +18,15 @@ pub fn force(sphere: &ElasticSphere, friction: f64, h0: f64, unloading: impl Fn(
     (friction * (unloading(h0) - unloading(h0 - back))).copysign(d)
 }
 
-/// Displacement at full slip, d = mu kappa (h0 - h_lost), where `lost` is the indentation at which the unloading curve reaches zero.
+/// Displacement at full slip, d = mu kappa (h0 - h_lost), where `lost` is the indentation at which
+/// the unloading curve reaches zero.
 pub fn slip_displacement(sphere: &ElasticSphere, friction: f64, h0: f64, lost: f64) -> f64 {
     friction * sphere.stiffness_ratio() * (h0 - lost)
 }
 
-/// f_T = F_T/(mu F_N) under a uniform pressure, the fully plastic limit: (2/pi) [asin x + x sqrt(1 - x^2)] with x = d/d_slip; 1 from x = 1
-/// on; odd. The best single exponent n in 1 - (1 - x)^n is 1.36.
+/// f_T = F_T/(mu F_N) under a uniform pressure, the fully plastic limit: (2/pi) [asin x + x
+/// sqrt(1 - x^2)] with x = d/d_slip; 1 from x = 1 on; odd. The best single exponent n in 1 - (1 -
+/// x)^n is 1.36.
 pub fn uniform_pressure_ratio(x: f64) -> f64 {
     let x = x.clamp(-1.0, 1.0);
     2.0 / PI * (x.asin() + x * (1.0 - x * x).sqrt())

@@ -8,8 +8,8 @@ pub fn representative_strain(sphere: &ElasticSphere, a: f64) -> f64 {
     0.2 * a / sphere.radius
 }
 
-/// Johnson's parameter Lambda = E a / ((1 - nu^2) sigma_rep R) (Olsson & Larsson 2014, eq. 2). Below about 2.5 the contact is elastic
-/// (level I), above about 160 fully plastic (level III).
+/// Johnson's parameter Lambda = E a / ((1 - nu^2) sigma_rep R) (Olsson & Larsson 2014, eq. 2).
+/// Below about 2.5 the contact is elastic (level I), above about 160 fully plastic (level III).
 pub fn lambda(sphere: &ElasticSphere, representative_stress: f64, a: f64) -> f64 {
     sphere.effective_modulus() * a / (representative_stress * sphere.radius)
 }

@@ -1,8 +1,10 @@
-//! Elastic-plastic normal contact without hardening: Kogut & Etsion, *J. Appl. Mech.* 69 (2002) 657-662.
+//! Elastic-plastic normal contact without hardening: Kogut & Etsion, *J. Appl. Mech.* 69 (2002)
+//! 657-662.
 //!
-//! Power laws in omega* = h/h_c for 1 to 6 and 6 to 110, Hertz below 1; the last one is continued beyond 110. The constants are second-hand
-//! (not read in the paper), and the pieces do not meet: F jumps by 3 % at 1 and 1.7 % at 6, A by -7 % and 3 %. The paper's h_c comes
-//! from p_0 = (0.454 + 0.41 nu) H with H = 2.8 sigma_Y, within 0.3 % of Mises' at nu = 0.3; here it is Mises'.
+//! Power laws in omega* = h/h_c for 1 to 6 and 6 to 110, Hertz below 1; the last one is continued
+//! beyond 110. The constants are second-hand (not read in the paper), and the pieces do not meet: F
+//! jumps by 3 % at 1 and 1.7 % at 6, A by -7 % and 3 %. The paper's h_c comes from p_0 = (0.454 +
+//! 0.41 nu) H with H = 2.8 sigma_Y, within 0.3 % of Mises' at nu = 0.3; here it is Mises'.
 
 use super::{ElasticSphere, yielding};
 use std::f64::consts::PI;
@@ -26,7 +28,8 @@ impl KogutEtsion {
         h / yielding::critical_indentation(&self.sphere, self.yield_stress, self.constant())
     }
 
-    /// Normal force: F/F_c = omega*^1.5, then 1.03 omega*^1.425 from 1, then 1.40 omega*^1.263 from 6.
+    /// Normal force: F/F_c = omega*^1.5, then 1.03 omega*^1.425 from 1, then 1.40 omega*^1.263
+    /// from 6.
     pub fn force(&self, h: f64) -> f64 {
         let omega = self.interference(h.max(0.0));
         let ratio = match omega {

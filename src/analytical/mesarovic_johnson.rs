@@ -1,6 +1,8 @@
-//! Elastic unloading of a fully plastic contact: Mesarovic & Johnson (2000), a uniform pressure taken off as by rigid punches.
+//! Elastic unloading of a fully plastic contact: Mesarovic & Johnson (2000), a uniform pressure
+//! taken off as by rigid punches.
 //!
-//! Starts, as unloading from any state does, with dF/dh = 2 E* a. Holds without adhesion as long as unloading stays elastic.
+//! Starts, as unloading from any state does, with dF/dh = 2 E* a. Holds without adhesion as long as
+//! unloading stays elastic.
 
 use super::{ElasticSphere, bisect};
 use std::f64::consts::PI;
@@ -34,15 +36,18 @@ impl Unloading {
         self.indentation - self.recovery()
     }
 
-    /// Contact radius over a_m at the indentation `h`: h_m - h = (2 p_0 a_m/E*) sqrt(1 - s^2); 1 at and beyond h_m, 0 once lost.
+    /// Contact radius over a_m at the indentation `h`: h_m - h = (2 p_0 a_m/E*) sqrt(1 - s^2); 1 at
+    /// and beyond h_m, 0 once lost.
     pub fn radius_ratio(&self, h: f64) -> f64 {
         let x = ((self.indentation - h) / self.recovery()).clamp(0.0, 1.0);
         (1.0 - x * x).sqrt()
     }
 
-    /// Force at the indentation `h` <= h_m: F/F_m = (2/pi) [asin s - s sqrt(1 - s^2)], s = a/a_m; zero once lost.
+    /// Force at the indentation `h` <= h_m: F/F_m = (2/pi) [asin s - s sqrt(1 - s^2)], s = a/a_m;
+    /// zero once lost.
     pub fn force_at(&self, h: f64) -> f64 {
-        // In x = sqrt(1 - s^2) the same is 1 - (2/pi)[asin x + x sqrt(1 - x^2)], which keeps its digits near s = 1.
+        // In x = sqrt(1 - s^2) the same is 1 - (2/pi)[asin x + x sqrt(1 - x^2)], which keeps its
+        // digits near s = 1.
         let x = ((self.indentation - h) / self.recovery()).clamp(0.0, 1.0);
         self.force * (1.0 - 2.0 / PI * (x.asin() + x * (1.0 - x * x).sqrt()))
     }

@@ -1,16 +1,19 @@
-//! Elastic-plastic normal contact from Hertz to the fully plastic regime: Olsson & Larsson, *Int. J. Solids Struct.* 81 (2016) 23-32.
+//! Elastic-plastic normal contact from Hertz to the fully plastic regime: Olsson & Larsson, *Int.
+//! J. Solids Struct.* 81 (2016) 23-32.
 //!
-//! Hbar(Lambda) and c^2(Lambda), with a^2 = 2 c^2 R h and sigma_rep the law at Tabor's strain 0.2 a/R. Fitted to finite elements for a
-//! sphere on a rigid plane; all Lambda, a/R up to about 0.4. Jackson & Green agree with it to 6 % in Hbar and 8 % in c^2 for
-//! Lambda < 130, Kogut & Etsion for 5.5 < Lambda < 35 (up to 15 % at first yield): that is the band, no more.
-//! Against axisymmetric finite elements (ideal plastic, h/R = 0.005 to 0.02) F is 2-6 % high and a 4-6 %.
+//! Hbar(Lambda) and c^2(Lambda), with a^2 = 2 c^2 R h and sigma_rep the law at Tabor's strain 0.2
+//! a/R. Fitted to finite elements for a sphere on a rigid plane; all Lambda, a/R up to about 0.4.
+//! Jackson & Green agree with it to 6 % in Hbar and 8 % in c^2 for Lambda < 130, Kogut & Etsion for
+//! 5.5 < Lambda < 35 (up to 15 % at first yield): that is the band, no more. Against axisymmetric
+//! finite elements (ideal plastic, h/R = 0.005 to 0.02) F is 2-6 % high and a 4-6 %.
 
 use super::{ElasticSphere, bisect, johnson};
 use std::f64::consts::PI;
 
 /// Lambda from which Hbar is constant.
 const PLASTIC_LAMBDA: f64 = 160.0;
-/// Below this Lambda nothing has yielded at any nu (first yield is at 2.19 for nu = 0.1), and the hardness is Hertz's.
+/// Below this Lambda nothing has yielded at any nu (first yield is at 2.19 for nu = 0.1), and the
+/// hardness is Hertz's.
 const SURELY_ELASTIC_LAMBDA: f64 = 2.0;
 /// Range of Lambda over which c^2 grows.
 const GROWTH_OF_AREA: (f64, f64) = (4.005, 1527.0);
@@ -25,7 +28,8 @@ pub enum Hardening {
         /// Yield stress sigma_Y.
         yield_stress: f64,
     },
-    /// sigma = sigma_0 eps^(1/m) in the total strain, from sigma_Y = (sigma_0^m/E)^(1/(m-1)), where it meets Hooke's line.
+    /// sigma = sigma_0 eps^(1/m) in the total strain, from sigma_Y = (sigma_0^m/E)^(1/(m-1)), where
+    /// it meets Hooke's line.
     TwoParameter {
         /// sigma_0.
         coefficient: f64,
@@ -55,8 +59,9 @@ impl Hardening {
         }
     }
 
-    /// Flow stress at a total strain. The paper's rule "sigma_Y while eps E < sigma_Y" is kept; for the three-parameter law the strain is
-    /// split as eps = eps_p + sigma/E, so that the stress does not jump there.
+    /// Flow stress at a total strain. The paper's rule "sigma_Y while eps E < sigma_Y" is kept; for
+    /// the three-parameter law the strain is split as eps = eps_p + sigma/E, so that the stress
+    /// does not jump there.
     pub fn stress_at_total_strain(&self, youngs_modulus: f64, strain: f64) -> f64 {
         let yield_stress = self.yield_stress(youngs_modulus);
         if strain * youngs_modulus <= yield_stress {
@@ -72,7 +77,8 @@ impl Hardening {
         }
     }
 
-    /// Hardness of a fully plastic contact: 3; 2.8 for the two-parameter law with m < 5 and the three-parameter law with k >= 10 and m < 5.
+    /// Hardness of a fully plastic contact: 3; 2.8 for the two-parameter law with m < 5 and the
+    /// three-parameter law with k >= 10 and m < 5.
     pub fn maximum_hardness(&self) -> f64 {
         match *self {
             Self::TwoParameter { exponent, .. } if exponent < 5.0 => 2.8,
@@ -81,9 +87,9 @@ impl Hardening {
         }
     }
 
-    /// c^2 of a fully plastic contact at a total strain: see [`plastic_c_squared`]. The paper has it for the ideal and the
-    /// two-parameter law; for the three-parameter law 1/m is the local exponent d ln sigma / d ln eps_p, which joins the two (this
-    /// library's interpolation).
+    /// c^2 of a fully plastic contact at a total strain: see [`plastic_c_squared`]. The paper has
+    /// it for the ideal and the two-parameter law; for the three-parameter law 1/m is the local
+    /// exponent d ln sigma / d ln eps_p, which joins the two (this library's interpolation).
     pub fn maximum_c_squared(&self, youngs_modulus: f64, strain: f64) -> f64 {
         plastic_c_squared(match *self {
             Self::Ideal { .. } => 0.0,
@@ -95,7 +101,8 @@ impl Hardening {
     }
 }
 
-/// Plastic part of a total strain under the flow stress `flow`(eps_p): the root of eps_p + flow(eps_p)/E = strain; zero below yield.
+/// Plastic part of a total strain under the flow stress `flow`(eps_p): the root of eps_p +
+/// flow(eps_p)/E = strain; zero below yield.
 pub fn plastic_share(youngs_modulus: f64, strain: f64, flow: impl Fn(f64) -> f64) -> f64 {
     if strain * youngs_modulus <= flow(0.0) {
         return 0.0;
@@ -103,13 +110,15 @@ pub fn plastic_share(youngs_modulus: f64, strain: f64, flow: impl Fn(f64) -> f64
     bisect(0.0, strain, |plastic| plastic + flow(plastic) / youngs_modulus - strain)
 }
 
-/// c^2 of a fully plastic contact, 1.43 exp(-0.97/m); `inverse_exponent` is 1/m, zero without hardening.
+/// c^2 of a fully plastic contact, 1.43 exp(-0.97/m); `inverse_exponent` is 1/m, zero without
+/// hardening.
 pub fn plastic_c_squared(inverse_exponent: f64) -> f64 {
     IDEAL_C_SQUARED * (-0.97 * inverse_exponent).exp()
 }
 
-/// c^2 = a^2/(2 R h): 0.5 up to Lambda = 4.005, then a cubic in ln Lambda, then `plastic` (of [`plastic_c_squared`]) from 1527 on. For m < 2 the
-/// cubic overshoots its own end; it is capped there.
+/// c^2 = a^2/(2 R h): 0.5 up to Lambda = 4.005, then a cubic in ln Lambda, then `plastic` (of
+/// [`plastic_c_squared`]) from 1527 on. For m < 2 the cubic overshoots its own end; it is capped
+/// there.
 pub fn c_squared(lambda: f64, plastic: f64) -> f64 {
     let span = (GROWTH_OF_AREA.1 / GROWTH_OF_AREA.0).ln();
     let x = ((lambda / GROWTH_OF_AREA.0).ln() / span).clamp(0.0, 1.0);
@@ -118,19 +127,21 @@ pub fn c_squared(lambda: f64, plastic: f64) -> f64 {
     (0.5 + x * (slope + x * ((3.0 * growth - 2.0 * slope) - x * (2.0 * growth - slope)))).min(plastic)
 }
 
-/// Hbar at small deformation: Hertz's 4 Lambda/(3 pi) while below H_max - 0.0965 (ln Lambda - ln 160)^2, then that, then H_max from 160 on.
+/// Hbar at small deformation: Hertz's 4 Lambda/(3 pi) while below H_max - 0.0965 (ln Lambda - ln
+/// 160)^2, then that, then H_max from 160 on.
 pub fn normalized_hardness(lambda: f64, maximum: f64) -> f64 {
     limited_hardness(lambda, maximum, 1.0)
 }
 
-/// Factor by which large deformation lowers the plastic hardness on a rigid plane: 1 - 0.0460789 q^2.2139, q = ln(a/R) - ln 0.041;
-/// 1 for a/R <= 0.041.
+/// Factor by which large deformation lowers the plastic hardness on a rigid plane: 1 - 0.0460789
+/// q^2.2139, q = ln(a/R) - ln 0.041; 1 for a/R <= 0.041.
 pub fn large_deformation_factor(relative_radius: f64) -> f64 {
     let q = (relative_radius / 0.041).ln();
     if q > 0.0 { (1.0 - 0.0460789 * q.powf(2.2139)).max(0.0) } else { 1.0 }
 }
 
-/// [`normalized_hardness`] with its plastic branch times `factor`, that of [`large_deformation_factor`].
+/// [`normalized_hardness`] with its plastic branch times `factor`, that of
+/// [`large_deformation_factor`].
 pub fn limited_hardness(lambda: f64, maximum: f64, factor: f64) -> f64 {
     let elastic = johnson::elastic_hardness(lambda);
     if lambda < SURELY_ELASTIC_LAMBDA {
@@ -167,14 +178,15 @@ impl OlssonLarsson {
         c_squared(self.lambda(a), self.hardening.maximum_c_squared(self.sphere.youngs_modulus, strain))
     }
 
-    /// Contact radius at the indentation `h`: a^2 = 2 c^2(Lambda(a)) R h, by bisection between c^2 = 0.5 and 1.43; zero for h <= 0.
+    /// Contact radius at the indentation `h`: a^2 = 2 c^2(Lambda(a)) R h, by bisection between
+    /// c^2 = 0.5 and 1.43; zero for h <= 0.
     pub fn contact_radius(&self, h: f64) -> f64 {
         let reach = self.sphere.radius * h.max(0.0);
         bisect(reach.sqrt(), (2.0 * IDEAL_C_SQUARED * reach).sqrt(), |a| a * a - 2.0 * self.c_squared(a) * reach)
     }
 
-    /// Hbar at the contact radius `a`, large deformation included. The factor acts on the plastic branch: Hertz's own error of order
-    /// (a/R)^2 is another matter.
+    /// Hbar at the contact radius `a`, large deformation included. The factor acts on the plastic
+    /// branch: Hertz's own error of order (a/R)^2 is another matter.
     pub fn normalized_hardness(&self, a: f64) -> f64 {
         limited_hardness(self.lambda(a), self.hardening.maximum_hardness(), large_deformation_factor(a / self.sphere.radius))
     }
@@ -285,7 +297,8 @@ mod tests {
 
     #[test]
     fn known_numbers_of_the_ideal_case() {
-        // Two independent axisymmetric codes; the band of the closed forms is 6 % in Hbar and 8 % in c^2.
+        // Two independent axisymmetric codes; the band of the closed forms is 6 % in Hbar and 8 %
+        // in c^2.
         let model = model(Hardening::Ideal { yield_stress: 400.0 });
         for (h, force, radius) in [(0.02, 148.8, 0.2087), (0.01, 72.6, 0.141), (0.005, 34.6, 0.096)] {
             let (f, a) = (model.force(h), model.contact_radius(h));

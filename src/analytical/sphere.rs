@@ -27,13 +27,15 @@ impl ElasticSphere {
         0.5 * self.youngs_modulus / (1.0 + self.poissons_ratio)
     }
 
-    /// Ratio of normal to tangential contact stiffness, kappa = (2 - nu) / (2 (1 - nu)) = 2 E* a / (8 G a/(2 - nu)) (Mindlin 1949).
+    /// Ratio of normal to tangential contact stiffness, kappa = (2 - nu) / (2 (1 - nu)) = 2 E* a /
+    /// (8 G a/(2 - nu)) (Mindlin 1949).
     pub fn stiffness_ratio(&self) -> f64 {
         (2.0 - self.poissons_ratio) / (2.0 * (1.0 - self.poissons_ratio))
     }
 
-    /// Dundurs' second constant against a rigid plane, beta = (1 - 2 nu) / (2 (1 - nu)): the coupling between normal and tangential
-    /// problem that Hertz and Cattaneo-Mindlin neglect; 0.286 at nu = 0.3, zero only at nu = 0.5.
+    /// Dundurs' second constant against a rigid plane, beta = (1 - 2 nu) / (2 (1 - nu)): the
+    /// coupling between normal and tangential problem that Hertz and Cattaneo-Mindlin neglect;
+    /// 0.286 at nu = 0.3, zero only at nu = 0.5.
     pub fn dundurs_beta(&self) -> f64 {
         (1.0 - 2.0 * self.poissons_ratio) / (2.0 * (1.0 - self.poissons_ratio))
     }

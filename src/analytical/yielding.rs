@@ -1,7 +1,9 @@
-//! First yield under a Hertz pressure, by Mises' criterion on the axis, and the quantities derived from it.
+//! First yield under a Hertz pressure, by Mises' criterion on the axis, and the quantities derived
+//! from it.
 //!
-//! The stresses on the axis are exact (Huber 1904; Johnson 1985, eq. 3.45). The axis decides for nu in \[0, 0.5\]: at the edge of the
-//! contact Mises' stress is p_0 (1 - 2 nu)/sqrt(3), at most 0.58 p_0 against 0.77 p_0 on the axis, both at nu = 0.
+//! The stresses on the axis are exact (Huber 1904; Johnson 1985, eq. 3.45). The axis decides for nu
+//! in \[0, 0.5\]: at the edge of the contact Mises' stress is p_0 (1 - 2 nu)/sqrt(3), at most 0.58
+//! p_0 against 0.77 p_0 on the axis, both at nu = 0.
 
 use super::ElasticSphere;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -22,16 +24,17 @@ impl FirstYield {
     }
 }
 
-/// Mises stress on the axis over p_0, at the depth `zeta` = z/a: |sigma_z - sigma_r| with sigma_z = -1/(1 + zeta^2) and
-/// sigma_r = -(1 + nu)(1 - zeta atan(1/zeta)) + 1/(2 (1 + zeta^2)) (Johnson 1985, eqs 3.45a, b).
+/// Mises stress on the axis over p_0, at the depth `zeta` = z/a: |sigma_z - sigma_r| with
+/// sigma_z = -1/(1 + zeta^2) and sigma_r = -(1 + nu)(1 - zeta atan(1/zeta)) + 1/(2 (1 + zeta^2))
+/// (Johnson 1985, eqs 3.45a, b).
 pub fn axial_mises(nu: f64, zeta: f64) -> f64 {
     let fall = 1.0 / (1.0 + zeta * zeta);
     let angle = if zeta > 0.0 { (1.0 / zeta).atan() } else { FRAC_PI_2 };
     (1.5 * fall - (1.0 + nu) * (1.0 - zeta * angle)).abs()
 }
 
-/// First yield at Poisson's ratio `nu` in \[0, 0.5\], by maximising [`axial_mises`]: p_0/sigma_Y = 1.3945 (nu = 0.1), 1.5543 (0.25),
-/// 1.6128 (0.3), 1.7385 (0.4), 1.8772 (0.5).
+/// First yield at Poisson's ratio `nu` in \[0, 0.5\], by maximising [`axial_mises`]: p_0/sigma_Y =
+/// 1.3945 (nu = 0.1), 1.5543 (0.25), 1.6128 (0.3), 1.7385 (0.4), 1.8772 (0.5).
 pub fn first_yield(nu: f64) -> FirstYield {
     // d/dzeta of the stress difference falls through zero once in (0.2, 1).
     let falling_slope = |zeta: f64| {
@@ -42,17 +45,20 @@ pub fn first_yield(nu: f64) -> FirstYield {
     FirstYield { pressure_ratio: 1.0 / axial_mises(nu, depth), depth }
 }
 
-/// Jackson & Green's (2005, eq. 8) fit to p_0/sigma_Y, C = 1.295 exp(0.736 nu); within 0.35 % of [`first_yield`] for nu in \[0.1, 0.5\].
+/// Jackson & Green's (2005, eq. 8) fit to p_0/sigma_Y, C = 1.295 exp(0.736 nu); within 0.35 % of
+/// [`first_yield`] for nu in \[0.1, 0.5\].
 pub fn jackson_green_constant(nu: f64) -> f64 {
     1.295 * (0.736 * nu).exp()
 }
 
-/// Critical indentation h_c = (pi C sigma_Y / (2 E*))^2 R, where `c` is p_0/sigma_Y at first yield, exact or fitted (Jackson & Green 2005).
+/// Critical indentation h_c = (pi C sigma_Y / (2 E*))^2 R, where `c` is p_0/sigma_Y at first yield,
+/// exact or fitted (Jackson & Green 2005).
 pub fn critical_indentation(sphere: &ElasticSphere, yield_stress: f64, c: f64) -> f64 {
     (PI * c * yield_stress / (2.0 * sphere.effective_modulus())).powi(2) * sphere.radius
 }
 
-/// Critical force F_c = (4/3) (R/E*)^2 (pi C sigma_Y / 2)^3, the Hertz force at h_c (Jackson & Green 2005).
+/// Critical force F_c = (4/3) (R/E*)^2 (pi C sigma_Y / 2)^3, the Hertz force at h_c (Jackson &
+/// Green 2005).
 pub fn critical_force(sphere: &ElasticSphere, yield_stress: f64, c: f64) -> f64 {
     4.0 / 3.0 * (sphere.radius / sphere.effective_modulus()).powi(2) * (FRAC_PI_2 * c * yield_stress).powi(3)
 }

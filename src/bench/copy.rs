@@ -28,7 +28,8 @@ pub struct CopyRates {
 const PATIENCE: Patience = Patience { least: 5, most: 15, seconds: 0.5, enough: 4.0 };
 
 impl CopyRates {
-    /// Measures the copies of arrays of `options.copied` bytes, or of what the device's limits allow.
+    /// Measures the copies of arrays of `options.copied` bytes, or of what the device's limits
+    /// allow.
     ///
     /// # Errors
     /// The device's fault.

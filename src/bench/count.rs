@@ -1,9 +1,10 @@
 //! Floating-point operations, counted by running the CPU's kernels on numbers that count.
 //!
-//! Every addition, subtraction, multiplication, division and square root is one operation, a fused multiply-add two, a power, exponential
-//! or logarithm one; comparisons, signs and conversions are none. What lanes that are already done compute along with the others counts: it
-//! is computed. A device arranges some sums in another way (its tangent computes more and stores less); its rates are
-//! told in the CPU's operations, so that they compare.
+//! Every addition, subtraction, multiplication, division and square root is one operation, a fused
+//! multiply-add two, a power, exponential or logarithm one; comparisons, signs and conversions are
+//! none. What lanes that are already done compute along with the others counts: it is computed. A
+//! device arranges some sums in another way (its tangent computes more and stores less); its rates
+//! are told in the CPU's operations, so that they compare.
 
 use std::cell::Cell;
 use std::fmt;

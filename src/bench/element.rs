@@ -1,4 +1,5 @@
-//! Internal force, tangent, contact and commit of a batch of cases, as the Newton iteration asks for them.
+//! Internal force, tangent, contact and commit of a batch of cases, as the Newton iteration asks
+//! for them.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,14 +18,16 @@ use crate::compute::{
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
 use crate::mesh::Mesh;
 
-/// The evaluations in the order in which they are made, with the names of their rows and what they are counted in.
+/// The evaluations in the order in which they are made, with the names of their rows and what they
+/// are counted in.
 pub const EVALUATIONS: [(Evaluation, &str, &str); 4] = [
     (Evaluation::InternalForce, "internal force", "element"),
     (Evaluation::Tangent, "tangent", "element"),
     (Evaluation::Contact, "contact", "contact point"),
     (Evaluation::Update, "commit", "element"),
 ];
-/// Strain of the trial displacements, and what is added to it at each commit so that plastic flow goes on.
+/// Strain of the trial displacements, and what is added to it at each commit so that plastic flow
+/// goes on.
 const SQUEEZE: [f64; 2] = [0.02, 1e-4];
 
 /// The arrays of a batch of calls.
@@ -237,7 +240,8 @@ fn timed(
     })
 }
 
-/// Whether the machine has the memory for a batch on the CPU side: the cases, a backend, and what the calls fill.
+/// Whether the machine has the memory for a batch on the CPU side: the cases, a backend, and what
+/// the calls fill.
 fn memory_for(mesh: &Mesh, sizes: &Sizes, batch: usize, word: usize) -> Result<(), String> {
     let of_mesh = 24 * mesh.nodes.len() + 100 * mesh.elements.len();
     let of_case = sizes.elements * (25 * 8 + 3 * 14 * 8) * word + sizes.nodes * 3 * 8 * 4;

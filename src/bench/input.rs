@@ -58,8 +58,8 @@ pub struct MaterialPoint<R> {
     pub state: PointState<R>,
 }
 
-/// Committed states after a random step of 1 %, and the next step of 1 % along the same direction: every point yields in both, unless the
-/// law never yields.
+/// Committed states after a random step of 1 %, and the next step of 1 % along the same direction:
+/// every point yields in both, unless the law never yields.
 pub fn material_points<R: Real>(material: &Material<R>, count: usize) -> Vec<MaterialPoint<R>> {
     let mut random = Seeded::new(1);
     let mut points = Vec::with_capacity(count);
@@ -103,7 +103,8 @@ pub fn mesh(elements_per_contact_radius: usize) -> Result<Mesh, MeshError> {
     sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3 })
 }
 
-/// A batch on one connectivity, as a study has it: every case has a size, a power law and a friction of its own.
+/// A batch on one connectivity, as a study has it: every case has a size, a power law and a
+/// friction of its own.
 ///
 /// # Errors
 /// As [`laws`].
@@ -120,7 +121,8 @@ pub fn models(mesh: &Mesh, count: usize) -> Result<Vec<CaseModel>, BenchError> {
     (0..count).map(case).collect()
 }
 
-/// Squeezed against the plane by a strain of `strain`, and sheared by a tenth of it: from 1 % on every point of [`models`] yields.
+/// Squeezed against the plane by a strain of `strain`, and sheared by a tenth of it: from 1 % on
+/// every point of [`models`] yields.
 pub fn squeezed(mesh: &Mesh, strain: f64) -> Vec<f64> {
     mesh.nodes.iter().flat_map(|x| [0.1 * strain * x[2], 0.0, -strain * x[2]]).collect()
 }

@@ -40,7 +40,8 @@ impl<R: Real> Default for EightAnswers<R> {
     }
 }
 
-/// Stress, state and tangent of every point, eight side by side. A point that is refused leaves its group as it was.
+/// Stress, state and tangent of every point, eight side by side. A point that is refused leaves its
+/// group as it was.
 #[inline]
 pub fn map<R: Real>(material: &Material<R>, points: &[EightPoints<R>], answers: &mut [EightAnswers<R>]) {
     for (point, answer) in points.iter().zip(answers) {

@@ -1,9 +1,11 @@
-//! Rates of the kernels: return mapping, internal force, tangent, contact and commit, on a device and beside it on the CPU.
+//! Rates of the kernels: return mapping, internal force, tangent, contact and commit, on a device
+//! and beside it on the CPU.
 //!
-//! What is measured is one call as the program makes it: on a device with its transfers, and the kernels alone beside that. A row is one
-//! evaluation in one precision at one batch size; its input is seeded and the same everywhere. [`element`] and [`material`] measure,
-//! [`traffic`] counts bytes, [`count`] operations, [`copy`] measures what memory could do, [`report`] holds the numbers and
-//! [`table`] shows them.
+//! What is measured is one call as the program makes it: on a device with its transfers, and the
+//! kernels alone beside that. A row is one evaluation in one precision at one batch size; its input
+//! is seeded and the same everywhere. [`element`] and [`material`] measure, [`traffic`] counts
+//! bytes, [`count`] operations, [`copy`] measures what memory could do, [`report`] holds the
+//! numbers and [`table`] shows them.
 
 pub mod copy;
 pub mod count;
@@ -91,7 +93,8 @@ impl Options {
         Self { device, threads, batches, elements: 8, points: 4096, copied: 256 << 20, patience }
     }
 
-    /// A look at it in a minute, for machines without a GPU and for tests: small meshes, small batches, few repetitions.
+    /// A look at it in a minute, for machines without a GPU and for tests: small meshes, small
+    /// batches, few repetitions.
     pub fn quick(device: Device, threads: usize) -> Self {
         let patience = Patience { least: 3, most: 5, seconds: 0.05, enough: 1.0 };
         Self { device, threads, batches: vec![1, 4, 8], elements: 4, points: 512, copied: 64 << 20, patience }

@@ -59,7 +59,8 @@ const COUNTED: &str = "bytes: every array that the kernels of an evaluation read
                        copies: bytes read and written; rates of a device: of its kernels, without transfers";
 
 impl Header {
-    /// Of this machine, with the copies still to be measured; `missing` says why there is no device though one was not ruled out.
+    /// Of this machine, with the copies still to be measured; `missing` says why there is no device
+    /// though one was not ruled out.
     pub fn new(options: &Options, context: Option<&GpuContext>, missing: Option<String>) -> Self {
         let adapter = context.map(|context| {
             let a = context.adapter();
@@ -213,7 +214,8 @@ pub struct Setup {
     pub precision: &'static str,
     /// Cases.
     pub batch: usize,
-    /// Milliseconds; at the first batch size with compiling, unless the driver has a cache of its own.
+    /// Milliseconds; at the first batch size with compiling, unless the driver has a cache of its
+    /// own.
     pub ms: f64,
 }
 
@@ -243,7 +245,8 @@ fn date() -> String {
     day(seconds / 86_400)
 }
 
-/// The civil day after so many days from 1970-01-01 (Hinnant, "chrono-compatible low-level date algorithms", days_from_civil inverted).
+/// The civil day after so many days from 1970-01-01 (Hinnant, "chrono-compatible low-level date
+/// algorithms", days_from_civil inverted).
 fn day(since_1970: u64) -> String {
     let z = since_1970 + 719_468;
     let (era, of_era) = (z / 146_097, z % 146_097);

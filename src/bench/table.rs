@@ -1,4 +1,5 @@
-//! The numbers as one table for people: each line an evaluation at a batch size, the device beside one core and all cores.
+//! The numbers as one table for people: each line an evaluation at a batch size, the device beside
+//! one core and all cores.
 
 use std::fmt::Write;
 
@@ -45,7 +46,8 @@ pub fn table(report: &Report) -> String {
     while let Some(first) = rows.peek().copied() {
         let same =
             |r: &&Row| (r.evaluation, r.law, r.precision, r.batch) == (first.evaluation, first.law, first.precision, first.batch);
-        // The places of an evaluation stand together for the return mapping, one place after the other for the rest.
+        // The places of an evaluation stand together for the return mapping, one place after the
+        // other for the rest.
         let group: Vec<&Row> = report.rows.iter().filter(same).collect();
         if group.first().is_some_and(|r| std::ptr::eq(*r, first)) {
             lines.push(line(&group));

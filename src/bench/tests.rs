@@ -65,7 +65,8 @@ fn every_evaluation_has_its_rows_and_numbers() {
         assert!(numbers.iter().all(|x| x.is_finite() && *x > 0.0), "{row:?}");
         assert!(row.on != On::Device && row.items % row.batch == 0 && row.bytes > 0 && row.operations > 0);
     }
-    // A case of a batch costs what it costs alone, and f32 moves about half of the bytes for the same operations.
+    // A case of a batch costs what it costs alone, and f32 moves about half of the bytes for the
+    // same operations.
     let of = |evaluation: &str, law: &str, precision: &str, batch: usize| {
         let mut rows = report.rows.iter();
         let row = rows.find(|r| (r.evaluation, r.law, r.precision, r.batch) == (evaluation, law, precision, batch)).unwrap();

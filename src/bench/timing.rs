@@ -62,8 +62,9 @@ pub fn gather<E>(patience: Patience, mut call: impl FnMut(usize) -> Result<f64, 
     Ok(Timing { first_ms, median_ms: median(&times).unwrap_or(first_ms), min_ms, max_ms, repetitions: times.len() })
 }
 
-/// Milliseconds that kernels take one after the other without the way to the device and back: the median of three lists of as many as fill
-/// about 20 ms, or a single run of slow ones. `run` runs so many and waits.
+/// Milliseconds that kernels take one after the other without the way to the device and back: the
+/// median of three lists of as many as fill about 20 ms, or a single run of slow ones. `run` runs
+/// so many and waits.
 ///
 /// # Errors
 /// The first error of `run`.

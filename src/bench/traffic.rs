@@ -1,5 +1,6 @@
-//! Bytes that an evaluation moves at the least: every array that a kernel reads or writes counts once for that kernel, whatever caches make of
-//! repeated reads. Parameters of materials and the like are left out.
+//! Bytes that an evaluation moves at the least: every array that a kernel reads or writes counts
+//! once for that kernel, whatever caches make of repeated reads. Parameters of materials and the
+//! like are left out.
 
 use crate::compute::gpu::Evaluation;
 use crate::compute::gpu::batch::{CONTACT_ANSWER, CONTACT_TRIAL};
@@ -41,10 +42,12 @@ impl Sizes {
         }
     }
 
-    /// Bytes that the device's kernels move for an evaluation of one case in numbers of `word` bytes.
+    /// Bytes that the device's kernels move for an evaluation of one case in numbers of `word`
+    /// bytes.
     pub fn on_device(&self, evaluation: Evaluation, word: usize) -> usize {
         let points = NODES * self.elements;
-        // what every kernel at the points reads of the element, and the Jacobians that the first kernel writes
+        // what every kernel at the points reads of the element, and the Jacobians that the first
+        // kernel writes
         let element = INDEX * NODES * self.elements + word * (GRADIENT * points + 6 * self.nodes);
         let jacobian = element + word * points;
         let at_points = element + word * (2 + STATE) * points;
@@ -97,7 +100,8 @@ pub fn point_on_device(word: usize) -> usize {
     word * (RELATIVE + STATE + ANSWER + TANGENT) + INDEX
 }
 
-/// Bytes that the CPU moves for the return mapping of a point: step and state, then stress, state and tangent.
+/// Bytes that the CPU moves for the return mapping of a point: step and state, then stress, state
+/// and tangent.
 pub fn point_on_cpu(word: usize) -> usize {
     word * (RELATIVE + STATE + 6 + STATE + TANGENT)
 }

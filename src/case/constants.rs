@@ -8,7 +8,8 @@ impl Material {
     /// The material with stresses divided by Young's modulus: E = 1.
     ///
     /// # Errors
-    /// [`HardeningError`] for parameters that no law has; the checks of a case file that was read leave none.
+    /// [`HardeningError`] for parameters that no law has; the checks of a case file that was read
+    /// leave none.
     pub fn constants<R: Real>(&self) -> Result<material::Material<R>, HardeningError> {
         let hardening = self.hardening.scaled(self.youngs_modulus).law(1.0)?;
         Ok(material::Material { elasticity: Elasticity::new(1.0, self.poissons_ratio), hardening })

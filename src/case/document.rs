@@ -1,8 +1,8 @@
-//! A TOML document in which every value remembers where it was written, so that `--set` can replace values and an error can still
-//! name the line.
+//! A TOML document in which every value remembers where it was written, so that `--set` can replace
+//! values and an error can still name the line.
 //!
-//! `serde` loses the places of values behind tagged enums and merged documents; so the schema is read from this tree by hand
-//! (`read.rs`).
+//! `serde` loses the places of values behind tagged enums and merged documents; so the schema is
+//! read from this tree by hand (`read.rs`).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -83,12 +83,14 @@ impl Document {
         })
     }
 
-    /// The document of a table that a program has made: a value has no line then, so that errors name the key alone.
+    /// The document of a table that a program has made: a value has no line then, so that errors
+    /// name the key alone.
     pub fn from_table(table: &toml::Table) -> Self {
         Self { root: given(&toml::Value::Table(table.clone())) }
     }
 
-    /// Applies one `--set` argument, `key=value`: see [`Document::set`]. The value is TOML; what is not valid TOML is a string.
+    /// Applies one `--set` argument, `key=value`: see [`Document::set`]. The value is TOML; what is
+    /// not valid TOML is a string.
     pub fn set_argument(&mut self, argument: &str) -> Result<(), CaseError> {
         let refuse = |what: String| CaseError::Set { argument: argument.to_owned(), what };
         let (key, text) = argument.split_once('=').ok_or_else(|| refuse("has no `=`".to_owned()))?;
@@ -105,8 +107,8 @@ impl Document {
         self.set(key, Entry { place, value }).map_err(refuse)
     }
 
-    /// Puts `entry` at a dotted key; digits index an array, and the index after the last appends. Tables on the way are made if
-    /// they are not there. The error says what stands in the way.
+    /// Puts `entry` at a dotted key; digits index an array, and the index after the last appends.
+    /// Tables on the way are made if they are not there. The error says what stands in the way.
     pub fn set(&mut self, key: &str, entry: Entry) -> Result<(), String> {
         if key.split('.').count() > DEEPEST {
             return Err(format!("the key has more than {DEEPEST} parts"));
@@ -169,7 +171,8 @@ impl Document {
         }
     }
 
-    /// The table under a top-level key as a document of its own, such as the `base` case of a study.
+    /// The table under a top-level key as a document of its own, such as the `base` case of a
+    /// study.
     pub fn table(&self, key: &str) -> Option<Document> {
         match &self.root.value {
             Value::Table(table) => table
@@ -181,11 +184,12 @@ impl Document {
     }
 }
 
-/// Most parts of a dotted key. A case has four; thousands would overflow the stack, here and in the TOML parser, which bounds brackets alone.
+/// Most parts of a dotted key. A case has four; thousands would overflow the stack, here and in the
+/// TOML parser, which bounds brackets alone.
 const DEEPEST: usize = 64;
 
-/// Where something stands that has more parts between single dots than a key may have. Seen without parsing, as it is the parser that has to be spared;
-/// so a string like that counts too.
+/// Where something stands that has more parts between single dots than a key may have. Seen without
+/// parsing, as it is the parser that has to be spared; so a string like that counts too.
 fn too_deep(text: &str) -> Option<usize> {
     let (mut parts, mut after_dot) = (0, false);
     for (offset, byte) in text.bytes().enumerate() {

@@ -155,7 +155,8 @@ impl CaseError {
         }
     }
 
-    /// The part of the file's text that is wrong, in bytes: a key that is unknown or lacks something, otherwise a value.
+    /// The part of the file's text that is wrong, in bytes: a key that is unknown or lacks
+    /// something, otherwise a value.
     pub fn span(&self) -> Option<Range<usize>> {
         let Some(Place::Line { spans, .. }) = self.place() else { return None };
         let wrong = match self {
@@ -166,7 +167,8 @@ impl CaseError {
     }
 }
 
-/// A text as a message gives it: whole, or if it is long its beginning, its end and how much is left out.
+/// A text as a message gives it: whole, or if it is long its beginning, its end and how much is
+/// left out.
 pub fn short(text: &str) -> Cow<'_, str> {
     const MOST: usize = 240;
     let count = text.chars().count();

@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::error::CaseError;
 use super::reader::Reader;
 
-/// Yield stress sigma_y(alpha) over the equivalent plastic strain alpha >= 0. Every law but `Elastic` is isotropic J2 hardening
-/// that never softens.
+/// Yield stress sigma_y(alpha) over the equivalent plastic strain alpha >= 0. Every law but
+/// `Elastic` is isotropic J2 hardening that never softens.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "law", rename_all = "kebab-case")]
 pub enum Hardening {
@@ -33,8 +33,8 @@ pub enum Hardening {
         /// n in (0, 1].
         exponent: f64,
     },
-    /// Total-strain power law sigma = sigma_0 eps^(1/m), with eps = sigma/E + alpha, from the point where it meets Hooke's line
-    /// (Olsson and Larsson, IJSS 81, 2016, two-parameter hardening).
+    /// Total-strain power law sigma = sigma_0 eps^(1/m), with eps = sigma/E + alpha, from the point
+    /// where it meets Hooke's line (Olsson and Larsson, IJSS 81, 2016, two-parameter hardening).
     Hollomon {
         /// sigma_0 > 0, a stress.
         coefficient: f64,
@@ -57,17 +57,19 @@ pub enum Hardening {
     },
 }
 
-/// Largest yield stress over Young's modulus that is taken for a material: beyond it the first yield is at strains where the
-/// elastic law itself is in doubt.
+/// Largest yield stress over Young's modulus that is taken for a material: beyond it the first
+/// yield is at strains where the elastic law itself is in doubt.
 const MAX_YIELD_STRAIN: f64 = 0.2;
-/// Smallest one: an indentation is then a million times that of first yield, and forces are lost in rounding.
+/// Smallest one: an indentation is then a million times that of first yield, and forces are lost in
+/// rounding.
 const MIN_YIELD_STRAIN: f64 = 1e-7;
 
 impl Hardening {
     /// The stress at first yield, a stress > 0; `None` for a law that never yields.
     ///
-    /// For Hollomon's law it is where sigma_0 eps^(1/m) meets E eps: sigma_Y = (sigma_0^m / E)^(1/(m-1)) (Olsson and Larsson
-    /// 2016), evaluated as sigma_0 (sigma_0/E)^(1/(m-1)), which does not overflow.
+    /// For Hollomon's law it is where sigma_0 eps^(1/m) meets E eps: sigma_Y = (sigma_0^m /
+    /// E)^(1/(m-1)) (Olsson and Larsson 2016), evaluated as sigma_0 (sigma_0/E)^(1/(m-1)), which
+    /// does not overflow.
     pub fn yield_stress(&self, youngs_modulus: f64) -> Option<f64> {
         match self {
             Hardening::Elastic => None,

@@ -1,7 +1,7 @@
 //! Every key of a case file in one table: what it means, its unit, its range and its default.
 //!
-//! `asperity explain`, `asperity init` and `asperity schema` are made from [`KEYS`]. The tests below
-//! hold it against the parser: a key that one of the two lacks fails them.
+//! `asperity explain`, `asperity init` and `asperity schema` are made from [`KEYS`]. The tests
+//! below hold it against the parser: a key that one of the two lacks fails them.
 
 use Kind::{Number, Points, ShareOrTrue, Truth, Whole, Word};
 use Limit::{Above, AtLeast, AtMost, Free};

@@ -26,7 +26,8 @@ pub fn mistakes(document: &Document) -> Vec<CaseError> {
             CaseError::UnknownKey { nearest, .. } => Some(nearest.clone()),
             _ => None,
         };
-        // A key that nobody knows, and a whole table that is missing, are mistakes whatever the values.
+        // A key that nobody knows, and a whole table that is missing, are mistakes whatever the
+        // values.
         let by_itself = match &error {
             CaseError::UnknownKey { .. } => true,
             CaseError::Missing { .. } => !key.contains('.'),
@@ -63,8 +64,8 @@ fn depends(key: &str, replaced: &str) -> bool {
     }
 }
 
-/// Takes away a key that nobody knows. What it stands for, if it is a misspelt key and that is not there, gets its value: a key is not missed that is
-/// only misspelt. Whether there was such a key.
+/// Takes away a key that nobody knows. What it stands for, if it is a misspelt key and that is not
+/// there, gets its value: a key is not missed that is only misspelt. Whether there was such a key.
 fn rename(document: &mut Document, key: &str, meant: Option<&str>) -> bool {
     let Some(entry) = document.at(key).cloned() else { return false };
     if !document.remove(key) {

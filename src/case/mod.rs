@@ -35,7 +35,8 @@ pub use starter::starter_case;
 
 use serde::Serialize;
 
-/// One simulation: a sphere, its material, its friction, and the path it is taken along. Any one consistent system of units.
+/// One simulation: a sphere, its material, its friction, and the path it is taken along. Any one
+/// consistent system of units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Case {
     /// The body.
@@ -88,7 +89,8 @@ pub struct Contact {
 /// Friction between sphere and plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Friction {
-    /// Coulomb's coefficient mu >= 0: tangential traction at most mu times the pressure, at every point.
+    /// Coulomb's coefficient mu >= 0: tangential traction at most mu times the pressure, at every
+    /// point.
     Coefficient(f64),
     /// A point in contact never slips.
     Stick,
@@ -97,7 +99,8 @@ pub enum Friction {
 /// What the sphere is pressed against, in place of a rigid plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opponent {
-    /// The same sphere. Indentation and shear are then the relative displacements of the two equators, twice what each of them moves.
+    /// The same sphere. Indentation and shear are then the relative displacements of the two
+    /// equators, twice what each of them moves.
     Equal,
     /// A rigid sphere.
     Rigid {
@@ -107,7 +110,8 @@ pub enum Opponent {
 }
 
 impl Case {
-    /// Number of bodies that deform: their displacements add up to h and delta_T, their energies to those of the contact.
+    /// Number of bodies that deform: their displacements add up to h and delta_T, their energies to
+    /// those of the contact.
     pub fn bodies(&self) -> f64 {
         match self.opponent {
             None | Some(Opponent::Rigid { .. }) => 1.0,
@@ -115,7 +119,8 @@ impl Case {
         }
     }
 
-    /// The effective radius R*, 1/R* = 1/R_1 + 1/R_2: that of the sphere which, pressed onto a plane, meets it as closely as these two surfaces meet.
+    /// The effective radius R*, 1/R* = 1/R_1 + 1/R_2: that of the sphere which, pressed onto a
+    /// plane, meets it as closely as these two surfaces meet.
     pub fn effective_radius(&self) -> f64 {
         match self.opponent {
             None => self.sphere.radius,
@@ -126,8 +131,8 @@ impl Case {
         }
     }
 
-    /// Radius of the sphere over a plane that one body of this case is pressed like: R* against a rigid sphere; R in an equal pair too, of which each body
-    /// is pressed by its share of h.
+    /// Radius of the sphere over a plane that one body of this case is pressed like: R* against a
+    /// rigid sphere; R in an equal pair too, of which each body is pressed by its share of h.
     pub fn body_radius(&self) -> f64 {
         self.bodies() * self.effective_radius()
     }
@@ -140,7 +145,8 @@ pub struct Mesh {
     pub elements_per_contact_radius: usize,
     /// Radius of the finely meshed zone over the contact radius, 1.1 to 3.
     pub fine_zone: f64,
-    /// Contact radius to mesh for, in the units of the sphere's radius, in place of the predicted one.
+    /// Contact radius to mesh for, in the units of the sphere's radius, in place of the predicted
+    /// one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_radius: Option<f64>,
 }
@@ -150,9 +156,11 @@ pub struct Mesh {
 pub struct Solver {
     /// The solver of the linear systems.
     pub linear: Linear,
-    /// Contact merit at which a step is accepted, relative to the sum of normal forces; in (1e-12, 1e-2].
+    /// Contact merit at which a step is accepted, relative to the sum of normal forces; in (1e-12,
+    /// 1e-2].
     pub tolerance: f64,
-    /// Steps of a press from first touch; one that goes on takes its share and two more. By default as many as the mesh asks for.
+    /// Steps of a press from first touch; one that goes on takes its share and two more. By default
+    /// as many as the mesh asks for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub press_steps: Option<usize>,
     /// Steps of the first part of a shear segment, in which points come to slip; by default 15.
@@ -162,7 +170,8 @@ pub struct Solver {
     pub max_iterations: usize,
     /// How often a step may be cut in half.
     pub max_cutbacks: usize,
-    /// Whether a coarser run goes before a run, a tenth of its work: it finds how far the contact reaches, and the run's error is estimated from it.
+    /// Whether a coarser run goes before a run, a tenth of its work: it finds how far the contact
+    /// reaches, and the run's error is estimated from it.
     pub error_estimate: bool,
     /// Memory that the mesh and the linear systems may take, in GiB.
     pub max_memory_gib: f64,

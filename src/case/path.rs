@@ -19,7 +19,8 @@ pub enum Segment {
         /// What is constant meanwhile.
         hold: Hold,
     },
-    /// Move the plate to both in a straight line, h and delta_T in proportion: oblique loading and rebound.
+    /// Move the plate to both in a straight line, h and delta_T in proportion: oblique loading and
+    /// rebound.
     Oblique {
         /// Target h >= 0, a length.
         indentation: f64,
@@ -28,7 +29,8 @@ pub enum Segment {
     },
     /// Unload.
     Release {
-        /// Until F_N has fallen to this share of what it was when the segment began, 0 <= share < 1; with 0 until contact is lost.
+        /// Until F_N has fallen to this share of what it was when the segment began, 0 <= share <
+        /// 1; with 0 until contact is lost.
         share: f64,
     },
 }
@@ -61,7 +63,8 @@ const MAX_SHEAR: f64 = 0.5;
 pub(super) struct Lengths {
     /// Largest indentations are shares of this one: the radius, or with a rigid sphere R*.
     press: f64,
-    /// Largest displacements along the surface are shares of this one: the radius, or of two the smaller.
+    /// Largest displacements along the surface are shares of this one: the radius, or of two the
+    /// smaller.
     shear: f64,
     /// How errors call them.
     press_name: &'static str,

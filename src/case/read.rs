@@ -10,16 +10,18 @@ use super::{
 };
 use crate::bounded;
 
-/// Radius and Young's modulus, in the units of the case: between these energies, of the order of E R^3, are neither infinite nor nothing.
+/// Radius and Young's modulus, in the units of the case: between these energies, of the order of E
+/// R^3, are neither infinite nor nothing.
 const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
-/// Smallest radius of a rigid sphere over that of the body: a contact of 0.005 R, the smallest that is meshed for,
-/// should not be a large part of it.
+/// Smallest radius of a rigid sphere over that of the body: a contact of 0.005 R, the smallest that
+/// is meshed for, should not be a large part of it.
 const SMALLEST_OPPONENT: f64 = 0.05;
 /// Smallest and largest a/R that the sphere is meshed for.
 pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
 
 impl Case {
-    /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the result.
+    /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the
+    /// result.
     pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
         let name = file.display().to_string();
         let text = bounded::read_to_string(file, bounded::CASE)
@@ -102,8 +104,8 @@ impl Case {
 }
 
 impl Material {
-    /// Reads the `[material]` table of a TOML file, a whole case or a material alone, and applies the `--set` arguments; the other
-    /// tables are not looked at.
+    /// Reads the `[material]` table of a TOML file, a whole case or a material alone, and applies
+    /// the `--set` arguments; the other tables are not looked at.
     pub fn load(file: &Path, settings: &[String]) -> Result<Self, CaseError> {
         let name = file.display().to_string();
         let text = bounded::read_to_string(file, bounded::CASE)

@@ -1,4 +1,5 @@
-//! Reads typed values out of a [`Document`](super::Document); every refusal names place, key and what is allowed.
+//! Reads typed values out of a [`Document`](super::Document); every refusal names place, key and
+//! what is allowed.
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -19,8 +20,8 @@ impl<'d> Reader<'d> {
         Field { key: String::new(), entry: &document.root }.table()
     }
 
-    /// Refuses the first key, in the order of lines, that is not one of `known`; call it before reading, so that a misspelt key
-    /// is reported as such and not as a missing one.
+    /// Refuses the first key, in the order of lines, that is not one of `known`; call it before
+    /// reading, so that a misspelt key is reported as such and not as a missing one.
     pub fn only(&self, known: &[&str]) -> Result<(), CaseError> {
         let unknown = self.table.into_iter().flatten().filter(|(name, _)| !known.contains(&name.as_str()));
         match unknown.min_by_key(|(_, entry)| entry.place.line()) {

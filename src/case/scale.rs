@@ -3,8 +3,9 @@
 use super::{Case, Contact, Material, Mesh, Opponent, Segment, ShearTarget, Sphere};
 
 impl Case {
-    /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2. Indentation and shear are what one body moves: half of
-    /// the relative displacement in an equal pair, which the copy is one no more. A rigid opponent is scaled too.
+    /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2.
+    /// Indentation and shear are what one body moves: half of the relative displacement in an equal
+    /// pair, which the copy is one no more. A rigid opponent is scaled too.
     pub fn scaled(&self) -> Case {
         let (radius, modulus) = (self.sphere.radius, self.material.youngs_modulus);
         let travel = radius * self.bodies();

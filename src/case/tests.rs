@@ -1,4 +1,5 @@
-//! What a case means: defaults, merging, scaling, yield stresses. Mistakes are tried through the program, in `tests/case_errors.rs`.
+//! What a case means: defaults, merging, scaling, yield stresses. Mistakes are tried through the
+//! program, in `tests/case_errors.rs`.
 
 use super::*;
 

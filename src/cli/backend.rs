@@ -22,7 +22,8 @@ pub fn precision_choice(args: &DeviceArgs) -> PrecisionChoice {
     }
 }
 
-/// The backend for a batch of cases in their virgin state, with what the user should know of how it was chosen.
+/// The backend for a batch of cases in their virgin state, with what the user should know of how it
+/// was chosen.
 ///
 /// # Errors
 /// As [`select`].

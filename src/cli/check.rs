@@ -27,7 +27,8 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
-/// Loads and checks the case and prints it as TOML under its size; so the first case of a study, after a line on the size of its grid.
+/// Loads and checks the case and prints it as TOML under its size; so the first case of a study,
+/// after a line on the size of its grid.
 pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
     let input = Input::read(&args.case)?;
     if input.is_study() {

@@ -1,4 +1,5 @@
-//! What comes from outside and is looked at before anything is done: environment variables, and arguments too long to be echoed.
+//! What comes from outside and is looked at before anything is done: environment variables, and
+//! arguments too long to be echoed.
 
 use super::CliError;
 use crate::case::short;

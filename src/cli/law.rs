@@ -44,8 +44,8 @@ pub enum LawCommand {
     Predict(PredictArgs),
     /// Simulate a protocol of paths and print how far the law is from each.
     Check(CheckArgs),
-    /// Export the law for a DEM code: an incremental contact update as C headers with a table or as a
-    /// Python module, to stdout, or with test vectors to a directory.
+    /// Export the law for a DEM code: an incremental contact update as C headers with a table or as
+    /// a Python module, to stdout, or with test vectors to a directory.
     Export(ExportArgs),
 }
 
@@ -91,8 +91,8 @@ pub struct ExportArgs {
     /// A law file that `law fit` or `law tabulate` wrote.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The material and the friction, for C: with them a law of formulas is written for an engine, as a
-    /// table is; without, as one header for all materials. `-` for standard input.
+    /// The material and the friction, for C: with them a law of formulas is written for an engine,
+    /// as a table is; without, as one header for all materials. `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
     /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
@@ -101,11 +101,12 @@ pub struct ExportArgs {
     /// The language.
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     pub format: Language,
-    /// Write the files to this directory: for C of one material asperity_law.h (the table as a constant),
-    /// law.asperity (the same, read when an engine starts), asperity_contact.h (the update),
-    /// asperity_contact3d.h (spheres and walls) and a program that checks them; for C of all materials
-    /// asperity_law.h and its checking program; for Python asperity_law.py; both with asperity_law_vectors.csv. Existing files of these names are
-    /// replaced [default: asperity_law.h or asperity_law.py alone, to stdout].
+    /// Write the files to this directory: for C of one material asperity_law.h (the table as a
+    /// constant), law.asperity (the same, read when an engine starts), asperity_contact.h (the
+    /// update), asperity_contact3d.h (spheres and walls) and a program that checks them; for C of
+    /// all materials asperity_law.h and its checking program; for Python asperity_law.py; both with
+    /// asperity_law_vectors.csv. Existing files of these names are replaced [default:
+    /// asperity_law.h or asperity_law.py alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

@@ -1,5 +1,5 @@
-//! `asperity law tabulate`: the law of one material and one friction as curves in h, on a plane or between two equal
-//! spheres.
+//! `asperity law tabulate`: the law of one material and one friction as curves in h, on a plane or
+//! between two equal spheres.
 
 use std::fmt::Write as _;
 use std::io::Write as _;

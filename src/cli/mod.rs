@@ -90,7 +90,8 @@ impl Command {
 pub enum Outcome {
     /// All was done: exit code 0.
     Done,
-    /// A step did not converge or the contact outgrew the mesh, what was computed is kept: exit code 3.
+    /// A step did not converge or the contact outgrew the mesh, what was computed is kept: exit
+    /// code 3.
     NotConverged,
     /// A check of a verification failed: exit code 3.
     ChecksFailed,
@@ -110,7 +111,8 @@ impl From<Outcome> for ExitCode {
     }
 }
 
-/// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with its exit code.
+/// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with
+/// its exit code.
 pub fn main() -> ExitCode {
     let checked = crate::processor::check().map_err(CliError::from).and_then(|()| environment::check());
     let outcome = checked.and_then(|()| match Cli::try_parse() {
@@ -130,7 +132,8 @@ pub fn main() -> ExitCode {
     })
 }
 
-/// Writes an error to stderr, in clap's colours where that is a terminal. A closed stderr changes nothing.
+/// Writes an error to stderr, in clap's colours where that is a terminal. A closed stderr changes
+/// nothing.
 fn report(error: &CliError) {
     let mut stderr = anstream::stderr().lock();
     let _ = match error {

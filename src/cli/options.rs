@@ -56,7 +56,8 @@ pub struct Verbosity {
     pub verbose: u8,
 }
 
-/// Most threads that are taken for meant, unless the machine has more: beyond it, it is their number that takes the time.
+/// Most threads that are taken for meant, unless the machine has more: beyond it, it is their
+/// number that takes the time.
 const MOST_THREADS: usize = 256;
 
 fn threads(text: &str) -> Result<NonZeroUsize, String> {
@@ -84,7 +85,8 @@ impl Verbosity {
             (false, 1) => LevelFilter::Info,
             (false, _) => LevelFilter::Debug,
         };
-        // Graphics drivers and their layers talk about themselves: only their errors are of interest here.
+        // Graphics drivers and their layers talk about themselves: only their errors are of
+        // interest here.
         let mut log = env_logger::Builder::new();
         log.filter_level(LevelFilter::Error).filter_module("asperity", level).format_target(false).format_timestamp(None);
         // A log that is already there (in tests) stays.

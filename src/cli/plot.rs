@@ -61,7 +61,8 @@ fn plot_study(study: &StudyDirectory, law: Option<&Path>) -> Result<Outcome, Cli
     let law = path.as_deref().map(LawFile::read).transpose()?;
     let formulas = match &law {
         Some(LawFile::Formulas(law)) => Some(law.as_ref()),
-        // The table's own picture is drawn where the table is made; its study is drawn without formulas.
+        // The table's own picture is drawn where the table is made; its study is drawn without
+        // formulas.
         Some(LawFile::Table(_)) | None => None,
     };
     let written = report::write_report(study, formulas)?;

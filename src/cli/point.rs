@@ -14,7 +14,8 @@ const STRAIN: f64 = 0.1;
 /// Steps unless `--steps` says otherwise.
 const STEPS: u32 = 100;
 
-/// The columns that [`point`] prints. Stresses and energies per reference volume are in the unit of Young's modulus.
+/// The columns that [`point`] prints. Stresses and energies per reference volume are in the unit of
+/// Young's modulus.
 pub const COLUMNS: &str = "step,F11,F12,F13,F21,F22,F23,F31,F32,F33,sigma_xx,sigma_yy,sigma_zz,sigma_xy,sigma_yz,sigma_zx,\
                            von_mises,alpha,plastic_work,elastic_energy";
 
@@ -54,8 +55,8 @@ pub struct PointArgs {
     pub set: Vec<String>,
 }
 
-/// Reads the material, drives the point, and prints a row a step, the undeformed point first. A step without an answer ends it with
-/// [`Outcome::NotConverged`], after the rows before it.
+/// Reads the material, drives the point, and prints a row a step, the undeformed point first. A
+/// step without an answer ends it with [`Outcome::NotConverged`], after the rows before it.
 pub fn point(args: &PointArgs) -> Result<Outcome, CliError> {
     let constants = case::Material::load(&args.material, &args.set)?;
     let material = constants.constants::<f64>().map_err(|source| CliError::Hardening { file: args.material.clone(), source })?;

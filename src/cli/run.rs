@@ -47,7 +47,8 @@ pub struct RunArgs {
     pub verbosity: Verbosity,
 }
 
-/// Loads and checks the case, prepares the directory or goes on with what is in it, simulates, and reports.
+/// Loads and checks the case, prepares the directory or goes on with what is in it, simulates, and
+/// reports.
 pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;

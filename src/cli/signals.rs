@@ -1,5 +1,6 @@
-//! SIGINT (Ctrl-C), SIGTERM and SIGUSR1 (a batch system's time limit, or its warning of it) and SIGHUP (a terminal that was closed): the run ends after its
-//! present step; a second signal ends it at once.
+//! SIGINT (Ctrl-C), SIGTERM and SIGUSR1 (a batch system's time limit, or its warning of it) and
+//! SIGHUP (a terminal that was closed): the run ends after its present step; a second signal ends
+//! it at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,10 +8,12 @@ use std::time::{Duration, Instant};
 
 use super::CliError;
 
-/// Signals so close to each other are one: batch systems send theirs to a script, which hands it on, and to the program as well.
+/// Signals so close to each other are one: batch systems send theirs to a script, which hands it
+/// on, and to the program as well.
 const ONE_SIGNAL: Duration = Duration::from_millis(250);
 
-/// A flag that the first signal sets. SIGHUP is left alone where it is ignored, so that `nohup` means what it says.
+/// A flag that the first signal sets. SIGHUP is left alone where it is ignored, so that `nohup`
+/// means what it says.
 ///
 /// # Errors
 /// [`CliError::Signals`].

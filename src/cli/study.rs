@@ -97,7 +97,8 @@ pub(super) fn options(device: &DeviceArgs) -> Options {
     }
 }
 
-/// Computes what there is to compute of a study until that is done or a signal stops it; returns whether one did.
+/// Computes what there is to compute of a study until that is done or a signal stops it; returns
+/// whether one did.
 pub(super) fn compute(study: &Study, out: &Path, options: &Options, quiet: bool) -> Result<(Report, bool), CliError> {
     let stop = stop_flag()?;
     let report =

@@ -64,7 +64,8 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
             VerifyError::Compute(ComputeError::Device(what)) if report.checks.is_empty() => CliError::Device { what },
             source => CliError::Verify { family: family.name, source },
         })?;
-        // A path that could not be followed is a row that has no number, and fails whatever was asked for.
+        // A path that could not be followed is a row that has no number, and fails whatever was
+        // asked for.
         let stopped = |check: &Check| check.ours.is_nan();
         rows.checks.retain(|check| all || stopped(check) || args.only.iter().any(|only| family.names(only, check)));
         if !quiet {

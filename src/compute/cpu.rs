@@ -20,7 +20,8 @@ use crate::real::Real;
 
 /// Elements handed to a thread at a time: enough work to outweigh the handing.
 const CHUNK: usize = 64;
-/// The same for tangents and block rows, which take longer and of which a wave has few: enough of them for many threads.
+/// The same for tangents and block rows, which take longer and of which a wave has few: enough of
+/// them for many threads.
 const WAVE_CHUNK: usize = 16;
 
 /// One case as the CPU holds it.
@@ -120,7 +121,8 @@ impl<R: Real> Case<R> {
         })
     }
 
-    /// Committed displacement and increment of an element's nodes; the increment is formed in f64 and rounded once.
+    /// Committed displacement and increment of an element's nodes; the increment is formed in f64
+    /// and rounded once.
     #[inline(always)]
     fn nodal(&self, element: usize, displacement: &[f64]) -> (Nodal<R>, Nodal<R>) {
         let nodes = &self.mesh.elements[element];
@@ -137,7 +139,8 @@ impl<R: Real> Case<R> {
         (committed, increment)
     }
 
-    /// Evaluates `f` on the elements from `first` on into `out`, so many at a time in each thread; the first invalid element by index is reported.
+    /// Evaluates `f` on the elements from `first` on into `out`, so many at a time in each thread;
+    /// the first invalid element by index is reported.
     fn each_element<T: Send>(
         &self,
         first: usize,
@@ -370,7 +373,8 @@ fn block_rows<'a>(plan: &GatherPlan, blocks: &'a mut [[f64; 9]]) -> Vec<&'a mut 
     rows
 }
 
-/// Sums the tangents of the elements around a node into its block row, in the order of the node's elements.
+/// Sums the tangents of the elements around a node into its block row, in the order of the node's
+/// elements.
 fn gather_row<'a, R: Real>(
     plan: &GatherPlan,
     mesh: &Mesh,

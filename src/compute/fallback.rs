@@ -1,4 +1,5 @@
-//! A batch that outlives its device: when the device fails, the CPU goes on from the last committed states.
+//! A batch that outlives its device: when the device fails, the CPU goes on from the last committed
+//! states.
 
 use super::cpu::Cpu;
 use super::{
@@ -8,8 +9,9 @@ use super::{
 
 /// A device with a copy of every committed state on the host, and the CPU in waiting.
 ///
-/// The first failure of the device ends its use: the call that failed is made again on the CPU in f64, which starts from the copies, so
-/// that no accepted step is lost. What happened is in [`Compute::take_notes`] and, from then on, in [`Compute::description`].
+/// The first failure of the device ends its use: the call that failed is made again on the CPU in
+/// f64, which starts from the copies, so that no accepted step is lost. What happened is in
+/// [`Compute::take_notes`] and, from then on, in [`Compute::description`].
 pub struct Fallback {
     device: Option<Box<dyn Compute>>,
     cpu: Option<Cpu<f64>>,
@@ -100,7 +102,8 @@ impl Compute for Fallback {
         self.call(|backend| backend.contact(requests))
     }
 
-    /// The copies follow the device: where a state cannot be read back, the step is committed on the CPU instead.
+    /// The copies follow the device: where a state cannot be read back, the step is committed on
+    /// the CPU instead.
     fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
         let on_device = self.device.is_some();
         let states = self.call(|backend| {

@@ -1,4 +1,5 @@
-//! Plans by which element contributions are gathered into nodes and blocks: every sum has one writer and a fixed order.
+//! Plans by which element contributions are gathered into nodes and blocks: every sum has one
+//! writer and a fixed order.
 
 use crate::mesh::Mesh;
 use crate::mesh::pattern::Pattern;
@@ -8,7 +9,8 @@ use crate::mesh::pattern::Pattern;
 pub struct GatherPlan {
     /// The pattern of the matrices.
     pub pattern: Pattern,
-    /// For each entry of the mesh's node-to-element lists, the offset within the row of the column of each local node.
+    /// For each entry of the mesh's node-to-element lists, the offset within the row of the column
+    /// of each local node.
     pub offset: Vec<[u16; 8]>,
 }
 

@@ -8,8 +8,9 @@ use super::{
     TangentRequest,
 };
 
-/// The environment variable of the hook, which only builds with debug assertions look at, those of the tests: a number N of calls that commit (of one case: N accepted steps), after which
-/// the device is given up as a driver reset would. Not set, or no number: nothing is hooked in.
+/// The environment variable of the hook, which only builds with debug assertions look at, those of
+/// the tests: a number N of calls that commit (of one case: N accepted steps), after which the
+/// device is given up as a driver reset would. Not set, or no number: nothing is hooked in.
 pub const LOSE_VARIABLE: &str = "ASPERITY_TEST_LOSE_DEVICE_AFTER";
 
 /// A backend whose device is destroyed behind its back after so many commits.

@@ -1,10 +1,13 @@
-//! Evaluation of a batch of cases: internal forces, tangents, contact, commit. One trait, a CPU and a GPU behind it.
+//! Evaluation of a batch of cases: internal forces, tangents, contact, commit. One trait, a CPU and
+//! a GPU behind it.
 //!
-//! The batch is the leading dimension everywhere: a call carries one request for each case that still iterates, and one dispatch serves them
-//! all. A single case is a batch of one. What a case gets never depends on the other cases of the batch.
+//! The batch is the leading dimension everywhere: a call carries one request for each case that
+//! still iterates, and one dispatch serves them all. A single case is a batch of one. What a case
+//! gets never depends on the other cases of the batch.
 //!
-//! A backend holds the committed state of every case (elastic strains, hardening variables, displacement); trial states are never
-//! stored: each evaluation is a pure function of the committed state and the trial displacement.
+//! A backend holds the committed state of every case (elastic strains, hardening variables,
+//! displacement); trial states are never stored: each evaluation is a pure function of the
+//! committed state and the trial displacement.
 
 pub mod cpu;
 pub mod fallback;
@@ -68,7 +71,8 @@ pub struct ForceRequest<'a> {
     pub outcome: Outcome,
 }
 
-/// Asks for the tangent of one case: blocks d f_i / d u_j in the order of [`crate::mesh::pattern::Pattern`].
+/// Asks for the tangent of one case: blocks d f_i / d u_j in the order of
+/// [`crate::mesh::pattern::Pattern`].
 #[derive(Debug)]
 pub struct TangentRequest<'a> {
     /// Case index in the batch.
@@ -134,7 +138,8 @@ pub struct CaseState {
 /// What a committed state shows, for output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseFields {
-    /// Cauchy stress [xx, yy, zz, xy, yz, zx] of each element (volume mean of its points), scaled by E.
+    /// Cauchy stress [xx, yy, zz, xy, yz, zx] of each element (volume mean of its points), scaled
+    /// by E.
     pub stress: Vec<[f64; 6]>,
     /// Equivalent plastic strain of each element: mean over its points.
     pub alpha: Vec<f64>,
@@ -181,8 +186,10 @@ pub trait Compute: Send {
     fn description(&self) -> Description;
     /// The cases of the batch.
     fn models(&self) -> &[CaseModel];
-    /// Starts a step of one case: what is asked of it up to its next commit starts from its committed state with `weight` times the flow of
-    /// its last step anticipated (see [`crate::material::multistep`]). A step that is not started so, as any after a commit, anticipates nothing.
+    /// Starts a step of one case: what is asked of it up to its next commit starts from its
+    /// committed state with `weight` times the flow of its last step anticipated (see
+    /// [`crate::material::multistep`]). A step that is not started so, as any after a commit,
+    /// anticipates nothing.
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError>;
     /// Internal forces.
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError>;
@@ -198,7 +205,8 @@ pub trait Compute: Send {
     fn state(&mut self, case: usize) -> Result<CaseState, ComputeError>;
     /// Replaces a committed state.
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError>;
-    /// What the user should know and has not been told yet, in whole sentences: a device that failed, say.
+    /// What the user should know and has not been told yet, in whole sentences: a device that
+    /// failed, say.
     fn take_notes(&mut self) -> Vec<String> {
         Vec::new()
     }

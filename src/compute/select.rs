@@ -1,4 +1,5 @@
-//! Where a batch is computed: the one place that turns a choice of device and precision into a backend.
+//! Where a batch is computed: the one place that turns a choice of device and precision into a
+//! backend.
 
 use super::cpu::Cpu;
 use super::{CaseModel, Compute, ComputeError};
@@ -11,7 +12,8 @@ use device::{on_device, opens};
 /// The device wished for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DeviceChoice {
-    /// A GPU worth it, else the CPU; never a software adapter. Whatever fails there, the CPU takes over.
+    /// A GPU worth it, else the CPU; never a software adapter. Whatever fails there, the CPU takes
+    /// over.
     #[default]
     Auto,
     /// The CPU.
@@ -43,8 +45,8 @@ pub struct Selected {
 /// The backend for a batch of cases in their virgin state.
 ///
 /// # Errors
-/// [`ComputeError::InvertedMesh`] and [`ComputeError::Connectivity`] from any device; [`ComputeError::Device`] if a GPU was asked for
-/// and there is none, or the batch does not fit.
+/// [`ComputeError::InvertedMesh`] and [`ComputeError::Connectivity`] from any device;
+/// [`ComputeError::Device`] if a GPU was asked for and there is none, or the batch does not fit.
 pub fn select(device: DeviceChoice, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
     match device {
         DeviceChoice::Cpu => Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),

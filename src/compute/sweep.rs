@@ -1,11 +1,14 @@
-//! How the CPU forms and sums element tangents: wave after wave of elements, each row as soon as its last element is done, so that what it is the sum of
-//! is still in the cache. The numbers of the sphere's elements sweep over the mesh (`mesh::connectivity::sweep_order`), so that the front is short.
+//! How the CPU forms and sums element tangents: wave after wave of elements, each row as soon as
+//! its last element is done, so that what it is the sum of is still in the cache. The numbers of
+//! the sphere's elements sweep over the mesh (`mesh::connectivity::sweep_order`), so that the front
+//! is short.
 
 use std::ops::Range;
 
 use crate::mesh::Mesh;
 
-/// Elements of a wave: enough to share out between threads, few enough to stay in the cache with the waves before it.
+/// Elements of a wave: enough to share out between threads, few enough to stay in the cache with
+/// the waves before it.
 const WAVE: usize = 512;
 
 /// Waves of successive elements; after each, the rows that are complete.
@@ -26,7 +29,8 @@ impl Sweep {
         let mut depth = 1;
         for node in 0..mesh.nodes.len() {
             let around = &lists.entry[lists.list(node)];
-            // The lists are in increasing order. The row of a node without elements is empty and so complete at once.
+            // The lists are in increasing order. The row of a node without elements is empty and so
+            // complete at once.
             let [first, last] = [around.first(), around.last()].map(|entry| entry.map_or(0, |entry| *entry as usize / 8 / WAVE));
             if let Some(rows) = rows.get_mut(last) {
                 rows.push(node as u32);
@@ -47,7 +51,8 @@ impl Sweep {
         element % self.slots
     }
 
-    /// For each wave its elements, which have successive places, and the nodes that have all of their elements after it.
+    /// For each wave its elements, which have successive places, and the nodes that have all of
+    /// their elements after it.
     pub fn waves(&self) -> impl Iterator<Item = (Range<usize>, &[u32])> {
         self.rows.iter().enumerate().map(|(wave, rows)| (wave * WAVE..self.elements.min((wave + 1) * WAVE), rows.as_slice()))
     }

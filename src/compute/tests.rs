@@ -1,4 +1,5 @@
-//! What every backend owes its cases, held on the CPU in both precisions: the bodies take the backend as an argument.
+//! What every backend owes its cases, held on the CPU in both precisions: the bodies take the
+//! backend as an argument.
 
 use std::sync::Arc;
 
@@ -172,7 +173,8 @@ fn the_assembled_tangent_is_symmetric_and_the_derivative_of_the_force() {
             for i in 0..3 {
                 for j in 0..3 {
                     let (x, y) = (blocks[k][3 * i + j], t[3 * j + i]);
-                    // Both triangles add the same numbers in the same order; a diagonal block is symmetric to rounding.
+                    // Both triangles add the same numbers in the same order; a diagonal block is
+                    // symmetric to rounding.
                     assert!(if a == b { (x - y).abs() < 1e-15 * scale } else { x == y }, "{a} {b} {i} {j}: {x:e} {y:e}");
                 }
             }
@@ -272,7 +274,8 @@ fn the_first_inverted_element_is_named_at_any_thread_count() {
 
 #[test]
 fn energies_and_fields_of_a_uniform_squeeze() {
-    // u = (F - I) X with F = diag(1.02, 1, 0.97) and no yielding: the energy is W times the volume, everywhere the same stress.
+    // u = (F - I) X with F = diag(1.02, 1, 0.97) and no yielding: the energy is W times the volume,
+    // everywhere the same stress.
     for (make, digits) in BACKENDS.into_iter().zip([1e-12, 1e-5]) {
         let mut backend = make(models()).unwrap();
         let mesh = backend.models()[1].mesh.clone();

@@ -1,7 +1,9 @@
-//! What the law is compared with: Jaeger and Ciavarella's solution, which takes the shear for elastic and F_N for constant.
+//! What the law is compared with: Jaeger and Ciavarella's solution, which takes the shear for
+//! elastic and F_N for constant.
 //!
-//! F_T = mu \[F_u(h0) - F_u(h0 - d/(mu kappa))\] for the elastic unloading curve F_u from h0. Two curves bracket it: that of a Hertz pressure with the
-//! contact's own a0 and F_N0, which is Cattaneo and Mindlin's law, and that of a uniform pressure, the fully plastic limit.
+//! F_T = mu \[F_u(h0) - F_u(h0 - d/(mu kappa))\] for the elastic unloading curve F_u from h0. Two
+//! curves bracket it: that of a Hertz pressure with the contact's own a0 and F_N0, which is
+//! Cattaneo and Mindlin's law, and that of a uniform pressure, the fully plastic limit.
 
 use super::data::Sample;
 use super::fit::case_errors;
@@ -20,7 +22,8 @@ pub fn candidates(samples: &[Sample]) -> Vec<Candidate> {
     vec![row("Jaeger-Ciavarella, Hertz pressure", &hertzian), row("Jaeger-Ciavarella, uniform pressure", &uniform)]
 }
 
-/// F_T with the unloading curve of a Hertz contact of the radius a0 under F_N0: a sphere of the radius 4 E* a0^3/(3 F_N0).
+/// F_T with the unloading curve of a Hertz contact of the radius a0 under F_N0: a sphere of the
+/// radius 4 E* a0^3/(3 F_N0).
 fn hertzian(sample: &Sample, d: f64) -> f64 {
     let sphere = sample.body.sphere;
     let radius = 4.0 * sphere.effective_modulus() * sample.a0.powi(3) / (3.0 * sample.f_n0);

@@ -1,4 +1,5 @@
-//! Reads a study back: `study.csv` and the run directories in `cases/`, reduced to what a law is fitted to.
+//! Reads a study back: `study.csv` and the run directories in `cases/`, reduced to what a law is
+//! fitted to.
 
 use std::path::Path;
 
@@ -81,8 +82,8 @@ impl StudyData {
         self.samples.iter().map(|sample| sample.material + 1).max().unwrap_or(0)
     }
 
-    /// Reads the study in `dir`. Cases that did not end well, or were not pressed once and sheared once to full slip at constant h, are left out and
-    /// listed.
+    /// Reads the study in `dir`. Cases that did not end well, or were not pressed once and sheared
+    /// once to full slip at constant h, are left out and listed.
     ///
     /// # Errors
     /// No study there; a table, case or history that cannot be read.
@@ -107,7 +108,8 @@ impl StudyData {
         Ok(data)
     }
 
-    /// The reasons for leaving out cases with their numbers, as one sentence; empty if there are none.
+    /// The reasons for leaving out cases with their numbers, as one sentence; empty if there are
+    /// none.
     pub fn skipped_sentence(&self) -> String {
         let mut reasons: Vec<(&str, usize)> = Vec::new();
         for skipped in &self.skipped {

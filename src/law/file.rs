@@ -38,7 +38,8 @@ impl LawFile {
     /// What the contact update needs for the sphere of a case, in the case's units.
     ///
     /// # Errors
-    /// [`LawError::NotCovered`] for full stick; [`LawError::OtherMaterial`] for a case that a table is not of; no numbers for this material.
+    /// [`LawError::NotCovered`] for full stick; [`LawError::OtherMaterial`] for a case that a table
+    /// is not of; no numbers for this material.
     pub fn contact_parameters(&self, case: &Case) -> Result<ContactParameters, LawError> {
         let Friction::Coefficient(friction) = case.contact.friction else {
             return Err(LawError::NotCovered {
@@ -58,8 +59,8 @@ impl LawFile {
         }
     }
 
-    /// Indentation, displacement and forces along the whole path of a case, in its units, without simulating any of it; and what of its deepest contact
-    /// lies outside of the law's range.
+    /// Indentation, displacement and forces along the whole path of a case, in its units, without
+    /// simulating any of it; and what of its deepest contact lies outside of the law's range.
     ///
     /// # Errors
     /// Those of [`LawFile::contact_parameters`].
@@ -81,7 +82,8 @@ impl LawFile {
         }
     }
 
-    /// What of a contact of the case at the indentation `h`, in the case's units, lies outside of the law's range.
+    /// What of a contact of the case at the indentation `h`, in the case's units, lies outside of
+    /// the law's range.
     ///
     /// # Errors
     /// The hardening law of the case.
@@ -115,7 +117,8 @@ fn out_of_formulas(law: &Law, body: &Body, friction: f64, h: f64) -> Vec<OutOfRa
 }
 
 impl Law {
-    /// The hardening exponent of a body that has yielded, where it is not one that the law was fitted to.
+    /// The hardening exponent of a body that has yielded, where it is not one that the law was
+    /// fitted to.
     pub fn hardening_out_of_range(&self, body: &Body, inputs: &Axisymmetric) -> Option<OutOfRange> {
         let (value, range) = (body.hardening_exponent(inputs.a), self.validity.hardening_exponent);
         let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);

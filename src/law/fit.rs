@@ -1,8 +1,11 @@
-//! Determines the constants of every candidate by least squares of whole curves, compares them by cross-validation, and keeps the best.
+//! Determines the constants of every candidate by least squares of whole curves, compares them by
+//! cross-validation, and keeps the best.
 //!
-//! A candidate's constants are found in three steps, each with what the one before it found: the fall of F_N from F_N_slip/F_N0; n and
-//! delta_T_slip from F_T(delta_T), as a share of its peak; the exponents of f_N from F_N(delta_T), as a share of F_N0. Cross-validation leaves out whole
-//! materials: a case is predicted by constants that saw nothing of its hardening law, at no mu and no h.
+//! A candidate's constants are found in three steps, each with what the one before it found: the
+//! fall of F_N from F_N_slip/F_N0; n and delta_T_slip from F_T(delta_T), as a share of its peak;
+//! the exponents of f_N from F_N(delta_T), as a share of F_N0. Cross-validation leaves out whole
+//! materials: a case is predicted by constants that saw nothing of its hardening law, at no mu and
+//! no h.
 
 use std::path::Path;
 
@@ -65,7 +68,8 @@ fn failed(what: &'static str) -> impl Fn(String) -> LawError {
     move |problem| LawError::Fit { what, problem }
 }
 
-/// Where a fit starts and how strongly it is drawn there: to another law's constants, or weakly to constants of order one.
+/// Where a fit starts and how strongly it is drawn there: to another law's constants, or weakly to
+/// constants of order one.
 #[derive(Clone, Copy, Debug)]
 struct Start<T> {
     constants: T,
@@ -178,8 +182,9 @@ fn constants_by_fold(
     (0..=folds).map(fold).collect()
 }
 
-/// As [`Start`]; no prior model means the form's own start. The pull is that of the force, the other that of the radius: a0 and F_N0 are fitted one after the
-/// other, and a small study may know one of them better than its prior, but not the other.
+/// As [`Start`]; no prior model means the form's own start. The pull is that of the force, the
+/// other that of the radius: a0 and F_N0 are fitted one after the other, and a small study may know
+/// one of them better than its prior, but not the other.
 type NormalStart<'a> = (Start<Option<&'a NormalModel>>, f64);
 
 /// Fits one form of the normal problem.
@@ -202,7 +207,8 @@ fn fit_normal(form: NormalForm, (start, radius_pull): &NormalStart, samples: &[&
     Ok(NormalModel { form, radius, force })
 }
 
-/// What was compared, the weights of the prior for a0 and F_N0 that were chosen (none for a free fit), and the models by fold.
+/// What was compared, the weights of the prior for a0 and F_N0 that were chosen (none for a free
+/// fit), and the models by fold.
 type ChosenNormal = (Vec<NormalCandidate>, Option<[f64; 2]>, Vec<NormalModel>);
 
 /// How a table calls a start of the normal problem.
@@ -210,7 +216,8 @@ fn suffix((start, radius_pull): &NormalStart) -> String {
     start.weight().map_or_else(String::new, |weight| format!(", prior {radius_pull}, {weight}"))
 }
 
-/// The normal forms compared; the best one's weight of the prior and its models by fold, the last one fitted to all.
+/// The normal forms compared; the best one's weight of the prior and its models by fold, the last
+/// one fitted to all.
 fn choose_normal(
     prior: Option<&NormalModel>,
     samples: &[Sample],
@@ -272,7 +279,8 @@ struct Compared {
 
 /// Fits a law to a study.
 ///
-/// `dir` is the directory of the study; `prior` what is known before. The same study gives the same law, to the bit, at any number of threads.
+/// `dir` is the directory of the study; `prior` what is known before. The same study gives the same
+/// law, to the bit, at any number of threads.
 ///
 /// # Errors
 /// No study, too few cases, files that cannot be read, a fit that ends nowhere.
@@ -338,7 +346,8 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
     let (Some(constants), Some(normal)) = (by_fold.last().copied(), normal_models.last().cloned()) else {
         return Err(failed("the law")("there are no folds".to_owned()));
     };
-    // The whole way from the case alone: normal data predicted, by models that saw nothing of the material either.
+    // The whole way from the case alone: normal data predicted, by models that saw nothing of the
+    // material either.
     let predicted: Vec<CaseErrors> = samples
         .iter()
         .map(|s| {

@@ -14,7 +14,8 @@ pub fn assign(materials: usize, folds: usize, seed: u64) -> Vec<usize> {
     fold_of
 }
 
-/// SplitMix64 (Steele, Lea & Flood 2014): a generator of one number of state that never changes under a library's hands.
+/// SplitMix64 (Steele, Lea & Flood 2014): a generator of one number of state that never changes
+/// under a library's hands.
 pub(super) fn splitmix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;

@@ -1,6 +1,8 @@
-//! The candidate forms of the law: smooth correlations with few constants, every one with its elastic limit built in.
+//! The candidate forms of the law: smooth correlations with few constants, every one with its
+//! elastic limit built in.
 //!
-//! With z the plasticity of the contact in one of the [`Variable`]s, zero at first yield, and g = 1 - (Lambda_Y/Lambda)^2,
+//! With z the plasticity of the contact in one of the [`Variable`]s, zero at first yield, and g =
+//! 1 - (Lambda_Y/Lambda)^2,
 //! ```text
 //! F_N_slip/F_N0 = 1 - tanh(A mu) tanh[B mu^p z^q exp(r mu w - d a/R)]  fall of the normal force
 //! n             = 3/2 + N tanh[C mu^p z^(q exp(-s mu)) exp(r mu w - d a/R) / N], N = 8.5  exponent of f_T
@@ -9,18 +11,21 @@
 //!             f = (2 n/3) (F_N_slip/F_N0) (1 + b a/R + S z^q)          through the initial stiffness
 //! f_N           = [1 - (1 - x)^M]^N or 1 - (1 - x^M)^N               one steep exponent 1 + s + t (n - 3/2), one gentle one 1 + u mu^v
 //! ```
-//! w = g (2 c^2 - 1)/ln(Lambda/Lambda_Y), c^2 = a^2/(2 R h), is how fast the contact has grown since first yield: fast without hardening, slowly with
-//! it. All constants are positive. Below first yield z = w = 0, so that n = 3/2, F_N_slip = F_N0 and f = 1 + b a/R: Cattaneo and Mindlin's law for a
-//! half-space (a/R = 0), and for a sphere the compliance b of the body between the contact and the equator, where delta_T is prescribed.
+//! w = g (2 c^2 - 1)/ln(Lambda/Lambda_Y), c^2 = a^2/(2 R h), is how fast the contact has grown
+//! since first yield: fast without hardening, slowly with it. All constants are positive. Below
+//! first yield z = w = 0, so that n = 3/2, F_N_slip = F_N0 and f = 1 + b a/R: Cattaneo and
+//! Mindlin's law for a half-space (a/R = 0), and for a sphere the compliance b of the body between
+//! the contact and the equator, where delta_T is prescribed.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Greatest n - 3/2. Beyond n = 10, f_T is an exponential for all that can be seen, and delta_T_slip would no longer be the
-/// displacement at which sliding starts.
+/// Greatest n - 3/2. Beyond n = 10, f_T is an exponential for all that can be seen, and
+/// delta_T_slip would no longer be the displacement at which sliding starts.
 pub const EXPONENT_SPAN: f64 = 8.5;
 
-/// In what the plasticity z of a contact is measured. The first three are the candidates of Olsson & Larsson's (2014) y.
+/// In what the plasticity z of a contact is measured. The first three are the candidates of Olsson
+/// & Larsson's (2014) y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variable {
@@ -28,8 +33,9 @@ pub enum Variable {
     Lambda,
     /// z = ln(1 + mu (Lambda - Lambda_Y)); mu enters in no other way (p = 0).
     FrictionLambda,
-    /// z = g ln(y/y_Hertz), y = k_T0 a0/F_N0 with Mindlin's k_T0, y_Hertz its value for an elastic contact of the same radius: the ratio is that of
-    /// Hertz's force to the actual one, 4 Lambda/(3 pi Hbar).
+    /// z = g ln(y/y_Hertz), y = k_T0 a0/F_N0 with Mindlin's k_T0, y_Hertz its value for an elastic
+    /// contact of the same radius: the ratio is that of Hertz's force to the actual one, 4
+    /// Lambda/(3 pi Hbar).
     Stiffness,
     /// z = g (2 c^2 - 1), c^2 = a^2/(2 R h): what the contact is larger than an elastic one.
     Area,
@@ -151,12 +157,14 @@ pub struct Plasticity {
     pub relative_radius: f64,
     /// z >= 0: zero up to first yield.
     pub z: f64,
-    /// w >= 0, the growth of the contact since first yield: g (2 c^2 - 1)/ln(Lambda/Lambda_Y), zero up to it.
+    /// w >= 0, the growth of the contact since first yield: g (2 c^2 - 1)/ln(Lambda/Lambda_Y), zero
+    /// up to it.
     pub growth: f64,
 }
 
 impl Plasticity {
-    /// From the normalised variables of a contact (`hardness` is Hbar), `lambda_yield` being Lambda at first yield.
+    /// From the normalised variables of a contact (`hardness` is Hbar), `lambda_yield` being Lambda
+    /// at first yield.
     pub fn new(
         variable: Variable,
         friction: f64,
@@ -200,7 +208,8 @@ pub struct Constants {
 }
 
 impl Constants {
-    /// Every constant of order one, from which the fits start and to which what the data leave open is drawn.
+    /// Every constant of order one, from which the fits start and to which what the data leave open
+    /// is drawn.
     pub const START: Self = Self {
         fall: [1.0, 1.0, 0.5, 1.0, 1.0, 0.5],
         exponent: [10.0, 1.0, 2.0, 1.0, 1.0, 1.0],

@@ -7,7 +7,8 @@ use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
 use super::normal::NormalForm;
 
 impl Law {
-    /// The formulas of the law with their constants, a line each, to be read by people; constants to four digits.
+    /// The formulas of the law with their constants, a line each, to be read by people; constants
+    /// to four digits.
     pub fn formulas(&self) -> String {
         let variable = self.forms.variable;
         let product = |p: f64, q: f64| match variable {

@@ -1,11 +1,12 @@
-//! Nonlinear least squares: Levenberg-Marquardt (the `levenberg-marquardt` crate, a port of MINPACK); positive constants in their
-//! logarithms.
+//! Nonlinear least squares: Levenberg-Marquardt (the `levenberg-marquardt` crate, a port of
+//! MINPACK); positive constants in their logarithms.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
 
-/// Weight of the pull of a constant (or its logarithm) towards its start. Residuals are shares of a force, a per cent or so each: the pull decides only what the
-/// data leave open, and keeps a small study's constants finite.
+/// Weight of the pull of a constant (or its logarithm) towards its start. Residuals are shares of a
+/// force, a per cent or so each: the pull decides only what the data leave open, and keeps a small
+/// study's constants finite.
 pub const PULL: f64 = 0.01;
 /// Range of a logarithm beyond which nothing changes any more, but overflows do.
 const LARGEST_LOGARITHM: f64 = 12.0;
@@ -89,8 +90,9 @@ impl<F: Fn(&[f64]) -> Vec<f64>> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'
     }
 }
 
-/// The constants that minimise the sum of squares of `residuals`(constants), from `start` (> 0 where they have to be positive), to which they are drawn with
-/// the weight `pull`: the residual of a constant that, or whose logarithm, is 1 away.
+/// The constants that minimise the sum of squares of `residuals`(constants), from `start` (> 0
+/// where they have to be positive), to which they are drawn with the weight `pull`: the residual of
+/// a constant that, or whose logarithm, is 1 away.
 ///
 /// # Errors
 /// What the library says, where the residuals are not finite or it makes no way.
@@ -102,7 +104,8 @@ pub fn minimize(sign: Sign, start: &[f64], pull: f64, residuals: impl Fn(&[f64])
     let problem = Problem { residuals: &residuals, sign, pull, start: unknowns.clone(), unknowns };
     let (problem, report) =
         LevenbergMarquardt::new().with_ftol(1e-10).with_xtol(1e-8).with_gtol(1e-10).with_patience(40).minimize(problem);
-    // An exhausted patience is an answer as good as its last digit; anything else without success is none.
+    // An exhausted patience is an answer as good as its last digit; anything else without success
+    // is none.
     if !report.termination.was_successful() && report.termination != TerminationReason::LostPatience {
         return Err(format!("{:?}", report.termination));
     }

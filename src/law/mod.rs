@@ -1,11 +1,14 @@
 //! From simulations to a contact law that needs axisymmetric data only.
 //!
-//! `variables` are the normalised quantities in which contacts of different materials fall together; `data` reads a study back; `forms` and `normal` are
-//! the candidate correlations; `prior` is what a small study may take from a bigger one; `fit` determines their constants, compares them by cross-validation and keeps the best as a [`Law`] (`model`,
-//! `law.json`); `predict` applies it to a case; `contact` is the law as an
-//! incremental update of one contact, and `export` writes that for other programs. `least_squares` and `report` serve them.
+//! `variables` are the normalised quantities in which contacts of different materials fall
+//! together; `data` reads a study back; `forms` and `normal` are the candidate correlations;
+//! `prior` is what a small study may take from a bigger one; `fit` determines their constants,
+//! compares them by cross-validation and keeps the best as a [`Law`] (`model`, `law.json`);
+//! `predict` applies it to a case; `contact` is the law as an incremental update of one contact,
+//! and `export` writes that for other programs. `least_squares` and `report` serve them.
 //!
-//! `tabulated` is the law of one material and one friction as curves in h; `file` takes either kind; `check` holds the update against simulated paths.
+//! `tabulated` is the law of one material and one friction as curves in h; `file` takes either
+//! kind; `check` holds the update against simulated paths.
 
 pub mod check;
 pub mod contact;

@@ -1,4 +1,5 @@
-//! The law: forms, constants, where they come from, where they hold and how well, as `law.json` has them.
+//! The law: forms, constants, where they come from, where they hold and how well, as `law.json` has
+//! them.
 
 use std::path::Path;
 
@@ -17,7 +18,8 @@ pub const FORMAT: &str = "asperity-law";
 /// Version of the file's layout.
 pub const VERSION: u32 = 2;
 
-/// What a contact is before it is sheared: all that the law needs. Any one consistent system of units.
+/// What a contact is before it is sheared: all that the law needs. Any one consistent system of
+/// units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axisymmetric {
     /// E, stress.
@@ -28,7 +30,8 @@ pub struct Axisymmetric {
     pub radius: f64,
     /// mu.
     pub friction: f64,
-    /// sigma_rep, the flow stress at the representative strain 0.2 a/R and never below sigma_Y; infinite for an elastic sphere.
+    /// sigma_rep, the flow stress at the representative strain 0.2 a/R and never below sigma_Y;
+    /// infinite for an elastic sphere.
     pub sigma_rep: f64,
     /// Indentation h, length.
     pub h: f64,
@@ -102,7 +105,8 @@ impl Interval {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Validity {
-    /// Lambda. Below first yield the law is Cattaneo and Mindlin's with the compliance of the body, and holds without data.
+    /// Lambda. Below first yield the law is Cattaneo and Mindlin's with the compliance of the body,
+    /// and holds without data.
     pub lambda: Interval,
     /// mu.
     pub friction: Interval,
@@ -112,8 +116,9 @@ pub struct Validity {
     pub c_squared: Interval,
     /// nu.
     pub poissons_ratio: Interval,
-    /// Hardening exponent d ln sigma/d ln eps_p at the representative strain, which the law does not take but `law predict` checks: a study of ideally
-    /// plastic spheres says nothing of hardening ones.
+    /// Hardening exponent d ln sigma/d ln eps_p at the representative strain, which the law does
+    /// not take but `law predict` checks: a study of ideally plastic spheres says nothing of
+    /// hardening ones.
     pub hardening_exponent: Interval,
 }
 
@@ -155,7 +160,8 @@ pub struct Provenance {
     pub folds: usize,
     /// Seed of the folds.
     pub seed: u64,
-    /// Study of the law whose constants the fit started from and was drawn to; `None` if it knew of none, or did better without.
+    /// Study of the law whose constants the fit started from and was drawn to; `None` if it knew of
+    /// none, or did better without.
     pub prior: Option<PriorUse>,
 }
 
@@ -205,12 +211,14 @@ pub struct Law {
 pub(super) const MARGIN: f64 = 0.02;
 
 impl Law {
-    /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly as a/R goes to 0; a contact without force has no slip force.
+    /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly as a/R goes
+    /// to 0; a contact without force has no slip force.
     pub fn contact(&self, inputs: &Axisymmetric) -> Parameters {
         contact(&self.forms, &self.constants, inputs)
     }
 
-    /// F_T and F_N at the displacement `delta_t` of a shear in one direction, constant from delta_T_slip on; F_T is odd and F_N even in `delta_t`.
+    /// F_T and F_N at the displacement `delta_t` of a shear in one direction, constant from
+    /// delta_T_slip on; F_T is odd and F_N even in `delta_t`.
     pub fn forces(&self, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
         forces(&self.forms, parameters, friction, delta_t)
     }

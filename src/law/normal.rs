@@ -1,14 +1,17 @@
-//! F_N0 and a0 from the indentation alone: closed forms with a fitted correction, exactly Hertz below first yield.
+//! F_N0 and a0 from the indentation alone: closed forms with a fitted correction, exactly Hertz
+//! below first yield.
 //!
-//! With g = 1 - Lambda_Y/Lambda, u = ln(Lambda/Lambda_Y), e = d ln sigma/d ln eps_p at the representative strain, a_H = sqrt(R h), F_H Hertz's force
-//! and X = Lambda/Lambda_Y - 1, the candidates are
+//! With g = 1 - Lambda_Y/Lambda, u = ln(Lambda/Lambda_Y), e = d ln sigma/d ln eps_p at the
+//! representative strain, a_H = sqrt(R h), F_H Hertz's force and X = Lambda/Lambda_Y - 1, the
+//! candidates are
 //! ```text
 //! published   a, F_N of Olsson & Larsson (2016)
 //! corrected   a = a_OL exp(g (c1 + c2 u)),            F_N = F_OL exp(g (d1 + d2 a/R + d3 e + d4 u))
 //! smooth      a^2 = 2 R h {1/2 + (1.43 exp(-b1 e) - 1/2) [1 - exp(-(b2 u)^b3)]} exp(b4 g a_H/R)
 //!             F_N = F_H [1 + (k1 X^k2)^k3]^(-1/k3) exp(g [(k4 - k5 u) a_H/R - k6 e])
 //! ```
-//! where Lambda, e are taken at the contact radius (published, corrected) or at Hertz's radius a_H (smooth, which is explicit in h).
+//! where Lambda, e are taken at the contact radius (published, corrected) or at Hertz's radius a_H
+//! (smooth, which is explicit in h).
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -170,7 +173,8 @@ pub(super) fn normal_force(form: NormalForm, constants: &[f64], body: &Body, h: 
     }
 }
 
-/// Olsson & Larsson's contact radius for any hardening law, the 1/m of the closed form being the local hardening exponent.
+/// Olsson & Larsson's contact radius for any hardening law, the 1/m of the closed form being the
+/// local hardening exponent.
 fn published_radius(body: &Body, h: f64) -> f64 {
     let reach = 2.0 * body.sphere.radius * h;
     let c_squared_at = |a: f64| c_squared(body.lambda(a), plastic_c_squared(body.hardening_exponent(a)));

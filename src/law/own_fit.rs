@@ -1,7 +1,8 @@
-//! The parameters of one case by least squares of its own curves: delta_T_slip and n from F_T, M and N from F_N.
+//! The parameters of one case by least squares of its own curves: delta_T_slip and n from F_T, M
+//! and N from F_N.
 //!
-//! Where F_T approaches mu F_N_slip as an exponential, n and delta_T_slip grow together without bound; n is kept below 3/2 + 8.5 as in the
-//! law.
+//! Where F_T approaches mu F_N_slip as an exponential, n and delta_T_slip grow together without
+//! bound; n is kept below 3/2 + 8.5 as in the law.
 
 use super::data::Sample;
 use super::forms::{self, EXPONENT_SPAN, NormalCurve};

@@ -41,7 +41,8 @@ const PRESS_ELEMENTS: usize = 8;
 /// The law of a case that presses once and shears once at constant h.
 ///
 /// # Errors
-/// [`LawError::NotCovered`] for another path, another hold or full stick; what goes wrong in a press.
+/// [`LawError::NotCovered`] for another path, another hold or full stick; what goes wrong in a
+/// press.
 pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Prediction, LawError> {
     let (indentation, target, friction) = covered(case)?;
     let body = Body::from_case(case)?;

@@ -1,15 +1,17 @@
 //! What is known before a study is looked at: the constants of a law that was fitted to more.
 //!
-//! A small study determines a few combinations of the constants and leaves the others open. Its fit may start from the constants of a bigger law and be drawn
-//! back to them: the constant c adds the residual w ln(c/c_prior) to those of the data, which are shares of a force, every case counting as one. Which weight
-//! w, or none, is a question to the cross-validation, as the forms are.
+//! A small study determines a few combinations of the constants and leaves the others open. Its fit
+//! may start from the constants of a bigger law and be drawn back to them: the constant c adds the
+//! residual w ln(c/c_prior) to those of the data, which are shares of a force, every case counting
+//! as one. Which weight w, or none, is a question to the cross-validation, as the forms are.
 
 use std::path::Path;
 
 use super::LawError;
 use super::model::Law;
 
-/// The weights that are tried. The greatest all but keeps the prior's constants; the least decides only what the data leave open.
+/// The weights that are tried. The greatest all but keeps the prior's constants; the least decides
+/// only what the data leave open.
 pub const WEIGHTS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 /// The built-in law is offered to studies with less than this share of its cases.
 const SMALL: f64 = 0.25;
@@ -20,12 +22,14 @@ const BUILT_IN: &str = include_str!("../../fixtures/law/law.json");
 /// Whether a fit knows of another law.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Prior {
-    /// The built-in law, fitted to the 240 cases of wear-2014, for a study with less than a quarter as many; else none.
+    /// The built-in law, fitted to the 240 cases of wear-2014, for a study with less than a quarter
+    /// as many; else none.
     #[default]
     BuiltIn,
     /// None: the constants are drawn to one, weakly.
     None,
-    /// A given law. One that was fitted to cases of the study itself makes the cross-validated errors too small.
+    /// A given law. One that was fitted to cases of the study itself makes the cross-validated
+    /// errors too small.
     Law(Box<Law>),
 }
 

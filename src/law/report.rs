@@ -1,11 +1,12 @@
-//! What a fit says of itself: tables of candidates and of errors by region, for `law.json` and for the terminal.
+//! What a fit says of itself: tables of candidates and of errors by region, for `law.json` and for
+//! the terminal.
 
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
 
-/// Errors over a number of cases. F_T as a share of the peak of F_T, F_N as a share of F_N0; rms over the points of each curve and over the cases, max over all
-/// points.
+/// Errors over a number of cases. F_T as a share of the peak of F_T, F_N as a share of F_N0; rms
+/// over the points of each curve and over the cases, max over all points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Errors {
@@ -97,7 +98,8 @@ pub struct RegionError {
     pub errors: Errors,
 }
 
-/// One case with its own parameters, by least squares of its own curves: what the correlations are drawn through.
+/// One case with its own parameters, by least squares of its own curves: what the correlations are
+/// drawn through.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FittedCase {
@@ -127,18 +129,21 @@ pub struct FittedCase {
     pub n_exponent: f64,
     /// Greatest error of F_T of this curve's own fit, as a share of its peak.
     pub own_f_t_max: f64,
-    /// Cross-validated greatest error of the law in F_T, as a share of the peak, F_N0 and a0 being known.
+    /// Cross-validated greatest error of the law in F_T, as a share of the peak, F_N0 and a0 being
+    /// known.
     pub law_f_t_max: f64,
     /// Likewise in F_N, as a share of F_N0.
     pub law_f_n_max: f64,
 }
 
-/// Boundaries of Lambda between the regions of an error table; the first region ends at first yield.
+/// Boundaries of Lambda between the regions of an error table; the first region ends at first
+/// yield.
 pub const LAMBDA_BOUNDS: [f64; 2] = [20.0, 160.0];
 /// Boundaries of mu likewise.
 pub const FRICTION_BOUNDS: [f64; 2] = [0.2, 0.4];
 
-/// Errors by region of Lambda and mu, regions without cases left out; the last row is for all. `cases`: (Lambda, Lambda_Y, mu, errors).
+/// Errors by region of Lambda and mu, regions without cases left out; the last row is for all.
+/// `cases`: (Lambda, Lambda_Y, mu, errors).
 pub fn by_region(cases: &[(f64, f64, f64, CaseErrors)]) -> Vec<RegionError> {
     let [low, high] = LAMBDA_BOUNDS;
     let [weak, strong] = FRICTION_BOUNDS;

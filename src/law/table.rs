@@ -30,7 +30,8 @@ impl StudyTable {
     /// Reads it.
     ///
     /// # Errors
-    /// [`LawError::NoStudy`] if it is not there, [`LawError::Table`] if it is no table or lacks `case`, `directory` or `status`.
+    /// [`LawError::NoStudy`] if it is not there, [`LawError::Table`] if it is no table or lacks
+    /// `case`, `directory` or `status`.
     pub fn read(path: &Path) -> Result<Self, LawError> {
         let text = bounded::read_to_string(path, bounded::RESULT)
             .map_err(|source| LawError::NoStudy { path: path.to_owned(), source })?;

@@ -57,7 +57,8 @@ mod limits {
         }
     }
 
-    /// An ideally plastic contact, at a given Lambda, with plausible normal data that are Hertz's at first yield.
+    /// An ideally plastic contact, at a given Lambda, with plausible normal data that are Hertz's
+    /// at first yield.
     fn at(lambda: f64, friction: f64) -> Axisymmetric {
         let stress = 400.0;
         let material = case::Material {

@@ -1,14 +1,16 @@
-//! The normalised variables in which contacts of any hardening law fall together: sigma_rep, Lambda, Hbar, c^2.
+//! The normalised variables in which contacts of any hardening law fall together: sigma_rep,
+//! Lambda, Hbar, c^2.
 //!
-//! The formulas are those of [`crate::analytical::johnson`] (Johnson 1970; Olsson & Larsson 2014, eqs 1 and 2); here they are evaluated for
-//! the hardening law of a case.
+//! The formulas are those of [`crate::analytical::johnson`] (Johnson 1970; Olsson & Larsson 2014,
+//! eqs 1 and 2); here they are evaluated for the hardening law of a case.
 
 use crate::analytical::olsson_larsson::plastic_share;
 use crate::analytical::{ElasticSphere, johnson, yielding};
 use crate::case::{self, Case};
 use crate::material::hardening::{Hardening, HardeningError};
 
-/// What a sphere is made of: all that its axisymmetric contact depends on. Any one consistent system of units.
+/// What a sphere is made of: all that its axisymmetric contact depends on. Any one consistent
+/// system of units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// R, E, nu.
@@ -20,7 +22,8 @@ pub struct Body {
 /// The normalised variables of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variables {
-    /// sigma_rep, stress: the flow stress at the representative strain 0.2 a/R, never below sigma_Y; infinite for an elastic sphere.
+    /// sigma_rep, stress: the flow stress at the representative strain 0.2 a/R, never below
+    /// sigma_Y; infinite for an elastic sphere.
     pub sigma_rep: f64,
     /// Johnson's parameter Lambda = E a/((1 - nu^2) sigma_rep R); 0 for an elastic sphere.
     pub lambda: f64,
@@ -56,8 +59,9 @@ impl Body {
         matches!(self.hardening, Hardening::Elastic)
     }
 
-    /// sigma_rep at the contact radius `a`: the flow stress at the total strain eps_rep = 0.2 a/R (Tabor 1951), split as eps = eps_p + sigma/E; sigma_Y
-    /// while eps_rep E < sigma_Y (Olsson & Larsson 2016). Continuous in `a` and not decreasing. Infinite for an elastic sphere.
+    /// sigma_rep at the contact radius `a`: the flow stress at the total strain eps_rep = 0.2 a/R
+    /// (Tabor 1951), split as eps = eps_p + sigma/E; sigma_Y while eps_rep E < sigma_Y (Olsson &
+    /// Larsson 2016). Continuous in `a` and not decreasing. Infinite for an elastic sphere.
     pub fn representative_stress(&self, a: f64) -> f64 {
         if self.is_elastic() {
             return f64::INFINITY;
@@ -82,8 +86,9 @@ impl Body {
         }
     }
 
-    /// Local hardening exponent d ln sigma/d ln eps_p, as the secant over two octaves, at the representative strain of `a`; in \[0, 1\], 0 for an
-    /// elastic and for an ideally plastic sphere. It is the 1/m of the closed forms.
+    /// Local hardening exponent d ln sigma/d ln eps_p, as the secant over two octaves, at the
+    /// representative strain of `a`; in \[0, 1\], 0 for an elastic and for an ideally plastic
+    /// sphere. It is the 1/m of the closed forms.
     pub fn hardening_exponent(&self, a: f64) -> f64 {
         if self.is_elastic() {
             return 0.0;
@@ -99,7 +104,8 @@ pub fn c_squared(radius: f64, h: f64, a: f64) -> f64 {
     a * a / (2.0 * radius * h)
 }
 
-/// Lambda at first yield under Hertz's pressure: 2.533 at nu = 0.3. Below it every correction of the law is exactly none.
+/// Lambda at first yield under Hertz's pressure: 2.533 at nu = 0.3. Below it every correction of
+/// the law is exactly none.
 pub fn yield_lambda(nu: f64) -> f64 {
     yielding::first_yield(nu).lambda()
 }

@@ -6,9 +6,10 @@ use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Writes `path` through `fill`: into a hidden file beside it, which takes the name only when it is complete and on the disk; then the folder is brought to
-/// the disk too, so that a power cut does not take the name back. Folders above it are made. On an error the hidden file is removed and what stood under the
-/// name before stays.
+/// Writes `path` through `fill`: into a hidden file beside it, which takes the name only when it is
+/// complete and on the disk; then the folder is brought to the disk too, so that a power cut does
+/// not take the name back. Folders above it are made. On an error the hidden file is removed and
+/// what stood under the name before stays.
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
     let name = path.file_name().ok_or_else(|| OutputError::Write {
         path: path.to_path_buf(),
@@ -26,7 +27,8 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Re
         fs::rename(&draft, path)
     })();
     written.map_err(|source| {
-        // The first error is the one to report; a draft that cannot be removed either is hidden and harmless.
+        // The first error is the one to report; a draft that cannot be removed either is hidden and
+        // harmless.
         let _ = fs::remove_file(&draft);
         OutputError::Write { path: path.to_path_buf(), source }
     })?;
@@ -52,7 +54,8 @@ fn make_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Brings the names in a folder to the disk. Not every system and file system can, and then there is nothing to be done about it.
+/// Brings the names in a folder to the disk. Not every system and file system can, and then there
+/// is nothing to be done about it.
 fn sync_folder(folder: &Path) {
     if cfg!(unix) {
         let _ = File::open(folder).and_then(|folder| folder.sync_all());

@@ -1,7 +1,8 @@
 //! `checkpoint.bin`: from where an interrupted or killed run goes on.
 //!
-//! A line of text with the version of format and program, the state in postcard's encoding (which keeps every number to the bit), and the CRC-32 of all
-//! that, four bytes, little-endian. It is replaced whole or not at all, and removed when the run has ended.
+//! A line of text with the version of format and program, the state in postcard's encoding (which
+//! keeps every number to the bit), and the CRC-32 of all that, four bytes, little-endian. It is
+//! replaced whole or not at all, and removed when the run has ended.
 
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Write};
@@ -19,8 +20,8 @@ use crate::simulation::zone::Zone;
 
 /// First words of the file.
 const NAME: &str = "asperity checkpoint";
-/// To be raised with every change of what is stored, and of the order and the steps in which a run goes on from it. The version of the program is compared
-/// as well.
+/// To be raised with every change of what is stored, and of the order and the steps in which a run
+/// goes on from it. The version of the program is compared as well.
 const FORMAT: u32 = 6;
 
 /// An unfinished run: its case, what it depends on, and what it has written.
@@ -145,7 +146,8 @@ impl Checkpoint {
         Err(OutputError::Checkpoint { path: path.to_path_buf(), problem })
     }
 
-    /// What the user should know if the run goes on somewhere else: the bits are then not those of a run in one place.
+    /// What the user should know if the run goes on somewhere else: the bits are then not those of
+    /// a run in one place.
     pub(super) fn change_of_device(&self, device: &str) -> Option<String> {
         let cpu = |device: &str| device.starts_with("CPU (") && device.ends_with(')');
         let same = self.device == device || (cpu(&self.device) && cpu(device));
@@ -157,7 +159,8 @@ fn head() -> String {
     format!("{NAME}, format {FORMAT}, version {}\n", env!("CARGO_PKG_VERSION"))
 }
 
-/// The first key in which two cases in TOML differ, with both values; `None` if they are the same case.
+/// The first key in which two cases in TOML differ, with both values; `None` if they are the same
+/// case.
 pub fn case_difference(there: &str, here: &str) -> Option<String> {
     let (found, wanted) = (flat(there), flat(here));
     let keys: std::collections::BTreeSet<&String> = found.keys().chain(wanted.keys()).collect();

@@ -23,7 +23,8 @@ impl Clock {
         Self::of(Whose::Process)
     }
 
-    /// Starts one for the work of this thread alone, for runs side by side in one process; it must be read in the thread that started it.
+    /// Starts one for the work of this thread alone, for runs side by side in one process; it must
+    /// be read in the thread that started it.
     pub fn start_for_thread() -> Self {
         Self::of(Whose::Thread)
     }
@@ -37,7 +38,8 @@ impl Clock {
         self.wall.elapsed().as_secs_f64()
     }
 
-    /// Processor seconds since the start, of the whole process or of the thread; `None` where the system does not tell.
+    /// Processor seconds since the start, of the whole process or of the thread; `None` where the
+    /// system does not tell.
     pub fn cpu_seconds(&self) -> Option<f64> {
         Some(cpu_seconds(self.whose)? - self.cpu?)
     }

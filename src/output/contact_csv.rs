@@ -1,7 +1,9 @@
 //! `contact/step_0020.csv`: the contact surface of one step, in the user's units.
 //!
-//! The table holds the whole contact: a node on the symmetry plane once, with the area that it has on both halves, every other node twice, as it was computed
-//! and, after all of those, mirrored. Sums over all rows are therefore of the whole sphere: F_N of pressure times area, -F_T of traction_x times area.
+//! The table holds the whole contact: a node on the symmetry plane once, with the area that it has
+//! on both halves, every other node twice, as it was computed and, after all of those, mirrored.
+//! Sums over all rows are therefore of the whole sphere: F_N of pressure times area, -F_T of
+//! traction_x times area.
 
 use super::history::row_problem;
 use super::{OutputError, write_atomically};
@@ -80,7 +82,8 @@ impl ContactPoint {
         Self { reference_y, current_y, traction_y, half: Half::Mirrored, ..self.clone() }
     }
 
-    /// The whole contact of the points of the meshed half: these, and then the images of those beside the symmetry plane.
+    /// The whole contact of the points of the meshed half: these, and then the images of those
+    /// beside the symmetry plane.
     pub fn whole(mut points: Vec<Self>) -> Vec<Self> {
         let images: Vec<Self> = points.iter().filter(|point| point.half == Half::Meshed).map(Self::mirrored).collect();
         points.extend(images);
@@ -100,7 +103,8 @@ pub fn write_contact(path: &Path, points: &[ContactPoint]) -> Result<(), OutputE
     })
 }
 
-/// Reads the table back; errors name the line and the column. Columns that are not its own are left out.
+/// Reads the table back; errors name the line and the column. Columns that are not its own are left
+/// out.
 pub fn read_contact(path: &Path) -> Result<Vec<ContactPoint>, OutputError> {
     let text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
     let malformed = |(line, problem): (u64, String)| OutputError::Malformed { path: path.to_path_buf(), line, problem };

@@ -9,7 +9,8 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a result that may be replaced.
+/// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a
+/// result that may be replaced.
 pub const RESULT_MARKER: &str = "# The resolved case of an asperity run. Running into this directory again replaces its results.";
 
 /// The folder of one run: the names in it, in one place.
@@ -98,14 +99,16 @@ impl OutputDirectory {
         Ok(steps)
     }
 
-    /// Removes what an earlier run left here, so that nothing of it is taken for the next one's: files by the names in this page, and drafts
-    /// of killed runs. Everything else, `case.toml` among it, stays.
+    /// Removes what an earlier run left here, so that nothing of it is taken for the next one's:
+    /// files by the names in this page, and drafts of killed runs. Everything else, `case.toml`
+    /// among it, stays.
     pub fn clear(&self) -> Result<(), OutputError> {
         self.clear_but(|_, _| false)
     }
 
-    /// Removes what an interrupted run left here beyond its checkpoint, in which the fields and contact tables of the steps `saved` are: later ones,
-    /// summary and pictures, and drafts. History and collection, which have entries of several steps, stay and have to be cut back.
+    /// Removes what an interrupted run left here beyond its checkpoint, in which the fields and
+    /// contact tables of the steps `saved` are: later ones, summary and pictures, and drafts.
+    /// History and collection, which have entries of several steps, stay and have to be cut back.
     pub fn cut_back(&self, saved: &[usize]) -> Result<(), OutputError> {
         let files: Vec<String> =
             saved.iter().flat_map(|&step| [self.fields(step), self.contact(step)]).map(|path| file_name(&path)).collect();
@@ -116,7 +119,8 @@ impl OutputDirectory {
         })
     }
 
-    /// Refuses a directory in which a folder of results is a link: what it leads to is not ours to write to or to clear.
+    /// Refuses a directory in which a folder of results is a link: what it leads to is not ours to
+    /// write to or to clear.
     ///
     /// # Errors
     /// [`OutputError::Link`].
@@ -126,14 +130,15 @@ impl OutputDirectory {
         links.map_or(Ok(()), |path| Err(OutputError::Link { path }))
     }
 
-    /// A file that there should be, as a checkpoint tells, and that is gone or empty: fields (where the case has them written) and contact tables of the
-    /// steps `saved`.
+    /// A file that there should be, as a checkpoint tells, and that is gone or empty: fields (where
+    /// the case has them written) and contact tables of the steps `saved`.
     pub fn missing(&self, saved: &[usize], fields: bool) -> Option<PathBuf> {
         let files = saved.iter().flat_map(|&step| [Some(self.contact(step)), fields.then(|| self.fields(step))]).flatten();
         files.into_iter().find(|path| !fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0))
     }
 
-    /// Names in the folder that are no run's drafts nor its lock, the least first: what one has to look at who wants to know whose it is.
+    /// Names in the folder that are no run's drafts nor its lock, the least first: what one has to
+    /// look at who wants to know whose it is.
     ///
     /// # Errors
     /// Those of the system.
@@ -147,7 +152,8 @@ impl OutputDirectory {
         Ok(names)
     }
 
-    /// Removes what a run leaves that was killed between its last files: drafts, and the checkpoint of a run that has ended.
+    /// Removes what a run leaves that was killed between its last files: drafts, and the checkpoint
+    /// of a run that has ended.
     pub fn tidy(&self) -> Result<(), OutputError> {
         self.clear_but(|_, name| draft_of(name).is_none() && name != "checkpoint.bin")
     }

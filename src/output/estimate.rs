@@ -1,9 +1,12 @@
-//! The discretisation error of a run, estimated from the same case on its scout's coarser mesh and from the ripple of its own press curve.
+//! The discretisation error of a run, estimated from the same case on its scout's coarser mesh and
+//! from the ripple of its own press curve.
 //!
-//! Mesh and load steps are refined together, and what they leave is taken to fall as 1/n with n elements along the contact radius: the difference
-//! of two runs then tells what is missing from either (Roache, J. Fluids Eng. 116, 1994). Where the error falls faster the estimate is too large, not
-//! too small. By chance two runs may agree although both are wrong, because nodes come into contact one after another and the force ripples about
-//! its smooth curve; so the ripple's size is added.
+//! Mesh and load steps are refined together, and what they leave is taken to fall as 1/n with n
+//! elements along the contact radius: the difference of two runs then tells what is missing from
+//! either (Roache, J. Fluids Eng. 116, 1994). Where the error falls faster the estimate is too
+//! large, not too small. By chance two runs may agree although both are wrong, because nodes come
+//! into contact one after another and the force ripples about its smooth curve; so the ripple's
+//! size is added.
 
 use super::{StepRecord, Summary};
 
@@ -26,7 +29,8 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// Compares a run whose elements are of size `spacing` with one on `coarse_spacing`, for which `coarse_elements` along the contact radius were asked.
+    /// Compares a run whose elements are of size `spacing` with one on `coarse_spacing`, for which
+    /// `coarse_elements` along the contact radius were asked.
     pub fn new(
         rows: &[StepRecord],
         run: &Summary,
@@ -52,8 +56,8 @@ impl ErrorEstimate {
     }
 }
 
-/// Root mean square of ln F_N about a quadratic in ln h fitted to the first press, from a quarter of its indentation on: the relative ripple of the
-/// force. `None` for fewer than six steps.
+/// Root mean square of ln F_N about a quadratic in ln h fitted to the first press, from a quarter
+/// of its indentation on: the relative ripple of the force. `None` for fewer than six steps.
 pub fn ripple(rows: &[StepRecord]) -> Option<f64> {
     let press: Vec<&StepRecord> = rows.iter().take_while(|r| r.segment == 0 && r.f_n > 0.0 && r.h > 0.0).collect();
     let last = press.last()?.h;
@@ -67,9 +71,11 @@ pub fn ripple(rows: &[StepRecord]) -> Option<f64> {
     Some((residuals.iter().map(|r| r * r).sum::<f64>() / (points.len() - 3) as f64).sqrt())
 }
 
-/// What a least-squares quadratic leaves of the points (x, y); `None` where the points do not determine it.
+/// What a least-squares quadratic leaves of the points (x, y); `None` where the points do not
+/// determine it.
 fn quadratic_residuals(points: &[[f64; 2]]) -> Option<Vec<f64>> {
-    // Orthogonal polynomials on the points themselves (Forsythe, J. Soc. Indust. Appl. Math. 5, 1957): no normal equations.
+    // Orthogonal polynomials on the points themselves (Forsythe, J. Soc. Indust. Appl. Math. 5,
+    // 1957): no normal equations.
     let mut residuals: Vec<f64> = points.iter().map(|p| p[1]).collect();
     let (mut before, mut now) = (vec![0.0; points.len()], vec![1.0; points.len()]);
     let mut norm_before = f64::INFINITY;

@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 const FIXED_COLUMNS: [&str; 10] =
     ["step", "segment", "h", "delta_T", "F_N", "F_T", "a", "stick_radius", "newton_iterations", "cutbacks"];
 
-/// Appends rows to a `history.csv`; each is one write to the file, so that a killed job keeps whole rows.
+/// Appends rows to a `history.csv`; each is one write to the file, so that a killed job keeps whole
+/// rows.
 #[derive(Debug)]
 pub struct HistoryWriter {
     path: PathBuf,
@@ -26,8 +27,8 @@ impl HistoryWriter {
         Self::resume(path, &[])
     }
 
-    /// Goes on after `rows`, those of the checkpoint: what stands there is replaced by them, so that later rows, and a row cut short, are gone; they
-    /// will be computed again.
+    /// Goes on after `rows`, those of the checkpoint: what stands there is replaced by them, so
+    /// that later rows, and a row cut short, are gone; they will be computed again.
     pub fn resume(path: &Path, rows: &[StepRecord]) -> Result<Self, OutputError> {
         write_atomically(path, |out| {
             out.write_all(header()?.as_bytes())?;
@@ -46,7 +47,8 @@ impl HistoryWriter {
         self.file.write_all(&row).and_then(|()| self.file.flush()).map_err(OutputError::writing(&self.path))
     }
 
-    /// Whether the file still stands where it was made: somebody may have removed the directory, or moved it.
+    /// Whether the file still stands where it was made: somebody may have removed the directory, or
+    /// moved it.
     ///
     /// # Errors
     /// [`OutputError::Gone`].
@@ -77,8 +79,8 @@ pub fn history_columns() -> Vec<String> {
     header().unwrap_or_default().trim_end().split(',').map(str::to_owned).collect()
 }
 
-/// Reads a `history.csv`. A last row without its line end, left by a killed job, is not counted; columns after the first ten may be missing or
-/// unknown. Errors name the line and the column.
+/// Reads a `history.csv`. A last row without its line end, left by a killed job, is not counted;
+/// columns after the first ten may be missing or unknown. Errors name the line and the column.
 pub fn read_history(path: &Path) -> Result<Vec<StepRecord>, OutputError> {
     let mut text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
     text.truncate(text.rfind('\n').map_or(0, |end| end + 1));

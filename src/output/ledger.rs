@@ -38,8 +38,9 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// How far the sphere has been moved up to the end of a step: the sum of |change of h| + |change of delta_T| over its steps. It grows with every step, is a
-    /// length, and does not depend on how a path is cut into steps: the time of the fields in ParaView.
+    /// How far the sphere has been moved up to the end of a step: the sum of |change of h| +
+    /// |change of delta_T| over its steps. It grows with every step, is a length, and does not
+    /// depend on how a path is cut into steps: the time of the fields in ParaView.
     pub fn path_length(&self, step: usize) -> f64 {
         let (mut h, mut delta_t, mut length) = (0.0, 0.0, 0.0);
         for row in self.rows.iter().take_while(|row| row.step <= step) {

@@ -1,7 +1,8 @@
 //! One writer a directory: a locked file in it, for as long as a run writes there.
 //!
-//! It is the lock on the open file that counts, which the system gives back however the process ends; the file itself only tells whose it is. One that
-//! is there without a lock was left by a process that was killed.
+//! It is the lock on the open file that counts, which the system gives back however the process
+//! ends; the file itself only tells whose it is. One that is there without a lock was left by a
+//! process that was killed.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -42,7 +43,8 @@ impl DirectoryLock {
                     return Ok(Self { path, _file: file, note: Some(note) });
                 }
             }
-            // Whoever had it before may have removed the file since it was opened: then what is locked is a file without a name.
+            // Whoever had it before may have removed the file since it was opened: then what is
+            // locked is a file without a name.
             if !same_file(&file, &path) {
                 continue;
             }
@@ -55,7 +57,8 @@ impl DirectoryLock {
         }
     }
 
-    /// What the user should know about how it was taken: from whom, if somebody had it who was killed.
+    /// What the user should know about how it was taken: from whom, if somebody had it who was
+    /// killed.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
     }
@@ -63,7 +66,8 @@ impl DirectoryLock {
 
 impl Drop for DirectoryLock {
     fn drop(&mut self) {
-        // While it is still locked: the next one makes a file of its own. One that cannot be removed is taken for what a killed run left.
+        // While it is still locked: the next one makes a file of its own. One that cannot be
+        // removed is taken for what a killed run left.
         if same_file(&self._file, &self.path) {
             let _ = fs::remove_file(&self.path);
         }

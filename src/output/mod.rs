@@ -1,9 +1,10 @@
-//! What a run leaves behind: `history.csv`, `summary.json`, `fields/*.vtu` with a `.pvd`, `contact/*.csv`, `plots/*.svg`, while
-//! it goes on a checkpoint, and its progress on the screen.
+//! What a run leaves behind: `history.csv`, `summary.json`, `fields/*.vtu` with a `.pvd`,
+//! `contact/*.csv`, `plots/*.svg`, while it goes on a checkpoint, and its progress on the screen.
 //!
-//! The writers take plain records in the user's units; `units` makes them from the simulation's scaled ones. Every file but `history.csv` is written
-//! beside its place and moved there when it is whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job
-//! keeps what it computed.
+//! The writers take plain records in the user's units; `units` makes them from the simulation's
+//! scaled ones. Every file but `history.csv` is written beside its place and moved there when it is
+//! whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job keeps what
+//! it computed.
 
 #[cfg(feature = "plots")]
 pub mod plots;

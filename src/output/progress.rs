@@ -1,4 +1,5 @@
-//! How far the run is: a bar on a terminal, plain lines elsewhere, nothing with `-q`. All of it on stderr.
+//! How far the run is: a bar on a terminal, plain lines elsewhere, nothing with `-q`. All of it on
+//! stderr.
 
 use super::Status;
 #[cfg(feature = "bars")]
@@ -56,7 +57,8 @@ pub fn last_line(status: Status, steps: usize) -> String {
 /// Tells from the steps so far how long the rest of the path will take.
 #[derive(Debug, Default)]
 struct Remaining {
-    /// When the first step was shown, and the share of the path that was behind then: not 0 in a run that was resumed.
+    /// When the first step was shown, and the share of the path that was behind then: not 0 in a
+    /// run that was resumed.
     first: Option<(Instant, f64)>,
 }
 

@@ -8,7 +8,8 @@ use crate::case::Case;
 use crate::simulation::drive::{Observer, StepView};
 use crate::simulation::problem::Problem;
 
-/// The history of a run, in the case's units, the undeformed state first, and the contact at its end.
+/// The history of a run, in the case's units, the undeformed state first, and the contact at its
+/// end.
 pub struct Recorder {
     units: Units,
     stop: Option<Arc<AtomicBool>>,

@@ -39,7 +39,8 @@ const CHECKPOINT_SHARE: u32 = 20;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
-/// Writes `history.csv` row by row, fields and contact tables of the steps that are to be saved, and at the end plots and summary.
+/// Writes `history.csv` row by row, fields and contact tables of the steps that are to be saved,
+/// and at the end plots and summary.
 pub struct ResultWriter {
     out: OutputDirectory,
     units: Units,
@@ -75,8 +76,9 @@ pub struct ResultWriter {
 }
 
 impl ResultWriter {
-    /// Begins the results of a case (in the user's units) in a directory that is there, or goes on with those of an unfinished run of the same case, whose
-    /// files beyond the checkpoint are removed; `stop` is asked after every step.
+    /// Begins the results of a case (in the user's units) in a directory that is there, or goes on
+    /// with those of an unfinished run of the same case, whose files beyond the checkpoint are
+    /// removed; `stop` is asked after every step.
     ///
     /// # Errors
     /// [`OutputError::Write`], [`OutputError::Read`].
@@ -138,7 +140,8 @@ impl ResultWriter {
         Ok(results)
     }
 
-    /// Writes the contact table at the end of each segment even where the case wants no fields: a few kilobytes.
+    /// Writes the contact table at the end of each segment even where the case wants no fields: a
+    /// few kilobytes.
     pub fn with_contact_tables(mut self) -> Self {
         self.contact_tables = true;
         self
@@ -160,7 +163,8 @@ impl ResultWriter {
         self.setting.computed_on = description;
     }
 
-    /// Takes what the coarse run before this one has found in so many seconds on the wall, which have gone by already.
+    /// Takes what the coarse run before this one has found in so many seconds on the wall, which
+    /// have gone by already.
     pub fn scouted(&mut self, scout: Scout, seconds: f64) {
         self.ledger.outside.error_estimate = seconds;
         self.ledger.outside.setup -= seconds;
@@ -203,8 +207,9 @@ impl ResultWriter {
         Ok(())
     }
 
-    /// Draws the plots and writes the summary of a run that ended as `status` for the reason `message`. The summary is written even if a plot
-    /// fails, whose error is then returned. Of a run that has ended for good the checkpoint is removed.
+    /// Draws the plots and writes the summary of a run that ended as `status` for the reason
+    /// `message`. The summary is written even if a plot fails, whose error is then returned. Of a
+    /// run that has ended for good the checkpoint is removed.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
         self.history.check_there()?;
         self.progress.finish(&last_line(status, self.ledger.rows.len()));
@@ -248,7 +253,8 @@ impl ResultWriter {
         summary.write(&self.out.summary())?;
         finite?;
         if status != Status::Interrupted {
-            // The summary says that the run has ended, so that one which cannot be removed does no harm.
+            // The summary says that the run has ended, so that one which cannot be removed does no
+            // harm.
             let _ = std::fs::remove_file(self.out.checkpoint());
         }
         plots.map(|()| summary)
@@ -374,7 +380,8 @@ impl Observer for ResultWriter {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// A checkpoint that cannot be written is no reason to stop computing, and the one before is still there.
+    /// A checkpoint that cannot be written is no reason to stop computing, and the one before is
+    /// still there.
     fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
         let begun = Instant::now();
         if !last && begun < self.next_checkpoint {

@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;
 
-/// delta_T_slip is the displacement at which |F_T|/F_N first reaches this share of mu: the last per cent of the curve is so flat that where it
-/// ends depends on the step size.
+/// delta_T_slip is the displacement at which |F_T|/F_N first reaches this share of mu: the last per
+/// cent of the curve is so flat that where it ends depends on the step size.
 pub const SLIP_DISPLACEMENT_RATIO: f64 = 0.99;
-/// Full slip counts as reached when no point in contact sticks or |F_T|/F_N is at least this share of mu. It stays below 1 where points
-/// slip in slightly different directions or a few at the edge, which carry next to nothing, do not settle.
+/// Full slip counts as reached when no point in contact sticks or |F_T|/F_N is at least this share
+/// of mu. It stays below 1 where points slip in slightly different directions or a few at the edge,
+/// which carry next to nothing, do not settle.
 pub const FULL_SLIP_RATIO: f64 = 0.997;
 
 /// How a run ended.
@@ -23,7 +24,8 @@ pub enum Status {
     NotConverged,
     /// The contact came to the edge of the finely meshed zone; what was computed is kept.
     ContactOutgrewMesh,
-    /// Stopped from outside, by a signal or because results could not be written; what was computed is kept.
+    /// Stopped from outside, by a signal or because results could not be written; what was computed
+    /// is kept.
     #[default]
     Interrupted,
     /// Broke off for another reason: the device failed, say; what was computed is kept.
@@ -74,8 +76,10 @@ pub struct NormalizedResults {
     pub k_t0: Option<f64>,
 }
 
-/// A run in some numbers, in the user's units. What does not exist is null. "The shear" is the first one of the path, as far as it goes in one
-/// direction; its numbers are sizes, so that a shear to the left gives the same as one to the right. Where h and delta_T move together there is no shear.
+/// A run in some numbers, in the user's units. What does not exist is null. "The shear" is the
+/// first one of the path, as far as it goes in one direction; its numbers are sizes, so that a
+/// shear to the left gives the same as one to the right. Where h and delta_T move together there is
+/// no shear.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Summary {
@@ -92,14 +96,17 @@ pub struct Summary {
     /// Greatest |F_T| of the shear.
     #[serde(rename = "F_T_max")]
     pub f_t_max: Option<f64>,
-    /// Displacement from the start of the shear to |F_T|/F_N = 0.99 mu, see [`SLIP_DISPLACEMENT_RATIO`], interpolated linearly within the step.
+    /// Displacement from the start of the shear to |F_T|/F_N = 0.99 mu, see
+    /// [`SLIP_DISPLACEMENT_RATIO`], interpolated linearly within the step.
     #[serde(rename = "delta_T_slip")]
     pub delta_t_slip: Option<f64>,
-    /// Initial tangential stiffness: the secants to the first two steps of the shear, extrapolated linearly to no displacement (the one
-    /// secant if there is one step). The body's own compliance up to the equator is in it.
+    /// Initial tangential stiffness: the secants to the first two steps of the shear, extrapolated
+    /// linearly to no displacement (the one secant if there is one step). The body's own compliance
+    /// up to the equator is in it.
     #[serde(rename = "k_T0")]
     pub k_t0: Option<f64>,
-    /// Estimated discretisation error of F_N0, a size, see [`super::estimate`]; null where none was made.
+    /// Estimated discretisation error of F_N0, a size, see [`super::estimate`]; null where none was
+    /// made.
     #[serde(rename = "F_N0_error")]
     pub f_n0_error: Option<f64>,
     /// That of a0.
@@ -107,7 +114,8 @@ pub struct Summary {
     /// That of F_T_max.
     #[serde(rename = "F_T_max_error")]
     pub f_t_max_error: Option<f64>,
-    /// Root mean square of ln F_N about a smooth curve through the first press: the ripple of nodes coming into contact, part of the errors.
+    /// Root mean square of ln F_N about a smooth curve through the first press: the ripple of nodes
+    /// coming into contact, part of the errors.
     #[serde(rename = "F_N_ripple")]
     pub f_n_ripple: Option<f64>,
     /// Elements along the contact radius of the coarse run from which the errors were estimated.
@@ -159,8 +167,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Everything that the history tells, its own counts included; the mesh, times, device, status and messages are left to the caller. The
-    /// version is set. An empty history gives nulls.
+    /// Everything that the history tells, its own counts included; the mesh, times, device, status
+    /// and messages are left to the caller. The version is set. An empty history gives nulls.
     pub fn from_history(history: &[StepRecord], inputs: &SummaryInputs) -> Self {
         let mut summary = Self {
             steps: history.len(),
@@ -227,8 +235,8 @@ impl Summary {
     }
 }
 
-/// The last record before the first shear and the records of that shear, up to where it stops or turns. Without a shear the record of the
-/// greatest indentation and nothing.
+/// The last record before the first shear and the records of that shear, up to where it stops or
+/// turns. Without a shear the record of the greatest indentation and nothing.
 fn first_shear<'a>(history: &'a [StepRecord], oblique: &[usize]) -> (Option<&'a StepRecord>, &'a [StepRecord]) {
     let sheared = |pair: &[StepRecord]| pair[1].delta_t != pair[0].delta_t && !oblique.contains(&pair[1].segment);
     let begin = history.windows(2).position(sheared);
@@ -311,7 +319,8 @@ mod tests {
         CattaneoMindlin::at_indentation(ElasticSphere { radius: 2.0, youngs_modulus: 200e3, poissons_ratio: 0.3 }, MU, 1e-3)
     }
 
-    /// Press in four steps, then Cattaneo-Mindlin in increments growing as i^1.3 up to `reach` d_s, with F_N falling by `fall` over d_s.
+    /// Press in four steps, then Cattaneo-Mindlin in increments growing as i^1.3 up to `reach` d_s,
+    /// with F_N falling by `fall` over d_s.
     fn synthetic(direction: f64, reach: f64, fall: f64) -> Vec<StepRecord> {
         let contact = contact();
         let slip = contact.slip_displacement();

@@ -1,4 +1,5 @@
-//! What is kept of a run for its pictures, whether this build can draw them or not: a checkpoint and a directory mean the same to both.
+//! What is kept of a run for its pictures, whether this build can draw them or not: a checkpoint
+//! and a directory mean the same to both.
 
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +46,8 @@ pub struct SlipPanel {
     pub points: Vec<ContactPoint>,
 }
 
-/// The records up to the start of the first shear, and those from there on with the starting one first; the latter are empty without a shear.
+/// The records up to the start of the first shear, and those from there on with the starting one
+/// first; the latter are empty without a shear.
 pub(super) fn split(history: &[StepRecord]) -> (&[StepRecord], &[StepRecord]) {
     match history.windows(2).position(|pair| pair[1].delta_t != pair[0].delta_t) {
         // Pressed and sheared at once from the start: all that presses is both.

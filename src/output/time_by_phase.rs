@@ -27,7 +27,8 @@ pub struct OutsideSteps {
     pub error_estimate: f64,
 }
 
-/// Time on the wall by phase; together they are the whole run. Cases of a study that share a device wait for each other, and that counts.
+/// Time on the wall by phase; together they are the whole run. Cases of a study that share a device
+/// wait for each other, and that counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TimeByPhase {

@@ -1,4 +1,5 @@
-//! From the scaled results of the simulation (lengths by R, stresses by E, the meshed half) to the user's units and the whole sphere.
+//! From the scaled results of the simulation (lengths by R, stresses by E, the meshed half) to the
+//! user's units and the whole sphere.
 
 use super::{ContactPoint, ContactStatus, Half, StepRecord};
 use crate::case::{self, Case, Segment};
@@ -36,7 +37,8 @@ impl Units {
 }
 
 impl StepRecord {
-    /// The row in the user's units; the scaled one is of the whole sphere already, of one of a pair.
+    /// The row in the user's units; the scaled one is of the whole sphere already, of one of a
+    /// pair.
     pub fn in_units(&self, units: &Units) -> Self {
         let (length, force, energy) = (units.radius, units.force(), units.bodies * units.energy());
         let travel = units.bodies * length;
@@ -60,8 +62,9 @@ impl StepRecord {
 }
 
 impl ContactPoint {
-    /// A point in the user's units. Pressure and tractions are the point's force over its tributary reference area, exerted by the
-    /// plane on the sphere: the shear traction resists the motion. A point without area has none. A point on the symmetry plane has its area of both halves.
+    /// A point in the user's units. Pressure and tractions are the point's force over its tributary
+    /// reference area, exerted by the plane on the sphere: the shear traction resists the motion. A
+    /// point without area has none. A point on the symmetry plane has its area of both halves.
     pub fn in_units(scaled: &record::ContactPoint, units: &Units) -> Self {
         let length = units.radius;
         let per_area = if scaled.area > 0.0 { units.youngs_modulus / scaled.area } else { 0.0 };

@@ -1,7 +1,9 @@
-//! `fields/*.vtu` for ParaView, pyvista and meshio: VTK XML unstructured grids of hexahedra, and the `.pvd` that lists them over time.
+//! `fields/*.vtu` for ParaView, pyvista and meshio: VTK XML unstructured grids of hexahedra, and
+//! the `.pvd` that lists them over time.
 //!
-//! Written here rather than by a crate: vtkio, the only candidate, has stood at a release candidate since 2024 whose repository builds on a fork
-//! of quick-xml. The format is small: inline base64, uncompressed, little-endian, 64-bit lengths.
+//! Written here rather than by a crate: vtkio, the only candidate, has stood at a release candidate
+//! since 2024 whose repository builds on a fork of quick-xml. The format is small: inline base64,
+//! uncompressed, little-endian, 64-bit lengths.
 
 use super::{OutputError, write_atomically};
 use base64::Engine;
@@ -22,7 +24,8 @@ pub struct Grid<'a> {
     pub points: &'a [[f64; 3]],
     /// Eight points each, in VTK_HEXAHEDRON order.
     pub cells: &'a [[u32; 8]],
-    /// The y at which the rest of the body is this part's mirror image, where it is only half of one: the file says so in a comment and in its field data.
+    /// The y at which the rest of the body is this part's mirror image, where it is only half of
+    /// one: the file says so in a comment and in its field data.
     pub symmetry_plane: Option<f64>,
 }
 
@@ -40,7 +43,8 @@ pub enum Values {
 pub struct Field {
     /// Name shown in ParaView.
     pub name: String,
-    /// Numbers a point or cell: 1, 3 for a vector, 6 for a symmetric tensor in VTK's order xx, yy, zz, xy, yz, xz, 9 for a full one by rows.
+    /// Numbers a point or cell: 1, 3 for a vector, 6 for a symmetric tensor in VTK's order xx, yy,
+    /// zz, xy, yz, xz, 9 for a full one by rows.
     pub components: usize,
     /// `components` numbers for each point or cell in turn.
     pub values: Values,
@@ -75,8 +79,8 @@ impl Field {
     }
 }
 
-/// Writes a grid with its fields, whole or not at all. Fields whose length is not `components` times the number of points or cells, and cells that
-/// name no point, are refused.
+/// Writes a grid with its fields, whole or not at all. Fields whose length is not `components`
+/// times the number of points or cells, and cells that name no point, are refused.
 pub fn write_vtu(path: &Path, grid: &Grid, point_fields: &[Field], cell_fields: &[Field]) -> Result<(), OutputError> {
     check(grid, point_fields, cell_fields).map_err(|problem| OutputError::Inconsistent { path: path.to_path_buf(), problem })?;
     write_atomically(path, |out| {
@@ -198,7 +202,8 @@ impl<W: Write> Xml<W> {
     }
 }
 
-/// A `.pvd`: files over a pseudo-time, which is what the writer says: the length of the path behind. Rewritten whole with every file, so that it can be opened while the run goes on.
+/// A `.pvd`: files over a pseudo-time, which is what the writer says: the length of the path
+/// behind. Rewritten whole with every file, so that it can be opened while the run goes on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collection {
     path: PathBuf,
@@ -211,7 +216,8 @@ impl Collection {
         Self { path: path.to_path_buf(), entries: Vec::new() }
     }
 
-    /// The collection of the files that a run had written when it was interrupted: whatever stands there is replaced by it.
+    /// The collection of the files that a run had written when it was interrupted: whatever stands
+    /// there is replaced by it.
     pub fn resume(path: &Path, files: impl Iterator<Item = (f64, PathBuf)>) -> Result<Self, OutputError> {
         let mut collection = Self::new(path);
         collection.entries.extend(files.map(|(time, file)| (time, file_name(&file))));

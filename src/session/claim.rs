@@ -1,4 +1,5 @@
-//! The right to write to the directory of `--out`: nobody else writes there, and what stands there is not replaced without a word.
+//! The right to write to the directory of `--out`: nobody else writes there, and what stands there
+//! is not replaced without a word.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -9,7 +10,8 @@ use super::{Earlier, SessionError, prepare};
 use crate::case::Case;
 use crate::output::{DirectoryLock, OutputDirectory, Status, Summary, case_difference, read_history};
 
-/// A directory that is taken. Given up, folders that were made for it and in which nothing was written go too.
+/// A directory that is taken. Given up, folders that were made for it and in which nothing was
+/// written go too.
 #[derive(Debug)]
 pub struct Claim {
     lock: Option<DirectoryLock>,
@@ -32,11 +34,13 @@ impl Drop for Claim {
     }
 }
 
-/// Takes the directory for a run of `case`: makes it if it is not there, and locks it for as long as the lock is kept. A directory of the user's own, one
-/// that another process writes to, and an earlier result that is neither to be resumed nor replaced are refused, and stay as they are.
+/// Takes the directory for a run of `case`: makes it if it is not there, and locks it for as long
+/// as the lock is kept. A directory of the user's own, one that another process writes to, and an
+/// earlier result that is neither to be resumed nor replaced are refused, and stay as they are.
 ///
 /// # Errors
-/// [`SessionError::NotAResult`], [`SessionError::NotADirectory`], [`SessionError::Out`], [`SessionError::Earlier`], [`SessionError::Output`].
+/// [`SessionError::NotAResult`], [`SessionError::NotADirectory`], [`SessionError::Out`],
+/// [`SessionError::Earlier`], [`SessionError::Output`].
 pub fn claim(dir: &Path, case: &Case, earlier: Earlier) -> Result<Claim, SessionError> {
     prepare::recognise(dir)?;
     let made = dir.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && is_absent(folder));
@@ -54,7 +58,8 @@ pub fn claim(dir: &Path, case: &Case, earlier: Earlier) -> Result<Claim, Session
     Ok(claim)
 }
 
-/// An earlier result in words: whose, how far and how old; `None` if there is none, or nothing of it was computed.
+/// An earlier result in words: whose, how far and how old; `None` if there is none, or nothing of
+/// it was computed.
 fn found(dir: &Path, case: &Case) -> Option<String> {
     let out = OutputDirectory::existing(dir);
     let there = out.read_case()?;
@@ -91,7 +96,8 @@ fn ago(time: SystemTime) -> String {
     }
 }
 
-/// Removes from a run that has ended what is left there when it was killed just before its last file was removed.
+/// Removes from a run that has ended what is left there when it was killed just before its last
+/// file was removed.
 pub fn tidy(dir: &Path) {
     // What cannot be removed does no harm.
     let _ = OutputDirectory::existing(dir).tidy();

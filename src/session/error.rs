@@ -7,7 +7,8 @@ use crate::case::CaseError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
 
-/// A run that could not begin, or broke off. A step that does not converge is not an error: see [`super::Outcome`].
+/// A run that could not begin, or broke off. A step that does not converge is not an error: see
+/// [`super::Outcome`].
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
     /// The case.

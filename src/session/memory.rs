@@ -61,7 +61,8 @@ impl Memory {
         }
     }
 
-    /// Takes what the coarse run has found in so many seconds on the wall, which have gone by already.
+    /// Takes what the coarse run has found in so many seconds on the wall, which have gone by
+    /// already.
     pub fn scouted(&mut self, scout: Scout, seconds: f64) {
         self.outside.error_estimate = seconds;
         self.outside.setup -= seconds;

@@ -1,7 +1,9 @@
-//! One run from its case to its results: what `asperity run` does, as a value that a program of its own may step, watch and cancel.
+//! One run from its case to its results: what `asperity run` does, as a value that a program of its
+//! own may step, watch and cancel.
 //!
-//! `claim` takes the directory of results, `prepare` recognises and clears it, `prior` finds whether there is a run in it to go on with, `pacer` watches the
-//! steps, `memory` keeps what would be written where there is no directory. [`Simulation`] puts them together.
+//! `claim` takes the directory of results, `prepare` recognises and clears it, `prior` finds
+//! whether there is a run in it to go on with, `pacer` watches the steps, `memory` keeps what would
+//! be written where there is no directory. [`Simulation`] puts them together.
 
 mod claim;
 mod error;
@@ -46,9 +48,11 @@ pub struct Options {
     pub device: DeviceChoice,
     /// Their precision.
     pub precision: PrecisionChoice,
-    /// Threads of a pool of its own; without a number the simulation computes in the pool from which it is called. Results do not depend on it.
+    /// Threads of a pool of its own; without a number the simulation computes in the pool from
+    /// which it is called. Results do not depend on it.
     pub threads: Option<NonZeroUsize>,
-    /// Directory for the results, with all the files of `asperity run`; without one nothing is written.
+    /// Directory for the results, with all the files of `asperity run`; without one nothing is
+    /// written.
     pub out: Option<PathBuf>,
     /// What to do with an earlier result there.
     pub earlier: Earlier,
@@ -58,7 +62,8 @@ pub struct Options {
     pub canceller: Canceller,
 }
 
-/// Ends a run after its present step, from any thread: what was computed is kept, and a checkpoint is written where there is a directory.
+/// Ends a run after its present step, from any thread: what was computed is kept, and a checkpoint
+/// is written where there is a directory.
 #[derive(Clone, Debug, Default)]
 pub struct Canceller {
     flag: Arc<AtomicBool>,

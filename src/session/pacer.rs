@@ -1,4 +1,5 @@
-//! Watches a run beside whoever writes its results: keeps the rows, and stops it after a step where one at a time is wanted.
+//! Watches a run beside whoever writes its results: keeps the rows, and stops it after a step where
+//! one at a time is wanted.
 
 use std::cell::Cell;
 
@@ -21,7 +22,8 @@ pub enum Pace {
     Halt,
 }
 
-/// Hands everything on to `inner`, but for the end of a segment and the checkpoint that go with a stop of its own: for `inner` there was none.
+/// Hands everything on to `inner`, but for the end of a segment and the checkpoint that go with a
+/// stop of its own: for `inner` there was none.
 pub struct Pacer<'a> {
     inner: &'a mut dyn Observer,
     units: Units,

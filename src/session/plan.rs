@@ -11,7 +11,8 @@ const COST_EXPONENT: f64 = 1.1;
 /// Segments that are named; of a longer path the rest is counted.
 const NAMED: usize = 4;
 
-/// The run in a line: `press to h = 0.02, shear to full slip; mu = 0.3; 16 elements along the contact radius; on CPU (2 threads) in f64`.
+/// The run in a line: `press to h = 0.02, shear to full slip; mu = 0.3; 16 elements along the
+/// contact radius; on CPU (2 threads) in f64`.
 pub(super) fn plan(case: &Case, computed_on: &Description) -> String {
     let mut segments: Vec<String> = case.path.iter().take(NAMED).map(segment).collect();
     if case.path.len() > NAMED {
@@ -52,7 +53,8 @@ fn segment(segment: &Segment) -> String {
     }
 }
 
-/// What the coarse run tells of the run: its size, and about how long it will take in the same place.
+/// What the coarse run tells of the run: its size, and about how long it will take in the same
+/// place.
 pub(super) fn forecast(scout: &Scout, problem: &Problem, scout_seconds: f64) -> String {
     let elements = problem.model.mesh.elements.len();
     let refinement = scout.spacing / problem.spacing;

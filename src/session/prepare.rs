@@ -1,4 +1,5 @@
-//! The directory of `--out`: made, or recognised as an earlier result, and never anything of the user's.
+//! The directory of `--out`: made, or recognised as an earlier result, and never anything of the
+//! user's.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -8,11 +9,12 @@ use super::SessionError;
 use crate::case::Case;
 use crate::output::OutputDirectory;
 
-/// Refuses a directory that is neither absent nor empty nor a result. Drafts and the lock of runs do not count: a run that was killed before its first file
-/// had its name leaves those alone.
+/// Refuses a directory that is neither absent nor empty nor a result. Drafts and the lock of runs
+/// do not count: a run that was killed before its first file had its name leaves those alone.
 ///
 /// # Errors
-/// [`SessionError::NotAResult`], [`SessionError::NotADirectory`], [`SessionError::Out`], [`SessionError::Output`] for a folder of results that is a link.
+/// [`SessionError::NotAResult`], [`SessionError::NotADirectory`], [`SessionError::Out`],
+/// [`SessionError::Output`] for a folder of results that is a link.
 pub fn recognise(dir: &Path) -> Result<(), SessionError> {
     let failed = |what: &'static str| move |source: io::Error| SessionError::Out { dir: dir.to_owned(), what, source };
     match fs::metadata(dir) {
@@ -31,8 +33,9 @@ pub fn recognise(dir: &Path) -> Result<(), SessionError> {
 
 /// Prepares `dir` for the results of `case` and writes the resolved case to `case.toml` there.
 ///
-/// A directory that does not exist is made, an empty one is used. In one that holds an earlier result, what that
-/// run wrote is removed and everything else stays. Anything else is refused, untouched.
+/// A directory that does not exist is made, an empty one is used. In one that holds an earlier
+/// result, what that run wrote is removed and everything else stays. Anything else is refused,
+/// untouched.
 pub fn prepare(dir: &Path, case: &Case) -> Result<(), SessionError> {
     recognise(dir)?;
     fs::create_dir_all(dir).map_err(|source| SessionError::Out { dir: dir.to_owned(), what: "be created", source })?;

@@ -9,7 +9,8 @@ use crate::output::{Checkpoint, OutputDirectory, OutputError, Status, Summary, c
 /// What `--resume` finds of an earlier run.
 #[derive(Debug)]
 pub enum PriorRun {
-    /// There is nothing to go on with: no directory, an empty one, or a run that was killed before its first checkpoint.
+    /// There is nothing to go on with: no directory, an empty one, or a run that was killed before
+    /// its first checkpoint.
     NotBegun,
     /// It is under way.
     Unfinished(Box<Checkpoint>),
@@ -20,7 +21,8 @@ pub enum PriorRun {
 /// Looks into `dir`, and leaves it as it is.
 ///
 /// # Errors
-/// [`SessionError::OtherRun`] for the results of another case; [`SessionError::Output`] for a checkpoint that is damaged, of another version or another case.
+/// [`SessionError::OtherRun`] for the results of another case; [`SessionError::Output`] for a
+/// checkpoint that is damaged, of another version or another case.
 pub fn prior_run(dir: &Path, case: &Case) -> Result<PriorRun, SessionError> {
     let out = OutputDirectory::existing(dir);
     // Anything that is not a result is left to those who prepare the directory.

@@ -26,9 +26,11 @@ use crate::simulation::scout::scout;
 
 /// One case on its way along its path.
 ///
-/// [`Simulation::run`] goes to the end of the path. [`Simulation::step`] takes one step, [`Simulation::steps`] iterates over those that are left; in between,
-/// contact and fields can be looked at. All of it gives the same bits, those of `asperity run`. A simulation with a directory that is dropped before the end
-/// of its path leaves a checkpoint there, as an interrupted run does.
+/// [`Simulation::run`] goes to the end of the path. [`Simulation::step`] takes one step,
+/// [`Simulation::steps`] iterates over those that are left; in between, contact and fields can be
+/// looked at. All of it gives the same bits, those of `asperity run`. A simulation with a directory
+/// that is dropped before the end of its path leaves a checkpoint there, as an interrupted run
+/// does.
 ///
 /// ```
 /// use asperity::{Case, Simulation};
@@ -52,7 +54,8 @@ pub struct Simulation {
     notes: Vec<String>,
     history: Vec<StepRecord>,
     stage: Stage,
-    /// Kept until the end: nobody else writes there. Last, so that it is given back when all is written.
+    /// Kept until the end: nobody else writes there. Last, so that it is given back when all is
+    /// written.
     claim: Option<Claim>,
 }
 
@@ -115,7 +118,8 @@ pub struct StepFields {
 }
 
 impl Simulation {
-    /// A simulation of `case` in the pool of threads from which it is called, on a GPU if there is one worth it, that writes nothing.
+    /// A simulation of `case` in the pool of threads from which it is called, on a GPU if there is
+    /// one worth it, that writes nothing.
     ///
     /// # Errors
     /// [`SessionError`]: an invalid case, with the name of the key.
@@ -123,7 +127,8 @@ impl Simulation {
         Self::with(case, Options::default())
     }
 
-    /// The same with options. The directory is taken, and an earlier result is recognised, before anything is computed.
+    /// The same with options. The directory is taken, and an earlier result is recognised, before
+    /// anything is computed.
     ///
     /// # Errors
     /// [`SessionError`]: an invalid case, a directory that must not be used, a missing device.
@@ -185,19 +190,23 @@ impl Simulation {
 
     /// Follows the path, or what is left of it, to its end.
     ///
-    /// A step that does not converge and a cancelled run are no errors: what was computed is kept, and the outcome says so.
+    /// A step that does not converge and a cancelled run are no errors: what was computed is kept,
+    /// and the outcome says so.
     ///
     /// # Errors
-    /// [`SessionError::BrokeOff`]: results cannot be written, or the device failed; what was computed is kept.
+    /// [`SessionError::BrokeOff`]: results cannot be written, or the device failed; what was
+    /// computed is kept.
     pub fn run(&mut self) -> Result<Outcome, SessionError> {
         self.advance(Pace::Whole)?;
         self.outcome().cloned().ok_or(SessionError::Over)
     }
 
-    /// Takes one step and gives its row; `None` once the run has ended, of which [`Simulation::outcome`] then tells.
+    /// Takes one step and gives its row; `None` once the run has ended, of which
+    /// [`Simulation::outcome`] then tells.
     ///
-    /// The first call also makes the coarse run that goes before a run. A contact that leaves the finely meshed zone, which that run prevents, makes the
-    /// run start over: the rows begin again at step 1.
+    /// The first call also makes the coarse run that goes before a run. A contact that leaves the
+    /// finely meshed zone, which that run prevents, makes the run start over: the rows begin again
+    /// at step 1.
     ///
     /// # Errors
     /// As [`Simulation::run`].
@@ -210,13 +219,15 @@ impl Simulation {
         Steps { simulation: self, failed: false }
     }
 
-    /// The whole contact after the last accepted step, both halves, in the user's units; empty before the first step of this process.
+    /// The whole contact after the last accepted step, both halves, in the user's units; empty
+    /// before the first step of this process.
     pub fn contact(&self) -> Vec<ContactPoint> {
         let points = self.follower().and_then(Follower::last).map(|last| last.points());
         points.map_or_else(Vec::new, |points| ContactPoint::whole_of(points, &Units::of(&self.case)))
     }
 
-    /// Stresses and strains after the last accepted step; `None` before the first step of this process.
+    /// Stresses and strains after the last accepted step; `None` before the first step of this
+    /// process.
     ///
     /// # Errors
     /// [`SessionError::Simulation`] if the device fails.
@@ -439,7 +450,8 @@ impl Simulation {
             Err(error) => {
                 let what = error.to_string();
                 if let Sink::Files(results) = sink {
-                    // The disk may be full: what can still be written is written, and the first error is the one to tell.
+                    // The disk may be full: what can still be written is written, and the first
+                    // error is the one to tell.
                     let _ = results.finish(Status::Interrupted, Some(&what));
                 }
                 return Err(broke_off(what));

@@ -1,7 +1,9 @@
-//! Where a run stands between two attempts at a step: all that the next one depends on, and nothing else.
+//! Where a run stands between two attempts at a step: all that the next one depends on, and nothing
+//! else.
 //!
-//! A step is a function of the committed state and its target alone, so a run that is put back to such a place goes on with the same bits. What
-//! the solver keeps between steps besides (matrices, factors, the last trial) is formed anew in each and is not here.
+//! A step is a function of the committed state and its target alone, so a run that is put back to
+//! such a place goes on with the same bits. What the solver keeps between steps besides (matrices,
+//! factors, the last trial) is formed anew in each and is not here.
 
 use serde::{Deserialize, Serialize};
 
@@ -48,21 +50,22 @@ impl Committed {
         state
     }
 
-    /// Length of a step to (h, delta_T) in the measure in which plastic flow goes on evenly: the contact radius grows as sqrt(h) under pressing, and
-    /// shear is measured by itself.
+    /// Length of a step to (h, delta_T) in the measure in which plastic flow goes on evenly: the
+    /// contact radius grows as sqrt(h) under pressing, and shear is measured by itself.
     pub fn length_to(&self, h: f64, delta_t: f64) -> f64 {
         let radius = |h: f64| h.max(0.0).sqrt();
         (radius(h) - radius(self.record.h)).abs() + (delta_t - self.record.delta_t).abs()
     }
 
-    /// Distance from the axis to the outermost closed point, in the undeformed body; zero without contact.
+    /// Distance from the axis to the outermost closed point, in the undeformed body; zero without
+    /// contact.
     pub fn reach(&self) -> f64 {
         let closed = self.points.iter().filter(|p| p.status != Status::Open);
         closed.map(|p| p.reference[0].hypot(p.reference[1])).fold(0.0, f64::max)
     }
 
-    /// Forms the contact points from displacement, force and status. On the symmetry plane the internal force along y is left out: it balances the other
-    /// half of the body, not the plane.
+    /// Forms the contact points from displacement, force and status. On the symmetry plane the
+    /// internal force along y is left out: it balances the other half of the body, not the plane.
     pub fn place_points(&mut self, mesh: &Mesh) {
         let Self { u, force, statuses, gaps, points, .. } = self;
         let point = |(i, (&node, &status)): (usize, (&u32, &Status))| {
@@ -95,7 +98,8 @@ pub(super) struct Place {
     pub start: Option<Start>,
     /// Targets of the segment that are reached.
     pub reached: usize,
-    /// The next target has been set out for. Its parts that are still to be reached are `waiting`, the next one last.
+    /// The next target has been set out for. Its parts that are still to be reached are `waiting`,
+    /// the next one last.
     pub under_way: bool,
     pub waiting: Vec<Target>,
     /// F_T when it was set out for.
@@ -123,12 +127,14 @@ impl Place {
     }
 }
 
-/// A copy of everything on which the rest of a run depends; [`super::drive::Drive::resume`] goes on from it.
+/// A copy of everything on which the rest of a run depends; [`super::drive::Drive::resume`] goes on
+/// from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     pub(super) state: Committed,
     pub(super) place: Place,
-    /// Force scales of the last accepted step and of all (see [`crate::solver::newton::Newton::force_scales`]).
+    /// Force scales of the last accepted step and of all (see
+    /// [`crate::solver::newton::Newton::force_scales`]).
     pub(super) force_scales: [f64; 2],
     pub(super) full_slip: Option<bool>,
     pub(super) case: CaseState,

@@ -1,4 +1,5 @@
-//! Takes the steps of a path: predicts, solves, bisects what fails, measures and records what is accepted.
+//! Takes the steps of a path: predicts, solves, bisects what fails, measures and records what is
+//! accepted.
 
 mod paused;
 mod segments;
@@ -44,24 +45,24 @@ pub struct Drive<'a> {
     last_report: StepReport,
 }
 
-/// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the same iterations, a
-/// third fewer than none.
+/// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the
+/// same iterations, a third fewer than none.
 const PRESS_EXTRAPOLATION: f64 = 0.6;
 /// See [`Drive::attempt_stuck`]; all but the first only after a step was bisected so often.
 const SLIDING_RATIOS: [f64; 3] = [3.0, 1.0, 0.3];
 const SHALLOW: usize = 3;
-/// After a step that failed the targets are taken in half as long parts, until a step takes no more iterations than this.
+/// After a step that failed the targets are taken in half as long parts, until a step takes no more
+/// iterations than this.
 const EASY: usize = 6;
-/// The same after a step under full stick that took more iterations than this, because points come off and land in it
-/// one by one; but not where the normal force is down to a tenth of what it was: what is left there is dragged
-/// along by a few points, and short steps only make it last.
+/// The same after a step under full stick that took more iterations than this: points come off and
+/// land in it one by one.
 const SLOW: usize = 12;
-const LOADED: f64 = 0.1;
 /// Targets are taken in 2^2 parts at most.
 const FINEST: u32 = 2;
 
 impl<'a> Drive<'a> {
-    /// Prepares to follow the problem's path on a backend whose case `case` is the problem's model in its virgin state.
+    /// Prepares to follow the problem's path on a backend whose case `case` is the problem's model
+    /// in its virgin state.
     pub fn new(problem: &'a Problem, backend: &'a mut dyn Compute, case: usize, newton: Newton) -> Self {
         let mesh = problem.model.mesh.clone();
         let state = Committed::virgin(&mesh, problem.rigid);
@@ -84,7 +85,8 @@ impl<'a> Drive<'a> {
         self.full_slip
     }
 
-    /// Puts the run back to where a snapshot of it was taken; [`Drive::run`] then goes on from there.
+    /// Puts the run back to where a snapshot of it was taken; [`Drive::run`] then goes on from
+    /// there.
     ///
     /// # Errors
     /// [`SimulationError::Snapshot`] if it is one of another mesh, [`SimulationError::Compute`].
@@ -187,8 +189,8 @@ impl<'a> Drive<'a> {
         self.problem.resolution
     }
 
-    /// Reaches `target` from the committed state in one step, or in as many as bisection needs; a target that was set out for before, in what is left
-    /// of it.
+    /// Reaches `target` from the committed state in one step, or in as many as bisection needs; a
+    /// target that was set out for before, in what is left of it.
     fn advance(&mut self, target: &Target, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         if !self.place.under_way {
             self.place.under_way = true;
@@ -252,13 +254,10 @@ impl<'a> Drive<'a> {
 
     /// Adapts the length of the next steps to the iterations of the last one.
     fn pace(&mut self, iterations: usize) {
-        let stick = self.problem.model.friction == Friction::Stick;
-        let [last, largest] = self.newton.force_scales();
-        let loaded = last > LOADED * largest;
         let pace = &mut self.place.pace;
-        if iterations <= EASY || stick && !loaded {
+        if iterations <= EASY {
             *pace = pace.saturating_sub(1);
-        } else if stick && iterations > SLOW {
+        } else if iterations > SLOW && self.problem.model.friction == Friction::Stick {
             *pace = (*pace + 1).min(FINEST);
         }
     }
@@ -274,9 +273,10 @@ impl<'a> Drive<'a> {
         }));
     }
 
-    /// One Newton solve under full stick. A point that comes down within the step has no place to stick to before its end, and carries no tangential force in
-    /// it. If the step fails so, those slide too that hold a large tangential force under little normal one: they are about to come off, and there may be no
-    /// equilibrium with them nor without.
+    /// One Newton solve under full stick. A point that comes down within the step has no place to
+    /// stick to before its end, and carries no tangential force in it. If the step fails so, those
+    /// slide too that hold a large tangential force under little normal one: they are about to come
+    /// off, and there may be no equilibrium with them nor without.
     fn attempt_stuck(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
         let mut attempted = self.slide_beyond(f64::INFINITY, target)?;
         let ratios = if self.place.depth < SHALLOW { &SLIDING_RATIOS[..1] } else { &SLIDING_RATIOS[..] };
@@ -293,7 +293,8 @@ impl<'a> Drive<'a> {
         Ok(attempted)
     }
 
-    /// One Newton solve in which open points and those slide whose tangential force exceeds `ratio` times their normal one.
+    /// One Newton solve in which open points and those slide whose tangential force exceeds `ratio`
+    /// times their normal one.
     fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
         let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
         let sliding: Vec<bool> = self.state.points.iter().map(beyond).collect();
@@ -305,7 +306,8 @@ impl<'a> Drive<'a> {
     fn attempt(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
         let mut guess = self.guess(target);
         let h = match (target.hold_force, self.state.last_increment) {
-            // Where the force is held the indentation is an unknown, and goes on as the displacements do.
+            // Where the force is held the indentation is an unknown, and goes on as the
+            // displacements do.
             (true, Some([last_h, last_delta_t])) if guess.is_some() && last_delta_t != 0.0 => {
                 let r = &self.state.record;
                 r.h + last_h * (target.delta_t - r.delta_t) / last_delta_t
@@ -337,14 +339,16 @@ impl<'a> Drive<'a> {
         Ok(self.newton.solve(&mut handle, &self.state.u, self.state.record.h, guess.as_deref(), &control)?)
     }
 
-    /// Extrapolates the last step of the segment: under shear, pressed at the same time or not, all of it; under
-    /// pressing alone a part, so that points that are about to touch come down but are not pushed through the plane.
+    /// Extrapolates the last step of the segment: under shear, pressed at the same time or not, all
+    /// of it; under pressing alone a part, so that points that are about to touch come down but are
+    /// not pushed through the plane.
     ///
-    /// What matters is less the guess's accuracy than that points that flow are found flowing: the first tangent is
-    /// then a plastic one. A fully plastic contact is extrapolated in full, and points that come out below the plane
-    /// are left there: lifted one by one they would strain the elements under them backwards. Without friction, at
-    /// E/sigma_Y = 15,000 and h = 0.085 R, a press took 2,200 iterations and 37 cuts, and takes 150 and one; an
-    /// oblique press at E/sigma_Y = 9000, mu = 0.5, took 19,800 and 472, and takes 300 and none.
+    /// What matters is less the guess's accuracy than that points that flow are found flowing: the
+    /// first tangent is then a plastic one. A fully plastic contact is extrapolated in full, and
+    /// points that come out below the plane are left there: lifted one by one they would strain the
+    /// elements under them backwards. Without friction, at E/sigma_Y = 15,000 and h = 0.085 R, a
+    /// press took 2,200 iterations and 37 cuts, and takes 150 and one; an oblique press at
+    /// E/sigma_Y = 9000, mu = 0.5, took 19,800 and 472, and takes 300 and none.
     fn guess(&self, target: &Target) -> Option<Vec<f64>> {
         let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;
@@ -478,7 +482,8 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over the points of the meshed half.
+    /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over
+    /// the points of the meshed half.
     fn friction_work(&self, u: &[f64], forces: &[[f64; 3]]) -> f64 {
         let mut work = 0.0;
         for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {

@@ -21,8 +21,9 @@ pub struct Followed {
     pub computed_on: Description,
 }
 
-/// Follows the path of `problem`, or what `snapshot` leaves of it, on the backend that `seat` has for the problem. Where the contact leaves the finely
-/// meshed zone the run starts over on a larger one, of which the observer is told; [`Ending::Outgrown`] is left for the largest zone there is.
+/// Follows the path of `problem`, or what `snapshot` leaves of it, on the backend that `seat` has
+/// for the problem. Where the contact leaves the finely meshed zone the run starts over on a larger
+/// one, of which the observer is told; [`Ending::Outgrown`] is left for the largest zone there is.
 ///
 /// # Errors
 /// [`SimulationError`] where no smaller step helps.
@@ -60,7 +61,8 @@ impl<'a> Follower<'a> {
         Ok(Self { problem, seat, paused: Some(paused) })
     }
 
-    /// Follows the path to its end, or until the observer asks to stop. After [`Ending::Interrupted`] it may be called again.
+    /// Follows the path to its end, or until the observer asks to stop. After
+    /// [`Ending::Interrupted`] it may be called again.
     ///
     /// # Errors
     /// As [`follow`]; there is then nothing to go on from.
@@ -135,7 +137,8 @@ fn set_out(problem: &Problem, seat: &mut Seat<'_>, snapshot: Option<Snapshot>) -
     Ok(drive.pause())
 }
 
-/// Gives out `first`, which was made for a problem on `zone`, and afterwards, or for another zone, what `open` makes.
+/// Gives out `first`, which was made for a problem on `zone`, and afterwards, or for another zone,
+/// what `open` makes.
 pub fn seats<'a>(
     first: Seat<'a>,
     zone: Zone,

@@ -1,8 +1,9 @@
 //! The size of the contact, to a fraction of an element, by two methods that use different fields.
 //!
-//! A node on the edge knows no half contact: it is closed or open, and it is closed as soon as the smallest force holds it. Counting
-//! closed nodes, or looking for the end of the gap, therefore finds the radius at which a node just touches. The pressure says
-//! more: nodes within half an element of that radius carry less than their share, and what they lack tells where the edge is.
+//! A node on the edge knows no half contact: it is closed or open, and it is closed as soon as the
+//! smallest force holds it. Counting closed nodes, or looking for the end of the gap, therefore
+//! finds the radius at which a node just touches. The pressure says more: nodes within half an
+//! element of that radius carry less than their share, and what they lack tells where the edge is.
 
 use super::record::ContactPoint;
 use crate::contact::coulomb::Status;
@@ -10,7 +11,8 @@ use crate::contact::coulomb::Status;
 /// Size of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
-    /// Contact radius from the pressure: where the profile of the inner points would have to end to carry the whole force.
+    /// Contact radius from the pressure: where the profile of the inner points would have to end to
+    /// carry the whole force.
     pub radius: f64,
     /// Contact radius from the gap: where the gap of the points outside goes to zero.
     pub radius_gap: f64,
@@ -27,14 +29,16 @@ struct Polar {
     closed: bool,
 }
 
-/// Width of the ring that the pressure profile is taken from, in spacings, outside of which other nodes would blur it.
+/// Width of the ring that the pressure profile is taken from, in spacings, outside of which other
+/// nodes would blur it.
 const RING: f64 = 5.0;
 /// Width of the band outside the contact in which the gap is looked at, in spacings.
 const BAND: f64 = 3.0;
 /// Fewer points than this make no profile.
 const FEWEST_POINTS: usize = 6;
 
-/// Measures the contact of one committed state; `spacing` is the typical distance of contact points.
+/// Measures the contact of one committed state; `spacing` is the typical distance of contact
+/// points.
 pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
     let closed = || points.iter().filter(|p| p.status != Status::Open);
     let area: f64 = closed().map(|p| p.area).sum();
@@ -46,7 +50,8 @@ pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
     let force: f64 = closed().map(|p| p.force[2]).sum();
     let centre = if force > 0.0 { closed().map(|p| p.force[2] * p.position[0]).sum::<f64>() / force } else { 0.0 };
     let reference_centre = closed().map(|p| p.area * p.reference[0]).sum::<f64>() / area;
-    // The surface has stretched under the contact: the ratio of current to reference distances of the closed points.
+    // The surface has stretched under the contact: the ratio of current to reference distances of
+    // the closed points.
     let (now, then) = closed().fold((0.0, 0.0), |(now, then), p| {
         let (r, r0) = ((p.position[0] - centre).hypot(p.position[1]), (p.reference[0] - reference_centre).hypot(p.reference[1]));
         (now + p.area * r * r0, then + p.area * r0 * r0)
@@ -90,8 +95,9 @@ fn line(points: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
     Some((slope, (y1 - slope * x1) / w))
 }
 
-/// The edge from the pressure. Inside, p^2 is fitted by a line in r^2, which is exact for Hertz's pressure and for a uniform one; the force that
-/// points near the edge lack against that profile is the integral of the profile from the edge to the touching radius.
+/// The edge from the pressure. Inside, p^2 is fitted by a line in r^2, which is exact for Hertz's
+/// pressure and for a uniform one; the force that points near the edge lack against that profile is
+/// the integral of the profile from the edge to the touching radius.
 fn radius_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option<f64> {
     let inside = touching - spacing;
     let from = (touching - (RING + 1.0) * spacing).max(0.0);
@@ -99,7 +105,8 @@ fn radius_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option
     let (slope, at_zero) = line(ring.map(|p| (p.area, p.r * p.r, (p.force / p.area).powi(2))))?;
     let squared = |r: f64| (at_zero + slope * r * r).max(0.0);
     let lacking: f64 = points.iter().filter(|p| p.closed && p.r >= inside).map(|p| squared(p.r).sqrt() * p.area - p.force).sum();
-    // Half of the disc is meshed: the profile carries integral pi r p dr. With s = r^2 that is pi/2 integral sqrt(c + m s) ds.
+    // Half of the disc is meshed: the profile carries integral pi r p dr. With s = r^2 that is pi/2
+    // integral sqrt(c + m s) ds.
     let carried = |r: f64| {
         let (lo, hi) = (r * r, touching * touching);
         let n = 64;
@@ -120,8 +127,9 @@ fn radius_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option
     Some(0.5 * (lo + hi))
 }
 
-/// The edge from the gap. It opens as (r - a)^q, with q = 3/2 at an elastic edge (Johnson 1985, section 5.1) and q = 1 where plastic flow has piled
-/// the material up; of these the line gap^(1/q) that fits best is taken, with q in steps of 1/20.
+/// The edge from the gap. It opens as (r - a)^q, with q = 3/2 at an elastic edge (Johnson 1985,
+/// section 5.1) and q = 1 where plastic flow has piled the material up; of these the line gap^(1/q)
+/// that fits best is taken, with q in steps of 1/20.
 fn radius_from_gap(points: &[Polar], touching: f64, spacing: f64) -> Option<f64> {
     let band = || points.iter().filter(|p| !p.closed && p.gap > 0.0 && (p.r - touching).abs() < BAND * spacing);
     let mut best: Option<(f64, f64)> = None;

@@ -1,9 +1,10 @@
 //! One case from its first touch to the end of its path.
 //!
-//! `problem` turns a case file into a scaled model, `path` cuts segments into steps, `drive` takes the steps
-//! (bisecting those that fail), `observer` watches,
-//! `follow` starts a run over on a larger `zone` of fine mesh when the contact leaves it, `scout` finds before how far it will reach, on a coarse mesh,
-//! `footprint` measures the contact, `record` holds what is remembered of each step, `checkpoint` what the next one depends on.
+//! `problem` turns a case file into a scaled model, `path` cuts segments into steps, `drive` takes
+//! the steps (bisecting those that fail), `observer` watches, `follow` starts a run over on a
+//! larger `zone` of fine mesh when the contact leaves it, `scout` finds before how far it will
+//! reach, on a coarse mesh, `footprint` measures the contact, `record` holds what is remembered of
+//! each step, `checkpoint` what the next one depends on.
 
 pub mod checkpoint;
 pub mod drive;
@@ -24,7 +25,8 @@ use crate::compute::ComputeError;
 use crate::mesh::MeshError;
 use crate::solver::SolverError;
 
-/// A failure that ends a run without a result, as opposed to a step that did not converge (see [`drive::Ending`]).
+/// A failure that ends a run without a result, as opposed to a step that did not converge (see
+/// [`drive::Ending`]).
 #[derive(Debug, thiserror::Error)]
 pub enum SimulationError {
     /// The mesh cannot be made.

@@ -12,11 +12,13 @@ use crate::solver::phases::PhaseTimes;
 pub trait Observer {
     /// A step was accepted. The undeformed state comes first, as step 0.
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
-    /// A segment of the path has ended, or the run ends within it; `view` shows its last accepted step.
+    /// A segment of the path has ended, or the run ends within it; `view` shows its last accepted
+    /// step.
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>>;
     /// Something that the user should know and the summary should keep.
     fn note(&mut self, text: &str);
-    /// The contact left the finely meshed zone: the run starts over from the undeformed state on the mesh of `problem`, which has so many unknowns.
+    /// The contact left the finely meshed zone: the run starts over from the undeformed state on
+    /// the mesh of `problem`, which has so many unknowns.
     fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
         let _ = (problem, unknowns);
         Ok(())
@@ -25,8 +27,9 @@ pub trait Observer {
     fn stop_requested(&self) -> bool {
         false
     }
-    /// Offers a checkpoint, after every accepted step; `take` copies the state that a run could go on from. `last`: no other is offered, because
-    /// the run is interrupted or has followed its path.
+    /// Offers a checkpoint, after every accepted step; `take` copies the state that a run could go
+    /// on from. `last`: no other is offered, because the run is interrupted or has followed its
+    /// path.
     fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
         let _ = (last, take);
     }

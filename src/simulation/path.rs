@@ -49,19 +49,24 @@ pub struct Resolution {
     pub coarseness: f64,
 }
 
-/// Increments of a shear grow as i^1.3: its resolution is needed at the start, where sticking points begin to slip.
+/// Increments of a shear grow as i^1.3: its resolution is needed at the start, where sticking
+/// points begin to slip.
 const SHEAR_GROWTH: f64 = 1.3;
-/// The growing increments end at this many elastic slip displacements (full slip was seen at 3.3 of them in fully plastic contacts).
+/// The growing increments end at this many elastic slip displacements (full slip was seen at 3.3 of
+/// them in fully plastic contacts).
 const SHEAR_RANGE: f64 = 4.5;
-/// Friction beyond which the yield stress in shear, not friction, limits the traction: k/p = 0.577/2.8, with a margin.
+/// Friction beyond which the yield stress in shear, not friction, limits the traction: k/p =
+/// 0.577/2.8, with a margin.
 const FRICTION_LIMIT: f64 = 0.3;
 /// First steps of a press, which grow; they are worth half as many of the others.
 const GROWING_STEPS: usize = 4;
 /// Steps of an unloading over its estimated elastic recovery.
 const RELEASE_STEPS: f64 = 12.0;
-/// Where everything slips the increments of a shear of given length go on growing, up to this share of the contact radius.
+/// Where everything slips the increments of a shear of given length go on growing, up to this share
+/// of the contact radius.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
-/// Most steps after the first part of a shear of given length: where nothing touches, say, the slip displacement says nothing.
+/// Most steps after the first part of a shear of given length: where nothing touches, say, the slip
+/// displacement says nothing.
 const MOST_LATER_STEPS: f64 = 120.0;
 
 impl Resolution {
@@ -99,11 +104,12 @@ impl Start {
     }
 }
 
-/// Ends of the `n` steps of a press by `h`: first steps that grow evenly (equal steps of the contact radius after first touch), and, as soon as they are as
-/// long, equal steps.
+/// Ends of the `n` steps of a press by `h`: first steps that grow evenly (equal steps of the
+/// contact radius after first touch), and, as soon as they are as long, equal steps.
 ///
-/// The error of a step goes with its length over h, and what was wrong in a small contact is forgotten in a larger one: with equal steps of the radius throughout
-/// it is twice as large at the end, for the same number of steps.
+/// The error of a step goes with its length over h, and what was wrong in a small contact is
+/// forgotten in a larger one: with equal steps of the radius throughout it is twice as large at the
+/// end, for the same number of steps.
 fn press(n: usize, h: f64) -> Vec<f64> {
     let n = n.max(1);
     let growing = GROWING_STEPS.min(n / 2);
@@ -139,7 +145,8 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         from = to;
     }
     if h > from {
-        // A press that goes on has its share of the steps, and small ones first again: sheared before, it takes up the force that the shear has cost it.
+        // A press that goes on has its share of the steps, and small ones first again: sheared
+        // before, it takes up the force that the shear has cost it.
         let rest = h - from;
         let n = match resolution.press_steps {
             _ if rest < 1e-9 * h => 1,
@@ -154,7 +161,8 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
     targets
 }
 
-/// Targets of a segment from `start` to `h` and `delta_t` together: at every place no longer than the steps of the press and of the shear alone would be there.
+/// Targets of a segment from `start` to `h` and `delta_t` together: at every place no longer than
+/// the steps of the press and of the shear alone would be there.
 pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolution) -> Vec<Target> {
     let rise = h - start.h;
     let length = (delta_t - start.delta_t).abs();
@@ -165,7 +173,8 @@ pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolut
         let steps = ShearSteps::new(start, length, false, resolution);
         (1..).map(|i| steps.distance(i) / length).take_while(|&share| share < 1.0 - 1e-9).chain([1.0]).collect()
     } else {
-        // What begins to touch has no slip displacement yet; where all of it slips, steps of a share of its radius do.
+        // What begins to touch has no slip displacement yet; where all of it slips, steps of a
+        // share of its radius do.
         let longest = LARGEST_SHEAR_STEP * resolution.coarseness * h.max(0.0).sqrt();
         let count = (length / longest.max(1e-12)).ceil().clamp(1.0, MOST_LATER_STEPS / resolution.coarseness);
         (1..=count as usize).map(|i| i as f64 / count).collect()
@@ -205,8 +214,8 @@ pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolut
     targets
 }
 
-/// Tangential displacements of a shear segment, as distances from its start: increments that grow; to `"full-slip"`, which is waited for,
-/// equal ones in the end.
+/// Tangential displacements of a shear segment, as distances from its start: increments that grow;
+/// to `"full-slip"`, which is waited for, equal ones in the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearSteps {
     range: f64,
@@ -219,7 +228,8 @@ pub struct ShearSteps {
 }
 
 impl ShearSteps {
-    /// Steps for a segment of given length (infinite for `"full-slip"`) which holds the normal force or not.
+    /// Steps for a segment of given length (infinite for `"full-slip"`) which holds the normal
+    /// force or not.
     pub fn new(start: &Start, length: f64, held: bool, resolution: &Resolution) -> Self {
         let count = resolution.shear_steps.max(1);
         let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
@@ -230,7 +240,8 @@ impl ShearSteps {
             let least = last.max((length - range) / MOST_LATER_STEPS * resolution.coarseness);
             (least, least.max(longest))
         } else if held {
-            // The contact grows until it bears the friction: that is far away where the normal force does not fall.
+            // The contact grows until it bears the friction: that is far away where the normal
+            // force does not fall.
             (last, last.max(longest))
         } else {
             (last, last)

@@ -38,16 +38,20 @@ pub struct Problem {
     pub zone: Zone,
     /// The contact becomes fully plastic: what flows has to be found flowing.
     pub fully_plastic: bool,
-    /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a plane.
+    /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a
+    /// plane.
     pub equal_pair: bool,
     /// What the body is pressed against, if it is no plane nor its image.
     pub rigid: Option<Rigid>,
-    /// Bodies that deform, see [`Case::bodies`]: displacements of the path and the record are those of one.
+    /// Bodies that deform, see [`Case::bodies`]: displacements of the path and the record are those
+    /// of one.
     pub bodies: f64,
 }
 
-/// Steps of a press: so many and so many more for each element along the contact radius; the front moves by a third of an element in the last ones. In the
-/// main job at 16 elements F_N(h) at the end, half-way and at a quarter lacks 0.2, 0.5 and 2 % at these 26 steps (of which the steps 0.1, 0.3 and 1 %).
+/// Steps of a press: so many and so many more for each element along the contact radius; the front
+/// moves by a third of an element in the last ones. In the main job at 16 elements F_N(h) at the
+/// end, half-way and at a quarter lacks 0.2, 0.5 and 2 % at these 26 steps (of which the steps 0.1,
+/// 0.3 and 1 %).
 const PRESS_STEPS: f64 = 14.0;
 const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
 const SHEAR_STEPS: usize = 15;
@@ -59,7 +63,8 @@ fn largest_indentation(case: &Case) -> f64 {
     })
 }
 
-/// Steps of a first press: as many as the case says, or else as go with its elements along the contact radius.
+/// Steps of a first press: as many as the case says, or else as go with its elements along the
+/// contact radius.
 pub fn press_steps(case: &Case) -> usize {
     let elements = case.mesh.elements_per_contact_radius as f64;
     case.solver.press_steps.unwrap_or_else(|| (PRESS_STEPS + PRESS_STEPS_PER_ELEMENT * elements).ceil() as usize)
@@ -80,8 +85,8 @@ fn asked_zone(case: &Case, law: &Hardening<f64>) -> Zone {
     Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone)
 }
 
-/// Johnson's parameter of a contact of radius `a`, Lambda = E a/((1 - nu^2) sigma_rep R), with sigma_rep at the plastic strain 0.2 a/R (Tabor 1951); zero where
-/// there is no yield.
+/// Johnson's parameter of a contact of radius `a`, Lambda = E a/((1 - nu^2) sigma_rep R), with
+/// sigma_rep at the plastic strain 0.2 a/R (Tabor 1951); zero where there is no yield.
 fn johnson_parameter(law: &Hardening<f64>, nu: f64, a: f64) -> f64 {
     match law {
         Hardening::Elastic => 0.0,
@@ -151,7 +156,8 @@ impl Problem {
     /// # Errors
     /// As [`Problem::new`].
     pub fn on_zone(&self, zone: Zone) -> Result<Self, SimulationError> {
-        // The scaled case is that of one body: it does not say that there are two, nor that it is a scout's.
+        // The scaled case is that of one body: it does not say that there are two, nor that it is a
+        // scout's.
         let Self { equal_pair, bodies, resolution, .. } = *self;
         Ok(Self { equal_pair, bodies, resolution, ..Self::on(&self.case, Some(zone))? })
     }

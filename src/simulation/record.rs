@@ -1,8 +1,10 @@
-//! What is remembered of every accepted step, scaled: lengths by R, forces by E R^2, of the whole sphere.
+//! What is remembered of every accepted step, scaled: lengths by R, forces by E R^2, of the whole
+//! sphere.
 
 use serde::{Deserialize, Serialize};
 
-/// One row of the history, of the whole sphere; scaled in the simulation, in the user's units in `history.csv`, whose columns it names.
+/// One row of the history, of the whole sphere; scaled in the simulation, in the user's units in
+/// `history.csv`, whose columns it names.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Counts accepted steps; 0 is the undeformed state.
@@ -28,8 +30,8 @@ pub struct StepRecord {
     pub newton_iterations: usize,
     /// Attempts that failed and were bisected on the way to this step.
     pub cutbacks: usize,
-    /// Contact radius from the gap outside the contact, a check on `a`: the radius at which a node just touches, up to half an element
-    /// larger than `a` where the pressure ends abruptly.
+    /// Contact radius from the gap outside the contact, a check on `a`: the radius at which a node
+    /// just touches, up to half an element larger than `a` where the pressure ends abruptly.
     #[serde(default)]
     pub a_gap: f64,
     /// Krylov iterations.
@@ -62,10 +64,12 @@ pub struct StepRecord {
     /// Distance from the sphere's axis to the outermost point in contact, in the undeformed sphere.
     #[serde(default)]
     pub reach: f64,
-    /// 1 where the step was accepted above its tolerance, because no step length lowered its merit any more, or where points under full stick slid in it.
+    /// 1 where the step was accepted above its tolerance, because no step length lowered its merit
+    /// any more, or where points under full stick slid in it.
     #[serde(default)]
     pub relaxed: usize,
-    /// Under full stick: points that came off in the step and came down again, to carry no tangential force up to its end.
+    /// Under full stick: points that came off in the step and came down again, to carry no
+    /// tangential force up to its end.
     #[serde(default)]
     pub landed_again: usize,
 }
@@ -79,7 +83,8 @@ pub struct ContactPoint {
     pub reference: [f64; 3],
     /// Current position.
     pub position: [f64; 3],
-    /// Force of the plane on the point, of the meshed half: what contact exerts, without the pull of the other half.
+    /// Force of the plane on the point, of the meshed half: what contact exerts, without the pull
+    /// of the other half.
     pub force: [f64; 3],
     /// Gap to the plane, or to the opponent.
     pub gap: f64,

@@ -1,4 +1,5 @@
-//! The coarse run that goes before a run: it finds how far the contact will reach, and what the error of the run will be estimated from.
+//! The coarse run that goes before a run: it finds how far the contact will reach, and what the
+//! error of the run will be estimated from.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,13 +29,14 @@ pub struct Scout {
     pub failure: Option<String>,
 }
 
-/// Elements along the contact radius of the scout of a run on `elements`: 0.4 of them, which is a tenth of the work; up to 10 not more than half, and not more
-/// than 4.
+/// Elements along the contact radius of the scout of a run on `elements`: 0.4 of them, which is a
+/// tenth of the work; up to 10 not more than half, and not more than 4.
 pub fn scout_elements(elements: usize) -> usize {
     ((0.4 * elements as f64).round() as usize).max((elements / 2).min(4))
 }
 
-/// The case on its scout's mesh, with steps longer in the ratio of the elements: the errors of mesh and steps are then both those of a coarser run.
+/// The case on its scout's mesh, with steps longer in the ratio of the elements: the errors of mesh
+/// and steps are then both those of a coarser run.
 pub fn scout_case(case: &Case) -> Case {
     let (from, to) = (case.mesh.elements_per_contact_radius, scout_elements(case.mesh.elements_per_contact_radius));
     let mut scout = case.clone();
@@ -44,7 +46,8 @@ pub fn scout_case(case: &Case) -> Case {
     scout
 }
 
-/// Follows the path of a case on its scout's mesh, on the CPU, whatever the run itself will be computed on. `None` if `stop` was set before its end.
+/// Follows the path of a case on its scout's mesh, on the CPU, whatever the run itself will be
+/// computed on. `None` if `stop` was set before its end.
 ///
 /// # Errors
 /// [`SimulationError`] if the case cannot be set up.
@@ -53,7 +56,8 @@ pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, Simul
     let case = scout_case(case);
     let elements = case.mesh.elements_per_contact_radius;
     let asked = Problem::zone_of(&case)?;
-    // Elements at the edge are larger here than in the run: a contact that fits there has to fit here.
+    // Elements at the edge are larger here than in the run: a contact that fits there has to fit
+    // here.
     let roomy = Zone { fine_zone: (asked.fine_zone + ROOM / elements as f64).min(LARGEST_FINE_ZONE), ..asked };
     let mut problem = Problem::on(&case, Some(roomy))?;
     // Releases and what follows the first part of a shear have no number of steps in the case.
@@ -79,11 +83,13 @@ pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, Simul
 const ROOM: f64 = 0.75;
 
 impl Scout {
-    /// The zone for a run whose case asks for `asked` and whose elements there are of size `spacing`: that one, unless the contact leaves it.
+    /// The zone for a run whose case asks for `asked` and whose elements there are of size
+    /// `spacing`: that one, unless the contact leaves it.
     pub fn zone(&self, asked: Zone, spacing: f64) -> Zone {
         let most = |of: fn(&StepRecord) -> f64| self.rows.iter().map(of).fold(0.0, f64::max);
         let (reach, contact_radius) = (most(|row| row.reach), most(|row| row.a));
-        // Where its outermost point is known to half an element only, the run itself shall find out.
+        // Where its outermost point is known to half an element only, the run itself shall find
+        // out.
         let leaves = reach - 0.5 * self.spacing > asked.radius() - 0.5 * spacing;
         if leaves { asked.grown(reach, contact_radius, MARGIN).unwrap_or(asked) } else { asked }
     }

@@ -62,7 +62,8 @@ impl Observer for Seen {
     }
 }
 
-/// Follows the path from a snapshot on, or from the beginning, with everything made anew; returns the last committed state too.
+/// Follows the path from a snapshot on, or from the beginning, with everything made anew; returns
+/// the last committed state too.
 fn follow<R: Real>(problem: &Problem, from: Option<Snapshot>, seen: &mut Seen) -> (Ending, CaseState) {
     let mut backend = Cpu::<R>::new(vec![problem.model.clone()]).unwrap();
     let mut drive = Drive::new(problem, &mut backend, 0, problem.newton().unwrap());

@@ -4,14 +4,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::CONTACT_RADII;
 
-/// Below the smallest the sphere is a half-space anyway; the largest is what the mesh can resolve on a half ball.
+/// Below the smallest the sphere is a half-space anyway; the largest is what the mesh can resolve
+/// on a half ball.
 const SMALLEST_CONTACT: f64 = CONTACT_RADII.0;
 const LARGEST_CONTACT: f64 = CONTACT_RADII.1;
 /// Radius beyond which no fine zone reaches.
 const LARGEST_FINE_RADIUS: f64 = 0.85;
 /// Smallest fine zone in contact radii.
 const SMALLEST_FINE_ZONE: f64 = 1.1;
-/// Largest fine zone in contact radii; beyond it the contact radius that is meshed for grows too, and with it the elements.
+/// Largest fine zone in contact radii; beyond it the contact radius that is meshed for grows too,
+/// and with it the elements.
 pub const LARGEST_FINE_ZONE: f64 = 3.0;
 /// A zone is made so much larger than the reach along the whole path.
 pub const MARGIN: f64 = 1.15;
@@ -38,10 +40,12 @@ impl Zone {
         (self.fine_zone * self.contact_radius).min(LARGEST_FINE_RADIUS)
     }
 
-    /// The zone for a contact that reaches `reach` from the axis and whose radius grows to `contact_radius`: at least as large as this one in both, and
-    /// `margin` times as large as the reach. `None` if no zone is larger than this one.
+    /// The zone for a contact that reaches `reach` from the axis and whose radius grows to
+    /// `contact_radius`: at least as large as this one in both, and `margin` times as large as the
+    /// reach. `None` if no zone is larger than this one.
     ///
-    /// The fine zone widens first, which keeps the size of the elements; where it is three contact radii wide the elements grow too.
+    /// The fine zone widens first, which keeps the size of the elements; where it is three contact
+    /// radii wide the elements grow too.
     pub fn grown(&self, reach: f64, contact_radius: f64, margin: f64) -> Option<Self> {
         let radius = (margin * reach).max(self.radius());
         let contact_radius = contact_radius.max(self.contact_radius).max(radius / LARGEST_FINE_ZONE).min(LARGEST_CONTACT);

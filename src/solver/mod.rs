@@ -1,7 +1,8 @@
 //! From one accepted state to the next: a semismooth Newton iteration with a merit line search.
 //!
-//! `newton` iterates one step, `system` holds its residual and matrix, `rigid` those of a rigid sphere as the opponent, `pair` the linear systems of two
-//! equal spheres, `phases` what its parts cost. Choosing steps and bisecting them is the simulation's business.
+//! `newton` iterates one step, `system` holds its residual and matrix, `rigid` those of a rigid
+//! sphere as the opponent, `pair` the linear systems of two equal spheres, `phases` what its parts
+//! cost. Choosing steps and bisecting them is the simulation's business.
 
 pub mod newton;
 pub mod pair;
@@ -19,45 +20,53 @@ use crate::material::Elasticity;
 /// How a step is to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// A step is accepted when the contact merit is below this share of the sum of the normal contact forces.
+    /// A step is accepted when the contact merit is below this share of the sum of the normal
+    /// contact forces.
     pub tolerance: f64,
     /// Newton iterations before a step is given up.
     pub max_iterations: usize,
     /// Loosest relative residual to which a linear system is solved (see [`loosest_linear`]).
     pub loosest_linear: f64,
-    /// Share of the sum of the normal contact forces down to which the first linear system of a step is solved (see [`first_linear`]); infinite if
-    /// the loosest tolerance does.
+    /// Share of the sum of the normal contact forces down to which the first linear system of a
+    /// step is solved (see [`first_linear`]); infinite if the loosest tolerance does.
     pub first_linear: f64,
-    /// From this iteration on the line search compares with the last iterate alone (see [`monotone_from`]).
+    /// From this iteration on the line search compares with the last iterate alone (see
+    /// [`monotone_from`]).
     pub monotone_from: usize,
 }
 
-/// From this Johnson parameter E a/((1 - nu^2) sigma_rep R) on a contact is fully plastic (Olsson & Larsson 2016).
+/// From this Johnson parameter E a/((1 - nu^2) sigma_rep R) on a contact is fully plastic (Olsson &
+/// Larsson 2016).
 pub const FULLY_PLASTIC: f64 = 160.0;
 
-/// How far the first linear system of a step is solved, for a contact whose Johnson parameter grows to `lambda`.
+/// How far the first linear system of a step is solved, for a contact whose Johnson parameter grows
+/// to `lambda`.
 ///
-/// The plate's motion first strains the elements beside it alone. Against the contact's force what they resist with goes as E/sigma_Y; where that is much, a tenth
-/// of it left in the correction throws points back from flow that then do not find to it again. At E/sigma_Y = 7500 a press took 428 iterations with
-/// 5 cut-backs so, and takes 134 with none.
+/// The plate's motion first strains the elements beside it alone. Against the contact's force what
+/// they resist with goes as E/sigma_Y; where that is much, a tenth of it left in the correction
+/// throws points back from flow that then do not find to it again. At E/sigma_Y = 7500 a press took
+/// 428 iterations with 5 cut-backs so, and takes 134 with none.
 pub fn first_linear(lambda: f64) -> f64 {
     if lambda >= FULLY_PLASTIC { 0.01 } else { f64::INFINITY }
 }
 
-/// From this iteration on the line search compares with the last iterate alone, for a contact whose Johnson parameter
-/// grows to `lambda`; before, with the largest merit so far, because the first changes of contact status raise the
-/// merit on the way down.
+/// From this iteration on the line search compares with the last iterate alone, for a contact whose
+/// Johnson parameter grows to `lambda`; before, with the largest merit so far, because the first
+/// changes of contact status raise the merit on the way down.
 ///
-/// In deep plasticity the merit must not rise for long: at E/sigma_Y = 5000 a press of 20 steps took 375 iterations
-/// and 7 cuts from the fifth iteration on, 166 and none from the second or third. At E/sigma_Y = 18,500 one took 1,170
-/// and 19 from the third, and takes 950 and 10 from the second.
+/// In deep plasticity the merit must not rise for long: at E/sigma_Y = 5000 a press of 20 steps
+/// took 375 iterations and 7 cuts from the fifth iteration on, 166 and none from the second or
+/// third. At E/sigma_Y = 18,500 one took 1,170 and 19 from the third, and takes 950 and 10 from the
+/// second.
 pub fn monotone_from(lambda: f64) -> usize {
     if lambda >= FULLY_PLASTIC { 1 } else { 2 }
 }
 
-/// Loosest linear tolerance for a Poisson's ratio: 0.1 up to 0.3, and above less as the ratio of bulk to shear modulus grows.
-/// A change of volume makes a residual that is so much greater than that of a change of shape, and hides what is missing of the latter: at
-/// nu = 0.49 systems solved to 0.1 made presses take five times the iterations and cut-backs, or fail; to 0.0044 none was needed.
+/// Loosest linear tolerance for a Poisson's ratio: 0.1 up to 0.3, and above less as the ratio of
+/// bulk to shear modulus grows. A change of volume makes a residual that is so much greater than
+/// that of a change of shape, and hides what is missing of the latter: at nu = 0.49 systems solved
+/// to 0.1 made presses take five times the iterations and cut-backs, or fail; to 0.0044 none was
+/// needed.
 pub fn loosest_linear(poissons_ratio: f64) -> f64 {
     let bulk_to_shear = |nu: f64| {
         let moduli = Elasticity::<f64>::new(1.0, nu);

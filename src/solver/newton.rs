@@ -1,4 +1,5 @@
-//! One step: semismooth Newton with a backtracking line search on the contact merit, inexact linear solves.
+//! One step: semismooth Newton with a backtracking line search on the contact merit, inexact linear
+//! solves.
 
 use super::pair::Systems;
 use super::phases::{Lap, Phase, PhaseTimes};
@@ -14,40 +15,47 @@ use crate::mesh::Mesh;
 
 /// Step lengths of the line search, longest first.
 const STEP_LENGTHS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
-/// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance of the step asks for, and at the
-/// loosest to [`Settings::loosest_linear`]. Solving more tightly (gamma 0.9, the first system to 0.01) takes a sixth more
-/// processor time for 3 % fewer iterations: it is plastic loading and unloading that the iteration has to find.
+/// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance
+/// of the step asks for, and at the loosest to [`Settings::loosest_linear`]. Solving more tightly
+/// (gamma 0.9, the first system to 0.01) takes a sixth more processor time for 3 % fewer
+/// iterations: it is plastic loading and unloading that the iteration has to find.
 const FORCING_GAMMA: f64 = 2.0;
 /// The first linear system of a step is solved no further than this.
 const TIGHTEST_FIRST: f64 = 1e-4;
 /// A held normal force is met to this share of it.
 const HELD_TOLERANCE: f64 = 5e-5;
-/// Linear systems are solved to this relative residual, or further, where the normal force is held: what is missing of the solution would change the
-/// indentation, and with it which points slide. To 0.1, the steps of a shear took four times the iterations.
+/// Linear systems are solved to this relative residual, or further, where the normal force is held:
+/// what is missing of the solution would change the indentation, and with it which points slide. To
+/// 0.1, the steps of a shear took four times the iterations.
 const TIGHT_LINEAR: f64 = 0.01;
-/// Share of the forces at the contact to which the response to a unit indentation is solved, which gives the change of h that a missing normal force asks
-/// for.
+/// Share of the forces at the contact to which the response to a unit indentation is solved, which
+/// gives the change of h that a missing normal force asks for.
 const UNIT_RESPONSE: f64 = 0.01;
-/// Tangential residuals of points in contact against the friction that the normal force can bear. At mu = 0.3 the tolerance of the merit is the same.
+/// Tangential residuals of points in contact against the friction that the normal force can bear.
+/// At mu = 0.3 the tolerance of the merit is the same.
 const TANGENTIAL: f64 = 10.0 / 3.0;
-/// Where points are about to flow, the whole correction may raise the merit although the energy falls along it (the
-/// tangent is elastic, the answer plastic). It is taken then, if the line search found nothing longer than this and the
-/// merit does not grow by more than this factor: the next tangent knows of the flow. Under full stick it is taken
-/// whatever the energy does: the next active set knows of the points that come off.
+/// Where points are about to flow, the whole correction may raise the merit although the energy
+/// falls along it (the tangent is elastic, the answer plastic). It is taken then, if the line
+/// search found nothing longer than this and the merit does not grow by more than this factor: the
+/// next tangent knows of the flow. Under full stick it is taken whatever the energy does: the next
+/// active set knows of the points that come off.
 const CREEPING: f64 = 0.03;
 const DOWNHILL_MERIT: f64 = 4.0;
-/// At a kink of the merit, where a point at the edge changes its status whatever the step length, no step lowers it, and the iteration would go round in
-/// circles until the step is given up. An iterate so many tolerances away is then taken as it is.
+/// At a kink of the merit, where a point at the edge changes its status whatever the step length,
+/// no step lowers it, and the iteration would go round in circles until the step is given up. An
+/// iterate so many tolerances away is then taken as it is.
 const KINK: f64 = 3.0;
 
-/// A step that has used up its iterations goes on, up to twice as many, as long as so many of them lowered the merit by
-/// this factor.
+/// A step that has used up its iterations goes on, up to twice as many, as long as so many of them
+/// lowered the merit by this factor.
 const LAST_ITERATIONS: usize = 3;
 const CONVERGING: f64 = 0.2;
 
-/// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times areas of the order of R^2.
+/// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times
+/// areas of the order of R^2.
 const ROUNDING: f64 = 1e-14;
-/// Force by which merits are scaled before anything has ever touched (a fully plastic contact of a = 0.03 R at sigma_Y = E/1000 carries it).
+/// Force by which merits are scaled before anything has ever touched (a fully plastic contact of
+/// a = 0.03 R at sigma_Y = E/1000 carries it).
 const UNLOADED_SCALE: f64 = 1e-5;
 /// Share of the largest normal force so far that measures residuals when nothing touches.
 const LOST_SHARE: f64 = 1e-4;
@@ -67,15 +75,18 @@ pub struct Newton {
     came_off: Vec<bool>,
     fixed: Vec<bool>,
     rhs: Vec<f64>,
-    /// Correction of the displacements, and of the unknowns that the linear system has: relative displacements where the body meets its own image.
+    /// Correction of the displacements, and of the unknowns that the linear system has: relative
+    /// displacements where the body meets its own image.
     delta: Vec<f64>,
     correction: Vec<f64>,
     functional: Vec<f64>,
     unit_rhs: Vec<f64>,
     unit_response: Vec<f64>,
-    /// Forces at the contact under a unit indentation of a body that moves as one, over those at a plate that moves alone.
+    /// Forces at the contact under a unit indentation of a body that moves as one, over those at a
+    /// plate that moves alone.
     unit_scale: f64,
-    /// Time spent since the last converged step; whoever drives the iteration adds what else a step takes.
+    /// Time spent since the last converged step; whoever drives the iteration adds what else a step
+    /// takes.
     pub times: PhaseTimes,
 }
 
@@ -145,22 +156,24 @@ impl Newton {
         &self.current
     }
 
-    /// What merits are measured by: the sum of the normal contact forces, but where contact is being lost or is lost not less than what it was at
-    /// the step's start, nor than a small share of what it ever was. Without contact there is no force to compare with.
+    /// What merits are measured by: the sum of the normal contact forces, but where contact is
+    /// being lost or is lost not less than what it was at the step's start, nor than a small share
+    /// of what it ever was. Without contact there is no force to compare with.
     fn scale(&self) -> f64 {
         let scale = self.current.force_scale.max(self.last_scale).max(LOST_SHARE * self.largest_scale);
         if scale > 0.0 { scale } else { UNLOADED_SCALE }
     }
 
-    /// Tells that the accepted trial has been committed: its normal force is what later steps are measured by where they lose contact. A step
-    /// that is not committed leaves nothing behind.
+    /// Tells that the accepted trial has been committed: its normal force is what later steps are
+    /// measured by where they lose contact. A step that is not committed leaves nothing behind.
     pub fn committed(&mut self) {
         self.last_scale = self.current.force_scale;
         self.largest_scale = self.largest_scale.max(self.last_scale);
     }
 
-    /// Sums of the normal contact forces of the last committed step and the largest of any (see [`Newton::committed`]): all that a step depends on of
-    /// what the iteration keeps between steps.
+    /// Sums of the normal contact forces of the last committed step and the largest of any (see
+    /// [`Newton::committed`]): all that a step depends on of what the iteration keeps between
+    /// steps.
     pub fn force_scales(&self) -> [f64; 2] {
         [self.last_scale, self.largest_scale]
     }
@@ -170,7 +183,8 @@ impl Newton {
         (self.last_scale, self.largest_scale) = (last, largest);
     }
 
-    /// Lets the contact points that `points` marks slide without friction until it is called again; none of them for an empty list.
+    /// Lets the contact points that `points` marks slide without friction until it is called again;
+    /// none of them for an empty list.
     pub fn set_sliding(&mut self, points: &[bool]) {
         self.boundary.frictionless.fill(false);
         self.boundary.frictionless.iter_mut().zip(points).for_each(|(slides, &point)| *slides = point);
@@ -202,9 +216,11 @@ impl Newton {
         self.boundary.prescribed.iter().filter(|p| !**p).count()
     }
 
-    /// Finds equilibrium under `control` from the committed displacement `start`, trying `guess` first if there is one.
+    /// Finds equilibrium under `control` from the committed displacement `start`, trying `guess`
+    /// first if there is one.
     ///
-    /// On success the solution is in [`Newton::accepted`]; nothing is committed. A failure leaves the committed state as it was.
+    /// On success the solution is in [`Newton::accepted`]; nothing is committed. A failure leaves
+    /// the committed state as it was.
     pub fn solve(
         &mut self,
         case: &mut dyn Evaluate,
@@ -226,7 +242,8 @@ impl Newton {
         let most = self.settings.max_iterations;
         for iteration in 0..=2 * most {
             let scale = self.scale();
-            // The plate moves with the first linear solve; until then the merit knows of what is missing.
+            // The plate moves with the first linear solve; until then the merit knows of what is
+            // missing.
             if at_kink || self.has_converged(case, control) {
                 report.relaxed = at_kink;
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
@@ -291,7 +308,8 @@ impl Newton {
         Ok(Err(self.exhausted(&mesh, report.iterations.len())))
     }
 
-    /// The merit has fallen so much in the last iterations that a few more will do: a step is not given up then.
+    /// The merit has fallen so much in the last iterations that a few more will do: a step is not
+    /// given up then.
     fn is_about_to_converge(&self, report: &StepReport) -> bool {
         let before = report.iterations.len().checked_sub(LAST_ITERATIONS).map(|i| report.iterations[i].merit);
         before.is_some_and(|before| self.current.merit < CONVERGING * before * self.scale())
@@ -316,7 +334,8 @@ impl Newton {
         }
         self.current.h = if control.normal_force.is_some() { start_h } else { control.h };
         self.current.u.copy_from_slice(start);
-        // The committed state can always be evaluated; the plate's increment enters through the linear system.
+        // The committed state can always be evaluated; the plate's increment enters through the
+        // linear system.
         self.current.evaluate(case, &self.boundary, control, &mut self.times)?;
         if self.current.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.
@@ -328,14 +347,16 @@ impl Newton {
                 }
             }
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
-            // A shift leaves the forces as they are. Evaluated anew they would be those of an unloaded body, nothing but rounding, and
-            // which points stick would hang on it: the step would go another way on every device.
+            // A shift leaves the forces as they are. Evaluated anew they would be those of an
+            // unloaded body, nothing but rounding, and which points stick would hang on it: the
+            // step would go another way on every device.
             self.current.assess(case, &self.boundary, control, &mut self.times)?;
         }
         Ok(())
     }
 
-    /// The merit is below the tolerance, the tangential residuals of the contact are against the friction that there can be, and a held normal force is met.
+    /// The merit is below the tolerance, the tangential residuals of the contact are against the
+    /// friction that there can be, and a held normal force is met.
     fn has_converged(&self, case: &mut dyn Evaluate, control: &Control) -> bool {
         let bound = (self.settings.tolerance * self.scale()).max(ROUNDING);
         if self.current.merit > bound || !self.plate_is_placed(control) {
@@ -355,9 +376,10 @@ impl Newton {
         control.normal_force.is_none_or(|force| (found() - force).abs() <= (tolerance * force).max(ROUNDING))
     }
 
-    /// Under full stick a point that came off within the step and comes down again has let go of its tangential force, and carries none up to the step's
-    /// end: held to where it stuck before, or open, there may be no equilibrium for it. After a line search `best` is the iterate before. Returns how
-    /// many points are new.
+    /// Under full stick a point that came off within the step and comes down again has let go of
+    /// its tangential force, and carries none up to the step's end: held to where it stuck before,
+    /// or open, there may be no equilibrium for it. After a line search `best` is the iterate
+    /// before. Returns how many points are new.
     fn land_again(&mut self) -> usize {
         let mut landed = 0;
         for (i, (before, after)) in self.best.rows.iter().zip(&self.current.rows).enumerate() {
@@ -383,7 +405,8 @@ impl Newton {
 
     fn forcing(&self, previous: f64) -> f64 {
         let (merit, loosest) = (self.current.merit, self.settings.loosest_linear);
-        // A step's first system carries the whole increment: its merit says nothing about the size of what is to be found.
+        // A step's first system carries the whole increment: its merit says nothing about the size
+        // of what is to be found.
         if merit == 0.0 {
             return loosest;
         }
@@ -395,7 +418,8 @@ impl Newton {
         (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, loosest)
     }
 
-    /// Forms and solves the linear system: the correction is in `self.delta`; returns Krylov iterations, fallback and the change of h.
+    /// Forms and solves the linear system: the correction is in `self.delta`; returns Krylov
+    /// iterations, fallback and the change of h.
     fn linearise(
         &mut self,
         case: &mut dyn Evaluate,
@@ -444,7 +468,8 @@ impl Newton {
                 self.unit_rhs[3 * n as usize + 2] = -1.0;
             }
             let tolerance = self.unit_tolerance(mesh, eta, first)?;
-            // It only says how far to move the plate: an answer that is not quite so good is not worth a direct solution.
+            // It only says how far to move the plate: an answer that is not quite so good is not
+            // worth a direct solution.
             match self.linear.solve(&self.unit_rhs, tolerance, &mut self.unit_response, false) {
                 Ok(report) => krylov += report.iterations,
                 Err(LinalgError::Stalled { iterations, .. }) => krylov += iterations,
@@ -474,9 +499,11 @@ impl Newton {
         Ok(Ok((krylov, fallback, delta_h)))
     }
 
-    /// The relative residual to which the response to a unit indentation is solved, and the guess for it: the response of the iteration before, or at first a
-    /// body that moves as one. What that leaves at the contact is the measure: the forces of the large elements at a plate that moves alone are R/a times as
-    /// large, and a residual that is small beside those is not so beside the contact's.
+    /// The relative residual to which the response to a unit indentation is solved, and the guess
+    /// for it: the response of the iteration before, or at first a body that moves as one. What
+    /// that leaves at the contact is the measure: the forces of the large elements at a plate that
+    /// moves alone are R/a times as large, and a residual that is small beside those is not so
+    /// beside the contact's.
     fn unit_tolerance(&mut self, mesh: &Mesh, eta: f64, first: bool) -> Result<f64, SolverError> {
         if first {
             let mut guess = vec![0.0; self.unit_rhs.len()];
@@ -490,8 +517,9 @@ impl Newton {
         Ok((eta.min(UNIT_RESPONSE) * self.unit_scale).clamp(1e-9, 0.1))
     }
 
-    /// Backtracks along `self.delta` until the merit falls below `reference`; otherwise takes the best there was, or the whole correction
-    /// where that would creep while the energy falls all the way. `Err` if no length is valid.
+    /// Backtracks along `self.delta` until the merit falls below `reference`; otherwise takes the
+    /// best there was, or the whole correction where that would creep while the energy falls all
+    /// the way. `Err` if no length is valid.
     fn line_search(
         &mut self,
         case: &mut dyn Evaluate,
@@ -547,9 +575,10 @@ impl Newton {
         Ok(Ok((s, changed)))
     }
 
-    /// Merit of the candidate without the tangential forces of points that come off in it. Under full stick a point that
-    /// comes off lets go of whatever it held: the merit jumps by it, however short the step, and a line search that
-    /// counts the jump creeps up to it and stays there. No point does so twice in a step (see `land_again`).
+    /// Merit of the candidate without the tangential forces of points that come off in it. Under
+    /// full stick a point that comes off lets go of whatever it held: the merit jumps by it,
+    /// however short the step, and a line search that counts the jump creeps up to it and stays
+    /// there. No point does so twice in a step (see `land_again`).
     fn merit_without_releases(&self) -> f64 {
         let released: f64 = (self.candidate.rows.iter().zip(&self.current.rows).zip(&self.boundary.frictionless))
             .filter(|((after, before), frictionless)| {
@@ -563,7 +592,8 @@ impl Newton {
         (self.candidate.merit * self.candidate.merit - released).max(0.0).sqrt()
     }
 
-    /// Work of the residual forces of a trial on the correction: the slope of the potential energy along it, where there is one.
+    /// Work of the residual forces of a trial on the correction: the slope of the potential energy
+    /// along it, where there is one.
     fn slope(&self, trial: &Trial, control: &Control, delta_h: f64) -> f64 {
         let held = control.normal_force.map_or(0.0, |force| delta_h * (trial.plate_force - force));
         let free = trial.residual.iter().zip(&self.correction).zip(&self.fixed).filter(|(_, fixed)| !**fixed);

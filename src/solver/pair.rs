@@ -1,8 +1,11 @@
-//! The linear systems of an equal pair, in the unknowns of its interface (see [`crate::contact::pair`]).
+//! The linear systems of an equal pair, in the unknowns of its interface (see
+//! [`crate::contact::pair`]).
 //!
-//! The matrix T^T K T is applied, never formed: patterns, prolongations and coarse matrices stay those of the one body. What preconditions it knows of a pair
-//! that has not slid: a field that is even in x touches its image along the normal alone and slides freely, an odd one is held along the plane alone. So
-//! the right-hand side is split into its even and odd parts, and each goes through a V-cycle of its own. Up to the first shear all is even.
+//! The matrix T^T K T is applied, never formed: patterns, prolongations and coarse matrices stay
+//! those of the one body. What preconditions it knows of a pair that has not slid: a field that is
+//! even in x touches its image along the normal alone and slides freely, an odd one is held along
+//! the plane alone. So the right-hand side is split into its even and odd parts, and each goes
+//! through a V-cycle of its own. Up to the first shear all is even.
 
 use std::sync::Arc;
 
@@ -17,7 +20,8 @@ use crate::real::Real;
 /// Iterations after which FGMRES starts over, and after which it gives up.
 const RESTART: usize = 60;
 const MAX_ITERATIONS: usize = 120;
-/// A system that stalls is good enough to go on from at this relative residual: the line search judges what it gives.
+/// A system that stalls is good enough to go on from at this relative residual: the line search
+/// judges what it gives.
 const STALLED: f64 = 0.3;
 
 /// The solver of one body's systems, or of an equal pair's.
@@ -155,8 +159,8 @@ impl PairSolver {
         &mut self.matrix
     }
 
-    /// Says whether the state and the step are even in x: so is then their solution. Rounding is not, nor the points that it makes flow on one
-    /// side alone: what they add is left out.
+    /// Says whether the state and the step are even in x: so is then their solution. Rounding is
+    /// not, nor the points that it makes flow on one side alone: what they add is left out.
     pub fn set_symmetric(&mut self, symmetric: bool) {
         self.symmetric = symmetric;
     }
@@ -174,7 +178,8 @@ impl PairSolver {
         leave_even(&self.mirror, u);
     }
 
-    /// Takes over the tangent, the interface, its rows and which unknowns y are fixed, and which displacements are `prescribed` whatever the contact does.
+    /// Takes over the tangent, the interface, its rows and which unknowns y are fixed, and which
+    /// displacements are `prescribed` whatever the contact does.
     ///
     /// # Errors
     /// As [`Hierarchy::update`].
@@ -215,7 +220,8 @@ impl PairSolver {
         if self.symmetric { Ok(()) } else { self.odd.update(&self.matrix, &self.odd_fixed) }
     }
 
-    /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as [`crate::linalg::LinearSolver::solve`].
+    /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as
+    /// [`crate::linalg::LinearSolver::solve`].
     ///
     /// # Errors
     /// [`LinalgError::Stalled`]; `y` is then the best iterate.

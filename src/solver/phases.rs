@@ -28,7 +28,8 @@ impl Phase {
         [Phase::Tangent, Phase::Force, Phase::Contact, Phase::LinearUpdate, Phase::LinearSolve, Phase::Commit];
 }
 
-/// Seconds on the wall of each phase. A case that shares a device with others waits for them, and that counts.
+/// Seconds on the wall of each phase. A case that shares a device with others waits for them, and
+/// that counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PhaseTimes([f64; Phase::ALL.len()]);
 

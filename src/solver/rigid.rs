@@ -1,7 +1,9 @@
-//! Contact with a rigid sphere: the rows of a plane, each contact node's in the frame of the sphere's surface where it is (see [`crate::contact::rigid`]).
+//! Contact with a rigid sphere: the rows of a plane, each contact node's in the frame of the
+//! sphere's surface where it is (see [`crate::contact::rigid`]).
 //!
-//! Residual, corrections and tangent are in these frames at contact nodes and along the axes elsewhere. The tangent is turned block by block, so that
-//! whatever solves its systems finds what it finds over a plane.
+//! Residual, corrections and tangent are in these frames at contact nodes and along the axes
+//! elsewhere. The tangent is turned block by block, so that whatever solves its systems finds what
+//! it finds over a plane.
 
 use super::system::{Boundary, Trial};
 use crate::compute::CaseModel;
@@ -85,7 +87,8 @@ impl Trial {
         }
     }
 
-    /// Force of a rigid sphere on a contact point along the axes, as [`Trial::point_force`] has that of a plane.
+    /// Force of a rigid sphere on a contact point along the axes, as [`Trial::point_force`] has
+    /// that of a plane.
     pub(super) fn rigid_point_force(&self, mesh: &Mesh, point: usize) -> [f64; 3] {
         let (rows, node) = (&self.rows[point], mesh.contact_nodes[point] as usize);
         if rows.status == Status::Open {

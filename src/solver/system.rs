@@ -1,4 +1,5 @@
-//! The nonlinear system of one step: residual, merit and the linearised system with its contact rows.
+//! The nonlinear system of one step: residual, merit and the linearised system with its contact
+//! rows.
 
 use std::sync::Arc;
 
@@ -23,10 +24,12 @@ pub struct Boundary {
     pub plate: Vec<u32>,
     /// Per unknown: prescribed by the plate or by symmetry.
     pub prescribed: Vec<bool>,
-    /// Per contact point: slides without friction in the present step, whatever the case says. For points that come into contact within a step
-    /// under full stick: where they touch down, and so what they stick to, is not known before its end.
+    /// Per contact point: slides without friction in the present step, whatever the case says. For
+    /// points that come into contact within a step under full stick: where they touch down, and so
+    /// what they stick to, is not known before its end.
     pub frictionless: Vec<bool>,
-    /// Per unknown: a typical stiffness by which a missing prescribed displacement enters the merit.
+    /// Per unknown: a typical stiffness by which a missing prescribed displacement enters the
+    /// merit.
     pub weight: f64,
     /// The interface with the body's own image, in place of the plane.
     pub pair: Option<Meeting>,
@@ -50,8 +53,8 @@ pub struct Meeting {
 }
 
 impl Meeting {
-    /// The interface of a step that starts from displacement `start` and is expected to lead to `expected` (three a node), both and the step even in x if
-    /// it is `symmetric`.
+    /// The interface of a step that starts from displacement `start` and is expected to lead to
+    /// `expected` (three a node), both and the step even in x if it is `symmetric`.
     pub fn new(mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) -> Self {
         let interface = Arc::new(Interface::new(mesh, expected));
         Self { reference: interface.relative(mesh.nodes.as_flattened()), start: interface.relative(start), interface, symmetric }
@@ -154,7 +157,8 @@ impl Trial {
         }
     }
 
-    /// Evaluates forces, contact, residual and merit at `self.u`; what it takes is added to `times`.
+    /// Evaluates forces, contact, residual and merit at `self.u`; what it takes is added to
+    /// `times`.
     pub fn evaluate(
         &mut self,
         case: &mut dyn Evaluate,
@@ -172,7 +176,8 @@ impl Trial {
         self.assess(case, boundary, control, times)
     }
 
-    /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces there.
+    /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces
+    /// there.
     pub fn assess(
         &mut self,
         case: &mut dyn Evaluate,
@@ -222,7 +227,8 @@ impl Trial {
         Ok(())
     }
 
-    /// Contact rows of an equal pair at its slave nodes, and the residual of the unknowns y (see [`crate::contact::pair`]).
+    /// Contact rows of an equal pair at its slave nodes, and the residual of the unknowns y (see
+    /// [`crate::contact::pair`]).
     fn meet(&mut self, model: &CaseModel, boundary: &Boundary, pair: &Meeting) {
         let (mesh, interface) = (&model.mesh, &pair.interface);
         self.residual.copy_from_slice(&self.force);
@@ -299,9 +305,12 @@ impl Trial {
         self.merit = (sum + missing * missing).sqrt();
     }
 
-    /// Force of the plane on a contact point, as the contact's conditions have it: normal to the plane the internal force; along it xi_t projected onto the
-    /// friction cone (see [`crate::contact::coulomb`]), which is the internal force less the row's residual. In equilibrium that is nothing; what the
-    /// tolerance leaves of it is a force that is missing in the body, not friction beyond Coulomb's bound. The symmetry plane's force is not the contact's.
+    /// Force of the plane on a contact point, as the contact's conditions have it: normal to the
+    /// plane the internal force; along it xi_t projected onto the friction cone (see
+    /// [`crate::contact::coulomb`]), which is the internal force less the row's residual. In
+    /// equilibrium that is nothing; what the tolerance leaves of it is a force that is missing in
+    /// the body, not friction beyond Coulomb's bound. The symmetry plane's force is not the
+    /// contact's.
     pub fn point_force(&self, mesh: &Mesh, point: usize) -> [f64; 3] {
         let (rows, node) = (&self.rows[point], mesh.contact_nodes[point] as usize);
         if rows.status == Status::Open {
@@ -312,8 +321,9 @@ impl Trial {
         [tangential(0), across, self.force[3 * node + 2].max(0.0)]
     }
 
-    /// What contact exerts on each contact node, along the axes: of a plane [`Trial::point_force`], of a rigid sphere the same in its frame; of an equal pair what the interface's forces, projected as those are, come
-    /// to at the nodes of both sides.
+    /// What contact exerts on each contact node, along the axes: of a plane [`Trial::point_force`],
+    /// of a rigid sphere the same in its frame; of an equal pair what the interface's forces,
+    /// projected as those are, come to at the nodes of both sides.
     pub fn point_forces(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<[f64; 3]> {
         let Some(pair) = &boundary.pair else {
             let points = 0..self.rows.len();
@@ -365,7 +375,8 @@ impl Trial {
         }
     }
 
-    /// Gap at each contact node: to the plane or the rigid sphere, or between the bodies of an equal pair.
+    /// Gap at each contact node: to the plane or the rigid sphere, or between the bodies of an
+    /// equal pair.
     pub fn gaps(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<f64> {
         if let Some(against) = &boundary.against {
             return mesh.contact_nodes.iter().map(|&n| against.rigid.gap(&position(mesh, &self.u, n))).collect();
@@ -448,7 +459,8 @@ pub fn fixed_unknowns(mesh: &Mesh, boundary: &Boundary, rows: &[Rows<f64>], fixe
 
 /// Replaces the contact nodes' rows by their contact conditions.
 ///
-/// Rows of prescribed unknowns are left as they are: the linear solver takes `fixed` and never reads them.
+/// Rows of prescribed unknowns are left as they are: the linear solver takes `fixed` and never
+/// reads them.
 pub fn apply_contact(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, rows: &[Rows<f64>]) {
     for (rows, &node) in rows.iter().zip(&mesh.contact_nodes) {
         let n = node as usize;
@@ -471,7 +483,8 @@ pub fn apply_contact(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, rows: &[Rows<f6
     }
 }
 
-/// Right-hand side of the linear system: minus the residual, and for prescribed unknowns the displacement that is missing.
+/// Right-hand side of the linear system: minus the residual, and for prescribed unknowns the
+/// displacement that is missing.
 pub fn right_hand_side(trial: &Trial, mesh: &Mesh, boundary: &Boundary, rhs: &mut [f64]) {
     for (b, r) in rhs.iter_mut().zip(&trial.residual) {
         *b = -r;
@@ -479,7 +492,8 @@ pub fn right_hand_side(trial: &Trial, mesh: &Mesh, boundary: &Boundary, rhs: &mu
     for (rows, &node) in trial.rows.iter().zip(&mesh.contact_nodes) {
         for i in 0..3 {
             let k = 3 * node as usize + i;
-            // Contact residuals of prescribed unknowns are stated as forces c g; as displacements they are g.
+            // Contact residuals of prescribed unknowns are stated as forces c g; as displacements
+            // they are g.
             if rows.fixed[i] && !boundary.prescribed[k] {
                 rhs[k] = -rows.residual[i] / rows.weight;
             }

@@ -1,13 +1,15 @@
-//! One device for many cases: their drives run side by side, each in its thread, and meet at the device.
+//! One device for many cases: their drives run side by side, each in its thread, and meet at the
+//! device.
 //!
 //! ```text
 //! drive 1 --ask-->  queue  --all that wait-->  backend, one call a kind  --answers--> drives
 //! drive 2 --ask-->
 //! ```
-//! Whoever serves takes all requests that wait at that moment and makes one call of each kind out of them, so that one dispatch serves every case
-//! that is at that point. It does not wait for the others, whose linear systems take their own time on the cores: a device that is idle takes what
-//! there is, and one that is busy finds the larger a batch. What a case gets does not depend on the others of the call ([`Compute`]), so
-//! neither do results.
+//! Whoever serves takes all requests that wait at that moment and makes one call of each kind out
+//! of them, so that one dispatch serves every case that is at that point. It does not wait for the
+//! others, whose linear systems take their own time on the cores: a device that is idle takes what
+//! there is, and one that is busy finds the larger a batch. What a case gets does not depend on the
+//! others of the call ([`Compute`]), so neither do results.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -217,7 +219,8 @@ fn gone() -> ComputeError {
 
 impl Guest {
     fn ask(&self, case: usize, ask: Ask) -> Result<Ask, ComputeError> {
-        // A channel for each request: it closes with the request if the host goes before it answers.
+        // A channel for each request: it closes with the request if the host goes before it
+        // answers.
         let (reply, answer) = channel();
         self.requests.send(Request { case, ask, reply }).map_err(|_| gone())?;
         answer.recv().map_err(|_| gone())?

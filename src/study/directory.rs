@@ -1,5 +1,5 @@
-//! Where the results of a study lie: `study.toml`, `study.csv` and `cases/0001/`, each an ordinary run's directory; `plots/*.svg` and `report.html` of
-//! `asperity plot`.
+//! Where the results of a study lie: `study.toml`, `study.csv` and `cases/0001/`, each an ordinary
+//! run's directory; `plots/*.svg` and `report.html` of `asperity plot`.
 
 use std::fs;
 use std::io::{self, ErrorKind, Read};
@@ -63,7 +63,8 @@ impl StudyDirectory {
         OutputDirectory::existing(self.root.join("cases").join(id))
     }
 
-    /// Whether there is a study: by the header of `study.csv`, and only by it, a directory is recognised as one that may be replaced.
+    /// Whether there is a study: by the header of `study.csv`, and only by it, a directory is
+    /// recognised as one that may be replaced.
     pub fn holds_study(&self) -> bool {
         let expected = format!("{},", FIRST_COLUMNS.join(","));
         let mut head = Vec::new();
@@ -71,13 +72,16 @@ impl StudyDirectory {
         read.is_ok() && head == expected.as_bytes()
     }
 
-    /// Prepares the folder, and says where the results of the study's cases are. One that does not exist is made, an empty one is used. In one that holds a
-    /// study, results stay that are of this study if it is to be kept, which takes that there are some, or none at all; if they are to be replaced, what studies
-    /// wrote is removed and everything else stays. Anything else is refused, untouched.
+    /// Prepares the folder, and says where the results of the study's cases are. One that does not
+    /// exist is made, an empty one is used. In one that holds a study, results stay that are of
+    /// this study if it is to be kept, which takes that there are some, or none at all; if they are
+    /// to be replaced, what studies wrote is removed and everything else stays. Anything else is
+    /// refused, untouched.
     ///
     /// # Errors
-    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`], [`StudyError::Earlier`], [`StudyError::Directory`],
-    /// [`StudyError::Output`] where somebody else computes one of the cases that are to be replaced.
+    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`],
+    /// [`StudyError::Earlier`], [`StudyError::Directory`], [`StudyError::Output`] where somebody
+    /// else computes one of the cases that are to be replaced.
     pub fn prepare(&self, study: &Study, earlier: Earlier) -> Result<Placed, StudyError> {
         let dir = &self.root;
         self.recognise()?;

@@ -1,4 +1,5 @@
-//! What can go wrong with a study as a whole; what goes wrong with one of its cases is a row of `study.csv`.
+//! What can go wrong with a study as a whole; what goes wrong with one of its cases is a row of
+//! `study.csv`.
 
 use std::io;
 use std::path::PathBuf;

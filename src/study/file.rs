@@ -9,7 +9,8 @@
 //! "contact.friction" = [0.1, 0.3, "stick"]
 //! "path.0.indentation" = [0.005, 0.02]
 //! ```
-//! A value may be a whole table, such as one hardening law for each kind of material. The last key of the file runs fastest.
+//! A value may be a whole table, such as one hardening law for each kind of material. The last key
+//! of the file runs fastest.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -20,7 +21,8 @@ use crate::case::{Case, CaseError, Document, Entry, Place, Reader, Value, short}
 
 /// Most combinations that a grid may have.
 const MOST_CASES: usize = 100_000;
-/// Most values of all cases together, those of the base counted once for each: every case is a copy of it.
+/// Most values of all cases together, those of the base counted once for each: every case is a copy
+/// of it.
 const MOST_VALUES: usize = 20_000_000;
 
 const BASE: &str = "the case's own tables under base, as in [base.sphere]";
@@ -30,9 +32,11 @@ const LIST: &str = "a list of values, as in [0.1, 0.3]";
 /// One case of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyCase {
-    /// Number of the combination in grid order, from 1, with leading zeros: the name of its directory.
+    /// Number of the combination in grid order, from 1, with leading zeros: the name of its
+    /// directory.
     pub id: String,
-    /// Its values of the grid's keys, in the order of the keys, as text: numbers in digits, strings bare, tables as inline TOML.
+    /// Its values of the grid's keys, in the order of the keys, as text: numbers in digits, strings
+    /// bare, tables as inline TOML.
     pub values: Vec<String>,
     /// The case, in the user's units.
     pub case: Case,
@@ -47,7 +51,8 @@ pub struct Study {
     pub keys: Vec<String>,
     /// How many values each key has.
     pub counts: Vec<usize>,
-    /// Every combination, the last key fastest. Where the base says nothing about it, a case of a study writes no fields and no plots.
+    /// Every combination, the last key fastest. Where the base says nothing about it, a case of a
+    /// study writes no fields and no plots.
     pub cases: Vec<StudyCase>,
 }
 
@@ -60,7 +65,8 @@ impl Study {
     /// Reads a study file and checks every combination of its grid.
     ///
     /// # Errors
-    /// [`StudyError::File`] and [`StudyError::Combination`] with file, line, key and what is allowed; [`StudyError::Hardening`].
+    /// [`StudyError::File`] and [`StudyError::Combination`] with file, line, key and what is
+    /// allowed; [`StudyError::Hardening`].
     pub fn load(file: &Path) -> Result<Self, StudyError> {
         let name = file.display().to_string();
         let text = bounded::read_to_string(file, bounded::CASE)
@@ -127,8 +133,8 @@ struct GridKey {
     values: Vec<Entry>,
 }
 
-/// The grid's keys in the order of their lines, those of one line in alphabetical order. `contact.friction = [..]` without quotes is
-/// the same key as `"contact.friction" = [..]`.
+/// The grid's keys in the order of their lines, those of one line in alphabetical order.
+/// `contact.friction = [..]` without quotes is the same key as `"contact.friction" = [..]`.
 fn read_grid(document: &Document) -> Result<Vec<GridKey>, CaseError> {
     let mut keys = Vec::new();
     if let Value::Table(root) = &document.root.value
@@ -210,8 +216,8 @@ fn with_study_defaults(mut base: Document) -> Result<Document, CaseError> {
     Ok(base)
 }
 
-/// Every combination as a case. The first refusal is the one that is told; where all are refused alike, it is the base or a key that is wrong and
-/// not the combination.
+/// Every combination as a case. The first refusal is the one that is told; where all are refused
+/// alike, it is the base or a key that is wrong and not the combination.
 fn check_all(base: &Document, grid: &[GridKey], count: usize, file: &str) -> Result<Vec<StudyCase>, StudyError> {
     let width = count.to_string().len().max(4);
     // A table is set before a key within it, wherever they stand in the file.

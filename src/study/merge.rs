@@ -1,4 +1,5 @@
-//! Joins the directories in which shares of a study were computed, on machines that share no disk, say: the best of what there is of each case, and its row.
+//! Joins the directories in which shares of a study were computed, on machines that share no disk,
+//! say: the best of what there is of each case, and its row.
 
 use std::fs;
 use std::io;
@@ -25,11 +26,13 @@ pub struct Merged {
     pub busy: Vec<String>,
 }
 
-/// Joins the studies in `sources` in `out`, which may be one of them, a new directory, an empty one, or one of the same study. Nothing is removed from the
-/// sources; of a case that is there already, what is further is kept.
+/// Joins the studies in `sources` in `out`, which may be one of them, a new directory, an empty
+/// one, or one of the same study. Nothing is removed from the sources; of a case that is there
+/// already, what is further is kept.
 ///
 /// # Errors
-/// [`StudyError::Merge`] for a source that is no study, or another one than the first; those of preparing `out`; [`StudyError::Output`].
+/// [`StudyError::Merge`] for a source that is no study, or another one than the first; those of
+/// preparing `out`; [`StudyError::Output`].
 pub fn merge(sources: &[PathBuf], out: &Path) -> Result<Merged, StudyError> {
     let refused = |dir: &Path, what: String| StudyError::Merge { dir: dir.to_owned(), what };
     let mut studies: Vec<(StudyDirectory, Study)> = Vec::new();
@@ -94,8 +97,9 @@ fn is_same(one: &Path, other: &Path) -> bool {
     matches!((fs::canonicalize(one), fs::canonicalize(other)), (Ok(one), Ok(other)) if one == other)
 }
 
-/// Copies a run's results, each file whole or not at all and the summary last, so that a copy that is cut short is a case that has to be computed. False if
-/// somebody writes in one of the two places.
+/// Copies a run's results, each file whole or not at all and the summary last, so that a copy that
+/// is cut short is a case that has to be computed. False if somebody writes in one of the two
+/// places.
 fn copy(from: &OutputDirectory, to: &OutputDirectory, case: &str) -> Result<bool, StudyError> {
     OutputDirectory::create(to.root())?;
     // A source that cannot be written to, and so not be locked, is nobody's who writes there.

@@ -1,5 +1,6 @@
-//! In which directory the results of each case lie. A study that is begun numbers its cases in grid order; one whose grid has grown finds its cases where
-//! they are and gives the new ones numbers that are free.
+//! In which directory the results of each case lie. A study that is begun numbers its cases in grid
+//! order; one whose grid has grown finds its cases where they are and gives the new ones numbers
+//! that are free.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -26,7 +27,8 @@ pub struct Placed {
 /// Finds the directories of the study's cases in its folder, as it is.
 ///
 /// # Errors
-/// [`StudyError::OtherStudy`] if there are results, and none of them is of this study; [`StudyError::Directory`].
+/// [`StudyError::OtherStudy`] if there are results, and none of them is of this study;
+/// [`StudyError::Directory`].
 pub fn place(directory: &StudyDirectory, study: &Study) -> Result<Placed, StudyError> {
     let failed = |source| StudyError::Directory { dir: directory.root().to_owned(), what: "be read", source };
     let there = numbered(directory).map_err(failed)?;
@@ -82,7 +84,8 @@ fn told(directory: &StudyDirectory, study: &Study) -> Option<Vec<String>> {
     Some(table.rows.into_iter().map(|row| row.id).collect())
 }
 
-/// For each case the directory that holds it, if there is one: that of its own number rather than another.
+/// For each case the directory that holds it, if there is one: that of its own number rather than
+/// another.
 fn found(directory: &StudyDirectory, study: &Study, there: &[String]) -> Vec<Option<String>> {
     let holds = |id: &str| Case::load(&directory.case(id).case(), &[]).ok().map(|case| case.to_toml());
     let held: Vec<(&String, String)> = there.iter().filter_map(|id| Some((id, holds(id)?))).collect();
@@ -95,7 +98,8 @@ fn found(directory: &StudyDirectory, study: &Study, there: &[String]) -> Vec<Opt
     study.cases.iter().map(one_of).collect()
 }
 
-/// Names for the cases that have none: their own numbers where those are free, else the first free ones after the last.
+/// Names for the cases that have none: their own numbers where those are free, else the first free
+/// ones after the last.
 fn with_free_numbers(study: &Study, ids: Vec<Option<String>>, there: &[String]) -> Vec<String> {
     let mut taken: BTreeSet<String> = there.iter().cloned().collect();
     // Whoever comes later and finds some of them begun comes to the same names.

@@ -1,4 +1,5 @@
-//! How far the study is: a bar on a terminal, plain lines elsewhere, nothing with `-q`. All of it on stderr.
+//! How far the study is: a bar on a terminal, plain lines elsewhere, nothing with `-q`. All of it
+//! on stderr.
 
 use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
@@ -27,7 +28,8 @@ enum Display {
 
 struct State {
     begun: Instant,
-    /// Cases that are to be computed, with their expected costs and the share of each that is behind.
+    /// Cases that are to be computed, with their expected costs and the share of each that is
+    /// behind.
     cost: Vec<f64>,
     behind: Vec<f64>,
     total: usize,
@@ -38,7 +40,8 @@ struct State {
 }
 
 impl StudyProgress {
-    /// What suits the place: nothing if `quiet`, a bar if stderr is a terminal, plain lines otherwise.
+    /// What suits the place: nothing if `quiet`, a bar if stderr is a terminal, plain lines
+    /// otherwise.
     pub fn new(quiet: bool) -> Self {
         Self::on(if quiet {
             Display::Silent
@@ -73,7 +76,8 @@ impl StudyProgress {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The work begins: expected costs of all cases, in any unit, and which of them there are to compute; the others have `done` and `failed` among them.
+    /// The work begins: expected costs of all cases, in any unit, and which of them there are to
+    /// compute; the others have `done` and `failed` among them.
     pub fn begin(&self, headline: &str, costs: &[f64], to_compute: &[usize], done: usize, failed: usize) {
         let mut state = self.state();
         state.begun = Instant::now();
@@ -118,7 +122,8 @@ impl StudyProgress {
         }
     }
 
-    /// Something that the user should know; the same text is said once, for the case in which it came up first.
+    /// Something that the user should know; the same text is said once, for the case in which it
+    /// came up first.
     pub fn message(&self, id: &str, text: &str) {
         if self.state().told.insert(text.to_owned()) {
             self.line(&format!("{id}: {text}"));

@@ -1,4 +1,5 @@
-//! `study.csv`: a row a case, made from the case and its `summary.json` alone, so that it can be made again from the directories.
+//! `study.csv`: a row a case, made from the case and its `summary.json` alone, so that it can be
+//! made again from the directories.
 
 use std::io;
 
@@ -55,8 +56,9 @@ const COLUMNS: [Column; 20] = [
     ("cpu_s", |n| n.summary?.cpu_s),
 ];
 
-/// Last columns of `study.csv`, in the case's own units; the four normalised variables are those just before the shear. What does not exist
-/// is empty: mu of full stick, sigma_Y and sigma_rep of an elastic sphere, the slip of a shear that stopped early.
+/// Last columns of `study.csv`, in the case's own units; the four normalised variables are those
+/// just before the shear. What does not exist is empty: mu of full stick, sigma_Y and sigma_rep of
+/// an elastic sphere, the slip of a shear that stopped early.
 pub const NUMBERS: [&str; COLUMNS.len()] = {
     let (mut names, mut i) = ([""; COLUMNS.len()], 0);
     while i < names.len() {
@@ -124,7 +126,8 @@ impl Row {
         Self { status, reason, summary: Some(summary) }
     }
 
-    /// The case as its directory shows it: pending, unless `case.toml` there is this very case and there is a summary.
+    /// The case as its directory shows it: pending, unless `case.toml` there is this very case and
+    /// there is a summary.
     pub fn read(case: &Case, out: &OutputDirectory) -> Self {
         let this = out.holds_result() && Case::load(&out.case(), &[]).is_ok_and(|found| found == *case);
         match this.then(|| Summary::read(&out.summary())) {

@@ -1,4 +1,5 @@
-//! From a checked study to its directory: which cases there are to compute, on what, and their rows.
+//! From a checked study to its directory: which cases there are to compute, on what, and their
+//! rows.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -41,8 +42,8 @@ pub struct Options {
     pub shard: Option<Shard>,
     /// Go on in a directory that has results of this study.
     pub resume: bool,
-    /// When going on, compute also those cases again that did not converge or outgrew their mesh: the same program would do the same again, another
-    /// version may not.
+    /// When going on, compute also those cases again that did not converge or outgrew their mesh:
+    /// the same program would do the same again, another version may not.
     pub retry: bool,
     /// Replace results that are there.
     pub force: bool,
@@ -59,7 +60,8 @@ pub struct Report {
     pub pending: usize,
     /// Of the other shares, still to be computed.
     pub pending_elsewhere: usize,
-    /// Why the first of those is that has something to say, that somebody else computes it for instance.
+    /// Why the first of those is that has something to say, that somebody else computes it for
+    /// instance.
     pub pending_reason: Option<String>,
     /// Number of the first case that failed, and why.
     pub first_failure: Option<(String, String)>,
@@ -68,17 +70,20 @@ pub struct Report {
 /// Most cases that share a device at a time.
 const LARGEST_BATCH: usize = 64;
 
-/// Computes a study into `dir`: a directory a case, and `study.csv`, which is written anew as cases end.
+/// Computes a study into `dir`: a directory a case, and `study.csv`, which is written anew as cases
+/// end.
 ///
-/// Cases that are done are not computed again if `resume` is set, or another share ran here before; a case is done if its `case.toml` is the very case and
-/// its `summary.json` says so. Cases that broke off or were interrupted go on from their checkpoint; those that did not converge or outgrew
-/// their mesh, only with `retry`. A case that fails is a row with its reason and stops no other. Once `stop` is set, running cases end after their step
-/// and no other begins.
+/// Cases that are done are not computed again if `resume` is set, or another share ran here before;
+/// a case is done if its `case.toml` is the very case and its `summary.json` says so. Cases that
+/// broke off or were interrupted go on from their checkpoint; those that did not converge or
+/// outgrew their mesh, only with `retry`. A case that fails is a row with its reason and stops no
+/// other. Once `stop` is set, running cases end after their step and no other begins.
 ///
 /// # Errors
-/// Before anything is computed: [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`], [`StudyError::Directory`],
-/// [`StudyError::Compute`] if a GPU was asked for and there is none, [`StudyError::Threads`]. Then only [`StudyError::BrokeOff`]: `study.csv` cannot be
-/// written.
+/// Before anything is computed: [`StudyError::NotADirectory`], [`StudyError::NotAStudy`],
+/// [`StudyError::OtherStudy`], [`StudyError::Directory`], [`StudyError::Compute`] if a GPU was
+/// asked for and there is none, [`StudyError::Threads`]. Then only [`StudyError::BrokeOff`]:
+/// `study.csv` cannot be written.
 pub fn run(
     study: &Study,
     dir: &Path,
@@ -93,7 +98,8 @@ pub fn run(
     let share = options.shard.map_or_else(|| (0..study.cases.len()).collect(), |shard| shard.of(&costs));
     let pools = pools(slots.min(share.len()))?;
     let earlier = match (options.resume || options.shard.is_some(), options.force) {
-        // Shares run into one directory, side by side or one after the other: what the others left stays.
+        // Shares run into one directory, side by side or one after the other: what the others left
+        // stays.
         (true, _) => Earlier::Keep,
         (false, true) => Earlier::Replace,
         (false, false) => Earlier::Refuse,
@@ -165,8 +171,9 @@ pub fn run(
     Ok(Report::of(study, &table.rows, &share))
 }
 
-/// Prepares the folder of a study, several processes one after the other: where its cases are, how they stand, what `adjust` makes of that, and the table
-/// and the study's copy, from which the others know it too.
+/// Prepares the folder of a study, several processes one after the other: where its cases are, how
+/// they stand, what `adjust` makes of that, and the table and the study's copy, from which the
+/// others know it too.
 pub(super) fn begin(
     directory: &StudyDirectory,
     study: &Study,
@@ -249,7 +256,8 @@ pub(super) fn read_rows(study: &Study, directory: &StudyDirectory) -> Vec<Row> {
     study.cases.iter().map(|case| Row::read(&case.case, &directory.case(&case.id))).collect()
 }
 
-/// Writes `study.csv` as cases end, but spends no more than a few per cent of the time on it, however long it is.
+/// Writes `study.csv` as cases end, but spends no more than a few per cent of the time on it,
+/// however long it is.
 struct Table<'a> {
     study: &'a Study,
     directory: &'a StudyDirectory,
@@ -259,7 +267,8 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Not where the folder was removed in the meantime: a table without its cases would be of no use.
+    /// Not where the folder was removed in the meantime: a table without its cases would be of no
+    /// use.
     fn write(&self) -> Result<(), StudyError> {
         let gone = || io::Error::new(io::ErrorKind::NotFound, "it was removed while the study went on");
         let failed = |source| StudyError::Directory { dir: self.directory.root().to_owned(), what: "be found", source };
@@ -395,7 +404,8 @@ fn on_one_device(
     })
 }
 
-/// The cases of `order` in groups of one mesh connectivity; groups and cases in the order in which they come. A case that has no mesh is a group of its own.
+/// The cases of `order` in groups of one mesh connectivity; groups and cases in the order in which
+/// they come. A case that has no mesh is a group of its own.
 fn by_connectivity(simulator: &Simulator<'_>, order: &[usize]) -> Vec<Vec<usize>> {
     let key = |&case: &usize| match simulator.problem(case) {
         Ok(problem) => connectivity(&problem.model.mesh),
@@ -414,7 +424,8 @@ fn by_connectivity(simulator: &Simulator<'_>, order: &[usize]) -> Vec<Vec<usize>
     groups
 }
 
-/// Number of elements and a hash of their nodes and the contact's (FNV-1a, Fowler, Noll & Vo 1991): equal where a batch can be shared.
+/// Number of elements and a hash of their nodes and the contact's (FNV-1a, Fowler, Noll & Vo 1991):
+/// equal where a batch can be shared.
 fn connectivity(mesh: &Mesh) -> (usize, u64) {
     let nodes = mesh.elements.iter().flatten().chain(&mesh.contact_nodes);
     let hash = nodes.fold(0xcbf2_9ce4_8422_2325u64, |hash, &node| (hash ^ u64::from(node)).wrapping_mul(0x0100_0000_01b3));

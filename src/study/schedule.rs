@@ -1,5 +1,5 @@
-//! Cases side by side: one thread a case, each with a pool of one thread, so that a case has one core and its results cannot depend on how many
-//! run.
+//! Cases side by side: one thread a case, each with a pool of one thread, so that a case has one
+//! core and its results cannot depend on how many run.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,8 +19,9 @@ pub fn pools(count: usize) -> Result<Vec<ThreadPool>, StudyError> {
     (0..count).map(|_| ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| threads(&error))).collect()
 }
 
-/// Does the jobs of `order`, that many at a time as there are pools, the first ones first; `finished` hears of each, in this thread, as it ends: its
-/// result, or what it said when it panicked. Once `stop` is set no job is begun; an error of `finished` sets it.
+/// Does the jobs of `order`, that many at a time as there are pools, the first ones first;
+/// `finished` hears of each, in this thread, as it ends: its result, or what it said when it
+/// panicked. Once `stop` is set no job is begun; an error of `finished` sets it.
 ///
 /// # Errors
 /// The first error of `finished`; [`StudyError::Threads`].

@@ -27,8 +27,9 @@ impl FromStr for Shard {
 }
 
 impl Shard {
-    /// The cases of this share, increasing. Every case falls to one share, which depends on the costs alone: the dearest first, each to the
-    /// share that has the least so far, the first of equals.
+    /// The cases of this share, increasing. Every case falls to one share, which depends on the
+    /// costs alone: the dearest first, each to the share that has the least so far, the first of
+    /// equals.
     pub fn of(&self, costs: &[f64]) -> Vec<usize> {
         let mut loads = vec![0.0; self.count];
         let mut mine = Vec::new();
@@ -59,9 +60,10 @@ pub fn by_descending_cost(costs: &[f64]) -> Vec<usize> {
 /// Steps of a shear to full slip, typically.
 const SHEAR_STEPS: f64 = 22.0;
 
-/// How long a case is likely to take, in no unit: elements times steps, and more where plastic strains are large against the elastic ones and where
-/// friction is high, which costs Newton iterations. For the order of cases and for the time left, not for science: measured times of single cases are
-/// up to a factor of three off it.
+/// How long a case is likely to take, in no unit: elements times steps, and more where plastic
+/// strains are large against the elastic ones and where friction is high, which costs Newton
+/// iterations. For the order of cases and for the time left, not for science: measured times of
+/// single cases are up to a factor of three off it.
 pub fn cost(case: &Case) -> f64 {
     let radius = case.sphere.radius;
     let (mut steps, mut deepest) = (0.0, 0.0f64);

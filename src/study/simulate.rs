@@ -36,8 +36,8 @@ pub struct Simulator<'a> {
 }
 
 impl Simulator<'_> {
-    /// Makes the directory of a case anew, with its `case.toml`: from now on it is a case that has begun. One that is to go on from its checkpoint
-    /// stays as it is.
+    /// Makes the directory of a case anew, with its `case.toml`: from now on it is a case that has
+    /// begun. One that is to go on from its checkpoint stays as it is.
     ///
     /// # Errors
     /// [`StudyError::Output`].
@@ -62,14 +62,16 @@ impl Simulator<'_> {
         self.locks.lock().unwrap_or_else(PoisonError::into_inner).remove(&case);
     }
 
-    /// The summary of a case that is to go on, if another process has done it since the study was begun.
+    /// The summary of a case that is to go on, if another process has done it since the study was
+    /// begun.
     pub fn done_meanwhile(&self, case: usize) -> Option<Summary> {
         let StudyCase { id, case, .. } = self.resume.then(|| &self.cases[case])?;
         let row = Row::read(case, &self.directory.case(id));
         row.summary.filter(|_| row.status == RowStatus::Done)
     }
 
-    /// The checkpoint of a case that is to go on. One that is of another case or version, or damaged, is none: the case is computed from its beginning.
+    /// The checkpoint of a case that is to go on. One that is of another case or version, or
+    /// damaged, is none: the case is computed from its beginning.
     fn checkpoint(&self, case: usize) -> Option<Checkpoint> {
         if !self.resume {
             return None;
@@ -89,7 +91,8 @@ impl Simulator<'_> {
         })
     }
 
-    /// The mesh that a case asks for, or that of the checkpoint from which it will go on, with the model on it.
+    /// The mesh that a case asks for, or that of the checkpoint from which it will go on, with the
+    /// model on it.
     ///
     /// # Errors
     /// [`StudyError::Simulation`].
@@ -97,11 +100,13 @@ impl Simulator<'_> {
         Ok(Problem::on(&self.cases[case].case, self.checkpoint(case).and_then(|checkpoint| checkpoint.zone()))?)
     }
 
-    /// Follows the path of a case that has begun, from its checkpoint if there is one. `seat` has backends for its problem, the first of which computes on
-    /// `computed_on`; `notes` are on how it was chosen.
+    /// Follows the path of a case that has begun, from its checkpoint if there is one. `seat` has
+    /// backends for its problem, the first of which computes on `computed_on`; `notes` are on how
+    /// it was chosen.
     ///
     /// # Errors
-    /// [`StudyError::Simulation`], [`StudyError::Output`]; a step that does not converge is none, but the summary's status.
+    /// [`StudyError::Simulation`], [`StudyError::Output`]; a step that does not converge is none,
+    /// but the summary's status.
     pub fn follow<'a>(
         &self,
         case: usize,
@@ -147,8 +152,8 @@ impl Simulator<'_> {
         Ok(results.finish(status, message.as_deref())?)
     }
 
-    /// The summary of a case that broke off for `reason`, with the numbers of what was computed until then; also written to its directory, as far as
-    /// that can be written.
+    /// The summary of a case that broke off for `reason`, with the numbers of what was computed
+    /// until then; also written to its directory, as far as that can be written.
     pub fn broke_off(&self, case: usize, reason: &str) -> Summary {
         let ours = self.locks.lock().unwrap_or_else(PoisonError::into_inner).contains_key(&case);
         let StudyCase { id, case, .. } = &self.cases[case];

@@ -1,7 +1,9 @@
-//! A study on a cluster with Slurm: a job array whose tasks take a share each, and a job after them that makes the table.
+//! A study on a cluster with Slurm: a job array whose tasks take a share each, and a job after them
+//! that makes the table.
 //!
-//! The scripts lie in the study's directory and can be read, changed and submitted by hand. A task that is warned of its time limit checkpoints, ends with 75
-//! and goes back into the queue by itself; one that is cancelled stays so. `submit.sh` again computes what is left.
+//! The scripts lie in the study's directory and can be read, changed and submitted by hand. A task
+//! that is warned of its time limit checkpoints, ends with 75 and goes back into the queue by
+//! itself; one that is cancelled stays so. `submit.sh` again computes what is left.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +25,8 @@ pub struct Slurm {
     pub directives: Vec<(String, String)>,
 }
 
-/// What sbatch takes beside, by its long options. Those that the scripts themselves set are not among them.
+/// What sbatch takes beside, by its long options. Those that the scripts themselves set are not
+/// among them.
 const DIRECTIVES: [&str; 20] = [
     "account",
     "begin",
@@ -52,7 +55,8 @@ const FOR_THE_TABLE: [&str; 5] = ["account", "clusters", "partition", "qos", "re
 const MOST_TASKS: usize = 1000;
 
 impl Slurm {
-    /// Reads `key=value` arguments: `tasks`, `at-once`, `warning` and options of sbatch by their long names.
+    /// Reads `key=value` arguments: `tasks`, `at-once`, `warning` and options of sbatch by their
+    /// long names.
     ///
     /// # Errors
     /// [`StudyError::Slurm`].
@@ -93,11 +97,12 @@ pub struct Scripts {
     pub submit: PathBuf,
 }
 
-/// Writes the scripts for the study in `directory`, which is prepared. `program` is this program, `options` are those of `asperity study` that the tasks are
-/// to have.
+/// Writes the scripts for the study in `directory`, which is prepared. `program` is this program,
+/// `options` are those of `asperity study` that the tasks are to have.
 ///
 /// # Errors
-/// [`StudyError::Slurm`] for a path that Slurm cannot take; [`StudyError::Output`], [`StudyError::Directory`].
+/// [`StudyError::Slurm`] for a path that Slurm cannot take; [`StudyError::Output`],
+/// [`StudyError::Directory`].
 pub fn write(directory: &StudyDirectory, slurm: &Slurm, program: &Path, options: &[String]) -> Result<Scripts, StudyError> {
     let failed = |source| StudyError::Directory { dir: directory.root().to_owned(), what: "be read", source };
     let root = fs::canonicalize(directory.root()).map_err(failed)?;

@@ -275,7 +275,8 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     directory.write_study(&study).expect("a copy");
     let spaced = Study::parse(&format!("# the same\n{STUDY}"), "study.toml").expect("a study");
     directory.prepare(&spaced, Earlier::Keep).expect("the same study");
-    // Results of a case that another study does not have: it is refused, whatever it is that differs.
+    // Results of a case that another study does not have: it is refused, whatever it is that
+    // differs.
     let first = OutputDirectory::create(directory.case("0001").root()).expect("a directory");
     first.write_case(&study.cases[0].case.to_toml()).expect("a case");
     let friction = "\"contact.friction\" = [0.1, \"stick\"]";

@@ -1,8 +1,10 @@
-//! Elastic shear at constant normal force against Cattaneo and Mindlin, and its reversal against Mindlin and Deresiewicz.
+//! Elastic shear at constant normal force against Cattaneo and Mindlin, and its reversal against
+//! Mindlin and Deresiewicz.
 //!
-//! Against a rigid plane the closed forms are exact only at nu = 0.5 (Dundurs' beta = 0): the judged case has nu = 0.49; the departure at
-//! nu = 0.3 is reported. The displacement is prescribed at the equator: a/R is small, 0.01, and what the body between adds is taken off
-//! (`equator`), so that the closed forms are evaluated at the contact's own displacement.
+//! Against a rigid plane the closed forms are exact only at nu = 0.5 (Dundurs' beta = 0): the
+//! judged case has nu = 0.49; the departure at nu = 0.3 is reported. The displacement is prescribed
+//! at the equator: a/R is small, 0.01, and what the body between adds is taken off (`equator`), so
+//! that the closed forms are evaluated at the contact's own displacement.
 
 use super::equator::Equator;
 use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
@@ -25,7 +27,8 @@ const REVERSAL: [f64; 4] = [0.375, 0.0, -0.375, -0.75];
 /// Sliding.
 const SLIDING: f64 = -1.2;
 
-/// The contact by the closed forms, with the computed force and radius: what is compared is the shear, not the pressing.
+/// The contact by the closed forms, with the computed force and radius: what is compared is the
+/// shear, not the pressing.
 fn exact(nu: f64, history: &History) -> CattaneoMindlin {
     let sphere = ElasticSphere { radius: RADIUS, youngs_modulus: YOUNGS_MODULUS, poissons_ratio: nu };
     let pressed = history.end(0);
@@ -75,7 +78,8 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     Ok(checks)
 }
 
-/// Two equal spheres: their pressure does not shear the interface (beta = 0), so the closed form is exact at any nu, each body moving half as far.
+/// Two equal spheres: their pressure does not shear the interface (beta = 0), so the closed form is
+/// exact at any nu, each body moving half as far.
 fn equal_pair(runner: &mut Runner<'_>, mu: f64, elements: usize) -> Result<Vec<Check>, VerifyError> {
     const NU: f64 = 0.3;
     const BECAUSE: &str = "beta = 0: slip across the shear direction and the mesh are worth 1 % each";

@@ -90,7 +90,8 @@ impl Check {
         Self { scale: Scale::By(amount), ..self }
     }
 
-    /// A number that should lie between `low` and `high`; beyond either end it may be off by `tolerance` times that end.
+    /// A number that should lie between `low` and `high`; beyond either end it may be off by
+    /// `tolerance` times that end.
     pub fn range(
         check: &'static str,
         what: impl Into<String>,
@@ -113,7 +114,8 @@ impl Check {
         Self { tolerance: None, ..self }
     }
 
-    /// Signed error: of a value its difference, of a range the distance to the nearest end (zero inside), over the scale.
+    /// Signed error: of a value its difference, of a range the distance to the nearest end (zero
+    /// inside), over the scale.
     pub fn error(&self) -> f64 {
         let (difference, end) = match self.reference {
             Reference::Value(value) => (self.ours - value, value),

@@ -1,13 +1,16 @@
 //! What the body between the contact and the equator adds to the displacements.
 //!
-//! Hertz's h and Mindlin's delta are those of points far away in a half-space; the plate holds the equator of a sphere, a distance R
-//! away. To first order in a/R the difference is linear in the force, whatever the contact is like:
+//! Hertz's h and Mindlin's delta are those of points far away in a half-space; the plate holds the
+//! equator of a sphere, a distance R away. To first order in a/R the difference is linear in the
+//! force, whatever the contact is like:
 //!
 //!   h = h_contact - c_N F_N/(E R),   delta_T = delta_contact + c_T F_T/(E R).
 //!
-//! c_N is what a half-space would still yield beyond the equator, less what the sphere lacks in breadth; c_T is ten times as large, for the
-//! tangential force bends the body as well. No closed form is known for either. They are measured by two elastic contacts without slip, of
-//! which one has four times the a/R of the other: what grows with a/R is the body's, what does not is the contact's and the mesh's.
+//! c_N is what a half-space would still yield beyond the equator, less what the sphere lacks in
+//! breadth; c_T is ten times as large, for the tangential force bends the body as well. No closed
+//! form is known for either. They are measured by two elastic contacts without slip, of which one
+//! has four times the a/R of the other: what grows with a/R is the body's, what does not is the
+//! contact's and the mesh's.
 
 use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
@@ -44,7 +47,8 @@ impl Equator {
 
     /// From the pressed and the sheared state of two contacts.
     fn between(sphere: &ElasticSphere, contacts: [(StepRecord, StepRecord); 2]) -> Self {
-        // F/F_Hertz(h) = (1 + mesh) (1 + (3/2) c_N F/(E R h)), and a/k_T = (1 + mesh) (2 - nu)/(8 G) + c_T a/(E R).
+        // F/F_Hertz(h) = (1 + mesh) (1 + (3/2) c_N F/(E R h)), and a/k_T = (1 + mesh) (2 - nu)/(8
+        // G) + c_T a/(E R).
         let [(x0, y0), (x1, y1)] =
             contacts.map(|(pressed, _)| (1.5 * pressed.f_n / pressed.h, pressed.f_n / hertz::force(sphere, pressed.h)));
         let [(a0, s0), (a1, s1)] = contacts.map(|(_, sheared)| {
@@ -65,7 +69,8 @@ impl Equator {
         delta_t - self.tangential * f_t / (YOUNGS_MODULUS * RADIUS)
     }
 
-    /// The compliances and what they mean for the stiffnesses of a contact of a/R = 0.01, for the table.
+    /// The compliances and what they mean for the stiffnesses of a contact of a/R = 0.01, for the
+    /// table.
     pub fn rows(&self, nu: f64) -> [Check; 2] {
         let a = RADII[0];
         let (normal, tangential) = (hertz::stiffness(&ball(nu), a), initial_stiffness(&ball(nu), a));

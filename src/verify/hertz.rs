@@ -1,6 +1,8 @@
-//! Elastic pressing against Hertz, and the load at first yield against the exact Mises stress on the axis.
+//! Elastic pressing against Hertz, and the load at first yield against the exact Mises stress on
+//! the axis.
 //!
-//! The plate's displacement is prescribed at the equator: what the body between adds is taken off (`equator`).
+//! The plate's displacement is prescribed at the equator: what the body between adds is taken off
+//! (`equator`).
 
 use super::runner::{RADIUS, Runner, YOUNGS_MODULUS, press, sphere};
 use super::{Check, VerifyError};
@@ -22,7 +24,8 @@ const AROUND_YIELD: [f64; 6] = [0.94, 0.98, 1.02, 1.06, 1.10, 1.14];
 fn case(hardening: Hardening, runner: &Runner<'_>, a: f64, indentations: &[f64]) -> Case {
     let mut case = sphere(NU, hardening, 0.0, runner.elements(8), indentations.iter().map(|h| press(*h)).collect());
     case.mesh.contact_radius = Some(a);
-    // Elastic contact without friction has no memory, so that long steps cost nothing but iterations.
+    // Elastic contact without friction has no memory, so that long steps cost nothing but
+    // iterations.
     case.solver.press_steps = Some(4);
     case.solver.tolerance = 1e-5;
     case
@@ -82,7 +85,8 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     Ok(checks)
 }
 
-/// The normal force at which alpha leaves zero: extrapolated from the first two plastic steps, within the step in which it happens.
+/// The normal force at which alpha leaves zero: extrapolated from the first two plastic steps,
+/// within the step in which it happens.
 fn yield_force(rows: &[StepRecord]) -> Option<f64> {
     let first = rows.iter().position(|row| row.max_alpha > 0.0)?;
     let (before, now, next) = (rows.get(first.checked_sub(1)?)?, rows.get(first)?, rows.get(first + 1)?);

@@ -1,8 +1,10 @@
 //! Elastic shear after a plastic preload: Jaeger (1998), Ciavarella (1998).
 //!
-//! Shear that stays elastic follows from the unloading curve alone, exactly at beta = 0: nu = 0.49 here. Shear from the largest load goes on
-//! yielding; so the contact is unloaded, nearly to the end for the curve, and loaded again to a part of its force, where it is sheared.
-//! Strong hardening keeps all that elastic: the curve is not Hertz's, for the surface has taken the plane's shape.
+//! Shear that stays elastic follows from the unloading curve alone, exactly at beta = 0: nu = 0.49
+//! here. Shear from the largest load goes on yielding; so the contact is unloaded, nearly to the
+//! end for the curve, and loaded again to a part of its force, where it is sheared. Strong
+//! hardening keeps all that elastic: the curve is not Hertz's, for the surface has taken the
+//! plane's shape.
 
 use super::equator::Equator;
 use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
@@ -21,7 +23,8 @@ const MODULUS: f64 = 20e3;
 const H: f64 = 3e-4 * RADIUS;
 /// Coulomb's coefficient: small, so that shear stays elastic.
 const MU: f64 = 0.1;
-/// How far the contact is unloaded, over its elastic recovery: for the curve, and where it is sheared.
+/// How far the contact is unloaded, over its elastic recovery: for the curve, and where it is
+/// sheared.
 const UNLOADED_TO: f64 = 0.9;
 const SHEARED_AT: f64 = 0.3;
 /// Where shear is compared, over the displacement at which everything slips.
@@ -29,7 +32,8 @@ const SHEAR: [f64; 3] = [0.25, 0.5, 0.75];
 
 const SPHERE: ElasticSphere = ElasticSphere { radius: RADIUS, youngs_modulus: YOUNGS_MODULUS, poissons_ratio: NU };
 
-/// The unloading as a model expects it: where to take samples. What is compared uses the computed curve.
+/// The unloading as a model expects it: where to take samples. What is compared uses the computed
+/// curve.
 fn expected() -> Unloading {
     let hardening = olsson_larsson::Hardening::ThreeParameter {
         yield_stress: YIELD_STRESS,

@@ -1,11 +1,13 @@
 //! Closed-form checks of the whole program: what `asperity verify` runs.
 //!
-//! Stands beside `study`: above `simulation`, whose cases it runs, and below `cli`, which prints what it finds.
-//! `runner` follows a case, `check` is a row of the table, `table` and `report` put them out, `equator` measures what the body between contact and
-//! plate adds to the displacements; each other file is a family of checks.
+//! Stands beside `study`: above `simulation`, whose cases it runs, and below `cli`, which prints
+//! what it finds. `runner` follows a case, `check` is a row of the table, `table` and `report` put
+//! them out, `equator` measures what the body between contact and plate adds to the displacements;
+//! each other file is a family of checks.
 //!
-//! A tolerance comes from the range in which the closed form holds and from the known error of the mesh, and says so in a line beside it
-//! (`because`; `asperity verify -v` prints them). What no closed form decides is a row without a tolerance.
+//! A tolerance comes from the range in which the closed form holds and from the known error of the
+//! mesh, and says so in a line beside it (`because`; `asperity verify -v` prints them). What no
+//! closed form decides is a row without a tolerance.
 //!
 //! | family | held against | tolerance |
 //! |---|---|---|
@@ -106,7 +108,8 @@ impl Family {
         self.name == only || !is_family(only) && check.check == only
     }
 
-    /// Runs the family. A path that cannot be followed is a failed row, not an error: the other families still run.
+    /// Runs the family. A path that cannot be followed is a failed row, not an error: the other
+    /// families still run.
     ///
     /// # Errors
     /// A case cannot be set up, or the device fails.

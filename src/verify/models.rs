@@ -1,10 +1,14 @@
-//! Elastic-plastic pressing without friction against the published models, Olsson & Larsson and Jackson & Green, and the slope of the unloading.
+//! Elastic-plastic pressing without friction against the published models, Olsson & Larsson and
+//! Jackson & Green, and the slope of the unloading.
 //!
-//! Compared are Johnson's normalised hardness Hbar = F_N/(pi a^2 sigma_Y) and c^2 = a^2/(2 R h), both at the computed contact radius.
-//! Where the two models differ the range between them is what is known. What each is worth is the difference of published models at
-//! Lambda < 130, 6 % in Hbar and 8 % in c^2: they cannot tell a solver that is 5 % off, which the checks against other codes do (`plastic`, `pressure`).
+//! Compared are Johnson's normalised hardness Hbar = F_N/(pi a^2 sigma_Y) and c^2 = a^2/(2 R h),
+//! both at the computed contact radius. Where the two models differ the range between them is what
+//! is known. What each is worth is the difference of published models at Lambda < 130, 6 % in Hbar
+//! and 8 % in c^2: they cannot tell a solver that is 5 % off, which the checks against other codes
+//! do (`plastic`, `pressure`).
 //!
-//! The models are of contacts without friction. The axisymmetric results known for this sphere have mu = 0.3 and are no reference for them, as they lie beyond their band:
+//! The models are of contacts without friction. The axisymmetric results known for this sphere have
+//! mu = 0.3 and are no reference for them, as they lie beyond their band:
 //!
 //! | h/R | Hbar, axisymmetric, mu = 0.3 | above the models by | ours, mu = 0.3 | ours, mu = 0 |
 //! |---|---|---|---|---|
@@ -12,8 +16,8 @@
 //! | 0.01 | 2.91 +- 0.05 | 6.4 % | 2.82 | 2.67 |
 //! | 0.02 | 2.72 +- 0.06 | 5.2 % | 2.73 | 2.51 |
 //!
-//! (ours with 16 elements along the largest contact). Friction holds the surface back: the contact is 3 to 5 % smaller and 4 to 9 % harder. Without it ours are
-//! 0 to 2 % below the models.
+//! (ours with 16 elements along the largest contact). Friction holds the surface back: the contact
+//! is 3 to 5 % smaller and 4 to 9 % harder. Without it ours are 0 to 2 % below the models.
 
 use super::equator::Equator;
 use super::runner::{RADIUS, Runner, YOUNGS_MODULUS, press, sphere};
@@ -29,7 +33,8 @@ const BALL: ElasticSphere = ElasticSphere { radius: RADIUS, youngs_modulus: YOUN
 /// A press without friction and where it is compared.
 struct Press {
     yield_stress: f64,
-    /// Indentations over R. At the first of them the contact has 0.7 of the elements that it has in the end.
+    /// Indentations over R. At the first of them the contact has 0.7 of the elements that it has in
+    /// the end.
     indentations: [f64; 2],
     /// The indentation is then taken back by this share, which is within the elastic recovery.
     back: Option<f64>,
@@ -131,7 +136,8 @@ mod tests {
         }
     }
 
-    /// Why contacts with friction are not held against them: the gaps of the table at the head of this page.
+    /// Why contacts with friction are not held against them: the gaps of the table at the head of
+    /// this page.
     #[test]
     fn axisymmetric_contacts_with_friction_lie_beyond_the_band() {
         for ((h, [f_n, _], [a, _]), gap) in super::super::plastic::PRESSED.into_iter().zip([0.0653, 0.064, 0.052]) {

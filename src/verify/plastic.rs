@@ -1,9 +1,9 @@
-//! The fully plastic case that is known from other codes: pressed to h = 0.02 R and sheared to full slip at constant h, and the energy
-//! balance of the same run.
+//! The fully plastic case that is known from other codes: pressed to h = 0.02 R and sheared to full
+//! slip at constant h, and the energy balance of the same run.
 //!
-//! F_N and a while pressing are those of two independent axisymmetric codes, of which the hardness follows; beside it stand the published models, for information: they know
-//! no friction. The loss of F_N, the peak of F_T and where
-//! sliding sets in are the range of two three-dimensional ones.
+//! F_N and a while pressing are those of two independent axisymmetric codes, of which the hardness
+//! follows; beside it stand the published models, for information: they know no friction. The loss
+//! of F_N, the peak of F_T and where sliding sets in are the range of two three-dimensional ones.
 
 use std::f64::consts::PI;
 
@@ -37,7 +37,8 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     Ok(checks)
 }
 
-/// The row nearest to an indentation of the press, with F_N and a carried over to it by their powers of h between neighbouring rows.
+/// The row nearest to an indentation of the press, with F_N and a carried over to it by their
+/// powers of h between neighbouring rows.
 fn at_indentation(history: &History, h: f64) -> Option<StepRecord> {
     let rows: Vec<&StepRecord> = history.segment(0).collect();
     let next = rows.iter().position(|row| row.h >= h * (1.0 - 1e-9))?;
@@ -133,7 +134,8 @@ fn energy(history: &History) -> Vec<Check> {
     vec![check("missing work, pressed", history.end(0)), check("missing work, sheared", history.last())]
 }
 
-/// The energy balance with doubled numbers of steps, on a coarse mesh: the missing work must shrink.
+/// The energy balance with doubled numbers of steps, on a coarse mesh: the missing work must
+/// shrink.
 pub fn step_convergence(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     let mut missing = Vec::new();
     for steps in [[10, 10], [20, 20]] {

@@ -1,10 +1,13 @@
-//! The pressure over the contact at the end of the main job's press, with friction and without, against an axisymmetric code.
+//! The pressure over the contact at the end of the main job's press, with friction and without,
+//! against an axisymmetric code.
 //!
-//! The references are those of quadratic axisymmetric elements, at five distances from the axis. They are nominal: forces over the area that the surface had
-//! before, as in the contact tables. That shows without friction, where the surface spreads by 5 to 11 % in area: our nominal pressures are within 2 % of them, our
-//! forces over the present area 5 to 10 % below.
+//! The references are those of quadratic axisymmetric elements, at five distances from the axis.
+//! They are nominal: forces over the area that the surface had before, as in the contact tables.
+//! That shows without friction, where the surface spreads by 5 to 11 % in area: our nominal
+//! pressures are within 2 % of them, our forces over the present area 5 to 10 % below.
 //!
-//! With friction the profile dips on the axis. That is friction's doing: without it the same mesh gives the highest pressure there.
+//! With friction the profile dips on the axis. That is friction's doing: without it the same mesh
+//! gives the highest pressure there.
 
 use super::runner::{RADIUS, Runner, press, sphere};
 use super::{Check, VerifyError};
@@ -55,8 +58,9 @@ fn against(friction: f64, ours: [f64; 5], reference: [f64; 5]) -> Vec<Check> {
     (0..DISTANCES.len()).map(check).collect()
 }
 
-/// The profile at a distance from the axis: the value there of the line p(r) that fits the closed points within `width` best, weighted by their area and
-/// less towards the ends. A mean over a ring would be too high in the dip, where more of the ring lies outside.
+/// The profile at a distance from the axis: the value there of the line p(r) that fits the closed
+/// points within `width` best, weighted by their area and less towards the ends. A mean over a ring
+/// would be too high in the dip, where more of the ring lies outside.
 fn pressure_at(points: &[ContactPoint], distance: f64, width: f64) -> f64 {
     let (mut w, mut x1, mut y1, mut x2, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for point in points.iter().filter(|point| point.status != ContactStatus::Open) {

@@ -1,4 +1,5 @@
-//! A rigid sphere as the opponent: of great radius it is the plane; Hertz with R*; the hardness of a flat; friction and energies while it is sheared.
+//! A rigid sphere as the opponent: of great radius it is the plane; Hertz with R*; the hardness of
+//! a flat; friction and energies while it is sheared.
 
 use std::f64::consts::PI;
 
@@ -11,10 +12,12 @@ use crate::simulation::record::StepRecord;
 
 const NU: f64 = 0.3;
 const MU: f64 = 0.3;
-/// Contact radius at which Hertz is checked, the smallest that is meshed for: what the body beyond the plate lacks goes with it.
+/// Contact radius at which Hertz is checked, the smallest that is meshed for: what the body beyond
+/// the plate lacks goes with it.
 const SMALL: f64 = 0.005 * RADIUS;
-/// A flat of this yield stress has Lambda = 300 to 900 up to `DEEP`, and is fully plastic, while a/R stays below 0.042: large deformations lower the
-/// hardness by 3 % at 0.1 and 8 % at 0.15 (Olsson & Larsson 2016).
+/// A flat of this yield stress has Lambda = 300 to 900 up to `DEEP`, and is fully plastic, while
+/// a/R stays below 0.042: large deformations lower the hardness by 3 % at 0.1 and 8 % at 0.15
+/// (Olsson & Larsson 2016).
 const SOFT: f64 = 10.0;
 const DEEP: f64 = 6e-4 * RADIUS;
 
@@ -61,7 +64,8 @@ fn plane(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     ])
 }
 
-/// An elastic body against a rigid sphere of radius R: Hertz with R* = R for the flat, R/2 for the sphere.
+/// An elastic body against a rigid sphere of radius R: Hertz with R* = R for the flat, R/2 for the
+/// sphere.
 fn hertzian(runner: &mut Runner<'_>, flat: bool) -> Result<Vec<Check>, VerifyError> {
     let mut case = against(RADIUS, flat, Hardening::Elastic, 0.0, runner.elements(8), Vec::new());
     let h = SMALL * SMALL / case.effective_radius();
@@ -110,7 +114,8 @@ fn brinell(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     Ok(checks)
 }
 
-/// A rigid sphere sheared along a flat, and the main job's sphere along a plane, for what they cost.
+/// A rigid sphere sheared along a flat, and the main job's sphere along a plane, for what they
+/// cost.
 fn sheared(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     let path = || vec![press(0.02 * RADIUS), shear(0.01 * RADIUS, Hold::Indentation)];
     let hardening = || Hardening::Ideal { yield_stress: 400.0 };

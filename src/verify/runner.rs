@@ -52,7 +52,8 @@ impl<'a> Runner<'a> {
         self.computed_on.as_ref()
     }
 
-    /// Elements along the contact radius: `quick`, or at the fine level at least as many as a case has by default.
+    /// Elements along the contact radius: `quick`, or at the fine level at least as many as a case
+    /// has by default.
     pub fn elements(&self, quick: usize) -> usize {
         match self.level {
             Level::Quick => quick,

@@ -1,4 +1,5 @@
-//! What tests of the program share: a case in a scratch directory, what a run printed, and what two runs left.
+//! What tests of the program share: a case in a scratch directory, what a run printed, and what two
+//! runs left.
 // Every test target compiles this file and uses a part of it.
 #![allow(dead_code)]
 
@@ -75,15 +76,16 @@ pub fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// The summary of a run without what may differ between two runs of one case: times and the number of threads.
+/// The summary of a run without what may differ between two runs of one case: times and the number
+/// of threads.
 pub fn timeless(dir: &Path) -> Summary {
     let summary = Summary::read(&dir.join("summary.json")).expect("a summary");
     let device = summary.device.split(" (").next().unwrap_or_default().to_owned();
     Summary { wall_s: 0.0, cpu_s: None, time_by_phase: TimeByPhase::default(), device, ..summary }
 }
 
-/// In what two results differ, see [`timeless`]; `None` if they hold the same files with the same bits.
-/// The log has times, and tells of resuming.
+/// In what two results differ, see [`timeless`]; `None` if they hold the same files with the same
+/// bits. The log has times, and tells of resuming.
 pub fn difference(found: &Path, expected: &Path) -> Option<String> {
     let [ours, theirs] = [found, expected].map(|dir| {
         let mut files = files(dir);

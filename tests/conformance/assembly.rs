@@ -1,4 +1,5 @@
-//! A batch as a whole: what a case gets depends neither on the others, nor on the run, nor on how scratch memory cuts the batch up.
+//! A batch as a whole: what a case gets depends neither on the others, nor on the run, nor on how
+//! scratch memory cuts the batch up.
 
 use crate::batch::{Backend, commits, displaced, for_every_batch, forces, models, random, tangents};
 use asperity::internals::compute::Compute;

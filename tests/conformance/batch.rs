@@ -35,7 +35,8 @@ impl<R: DeviceReal> Backend<R> for OnGpu {
     }
 }
 
-/// Instantiates a body, `fn body<R, B: Backend<R>>(backend: &B, bounds: &Bounds)`, for the four backends.
+/// Instantiates a body, `fn body<R, B: Backend<R>>(backend: &B, bounds: &Bounds)`, for the four
+/// backends.
 macro_rules! for_every_batch {
     ($($body:ident),+ $(,)?) => {
         mod cpu_f64 {
@@ -95,7 +96,8 @@ pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
     laws.into_iter().enumerate().map(model).collect()
 }
 
-/// A random displacement whose gradients are about `strain`, after `from`; the difference is a number of precision R.
+/// A random displacement whose gradients are about `strain`, after `from`; the difference is a
+/// number of precision R.
 pub fn displaced<R: Real>(from: &[f64], strain: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
     from.iter().map(|u| u + R::of(strain * rng.random_range(-0.1..0.1)).to_f64()).collect()
 }

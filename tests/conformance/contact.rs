@@ -1,4 +1,5 @@
-//! The contact conditions of points that are open, stick, slip, or sit on an edge between them, against the CPU in f64.
+//! The contact conditions of points that are open, stick, slip, or sit on an edge between them,
+//! against the CPU in f64.
 
 use crate::batch::{Backend, OnCpu, commits, contacts, difference, displaced, for_every_batch, models, random};
 use asperity::internals::compute::Outcome;
@@ -75,7 +76,8 @@ fn rows_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
             let scale = force.iter().fold(b.weight * 1e-3, |m, f| m.max(f.abs()));
             for k in 0..3 {
                 assert!((a.residual[k] - b.residual[k]).abs() <= bounds.0 * scale, "{place}");
-                // next to a tip of the friction cone the direction of slip is ill-defined: the rows there carry its error
+                // next to a tip of the friction cone the direction of slip is ill-defined: the rows
+                // there carry its error
                 let slack = if b.status == Status::Slip { 1e-3 } else { 1.0 };
                 assert!(difference(&a.force_rows[k], &b.force_rows[k]) <= bounds.0 / slack, "{place}");
                 assert!(difference(&a.displacement_rows[k], &b.displacement_rows[k]) <= bounds.0 / slack, "{place}");

@@ -1,4 +1,5 @@
-//! The element on small distorted meshes: forces, tangents, commits and energies of every law against the CPU in f64.
+//! The element on small distorted meshes: forces, tangents, commits and energies of every law
+//! against the CPU in f64.
 
 use crate::batch::{Backend, OnCpu, commits, difference, displaced, for_every_batch, forces, models, random, tangents};
 use asperity::internals::compute::{CaseState, Compute, Outcome};
@@ -18,7 +19,8 @@ impl Bounds {
     pub const F32: Self = Self { force: 2e-5, tangent: 1e-4, state: 2e-5, differences: None };
 }
 
-/// Strain of a first, committed step and of the trial step after it; the third number reverses the first step by that factor.
+/// Strain of a first, committed step and of the trial step after it; the third number reverses the
+/// first step by that factor.
 const KINDS: [(&str, f64, f64, f64); 6] = [
     ("near zero", 0.0, 1e-9, 0.0),
     ("elastic", 0.0, 3e-4, 0.0),
@@ -35,7 +37,8 @@ struct Pair {
     trials: Vec<(usize, Vec<f64>)>,
 }
 
-/// The backend and the reference after the first step of a kind, and the displacements of its second.
+/// The backend and the reference after the first step of a kind, and the displacements of its
+/// second.
 fn prepare<R: Real, B: Backend<R>>(backend: &B, kind: (&str, f64, f64, f64), seed: u64) -> Pair {
     let models = models(CELLS);
     let (mut ours, mut reference) = (backend.start(&models), <OnCpu as Backend<f64>>::start(&OnCpu, &models));
@@ -116,7 +119,8 @@ fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B
     assert!(forces(other.as_mut(), &trials) == expected);
 }
 
-/// Newton's third law, no force from a shift of the whole body, and a tangent that is the derivative of the force.
+/// Newton's third law, no force from a shift of the whole body, and a tangent that is the
+/// derivative of the force.
 fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     let Pair { mut ours, trials, .. } = prepare(backend, KINDS[3], 60);
     let moved: Vec<_> = trials.iter().map(|(case, u)| (*case, u.iter().map(|u| u + 0.25).collect())).collect();
@@ -132,7 +136,8 @@ fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     let Some(bound) = bounds.differences else { return };
     let mesh = ours.models()[0].mesh.clone();
     let pattern = asperity::internals::mesh::pattern::Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
-    // The moduli of plastic flow are the symmetrised ones: their part of the tangent is exact only where the flow is radial.
+    // The moduli of plastic flow are the symmetrised ones: their part of the tangent is exact only
+    // where the flow is radial.
     let elastic = vec![trials[0].clone()];
     let blocks = tangents(ours.as_mut(), &elastic).remove(0).1;
     let direction = displaced::<R>(&vec![0.0; elastic[0].1.len()], 1.0, &mut random(61));
@@ -151,7 +156,8 @@ fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     assert!(difference(&product, &expected) <= bound, "{:e}", difference(&product, &expected));
 }
 
-/// J <= 0 and NaN are named by element and point, and spoil neither the other cases nor the calls after them.
+/// J <= 0 and NaN are named by element and point, and spoil neither the other cases nor the calls
+/// after them.
 fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
     let Pair { mut ours, mut reference, trials } = prepare(backend, KINDS[3], 70);
     let good = forces(ours.as_mut(), &trials);

@@ -91,7 +91,8 @@ fn gather<R: Real, const N: usize>(data: &[R], case: usize, point: usize, points
     std::array::from_fn(|k| data[(case * N + k) * points + point])
 }
 
-/// One material of every law (E = 1), soft enough for strains of a percent to be plastic, and their hard extremes.
+/// One material of every law (E = 1), soft enough for strains of a percent to be plastic, and their
+/// hard extremes.
 fn materials<R: Real>() -> Vec<Material<R>> {
     let laws = [
         Ok(Hardening::Elastic),
@@ -130,7 +131,8 @@ fn random_gradient(rng: &mut ChaCha8Rng, low: f64, high: f64) -> [f64; 9] {
     d
 }
 
-/// Inputs for `materials`, rounded to R: the committed state of a kind is what a first random step left, in f64.
+/// Inputs for `materials`, rounded to R: the committed state of a kind is what a first random step
+/// left, in f64.
 fn inputs<R: Real>(materials: &[Material<f64>], seed: u64) -> (Vec<R>, Vec<R>) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let cases = materials.len();
@@ -163,14 +165,16 @@ fn widen<R: Real>(data: &[R]) -> Vec<f64> {
     data.iter().map(|x| x.to_f64()).collect()
 }
 
-/// The scale on which each component of an answer is judged: what its rounding errors are proportional to.
+/// The scale on which each component of an answer is judged: what its rounding errors are
+/// proportional to.
 fn scales(answer: &[f64; ANSWER], d: &[f64; RELATIVE], material: &Material<f64>) -> [f64; ANSWER] {
     let size = |values: &[f64]| values.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let be = size(&answer[6..12]).max(size(d)).max(f64::MIN_POSITIVE);
     let (alpha, mu_bar, norm, delta_gamma) = (answer[12], answer[13], answer[14], answer[24]);
     let (mu, kappa) = (material.elasticity.shear, material.elasticity.bulk);
     let flow = material.hardening.flow_stress(alpha);
-    // the deviator is what is left of b_e_bar - I, and the increment what is left of the trial stress
+    // the deviator is what is left of b_e_bar - I, and the increment what is left of the trial
+    // stress
     let direction = mu * be / norm.max(mu * 1e-3 * be);
     let increment = delta_gamma + norm / mu_bar;
     let mut scale = [1.0; ANSWER];
@@ -231,7 +235,8 @@ fn agrees_with_the_reference<R: Real, B: Backend<R>>(backend: &B, bounds: &Bound
     assert!(worst.0 <= bounds.agreement, "{:e}: {}", worst.0, worst.1);
 }
 
-/// Every answer obeys the yield condition, plastic incompressibility, and the signs of thermodynamics, by itself.
+/// Every answer obeys the yield condition, plastic incompressibility, and the signs of
+/// thermodynamics, by itself.
 fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     let reference_materials = materials::<f64>();
     let (relative, committed) = inputs::<R>(&reference_materials, 6);
@@ -247,7 +252,8 @@ fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
             let von_mises = (1.5 * (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx))).sqrt();
             let flow = material.hardening.flow_stress(a[12]);
             let overstress = von_mises / flow - 1.0;
-            // sigma_Y + K alpha^n with a small n hardens visibly over strains that single precision does not have
+            // sigma_Y + K alpha^n with a small n hardens visibly over strains that single precision
+            // does not have
             let underflows = a[12] < 4.0 * R::MIN_POSITIVE.to_f64();
             match status {
                 PointStatus::Yielding if underflows => assert!(matches!(material.hardening, Hardening::Power { .. }), "{place}"),
@@ -271,7 +277,8 @@ fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     }
 }
 
-/// No deformation, no answer but zero; and points without an answer say so without touching their neighbours.
+/// No deformation, no answer but zero; and points without an answer say so without touching their
+/// neighbours.
 fn reports_what_has_no_answer<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
     use PointStatus::{Elastic, Inverted, NotFinite};
     let (nan, inf) = (f64::NAN, f64::INFINITY);
@@ -339,7 +346,8 @@ fn is_deterministic<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
     assert_eq!(alone.answer, first.answer[last * ANSWER * n..]);
 }
 
-/// Forty steps of a closed strain cycle, the state handed on by the backend: errors must not pile up.
+/// Forty steps of a closed strain cycle, the state handed on by the backend: errors must not pile
+/// up.
 fn follows_a_cycle<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     let (ours, reference) = (cycle(backend, &materials::<R>()), cycle(&Cpu, &materials::<f64>()));
     for (case, material) in materials::<f64>().iter().enumerate() {

@@ -1,5 +1,5 @@
-//! A small press and shear, step by step, on every backend: its history against the CPU's in f64, within gaps that were measured and
-//! written down in fixtures/precision.json.
+//! A small press and shear, step by step, on every backend: its history against the CPU's in f64,
+//! within gaps that were measured and written down in fixtures/precision.json.
 
 use asperity::case::Case;
 use asperity::internals::compute::cpu::Cpu;
@@ -51,7 +51,8 @@ fn columns(r: &StepRecord) -> [f64; COLUMNS.len()] {
     ]
 }
 
-/// A power law, four elements a contact radius, five steps of pressing and six of shearing, the last of them back.
+/// A power law, four elements a contact radius, five steps of pressing and six of shearing, the
+/// last of them back.
 fn problem() -> Problem {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/cases/power.toml");
     let set = ["mesh.elements_per_contact_radius=4", "solver.press_steps=5", "solver.shear_steps=4", "path.1.shear=0.002"]
@@ -112,11 +113,12 @@ fn gaps(ours: &[StepRecord], reference: &[StepRecord]) -> Gaps {
     COLUMNS.iter().enumerate().map(|(c, name)| ((*name).to_owned(), gap(c))).collect()
 }
 
-/// How far beyond a measured gap another driver may be: it rounds otherwise, by as much. Better than a tenth of what is promised is
-/// asked of nobody.
+/// How far beyond a measured gap another driver may be: it rounds otherwise, by as much. Better
+/// than a tenth of what is promised is asked of nobody.
 const SLACK: f64 = 3.0;
 
-/// Holds a backend's gaps to those in the fixture, and these to what they must not exceed; prints what to write there.
+/// Holds a backend's gaps to those in the fixture, and these to what they must not exceed; prints
+/// what to write there.
 fn hold(name: &str, ours: &[StepRecord], reference: &[StepRecord], most: f64) {
     let measured = gaps(ours, reference);
     println!("\"{name}\": {}", serde_json::to_string(&measured).unwrap());
@@ -155,8 +157,9 @@ fn gpu_f32_stays_near_cpu_f64() {
     hold("gpu_f32", &history(&problem, &mut backend, None), &reference(&problem), 5e-4);
 }
 
-/// Residuals from the CPU and tangents from the device in f32: what a device without double precision does. Solved tightly, so that what is left
-/// is no matter of which iterate was the first to be good enough.
+/// Residuals from the CPU and tangents from the device in f32: what a device without double
+/// precision does. Solved tightly, so that what is left is no matter of which iterate was the first
+/// to be good enough.
 #[test]
 fn f32_tangents_do_not_change_the_answer() {
     let start = |context, models| Mixed::new(context, models).unwrap();
@@ -167,7 +170,8 @@ fn f32_tangents_do_not_change_the_answer() {
     hold("gpu_mixed", &history(&problem, &mut backend, None), &reference(&problem), 1e-5);
 }
 
-/// On a healthy device first, then on one that is destroyed in mid-run: the CPU goes on, and the history is the same.
+/// On a healthy device first, then on one that is destroyed in mid-run: the CPU goes on, and the
+/// history is the same.
 #[test]
 fn gpu_f64_has_the_cpus_history_even_if_it_is_lost_on_the_way() {
     let name = "gpu_f64_has_the_cpus_history_even_if_it_is_lost_on_the_way";

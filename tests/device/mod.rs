@@ -5,7 +5,8 @@ use std::io::Write;
 
 /// The device, or none after a line on stderr that no test runner swallows.
 ///
-/// With `ASPERITY_REQUIRE_GPU=1` a missing device is a failure: a machine that is meant to have one must not pass by skipping.
+/// With `ASPERITY_REQUIRE_GPU=1` a missing device is a failure: a machine that is meant to have one
+/// must not pass by skipping.
 pub fn device(test: &str, precision: Precision) -> Option<GpuContext> {
     let opened = GpuContext::open(DeviceRequest::Gpu);
     let missing = match opened {

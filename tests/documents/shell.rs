@@ -1,4 +1,5 @@
-//! Runs the blocks of a page that are marked `sh`, in their order, in a directory of the page's own.
+//! Runs the blocks of a page that are marked `sh`, in their order, in a directory of the page's
+//! own.
 
 use std::fs;
 use std::os::unix::fs::symlink;

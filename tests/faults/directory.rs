@@ -139,7 +139,8 @@ fn what_was_left_by_a_kill_at_the_very_end_is_tidied_up() {
     assert_eq!(difference(&out, whole()), None);
 }
 
-/// In units so great that forces overflow; a case file with such is refused, so this one is made by hand.
+/// In units so great that forces overflow; a case file with such is refused, so this one is made by
+/// hand.
 #[test]
 fn a_result_that_is_no_number_is_a_failure_with_its_step_and_never_done() {
     let scratch = scratch();

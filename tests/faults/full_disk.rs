@@ -1,4 +1,5 @@
-//! A disk that is full at any place: what is told is true, and with room again the run goes on to the same bits.
+//! A disk that is full at any place: what is told is true, and with room again the run goes on to
+//! the same bits.
 
 use std::process::Command;
 

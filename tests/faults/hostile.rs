@@ -1,4 +1,5 @@
-//! Hostile input: what is in the corpus and the fixtures, changed at random, through every parser. No panic, none takes two seconds, all together no gigabyte.
+//! Hostile input: what is in the corpus and the fixtures, changed at random, through every parser.
+//! No panic, none takes two seconds, all together no gigabyte.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,4 +1,5 @@
-//! Killed at every system call that changes a file, a run goes on to the bits of one that was left in peace.
+//! Killed at every system call that changes a file, a run goes on to the bits of one that was left
+//! in peace.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +11,8 @@ use std::time::Instant;
 use super::common::{Scratch, difference, program, stderr};
 use super::program::{scratch, skipped, whole};
 
-/// Those that change a file, or hold on to one; the question mark lets one be unknown to the system.
+/// Those that change a file, or hold on to one; the question mark lets one be unknown to the
+/// system.
 const CALLS: &str = "?open,openat,write,?pwrite64,?rename,?renameat,renameat2,?unlink,unlinkat,?mkdir,mkdirat,?rmdir,fsync,fdatasync,ftruncate,flock";
 
 fn strace(scratch: &Scratch, out: &Path, options: &[&str], tracing: &[&str]) -> Output {
@@ -23,7 +25,8 @@ fn can_trace() -> bool {
     Command::new("strace").args(["-f", "-qq", "-e", "trace=none", "true"]).output().is_ok_and(|output| output.status.success())
 }
 
-/// The calls of the main thread that touch the directory: the name, and the how many-eth of that name it is, counting all.
+/// The calls of the main thread that touch the directory: the name, and the how many-eth of that
+/// name it is, counting all.
 fn calls(log: &str, out: &Path) -> Vec<(String, usize)> {
     let main = log.split_whitespace().next().expect("a traced call").to_owned();
     let out = out.display().to_string();
@@ -75,7 +78,8 @@ fn a_run_killed_at_any_call_that_changes_a_file_goes_on_to_the_same_bits() {
     assert!(4 * killed >= 3 * chosen.len(), "{killed} of {}", chosen.len());
 }
 
-/// Many kills of one and the same run, wherever it stands; what comes to its end in between is compared, removed, and begun anew.
+/// Many kills of one and the same run, wherever it stands; what comes to its end in between is
+/// compared, removed, and begun anew.
 #[test]
 fn a_run_that_is_killed_again_and_again_comes_to_its_end() {
     let scratch = scratch();

@@ -1,7 +1,9 @@
-//! What may happen to a run beside mechanics: it is killed at any system call that changes a file, the disk fills, its directory is removed, linked or written by
-//! another run, and what it is given is hostile.
+//! What may happen to a run beside mechanics: it is killed at any system call that changes a file,
+//! the disk fills, its directory is removed, linked or written by another run, and what it is given
+//! is hostile.
 //!
-//! A share of the kills and of the hostile inputs runs by default; ASPERITY_FAULTS=all runs every kill and a million inputs.
+//! A share of the kills and of the hostile inputs runs by default; ASPERITY_FAULTS=all runs every
+//! kill and a million inputs.
 #![cfg(target_os = "linux")]
 
 #[path = "../common/mod.rs"]

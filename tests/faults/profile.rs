@@ -3,7 +3,8 @@
 use std::hint::black_box;
 use std::panic::catch_unwind;
 
-/// The setting is a package's as a whole, tests included: what holds here holds in the program, in every profile that this is run in.
+/// The setting is a package's as a whole, tests included: what holds here holds in the program, in
+/// every profile that this is run in.
 #[test]
 fn an_overflow_is_a_panic() {
     assert!(catch_unwind(|| black_box(usize::MAX) + black_box(1)).is_err());

@@ -39,7 +39,8 @@ pub fn scratch() -> Scratch {
     Scratch::new(CASE, &OPTIONS)
 }
 
-/// Says that a test could not be made; the print macros are captured for passing tests, the handle is not.
+/// Says that a test could not be made; the print macros are captured for passing tests, the handle
+/// is not.
 #[allow(clippy::explicit_write)]
 pub fn skipped(test: &str, why: &str) {
     writeln!(std::io::stderr(), "SKIPPED {test}: {why}").expect("stderr");

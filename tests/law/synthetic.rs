@@ -74,8 +74,9 @@ pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>
     (inputs, curve)
 }
 
-/// Writes a study of every hardening, three friction coefficients and three indentations (thinned to a half) into `dir`; forces, radius and
-/// displacement are off by up to `noise`, in a way that is the same every time.
+/// Writes a study of every hardening, three friction coefficients and three indentations (thinned
+/// to a half) into `dir`; forces, radius and displacement are off by up to `noise`, in a way that
+/// is the same every time.
 pub fn write_study(dir: &Path, noise: f64) {
     let mut table = String::from("case,directory,status,reason,contact.friction\n");
     let mut count = 0;

@@ -1,4 +1,5 @@
-//! The way from a study to a prediction with simulations of its own: the small study, its law, and cases that it never saw.
+//! The way from a study to a prediction with simulations of its own: the small study, its law, and
+//! cases that it never saw.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +11,8 @@ use asperity::output::read_history;
 
 use super::{asperity, text};
 
-/// sigma_Y, mu and h0 of cases within the study's range, none of whose values occur in it, in a random sequence.
+/// sigma_Y, mu and h0 of cases within the study's range, none of whose values occur in it, in a
+/// random sequence.
 const UNSEEN: [[f64; 3]; 10] = [
     [1125.0, 0.323, 0.0144],
     [2728.0, 0.322, 0.0176],
@@ -36,7 +38,8 @@ fn case_text(study: &str, [yield_stress, friction, indentation]: [f64; 3]) -> St
     set(text, "indentation = 0.01", format!("indentation = {indentation}"))
 }
 
-/// (rms, greatest) of F_T as a share of its peak and of F_N as a share of F_N0, the prediction being from h alone.
+/// (rms, greatest) of F_T as a share of its peak and of F_N as a share of F_N0, the prediction
+/// being from h alone.
 fn errors(law: &Law, case: &Path, run: &Path) -> [[f64; 2]; 2] {
     let case = Case::load(case, &[]).expect("a case");
     let prediction = predict(law, &case, NormalSource::Formulas).expect("a prediction");

@@ -1,7 +1,9 @@
-//! A Python for tests that hand our files to other programs: `ASPERITY_PYTHON`, else `target/python/bin/python`, else `python3`.
+//! A Python for tests that hand our files to other programs: `ASPERITY_PYTHON`, else
+//! `target/python/bin/python`, else `python3`.
 //!
-//! To make one: `python3 -m venv target/python && target/python/bin/pip install meshio numpy pyvista`. Without one such a test is skipped,
-//! aloud; with `ASPERITY_REQUIRE_PYTHON=1` that is a failure.
+//! To make one: `python3 -m venv target/python && target/python/bin/pip install meshio numpy
+//! pyvista`. Without one such a test is skipped, aloud; with `ASPERITY_REQUIRE_PYTHON=1` that is a
+//! failure.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
-//! Eight numbers side by side, one a quadrature point: the form in which the element does its arithmetic, in the machine's vector
-//! instructions.
+//! Eight numbers side by side, one a quadrature point: the form in which the element does its
+//! arithmetic, in the machine's vector instructions.
 //!
-//! [`Number`] is what one number and eight have in common: a kernel written for it takes either, and does the same to each of the
-//! eight as to one alone, bit for bit.
+//! [`Number`] is what one number and eight have in common: a kernel written for it takes either,
+//! and does the same to each of the eight as to one alone, bit for bit.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -134,7 +134,8 @@ impl<R: Real> Number for R {
 }
 
 /// One number for each of an element's eight quadrature points.
-// Aligned to a vector register, and no wider than eight f32: padding would double what single precision moves.
+// Aligned to a vector register, and no wider than eight f32: padding would double what single
+// precision moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
 pub struct Lanes<R>(pub [R; 8]);

@@ -1,7 +1,8 @@
 //! The two floating-point precisions in which every mechanics kernel exists.
 //!
-//! The kernels (material, element, contact) are written once, generic over [`Real`], and instantiated for `f64` (the
-//! reference) and `f32` (the twin of the device's single-precision kernels).
+//! The kernels (material, element, contact) are written once, generic over [`Real`], and
+//! instantiated for `f64` (the reference) and `f32` (the twin of the device's single-precision
+//! kernels).
 
 use std::fmt::{Debug, Display};
 use std::iter::Sum;
@@ -177,7 +178,8 @@ macro_rules! real {
             }
             #[inline(always)]
             fn mul_add_eight(a: [Self; 8], b: [Self; 8], c: [Self; 8]) -> [Self; 8] {
-                // Without the machine's fused product the vectors round twice and the scalars, by a library call, once.
+                // Without the machine's fused product the vectors round twice and the scalars, by a
+                // library call, once.
                 if cfg!(target_feature = "fma") {
                     $eight::from(a).mul_add($eight::from(b), $eight::from(c)).to_array()
                 } else {

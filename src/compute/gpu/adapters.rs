@@ -117,12 +117,14 @@ pub struct Choice {
     pub reason: String,
 }
 
-/// The instance that every adapter comes from. Validation layers and debug labels are left out: this program has error scopes.
+/// The instance that every adapter comes from. Validation layers and debug labels are left out:
+/// this program has error scopes.
 pub(super) fn instance() -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
     descriptor.flags = wgpu::InstanceFlags::empty();
-    // Where the driver tells its memory budget (VK_EXT_memory_budget), refuse before the machine starts to swap.
+    // Where the driver tells its memory budget (VK_EXT_memory_budget), refuse before the machine
+    // starts to swap.
     descriptor.memory_budget_thresholds.for_resource_creation = Some(90);
     wgpu::Instance::new(descriptor)
 }
@@ -144,12 +146,14 @@ pub fn wanted_name() -> Option<String> {
 
 /// Chooses among `adapters`.
 ///
-/// A name (from [`ADAPTER_VARIABLE`]) decides alone. Otherwise a real GPU is taken: discrete before integrated before virtual, with
-/// double precision before without. A software adapter is slower than the CPU backend: `Auto` takes the CPU instead, `Gpu` takes
-/// the software adapter if there is nothing else.
+/// A name (from [`ADAPTER_VARIABLE`]) decides alone. Otherwise a real GPU is taken: discrete before
+/// integrated before virtual, with double precision before without. A software adapter is slower
+/// than the CPU backend: `Auto` takes the CPU instead, `Gpu` takes the software adapter if there is
+/// nothing else.
 ///
 /// # Errors
-/// [`GpuError::NoSuchAdapter`] for a name that matches nothing, [`GpuError::NoAdapter`] for `Gpu` without any adapter.
+/// [`GpuError::NoSuchAdapter`] for a name that matches nothing, [`GpuError::NoAdapter`] for `Gpu`
+/// without any adapter.
 pub fn choose(adapters: &[Adapter], request: DeviceRequest, wanted: Option<&str>) -> Result<Choice, GpuError> {
     let best = |accept: &dyn Fn(&Adapter) -> bool| {
         (0..adapters.len())

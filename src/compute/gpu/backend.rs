@@ -21,8 +21,9 @@ use crate::material::multistep::Flow;
 
 /// Evaluates a batch on a device in precision `R`: residuals, tangents, contact and state.
 ///
-/// Committed states live on the device. Trial displacements go there as increments from the committed displacement, formed in f64
-/// and rounded once, so that f32 loses no digits of a small step.
+/// Committed states live on the device. Trial displacements go there as increments from the
+/// committed displacement, formed in f64 and rounded once, so that f32 loses no digits of a small
+/// step.
 pub struct Gpu<R> {
     models: Vec<CaseModel>,
     /// Committed displacements, in f64.
@@ -35,8 +36,8 @@ impl<R: DeviceReal> Gpu<R> {
     /// Takes a batch of cases in their undeformed, virgin state to a device.
     ///
     /// # Errors
-    /// [`ComputeError::Connectivity`], [`ComputeError::InvertedMesh`], [`ComputeError::Device`]: memory, limits, no double precision,
-    /// or the device's fault.
+    /// [`ComputeError::Connectivity`], [`ComputeError::InvertedMesh`], [`ComputeError::Device`]:
+    /// memory, limits, no double precision, or the device's fault.
     pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
         let name = format!("{} ({})", context.adapter().name, context.adapter().kind);
         let Some(first) = models.first() else {
@@ -58,8 +59,8 @@ impl<R: DeviceReal> Gpu<R> {
         self.batch.as_ref().map(Batch::context)
     }
 
-    /// Runs the kernels of an evaluation of these cases `times` times over what its last call left on the device, and waits for them: for
-    /// timing them without transfers. Nothing is committed.
+    /// Runs the kernels of an evaluation of these cases `times` times over what its last call left
+    /// on the device, and waits for them: for timing them without transfers. Nothing is committed.
     ///
     /// # Errors
     /// [`ComputeError::Device`].
@@ -211,7 +212,8 @@ impl<R: DeviceReal> Compute for Gpu<R> {
         Ok(())
     }
 
-    /// Computed on the CPU, in the same precision, from the state on the device: it is output, and wanted once a step at most.
+    /// Computed on the CPU, in the same precision, from the state on the device: it is output, and
+    /// wanted once a step at most.
     fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
         let state = self.state(case)?;
         let mut twin = Cpu::<R>::new(vec![self.models[case].clone()])?;

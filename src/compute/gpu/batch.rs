@@ -1,7 +1,8 @@
 //! The kernels of a batch: uploads, dispatches and downloads, in one precision.
 //!
-//! One dispatch serves all cases of a call that share a group of [`Resident`] arrays; each has a slot of the scratch arrays. What a
-//! slot gets does not depend on the others. Where scratch memory is short, a call takes several dispatches.
+//! One dispatch serves all cases of a call that share a group of [`Resident`] arrays; each has a
+//! slot of the scratch arrays. What a slot gets does not depend on the others. Where scratch memory
+//! is short, a call takes several dispatches.
 
 use std::sync::Arc;
 
@@ -145,7 +146,8 @@ impl<R: DeviceReal> Batch<R> {
     /// Sends a batch of cases of one connectivity (there is at least one) and compiles its kernels.
     ///
     /// # Errors
-    /// [`ComputeError::InvertedMesh`]; what the device says, above all [`GpuError::OutOfBudget`] and [`GpuError::TooLarge`].
+    /// [`ComputeError::InvertedMesh`]; what the device says, above all [`GpuError::OutOfBudget`]
+    /// and [`GpuError::TooLarge`].
     pub fn new(context: Arc<GpuContext>, models: &[CaseModel]) -> Result<Self, ComputeError> {
         let mesh = models[0].mesh.clone();
         let plan = BlockPlan::new(&mesh, &GatherPlan::new(&mesh));
@@ -244,8 +246,8 @@ impl<R: DeviceReal> Batch<R> {
         list.submit()
     }
 
-    /// Runs the kernels of an evaluation `times` times over the numbers that its last call left on the device, and waits for them: what
-    /// they take without transfers.
+    /// Runs the kernels of an evaluation `times` times over the numbers that its last call left on
+    /// the device, and waits for them: what they take without transfers.
     ///
     /// # Errors
     /// The device's fault.
@@ -285,7 +287,8 @@ impl<R: DeviceReal> Batch<R> {
         Ok((self.outcomes(dispatch)?, blocks))
     }
 
-    /// Contact rows `[slot][component][point]` and their status, from forces and increments `[slot][component][point]`.
+    /// Contact rows `[slot][component][point]` and their status, from forces and increments
+    /// `[slot][component][point]`.
     ///
     /// # Errors
     /// The device's fault.
@@ -301,7 +304,8 @@ impl<R: DeviceReal> Batch<R> {
         Ok((answer, status))
     }
 
-    /// The states at increments, kept in scratch until [`Batch::keep`], and their energies `[slot][elastic, plastic, alpha][element]`.
+    /// The states at increments, kept in scratch until [`Batch::keep`], and their energies
+    /// `[slot][elastic, plastic, alpha][element]`.
     ///
     /// # Errors
     /// The device's fault.
@@ -314,7 +318,8 @@ impl<R: DeviceReal> Batch<R> {
         Ok((self.outcomes(dispatch)?, energies))
     }
 
-    /// Makes the state in `slot` of the last [`Batch::update`] the committed one of its case, at `displacement`.
+    /// Makes the state in `slot` of the last [`Batch::update`] the committed one of its case, at
+    /// `displacement`.
     ///
     /// # Errors
     /// The device's fault.
@@ -330,7 +335,8 @@ impl<R: DeviceReal> Batch<R> {
         resident.set_displacement(&self.context, sizes, case, &model.mesh, displacement)
     }
 
-    /// Forms the states from which the next step of a case starts, with `weight` times the last flow anticipated.
+    /// Forms the states from which the next step of a case starts, with `weight` times the last
+    /// flow anticipated.
     ///
     /// # Errors
     /// The device's fault.

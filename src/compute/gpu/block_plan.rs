@@ -3,14 +3,17 @@
 use crate::compute::gather::GatherPlan;
 use crate::mesh::Mesh;
 
-/// The upper block triangle of a tangent, block by block in the order of the pattern, with the element blocks of each.
+/// The upper block triangle of a tangent, block by block in the order of the pattern, with the
+/// element blocks of each.
 ///
-/// The element tangent is symmetric: the lower triangle is the upper one transposed, and is neither computed nor sent.
+/// The element tangent is symmetric: the lower triangle is the upper one transposed, and is neither
+/// computed nor sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BlockPlan {
     /// Starts of the blocks' lists in `entry`, one more than there are upper blocks.
     pub start: Vec<u32>,
-    /// `64 element + 8 a + b`: the block (a, b) of the element tangent; elements increase along a list.
+    /// `64 element + 8 a + b`: the block (a, b) of the element tangent; elements increase along a
+    /// list.
     pub entry: Vec<u32>,
     /// For each block of the pattern, `2 * upper block`, plus 1 if it is that block transposed.
     pub source: Vec<u32>,

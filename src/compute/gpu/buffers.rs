@@ -13,9 +13,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// The environment variable for the device memory budget, MiB.
 pub const MEMORY_VARIABLE: &str = "ASPERITY_GPU_MEMORY";
 const MIB: u64 = 1 << 20;
-/// Uploads go through pieces of this size, so that the driver's copy of what is on the way stays small.
+/// Uploads go through pieces of this size, so that the driver's copy of what is on the way stays
+/// small.
 const UPLOAD_PIECE: usize = 32 << 20;
-/// Bytes behind the numbers in the staging buffer: the ticket, and padding to the alignment of mappings.
+/// Bytes behind the numbers in the staging buffer: the ticket, and padding to the alignment of
+/// mappings.
 const TICKET_BYTES: u64 = 16;
 
 /// A precision in which kernels run.
@@ -32,7 +34,8 @@ impl DeviceReal for f64 {
     const PRECISION: Precision = Precision::F64;
 }
 
-/// Our own account of device memory. Drivers overcommit: a device may accept twice what it has and fail long after.
+/// Our own account of device memory. Drivers overcommit: a device may accept twice what it has and
+/// fail long after.
 #[derive(Debug)]
 pub struct MemoryBudget {
     limit: u64,
@@ -45,8 +48,9 @@ impl MemoryBudget {
         Self { limit, used: AtomicU64::new(0) }
     }
 
-    /// The budget from `ASPERITY_GPU_MEMORY` (MiB), else what devices of this kind have today at the least: wgpu cannot say how
-    /// much there is. 4 GiB for a GPU with its own memory, 2 GiB where memory is shared with the CPU.
+    /// The budget from `ASPERITY_GPU_MEMORY` (MiB), else what devices of this kind have today at
+    /// the least: wgpu cannot say how much there is. 4 GiB for a GPU with its own memory, 2 GiB
+    /// where memory is shared with the CPU.
     pub fn for_adapter(kind: AdapterKind) -> Self {
         let default = if matches!(kind, AdapterKind::Discrete | AdapterKind::Virtual) { 4096 } else { 2048 };
         let mib: u64 = match std::env::var(MEMORY_VARIABLE) {
@@ -117,8 +121,8 @@ pub struct Chunk {
     pub count: usize,
 }
 
-/// Splits `records` into equal chunks whose widest array (`widest` bytes a record) is at most `binding` bytes and whose arrays
-/// together (`total` bytes a record) take at most `memory` bytes.
+/// Splits `records` into equal chunks whose widest array (`widest` bytes a record) is at most
+/// `binding` bytes and whose arrays together (`total` bytes a record) take at most `memory` bytes.
 ///
 /// # Errors
 /// [`GpuError::TooLarge`] if a single record does not fit.
@@ -176,7 +180,8 @@ impl<T> StorageBuffer<T> {
 }
 
 impl GpuContext {
-    /// Splits `records` by this device's limits and what is left of the memory budget, as [`chunks`].
+    /// Splits `records` by this device's limits and what is left of the memory budget, as
+    /// [`chunks`].
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] if a single record does not fit.
@@ -204,7 +209,8 @@ impl GpuContext {
     /// An array of `len` zeros. `what` names it in errors.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], [`GpuError::Rejected`], or the device's fault.
+    /// [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], [`GpuError::Rejected`], or the device's
+    /// fault.
     pub fn zeros<T: Pod>(&self, what: &str, len: usize) -> Result<StorageBuffer<T>, GpuError> {
         self.allocate(what, len, wgpu::BufferUsages::STORAGE)
     }
@@ -232,8 +238,8 @@ impl GpuContext {
         Ok(buffer)
     }
 
-    /// A small block of parameters that every thread of a kernel reads (`var<uniform>`), zero at first; `T` is laid out as WGSL lays
-    /// the struct out.
+    /// A small block of parameters that every thread of a kernel reads (`var<uniform>`), zero at
+    /// first; `T` is laid out as WGSL lays the struct out.
     ///
     /// # Errors
     /// As [`GpuContext::zeros`].
@@ -252,7 +258,8 @@ impl GpuContext {
         self.upload_at(buffer, 0, data)
     }
 
-    /// Overwrites the elements from `offset` on. Elements of less than four bytes are not supported by wgpu.
+    /// Overwrites the elements from `offset` on. Elements of less than four bytes are not supported
+    /// by wgpu.
     ///
     /// # Errors
     /// [`GpuError::Length`] if the data reaches beyond the end, or the device's fault.
@@ -275,7 +282,8 @@ impl GpuContext {
     /// Reads the whole array back, after everything submitted before.
     ///
     /// # Errors
-    /// [`GpuError::Stale`], [`GpuError::Lost`], [`GpuError::Timeout`]: then no numbers come back at all.
+    /// [`GpuError::Stale`], [`GpuError::Lost`], [`GpuError::Timeout`]: then no numbers come back at
+    /// all.
     pub fn download<T: Pod>(&self, buffer: &StorageBuffer<T>) -> Result<Vec<T>, GpuError> {
         let mut out = vec![T::zeroed(); buffer.len];
         self.download_at(buffer, 0, &mut out)?;
@@ -284,8 +292,9 @@ impl GpuContext {
 
     /// Reads the elements from `offset` on into `out`, after everything submitted before.
     ///
-    /// The staging buffer is filled together with a ticket, a number that was never used before. Only if the ticket has arrived did
-    /// this submission run, and only then are the numbers those that the kernels left.
+    /// The staging buffer is filled together with a ticket, a number that was never used before.
+    /// Only if the ticket has arrived did this submission run, and only then are the numbers those
+    /// that the kernels left.
     ///
     /// # Errors
     /// As [`GpuContext::download`]; [`GpuError::Length`] if `out` reaches beyond the end.

@@ -9,8 +9,8 @@ use super::shader_sources::Precision;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Longest time that one submission may take before the device is given up, seconds. Software adapters compile for a quarter of a
-/// minute at a kernel's first dispatch.
+/// Longest time that one submission may take before the device is given up, seconds. Software
+/// adapters compile for a quarter of a minute at a kernel's first dispatch.
 const PATIENCE_S: u64 = 300;
 
 /// The words of wgpu and of drivers, which come in indented lines, as a part of one message.
@@ -20,7 +20,8 @@ fn one_line(text: &str) -> String {
 
 /// An open device with its queue, its compiled kernels and its memory budget.
 ///
-/// May be shared between threads. Results are identical bits for identical input: kernels gather in fixed order and use no atomics.
+/// May be shared between threads. Results are identical bits for identical input: kernels gather in
+/// fixed order and use no atomics.
 pub struct GpuContext {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
@@ -33,7 +34,8 @@ pub struct GpuContext {
 }
 
 impl GpuContext {
-    /// Opens the device that `request` and the environment (`ASPERITY_ADAPTER`) ask for; none means: use the CPU.
+    /// Opens the device that `request` and the environment (`ASPERITY_ADAPTER`) ask for; none
+    /// means: use the CPU.
     ///
     /// # Errors
     /// As [`adapters::choose`]; [`GpuError::NoDevice`] if the driver opens none.
@@ -41,7 +43,8 @@ impl GpuContext {
         Self::open_named(request, adapters::wanted_name().as_deref())
     }
 
-    /// Opens the device that `request` and `wanted`, a part of an adapter's name, ask for; none means: use the CPU.
+    /// Opens the device that `request` and `wanted`, a part of an adapter's name, ask for; none
+    /// means: use the CPU.
     ///
     /// # Errors
     /// As [`GpuContext::open`].
@@ -68,7 +71,8 @@ impl GpuContext {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("asperity"),
             required_features: adapter.features() & wanted,
-            // The defaults allow 8 storage buffers a kernel and 128 MiB a binding, whatever the device can do.
+            // The defaults allow 8 storage buffers a kernel and 128 MiB a binding, whatever the
+            // device can do.
             required_limits: adapter.limits(),
             ..Default::default()
         };
@@ -88,21 +92,24 @@ impl GpuContext {
         Ok(Self { device, queue, health, budget, pipelines, staging, checked, adapter: description })
     }
 
-    /// The same with kernels compiled with or without bounds checks; the default is with in debug builds, without in release builds,
-    /// where they cost a factor of 3.5 to 5 in kernels with private arrays.
+    /// The same with kernels compiled with or without bounds checks; the default is with in debug
+    /// builds, without in release builds, where they cost a factor of 3.5 to 5 in kernels with
+    /// private arrays.
     pub fn with_checks(mut self, checked: bool) -> Self {
         self.checked = checked;
         self.pipelines = PipelineCache::default();
         self
     }
 
-    /// The same with a memory budget of `bytes` instead of that of the environment; before any array is made.
+    /// The same with a memory budget of `bytes` instead of that of the environment; before any
+    /// array is made.
     pub fn with_budget(mut self, bytes: u64) -> Self {
         self.budget = Arc::new(MemoryBudget::new(bytes));
         self
     }
 
-    /// The same without double precision, as most interfaces but Vulkan are. For tests of what is done then.
+    /// The same without double precision, as most interfaces but Vulkan are. For tests of what is
+    /// done then.
     pub fn without_double_precision(mut self) -> Self {
         self.adapter.double_precision = false;
         self
@@ -137,12 +144,14 @@ impl GpuContext {
         Ok(())
     }
 
-    /// Gives the device up, as a driver reset would: everything after it must fail. For tests of the error paths.
+    /// Gives the device up, as a driver reset would: everything after it must fail. For tests of
+    /// the error paths.
     pub fn destroy(&self) {
         self.device.destroy();
     }
 
-    /// Runs `make`, which creates `what`, and turns every error that wgpu raises meanwhile on this thread into a result.
+    /// Runs `make`, which creates `what`, and turns every error that wgpu raises meanwhile on this
+    /// thread into a result.
     pub(super) fn scoped<R>(&self, what: &str, make: impl FnOnce() -> R) -> Result<R, GpuError> {
         self.check()?;
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);

@@ -87,7 +87,8 @@ pub enum GpuError {
         /// The length given.
         given: usize,
     },
-    /// The device was lost, or reported an error that nobody was waiting for. What it holds is not to be trusted.
+    /// The device was lost, or reported an error that nobody was waiting for. What it holds is not
+    /// to be trusted.
     #[error("the device failed: {reason}. Nothing computed on it since is used; run again, or use --device cpu")]
     Lost {
         /// The driver's words.

@@ -5,8 +5,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// The first fault of a device, kept for good: a device that failed once is not used again.
 ///
-/// wgpu reports a lost device to a callback only; submissions to it are silently dropped, and mapped buffers show what they held
-/// before. Every download asks here after its wait and before its numbers are handed on.
+/// wgpu reports a lost device to a callback only; submissions to it are silently dropped, and
+/// mapped buffers show what they held before. Every download asks here after its wait and before
+/// its numbers are handed on.
 #[derive(Debug, Default)]
 pub struct DeviceHealth {
     fault: Mutex<Option<GpuError>>,

@@ -1,8 +1,9 @@
 //! What no shader compiler checks: WGSL that is valid and computes the wrong thing.
 //!
-//! naga accepts transcendental functions of f64 and writes SPIR-V that no driver has to understand; NaN tests are optimised away;
-//! a literal with a suffix, or a `select` between two literals, is f32 in a source that is meant for both precisions. All of
-//! these are found here without a device, on naga's intermediate representation and on the text.
+//! naga accepts transcendental functions of f64 and writes SPIR-V that no driver has to understand;
+//! NaN tests are optimised away; a literal with a suffix, or a `select` between two literals, is
+//! f32 in a source that is meant for both precisions. All of these are found here without a device,
+//! on naga's intermediate representation and on the text.
 
 use super::error::GpuError;
 use super::shader_sources::{Assembled, Precision};
@@ -113,8 +114,8 @@ pub fn lint(source: &Assembled) -> Result<Vec<Finding>, GpuError> {
     Ok(findings)
 }
 
-/// Bytes of local variables in each function, largest first: drivers spill them to memory, and compile for minutes where they
-/// are large.
+/// Bytes of local variables in each function, largest first: drivers spill them to memory, and
+/// compile for minutes where they are large.
 pub fn private_bytes(checked: &Checked) -> Vec<(String, u32)> {
     let module = &checked.module;
     let functions = module.functions.iter().map(|(_, f)| (f.name.clone().unwrap_or_default(), f));
@@ -186,7 +187,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether two expressions are the same value: the same handle, or loads and accesses of the same thing.
+    /// Whether two expressions are the same value: the same handle, or loads and accesses of the
+    /// same thing.
     fn same(&self, left: Handle<Expression>, right: Handle<Expression>) -> bool {
         if left == right {
             return true;
@@ -214,7 +216,8 @@ impl Walk<'_> {
     }
 }
 
-/// The functions that were seen to be right in f64, on lavapipe and in the SPIR-V specification. All others are refused.
+/// The functions that were seen to be right in f64, on lavapipe and in the SPIR-V specification.
+/// All others are refused.
 fn right_in_f64(fun: MathFunction) -> bool {
     use MathFunction as M;
     matches!(
@@ -256,7 +259,8 @@ fn named_precisions(source: &Assembled) -> Vec<(usize, Rule)> {
     found
 }
 
-/// Whether a word of WGSL is a precision, a vector or matrix of one, or (the end of) a literal with its suffix.
+/// Whether a word of WGSL is a precision, a vector or matrix of one, or (the end of) a literal with
+/// its suffix.
 fn names_precision(word: &str) -> bool {
     let vector = |stem: &str| {
         word.strip_suffix(['f', 'h'])

@@ -1,4 +1,5 @@
-//! Material points on the device: the parameters of many materials, and the return mapping at every point of every case.
+//! Material points on the device: the parameters of many materials, and the return mapping at every
+//! point of every case.
 
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
@@ -14,8 +15,8 @@ pub const PARAMETERS: usize = 9;
 pub const RELATIVE: usize = 9;
 /// Components of the committed state: b_e_bar - I (xx, yy, zz, xy, yz, zx), alpha.
 pub const STATE: usize = 7;
-/// Components of an answer: deviatoric stress (6), b_e_bar - I (6), alpha, mu_bar, norm, normal (6), beta_1, beta_3, beta_4,
-/// delta_gamma, plastic work, U', U'', U, W.
+/// Components of an answer: deviatoric stress (6), b_e_bar - I (6), alpha, mu_bar, norm, normal
+/// (6), beta_1, beta_3, beta_4, delta_gamma, plastic work, U', U'', U, W.
 pub const ANSWER: usize = 30;
 /// Components of the tangent: c_ab at 6 a + b.
 pub const TANGENT: usize = 36;
@@ -34,7 +35,8 @@ pub enum PointStatus {
 }
 
 impl PointStatus {
-    /// From the device's number. A number that the kernel does not write (a point that it never reached) is no answer either.
+    /// From the device's number. A number that the kernel does not write (a point that it never
+    /// reached) is no answer either.
     pub fn of(number: u32) -> Self {
         match number {
             0 => Self::Elastic,
@@ -45,8 +47,8 @@ impl PointStatus {
     }
 }
 
-/// Materials as kernels read them: `material_parameters` (parameter p of case c at `p * cases + c`) and `hardening_table` (alpha,
-/// sigma, plastic work of the points of all tables).
+/// Materials as kernels read them: `material_parameters` (parameter p of case c at `p * cases + c`)
+/// and `hardening_table` (alpha, sigma, plastic work of the points of all tables).
 pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
     let cases = materials.len();
     let mut parameters = vec![R::ZERO; PARAMETERS * cases];
@@ -111,7 +113,8 @@ pub struct Answers<R> {
     pub status: Vec<PointStatus>,
 }
 
-/// The return mapping for a batch of materials with the same number of points each, its arrays resident on the device.
+/// The return mapping for a batch of materials with the same number of points each, its arrays
+/// resident on the device.
 #[derive(Debug)]
 pub struct ReturnMapping<R> {
     cases: usize,
@@ -130,7 +133,8 @@ impl<R: DeviceReal> ReturnMapping<R> {
     /// Compiles the kernel and reserves the arrays for `materials.len()` cases of `points` points.
     ///
     /// # Errors
-    /// [`GpuError::NoDoublePrecision`], [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], or the device's fault.
+    /// [`GpuError::NoDoublePrecision`], [`GpuError::TooLarge`], [`GpuError::OutOfBudget`], or the
+    /// device's fault.
     pub fn new(context: &GpuContext, materials: &[Material<R>], points: usize) -> Result<Self, GpuError> {
         let pipeline = context.pipeline(&RETURN_MAPPING, R::PRECISION)?;
         let cases = materials.len();
@@ -179,7 +183,8 @@ impl<R: DeviceReal> ReturnMapping<R> {
         Ok(Answers { answer: context.download(&self.answer)?, tangent: context.download(&self.tangent)?, status })
     }
 
-    /// Maps the first `active` cases of the last run `times` times more; [`ReturnMapping::wait`] waits for it.
+    /// Maps the first `active` cases of the last run `times` times more; [`ReturnMapping::wait`]
+    /// waits for it.
     ///
     /// # Errors
     /// The device's fault.
@@ -200,7 +205,8 @@ impl<R: DeviceReal> ReturnMapping<R> {
     }
 }
 
-/// [`ReturnMapping`] for any number of cases, in as many chunks as the device's limits and memory ask for.
+/// [`ReturnMapping`] for any number of cases, in as many chunks as the device's limits and memory
+/// ask for.
 ///
 /// `relative` and `committed` are `[case][component][point]`.
 ///

@@ -1,6 +1,8 @@
-//! A batch on a device without double precision: residuals from the CPU in f64, tangents from the device in f32.
+//! A batch on a device without double precision: residuals from the CPU in f64, tangents from the
+//! device in f32.
 //!
-//! The residual decides what a converged step is, the tangent only how fast it is found: the answer does not depend on the device.
+//! The residual decides what a converged step is, the tangent only how fast it is found: the answer
+//! does not depend on the device.
 
 use std::sync::Arc;
 

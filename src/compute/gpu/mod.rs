@@ -1,13 +1,17 @@
-//! The device layer: from "is there a GPU" to "run this kernel on these arrays", with every failure an error.
+//! The device layer: from "is there a GPU" to "run this kernel on these arrays", with every failure
+//! an error.
 //!
-//! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory budget, [`shader_sources`] lists
-//! the WGSL of every kernel, [`pipelines`] compiles and dispatches it, [`lint`] proves things about it that no compiler checks.
+//! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory
+//! budget, [`shader_sources`] lists the WGSL of every kernel, [`pipelines`] compiles and dispatches
+//! it, [`lint`] proves things about it that no compiler checks.
 //!
-//! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the device; [`backend`] is the
-//! [`Compute`](super::Compute) of it in one precision, [`mixed`] that of a device without double precision.
+//! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
+//! device; [`backend`] is the [`Compute`](super::Compute) of it in one precision, [`mixed`] that of
+//! a device without double precision.
 //!
-//! A device fails quietly: a lost one ignores what is submitted and leaves old numbers in its buffers. [`health::DeviceHealth`]
-//! and the tickets of [`buffers`] turn that into an error; nothing is read back without both having been asked.
+//! A device fails quietly: a lost one ignores what is submitted and leaves old numbers in its
+//! buffers. [`health::DeviceHealth`] and the tickets of [`buffers`] turn that into an error;
+//! nothing is read back without both having been asked.
 
 pub mod adapters;
 pub mod backend;

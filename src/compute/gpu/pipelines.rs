@@ -41,10 +41,12 @@ impl GpuContext {
     /// The kernel compiled in one precision; compiled at the first call, from memory afterwards.
     ///
     /// # Errors
-    /// [`GpuError::NoDoublePrecision`], [`GpuError::Shader`], [`GpuError::Rejected`], or the device's fault.
+    /// [`GpuError::NoDoublePrecision`], [`GpuError::Shader`], [`GpuError::Rejected`], or the
+    /// device's fault.
     pub fn pipeline(&self, kernel: &'static Kernel, precision: Precision) -> Result<Arc<Pipeline>, GpuError> {
         self.supports(precision)?;
-        // Held while compiling: a second thread that wants the same kernel waits for it and does not compile it again.
+        // Held while compiling: a second thread that wants the same kernel waits for it and does
+        // not compile it again.
         let mut compiled = self.pipelines.compiled.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = compiled.get(&(kernel.name, precision)) {
             return Ok(Arc::clone(pipeline));
@@ -89,9 +91,11 @@ impl GpuContext {
             if self.checked {
                 self.device.create_shader_module(descriptor)
             } else {
-                // SAFETY: the source is compiled into this program. Its kernels return at once beyond the dimensions in their
-                // uniform block, whose drivers size every bound array by those dimensions, and all their loops have fixed counts
-                // or run along lists built by this program; debug builds run the same kernels with the checks on.
+                // SAFETY: the source is compiled into this program. Its kernels return at once
+                // beyond the dimensions in their uniform block, whose drivers size every bound
+                // array by those dimensions, and all their loops have fixed counts or run along
+                // lists built by this program; debug builds run the same kernels with the checks
+                // on.
                 #[allow(unsafe_code)]
                 unsafe {
                     self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
@@ -108,7 +112,8 @@ impl GpuContext {
     /// Binds arguments to a kernel, in the order of [`Kernel::bindings`].
     ///
     /// # Errors
-    /// [`GpuError::Length`] for a wrong number of arguments, [`GpuError::Rejected`], or the device's fault.
+    /// [`GpuError::Length`] for a wrong number of arguments, [`GpuError::Rejected`], or the
+    /// device's fault.
     pub fn bind(&self, pipeline: &Arc<Pipeline>, arguments: Vec<wgpu::BindingResource<'_>>) -> Result<Bound, GpuError> {
         let kernel = pipeline.kernel;
         if arguments.len() != kernel.bindings.len() {
@@ -130,7 +135,8 @@ impl GpuContext {
 }
 
 impl Recorder<'_> {
-    /// Appends one kernel: `threads` along x (rounded up to whole workgroups) for each of `cases` along y.
+    /// Appends one kernel: `threads` along x (rounded up to whole workgroups) for each of `cases`
+    /// along y.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] beyond the device's number of workgroups.

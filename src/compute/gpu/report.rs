@@ -5,7 +5,8 @@ use super::buffers::MEMORY_VARIABLE;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The adapters, their features and limits as far as they matter here, and what `--device auto` and `--device gpu` would take.
+/// The adapters, their features and limits as far as they matter here, and what `--device auto` and
+/// `--device gpu` would take.
 ///
 /// `wanted` is the value of `ASPERITY_ADAPTER`.
 pub fn report(adapters: &[Adapter], wanted: Option<&str>) -> String {

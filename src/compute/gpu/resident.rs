@@ -95,7 +95,8 @@ impl Connectivity {
     }
 }
 
-/// A group of cases whose arrays the device binds together: all of a batch, or as many as one binding holds.
+/// A group of cases whose arrays the device binds together: all of a batch, or as many as one
+/// binding holds.
 #[derive(Debug)]
 pub struct Resident<R> {
     /// First case of the batch.
@@ -122,7 +123,8 @@ pub struct Resident<R> {
 }
 
 impl<R: DeviceReal> Resident<R> {
-    /// Sends `models`, the cases from `first` on, in their virgin state; `weights` are the contact weights of each case.
+    /// Sends `models`, the cases from `first` on, in their virgin state; `weights` are the contact
+    /// weights of each case.
     ///
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; what [`GpuContext::array`] says.
@@ -189,7 +191,8 @@ impl<R: DeviceReal> Resident<R> {
         Ok(resident)
     }
 
-    /// Sends the committed displacement of the group's case `index`, rounded once, and the gaps that it leaves, formed in f64.
+    /// Sends the committed displacement of the group's case `index`, rounded once, and the gaps
+    /// that it leaves, formed in f64.
     ///
     /// # Errors
     /// The device's fault.

@@ -99,8 +99,9 @@ impl Checked {
     }
 }
 
-/// Simulates the protocol for the material, the friction and the greatest depth of `case`, on so many elements along the contact radius, and drives the update
-/// that the law exports along it. Paths side by side.
+/// Simulates the protocol for the material, the friction and the greatest depth of `case`, on so
+/// many elements along the contact radius, and drives the update that the law exports along it.
+/// Paths side by side.
 ///
 /// # Errors
 /// The law says nothing of the case; a simulation cannot be set up.
@@ -108,7 +109,8 @@ pub fn check(law: &LawFile, case: &Case, elements: usize) -> Result<Vec<Checked>
     check_until(law, case, elements, &AtomicBool::new(false))
 }
 
-/// As [`check`]; once `stop` is set, the simulations end after their present step, which their `failure` says.
+/// As [`check`]; once `stop` is set, the simulations end after their present step, which their
+/// `failure` says.
 ///
 /// # Errors
 /// Those of [`check`].

@@ -1,4 +1,5 @@
-//! The paths that the update is held against: what contacts in a packing go through, alone and at once.
+//! The paths that the update is held against: what contacts in a packing go through, alone and at
+//! once.
 
 use crate::case::{Case, Fields, Friction, Hardening, Hold, Segment, ShearTarget};
 use crate::law::contact::ContactParameters;
@@ -16,7 +17,8 @@ pub struct Path {
 /// F_T/F_N over mu at which a shear counts as full.
 const FULL: f64 = 0.99;
 
-/// The protocol for the material, the friction and the greatest depth of `case`; the shears are measured in the displacement at which the law has 0.99 mu.
+/// The protocol for the material, the friction and the greatest depth of `case`; the shears are
+/// measured in the displacement at which the law has 0.99 mu.
 pub fn protocol(case: &Case, parameters: &ContactParameters, elements: usize) -> Vec<Path> {
     let h = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
@@ -69,7 +71,8 @@ fn slip_displacement(parameters: &ContactParameters, h: f64) -> f64 {
     slips.map_or(parameters.virgin(h).point.delta_t_slip, |point| point.delta_t)
 }
 
-/// The materials of a check without a case, each with three frictions: just yielding, deep plastic, and hardening strongly.
+/// The materials of a check without a case, each with three frictions: just yielding, deep plastic,
+/// and hardening strongly.
 pub fn materials(case: &Case) -> Vec<(&'static str, Case)> {
     let modulus = case.material.youngs_modulus;
     let laws = [

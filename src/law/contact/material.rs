@@ -7,7 +7,8 @@ use crate::law::variables::{Body, yield_lambda};
 
 /// Greatest tabulated indentation over R.
 pub const LAST: f64 = 0.1;
-/// First tabulated indentation over R of a sphere that yields later or never. Below it the powers of h of a half-space hold, as a/R is 0.001.
+/// First tabulated indentation over R of a sphere that yields later or never. Below it the powers
+/// of h of a half-space hold, as a/R is 0.001.
 pub const ELASTIC_FIRST: f64 = 1e-6;
 
 /// First tabulated indentation: below first yield, where the contact is still Hertz's.
@@ -22,13 +23,16 @@ fn first_indentation(body: &Body) -> f64 {
 }
 
 impl ContactParameters {
-    /// The parameters of a sphere on a rigid plane with Coulomb friction `friction` >= 0: F_N0 and a from the law's normal model.
+    /// The parameters of a sphere on a rigid plane with Coulomb friction `friction` >= 0: F_N0 and
+    /// a from the law's normal model.
     ///
-    /// The stiffness of a reversal is Mindlin's (1949), 8 G a/(2 - nu), in series with the compliance b a/R of the body up to its equator, where
-    /// delta_T is measured; b is the law's constant for it.
+    /// The stiffness of a reversal is Mindlin's (1949), 8 G a/(2 - nu), in series with the
+    /// compliance b a/R of the body up to its equator, where delta_T is measured; b is the law's
+    /// constant for it.
     ///
     /// # Errors
-    /// [`ContactError`]: `friction` is negative or not finite, or the law gives no positive numbers for this material.
+    /// [`ContactError`]: `friction` is negative or not finite, or the law gives no positive numbers
+    /// for this material.
     pub fn new(law: &Law, body: &Body, friction: f64) -> Result<Self, ContactError> {
         if !(friction >= 0.0 && friction.is_finite()) {
             return Err(ContactError::Friction { value: friction });

@@ -1,24 +1,35 @@
-//! The law as an incremental, vectorial update of one contact, the form in which a discrete-element code calls it.
+//! The law as an incremental, vectorial update of one contact, the form in which a discrete-element
+//! code calls it.
 //!
-//! [`ContactParameters`] belong to a pair of materials, [`ContactState`] to a contact; [`ContactParameters::update`] takes the new indentation h and the
-//! tangential increment in two directions, and answers with the forces and tangents. The model, within which the law is exact on first loading:
+//! [`ContactParameters`] belong to a pair of materials, [`ContactState`] to a contact;
+//! [`ContactParameters::update`] takes the new indentation h and the tangential increment in two
+//! directions, and answers with the forces and tangents. The model, within which the law is exact
+//! on first loading:
 //!
-//! - *First loading* in h follows F_N0(h), a(h); in delta_T at constant h, with x = delta_T/delta_T_slip, F_T = mu F_N_slip f_T(x) and
-//!   F_N = F_N0 - (F_N0 - F_N_slip) f_N(x) (Olsson & Larsson 2014). In the plane of F_N and |F_T| this is a limit curve, from (F_N0, 0) to full
-//!   slip, and x is the place on it.
-//! - *Inside the curve* the contact is elastic with friction. F_N = F_N0 eta^gamma, eta the elastic approach over its greatest value D = gamma F_N0/(2 E* a):
-//!   it starts with 2 E* a, ends at the residual dent, and is Hertz for gamma = 3/2. F_T is carried by [`SLIDERS`] sliders in parallel (Iwan 1967), each an annulus that
-//!   leaves contact at its own eta (Jaeger 1998, Ciavarella 1998; Popov & Hess 2015): Masing's rule, nested loops, and shear while h changes (Mindlin &
-//!   Deresiewicz 1953) follow without rules of their own. Sliding in any direction holds each slider to its limit; together they reach mu F_N.
-//! - *On the curve* plastic flow in h and delta_T moves the contact along it: x grows with delta_T / delta_T_slip, the normal part of the flow being an
-//!   indentation, so that F_N is lost and does not come back on reversal. Pressing on flows too: F_T falls exponentially with what the elastic response exceeds
-//!   the curve by, and F_N comes back along the curve.
+//! - *First loading* in h follows F_N0(h), a(h); in delta_T at constant h, with x =
+//!   delta_T/delta_T_slip, F_T = mu F_N_slip f_T(x) and F_N = F_N0 - (F_N0 - F_N_slip) f_N(x)
+//!   (Olsson & Larsson 2014). In the plane of F_N and |F_T| this is a limit curve, from (F_N0, 0)
+//!   to full slip, and x is the place on it.
+//! - *Inside the curve* the contact is elastic with friction. F_N = F_N0 eta^gamma, eta the elastic
+//!   approach over its greatest value D = gamma F_N0/(2 E* a): it starts with 2 E* a, ends at the
+//!   residual dent, and is Hertz for gamma = 3/2. F_T is carried by [`SLIDERS`] sliders in parallel
+//!   (Iwan 1967), each an annulus that leaves contact at its own eta (Jaeger 1998, Ciavarella 1998;
+//!   Popov & Hess 2015): Masing's rule, nested loops, and shear while h changes (Mindlin &
+//!   Deresiewicz 1953) follow without rules of their own. Sliding in any direction holds each
+//!   slider to its limit; together they reach mu F_N.
+//! - *On the curve* plastic flow in h and delta_T moves the contact along it: x grows with delta_T
+//!   / delta_T_slip, the normal part of the flow being an indentation, so that F_N is lost and does
+//!   not come back on reversal. Pressing on flows too: F_T falls exponentially with what the
+//!   elastic response exceeds the curve by, and F_N comes back along the curve.
 //!
-//! So simulated contacts behave: after a reversal F_N stands still until |F_T| is back at its former height, then falls on; a press of some per cent in h restores F_N and
-//! takes F_T. `asperity law check` has the figures. With a table the stiffness of an unloading and the curve of a reversal are simulated ones; with formulas they are 2 E* a,
-//! which is 10 to 35 % too soft, and Masing's rule for the virgin contact's exponent, which turns round too slowly.
+//! So simulated contacts behave: after a reversal F_N stands still until |F_T| is back at its
+//! former height, then falls on; a press of some per cent in h restores F_N and takes F_T.
+//! `asperity law check` has the figures. With a table the stiffness of an unloading and the curve
+//! of a reversal are simulated ones; with formulas they are 2 E* a, which is 10 to 35 % too soft,
+//! and Masing's rule for the virgin contact's exponent, which turns round too slowly.
 //!
-//! Every flow dissipates: with [`ContactParameters::stored_energy`], no path returns more than was stored.
+//! Every flow dissipates: with [`ContactParameters::stored_energy`], no path returns more than was
+//! stored.
 
 mod material;
 pub mod path;

@@ -28,7 +28,8 @@ const SLIPPING: f64 = 1.0 - 1e-6;
 /// Halvings of the bracket in which h meets a force.
 const HALVINGS: usize = 60;
 
-/// The forces along `path`, from the state before first contact. Each segment begins with the place where the one before it ended.
+/// The forces along `path`, from the state before first contact. Each segment begins with the place
+/// where the one before it ended.
 pub fn follow(parameters: &ContactParameters, path: &[Segment]) -> Vec<PathPoint> {
     let mut follower = Follower::new(parameters);
     for (number, segment) in path.iter().enumerate() {
@@ -37,7 +38,8 @@ pub fn follow(parameters: &ContactParameters, path: &[Segment]) -> Vec<PathPoint
     follower.points
 }
 
-/// The forces at places that are given, from the state before first contact, with so many increments between one and the next.
+/// The forces at places that are given, from the state before first contact, with so many
+/// increments between one and the next.
 pub fn drive(parameters: &ContactParameters, places: &[[f64; 2]], increments: usize) -> Vec<[f64; 2]> {
     let mut follower = Follower::new(parameters);
     places
@@ -113,7 +115,8 @@ impl<'a> Follower<'a> {
         self.direction = (to - self.delta_t).signum();
     }
 
-    /// The indentation between `low` and `high` at which the next increment ends with the normal force `wanted`; F_N rises with h.
+    /// The indentation between `low` and `high` at which the next increment ends with the normal
+    /// force `wanted`; F_N rises with h.
     fn meet(&self, wanted: f64, delta_t: f64, mut low: f64, mut high: f64) -> f64 {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);

@@ -10,7 +10,8 @@ use rand_chacha::ChaCha8Rng;
 const SPHERE: ElasticSphere = ElasticSphere { radius: 2.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
 const FRICTION: f64 = 0.3;
 
-/// A made-up law with the features of a fitted one: elastic below Lambda = 4, and from there on gradually another.
+/// A made-up law with the features of a fitted one: elastic below Lambda = 4, and from there on
+/// gradually another.
 fn law(yield_stress: f64, h: f64) -> Axial {
     let model = OlssonLarsson { sphere: SPHERE, hardening: Hardening::Ideal { yield_stress } };
     let a = model.contact_radius(h);
@@ -40,7 +41,8 @@ fn pairs() -> [ContactParameters; 4] {
     ]
 }
 
-/// One whose shapes are given by numbers: those of the form, and one that passes a peak before full slip.
+/// One whose shapes are given by numbers: those of the form, and one that passes a peak before full
+/// slip.
 fn by_numbers(peak: f64) -> ContactParameters {
     let p = pair(400.0, PowerOfComplement);
     let mut shapes = [[[0.0; POINTS]; 2]; LEVELS];
@@ -170,7 +172,8 @@ fn first_loading_is_the_law_for_any_step_and_direction() {
                 let f_n = if p.form == 0.0 { (1.0 - (1.0 - x).powf(m)).powf(n) } else { 1.0 - (1.0 - x.powf(m)).powf(n) };
                 let size = FRICTION * v.point.f_n_slip * f;
                 let force = out.f_t[0].hypot(out.f_t[1]);
-                // Where the law is the elastic curve itself, the sliders' broken line may run below it.
+                // Where the law is the elastic curve itself, the sliders' broken line may run below
+                // it.
                 let tolerance = if h > 0.01 && p.virgin(h).gamma < 1.4 { 1e-10 * size } else { 6e-3 * FRICTION * out.f_n };
                 assert!((force - size).abs() < tolerance, "h {h} steps {steps} x {x}: {force} for {size}");
                 assert!((out.f_t[0] - force * f64::cos(angle)).abs() < 1e-10 * size);
@@ -286,7 +289,8 @@ fn no_path_gives_back_more_than_the_energy_stored() {
                             + (out.f_t[1] + answer.f_t[1]) * step[2]);
                     let gain = p.stored_energy(&next) - stored - work;
                     through += work.abs();
-                    // Of the energy that went in and out so far: quadrature over a step that changes its mind.
+                    // Of the energy that went in and out so far: quadrature over a step that
+                    // changes its mind.
                     worst = worst.max(gain / through);
                     assert!(gain <= 2e-4 * through, "{number} {seed} {k} {gain} {through} {state:?} {next:?}");
                     let force = out.f_t[0].hypot(out.f_t[1]);
@@ -342,7 +346,8 @@ fn the_tangents_are_the_derivatives() {
     let v = p.virgin(h);
     let slip = v.point.delta_t_slip;
     let (start, _) = pressed(&p, h, 5);
-    // On the virgin curve, turning on it, at full slip, on the way back, on the virgin curve of the other side, and partly unloaded.
+    // On the virgin curve, turning on it, at full slip, on the way back, on the virgin curve of the
+    // other side, and partly unloaded.
     let ways: [&[[f64; 3]]; 6] = [
         &[[h, 0.2, 0.1]],
         &[[h, 0.3, 0.0], [h, 0.1, 0.2]],
@@ -393,8 +398,9 @@ fn the_tangents_are_the_derivatives() {
     }
 }
 
-/// Rows h, delta_T, F_N, F_T of `asperity run` (six elements per contact radius; R = 1, E = 200e3, nu = 0.3, sigma_Y = 400, mu = 0.3), pressed to 0.02 before:
-/// forth to 0.001, back to -0.001, forth to full slip.
+/// Rows h, delta_T, F_N, F_T of `asperity run` (six elements per contact radius; R = 1, E = 200e3,
+/// nu = 0.3, sigma_Y = 400, mu = 0.3), pressed to 0.02 before: forth to 0.001, back to -0.001,
+/// forth to full slip.
 const SMALL_CYCLE: &[[f64; 4]] = &[
     [0.02, 1.4576e-05, 148.19, 0.65],
     [0.02, 5.766e-05, 147.52, 2.55],
@@ -438,7 +444,8 @@ const FULL_CYCLE: &[[f64; 4]] = &[
     [0.02, -0.0034327, 97.93, -29.37],
     [0.02, -0.005, 97.92, -29.34],
 ];
-/// The same, pressed further after shear and sheared again (a0 there, and so F_N, is 5 % off by the mesh).
+/// The same, pressed further after shear and sheared again (a0 there, and so F_N, is 5 % off by the
+/// mesh).
 const PRESSED_ON: &[[f64; 4]] = &[
     [0.02, 0.00011532, 136.49, 4.83],
     [0.02, 0.00050138, 128.64, 16.37],
@@ -479,7 +486,8 @@ fn cycles_of_the_simulation_are_followed() {
             (h, d) = (row[0], row[1]);
             let scale = p.virgin(h).point.f_n0;
             assert!((out.f_n - row[2]).abs() < allowed * scale, "{name} {row:?}: F_N {}", out.f_n);
-            // A quarter of the peak: the simulated contact turns round more sharply than the sliders do.
+            // A quarter of the peak: the simulated contact turns round more sharply than the
+            // sliders do.
             assert!((out.f_t[0] - row[3]).abs() < 0.25 * 0.3 * 0.69 * scale, "{name} {row:?}: F_T {}", out.f_t[0]);
         }
     }

@@ -1,8 +1,10 @@
-//! One increment of one contact. The C and the Python twin have the same functions in the same order and do the same operations.
+//! One increment of one contact. The C and the Python twin have the same functions in the same
+//! order and do the same operations.
 
 use super::virgin::{BY_NUMBERS, ContactParameters, POINTS, SLIDERS, Virgin};
 
-/// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a file as it is.
+/// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
+/// file as it is.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct ContactState {
@@ -10,9 +12,11 @@ pub struct ContactState {
     pub h: f64,
     /// Greatest h so far, length.
     pub h_max: f64,
-    /// Elastic approach, length: what is recovered until contact is lost; negative is the gap over the residual dent.
+    /// Elastic approach, length: what is recovered until contact is lost; negative is the gap over
+    /// the residual dent.
     pub approach: f64,
-    /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of its loss of F_N to shear.
+    /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of
+    /// its loss of F_N to shear.
     pub x: f64,
     /// Tangential deflections of the sliders, length, innermost (last to slip) first.
     pub deflection: [[f64; 2]; SLIDERS],
@@ -24,7 +28,8 @@ pub struct ContactState {
 pub struct ContactResponse {
     /// Normal force, compression positive.
     pub f_n: f64,
-    /// Tangential force along the displacement: what drives the sphere; the plane gives the sphere the opposite.
+    /// Tangential force along the displacement: what drives the sphere; the plane gives the sphere
+    /// the opposite.
     pub f_t: [f64; 2],
     /// d f_t\[i\]/d delta_T\[j\].
     pub df_t_ddelta: [[f64; 2]; 2],
@@ -39,12 +44,15 @@ pub struct ContactResponse {
 /// Share of F_N0 from which a force counts as F_N0, so that rounding is not taken for unloading.
 const AT_CAP: f64 = 1.0 - 1e-9;
 
-/// Share of a bound up to which a force counts as within it, so that a contact at rest answers with its elastic stiffness.
+/// Share of a bound up to which a force counts as within it, so that a contact at rest answers with
+/// its elastic stiffness.
 const AT_BOUND: f64 = 1.0 + 1e-10;
 
-/// A sheared contact that is pressed on flows; F_T then falls e-fold for each share 1/YIELDING of F_N0 by which its elastic response to the press exceeds its
-/// virgin curve. Of a rigid-plastic contact; one that presses on elastically keeps its F_T (Mindlin & Deresiewicz 1953), and between them it goes with the fourth
-/// power of what the virgin curve is softer by. Of simulated oblique presses and presses of sheared contacts.
+/// A sheared contact that is pressed on flows; F_T then falls e-fold for each share 1/YIELDING of
+/// F_N0 by which its elastic response to the press exceeds its virgin curve. Of a rigid-plastic
+/// contact; one that presses on elastically keeps its F_T (Mindlin & Deresiewicz 1953), and between
+/// them it goes with the fourth power of what the virgin curve is softer by. Of simulated oblique
+/// presses and presses of sheared contacts.
 const YIELDING: f64 = 2.6;
 
 /// F_N_slip/F_N0 from which a contact counts as elastic.
@@ -181,7 +189,8 @@ fn approach_at(virgin: &Virgin, f_n: f64) -> f64 {
     if f_n >= virgin.point.f_n0 { virgin.depth } else { virgin.depth * (f_n / virgin.point.f_n0).powf(1.0 / virgin.gamma) }
 }
 
-/// Greatest deflection of each slider under the normal force `f_n`: their forces then add up to mu F_N.
+/// Greatest deflection of each slider under the normal force `f_n`: their forces then add up to mu
+/// F_N.
 fn slider_limits(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> [f64; SLIDERS] {
     let mut limit = [0.0; SLIDERS];
     if f_n <= 0.0 {
@@ -203,7 +212,8 @@ fn slider_limits(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> [f64; SLID
     limit
 }
 
-/// An increment in the same direction, of at most 1e150: far beyond full slip, and its square is still finite.
+/// An increment in the same direction, of at most 1e150: far beyond full slip, and its square is
+/// still finite.
 fn bounded(increment: [f64; 2]) -> [f64; 2] {
     let size = if increment[0].abs() > increment[1].abs() { increment[0].abs() } else { increment[1].abs() };
     if size > 1e150 { [increment[0] / size * 1e150, increment[1] / size * 1e150] } else { increment }
@@ -262,8 +272,9 @@ struct Pressed {
     df_n_dh: f64,
 }
 
-/// Moves h with delta_T held. The elastic force follows the unloading curve; first loading caps it; a sheared contact that is pressed
-/// against its cap loses tangential force to plastic flow as it gains normal force.
+/// Moves h with delta_T held. The elastic force follows the unloading curve; first loading caps it;
+/// a sheared contact that is pressed against its cap loses tangential force to plastic flow as it
+/// gains normal force.
 fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f64) -> Pressed {
     let dh = h - state.h;
     let grown = h > state.h_max;
@@ -272,7 +283,8 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     let e = state.approach + dh;
     if grown && state.h_max > 0.0 {
         let old = p.virgin(state.h_max);
-        // The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it.
+        // The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and
+        // never gain energy by it.
         let keep = old.point.k_t / virgin.point.k_t;
         if keep < 1.0 {
             for q in &mut state.deflection {
@@ -315,7 +327,8 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     let share = if f_t < slip_force { f_t / slip_force } else { 1.0 };
     let soft = 1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0);
     let soft = if soft > 0.0 { soft * soft } else { 0.0 };
-    // Towards full slip the flow is more along the plane. Were it to fade there an oblique press would have two steady states.
+    // Towards full slip the flow is more along the plane. Were it to fade there an oblique press
+    // would have two steady states.
     let rate = YIELDING * (soft * soft) * (1.0 - 0.5 * (share * share));
     let flow = if trial > cap { rate * (trial - cap) / virgin.point.f_n0 } else { 0.0 };
     let most = slip_force * tangential_shape(p, virgin, bound)[0];
@@ -337,8 +350,9 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
 }
 
 impl ContactState {
-    /// Turns the memory into axes that are turned by the angle whose cosine and sine are given: the new components of a vector v are
-    /// (c v0 + s v1, -s v0 + c v1). Call it when the tangent frame follows the contact's normal.
+    /// Turns the memory into axes that are turned by the angle whose cosine and sine are given: the
+    /// new components of a vector v are (c v0 + s v1, -s v0 + c v1). Call it when the tangent frame
+    /// follows the contact's normal.
     pub fn rotate(&mut self, cosine: f64, sine: f64) {
         for q in &mut self.deflection {
             *q = [cosine * q[0] + sine * q[1], -sine * q[0] + cosine * q[1]];
@@ -347,8 +361,9 @@ impl ContactState {
 }
 
 impl ContactParameters {
-    /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in the tangent frame), the press
-    /// first. A pure function of the state before. Where `h` or the increment is not finite, nothing in the answer is a number and the state stays as it was.
+    /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in
+    /// the tangent frame), the press first. A pure function of the state before. Where `h` or the
+    /// increment is not finite, nothing in the answer is a number and the state stays as it was.
     pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
         let mut next = *state;
         let mut out = ContactResponse::default();
@@ -403,7 +418,8 @@ impl ContactParameters {
     }
 }
 
-/// Moves delta_T with h held. Inside the virgin curve the sliders answer; on it F_T and F_N follow the law in x.
+/// Moves delta_T with h held. Inside the virgin curve the sliders answer; on it F_T and F_N follow
+/// the law in x.
 fn shear(
     p: &ContactParameters,
     next: &mut ContactState,

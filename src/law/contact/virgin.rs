@@ -1,7 +1,9 @@
-//! The virgin curves of one pair of materials: everything that the contact update asks of the law, tabulated over the indentation.
+//! The virgin curves of one pair of materials: everything that the contact update asks of the law,
+//! tabulated over the indentation.
 //!
-//! The table is cubic in ln h through [`KNOTS`] equidistant knots, so that an update costs no root search. Its last digits differ from the
-//! formulas that filled it by some 1e-4; what counts is that every language fills and reads it by the same operations.
+//! The table is cubic in ln h through [`KNOTS`] equidistant knots, so that an update costs no root
+//! search. Its last digits differ from the formulas that filled it by some 1e-4; what counts is
+//! that every language fills and reads it by the same operations.
 
 use crate::law::forms::NormalCurve;
 use crate::law::model::Parameters;
@@ -22,7 +24,8 @@ pub const SLIDERS: usize = 16;
 /// Powers of h in a Hertz contact of the quantities whose logarithms are tabulated.
 const ELASTIC_POWERS: [f64; COLUMNS] = [1.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5];
 
-/// What the update needs to know of a pair of materials. Plain data, shared by all contacts of the pair; any one consistent system of units.
+/// What the update needs to know of a pair of materials. Plain data, shared by all contacts of the
+/// pair; any one consistent system of units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactParameters {
     /// Radius R, length; of a contact of two equal spheres R* = R/2.
@@ -37,10 +40,12 @@ pub struct ContactParameters {
     pub log_first: f64,
     /// Step of ln h from knot to knot.
     pub log_step: f64,
-    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T. With form 2 a is the radius with which 2 E* a is the stiffness of an unloading, M the
-    /// contact radius over it, N the exponent of the sliders' backbone.
+    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T. With form 2 a is
+    /// the radius with which 2 E* a is the stiffness of an unloading, M the contact radius over it,
+    /// N the exponent of the sliders' backbone.
     pub table: [[f64; COLUMNS]; KNOTS],
-    /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero otherwise.
+    /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero
+    /// otherwise.
     pub shapes: [Shapes; LEVELS],
 }
 
@@ -111,7 +116,8 @@ pub struct Virgin {
     pub point: VirginPoint,
     /// dF_N0/dh, force over length.
     pub slope: f64,
-    /// Exponent gamma of the elastic unloading, F_N = F_N0 eta^gamma: 3/2 for Hertz, 4/pi for a uniform pressure.
+    /// Exponent gamma of the elastic unloading, F_N = F_N0 eta^gamma: 3/2 for Hertz, 4/pi for a
+    /// uniform pressure.
     pub gamma: f64,
     /// Elastic approach D = gamma F_N0/(2 E* a), length: h less D is the residual indentation.
     pub depth: f64,
@@ -125,8 +131,9 @@ pub struct Virgin {
     pub shapes: Shapes,
 }
 
-/// gamma from how far the hardness has fallen below Hertz's at the same contact radius: 3/2 while it has not (Hertz), 4/pi at the end (a uniform
-/// pressure taken off, Mesarovic & Johnson 2000, whose unloading curve it keeps to 2 % of the force).
+/// gamma from how far the hardness has fallen below Hertz's at the same contact radius: 3/2 while
+/// it has not (Hertz), 4/pi at the end (a uniform pressure taken off, Mesarovic & Johnson 2000,
+/// whose unloading curve it keeps to 2 % of the force).
 pub fn unloading_exponent(radius: f64, effective_modulus: f64, a: f64, f_n0: f64) -> f64 {
     let hertz = 4.0 * effective_modulus * a * a * a / (3.0 * radius);
     let share = if f_n0 < hertz { f_n0 / hertz } else { 1.0 };
@@ -137,8 +144,8 @@ pub fn unloading_exponent(radius: f64, effective_modulus: f64, a: f64, f_n0: f64
 const PLASTIC_GAMMA: f64 = 1.2732395447351628;
 
 impl ContactParameters {
-    /// Tabulates `law` over the indentations `range` (both > 0), from first yield (below it the contact must be Hertz's) to the greatest that will
-    /// be met. `law` answers for an indentation.
+    /// Tabulates `law` over the indentations `range` (both > 0), from first yield (below it the
+    /// contact must be Hertz's) to the greatest that will be met. `law` answers for an indentation.
     ///
     /// # Errors
     /// [`ContactError::Value`] where a quantity is not positive and finite.
@@ -193,8 +200,8 @@ impl ContactParameters {
         Ok(parameters)
     }
 
-    /// The same with f_T and f_N given by numbers for every level, the first at the first knot, and with the contact radius that `contact_radius` has for an
-    /// indentation.
+    /// The same with f_T and f_N given by numbers for every level, the first at the first knot, and
+    /// with the contact radius that `contact_radius` has for an indentation.
     #[must_use]
     pub fn with_shapes(self, shapes: [Shapes; LEVELS], contact_radius: impl Fn(f64) -> f64) -> Self {
         let mut given = Self { form: BY_NUMBERS, shapes, ..self };
@@ -246,9 +253,10 @@ impl ContactParameters {
         shapes
     }
 
-    /// Widens the contact where the law's F_N0 and a would let a press store more energy than was put in (a fit may be off by that much next to
-    /// first yield): the stored energy of a knot is at most that of the one before and the work between, F_N0 being a power of h there; and a dent
-    /// never rises above where the sphere began.
+    /// Widens the contact where the law's F_N0 and a would let a press store more energy than was
+    /// put in (a fit may be off by that much next to first yield): the stored energy of a knot is
+    /// at most that of the one before and the work between, F_N0 being a power of h there; and a
+    /// dent never rises above where the sphere began.
     fn conserve(&mut self) {
         let mut before = self.stored_at(0);
         for i in 1..KNOTS {
@@ -277,8 +285,9 @@ impl ContactParameters {
         gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * self.effective_modulus * a)
     }
 
-    /// Slope of a column at a knot, per step. The steeper secant for the force and the flatter one for the radius: so neither kink at yield makes
-    /// a virgin contact store more energy than was put in. The mean for the others.
+    /// Slope of a column at a knot, per step. The steeper secant for the force and the flatter one
+    /// for the radius: so neither kink at yield makes a virgin contact store more energy than was
+    /// put in. The mean for the others.
     pub(in crate::law) fn knot_slope(&self, column: usize, i: usize) -> f64 {
         let value = |i: usize| self.table[i][column];
         if i == 0 {
@@ -308,8 +317,8 @@ impl ContactParameters {
         }
     }
 
-    /// The table's column `column` and its slope in steps, cubic between the knots. Below the first the contact is Hertz's; beyond the last logarithms
-    /// go on straight and the others stay.
+    /// The table's column `column` and its slope in steps, cubic between the knots. Below the first
+    /// the contact is Hertz's; beyond the last logarithms go on straight and the others stay.
     fn column(&self, column: usize, position: f64) -> [f64; 2] {
         let value = |i: usize| self.table[i][column];
         let last = (KNOTS - 1) as f64;
@@ -349,7 +358,8 @@ impl ContactParameters {
             backbone = n_exponent;
             contact_radius = m_exponent * a;
         }
-        // The elastic sliders must be able to follow the virgin curve: neither softer at its start nor slower to slip.
+        // The elastic sliders must be able to follow the virgin curve: neither softer at its start
+        // nor slower to slip.
         let mut k_t = self.column(7, position)[0].exp();
         let start = n * self.friction * f_n_slip / delta_t_slip;
         let end = backbone * self.friction * f_n0 / delta_t_slip;
@@ -373,8 +383,8 @@ impl ContactParameters {
     }
 }
 
-/// Power of the sliders' place at which the stiffness inside it grows: with it the broken line of sixteen is within 2e-3 of a backbone with an exponent
-/// from 1.1 to 1.6 (3e-3 from 1.05 on).
+/// Power of the sliders' place at which the stiffness inside it grows: with it the broken line of
+/// sixteen is within 2e-3 of a backbone with an exponent from 1.1 to 1.6 (3e-3 from 1.05 on).
 const SPACING: f64 = 0.65;
 
 /// (k/16)^0.65: shares of k_T of the annuli inside the end of cell k.
@@ -400,9 +410,10 @@ const INSIDE: [f64; SLIDERS + 1] = [
 
 /// Shares and points of loss of the sliders whose backbone is 1 - (1 - x)^backbone.
 ///
-/// Each stands for a cell of the annuli at its centre of gravity, so that the broken line lies on the curve at the cells' ends, above it
-/// between them and at 1 at full slip. The shares are the same for every backbone: so a contact that grows keeps the forces of all its sliders
-/// by one factor. The places of the cells differ.
+/// Each stands for a cell of the annuli at its centre of gravity, so that the broken line lies on
+/// the curve at the cells' ends, above it between them and at 1 at full slip. The shares are the
+/// same for every backbone: so a contact that grows keeps the forces of all its sliders by one
+/// factor. The places of the cells differ.
 pub(super) fn sliders(backbone: f64) -> ([f64; SLIDERS], [f64; SLIDERS]) {
     let (mut weight, mut lost) = ([0.0; SLIDERS], [0.0; SLIDERS]);
     let power = SPACING / (backbone - 1.0);

@@ -1,4 +1,5 @@
-//! The law of one material and one friction for engines: a table, as a C constant and as a file that is read when an engine starts, beside the update that uses it.
+//! The law of one material and one friction for engines: a table, as a C constant and as a file
+//! that is read when an engine starts, beside the update that uses it.
 
 use std::fmt::Write as _;
 
@@ -85,7 +86,8 @@ impl Unit {
         self.body == Against::Plane
     }
 
-    /// What h and the tangential displacement are of what the two centres move: all of it, whatever the sphere meets.
+    /// What h and the tangential displacement are of what the two centres move: all of it, whatever
+    /// the sphere meets.
     fn share(&self) -> f64 {
         1.0
     }
@@ -174,7 +176,8 @@ pub fn engine_source(law: &LawFile, case: Option<&Case>) -> Result<String, LawEr
     Ok(Unit::new(law, case)?.header())
 }
 
-/// All files for engines: the law as a constant and as a file, the update, its use in three dimensions, test vectors, and the program that checks them.
+/// All files for engines: the law as a constant and as a file, the update, its use in three
+/// dimensions, test vectors, and the program that checks them.
 ///
 /// # Errors
 /// As [`engine_source`].

@@ -1,7 +1,10 @@
-//! The law for other programs: C headers and a table for engines, a Python module with the incremental contact update, and test vectors for both.
+//! The law for other programs: C headers and a table for engines, a Python module with the
+//! incremental contact update, and test vectors for both.
 //!
-//! Headers, module and [`ContactParameters`] are triplets: the same functions with the same operations. The Python module fills in the constants of the law, and makes its
-//! tables itself. In C the update is one header; it gets the tables of one material and one friction, or a second header of the whole law makes them.
+//! Headers, module and [`ContactParameters`] are triplets: the same functions with the same
+//! operations. The Python module fills in the constants of the law, and makes its tables itself. In
+//! C the update is one header; it gets the tables of one material and one friction, or a second
+//! header of the whole law makes them.
 
 mod contact;
 mod vectors;
@@ -39,13 +42,15 @@ pub struct ExportedFile {
     pub content: String,
 }
 
-/// The files of the Python export, the law itself first: then the test vectors; the module checks itself.
+/// The files of the Python export, the law itself first: then the test vectors; the module checks
+/// itself.
 pub fn files(law: &Law) -> Vec<ExportedFile> {
     python_files(source(law, Language::Python), vectors(law, vectors::SEED))
 }
 
-/// The files of either kind of law. For C a law of formulas gives the headers and the table of a case's material and friction;
-/// without a case, one header for all materials that makes its tables itself.
+/// The files of either kind of law. For C a law of formulas gives the headers and the table of a
+/// case's material and friction; without a case, one header for all materials that makes its tables
+/// itself.
 ///
 /// # Errors
 /// A table without numbers; what [`engine_files`] has.
@@ -71,7 +76,8 @@ pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Res
     }
 }
 
-/// The header for all materials, the update that it includes, test vectors, and the program that checks them.
+/// The header for all materials, the update that it includes, test vectors, and the program that
+/// checks them.
 fn header_files(law: &Law) -> Vec<ExportedFile> {
     vec![
         ExportedFile { name: "asperity_law.h", content: source(law, Language::C) },
@@ -217,7 +223,8 @@ fn table_source(table: &Tabulated) -> Result<String, LawError> {
     Ok(fill(MODULE, values.into_iter().chain(sizes())))
 }
 
-/// The number that a hardening law has in the exports, its numbers there, and which of them are stresses.
+/// The number that a hardening law has in the exports, its numbers there, and which of them are
+/// stresses.
 fn hardening_numbers(hardening: &Hardening) -> (u8, [f64; 3], [bool; 3]) {
     match *hardening {
         Hardening::Elastic => (0, [0.0; 3], [false; 3]),

@@ -22,9 +22,10 @@ const LEGS: usize = 10;
 /// Steps of a leg.
 const STEPS: usize = 15;
 
-/// The columns: the path (a new number is a new contact), its material with the numbers of the hardening law in the exports' order, R, mu, the
-/// indentation to go to, the tangential increment, the axes' turn before it; then the answer, and last the
-/// state's x for information (near 1 it hangs on the last digits of F_N, which hangs on x least there).
+/// The columns: the path (a new number is a new contact), its material with the numbers of the
+/// hardening law in the exports' order, R, mu, the indentation to go to, the tangential increment,
+/// the axes' turn before it; then the answer, and last the state's x for information (near 1 it
+/// hangs on the last digits of F_N, which hangs on x least there).
 pub const COLUMNS: &str = "path,E,nu,hardening,stress,second,third,R,mu,h,d0,d1,cosine,sine,\
                            f_n,f_t0,f_t1,k00,k01,k10,k11,kn,kn0,kn1,a,energy,x";
 
@@ -64,8 +65,9 @@ fn hardening(kind: usize, e: f64, random: &mut Random) -> Result<(Hardening<f64>
     })
 }
 
-/// The vectors as CSV: paths of every hardening law but the table, in random directions, with press, shear to full slip and beyond, reversal, shear while
-/// h changes, partial unloading, loss of contact, return, and turning axes.
+/// The vectors as CSV: paths of every hardening law but the table, in random directions, with
+/// press, shear to full slip and beyond, reversal, shear while h changes, partial unloading, loss
+/// of contact, return, and turning axes.
 pub fn vectors(law: &Law, seed: u64) -> String {
     let mut text = format!("{COLUMNS}\n");
     let mut random = Random(seed);
@@ -76,7 +78,8 @@ pub fn vectors(law: &Law, seed: u64) -> String {
     text
 }
 
-/// The vectors of a table: paths of its material and its friction with spheres of any radius and units.
+/// The vectors of a table: paths of its material and its friction with spheres of any radius and
+/// units.
 ///
 /// # Errors
 /// A table without numbers.
@@ -84,8 +87,8 @@ pub fn table_vectors(table: &Tabulated, seed: u64) -> Result<String, LawError> {
     Ok(unit_vectors(&table.unit_parameters()?, &table.material()?, table.range.to, seed))
 }
 
-/// The vectors of one material and one friction: paths with spheres of any radius and units, to and beyond `deepest` over R. `unit` and `material` are those of
-/// a sphere with R = 1 and E = 1.
+/// The vectors of one material and one friction: paths with spheres of any radius and units, to and
+/// beyond `deepest` over R. `unit` and `material` are those of a sphere with R = 1 and E = 1.
 pub fn unit_vectors(unit: &ContactParameters, material: &Material, deepest: f64, seed: u64) -> String {
     let mut text = format!("{COLUMNS}\n");
     let mut random = Random(seed);

@@ -1,4 +1,5 @@
-//! All curves of a study in normalised variables: as they are, and against what the law makes of them.
+//! All curves of a study in normalised variables: as they are, and against what the law makes of
+//! them.
 
 use super::groups::lambda_bar;
 use crate::law::data::{Point, Sample};

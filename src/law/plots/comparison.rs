@@ -90,8 +90,9 @@ fn case_chart(law: &Law, sample: &Sample) -> Chart {
     }
 }
 
-/// The greatest errors of F_T, as a share of its peak, and of F_N, as a share of F_N0, of every sample, F_N0 and a0 being known; and whether they are
-/// cross-validated, which they are where the law was fitted to these very cases.
+/// The greatest errors of F_T, as a share of its peak, and of F_N, as a share of F_N0, of every
+/// sample, F_N0 and a0 being known; and whether they are cross-validated, which they are where the
+/// law was fitted to these very cases.
 pub fn greatest_errors(samples: &[Sample], law: &Law) -> (Vec<[f64; 2]>, bool) {
     let known = |sample: &Sample| {
         let same = |case: &&FittedCase| (case.lambda - sample.variables.lambda).abs() <= 1e-9 * case.lambda;

@@ -46,7 +46,8 @@ pub fn parameters(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
     // A curve without an optimum has no mark.
     let mut n = by_friction(samples, |sample| own(sample).map_or(f64::NAN, |own| own.n));
     let mut factor = by_friction(samples, |sample| own(sample).map_or(f64::NAN, |own| own.slip_factor));
-    // Single curves may have a far larger optimum; the law's own range and most of the marks are what is shown.
+    // Single curves may have a far larger optimum; the law's own range and most of the marks are
+    // what is shown.
     let most = |sample: &Sample| law.contact(&inputs(sample)).delta_t_slip / elastic(&inputs(sample));
     let highest = 1.6 * extent(samples.iter().map(most)).1;
     n.extend(reference.by_friction(law, &frictions, |p, _| p.n));

@@ -1,4 +1,5 @@
-//! What the pictures of a study have in common: groups of cases with their colours and marks, ranges of Lambda, the law for a reference sphere.
+//! What the pictures of a study have in common: groups of cases with their colours and marks,
+//! ranges of Lambda, the law for a reference sphere.
 
 use crate::case::{Hardening, Material};
 use crate::law::Law;
@@ -56,7 +57,8 @@ pub fn by_friction(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> Vec<Se
     frictions(samples).into_iter().enumerate().map(series).collect()
 }
 
-/// The normal problem of a law for ideally plastic spheres of falling yield stress, all at one h/R: what its curves over Lambda are drawn for.
+/// The normal problem of a law for ideally plastic spheres of falling yield stress, all at one h/R:
+/// what its curves over Lambda are drawn for.
 pub struct Reference {
     h: f64,
     nu: f64,
@@ -64,7 +66,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// At the median of some h/R. The curve covers what the law was fitted to and the elastic range below.
+    /// At the median of some h/R. The curve covers what the law was fitted to and the elastic range
+    /// below.
     pub fn new(law: &Law, nu: f64, indentations: impl IntoIterator<Item = f64>) -> Self {
         let mut all: Vec<f64> = indentations.into_iter().collect();
         all.sort_by(f64::total_cmp);
@@ -107,7 +110,8 @@ impl Reference {
         self.states.iter().map(|(_, variables)| (variables.lambda, value(variables))).collect()
     }
 
-    /// A quantity of the law over Lambda for each mu, dashed in the colours of [`by_friction`]; the first one has the label.
+    /// A quantity of the law over Lambda for each mu, dashed in the colours of [`by_friction`]; the
+    /// first one has the label.
     pub fn by_friction(&self, law: &Law, frictions: &[f64], value: impl Fn(&Parameters, &Axisymmetric) -> f64) -> Vec<Series> {
         let series = |(i, &friction): (usize, &f64)| {
             let at = |(inputs, variables): &(Axisymmetric, Variables)| {

@@ -1,7 +1,8 @@
-//! Pictures of a study, and of a law fitted to it: the normal problem over Lambda, what the law correlates, all curves in normalised variables, and the law
-//! against single cases.
+//! Pictures of a study, and of a law fitted to it: the normal problem over Lambda, what the law
+//! correlates, all curves in normalised variables, and the law against single cases.
 //!
-//! `groups` tells cases apart by mu and by hardening and draws the law's curve of a reference sphere; the others are the pictures.
+//! `groups` tells cases apart by mu and by hardening and draws the law's curve of a reference
+//! sphere; the others are the pictures.
 
 mod collapse;
 mod comparison;
@@ -22,7 +23,8 @@ use super::{Law, LawError};
 use crate::case::Case;
 use crate::output::{OutputDirectory, Picture, Summary, SummaryInputs, read_history};
 
-/// The normal contact of a case before its shear, normalised: what Johnson's map and that of c^2 show.
+/// The normal contact of a case before its shear, normalised: what Johnson's map and that of c^2
+/// show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalContact {
     /// Lambda, Hbar, c^2 and sigma_rep.
@@ -60,7 +62,8 @@ impl NormalContact {
     }
 }
 
-/// Every picture for which there is something to show. `contacts` are all cases that were pressed; a law adds its curves, and the pictures of its errors.
+/// Every picture for which there is something to show. `contacts` are all cases that were pressed;
+/// a law adds its curves, and the pictures of its errors.
 ///
 /// # Errors
 /// A drawing fails.

@@ -21,7 +21,8 @@ const HARDENING: [(f64, &str); 4] =
     [(1e-3, "no hardening"), (0.15, "e < 0.15"), (0.3, "e 0.15 to 0.3"), (f64::INFINITY, "e > 0.3")];
 /// a/R from which a contact is large: the published curves are for small ones.
 const LARGE: f64 = 0.15;
-/// E/sigma_Y for which the curves of Kogut & Etsion and Jackson & Green are drawn; only the latter depend on it, and weakly.
+/// E/sigma_Y for which the curves of Kogut & Etsion and Jackson & Green are drawn; only the latter
+/// depend on it, and weakly.
 const STIFFNESS: f64 = 1000.0;
 
 /// Johnson's map: Hbar over Lambda.

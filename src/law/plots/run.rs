@@ -26,7 +26,8 @@ pub fn table_beside_run(law: &LawFile, case: &Case, history: &[StepRecord]) -> R
     Ok((picture, law.out_of_range(case, deepest)?))
 }
 
-/// The forces of a run with the law's: from the case alone, and given the F_N0 and a0 of the run. The prediction is returned for its range.
+/// The forces of a run with the law's: from the case alone, and given the F_N0 and a0 of the run.
+/// The prediction is returned for its range.
 ///
 /// # Errors
 /// [`LawError::NotCovered`] for a case that the law says nothing about; a drawing fails.

@@ -20,7 +20,8 @@ const SHALLOWEST: f64 = 2e-5;
 const HALF_SPACE: f64 = 1e-3;
 /// The shallowest depth is at most this share of the greatest.
 const SPAN: f64 = 0.1;
-/// Greatest ratio of one depth to the next; the depths between are simulated to check it, and then serve the table too.
+/// Greatest ratio of one depth to the next; the depths between are simulated to check it, and then
+/// serve the table too.
 const RATIO: f64 = 2.2;
 /// Fewest depths without those between.
 const FEWEST: usize = 5;
@@ -46,10 +47,12 @@ pub struct Built {
     pub missing: Vec<Missing>,
 }
 
-/// The depths, over R, that a table up to the depth of `case` needs: every other one, the first and the last among them, makes it, and those between check it.
+/// The depths, over R, that a table up to the depth of `case` needs: every other one, the first and
+/// the last among them, makes it, and those between check it.
 ///
 /// # Errors
-/// [`LawError::NotCovered`] for a case that presses into nothing or sticks; a hardening law that is none.
+/// [`LawError::NotCovered`] for a case that presses into nothing or sticks; a hardening law that is
+/// none.
 pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
     if case.contact.friction == Friction::Stick {
         return Err(LawError::NotCovered {
@@ -76,7 +79,8 @@ fn first_yield(body: &Body) -> Option<f64> {
     (!body.is_elastic()).then_some(a * a)
 }
 
-/// The case of the study at one of its depths: pressed, sheared to full slip and back, and released by half.
+/// The case of the study at one of its depths: pressed, sheared to full slip and back, and released
+/// by half.
 pub fn case_of(case: &Case, elements: usize) -> Case {
     let mut case = case.clone();
     case.mesh.elements_per_contact_radius = elements;
@@ -93,7 +97,8 @@ pub fn case_of(case: &Case, elements: usize) -> Case {
     case
 }
 
-/// The study that [`build`] makes a table of, as a study file: [`case_of`] with the depths, over R, as its grid.
+/// The study that [`build`] makes a table of, as a study file: [`case_of`] with the depths, over R,
+/// as its grid.
 pub fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
     let radius = case.sphere.radius;
     let base = toml::Value::String(String::new());
@@ -223,8 +228,8 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
     }
 }
 
-/// k_T and the exponent b with which Masing's rule, F_T = F - 2 F_s [1 - (1 - k_T delta/(2 b F_s))^b], is nearest to the simulated reversal, F and F_s = mu F_N
-/// being those where it begins.
+/// k_T and the exponent b with which Masing's rule, F_T = F - 2 F_s [1 - (1 - k_T delta/(2 b
+/// F_s))^b], is nearest to the simulated reversal, F and F_s = mu F_N being those where it begins.
 fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
     let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
     let Some(start) = one.back.first().filter(|_| one.back.len() > 4) else { return [mindlin, 1.5] };
@@ -255,7 +260,8 @@ fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
     [best[1], 1.0 + AGAIN * (best[2] - 1.0)]
 }
 
-/// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from the first force F of the release to the last.
+/// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from
+/// the first force F of the release to the last.
 fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
     let (Some(from), Some(to)) = (one.release.first(), one.release.last()) else { return one.a0 };
     let way = from[0] - to[0];
@@ -271,16 +277,19 @@ fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
     a
 }
 
-/// Share of the exponent's excess over 1 that a reversal has which is not the first: then it turns more sharply. Between that of the first and those after it,
-/// which a contact that goes to and fro has.
+/// Share of the exponent's excess over 1 that a reversal has which is not the first: then it turns
+/// more sharply. Between that of the first and those after it, which a contact that goes to and fro
+/// has.
 const AGAIN: f64 = 0.65;
-/// Fall of F_T over mu F_N up to which a reversal is fitted: to nine tenths of the way to slip on the other side.
+/// Fall of F_T over mu F_N up to which a reversal is fitted: to nine tenths of the way to slip on
+/// the other side.
 const REVERSED: f64 = 1.9;
 
 /// Share of Mindlin's slip displacement at which F_T/F_N is 0.99 mu: (1 - y)^(3/2) = 0.01.
 const NEARLY_MINDLIN: f64 = 0.953_584_1;
 
-/// The level of an elastic contact on a half-space, Hertz's sheared as Cattaneo and Mindlin have it.
+/// The level of an elastic contact on a half-space, Hertz's sheared as Cattaneo and Mindlin have
+/// it.
 fn hertzian(sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
     // Without friction there is no displacement at full slip, and none is asked for.
     let contact = CattaneoMindlin::at_indentation(*sphere, friction.max(1e-6), h);

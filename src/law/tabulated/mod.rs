@@ -1,8 +1,10 @@
-//! The law of one material and one friction as curves in h, from simulations at some depths: exact where formulas
-//! for all materials are not. It is of a sphere on a rigid plane or of two equal spheres, and says which.
+//! The law of one material and one friction as curves in h, from simulations at some depths: exact
+//! where formulas for all materials are not. It is of a sphere on a rigid plane or of two equal
+//! spheres, and says which.
 //!
-//! Lengths are over R and forces over E R^2, so that one table serves every radius. [`Tabulated::contact_parameters`] hands the curves to the contact update,
-//! and everything that uses a table goes through it: what is checked is what is exported.
+//! Lengths are over R and forces over E R^2, so that one table serves every radius.
+//! [`Tabulated::contact_parameters`] hands the curves to the contact update, and everything that
+//! uses a table goes through it: what is checked is what is exported.
 
 mod build;
 mod measure;
@@ -40,7 +42,8 @@ pub enum Against {
     /// A rigid plane.
     #[serde(rename = "plane")]
     Plane,
-    /// A sphere like itself; h and delta_T are then relative displacements, twice what each of the two moves.
+    /// A sphere like itself; h and delta_T are then relative displacements, twice what each of the
+    /// two moves.
     #[serde(rename = "equal pair")]
     EqualSphere,
 }
@@ -69,8 +72,9 @@ impl Against {
         }
     }
 
-    /// The sphere that makes the same elastic contact on a rigid plane: two equal bodies in series have R* = R/2 and
-    /// E* = E/(2 (1 - nu^2)), and half the tangential stiffness of one (Johnson 1985, sections 4.2 and 7.2).
+    /// The sphere that makes the same elastic contact on a rigid plane: two equal bodies in series
+    /// have R* = R/2 and E* = E/(2 (1 - nu^2)), and half the tangential stiffness of one (Johnson
+    /// 1985, sections 4.2 and 7.2).
     pub fn equivalent(self, sphere: &ElasticSphere) -> ElasticSphere {
         ElasticSphere {
             radius: sphere.radius / self.bodies(),
@@ -102,14 +106,16 @@ pub struct Level {
     pub a0: f64,
     /// Normal force at full slip over F_N0, at most 1.
     pub slip_share: f64,
-    /// Displacement at which the curves of the shear end, delta_T at x = 1: twice that at which F_T/F_N is 0.99 mu.
+    /// Displacement at which the curves of the shear end, delta_T at x = 1: twice that at which
+    /// F_T/F_N is 0.99 mu.
     pub delta_t_slip: f64,
     /// Radius with which 2 E* a is the stiffness of an unloading; that of the contact in Hertz's.
     pub unloading_radius: f64,
     /// Tangential stiffness k_T at the start of a reversal.
     #[serde(rename = "k_T")]
     pub k_t: f64,
-    /// Exponent of the curve on reversal: 3/2 in Cattaneo and Mindlin's contact, near 1 where it turns sharply.
+    /// Exponent of the curve on reversal: 3/2 in Cattaneo and Mindlin's contact, near 1 where it
+    /// turns sharply.
     pub backbone: f64,
     /// F_T over mu times the normal force at full slip, at x = (j/24)^2, j = 1 and on.
     pub tangential: Vec<f64>,
@@ -154,7 +160,8 @@ pub struct Tabulated {
     pub body: Against,
     /// The program and its version.
     pub program: String,
-    /// The case that it was made of, in units in which R and E are 1: material and friction are those of the table.
+    /// The case that it was made of, in units in which R and E are 1: material and friction are
+    /// those of the table.
     pub case: String,
     /// h/R between which it holds. Below the first the contact is Hertz's.
     pub range: Interval,
@@ -281,7 +288,8 @@ impl Tabulated {
         }
     }
 
-    /// What the contact update needs, for a sphere of this radius and this Young's modulus, whatever their units.
+    /// What the contact update needs, for a sphere of this radius and this Young's modulus,
+    /// whatever their units.
     ///
     /// # Errors
     /// [`LawError::Contact`] where a number is none.
@@ -365,7 +373,8 @@ fn alike(a: &serde_json::Value, b: &serde_json::Value) -> bool {
     }
 }
 
-/// What is tabulated as smooth curves in ln h: everything over the power of h that it has in Hertz's contact.
+/// What is tabulated as smooth curves in ln h: everything over the power of h that it has in
+/// Hertz's contact.
 struct Curves {
     columns: Vec<Spline>,
 }
@@ -401,7 +410,8 @@ fn level_of(h: f64, columns: &[f64]) -> Level {
     }
     let slip_share = columns[2].min(1.0);
     let mut tangential = columns[NUMBERS..NUMBERS + POINTS].to_vec();
-    // Where everything slips before F_N has fallen, F_T is all that friction gives: a curve beyond it would never be reached, and F_N fall no further.
+    // Where everything slips before F_N has fallen, F_T is all that friction gives: a curve beyond
+    // it would never be reached, and F_N fall no further.
     for (f_t, lost) in tangential.iter_mut().zip(&normal) {
         *f_t = f_t.min(WITHIN * (1.0 - (1.0 - slip_share) * lost) / slip_share);
     }

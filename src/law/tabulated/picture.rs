@@ -9,7 +9,8 @@ use crate::output::plots::Picture;
 use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_chart, extent};
 use crate::output::plots::style::{BLUE, GREEN, GREY, INK, VERMILION};
 
-/// F_N0 and a0 over h with the simulations; the shears of the checked depths with what the table of the others says; the errors there.
+/// F_N0 and a0 over h with the simulations; the shears of the checked depths with what the table of
+/// the others says; the errors there.
 ///
 /// # Errors
 /// [`LawError`] if it cannot be drawn.

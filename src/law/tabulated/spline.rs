@@ -1,5 +1,5 @@
-//! Smooth curves through few points that carry a ripple: natural cubic splines and their smoothing (Reinsch, Numer. Math. 10, 1967; Green & Silverman,
-//! Nonparametric Regression, 1994, ch. 2).
+//! Smooth curves through few points that carry a ripple: natural cubic splines and their smoothing
+//! (Reinsch, Numer. Math. 10, 1967; Green & Silverman, Nonparametric Regression, 1994, ch. 2).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,11 +12,13 @@ pub struct Spline {
     bend: Vec<f64>,
 }
 
-/// Penalties of the bending that are tried, over the cube of the mean spacing. The least takes three quarters of what alternates from point to point, and half a
-/// per cent of what goes up and down within ten of them.
+/// Penalties of the bending that are tried, over the cube of the mean spacing. The least takes
+/// three quarters of what alternates from point to point, and half a per cent of what goes up and
+/// down within ten of them.
 const PENALTIES: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 
-/// Q and R of the bending: the second derivatives at the inner points are R^-1 Q^T y, and the integral of their square is y^T Q R^-1 Q^T y.
+/// Q and R of the bending: the second derivatives at the inner points are R^-1 Q^T y, and the
+/// integral of their square is y^T Q R^-1 Q^T y.
 fn bending(x: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
     let n = x.len();
     let (mut q, mut r) = (DMatrix::zeros(n, n - 2), DMatrix::zeros(n - 2, n - 2));
@@ -74,8 +76,9 @@ impl Spline {
     }
 }
 
-/// Values of a smooth curve at the points of one that carries a ripple. How smooth is left to generalised cross-validation (Craven & Wahba, Numer. Math. 31,
-/// 1979), over all `columns` together: they are of the same mesh.
+/// Values of a smooth curve at the points of one that carries a ripple. How smooth is left to
+/// generalised cross-validation (Craven & Wahba, Numer. Math. 31, 1979), over all `columns`
+/// together: they are of the same mesh.
 pub fn smooth(x: &[f64], columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let n = x.len();
     if n < 6 {

@@ -15,7 +15,8 @@ fn case(text: &str) -> Case {
     Case::parse(&text, "case.toml", &[]).unwrap()
 }
 
-/// A made-up contact that yields at h/R = 2e-5 and is fully plastic at 0.02, with a ripple of the mesh.
+/// A made-up contact that yields at h/R = 2e-5 and is fully plastic at 0.02, with a ripple of the
+/// mesh.
 fn measured(h: f64, ripple: f64) -> Measured {
     let plasticity = (h / 2e-5).ln().max(0.0) / 1000f64.ln();
     let hertz = 4.0 / (3.0 * 0.91) * h.powf(1.5);
@@ -172,7 +173,8 @@ fn depths_go_from_first_yield_to_the_case() {
     let deep = build::depths(&case("law = \"ideal\"\nyield_stress = 400.0")).unwrap();
     assert!(deep.len() % 2 == 1 && deep.windows(2).all(|pair| pair[1] > pair[0]));
     assert!((deep[0] / 2.1e-5 - 1.0).abs() < 0.1 && (deep[deep.len() - 1] - 0.02).abs() < 1e-12, "{deep:?}");
-    // A sphere that never yields has a half-space's contact below a depth, one that yields at once is not meshed finer than can be.
+    // A sphere that never yields has a half-space's contact below a depth, one that yields at once
+    // is not meshed finer than can be.
     assert!((build::depths(&case("law = \"elastic\"")).unwrap()[0] - 1e-3).abs() < 1e-12);
     assert!((build::depths(&case("law = \"ideal\"\nyield_stress = 10.0")).unwrap()[0] - 2e-5).abs() < 1e-12);
     let mut stuck = case("law = \"elastic\"");

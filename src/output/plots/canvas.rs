@@ -1,5 +1,5 @@
-//! A surface that shapes and texts are drawn on, and that becomes an SVG. Places are in pixels and written with two decimals, so that a curve through close points is
-//! as smooth as its data.
+//! A surface that shapes and texts are drawn on, and that becomes an SVG. Places are in pixels and
+//! written with two decimals, so that a curve through close points is as smooth as its data.
 
 use std::cell::RefCell;
 use std::fmt::{self, Write};
@@ -103,7 +103,8 @@ impl Writing {
     }
 }
 
-/// What a drawing function may return; it fails where a place is not a number, which no reader of SVG would forgive.
+/// What a drawing function may return; it fails where a place is not a number, which no reader of
+/// SVG would forgive.
 pub type Drawn = Result<(), NotFinite>;
 
 /// A number of a drawing is not finite.
@@ -257,8 +258,10 @@ fn number(x: f64) -> String {
     if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
-/// Turns `_x` and `_{xyz}` of a text into subscripts of an SVG, `^x` and `^{xyz}` into superscripts: what follows a `_` is lowered and what follows a `^` is
-/// raised, up to the end of the word or of the braces. `size` is that of the letters, in pixels: sizes in per cent or in ems are not read alike everywhere.
+/// Turns `_x` and `_{xyz}` of a text into subscripts of an SVG, `^x` and `^{xyz}` into
+/// superscripts: what follows a `_` is lowered and what follows a `^` is raised, up to the end of
+/// the word or of the braces. `size` is that of the letters, in pixels: sizes in per cent or in ems
+/// are not read alike everywhere.
 pub fn subscripts(text: &str, size: f64) -> String {
     /// Size of what is off the line.
     const SMALL: f64 = 0.75;
@@ -268,7 +271,8 @@ pub fn subscripts(text: &str, size: f64) -> String {
     while !rest.is_empty() {
         let (plain, after) = rest.split_at(rest.find(['_', '^']).unwrap_or(rest.len()));
         if height != 0.0 && !plain.is_empty() {
-            // Back to the line; without the attribute some readers drop a space at the start of a span.
+            // Back to the line; without the attribute some readers drop a space at the start of a
+            // span.
             out.push_str(&format!("<tspan dy=\"{}\" xml:space=\"preserve\">{plain}</tspan>", number(-height * size)));
             height = 0.0;
         } else {

@@ -1,4 +1,5 @@
-//! A diagram: axes (linear or logarithmic), grid, curves and marks cut at the frame, a legend in lines above it, a colour bar beside it.
+//! A diagram: axes (linear or logarithmic), grid, curves and marks cut at the frame, a legend in
+//! lines above it, a colour bar beside it.
 
 use super::canvas::{Anchor, Canvas, Colour, Drawn, Ink, Paint, Place, Stroke, Writing};
 use super::style::{FAINT, INK, PALE, WHITE, tick, viridis};
@@ -6,7 +7,8 @@ use super::style::{FAINT, INK, PALE, WHITE, tick, viridis};
 /// One axis of a [`Chart`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it shows, with its unit; `_x` and `_{xyz}` are subscripts, `^x` and `^{xyz}` superscripts.
+    /// What it shows, with its unit; `_x` and `_{xyz}` are subscripts, `^x` and `^{xyz}`
+    /// superscripts.
     pub label: String,
     /// Least and greatest value shown.
     pub range: (f64, f64),
@@ -39,7 +41,8 @@ impl Axis {
         if !self.logarithmic {
             let step = nice_step((high - low) / 6.0);
             let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
-            // Among denormal numbers steps are no longer even, or nothing; a chart without ticks is still one.
+            // Among denormal numbers steps are no longer even, or nothing; a chart without ticks is
+            // still one.
             if !step.is_normal() || !(last - first <= 20.0) {
                 return Vec::new();
             }
@@ -149,7 +152,8 @@ impl Series {
     }
 }
 
-/// What the colours of many curves stand for: viridis from the lower end to the upper one, logarithmic.
+/// What the colours of many curves stand for: viridis from the lower end to the upper one,
+/// logarithmic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
     /// The quantity and its range.
@@ -297,7 +301,8 @@ const LEGEND_LINE: f64 = 20.0;
 const LEGEND_SIZE: f64 = 13.0;
 const SAMPLE: f64 = 26.0;
 
-/// Where each entry of the legend stands in lines of the given width: (series, x, line), and the number of lines.
+/// Where each entry of the legend stands in lines of the given width: (series, x, line), and the
+/// number of lines.
 fn legend_places(series: &[Series], width: f64) -> (Vec<(&Series, f64, usize)>, usize) {
     let (mut places, mut x, mut line) = (Vec::new(), 0.0, 0);
     for entry in series.iter().filter(|entry| !entry.label.is_empty()) {
@@ -430,7 +435,8 @@ mod tests {
         assert_eq!(frame.pieces(&[(0.0, 0.5), (1.0, 0.5), (10.0, 0.5)]), [vec![(0.0, 50.0), (100.0, 50.0)]]);
     }
 
-    /// A curve is no more broken than its data: on whole pixels it would turn by up to 20 degrees from point to point here.
+    /// A curve is no more broken than its data: on whole pixels it would turn by up to 20 degrees
+    /// from point to point here.
     #[test]
     fn a_smooth_curve_is_drawn_smoothly() {
         let (x, y) = (Axis::linear("", 0.0, 1.0), Axis::linear("", 0.0, 1.0));
@@ -463,7 +469,8 @@ mod tests {
         assert!(places[2].1 > SAMPLE + text_width("Olsson & Larsson 2016", LEGEND_SIZE));
     }
 
-    /// Steps between denormal numbers are nothing, or not even: there were once 2^64 ticks to make room for.
+    /// Steps between denormal numbers are nothing, or not even: there were once 2^64 ticks to make
+    /// room for.
     #[test]
     fn an_axis_over_the_least_numbers_has_few_ticks_or_none() {
         for (low, high) in

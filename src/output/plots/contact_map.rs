@@ -8,7 +8,8 @@ use super::style::{BLUE, INK, ORANGE, Picture, WHITE, rounded, tick, viridis};
 
 const OPEN: Colour = Colour(0xdd, 0xdd, 0xdd);
 
-/// The map of one step at current positions: open, stick and slip in the upper half, the pressure in the lower one. The shear runs to the right.
+/// The map of one step at current positions: open, stick and slip in the upper half, the pressure
+/// in the lower one. The shear runs to the right.
 pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
     let caption = "The contact surface at the last saved step in contact, at current positions, with the numbers of its points on both halves; the shear runs to the \
                    right.";
@@ -25,7 +26,8 @@ pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
     })
 }
 
-/// Maps of some steps of a shear side by side, all to one scale: how slip eats into the contact from its edge.
+/// Maps of some steps of a shear side by side, all to one scale: how slip eats into the contact
+/// from its edge.
 pub fn plot_slip(panels: &[SlipPanel]) -> Result<Picture, OutputError> {
     const PANEL: (f64, f64) = (300.0, 322.0);
     const HEAD: f64 = 48.0;
@@ -151,7 +153,8 @@ impl Map {
         area.rectangle([(left, top), (left + side, top + side)], Paint::outline(INK, 1.0))
     }
 
-    /// Ticks and their numbers, with the names of the axes; the horizontal name only where it is wanted.
+    /// Ticks and their numbers, with the names of the axes; the horizontal name only where it is
+    /// wanted.
     fn axes(&self, root: &Canvas, named: bool) -> Drawn {
         let Square { left, top, side } = self.square;
         let (centre, reach) = (self.view.centre, self.view.reach);

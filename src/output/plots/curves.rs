@@ -71,7 +71,8 @@ pub fn plot_ratio(history: &[StepRecord], friction: Option<f64>) -> Result<Pictu
     })
 }
 
-/// Stick radius over delta_T, as a share of the contact radius, from the first shear on, with Cattaneo and Mindlin's at the same F_T/F_N.
+/// Stick radius over delta_T, as a share of the contact radius, from the first shear on, with
+/// Cattaneo and Mindlin's at the same F_T/F_N.
 pub fn plot_stick(history: &[StepRecord], friction: Option<f64>) -> Result<Picture, OutputError> {
     let loaded = || split(history).1.iter().filter(|record| record.f_n > 0.0 && record.a > 0.0);
     let ours = loaded().map(|record| (record.delta_t, record.stick_radius / record.a)).collect();
@@ -87,8 +88,8 @@ pub fn plot_stick(history: &[StepRecord], friction: Option<f64>) -> Result<Pictu
     Picture::draw("stick", caption, SIZE, |root| draw_chart(root, &chart))
 }
 
-/// F_N(h) up to the first shear, with Hertz and, where the law has a counterpart, Olsson & Larsson beside it. Hertz leaves the frame at 1.5 times
-/// the greatest of the other forces.
+/// F_N(h) up to the first shear, with Hertz and, where the law has a counterpart, Olsson & Larsson
+/// beside it. Hertz leaves the frame at 1.5 times the greatest of the other forces.
 pub fn plot_indentation(history: &[StepRecord], inputs: &PlotInputs) -> Result<Picture, OutputError> {
     let pressing = split(history).0;
     let mut points = vec![(0.0, 0.0)];
@@ -115,7 +116,8 @@ pub fn plot_indentation(history: &[StepRecord], inputs: &PlotInputs) -> Result<P
     })
 }
 
-/// A law's F_T and F_N over delta_T beside the simulation's from the first shear on: `laws` are (name, points of delta_T, F_T, F_N).
+/// A law's F_T and F_N over delta_T beside the simulation's from the first shear on: `laws` are
+/// (name, points of delta_T, F_T, F_N).
 pub fn plot_law(history: &[StepRecord], laws: &[(String, Vec<[f64; 3]>)]) -> Result<Picture, OutputError> {
     let shear = split(history).1;
     let computed = |force: fn(&StepRecord) -> f64| shear.iter().map(|record| (record.delta_t, force(record))).collect();

@@ -7,7 +7,8 @@ use crate::analytical::olsson_larsson::Hardening;
 use crate::case::{self, Case};
 
 impl PlotInputs {
-    /// Those of a case in the user's units. Olsson & Larsson's laws cover ideal, power (k = K/sigma_Y, m = 1/n), linear (m = 1) and Hollomon.
+    /// Those of a case in the user's units. Olsson & Larsson's laws cover ideal, power (k =
+    /// K/sigma_Y, m = 1/n), linear (m = 1) and Hollomon.
     pub fn of(case: &Case) -> Self {
         let material = &case.material;
         let three = |yield_stress: f64, coefficient: f64, exponent: f64| Hardening::ThreeParameter {

@@ -1,7 +1,9 @@
-//! `plots/*.svg`: what a run looks like, on a white card with dark text and colours that hold in print and for colour-blind readers.
+//! `plots/*.svg`: what a run looks like, on a white card with dark text and colours that hold in
+//! print and for colour-blind readers.
 //!
-//! `canvas` writes SVG; `style` is the card, the colours and the writing of numbers; `chart` draws any diagram; the others are the pictures of a run. A picture is drawn
-//! into a [`Picture`] first and then written.
+//! `canvas` writes SVG; `style` is the card, the colours and the writing of numbers; `chart` draws
+//! any diagram; the others are the pictures of a run. A picture is drawn into a [`Picture`] first
+//! and then written.
 
 pub mod canvas;
 pub mod chart;
@@ -36,7 +38,8 @@ pub struct PlotInputs {
     pub hardening: Option<Hardening>,
     /// Coulomb's coefficient for the line that F_T/F_N runs up to; `None` for full stick.
     pub friction: Option<f64>,
-    /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them, over a plane.
+    /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them,
+    /// over a plane.
     pub bodies: f64,
 }
 
@@ -51,8 +54,8 @@ fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
     (0..count).map(|i| items[i * (items.len() - 1) / (count - 1)].clone()).collect()
 }
 
-/// Every picture for which there is something to show: `indentation` and `pressure` of the press, `forces`, `ratio`, `stick` and `slip` of the shear,
-/// `contact` of the last step in contact.
+/// Every picture for which there is something to show: `indentation` and `pressure` of the press,
+/// `forces`, `ratio`, `stick` and `slip` of the shear, `contact` of the last step in contact.
 ///
 /// # Errors
 /// A drawing fails.

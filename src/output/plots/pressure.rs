@@ -11,8 +11,9 @@ use std::f64::consts::PI;
 /// Times the computed pressure from which Hertz's is only named.
 const OFF_SCALE: f64 = 4.0;
 
-/// p(r) of every contact point of one step of the press, `record`, with Hertz's of an elastic sphere at the same h, unless that is far beyond the
-/// computed ones, and a Hertz pressure of the same force over the same circle.
+/// p(r) of every contact point of one step of the press, `record`, with Hertz's of an elastic
+/// sphere at the same h, unless that is far beyond the computed ones, and a Hertz pressure of the
+/// same force over the same circle.
 pub fn plot_pressure(points: &[ContactPoint], record: &StepRecord, inputs: &PlotInputs) -> Result<Picture, OutputError> {
     let sphere = &inputs.sphere;
     // An image has the pressure and the distance of its point.

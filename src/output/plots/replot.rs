@@ -5,7 +5,8 @@ use crate::case::Case;
 use crate::output::tables::split;
 use crate::output::{OutputDirectory, OutputError, StepRecord, read_contact};
 
-/// Draws the pictures of a run of `case` from its history and the contact tables in its directory; the run may be unfinished.
+/// Draws the pictures of a run of `case` from its history and the contact tables in its directory;
+/// the run may be unfinished.
 ///
 /// # Errors
 /// A table cannot be read, or a drawing fails.

@@ -43,7 +43,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Draws a white card of that size: dark text on it can be read in print and on a dark screen alike.
+    /// Draws a white card of that size: dark text on it can be read in print and on a dark screen
+    /// alike.
     ///
     /// # Errors
     /// The drawing fails; it depends on the data alone.
@@ -98,7 +99,8 @@ fn shorten(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
-/// Viridis at `x` in \[0, 1\], from nine of its colours: rising lightness, so that it holds in grey.
+/// Viridis at `x` in \[0, 1\], from nine of its colours: rising lightness, so that it holds in
+/// grey.
 pub fn viridis(x: f64) -> Colour {
     const STOPS: [[u8; 3]; 9] = [
         [68, 1, 84],

@@ -13,7 +13,8 @@ const INPUTS: PlotInputs = PlotInputs {
     bodies: 1.0,
 };
 
-/// Olsson & Larsson's pressing with a ripple, then a shear of Cattaneo-Mindlin's shape under a falling force.
+/// Olsson & Larsson's pressing with a ripple, then a shear of Cattaneo-Mindlin's shape under a
+/// falling force.
 pub(super) fn history() -> Vec<StepRecord> {
     let model = OlssonLarsson { sphere: INPUTS.sphere, hardening: INPUTS.hardening.unwrap() };
     let elastic = CattaneoMindlin::at_indentation(INPUTS.sphere, 0.3, 0.02);
@@ -117,14 +118,15 @@ fn every_plot_is_sound_xml_with_its_labels() {
             assert!(words.contains(label), "{name}: {label} is missing in {words}");
         }
     }
-    // A point of the diagram for each meshed node, and the whole contact in the map: status of one half, pressure of the other, and both of the middle.
+    // A point of the diagram for each meshed node, and the whole contact in the map: status of one
+    // half, pressure of the other, and both of the middle.
     let whole = contact();
     let of = |half: Half| whole.iter().filter(|point| point.half == half).count();
     assert!(of(Half::Meshed) == of(Half::Mirrored) && of(Half::Both) == 48);
     let circles = |name: &str| fs::read_to_string(out.plot(name)).unwrap().matches("<circle").count();
     assert!(circles("pressure") <= of(Half::Meshed) + of(Half::Both) + 1, "{}", circles("pressure"));
-    // Hertz's elastic pressure is a curve or, where it is off the scale, a word in the caption; never an entry of the
-    // legend without a curve.
+    // Hertz's elastic pressure is a curve or, where it is off the scale, a word in the caption;
+    // never an entry of the legend without a curve.
     let pictures = run_pictures(&history(), &tables(), &INPUTS).unwrap();
     let pressure = pictures.iter().find(|picture| picture.name == "pressure").unwrap();
     assert_ne!(

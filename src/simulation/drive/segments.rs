@@ -9,7 +9,8 @@ use crate::simulation::record::StepRecord;
 
 /// Full slip: the sticking points carry no more than this share of the normal force.
 const STICK_SHARE: f64 = 2e-3;
-/// A release to a share of F_N asks for the force itself when so many steps are left by the contact's stiffness, which the simulated one exceeds by a fifth at most.
+/// A release to a share of F_N asks for the force itself when so many steps are left by the
+/// contact's stiffness, which the simulated one exceeds by a fifth at most.
 const LANDING: f64 = 1.25;
 /// F_T has stopped rising when it grows by less than this share over a step.
 const PLATEAU: f64 = 1e-3;
@@ -26,7 +27,8 @@ impl Drive<'_> {
         Ok(Ending::Done)
     }
 
-    /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that the residual indentation is sharp.
+    /// Withdraws the plate until nothing touches; the steps shorten as the contact shrinks, so that
+    /// the residual indentation is sharp.
     pub(super) fn release(&mut self, start: &Start, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         let step = self.resolution().release_step(start);
         if self.place.is_at_segment_start() && (self.state.record.contact_points == 0 || step <= 0.0) {
@@ -45,7 +47,8 @@ impl Drive<'_> {
         Ok(Ending::Done)
     }
 
-    /// Withdraws the plate until F_N has fallen to a share of what it was: in steps up to the last one, which asks for the force itself.
+    /// Withdraws the plate until F_N has fallen to a share of what it was: in steps up to the last
+    /// one, which asks for the force itself.
     pub(super) fn release_to(
         &mut self,
         start: &Start,

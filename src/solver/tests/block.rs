@@ -1,8 +1,10 @@
 //! A thin layer dragged over the plane with Coulomb friction, against its closed form.
 //!
-//! Plane strain (every node is on the symmetry plane), one layer of elements between plate and plane, fifty times as long as thick. As
-//! long as every point sticks, F is homogeneous and the forces are exact. Once every point slips, F_T = mu F_N exactly (to 1e-9: the sum of residuals of 1e-12). Between the two
-//! a layer without ends goes over at once; the ends of this one bring in a band of the width of thickness/length.
+//! Plane strain (every node is on the symmetry plane), one layer of elements between plate and
+//! plane, fifty times as long as thick. As long as every point sticks, F is homogeneous and the
+//! forces are exact. Once every point slips, F_T = mu F_N exactly (to 1e-9: the sum of residuals of
+//! 1e-12). Between the two a layer without ends goes over at once; the ends of this one bring in a
+//! band of the width of thickness/length.
 
 use super::*;
 use crate::mesh::brick;
@@ -20,7 +22,8 @@ fn layer() -> Rig {
     Rig::new(mesh, elastic(0.3), Friction::Coulomb(MU), TIGHT)
 }
 
-/// Nominal pressure and shear traction of the layer at F = I + gamma e_x (x) e_z + (lambda - 1) e_z (x) e_z.
+/// Nominal pressure and shear traction of the layer at F = I + gamma e_x (x) e_z + (lambda - 1) e_z
+/// (x) e_z.
 fn tractions(lambda: f64, gamma: f64) -> (f64, f64) {
     let e = elastic(0.3).elasticity;
     let pressure = 0.5 * e.bulk * (1.0 / lambda - lambda)
@@ -76,7 +79,8 @@ fn a_layer_sticks_slips_and_goes_back_as_it_should() {
     }
     let forward = rig.forces();
 
-    // Back: sticks at once, with the stiffness that it had at first (but for the ends), and slides the other way after twice the way.
+    // Back: sticks at once, with the stiffness that it had at first (but for the ends), and slides
+    // the other way after twice the way.
     let turn = 10.0 * slip;
     let (_, tau) = tractions(lambda, 0.5 * slip / THICKNESS);
     rig.to(H, turn - 0.5 * slip);
@@ -94,7 +98,8 @@ fn a_layer_sticks_slips_and_goes_back_as_it_should() {
 
 #[test]
 fn the_answer_does_not_depend_on_the_steps() {
-    // Sticking, then sliding one way: elastic and friction-limited, so one step and twenty end in the same state.
+    // Sticking, then sliding one way: elastic and friction-limited, so one step and twenty end in
+    // the same state.
     let slip = slip_displacement();
     let mut once = layer();
     once.to(H, 0.0);
@@ -133,7 +138,8 @@ fn the_normal_force_is_held_while_the_layer_is_sheared() {
         assert!(status.is_none_or(|status| all(&rig, status)), "at {part}: {:?}", rig.statuses());
         match status {
             Some(Status::Stick) => {
-                // The plate comes down as the layer is sheared: at this lambda and gamma the pressure is the held one.
+                // The plate comes down as the layer is sheared: at this lambda and gamma the
+                // pressure is the held one.
                 let (p, tau) = tractions(1.0 - rig.h / THICKNESS, part * slip / THICKNESS);
                 assert!(rig.h != H && (p * AREA / held - 1.0).abs() < 1e-10, "at {part}: {}", p * AREA / held);
                 assert!((f_t / (tau * AREA) - 1.0).abs() < 1e-10, "at {part}");

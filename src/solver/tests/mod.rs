@@ -1,4 +1,5 @@
-//! Whole steps on small bodies, by the direct linear solver to tight tolerances. One file a theme; what they share is here.
+//! Whole steps on small bodies, by the direct linear solver to tight tolerances. One file a theme;
+//! what they share is here.
 
 mod block;
 mod failure;
@@ -72,7 +73,8 @@ impl Rig {
         self.step(&Control { h, delta_t, normal_force: None })
     }
 
-    /// Normal and tangential force of the plane on the body, F_T positive against the motion of the plate along +x.
+    /// Normal and tangential force of the plane on the body, F_T positive against the motion of the
+    /// plate along +x.
     pub fn forces(&self) -> (f64, f64) {
         let f = self.newton.contact_state(&self.mesh).0.iter().fold([0.0; 3], |s, f| [s[0] + f[0], s[1] + f[1], s[2] + f[2]]);
         (f[2], -f[0])

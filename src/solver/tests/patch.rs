@@ -27,8 +27,9 @@ fn irregular_brick() -> Mesh {
     mesh
 }
 
-/// The elastic constants with which a brick that is shortened to `stretch` wants to keep its width: its lateral stress
-/// `(lambda^2 - 1)(kappa/2 - mu/3 lambda^(-2/3))` is zero (nu = 0 in the limit of small strain).
+/// The elastic constants with which a brick that is shortened to `stretch` wants to keep its width:
+/// its lateral stress `(lambda^2 - 1)(kappa/2 - mu/3 lambda^(-2/3))` is zero (nu = 0 in the limit
+/// of small strain).
 fn cork(stretch: f64) -> Elasticity<f64> {
     Elasticity { bulk: 2.0 / 3.0 * 0.5 * stretch.powf(-2.0 / 3.0), shear: 0.5 }
 }
@@ -65,7 +66,8 @@ fn a_pressed_brick_has_a_uniform_pressure() {
 
 #[test]
 fn a_bonded_layer_is_squeezed_and_sheared_uniformly() {
-    // One layer of elements between plate and plane, stuck: every node is prescribed in effect, and F is the same everywhere.
+    // One layer of elements between plate and plane, stuck: every node is prescribed in effect, and
+    // F is the same everywhere.
     let (height, area) = (0.3, 1.2 * 0.8);
     let material = elastic(0.3);
     let e = material.elasticity;
@@ -84,7 +86,8 @@ fn a_bonded_layer_is_squeezed_and_sheared_uniformly() {
 
 #[test]
 fn a_body_that_lost_its_contact_is_in_equilibrium() {
-    // Pressed until it flows, then lifted off: residual stresses remain, and no force by which to scale what rounding leaves.
+    // Pressed until it flows, then lifted off: residual stresses remain, and no force by which to
+    // scale what rounding leaves.
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() };
     let mut rig = Rig::new(
         irregular_brick(),

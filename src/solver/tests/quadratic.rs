@@ -1,6 +1,8 @@
-//! Newton converges quadratically where no contact status changes; the histories are held to `fixtures/newton/quadratic.json`.
+//! Newton converges quadratically where no contact status changes; the histories are held to
+//! `fixtures/newton/quadratic.json`.
 //!
-//! A wrong tangent still finds the answer, only not quadratically: the history is what shows it. `ASPERITY_BLESS=1` writes the fixture.
+//! A wrong tangent still finds the answer, only not quadratically: the history is what shows it.
+//! `ASPERITY_BLESS=1` writes the fixture.
 
 use std::path::PathBuf;
 
@@ -106,7 +108,8 @@ fn smooth_steps_converge_as_they_did() {
 fn smooth_elastic_steps_converge_quadratically() {
     for history in histories() {
         if history.name.starts_with("plastic") {
-            // Linear, but with a rate of a few per cent: no iteration more than a quadratic step to the solver's usual 3e-4.
+            // Linear, but with a rate of a few per cent: no iteration more than a quadratic step to
+            // the solver's usual 3e-4.
             let rates: Vec<f64> = history.merits.windows(2).filter(|m| m[1] > FLOOR).map(|m| m[1] / m[0]).collect();
             assert!(rates[1..].iter().all(|r| *r < 0.2), "{history:?}");
         } else {

@@ -1,4 +1,5 @@
-//! Pieces of the report: escaped text, tables, formulas. All of it is well-formed XML as well as HTML.
+//! Pieces of the report: escaped text, tables, formulas. All of it is well-formed XML as well as
+//! HTML.
 
 /// Text as it may stand between tags and in attributes.
 pub fn escape(text: &str) -> String {
@@ -73,7 +74,8 @@ pub fn percent(share: f64) -> String {
     format!("{:.2}", 100.0 * share)
 }
 
-/// A formula or a name of the law in plain letters, as `law fit` prints it, with Greek letters, subscripts and exponents.
+/// A formula or a name of the law in plain letters, as `law fit` prints it, with Greek letters,
+/// subscripts and exponents.
 pub fn formula(plain: &str) -> String {
     let letters: Vec<char> = plain.chars().collect();
     let mut out = String::new();
@@ -113,7 +115,8 @@ pub fn formula(plain: &str) -> String {
     out
 }
 
-/// A value of a grid as the table has it, escaped: of an inline table, as hardening laws are, the law's name and then its numbers.
+/// A value of a grid as the table has it, escaped: of an inline table, as hardening laws are, the
+/// law's name and then its numbers.
 pub fn grid_value(cell: &str) -> String {
     let Some(inner) = cell.trim().strip_prefix('{').and_then(|cell| cell.strip_suffix('}')) else { return escape(cell) };
     let (law, numbers): (Vec<&str>, Vec<&str>) = inner.split(',').map(str::trim).partition(|part| part.starts_with("law"));

@@ -1,4 +1,5 @@
-//! The law in the report: formulas with their constants, what they were compared with, errors, range.
+//! The law in the report: formulas with their constants, what they were compared with, errors,
+//! range.
 
 use super::html::{Table, escape, formula, number, percent};
 use crate::law::Law;

@@ -1,4 +1,5 @@
-//! `report.html`: a study in one file that needs nothing else: what it was, its cases, pictures, and the law that was fitted to it.
+//! `report.html`: a study in one file that needs nothing else: what it was, its cases, pictures,
+//! and the law that was fitted to it.
 
 mod html;
 mod law_section;
@@ -16,7 +17,8 @@ use crate::law::plots::{NormalContact, greatest_errors, study_pictures};
 use crate::law::table::{StudyRow, StudyTable};
 use crate::output::{OutputDirectory, Picture, write_atomically};
 
-/// Draws a study into `plots/*.svg` and `report.html` of its directory and returns their paths, the report last.
+/// Draws a study into `plots/*.svg` and `report.html` of its directory and returns their paths, the
+/// report last.
 ///
 /// # Errors
 /// A table, case or history that cannot be read; files that cannot be written.

@@ -1,14 +1,17 @@
-//! Unilateral contact with Coulomb friction, exact at every point: a stateless semismooth Newton (Alart & Curnier 1991).
+//! Unilateral contact with Coulomb friction, exact at every point: a stateless semismooth Newton
+//! (Alart & Curnier 1991).
 //!
-//! The body's internal force f on a contact point balances the plane's force on the body, so in equilibrium f is that force: f_z >= 0
-//! pushes the body up, f_t opposes the slip. With c > 0 a numerical weight (it changes the way to the answer, not the answer):
+//! The body's internal force f on a contact point balances the plane's force on the body, so in
+//! equilibrium f is that force: f_z >= 0 pushes the body up, f_t opposes the slip. With c > 0 a
+//! numerical weight (it changes the way to the answer, not the answer):
 //!
 //! - xi_n = f_z - c g; the point is open if xi_n <= 0, and then f = 0;
 //! - closed: g = 0; xi_t = f_t - c du_t; it sticks if |xi_t| <= mu max(f_z, 0), and then du_t = 0;
 //! - otherwise it slips: f_t = mu max(f_z, 0) xi_t / |xi_t|.
 //!
-//! The status follows from the present displacement and the tangential position at the start of the step alone; nothing is remembered
-//! between iterations, so the active set cannot cycle through a memory of its own.
+//! The status follows from the present displacement and the tangential position at the start of the
+//! step alone; nothing is remembered between iterations, so the active set cannot cycle through a
+//! memory of its own.
 
 use serde::{Deserialize, Serialize};
 
@@ -56,8 +59,9 @@ pub struct Point<R> {
 
 /// Residual r of a point and its linearisation `force_rows * df + displacement_rows * du = -r`.
 ///
-/// df is the change of the point's internal force (three rows of the tangent), du its displacement. A row whose `fixed` is set reads
-/// du = -r / weight instead: the residual is stated as a force, c g or c du_t, so that it can enter one merit with the others.
+/// df is the change of the point's internal force (three rows of the tangent), du its displacement.
+/// A row whose `fixed` is set reads du = -r / weight instead: the residual is stated as a force, c
+/// g or c du_t, so that it can enter one merit with the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rows<R> {
     /// Status that follows from the trial displacement.
@@ -112,7 +116,8 @@ pub fn contact_rows<R: Real>(friction: Friction<R>, point: &Point<R>) -> Rows<R>
     rows.status = Status::Slip;
     let bound = mu * f[2].max(zero);
     if !(norm > zero) || !(bound > zero) {
-        // No friction to speak of: the tangential force itself must vanish, which is what the rows say already.
+        // No friction to speak of: the tangential force itself must vanish, which is what the rows
+        // say already.
         return rows;
     }
     let n = [xi[0] / norm, xi[1] / norm];
@@ -132,7 +137,8 @@ pub fn contact_rows<R: Real>(friction: Friction<R>, point: &Point<R>) -> Rows<R>
     rows
 }
 
-/// Makes row `i` prescribe its displacement; `residual` is weight times the displacement still missing.
+/// Makes row `i` prescribe its displacement; `residual` is weight times the displacement still
+/// missing.
 #[inline(always)]
 fn fix<R: Real>(rows: &mut Rows<R>, i: usize, residual: R) {
     rows.fixed[i] = true;

@@ -1,7 +1,9 @@
-//! Contact of the body's surface points with the rigid plane z = 0, with a rigid sphere, or with the body's own image.
+//! Contact of the body's surface points with the rigid plane z = 0, with a rigid sphere, or with
+//! the body's own image.
 //!
-//! `plane` says how far a point is from the plane and how far it has slid, `rigid` the same of a sphere; `coulomb` turns that and the internal force on the point into
-//! the residual and the linearised rows of the contact conditions.
+//! `plane` says how far a point is from the plane and how far it has slid, `rigid` the same of a
+//! sphere; `coulomb` turns that and the internal force on the point into the residual and the
+//! linearised rows of the contact conditions.
 
 pub mod coulomb;
 pub mod frame;

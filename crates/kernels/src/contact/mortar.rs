@@ -1,15 +1,20 @@
-//! Mortar integrals between a surface and its own image, turned half round the y axis: (x, y, z) goes to (-x, y, -z).
+//! Mortar integrals between a surface and its own image, turned half round the y axis: (x, y, z)
+//! goes to (-x, y, -z).
 //!
-//! Of an equal pair one body is meshed; the other is its image. The interface, seen along z, is halved at x = 0: on x >= 0 the body's own surface is the
-//! slave and the image of its surface at x <= 0 the master. For every slave node i the gap is weighted with a dual function psi_i (Wohlmuth, SIAM J.
-//! Numer. Anal. 38, 2000): on a face wholly at x >= 0 psi_i is orthogonal to the shape functions of the other nodes. A face that the seam x = 0
-//! cuts has shape functions for psi, those of its nodes that are no slaves added to those that are, so that the psi of all slaves add up to one everywhere.
-//! Faces are clipped against the image's faces (Sutherland & Hodgman, Commun. ACM 17, 1974) and integrated triangle by triangle.
+//! Of an equal pair one body is meshed; the other is its image. The interface, seen along z, is
+//! halved at x = 0: on x >= 0 the body's own surface is the slave and the image of its surface at x
+//! <= 0 the master. For every slave node i the gap is weighted with a dual function psi_i
+//! (Wohlmuth, SIAM J. Numer. Anal. 38, 2000): on a face wholly at x >= 0 psi_i is orthogonal to the
+//! shape functions of the other nodes. A face that the seam x = 0 cuts has shape functions for psi,
+//! those of its nodes that are no slaves added to those that are, so that the psi of all slaves add
+//! up to one everywhere. Faces are clipped against the image's faces (Sutherland & Hodgman, Commun.
+//! ACM 17, 1974) and integrated triangle by triangle.
 
 /// A point of the plane in which surfaces meet.
 type Point = [f64; 2];
 
-/// What the nodes of both sides contribute to the weighted gap of one slave node. The weights of each side add up to one.
+/// What the nodes of both sides contribute to the weighted gap of one slave node. The weights of
+/// each side add up to one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Weights {
     /// The slave node.
@@ -28,7 +33,8 @@ pub struct Weights {
 const COVERED: f64 = 0.99;
 /// A face of which the seam leaves less than this share has no dual functions of its own.
 const NARROW: f64 = 0.6;
-/// A node that is so much of its size beyond the seam is still a slave: its faces reach far enough to this side.
+/// A node that is so much of its size beyond the seam is still a slave: its faces reach far enough
+/// to this side.
 const MARGIN: f64 = 0.25;
 /// Triangles and faces of less than this share of a face's area count as nothing.
 const SLIVER: f64 = 1e-9;
@@ -46,8 +52,10 @@ const RULE: [([f64; 3], f64); 7] = {
     [([T, T, T], 0.225), ([A, B, B], U), ([B, A, B], U), ([B, B, A], U), ([C, D, D], V), ([D, C, D], V), ([D, D, C], V)]
 };
 
-/// The weights of all slave nodes: those at x >= 0, or not far beyond the seam for their `size`, whose faces meet the image. `points` are the positions of the
-/// surface's nodes in the plane, `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that counts as none.
+/// The weights of all slave nodes: those at x >= 0, or not far beyond the seam for their `size`,
+/// whose faces meet the image. `points` are the positions of the surface's nodes in the plane,
+/// `faces` its quadrilaterals (either sense of rotation), `tolerance` the distance to the seam that
+/// counts as none.
 pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], tolerance: f64) -> Vec<Weights> {
     let is_slave = |n: usize| points[n][0] >= -MARGIN * size[n];
     let images: Vec<Face> = faces.iter().map(|f| Face::new(f.map(|n| [-points[n][0], points[n][1]]), *f)).collect();
@@ -60,14 +68,16 @@ pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], 
         }
         let cut = nodes.iter().any(|&n| points[n][0] < -tolerance);
         let face = Face::new(nodes.map(|n| points[n]), *nodes);
-        // Every point of the rule: weight, shape functions of the face and of the image, the image's index.
+        // Every point of the rule: weight, shape functions of the face and of the image, the
+        // image's index.
         let mut rule: Vec<(f64, [f64; 4], [f64; 4], usize)> = Vec::new();
         for &m in &grid.near(&face) {
             let polygon = clip_at_seam(clip(&face.corners, &images[m].corners));
             each_point(&polygon, SLIVER * face.area, |x, weight| rule.push((weight, face.shape(x), images[m].shape(x), m)));
         }
         let share = rule.iter().map(|p| p.0).sum::<f64>() / face.area;
-        // What the seam leaves of a face of slaves has dual functions too, as long as it is not too narrow for them.
+        // What the seam leaves of a face of slaves has dual functions too, as long as it is not too
+        // narrow for them.
         let by_rule = if cut { share > NARROW && nodes.iter().all(|&n| is_slave(n)) } else { share > COVERED };
         let psi = match (by_rule, cut) {
             // By the same points, so that orthogonality holds as they integrate it.
@@ -121,8 +131,8 @@ fn add(entries: &mut Vec<(usize, f64)>, node: usize, value: f64) {
     }
 }
 
-/// The functions of a face that the seam cuts, as rows of coefficients of its shape functions: a node that is no slave leaves its own to the slaves next to
-/// it, or to all of them.
+/// The functions of a face that the seam cuts, as rows of coefficients of its shape functions: a
+/// node that is no slave leaves its own to the slaves next to it, or to all of them.
 fn seam_functions(face: &Face, is_slave: &impl Fn(usize) -> bool) -> [[f64; 4]; 4] {
     let slave = face.nodes.map(is_slave);
     let mut psi = [[0.0; 4]; 4];
@@ -206,7 +216,8 @@ impl Face {
     }
 }
 
-/// Coefficients A of the dual functions psi_a = sum_b A_ab N_b of a face: A = D M^-1 with M the mass matrix that `integrate` gives and D its row sums.
+/// Coefficients A of the dual functions psi_a = sum_b A_ab N_b of a face: A = D M^-1 with M the
+/// mass matrix that `integrate` gives and D its row sums.
 fn dual_functions(integrate: impl FnOnce(&mut dyn FnMut([f64; 4], f64))) -> [[f64; 4]; 4] {
     let mut m = [[0.0; 8]; 4];
     integrate(&mut |n, w| {
@@ -362,7 +373,8 @@ mod tests {
 
     #[test]
     fn uniform_pressure_goes_through_the_interface() {
-        // What each node gets, as slave and as master, is its own share of the area, wherever the image lies.
+        // What each node gets, as slave and as master, is its own share of the area, wherever the
+        // image lies.
         for shift in [0.0375, 0.12, 0.13, -0.07, 0.25] {
             let (points, faces) = patch(shift);
             let rows = self_image_weights(&points, &faces, &vec![0.25; points.len()], 1e-9);

@@ -1,10 +1,14 @@
-//! How an equal pair meets itself: what the displacements of one body have to do with the gap and the slip between it and its image, turned half round y.
+//! How an equal pair meets itself: what the displacements of one body have to do with the gap and
+//! the slip between it and its image, turned half round y.
 //!
-//! With R = diag(-1, 1, -1) the relative position of slave node i is `w_i = sum_k S_ik x_k - R sum_j M_ij x_j` with the mortar weights S of the body itself
-//! and M of its image (see [`super::mortar`]). Its conditions are those of a point over a plane, in a frame of its own: tangents t_1 (in the plane of x and the
-//! normal) and t_2, and the normal n, the mean of the two surfaces'. So the unknowns y of a step are w in these frames at slave nodes and u elsewhere:
-//! `u = T y`. The forces that belong to y are `T^T f`: at a slave node the force that the interface carries there, at a master node the body's own and what
-//! the image exerts on it, which is nothing together in equilibrium.
+//! With R = diag(-1, 1, -1) the relative position of slave node i is `w_i = sum_k S_ik x_k - R
+//! sum_j M_ij x_j` with the mortar weights S of the body itself and M of its image (see
+//! [`super::mortar`]). Its conditions are those of a point over a plane, in a frame of its own:
+//! tangents t_1 (in the plane of x and the normal) and t_2, and the normal n, the mean of the two
+//! surfaces'. So the unknowns y of a step are w in these frames at slave nodes and u elsewhere:
+//! `u = T y`. The forces that belong to y are `T^T f`: at a slave node the force that the interface
+//! carries there, at a master node the body's own and what the image exerts on it, which is nothing
+//! together in equilibrium.
 
 use super::frame::{Frame, frame, from_frame, to_frame, unit};
 use super::mortar::{Weights, self_image_weights};
@@ -13,7 +17,8 @@ use crate::mesh::Mesh;
 /// R = diag(-1, 1, -1), the half turn round y.
 pub const HALF_TURN: [f64; 3] = [-1.0, 1.0, -1.0];
 
-/// Leaves the part of a vector (three a node) that is even in x; `mirror` is the node opposite in x of each node.
+/// Leaves the part of a vector (three a node) that is even in x; `mirror` is the node opposite in x
+/// of each node.
 pub fn leave_even(mirror: &[u32], v: &mut [f64]) {
     for (n, &opposite) in mirror.iter().enumerate().filter(|(n, opposite)| *n <= **opposite as usize) {
         for c in 0..3 {
@@ -42,15 +47,18 @@ pub struct Interface {
     nodes: Vec<usize>,
     /// Per slave: coefficients of master nodes (indices among the contact nodes), by component.
     masters: Vec<Vec<(usize, [f64; 3])>>,
-    /// Per slave: the share of each master's load that is its own; the shares of a master add up to one.
+    /// Per slave: the share of each master's load that is its own; the shares of a master add up to
+    /// one.
     shares: Vec<Vec<(usize, f64)>>,
-    /// Slaves that have to do with other slaves or their own image, and their matrices by component: E and its inverse, row after row.
+    /// Slaves that have to do with other slaves or their own image, and their matrices by
+    /// component: E and its inverse, row after row.
     seam: Vec<usize>,
     direct: [Vec<f64>; 3],
     inverse: [Vec<f64>; 3],
     /// Position in `seam`.
     in_seam: Vec<Option<usize>>,
-    /// Per slave: y is not coupled. It is so on the symmetry plane, and on the seam, where there is no slip along y.
+    /// Per slave: y is not coupled. It is so on the symmetry plane, and on the seam, where there is
+    /// no slip along y.
     free_y: Vec<bool>,
 }
 
@@ -60,7 +68,8 @@ const SEAM: f64 = 1e-2;
 impl Interface {
     /// The interface between a body with displacement `u` (three a node) and its image.
     pub fn new(mesh: &Mesh, u: &[f64]) -> Self {
-        // The slaves are on the side that trails: contact is lost there node by node, and its edge is found best where nodes are slaves.
+        // The slaves are on the side that trails: contact is lost there node by node, and its edge
+        // is found best where nodes are slaves.
         let forward = mesh.plate_nodes.first().is_some_and(|&n| u[3 * n as usize] > 0.0);
         let side = if forward { -1.0 } else { 1.0 };
         let nodes: Vec<usize> = mesh.contact_nodes.iter().map(|&n| n as usize).collect();
@@ -169,7 +178,8 @@ impl Interface {
         self.free_y[k]
     }
 
-    /// Relative positions or displacements of the slaves in their frames, from those of all nodes (three a node).
+    /// Relative positions or displacements of the slaves in their frames, from those of all nodes
+    /// (three a node).
     pub fn relative(&self, x: &[f64]) -> Vec<[f64; 3]> {
         (0..self.slaves.len()).map(|k| to_frame(&self.frames[k], &self.relative_global(k, x))).collect()
     }
@@ -221,7 +231,8 @@ impl Interface {
         }
     }
 
-    /// T^T f, in place: slave entries become the forces of the interface in their frames, master entries what is not balanced there.
+    /// T^T f, in place: slave entries become the forces of the interface in their frames, master
+    /// entries what is not balanced there.
     pub fn reduce(&self, f: &mut [f64]) {
         let mut forces: Vec<[f64; 3]> = (0..self.slaves.len())
             .map(|k| {
@@ -249,8 +260,8 @@ impl Interface {
         }
     }
 
-    /// Nodal loads f with T^T f = `v` at all unknowns that are not `fixed`. Where a slave's unknown is fixed, and so its force any, it takes half of the
-    /// load that its masters have.
+    /// Nodal loads f with T^T f = `v` at all unknowns that are not `fixed`. Where a slave's unknown
+    /// is fixed, and so its force any, it takes half of the load that its masters have.
     pub fn loads(&self, v: &[f64], fixed: &[bool], loads: &mut [f64]) {
         loads.copy_from_slice(v);
         let forces: Vec<[f64; 3]> = (0..self.slaves.len())
@@ -276,7 +287,8 @@ impl Interface {
         }
     }
 
-    /// What the interface's forces (per slave, in its frame) exert on the contact nodes of the body, in their order.
+    /// What the interface's forces (per slave, in its frame) exert on the contact nodes of the
+    /// body, in their order.
     pub fn nodal(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut nodal = vec![[0.0; 3]; self.nodes.len()];
         let n = self.seam.len();
@@ -298,7 +310,8 @@ impl Interface {
     }
 }
 
-/// The coefficients of w = S x - R M x by node and component. Where y is not coupled it is the slave's own.
+/// The coefficients of w = S x - R M x by node and component. Where y is not coupled it is the
+/// slave's own.
 fn combine(row: &Weights, free_y: bool) -> Vec<(usize, [f64; 3])> {
     let mut out: Vec<(usize, [f64; 3])> = Vec::new();
     let mut add = |j: usize, by: [f64; 3]| match out.iter_mut().find(|e| e.0 == j) {
@@ -319,7 +332,8 @@ fn combine(row: &Weights, free_y: bool) -> Vec<(usize, [f64; 3])> {
     out
 }
 
-/// Unit normals into the body at the surface's nodes, means of those of the faces around them weighted by area. The body's surface looks down.
+/// Unit normals into the body at the surface's nodes, means of those of the faces around them
+/// weighted by area. The body's surface looks down.
 fn inward_normals(positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<[f64; 3]> {
     let mut normals = vec![[0.0; 3]; positions.len()];
     for face in faces {

@@ -4,7 +4,8 @@ use crate::real::Real;
 
 /// Gap g = z of the current position; negative when the point has passed the plane.
 ///
-/// `reference_z` is the reference height, computed without cancellation by the mesh; `displacement_z` the displacement.
+/// `reference_z` is the reference height, computed without cancellation by the mesh;
+/// `displacement_z` the displacement.
 #[inline(always)]
 pub fn gap<R: Real>(reference_z: R, displacement_z: R) -> R {
     reference_z + displacement_z

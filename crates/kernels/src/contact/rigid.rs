@@ -1,14 +1,18 @@
-//! A rigid opponent of any curvature: a sphere of radius 1/kappa below the body, its pole at the origin; for kappa = 0 the plane z = 0.
+//! A rigid opponent of any curvature: a sphere of radius 1/kappa below the body, its pole at the
+//! origin; for kappa = 0 the plane z = 0.
 //!
-//! It has no mesh, so nothing of it need be held within a step: gap and frame are those of the point where it is, in every iteration. The gap is the
-//! distance from the sphere, along its normal n,
+//! It has no mesh, so nothing of it need be held within a step: gap and frame are those of the
+//! point where it is, in every iteration. The gap is the distance from the sphere, along its normal
+//! n,
 //!
 //!   s = 2 kappa z + kappa^2 |x|^2,   g = (2 z + kappa |x|^2)/(1 + sqrt(1 + s)),   n = (kappa x, kappa y, 1 + kappa z)/sqrt(1 + s),
 //!
-//! which for small kappa loses no digits to the far centre. The rows of [`super::coulomb`] are stated in the frame (t1, t2, n): with f the internal force
-//! there, g that gap, and the slip t . (x - x_n) since the start of the step. Their linearisation takes the frame as fixed. What that leaves out is the
-//! turning of the force with the normal, kappa f_n beside a stiffness of the element E h_c: p/E times kappa h_c, 1e-4 and less, and without a trace in
-//! the number of iterations.
+//! which for small kappa loses no digits to the far centre. The rows of [`super::coulomb`] are
+//! stated in the frame (t1, t2, n): with f the internal force there, g that gap, and the slip t .
+//! (x - x_n) since the start of the step. Their linearisation takes the frame as fixed. What that
+//! leaves out is the turning of the force with the normal, kappa f_n beside a stiffness of the
+//! element E h_c: p/E times kappa h_c, 1e-4 and less, and without a trace in the number of
+//! iterations.
 
 use super::frame::{Frame, frame};
 
@@ -32,7 +36,8 @@ impl Rigid {
         (2.0 * x[2] + self.curvature * square) / (1.0 + self.root(x))
     }
 
-    /// The frame at a point: t1 along x as far as it can be, t2 along y exactly on the symmetry plane.
+    /// The frame at a point: t1 along x as far as it can be, t2 along y exactly on the symmetry
+    /// plane.
     pub fn frame(&self, x: &[f64; 3]) -> Frame {
         let k = self.curvature;
         let [t1, t2, n] = frame([k * x[0], k * x[1], 1.0 + k * x[2]]);

@@ -23,14 +23,16 @@ fn a_gap_opens_and_closes_a_point() {
     // Apart and free of force: nothing is asked.
     let r = rows(&point([0.0; 3], 0.3, [0.1, 0.2]));
     assert_eq!((r.status, r.residual, r.fixed), (Status::Open, [0.0; 3], [false; 3]));
-    // Penetrating without force, in the first iteration of a press: closed by the gap, which is what the row removes.
+    // Penetrating without force, in the first iteration of a press: closed by the gap, which is
+    // what the row removes.
     let r = rows(&point([0.0; 3], -0.02, [0.0; 2]));
     assert_ne!(r.status, Status::Open);
     assert!(r.fixed[2] && (r.residual[2] - -0.02 * C).abs() < 1e-18 && (r.residual[2] / r.weight + 0.02).abs() < 1e-16);
     // Pulled to the plane: it opens, and the pull is the residual.
     let r = rows(&point([0.01, 0.0, -0.05], 0.0, [0.0; 2]));
     assert_eq!((r.status, r.residual, r.fixed), (Status::Open, [0.01, 0.0, -0.05], [false; 3]));
-    // Pulled and penetrating more than the pull is worth: closed, without friction, because f_z <= 0 bounds it by 0.
+    // Pulled and penetrating more than the pull is worth: closed, without friction, because f_z <=
+    // 0 bounds it by 0.
     let r = rows(&point([0.01, -0.02, -0.001], -0.05, [0.01, 0.02]));
     assert_eq!((r.status, r.fixed), (Status::Slip, [false, false, true]));
     assert_eq!(r.residual, [0.01, -0.02, -0.05 * C]);
@@ -55,7 +57,8 @@ fn a_point_sticks_inside_the_cone_and_slips_outside() {
     let r = rows(&point([0.9, 0.0, 1.0], 0.0, [0.0; 2]));
     assert_eq!(r.status, Status::Slip);
     assert!(distance(&r.residual, &[0.5, 0.0, 0.0]) < 1e-15, "{:?}", r.residual);
-    // Friction that pushes along the slip, with a slip too large to be stuck back: wrong by twice the bound.
+    // Friction that pushes along the slip, with a slip too large to be stuck back: wrong by twice
+    // the bound.
     let r = rows(&point([MU, 0.0, 1.0], 0.0, [10.0, 0.0]));
     assert!(distance(&r.residual, &[2.0 * MU, 0.0, 0.0]) < 1e-15, "{:?}", r.residual);
 }
@@ -159,8 +162,9 @@ fn the_residual_is_continuous_from_stick_to_slip() {
 
 #[test]
 fn the_residual_is_continuous_from_open_to_closed_where_the_force_vanishes() {
-    // xi_n = f_z - c g = 0 is reached with any f_z > 0 off the solution; there the normal residual is continuous, and the tangential one
-    // jumps by the friction that the point is allowed as soon as it is closed, mu f_z. With f_z the jump vanishes.
+    // xi_n = f_z - c g = 0 is reached with any f_z > 0 off the solution; there the normal residual
+    // is continuous, and the tangential one jumps by the friction that the point is allowed as soon
+    // as it is closed, mu f_z. With f_z the jump vanishes.
     for f_z in [0.0, 1e-6, 1e-2] {
         let gap = f_z / C;
         let open = rows(&point([0.5, 0.1, f_z - 1e-12], gap, [0.0; 2]));

@@ -1,12 +1,15 @@
-//! Eight-node hexahedron with mean dilatation: internal force, symmetric tangent, energies and state update.
+//! Eight-node hexahedron with mean dilatation: internal force, symmetric tangent, energies and
+//! state update.
 //!
-//! The stored energy of an element of reference volume V is `sum_q W_dev(b_e-bar) V_q + V U(Theta)` with the mean dilatation
-//! `Theta = v/V` (Nagtegaal, Parks & Rice 1974; Simo, Taylor & Pister 1985; the three-field
-//! formulation with constant pressure and dilatation of Simo & Hughes 1998, chapter 9). The deviatoric Kirchhoff stress is the material's, point by point; the pressure
-//! `p = U'(Theta)` is one number an element, which is what keeps the element from locking when plastic flow is isochoric.
+//! The stored energy of an element of reference volume V is `sum_q W_dev(b_e-bar) V_q + V U(Theta)`
+//! with the mean dilatation `Theta = v/V` (Nagtegaal, Parks & Rice 1974; Simo, Taylor & Pister
+//! 1985; the three-field formulation with constant pressure and dilatation of Simo & Hughes 1998,
+//! chapter 9). The deviatoric Kirchhoff stress is the material's, point by point; the pressure `p =
+//! U'(Theta)` is one number an element, which is what keeps the element from locking when plastic
+//! flow is isochoric.
 //!
-//! Everything is computed from displacement gradients: `f - I = dH F_n^-1` with `dH` the gradient of the increment, so that small strains
-//! keep their digits (see `material::j2`).
+//! Everything is computed from displacement gradients: `f - I = dH F_n^-1` with `dH` the gradient
+//! of the increment, so that small strains keep their digits (see `material::j2`).
 
 use super::lanes::Lanes;
 use crate::material::j2::{Response, deviatoric_tangent, return_mapping_of_eight};
@@ -21,7 +24,8 @@ pub const QUADRATURE_POINTS: usize = 8;
 /// Blocks of the upper triangle of an element tangent: pairs (a, b) with a <= b.
 pub const PAIRS: usize = 36;
 
-/// Local coordinates of the nodes in VTK order; the quadrature points are these over sqrt(3), in the same order.
+/// Local coordinates of the nodes in VTK order; the quadrature points are these over sqrt(3), in
+/// the same order.
 pub use crate::mesh::quality::CORNERS;
 
 /// Three displacements (or forces) for each node of an element.
@@ -53,13 +57,15 @@ pub struct State<R> {
 }
 
 impl<R: Real> State<R> {
-    /// The states from which the next step starts, with `weight` times the last flow anticipated (see `material::multistep`).
+    /// The states from which the next step starts, with `weight` times the last flow anticipated
+    /// (see `material::multistep`).
     pub fn start(&self, weight: R) -> Points<R> {
         std::array::from_fn(|q| anticipate(&self.points[q], &self.flow[q], weight))
     }
 }
 
-/// Why an element could not be evaluated at a trial displacement. The solver backtracks; it is no error of the program.
+/// Why an element could not be evaluated at a trial displacement. The solver backtracks; it is no
+/// error of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Invalid {
     /// The Jacobian of the deformation is not positive (or not a number) at this quadrature point.
@@ -80,12 +86,14 @@ fn shape_derivatives(xi: [f64; 3]) -> [[f64; 3]; NODES] {
 }
 
 impl<R: Real> Geometry<R> {
-    /// Gradients and volumes of the element with these nodes, or the quadrature point at which its shape is inverted.
+    /// Gradients and volumes of the element with these nodes, or the quadrature point at which its
+    /// shape is inverted.
     pub fn new(nodes: &[[f64; 3]; NODES]) -> Result<Self, Invalid> {
         let mut gradient = [[Lanes::ZERO; 3]; NODES];
         let mut volume = Lanes::ZERO;
         let mut total = 0.0;
-        // Positions relative to the first node: the gradients of a small element far from the origin keep their digits.
+        // Positions relative to the first node: the gradients of a small element far from the
+        // origin keep their digits.
         let local = nodes.map(|x| [x[0] - nodes[0][0], x[1] - nodes[0][1], x[2] - nodes[0][2]]);
         for q in 0..QUADRATURE_POINTS {
             let xi = CORNERS[q].map(|c| c / 3.0_f64.sqrt());
@@ -221,7 +229,8 @@ fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, start: &Points<R>
     return_mapping_of_eight(material, &k.relative, &PointState::of_eight(start)).map_err(|(q, _)| Invalid::Material(q))
 }
 
-/// f_a = sum_q V_q tau_q . grad N_a with the Kirchhoff stress [xx, yy, zz, xy, yz, zx] already weighted by the volumes.
+/// f_a = sum_q V_q tau_q . grad N_a with the Kirchhoff stress [xx, yy, zz, xy, yz, zx] already
+/// weighted by the volumes.
 #[inline(always)]
 fn divergence<R: Real>(gradient: &[[Lanes<R>; 3]; NODES], weighted: &[Lanes<R>; 6]) -> Nodal<R> {
     std::array::from_fn(|a| {
@@ -234,7 +243,8 @@ fn divergence<R: Real>(gradient: &[[Lanes<R>; 3]; NODES], weighted: &[Lanes<R>; 
 
 /// Internal force of the element on its nodes, dW/du, at the displacement `committed + increment`.
 ///
-/// `committed` is the displacement of the last committed state, `start` the states from which the step starts. Force unit: stress times area of the scaled problem.
+/// `committed` is the displacement of the last committed state, `start` the states from which the
+/// step starts. Force unit: stress times area of the scaled problem.
 pub fn internal_force<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
@@ -255,7 +265,8 @@ pub fn internal_force<R: Real>(
     Ok(divergence(&k.gradient, &stress))
 }
 
-/// The upper triangle of an element tangent: block `pair(a, b)` is d f_a / d u_b, row-major, for a <= b.
+/// The upper triangle of an element tangent: block `pair(a, b)` is d f_a / d u_b, row-major, for a
+/// <= b.
 pub type Tangent<R> = [[R; 9]; PAIRS];
 
 /// Position of the pair (a, b), a <= b, in a [`Tangent`].
@@ -264,7 +275,8 @@ pub const fn pair(a: usize, b: usize) -> usize {
     a * (2 * NODES - a + 1) / 2 + (b - a)
 }
 
-/// Symmetric consistent tangent of [`internal_force`] (the deviatoric moduli are the symmetrised ones of Simo & Hughes, box 9.2).
+/// Symmetric consistent tangent of [`internal_force`] (the deviatoric moduli are the symmetrised
+/// ones of Simo & Hughes, box 9.2).
 pub fn tangent<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
@@ -280,7 +292,8 @@ pub fn tangent<R: Real>(
     let p_j = Lanes::from_fn(|q| p * (R::ONE + k.j_minus_1.0[q]));
     let stress: [Lanes<R>; 6] = std::array::from_fn(|i| v * if i < 3 { response.stress[i] + p_j } else { response.stress[i] });
     let mut moduli = deviatoric_tangent(&response).map(|row| row.map(|c| v * c));
-    // d(p J grad N) at fixed p: p J (1 (x) 1 - 2 I_sym), with p J I among the stresses of the geometric term.
+    // d(p J grad N) at fixed p: p J (1 (x) 1 - 2 I_sym), with p J I among the stresses of the
+    // geometric term.
     let v_p_j = v * p_j;
     for i in 0..3 {
         for j in 0..3 {
@@ -295,7 +308,8 @@ pub fn tangent<R: Real>(
     let h = by_node.volume_change(&v_j);
     let bulk = dp / geometry.total_volume;
     for b in 0..NODES {
-        // c : grad N_b, [Voigt row][j]. Where both directions are the same, tau grad N_b of the geometric term is added, [i][k].
+        // c : grad N_b, [Voigt row][j]. Where both directions are the same, tau grad N_b of the
+        // geometric term is added, [i][k].
         let mut d = [[Lanes::ZERO; 3]; 6];
         for (row, m) in d.iter_mut().zip(&moduli) {
             for j in 0..3 {
@@ -334,7 +348,8 @@ pub fn tangent<R: Real>(
     Ok(())
 }
 
-/// Gradients of the shape functions with four nodes side by side instead of the quadrature points: sums over points are then sums of vectors.
+/// Gradients of the shape functions with four nodes side by side instead of the quadrature points:
+/// sums over points are then sums of vectors.
 struct FourNodes<R> {
     /// Gradients dN_a/dx_k of the nodes 0 to 3 and 4 to 7: `[half][q][k][a % 4]`.
     gradient: [[[[R; 4]; 3]; QUADRATURE_POINTS]; 2],
@@ -366,8 +381,8 @@ impl<R: Real> FourNodes<R> {
     }
 }
 
-/// The state at the end of a step that went from `committed` by `increment`, and whose trial states were found from `start`; and the
-/// elastic energy of the element there.
+/// The state at the end of a step that went from `committed` by `increment`, and whose trial states
+/// were found from `start`; and the elastic energy of the element there.
 pub fn update<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,

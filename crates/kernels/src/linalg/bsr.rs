@@ -53,7 +53,8 @@ impl<T: Real> BlockMatrix<T> {
 
     /// y = A x. Lengths are [`BlockMatrix::unknowns`].
     ///
-    /// `y` may be wider than the matrix and `x` (f32 blocks or an f32 `x`, f64 sums): sums are taken in the precision of `y`.
+    /// `y` may be wider than the matrix and `x` (f32 blocks or an f32 `x`, f64 sums): sums are
+    /// taken in the precision of `y`.
     pub fn multiply<X: Widen<V> + Sync, V: Real>(&self, x: &[X], y: &mut [V])
     where
         T: Widen<V>,
@@ -81,7 +82,8 @@ impl<T: Real> BlockMatrix<T> {
         T: Widen<V>,
     {
         let range = self.pattern.row(i);
-        // Nine lanes, one for each place of a block: they vectorise as the block lies in memory, and are added up once a row.
+        // Nine lanes, one for each place of a block: they vectorise as the block lies in memory,
+        // and are added up once a row.
         let mut lanes = [V::ZERO; 9];
         for (a, &j) in self.blocks[range.clone()].iter().zip(&self.pattern.column[range]) {
             let x = x[j as usize].map(Widen::widen);

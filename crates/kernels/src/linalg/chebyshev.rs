@@ -9,16 +9,18 @@ use crate::mesh::pattern::Pattern;
 
 /// The polynomial damps the eigenvalues of D^-1 A between these.
 ///
-/// 8 is a bound that needs no estimate: for the sum of positive semidefinite matrices of elements with 8 nodes, D the block
-/// diagonal, x^T A x <= 8 x^T D x by Cauchy and Schwarz in each element (Fried, J. Sound Vib. 20, 1972; Wathen, IMA J. Numer. Anal.
-/// 7, 1987). Measured on the sphere: 5.4 elastic, 7.8 with a plastic core, 7.9 nearly incompressible; on coarse levels 4 to 5.6. An
+/// 8 is a bound that needs no estimate: for the sum of positive semidefinite matrices of elements
+/// with 8 nodes, D the block diagonal, x^T A x <= 8 x^T D x by Cauchy and Schwarz in each element
+/// (Fried, J. Sound Vib. 20, 1972; Wathen, IMA J. Numer. Anal. 7, 1987). Measured on the sphere:
+/// 5.4 elastic, 7.8 with a plastic core, 7.9 nearly incompressible; on coarse levels 4 to 5.6. An
 /// estimate from below does harm: with 0.95 of the largest eigenvalue iterations double.
 const HIGH: f32 = 8.0;
 /// Iteration counts do not change by more than one from 0.12 to 0.5.
 const LOW: f32 = 0.25;
 
-/// A level's matrix, smoothed by Chebyshev acceleration of block Jacobi (Adams, Brezina, Hu and Tuminaro, J. Comput. Phys. 188,
-/// 2003): an error is multiplied by a polynomial of D^-1 A that is small on the upper part of its spectrum.
+/// A level's matrix, smoothed by Chebyshev acceleration of block Jacobi (Adams, Brezina, Hu and
+/// Tuminaro, J. Comput. Phys. 188, 2003): an error is multiplied by a polynomial of D^-1 A that is
+/// small on the upper part of its spectrum.
 #[derive(Clone, Debug)]
 pub(super) struct Smoother {
     pub matrix: BlockMatrix<f32>,
@@ -64,7 +66,8 @@ impl Smoother {
         each(r, |i, r| *r = (f32x4::new(b[i]) - row_times(matrix, i, x)).to_array());
     }
 
-    /// The recurrence of Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), Algorithm 12.1, for D^-1 A x = D^-1 b.
+    /// The recurrence of Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003),
+    /// Algorithm 12.1, for D^-1 A x = D^-1 b.
     fn smooth_with(&mut self, b: &[Node], x: &mut Vec<Node>, from_zero: bool) {
         let (center, half) = ((HIGH + LOW) / 2.0, (HIGH - LOW) / 2.0);
         let mut rho = half / center;
@@ -97,8 +100,8 @@ impl Smoother {
     }
 }
 
-/// The inverse of a 3x3 block. Components whose row and column vanish are left alone (their inverse is 0, so they receive no
-/// correction); a block that is singular to rounding is shifted first.
+/// The inverse of a 3x3 block. Components whose row and column vanish are left alone (their inverse
+/// is 0, so they receive no correction); a block that is singular to rounding is shifted first.
 pub(super) fn invert(block: &[f32; 9]) -> Inverse {
     let mut a = block.map(f64::from);
     let scale = a.iter().fold(0.0_f64, |s, x| s.max(x.abs()));

@@ -11,7 +11,8 @@ use super::kernel::Node;
 #[derive(Clone, Debug)]
 pub(super) struct Dense {
     lu: Mat<f64>,
-    /// Row taken as each pivot; none if the matrix was singular, which leaves this level without a correction.
+    /// Row taken as each pivot; none if the matrix was singular, which leaves this level without a
+    /// correction.
     pivots: Option<Vec<usize>>,
     work: [Vec<f64>; 2],
 }

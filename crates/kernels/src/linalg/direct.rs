@@ -1,8 +1,9 @@
-//! Multifrontal sparse LU (Duff and Reid, ACM Trans. Math. Softw. 9, 1983) on a nested dissection, dense kernels by faer: the
-//! reference that the multigrid solver is tested against, and its fallback.
+//! Multifrontal sparse LU (Duff and Reid, ACM Trans. Math. Softw. 9, 1983) on a nested dissection,
+//! dense kernels by faer: the reference that the multigrid solver is tested against, and its
+//! fallback.
 //!
-//! Pivots are sought within a front's own unknowns, so the order and the memory are known before; what that costs in accuracy is
-//! made good by iterative refinement.
+//! Pivots are sought within a front's own unknowns, so the order and the memory are known before;
+//! what that costs in accuracy is made good by iterative refinement.
 
 use std::sync::Arc;
 
@@ -23,7 +24,8 @@ use super::{LinalgError, SolveReport};
 /// Memory the factors may take by default, in bytes.
 pub const DEFAULT_MEMORY_LIMIT: usize = 8 << 30;
 
-/// Refinement stops below the first relative residual, and a solution with less than the second counts as one.
+/// Refinement stops below the first relative residual, and a solution with less than the second
+/// counts as one.
 const ROUNDING: f64 = 1e-14;
 const ACCEPTED: f64 = 1e-8;
 const MAX_REFINEMENTS: usize = 5;
@@ -31,8 +33,8 @@ const MAX_REFINEMENTS: usize = 5;
 /// Parts whose fronts are at least this large are worth factorising beside each other.
 const PARALLEL_FRONT: usize = 200;
 
-/// A sparse LU factorisation in f64. The order is made once for a pattern, at the first use; the factors are the same bits at any
-/// thread count.
+/// A sparse LU factorisation in f64. The order is made once for a pattern, at the first use; the
+/// factors are the same bits at any thread count.
 #[derive(Debug)]
 pub struct DirectSolver {
     /// Memory in bytes that a factorisation may take before an update refuses.
@@ -42,7 +44,8 @@ pub struct DirectSolver {
     fronts: Vec<Front>,
 }
 
-/// The factors of one part: its own unknowns' LU, the rows of U beside it and the columns of L below it.
+/// The factors of one part: its own unknowns' LU, the rows of U beside it and the columns of L
+/// below it.
 #[derive(Clone, Debug)]
 struct Front {
     lu: Mat<f64>,
@@ -68,8 +71,8 @@ impl DirectSolver {
         self.dissection.get_or_insert_with(|| Arc::new(Dissection::new(&self.pattern))).clone()
     }
 
-    /// Memory that a factorisation takes at its peak, bytes: the factors and the largest stack of fronts waiting for their parents
-    /// (of a factorisation on one thread).
+    /// Memory that a factorisation takes at its peak, bytes: the factors and the largest stack of
+    /// fronts waiting for their parents (of a factorisation on one thread).
     pub fn memory(&mut self) -> usize {
         let dissection = self.dissection();
         let (mut factors, mut waiting, mut peak) = (0, 0, 0);
@@ -105,7 +108,8 @@ impl DirectSolver {
         Ok(())
     }
 
-    /// x = A^-1 b for the reduced system, refined until the residual is at rounding or no longer halves.
+    /// x = A^-1 b for the reduced system, refined until the residual is at rounding or no longer
+    /// halves.
     pub(super) fn solve(
         &self,
         matrix: &BlockMatrix<f64>,
@@ -192,7 +196,8 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Factorises the subtree of a part, whose fronts (and no others) are `fronts`. Returns what it leaves over for the boundary.
+    /// Factorises the subtree of a part, whose fronts (and no others) are `fronts`. Returns what it
+    /// leaves over for the boundary.
     fn factorise(&self, part: usize, fronts: &mut [Front]) -> Result<Mat<f64>, LinalgError> {
         let parts = &self.dissection.parts;
         let this = &parts[part];
@@ -273,7 +278,8 @@ fn extend_add(part: &Part, ranks: &[u32], rest: &Mat<f64>, f: &mut Mat<f64>) {
     }
 }
 
-/// LU with row pivoting in place, on the calling thread; returns the row taken as each pivot. None if a pivot vanishes.
+/// LU with row pivoting in place, on the calling thread; returns the row taken as each pivot. None
+/// if a pivot vanishes.
 pub(super) fn factorise_dense(a: MatMut<'_, f64>) -> Option<Vec<usize>> {
     let n = a.nrows();
     let mut a = a;

@@ -1,5 +1,5 @@
-//! Nested dissection: an elimination order in which a mesh falls apart into halves, quarters, ... (George, SIAM J. Numer. Anal. 10,
-//! 1973), from the graph alone.
+//! Nested dissection: an elimination order in which a mesh falls apart into halves, quarters, ...
+//! (George, SIAM J. Numer. Anal. 10, 1973), from the graph alone.
 
 use std::ops::Range;
 
@@ -104,7 +104,8 @@ impl Cutter {
         self.parts.len() - 1
     }
 
-    /// Breadth-first distances from a node within its set; returns the nodes reached, nearest first.
+    /// Breadth-first distances from a node within its set; returns the nodes reached, nearest
+    /// first.
     fn search(&mut self, from: u32, slot: usize) -> Vec<u32> {
         let set = self.set[from as usize];
         let mut reached = vec![from];
@@ -135,7 +136,8 @@ impl Cutter {
         (low, high, Vec::new())
     }
 
-    /// Two sides and the separator between them; none if the set does not fall apart into smaller ones.
+    /// Two sides and the separator between them; none if the set does not fall apart into smaller
+    /// ones.
     fn halves(&mut self, nodes: &[u32]) -> Option<(Vec<u32>, Vec<u32>, Vec<u32>)> {
         self.sets += 1;
         for &node in nodes {

@@ -1,7 +1,8 @@
-//! Flexible GMRES with restarts (Saad, SIAM J. Sci. Comput. 14, 1993, Algorithm 2.2): right preconditioning by anything, here a
-//! multigrid cycle in f32.
+//! Flexible GMRES with restarts (Saad, SIAM J. Sci. Comput. 14, 1993, Algorithm 2.2): right
+//! preconditioning by anything, here a multigrid cycle in f32.
 //!
-//! The basis may be f32 or f64. In f32 each restart is a step of iterative refinement: residuals and solution stay in f64.
+//! The basis may be f32 or f64. In f32 each restart is a step of iterative refinement: residuals
+//! and solution stay in f64.
 
 use rayon::prelude::*;
 
@@ -10,7 +11,8 @@ use crate::real::Real;
 
 /// What FGMRES needs to know of a linear system A x = b, its basis in precision `T`.
 pub trait System<T> {
-    /// z, about A^-1 v, and w = A z. The approximation may differ from call to call. `v` has unit norm.
+    /// z, about A^-1 v, and w = A z. The approximation may differ from call to call. `v` has unit
+    /// norm.
     fn step(&mut self, v: &[T], z: &mut [f32], w: &mut [T]);
     /// r = b - A x, to full accuracy.
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]);
@@ -38,7 +40,8 @@ pub struct Fgmres<T> {
     basis: Vec<T>,
     /// Preconditioned basis, `restart` vectors.
     preconditioned: Vec<f32>,
-    /// Upper triangle left of the Hessenberg matrix by Givens rotations: column j starts at j (j + 1) / 2.
+    /// Upper triangle left of the Hessenberg matrix by Givens rotations: column j starts at j (j +
+    /// 1) / 2.
     triangle: Vec<f64>,
     rotations: Vec<[f64; 2]>,
     /// Rotated right-hand side of the least-squares problem.
@@ -48,8 +51,8 @@ pub struct Fgmres<T> {
 }
 
 impl<T: Real> Fgmres<T> {
-    /// A workspace for systems of `unknowns` unknowns and restarts after `restart` (at least 1) iterations. Basis vectors are only
-    /// allocated once they are reached.
+    /// A workspace for systems of `unknowns` unknowns and restarts after `restart` (at least 1)
+    /// iterations. Basis vectors are only allocated once they are reached.
     pub fn new(unknowns: usize, restart: usize) -> Self {
         let restart = restart.max(1);
         Self {
@@ -65,8 +68,8 @@ impl<T: Real> Fgmres<T> {
         }
     }
 
-    /// Improves `x` until |b - A x| <= tolerance |b| or `max_iterations` are spent. Never panics on numbers that are not finite: it
-    /// stops and says stagnated.
+    /// Improves `x` until |b - A x| <= tolerance |b| or `max_iterations` are spent. Never panics on
+    /// numbers that are not finite: it stops and says stagnated.
     pub fn solve(
         &mut self,
         system: &mut impl System<T>,
@@ -92,7 +95,8 @@ impl<T: Real> Fgmres<T> {
             let before = report.residual;
             report.residual = r_norm / b_norm;
             report.converged = report.residual <= tolerance;
-            // A restart that gains less than 10 % will not get there; rounding may also put the tolerance out of reach.
+            // A restart that gains less than 10 % will not get there; rounding may also put the
+            // tolerance out of reach.
             let stuck = report.iterations > 0 && report.residual > 0.9 * before;
             report.stagnated = !report.converged && (stuck || !report.residual.is_finite());
             if report.converged || report.stagnated || report.iterations >= max_iterations {
@@ -101,8 +105,8 @@ impl<T: Real> Fgmres<T> {
             self.basis.resize(self.basis.len().max(n), T::ZERO);
             self.basis.iter_mut().zip(&self.residual).for_each(|(v, r)| *v = T::of(r / r_norm));
             self.target[0] = r_norm;
-            // Aim a little lower than asked, so that rounding in the recurrence does not cost a restart; but not below what the
-            // basis can resolve.
+            // Aim a little lower than asked, so that rounding in the recurrence does not cost a
+            // restart; but not below what the basis can resolve.
             let goal = (0.98 * tolerance * b_norm).max(100.0 * T::EPSILON.to_f64() * r_norm);
             let cycle = self.restart.min(max_iterations - report.iterations);
             let steps = self.cycle(system, n, goal, cycle);
@@ -116,7 +120,8 @@ impl<T: Real> Fgmres<T> {
         }
     }
 
-    /// Arnoldi steps until the residual estimate meets `goal` or `steps` are done; returns how many are usable.
+    /// Arnoldi steps until the residual estimate meets `goal` or `steps` are done; returns how many
+    /// are usable.
     fn cycle(&mut self, system: &mut impl System<T>, n: usize, goal: f64, steps: usize) -> usize {
         for j in 0..steps {
             self.basis.resize(self.basis.len().max((j + 2) * n), T::ZERO);
@@ -132,7 +137,8 @@ impl<T: Real> Fgmres<T> {
             }
             h.fill(0.0);
             h[j + 1] = orthogonalise(basis, w, h, &mut self.partial);
-            // Classical Gram-Schmidt loses orthogonality where most of w is cancelled: once more then ("twice is enough").
+            // Classical Gram-Schmidt loses orthogonality where most of w is cancelled: once more
+            // then ("twice is enough").
             if h[j + 1] < 0.1 * norm_before {
                 h[j + 1] = orthogonalise(basis, w, h, &mut self.partial);
             }
@@ -173,7 +179,8 @@ impl<T: Real> Fgmres<T> {
     }
 }
 
-/// One pass of classical Gram-Schmidt: takes w's components along the basis out of w, adds them to `h`, returns the norm left.
+/// One pass of classical Gram-Schmidt: takes w's components along the basis out of w, adds them to
+/// `h`, returns the norm left.
 fn orthogonalise<T: Real>(basis: &[T], w: &mut [T], h: &mut [f64], partial: &mut [f64]) -> f64 {
     let n = w.len();
     let vectors = basis.len() / n;

@@ -1,4 +1,5 @@
-//! The exact elimination of fixed unknowns: Dirichlet and contact unknowns whose matrix rows are rows of the identity.
+//! The exact elimination of fixed unknowns: Dirichlet and contact unknowns whose matrix rows are
+//! rows of the identity.
 
 use super::kernel::Node;
 

@@ -1,4 +1,5 @@
-//! Transfers between the levels of a hierarchy, and the coarse matrices P^T A P formed through a plan made once.
+//! Transfers between the levels of a hierarchy, and the coarse matrices P^T A P formed through a
+//! plan made once.
 
 use wide::f32x4;
 
@@ -68,7 +69,8 @@ pub(super) struct Transfer {
     fine_place: Vec<u16>,
     /// For each row of P^T A P where its places in `coarse_place` begin.
     coarse_start: Vec<u32>,
-    /// For each fine node of a coarse row, for each entry of A P's row: the place in the coarse row.
+    /// For each fine node of a coarse row, for each entry of A P's row: the place in the coarse
+    /// row.
     coarse_place: Vec<u16>,
 }
 
@@ -87,7 +89,8 @@ fn distinct(rows: usize, collect: impl Fn(usize, &mut Vec<u32>)) -> Vec<Vec<u32>
 }
 
 impl Transfer {
-    /// Plans the transfer from a level with the pattern `fine`, which the prolongation fits; returns the coarse pattern as well.
+    /// Plans the transfer from a level with the pattern `fine`, which the prolongation fits;
+    /// returns the coarse pattern as well.
     pub fn new(fine: &Pattern, prolongation: &Prolongation) -> (Self, Pattern) {
         let (fine_rows, coarse_rows) = (fine.rows(), prolongation.coarse_nodes);
         let p = Weights {
@@ -127,7 +130,8 @@ impl Transfer {
         (transfer, coarse)
     }
 
-    /// coarse = P^T fine P, leaving out the identity rows of fixed unknowns: those whose bits `identity` sets for a node.
+    /// coarse = P^T fine P, leaving out the identity rows of fixed unknowns: those whose bits
+    /// `identity` sets for a node.
     pub fn update(&mut self, fine: &BlockMatrix<f32>, identity: impl Fn(usize) -> u8 + Sync, coarse: &mut BlockMatrix<f32>) {
         let (p, r) = (&self.prolongation, &self.restriction);
         each_row(&mut self.product, &self.product_start, |i, sum| {

@@ -1,5 +1,5 @@
-//! The product on which the speed of the preconditioner rests: f32 blocks, vectors padded to four numbers a node, whole vector
-//! registers.
+//! The product on which the speed of the preconditioner rests: f32 blocks, vectors padded to four
+//! numbers a node, whole vector registers.
 
 use wide::{f32x4, f32x8};
 
@@ -21,7 +21,8 @@ fn repeated(x: Node) -> f32x8 {
     f32x8::new([x[0], x[1], x[2], x[0], x[1], x[2], x[0], x[1]])
 }
 
-/// Row `i` of A times x. Even and odd entries are summed apart, to hide the latency of the additions.
+/// Row `i` of A times x. Even and odd entries are summed apart, to hide the latency of the
+/// additions.
 #[inline(always)]
 pub(super) fn row_times(a: &BlockMatrix<f32>, i: usize, x: &[Node]) -> f32x4 {
     let range = a.pattern.row(i);

@@ -1,8 +1,10 @@
-//! Linear systems with 3x3 blocks: geometric multigrid preconditioned FGMRES, and sparse LU as its fallback and reference.
+//! Linear systems with 3x3 blocks: geometric multigrid preconditioned FGMRES, and sparse LU as its
+//! fallback and reference.
 //!
-//! A system A x = b comes with a mask of fixed unknowns, whose rows are rows of the identity and whose values are those of b. They
-//! are eliminated first, so that they hold exactly; the rest is solved for what they leave over. Everything sums in a fixed order:
-//! the same input gives the same bits at any thread count.
+//! A system A x = b comes with a mask of fixed unknowns, whose rows are rows of the identity and
+//! whose values are those of b. They are eliminated first, so that they hold exactly; the rest is
+//! solved for what they leave over. Everything sums in a fixed order: the same input gives the same
+//! bits at any thread count.
 
 pub mod bsr;
 mod chebyshev;
@@ -111,7 +113,8 @@ pub enum LinalgError {
 pub struct SolveReport {
     /// FGMRES iterations; 0 for a direct solution.
     pub iterations: usize,
-    /// |b - A x| / |b| over the free unknowns, where b has the fixed unknowns' part taken over; 0 where b is.
+    /// |b - A x| / |b| over the free unknowns, where b has the fixed unknowns' part taken over; 0
+    /// where b is.
     pub residual: f64,
     /// The tolerance was met.
     pub converged: bool,
@@ -149,7 +152,8 @@ enum Method {
     Multigrid {
         hierarchy: Box<Hierarchy>,
         krylov: Box<Fgmres<f32>>,
-        /// Made at the first stall of a matrix; the flag says that it is factorised for the present one.
+        /// Made at the first stall of a matrix; the flag says that it is factorised for the present
+        /// one.
         fallback: Option<Box<DirectSolver>>,
         factorised: bool,
     },
@@ -157,8 +161,8 @@ enum Method {
 }
 
 impl LinearSolver {
-    /// Plans a solver: everything that depends on the pattern alone. `prolongations` is the mesh's chain, finest first; if it is
-    /// empty the solver is direct.
+    /// Plans a solver: everything that depends on the pattern alone. `prolongations` is the mesh's
+    /// chain, finest first; if it is empty the solver is direct.
     ///
     /// # Errors
     /// [`LinalgError::Hierarchy`] if the chain does not fit the pattern.
@@ -193,17 +197,19 @@ impl LinearSolver {
         }
     }
 
-    /// Sets the memory in bytes that a direct solution may take after FGMRES has stalled; 0 forbids it.
+    /// Sets the memory in bytes that a direct solution may take after FGMRES has stalled; 0 forbids
+    /// it.
     pub fn set_fallback_limit(&mut self, bytes: usize) {
         self.fallback_limit = bytes;
     }
 
-    /// Takes over a matrix and the mask of its fixed unknowns (one flag an unknown; their rows count as rows of the identity whatever
-    /// the matrix holds there). The matrix must lie on the pattern given to [`LinearSolver::new`].
+    /// Takes over a matrix and the mask of its fixed unknowns (one flag an unknown; their rows
+    /// count as rows of the identity whatever the matrix holds there). The matrix must lie on the
+    /// pattern given to [`LinearSolver::new`].
     ///
     /// # Errors
-    /// [`LinalgError::Size`], [`LinalgError::NotFinite`]; from the direct solver also [`LinalgError::TooLarge`],
-    /// [`LinalgError::Singular`] and [`LinalgError::Factorisation`].
+    /// [`LinalgError::Size`], [`LinalgError::NotFinite`]; from the direct solver also
+    /// [`LinalgError::TooLarge`], [`LinalgError::Singular`] and [`LinalgError::Factorisation`].
     pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
         self.updated = false;
         size("the matrix", matrix.blocks.len(), self.matrix.blocks.len())?;
@@ -218,7 +224,8 @@ impl LinearSolver {
         &mut self.matrix
     }
 
-    /// [`LinearSolver::update`] with the solver's own matrix, as [`LinearSolver::matrix_mut`] left it.
+    /// [`LinearSolver::update`] with the solver's own matrix, as [`LinearSolver::matrix_mut`] left
+    /// it.
     ///
     /// # Errors
     /// As [`LinearSolver::update`].
@@ -238,13 +245,15 @@ impl LinearSolver {
         Ok(())
     }
 
-    /// Solves A x = rhs to |rhs - A x| <= tolerance |rhs| over the free unknowns, the fixed ones' part taken over to the right-hand side.
-    /// `x` holds the initial guess (zeros are one) and receives the solution; at fixed unknowns it is set to `rhs` exactly. May be
-    /// called any number of times after one update.
+    /// Solves A x = rhs to |rhs - A x| <= tolerance |rhs| over the free unknowns, the fixed ones'
+    /// part taken over to the right-hand side. `x` holds the initial guess (zeros are one) and
+    /// receives the solution; at fixed unknowns it is set to `rhs` exactly. May be called any
+    /// number of times after one update.
     ///
     /// # Errors
-    /// [`LinalgError::NotUpdated`], [`LinalgError::Size`], [`LinalgError::NotFinite`]; [`LinalgError::Stalled`] if FGMRES does not get
-    /// there and the system is too large for, or has no, direct solution (`x` is then the best iterate).
+    /// [`LinalgError::NotUpdated`], [`LinalgError::Size`], [`LinalgError::NotFinite`];
+    /// [`LinalgError::Stalled`] if FGMRES does not get there and the system is too large for, or
+    /// has no, direct solution (`x` is then the best iterate).
     pub fn solve(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64]) -> Result<SolveReport, LinalgError> {
         if !self.updated {
             return Err(LinalgError::NotUpdated);
@@ -336,7 +345,8 @@ fn size(what: &'static str, got: usize, expected: usize) -> Result<(), LinalgErr
     if got == expected { Ok(()) } else { Err(LinalgError::Size { what, got, expected }) }
 }
 
-/// Runs a job inside the thread pool, so that its many short parallel loops do not each have to enter it.
+/// Runs a job inside the thread pool, so that its many short parallel loops do not each have to
+/// enter it.
 fn in_pool<R: Send>(job: impl FnOnce() -> R + Send) -> R {
     if rayon::current_num_threads() == 1 || rayon::current_thread_index().is_some() { job() } else { rayon::scope(|_| job()) }
 }

@@ -1,4 +1,5 @@
-//! The geometric multigrid hierarchy: Galerkin coarse matrices on prolongations that stay fixed for a whole run, a V-cycle in f32.
+//! The geometric multigrid hierarchy: Galerkin coarse matrices on prolongations that stay fixed for
+//! a whole run, a V-cycle in f32.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -15,7 +16,8 @@ use crate::real::Real;
 
 /// Degree of the smoothing polynomial on either side of the coarse correction.
 const DEGREE: usize = 3;
-/// Coarsest levels up to this many unknowns are solved by dense LU, larger ones by [`COARSEST_DEGREE`].
+/// Coarsest levels up to this many unknowns are solved by dense LU, larger ones by
+/// [`COARSEST_DEGREE`].
 const DENSE_UNKNOWNS: usize = 600;
 const COARSEST_DEGREE: usize = 10;
 
@@ -38,7 +40,8 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// Plans a hierarchy: coarse patterns and gather plans. `prolongations` is finest first and fits the pattern and itself.
+    /// Plans a hierarchy: coarse patterns and gather plans. `prolongations` is finest first and
+    /// fits the pattern and itself.
     ///
     /// # Errors
     /// [`LinalgError::Hierarchy`] if it does not fit.
@@ -60,11 +63,13 @@ impl Hierarchy {
         self.levels.iter().map(|level| [level.b.len(), level.smoother.matrix.blocks.len()]).collect()
     }
 
-    /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed` unknowns (one flag an unknown) are
-    /// eliminated: their rows and columns count as those of the identity, and contribute nothing to coarser levels.
+    /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed`
+    /// unknowns (one flag an unknown) are eliminated: their rows and columns count as those of the
+    /// identity, and contribute nothing to coarser levels.
     ///
     /// # Errors
-    /// [`LinalgError::Size`]; [`LinalgError::NotFinite`] names the first node in whose row there is a number that is not finite in f32.
+    /// [`LinalgError::Size`]; [`LinalgError::NotFinite`] names the first node in whose row there is
+    /// a number that is not finite in f32.
     pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
         let finest = &self.levels[0].smoother.matrix;
         size("the matrix", matrix.blocks.len(), finest.blocks.len())?;
@@ -126,7 +131,8 @@ impl Hierarchy {
         }
     }
 
-    /// z = one V-cycle's approximation of A^-1 v from zero. `v` must be zero at fixed unknowns; so is `z`.
+    /// z = one V-cycle's approximation of A^-1 v from zero. `v` must be zero at fixed unknowns; so
+    /// is `z`.
     pub fn v_cycle<T: Real>(&mut self, v: &[T], z: &mut [f32]) {
         let v = v.as_chunks::<3>().0;
         each(&mut self.levels[0].b, |i, b| *b = [v[i][0].to_f64() as f32, v[i][1].to_f64() as f32, v[i][2].to_f64() as f32, 0.0]);

@@ -1,5 +1,5 @@
-//! Loops over nodes, in parallel where the vectors are long enough to pay for it. Nodes are independent of each other in each of
-//! them, so how they are shared out does not change a bit.
+//! Loops over nodes, in parallel where the vectors are long enough to pay for it. Nodes are
+//! independent of each other in each of them, so how they are shared out does not change a bit.
 
 use rayon::prelude::*;
 
@@ -34,7 +34,8 @@ pub(super) fn each_of_two<Y: Send, Z: Send>(y: &mut [Y], z: &mut [Z], body: impl
     }
 }
 
-/// Hands the entries of every row to `body(i, entries)`; row i has `entries[start[i]..start[i + 1]]`.
+/// Hands the entries of every row to `body(i, entries)`; row i has `entries[start[i]..start[i +
+/// 1]]`.
 #[inline(always)]
 pub(super) fn each_row<B: Send>(entries: &mut [B], start: &[u32], body: impl Fn(usize, &mut [B]) + Sync) {
     let rows = start.len() - 1;

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use crate::real::Real;
 
-/// Entries summed on their own, in their own precision, before the partial sums are added up in order and in f64.
+/// Entries summed on their own, in their own precision, before the partial sums are added up in
+/// order and in f64.
 pub(super) const CHUNK: usize = 3 * 1024;
 
 /// Whether a vector of this length is worth sharing out among threads.

@@ -1,13 +1,15 @@
 //! Isotropic hardening: the flow stress sigma against the equivalent plastic strain alpha.
 //!
-//! Every law answers the same four questions: [`flow_stress`](Hardening::flow_stress), [`slope`](Hardening::slope),
-//! [`plastic_work`](Hardening::plastic_work) and [`plastic_strain_increment`](Hardening::plastic_strain_increment). The last one
-//! is the scalar equation of the radial return,
+//! Every law answers the same four questions: [`flow_stress`](Hardening::flow_stress),
+//! [`slope`](Hardening::slope), [`plastic_work`](Hardening::plastic_work) and
+//! [`plastic_strain_increment`](Hardening::plastic_strain_increment). The last one is the scalar
+//! equation of the radial return,
 //! ```text
 //! q_trial - sigma(alpha_n + da) - 3 mu_bar da = 0,        q = sqrt(3/2) |s|,    da = sqrt(2/3) d_gamma,
 //! ```
-//! solved in the variable in which it is convex (or concave) and smooth, so that Newton's iteration from the right end is
-//! monotone: the plastic strain for Voce, alpha^n for a power law, the stress for Hollomon's. A bracket guards it all the same.
+//! solved in the variable in which it is convex (or concave) and smooth, so that Newton's iteration
+//! from the right end is monotone: the plastic strain for Voce, alpha^n for a power law, the stress
+//! for Hollomon's. A bracket guards it all the same.
 //!
 //! Stresses are in one unit throughout (inside the program: scaled by E).
 
@@ -69,8 +71,9 @@ pub enum Hardening<R> {
         /// 0 < n <= 1.
         exponent: R,
     },
-    /// sigma = sigma_0 eps^(1/m), eps = alpha + sigma/E: a power law in the total logarithmic strain that starts where it meets
-    /// Hooke's line (Olsson & Larsson 2016, Int. J. Solids Struct. 81, 23-32).
+    /// sigma = sigma_0 eps^(1/m), eps = alpha + sigma/E: a power law in the total logarithmic
+    /// strain that starts where it meets Hooke's line (Olsson & Larsson 2016, Int. J. Solids
+    /// Struct. 81, 23-32).
     Hollomon {
         /// sigma_0, stress.
         coefficient: R,
@@ -92,7 +95,8 @@ pub enum Hardening<R> {
     },
     /// Piecewise linear, constant beyond the last point.
     Table {
-        /// alpha, sigma and the plastic work density up to there; at least one, the first at alpha = 0.
+        /// alpha, sigma and the plastic work density up to there; at least one, the first at
+        /// alpha = 0.
         points: Vec<[R; 3]>,
     },
 }
@@ -209,8 +213,8 @@ impl<R: Real> Hardening<R> {
         })
     }
 
-    /// Piecewise linear through `[alpha, sigma]`, constant beyond the last point; alpha from 0 and increasing, sigma > 0 and not
-    /// decreasing.
+    /// Piecewise linear through `[alpha, sigma]`, constant beyond the last point; alpha from 0 and
+    /// increasing, sigma > 0 and not decreasing.
     pub fn table(points: &[[f64; 2]]) -> Result<Self, HardeningError> {
         let fail = |index, remedy| Err(HardeningError::Table { index, remedy });
         if points.is_empty() {
@@ -270,8 +274,8 @@ impl<R: Real> Hardening<R> {
         }
     }
 
-    /// d sigma/d alpha, stress, given sigma(alpha); at a kink of a table the slope to its right. Infinite for a power law with
-    /// n < 1 at alpha = 0.
+    /// d sigma/d alpha, stress, given sigma(alpha); at a kink of a table the slope to its right.
+    /// Infinite for a power law with n < 1 at alpha = 0.
     #[inline]
     pub fn slope(&self, alpha: R, flow_stress: R) -> R {
         match self {
@@ -284,7 +288,8 @@ impl<R: Real> Hardening<R> {
         }
     }
 
-    /// The integral of sigma d alpha from 0 to alpha, given sigma(alpha): the plastic work per reference volume, stress.
+    /// The integral of sigma d alpha from 0 to alpha, given sigma(alpha): the plastic work per
+    /// reference volume, stress.
     #[inline]
     pub fn plastic_work<T: Number<Scalar = R>>(&self, alpha: T, flow_stress: T) -> T {
         match self {
@@ -302,8 +307,8 @@ impl<R: Real> Hardening<R> {
             Self::Power { yield_stress, exponent, .. } => {
                 (*yield_stress + (flow_stress - *yield_stress) / (R::ONE + *exponent)) * alpha
             }
-            // The integral of sigma d eps less sigma^2/2E from the yield point on, m/(m + 1) [sigma eps] - [sigma^2]/2E, sorted
-            // so that no difference is taken but that of the stresses.
+            // The integral of sigma d eps less sigma^2/2E from the yield point on, m/(m + 1) [sigma
+            // eps] - [sigma^2]/2E, sorted so that no difference is taken but that of the stresses.
             Self::Hollomon { exponent, youngs_modulus, yield_stress, .. } => {
                 let share = *exponent / (*exponent + R::ONE);
                 let rise = (flow_stress - *yield_stress) * (flow_stress + *yield_stress) / *youngs_modulus;
@@ -320,16 +325,18 @@ impl<R: Real> Hardening<R> {
         }
     }
 
-    /// Solves `trial - sigma(alpha + da) - stiffness da = 0` for the increment `da` of the equivalent plastic strain.
+    /// Solves `trial - sigma(alpha + da) - stiffness da = 0` for the increment `da` of the
+    /// equivalent plastic strain.
     ///
-    /// `trial` is the von Mises stress of the trial state, above `flow_stress` = sigma(alpha); `stiffness` is 3 mu_bar > 0.
+    /// `trial` is the von Mises stress of the trial state, above `flow_stress` = sigma(alpha);
+    /// `stiffness` is 3 mu_bar > 0.
     #[inline]
     pub fn plastic_strain_increment(&self, alpha: R, flow_stress: R, trial: R, stiffness: R) -> PlasticStep<R> {
         self.plastic_step(true, alpha, flow_stress, trial, stiffness)
     }
 
-    /// [`Hardening::plastic_strain_increment`] of one point or of eight, for those that `yielding` says; the others get what is meaningless,
-    /// with an increment that is finite.
+    /// [`Hardening::plastic_strain_increment`] of one point or of eight, for those that `yielding`
+    /// says; the others get what is meaningless, with an increment that is finite.
     #[inline(always)]
     pub(super) fn plastic_step<T: Number<Scalar = R>>(
         &self,
@@ -384,16 +391,18 @@ impl<R: Real> Hardening<R> {
     }
 }
 
-/// x^y for x >= 0 through exp(y ln x), the form that the device has; 0^y is 0, 1 or infinite as y is above, at or below 0.
+/// x^y for x >= 0 through exp(y ln x), the form that the device has; 0^y is 0, 1 or infinite as y
+/// is above, at or below 0.
 #[inline]
 fn power<R: Real>(x: R, y: R) -> R {
     x.powf(y)
 }
 
-/// The root of an increasing function in [low, high]: Newton's iteration kept inside a shrinking bracket by bisection.
+/// The root of an increasing function in [low, high]: Newton's iteration kept inside a shrinking
+/// bracket by bisection.
 ///
-/// `function` returns the value and the derivative. Newton's error after a relative step e is about C e^2: the iteration stops
-/// at e = sqrt(epsilon)/16, which leaves C epsilon/256.
+/// `function` returns the value and the derivative. Newton's error after a relative step e is about
+/// C e^2: the iteration stops at e = sqrt(epsilon)/16, which leaves C epsilon/256.
 #[inline]
 pub(super) fn increasing_root<R: Real>(low: R, high: R, start: R, function: impl Fn(R) -> (R, R)) -> R {
     let tolerance = R::EPSILON.sqrt() * R::of(0.0625);
@@ -424,7 +433,8 @@ pub(super) fn increasing_root<R: Real>(low: R, high: R, start: R, function: impl
     x
 }
 
-/// Unknown u = alpha^n, in which the equation `K u + 3 mu_bar u^(1/n) = load` is convex and free of the infinite slope at 0.
+/// Unknown u = alpha^n, in which the equation `K u + 3 mu_bar u^(1/n) = load` is convex and free of
+/// the infinite slope at 0.
 #[inline]
 fn power_step<R: Real>(
     yield_stress: R,
@@ -455,14 +465,16 @@ fn power_step<R: Real>(
     PlasticStep { increment: increment.max(R::ZERO), flow_stress: stress, slope }
 }
 
-/// (sigma/sigma_0)^m - sigma/E = alpha solved for the total strain eps, in which it is convex: eps - sigma_0 eps^(1/m)/E = alpha.
+/// (sigma/sigma_0)^m - sigma/E = alpha solved for the total strain eps, in which it is convex:
+/// eps - sigma_0 eps^(1/m)/E = alpha.
 #[inline]
 fn hollomon_flow_stress<R: Real>(coefficient: R, exponent: R, youngs_modulus: R, yield_stress: R, alpha: R) -> R {
     if !(alpha > R::ZERO) {
         return yield_stress;
     }
     let inverse = R::ONE / exponent;
-    // sigma/E >= sigma_Y/E bounds eps from below; the tangent at the yield point, above the concave curve, from above.
+    // sigma/E >= sigma_Y/E bounds eps from below; the tangent at the yield point, above the concave
+    // curve, from above.
     let yield_strain = yield_stress / youngs_modulus;
     let low = alpha + yield_strain;
     let high = yield_strain + alpha / (R::ONE - inverse);

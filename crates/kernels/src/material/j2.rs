@@ -1,25 +1,31 @@
-//! Finite-strain J2 plasticity at one point: radial return of the deviatoric Kirchhoff stress and its tangent.
+//! Finite-strain J2 plasticity at one point: radial return of the deviatoric Kirchhoff stress and
+//! its tangent.
 //!
-//! Simo & Hughes, *Computational Inelasticity* (1998), Box 9.1 (return mapping) and Box 9.2 (moduli), with two changes.
+//! Simo & Hughes, *Computational Inelasticity* (1998), Box 9.1 (return mapping) and Box 9.2
+//! (moduli), with two changes.
 //!
-//! **Differences from the identity.** With `d = f - I` and `B = b_e_bar - I`, the trial state is formed as
-//! `M = d + d^T + d d^T + f B f^T`, `B_trial = M + r (I + M)`, `r = det(f)^(-2/3) - 1`. Neither `f` nor `b_e_bar` is ever rounded
-//! next to 1, which in single precision would leave a strain of 1e-4 with three digits.
+//! **Differences from the identity.** With `d = f - I` and `B = b_e_bar - I`, the trial state is
+//! formed as `M = d + d^T + d d^T + f B f^T`, `B_trial = M + r (I + M)`, `r = det(f)^(-2/3) - 1`.
+//! Neither `f` nor `b_e_bar` is ever rounded next to 1, which in single precision would leave a
+//! strain of 1e-4 with three digits.
 //!
-//! **The trace after plastic flow.** Box 9.1 keeps the trial trace, so that det b_e_bar drifts away from 1 with every plastic
-//! step. Here the trace is the root t of `det(dev b_e_bar + t I) = 1`: plastic flow is isochoric to rounding.
+//! **The trace after plastic flow.** Box 9.1 keeps the trial trace, so that det b_e_bar drifts away
+//! from 1 with every plastic step. Here the trace is the root t of `det(dev b_e_bar + t I) = 1`:
+//! plastic flow is isochoric to rounding.
 //!
-//! The kernels are written for a [`Number`]: one point, or eight side by side in vector instructions, with the same bits.
+//! The kernels are written for a [`Number`]: one point, or eight side by side in vector
+//! instructions, with the same bits.
 
-// Index loops are how tensor formulas read; `!(x > 0)` is true for a NaN, which is what it is written for.
+// Index loops are how tensor formulas read; `!(x > 0)` is true for a NaN, which is what it is
+// written for.
 #![allow(clippy::needless_range_loop, clippy::neg_cmp_op_on_partial_ord)]
 
 use super::{Material, PointError, PointState};
 use crate::lanes::{Lanes, Number};
 use crate::real::Real;
 
-/// The answer of a point (or of eight) to one increment: the trial state that the caller commits when it accepts the step, the stress, and
-/// what [`deviatoric_tangent`] needs.
+/// The answer of a point (or of eight) to one increment: the trial state that the caller commits
+/// when it accepts the step, the stress, and what [`deviatoric_tangent`] needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response<R: Number> {
     /// Deviatoric Kirchhoff stress, `mu dev b_e_bar`, stress.
@@ -34,7 +40,8 @@ pub struct Response<R: Number> {
     pub norm: R,
     /// n = s_trial/|s_trial|; 0 where the trial deviator is 0.
     pub normal: [R; 6],
-    /// 2 mu_bar delta_gamma/|s_trial|; 0 for an elastic step (Simo & Hughes 1998, Box 9.2, for this and the next two).
+    /// 2 mu_bar delta_gamma/|s_trial|; 0 for an elastic step (Simo & Hughes 1998, Box 9.2, for this
+    /// and the next two).
     pub beta_1: R,
     /// Factor of n (x) n.
     pub beta_3: R,
@@ -77,8 +84,8 @@ pub fn determinant_minus_one<R: Number>(d: &[[R; 3]; 3]) -> R {
 
 /// J^(-2/3) - 1 from j = J - 1 > -1, without a power.
 ///
-/// q = J^(1/3) - 1 is the root of q (3 + q (3 + q)) = j by Halley's iteration, which converges from any q > -1; its first step
-/// from q = 0 is j/(3 + j).
+/// q = J^(1/3) - 1 is the root of q (3 + q (3 + q)) = j by Halley's iteration, which converges from
+/// any q > -1; its first step from q = 0 is j/(3 + j).
 #[inline(always)]
 pub fn isochoric_factor_minus_one<R: Number>(j_minus_1: R) -> R {
     let three = R::of(3.0);
@@ -131,11 +138,12 @@ fn square<R: Number>(a: &[R; 6]) -> [R; 6] {
     ]
 }
 
-/// u = t - 1 where t is the largest root of det(D + t I) = 1 for a deviator D: a third of tr b_e_bar - 3 from dev b_e_bar.
+/// u = t - 1 where t is the largest root of det(D + t I) = 1 for a deviator D: a third of tr
+/// b_e_bar - 3 from dev b_e_bar.
 ///
-/// With p = D:D/2 the equation is g(u) = u (3 + u (3 + u)) - p (1 + u) + det D = 0, convex, so that Newton's iteration from
-/// a `guess` at or above the root falls onto it. A trial trace is such a guess: shrinking the deviator at fixed trace raises the
-/// determinant.
+/// With p = D:D/2 the equation is g(u) = u (3 + u (3 + u)) - p (1 + u) + det D = 0, convex, so that
+/// Newton's iteration from a `guess` at or above the root falls onto it. A trial trace is such a
+/// guess: shrinking the deviator at fixed trace raises the determinant.
 #[inline(always)]
 pub fn isochoric_mean<R: Number>(deviator: &[R; 6], guess: R) -> R {
     let three = R::of(3.0);
@@ -161,7 +169,8 @@ pub fn isochoric_mean<R: Number>(deviator: &[R; 6], guess: R) -> R {
     u
 }
 
-/// b_e_bar_trial - I from the relative displacement gradient d = f - I and B = b_e_bar - I (Box 9.1, steps 1 and 2).
+/// b_e_bar_trial - I from the relative displacement gradient d = f - I and B = b_e_bar - I (Box
+/// 9.1, steps 1 and 2).
 #[inline(always)]
 fn trial<R: Number>(d: &[[R; 3]; 3], be: &[R; 6], r: R) -> [R; 6] {
     let [xx, yy, zz, xy, yz, zx] = *be;
@@ -178,14 +187,15 @@ fn trial<R: Number>(d: &[[R; 3]; 3], be: &[R; 6], r: R) -> [R; 6] {
     [m(0, 0) * scale + r, m(1, 1) * scale + r, m(2, 2) * scale + r, m(0, 1) * scale, m(1, 2) * scale, m(2, 0) * scale]
 }
 
-/// The deviatoric Kirchhoff stress and the new state after the relative deformation f = F F_n^-1, given as `relative` = f - I
-/// (rows are components, columns the direction of the derivative).
+/// The deviatoric Kirchhoff stress and the new state after the relative deformation f = F F_n^-1,
+/// given as `relative` = f - I (rows are components, columns the direction of the derivative).
 ///
-/// `state` is the committed state. A step that stays within a few roundings of the yield surface is elastic, so that a state
-/// returned onto it and evaluated again is not plastic by accident.
+/// `state` is the committed state. A step that stays within a few roundings of the yield surface is
+/// elastic, so that a state returned onto it and evaluated again is not plastic by accident.
 ///
 /// # Errors
-/// [`PointError::Inverted`] where det f is not above 0 (or not a number), [`PointError::NotFinite`] where the stress is not finite.
+/// [`PointError::Inverted`] where det f is not above 0 (or not a number), [`PointError::NotFinite`]
+/// where the stress is not finite.
 #[inline]
 pub fn return_mapping<R: Real>(
     material: &Material<R>,
@@ -243,7 +253,8 @@ fn respond<T: Number>(material: &Material<T::Scalar>, relative: &[[T; 3]; 3], st
     if !T::all(T::and(norm.finite(), mu_bar.above(zero))) {
         return None;
     }
-    // A deviator whose square underflows has no direction; what it lacks is below rounding next to mu_bar.
+    // A deviator whose square underflows has no direction; what it lacks is below rounding next to
+    // mu_bar.
     let inverse = T::select(strain_norm.above(zero), one / strain_norm, zero);
     let normal = deviator.map(|x| x * inverse);
     let mut response = Response {
@@ -299,18 +310,19 @@ fn respond<T: Number>(material: &Material<T::Scalar>, relative: &[[T; 3]; 3], st
     Some(response)
 }
 
-/// The spatial moduli c of the deviatoric Kirchhoff stress s, `L_v s = ds/dt - l s - s l^T = c : d`, symmetrised
-/// (Simo & Hughes 1998, Box 9.2):
+/// The spatial moduli c of the deviatoric Kirchhoff stress s, `L_v s = ds/dt - l s - s l^T = c :
+/// d`, symmetrised (Simo & Hughes 1998, Box 9.2):
 /// ```text
 /// c   = (1 - beta_1) c_trial - 2 mu_bar beta_3 n (x) n - 2 mu_bar beta_4 sym[n (x) dev n^2]
 /// c_trial = 2 mu_bar (I - 1/3 1 (x) 1) - 2/3 |s_trial| (n (x) 1 + 1 (x) n)
 /// ```
 /// The moduli of the exact linearisation have `n (x) dev n^2` in the place of its symmetric part.
 ///
-/// Entry `[a][b]` is the component c_ijkl of the pairs a = ij and b = kl in the order xx, yy, zz, xy, yz, zx, with no factor in
-/// it (the fourth-order identity has 1/2 at `[3][3]`). The stress rate is therefore
-/// `L_v s_a = sum_(b < 3) c_ab d_b + sum_(b >= 3) c_ab 2 d_b` with tensor components d_b: the usual 6 x 6 matrix for a strain
-/// vector with engineering shears 2 d_xy, 2 d_yz, 2 d_zx.
+/// Entry `[a][b]` is the component c_ijkl of the pairs a = ij and b = kl in the order xx, yy, zz,
+/// xy, yz, zx, with no factor in it (the fourth-order identity has 1/2 at `[3][3]`). The stress
+/// rate is therefore `L_v s_a = sum_(b < 3) c_ab d_b + sum_(b >= 3) c_ab 2 d_b` with tensor
+/// components d_b: the usual 6 x 6 matrix for a strain vector with engineering shears 2 d_xy, 2
+/// d_yz, 2 d_zx.
 #[inline]
 pub fn deviatoric_tangent<R: Number>(response: &Response<R>) -> [[R; 6]; 6] {
     let n = &response.normal;

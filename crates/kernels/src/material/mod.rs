@@ -1,18 +1,22 @@
-//! The material: isochoric-volumetric hyperelasticity with multiplicative J2 plasticity at one point.
+//! The material: isochoric-volumetric hyperelasticity with multiplicative J2 plasticity at one
+//! point.
 //!
-//! Strain energy per reference volume, Simo & Hughes, *Computational Inelasticity* (1998), eq. 9.2.6:
+//! Strain energy per reference volume, Simo & Hughes, *Computational Inelasticity* (1998), eq.
+//! 9.2.6:
 //! ```text
 //! U(J) + W(b_e_bar) = kappa/2 [ (J^2 - 1)/2 - ln J ] + mu/2 [ tr b_e_bar - 3 ],     b_e_bar = J^(-2/3) b_e,
 //! ```
-//! so that the Kirchhoff stress is `tau = J U'(J) 1 + mu dev b_e_bar`. The point yields when the von Mises stress of `tau`
-//! reaches the flow stress `sigma(alpha)`, `|dev tau| = sqrt(2/3) sigma(alpha)`; `alpha` is the equivalent plastic strain.
+//! so that the Kirchhoff stress is `tau = J U'(J) 1 + mu dev b_e_bar`. The point yields when the
+//! von Mises stress of `tau` reaches the flow stress `sigma(alpha)`, `|dev tau| = sqrt(2/3)
+//! sigma(alpha)`; `alpha` is the equivalent plastic strain.
 //!
-//! [`j2`] holds the deviatoric half (the return mapping and its tangent), [`hardening`] the laws `sigma(alpha)`, and this file
-//! the volumetric half, which the element evaluates once for its mean dilatation. Kernels are generic over
-//! [`Real`], allocate nothing and report a bad deformation as a [`PointError`].
+//! [`j2`] holds the deviatoric half (the return mapping and its tangent), [`hardening`] the laws
+//! `sigma(alpha)`, and this file the volumetric half, which the element evaluates once for its mean
+//! dilatation. Kernels are generic over [`Real`], allocate nothing and report a bad deformation as
+//! a [`PointError`].
 //!
-//! Symmetric tensors are `[xx, yy, zz, xy, yz, zx]`, tensor components everywhere: no engineering factors. Stresses are in the
-//! unit of the moduli given (inside the program: scaled by E).
+//! Symmetric tensors are `[xx, yy, zz, xy, yz, zx]`, tensor components everywhere: no engineering
+//! factors. Stresses are in the unit of the moduli given (inside the program: scaled by E).
 
 pub mod hardening;
 pub mod j2;
@@ -27,7 +31,8 @@ use serde::{Deserialize, Serialize};
 use crate::lanes::Lanes;
 use crate::real::Real;
 
-/// Why a point has no answer for the deformation it was given. A reason to cut the step back, not to stop the program.
+/// Why a point has no answer for the deformation it was given. A reason to cut the step back, not
+/// to stop the program.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PointError {
     /// The relative deformation turns the material inside out.
@@ -51,7 +56,8 @@ pub struct Elasticity<R> {
 }
 
 impl<R: Real> Elasticity<R> {
-    /// From Young's modulus (stress, > 0) and Poisson's ratio (-1 < nu < 1/2), formed in f64 and rounded once.
+    /// From Young's modulus (stress, > 0) and Poisson's ratio (-1 < nu < 1/2), formed in f64 and
+    /// rounded once.
     pub fn new(youngs_modulus: f64, poissons_ratio: f64) -> Self {
         Self {
             bulk: R::of(youngs_modulus / (3.0 * (1.0 - 2.0 * poissons_ratio))),
@@ -63,7 +69,8 @@ impl<R: Real> Elasticity<R> {
 /// What a point remembers between accepted steps. [`Default`] is the virgin state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointState<R> {
-    /// b_e_bar - I: the isochoric elastic left Cauchy-Green tensor less the identity, whose digits at small strains it keeps.
+    /// b_e_bar - I: the isochoric elastic left Cauchy-Green tensor less the identity, whose digits
+    /// at small strains it keeps.
     pub be: [R; 6],
     /// Equivalent plastic strain, >= 0.
     pub alpha: R,
@@ -97,11 +104,12 @@ impl Material<f64> {
     }
 }
 
-/// U'(J) and U''(J) from J - 1: the pressure-like stress (positive in tension) and its derivative, both in units of stress.
+/// U'(J) and U''(J) from J - 1: the pressure-like stress (positive in tension) and its derivative,
+/// both in units of stress.
 ///
-/// `U' = kappa/2 (J - 1/J)`, written as `kappa/2 j (2 + j)/(1 + j)` with `j = J - 1` so that small volume changes keep their
-/// digits (Simo & Hughes 1998, eq. 9.2.6). The Kirchhoff stress of the volumetric part is `J U'(J) 1`. J has to be positive: the
-/// caller checks.
+/// `U' = kappa/2 (J - 1/J)`, written as `kappa/2 j (2 + j)/(1 + j)` with `j = J - 1` so that small
+/// volume changes keep their digits (Simo & Hughes 1998, eq. 9.2.6). The Kirchhoff stress of the
+/// volumetric part is `J U'(J) 1`. J has to be positive: the caller checks.
 #[inline]
 pub fn pressure<R: Real>(elasticity: &Elasticity<R>, j_minus_1: R) -> (R, R) {
     let half = R::of(0.5) * elasticity.bulk;
@@ -111,8 +119,9 @@ pub fn pressure<R: Real>(elasticity: &Elasticity<R>, j_minus_1: R) -> (R, R) {
 
 /// U(J) from J - 1, energy per reference volume, >= 0 (Simo & Hughes 1998, eq. 9.2.6).
 ///
-/// `j + j^2/2 - ln(1 + j)` is of the order j^2. Below |j| = 0.2 the logarithm is summed as `2 artanh z`, `z = j/(2 + j)`, whose
-/// leading term cancels `j` exactly: `U = kappa/2 [ j^2/2 + j z - 2 (z^3/3 + z^5/5 + ...) ]`.
+/// `j + j^2/2 - ln(1 + j)` is of the order j^2. Below |j| = 0.2 the logarithm is summed as `2
+/// artanh z`, `z = j/(2 + j)`, whose leading term cancels `j` exactly: `U = kappa/2 [ j^2/2 + j z -
+/// 2 (z^3/3 + z^5/5 + ...) ]`.
 #[inline]
 pub fn elastic_energy_volumetric<R: Real>(elasticity: &Elasticity<R>, j_minus_1: R) -> R {
     let j = j_minus_1;
@@ -132,10 +141,12 @@ pub fn elastic_energy_volumetric<R: Real>(elasticity: &Elasticity<R>, j_minus_1:
     half * elasticity.bulk * bracket
 }
 
-/// W = mu/2 (tr b_e_bar - 3) from b_e_bar - I, energy per reference volume, >= 0 (Simo & Hughes 1998, eq. 9.2.6).
+/// W = mu/2 (tr b_e_bar - 3) from b_e_bar - I, energy per reference volume, >= 0 (Simo & Hughes
+/// 1998, eq. 9.2.6).
 ///
-/// The trace is of second order in the strain while the entries of `be` are of first order, so summing the diagonal would lose
-/// the digits. It is taken from the deviator instead, as the root of det(dev + t I) = 1.
+/// The trace is of second order in the strain while the entries of `be` are of first order, so
+/// summing the diagonal would lose the digits. It is taken from the deviator instead, as the root
+/// of det(dev + t I) = 1.
 #[inline]
 pub fn elastic_energy_deviatoric<R: Real>(elasticity: &Elasticity<R>, be: &[R; 6]) -> R {
     let (deviator, mean) = j2::deviator(be);

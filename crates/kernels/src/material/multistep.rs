@@ -1,17 +1,20 @@
-//! Plastic flow integrated to second order in the step: the two-step backward difference (BDF2), as a backward Euler step from a state that
-//! anticipates a part of the flow.
+//! Plastic flow integrated to second order in the step: the two-step backward difference (BDF2), as
+//! a backward Euler step from a state that anticipates a part of the flow.
 //!
-//! With steps of length `dt` and `omega dt` the two-step backward difference of `y' = g(y)` (Gear 1971; for plasticity Papadopoulos & Taylor, Int.
-//! J. Numer. Methods Eng. 37, 1994) is
+//! With steps of length `dt` and `omega dt` the two-step backward difference of `y' = g(y)` (Gear
+//! 1971; for plasticity Papadopoulos & Taylor, Int. J. Numer. Methods Eng. 37, 1994) is
 //! ```text
 //! y_new = y + w (y - y_before) + (1 - w) omega dt g(y_new),    w = omega^2/(1 + 2 omega)
 //! ```
-//! Plastic flow has no time of its own: `(1 - w) omega dt` times its rate is the unknown multiplier of the return mapping. So the formula is the
-//! ordinary return mapping from the state `y + w (y - y_before)`, in which the flow of the last step has gone on for a while: nothing in an
-//! iteration changes. A point that turns out not to flow any more has anticipated what did not happen; it is updated from its committed state.
+//! Plastic flow has no time of its own: `(1 - w) omega dt` times its rate is the unknown multiplier
+//! of the return mapping. So the formula is the ordinary return mapping from the state `y + w (y -
+//! y_before)`, in which the flow of the last step has gone on for a while: nothing in an iteration
+//! changes. A point that turns out not to flow any more has anticipated what did not happen; it is
+//! updated from its committed state.
 //!
-//! A backward Euler step balances, at its end, stresses that belong to the mean flow of the step: where a contact spreads the error of its
-//! radius and force is of the first order in the step, however exactly a straight strain path is integrated within a step.
+//! A backward Euler step balances, at its end, stresses that belong to the mean flow of the step:
+//! where a contact spreads the error of its radius and force is of the first order in the step,
+//! however exactly a straight strain path is integrated within a step.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,25 +24,29 @@ use super::j2::{
 use super::{Material, PointError, PointState};
 use crate::real::Real;
 
-/// Longest step over its predecessor for which the formula is used as it is: it is stable up to 1 + sqrt 2.
+/// Longest step over its predecessor for which the formula is used as it is: it is stable up to 1 +
+/// sqrt 2.
 const LARGEST_RATIO: f64 = 2.0;
 
 /// What flowed at a point in its last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flow<R> {
-    /// What the elastic strain dev b_e_bar lost to the flow, in the configuration at the end of the step, [xx, yy, zz, xy, yz, zx].
+    /// What the elastic strain dev b_e_bar lost to the flow, in the configuration at the end of the
+    /// step, [xx, yy, zz, xy, yz, zx].
     pub strain: [R; 6],
     /// Increment of the equivalent plastic strain, >= 0.
     pub alpha: R,
 }
 
-/// The share w of the last step's flow that a step anticipates, from its length over the last one's (both > 0, in any measure of time).
+/// The share w of the last step's flow that a step anticipates, from its length over the last one's
+/// (both > 0, in any measure of time).
 pub fn weight(ratio: f64) -> f64 {
     let omega = ratio.clamp(0.0, LARGEST_RATIO);
     omega * omega / (1.0 + 2.0 * omega)
 }
 
-/// The state from which a step starts: `weight` times the last flow is anticipated. Without flow it is the committed state.
+/// The state from which a step starts: `weight` times the last flow is anticipated. Without flow it
+/// is the committed state.
 #[inline]
 pub fn anticipate<R: Real>(committed: &PointState<R>, flow: &Flow<R>, weight: R) -> PointState<R> {
     if !(weight * flow.alpha > R::ZERO) {
@@ -52,11 +59,12 @@ pub fn anticipate<R: Real>(committed: &PointState<R>, flow: &Flow<R>, weight: R)
     PointState { be: [xx + mean, yy + mean, zz + mean, xy, yz, zx], alpha: committed.alpha + weight * flow.alpha }
 }
 
-/// The response to commit and what flowed, after a step by `relative` = f - I whose `response` was found from `start`, the committed state or
-/// what [`anticipate`] made of it.
+/// The response to commit and what flowed, after a step by `relative` = f - I whose `response` was
+/// found from `start`, the committed state or what [`anticipate`] made of it.
 ///
 /// # Errors
-/// As [`super::j2::return_mapping`], where a point that does not flow is updated from its committed state.
+/// As [`super::j2::return_mapping`], where a point that does not flow is updated from its committed
+/// state.
 #[inline]
 pub fn complete<R: Real>(
     material: &Material<R>,
@@ -76,8 +84,8 @@ pub fn complete<R: Real>(
     if kept {
         let pushed = push_forward(relative, &std::array::from_fn(|c| committed.be[c] - start.be[c]));
         flow.strain = std::array::from_fn(|c| flow.strain[c] + pushed[c]);
-        // Equivalent strain of what flowed altogether, sqrt(2/3) |strain/2|: where the flow turns, less than what was anticipated and what was added
-        // one by one.
+        // Equivalent strain of what flowed altogether, sqrt(2/3) |strain/2|: where the flow turns,
+        // less than what was anticipated and what was added one by one.
         flow.alpha = flow.alpha.min(norm_squared(&flow.strain).sqrt() * R::of(1.0 / 6.0_f64.sqrt()));
         response.state.alpha = committed.alpha + flow.alpha;
         let hardening = &material.hardening;

@@ -1,4 +1,5 @@
-//! One material point driven along a path of deformation: uniaxial stress, simple shear, or given deformation gradients.
+//! One material point driven along a path of deformation: uniaxial stress, simple shear, or given
+//! deformation gradients.
 
 use super::hardening::increasing_root;
 use super::j2::determinant_minus_one;
@@ -7,7 +8,8 @@ use super::{
     pressure, return_mapping,
 };
 
-/// A deformation gradient or displacement gradient: rows are components, columns the direction of the derivative.
+/// A deformation gradient or displacement gradient: rows are components, columns the direction of
+/// the derivative.
 type Gradient = [[f64; 3]; 3];
 
 /// Why a path could not be followed.
@@ -106,11 +108,11 @@ impl MaterialPoint {
         Ok(self.record(&response.stress))
     }
 
-    /// Stretches the point along x to the logarithmic strain `axial`, counted from the undeformed state, with the sides free of
-    /// stress. F has to be diagonal with equal sides so far.
+    /// Stretches the point along x to the logarithmic strain `axial`, counted from the undeformed
+    /// state, with the sides free of stress. F has to be diagonal with equal sides so far.
     ///
-    /// The lateral strain is the root of the lateral Kirchhoff stress, by Newton's iteration on the consistent tangent (exact
-    /// here: dev n^2 is parallel to n in uniaxial stress).
+    /// The lateral strain is the root of the lateral Kirchhoff stress, by Newton's iteration on the
+    /// consistent tangent (exact here: dev n^2 is parallel to n in uniaxial stress).
     ///
     /// # Errors
     /// [`DriveError`]; the point then is as before.
@@ -134,7 +136,8 @@ impl MaterialPoint {
         let after =
             return_mapping(&self.material, &relative(root), &self.state).map_err(|source| DriveError::Point { step, source })?;
         let elasticity = &self.material.elasticity;
-        // From F as it is kept: a lateral stretch so small that F - I does not hold it is refused here too.
+        // From F as it is kept: a lateral stretch so small that F - I does not hold it is refused
+        // here too.
         let j = determinant_minus_one(&target);
         let lateral_stress = after.stress[1] + (1.0 + j) * pressure(elasticity, j).0;
         let youngs_modulus = 9.0 * elasticity.bulk * elasticity.shear / (3.0 * elasticity.bulk + elasticity.shear);
@@ -145,7 +148,8 @@ impl MaterialPoint {
         self.advance(&target)
     }
 
-    /// The lateral Kirchhoff stress at ln J, and its derivative with respect to the logarithmic lateral strain.
+    /// The lateral Kirchhoff stress at ln J, and its derivative with respect to the logarithmic
+    /// lateral strain.
     fn lateral_stress(&self, response: &Response<f64>, log_jacobian: f64) -> (f64, f64) {
         let j = log_jacobian.exp_m1();
         let jacobian = 1.0 + j;
@@ -185,7 +189,8 @@ enum Target {
     Deform(Gradient),
 }
 
-/// The records of a path, from the undeformed point on; the last item is the error of a step that has no answer.
+/// The records of a path, from the undeformed point on; the last item is the error of a step that
+/// has no answer.
 fn drive(
     material: &Material<f64>,
     targets: impl IntoIterator<Item = Target>,
@@ -207,14 +212,15 @@ fn drive(
     std::iter::once(start).chain(steps)
 }
 
-/// Uniaxial stress along x to the logarithmic strain `strain` (negative: compression) in `steps` equal steps; the sides are free.
-/// The first record is the undeformed point; after the error of a step the iterator ends.
+/// Uniaxial stress along x to the logarithmic strain `strain` (negative: compression) in `steps`
+/// equal steps; the sides are free. The first record is the undeformed point; after the error of a
+/// step the iterator ends.
 pub fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
     drive(material, (1..=steps).map(move |step| Target::Stretch(strain * (step as f64 / steps as f64))))
 }
 
-/// Simple shear F = I + gamma e_x (x) e_y to gamma = `strain` in `steps` equal steps. The first record is the undeformed point;
-/// after the error of a step the iterator ends.
+/// Simple shear F = I + gamma e_x (x) e_y to gamma = `strain` in `steps` equal steps. The first
+/// record is the undeformed point; after the error of a step the iterator ends.
 pub fn simple_shear(
     material: &Material<f64>,
     strain: f64,
@@ -228,8 +234,8 @@ pub fn simple_shear(
     drive(material, targets)
 }
 
-/// Through the deformation gradients F of `path`, one step each. The first record is the undeformed point; after the error of a
-/// step the iterator ends.
+/// Through the deformation gradients F of `path`, one step each. The first record is the undeformed
+/// point; after the error of a step the iterator ends.
 pub fn along(
     material: &Material<f64>,
     path: impl IntoIterator<Item = Gradient>,

@@ -1,4 +1,5 @@
-//! A structured box, for tests and for closed forms: bottom z = 0 touches, top is the plate, y = 0 is the symmetry plane.
+//! A structured box, for tests and for closed forms: bottom z = 0 touches, top is the plate, y = 0
+//! is the symmetry plane.
 
 use super::connectivity::{contact_measures, node_elements};
 use super::hierarchy::{Between, Blocks, ClassMap, Site, hierarchy};

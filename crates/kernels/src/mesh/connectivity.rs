@@ -27,8 +27,9 @@ pub fn node_elements(node_count: usize, elements: &[[u32; 8]]) -> NodeElements {
     NodeElements { start, entry }
 }
 
-/// The elements in an order in which neighbours are close: from one end of the body to the other, each layer those that share a node with the layer
-/// before (Cuthill & McKee 1969, for elements); bodies apart one after the other.
+/// The elements in an order in which neighbours are close: from one end of the body to the other,
+/// each layer those that share a node with the layer before (Cuthill & McKee 1969, for elements);
+/// bodies apart one after the other.
 pub fn sweep_order(node_count: usize, elements: &[[u32; 8]]) -> Vec<u32> {
     let lists = node_elements(node_count, elements);
     // The last layer as seen from anywhere is one end.
@@ -36,7 +37,8 @@ pub fn sweep_order(node_count: usize, elements: &[[u32; 8]]) -> Vec<u32> {
     layers(elements, &lists, end)
 }
 
-/// All elements: `first`, those that share a node with it, those that share a node with these, and so on.
+/// All elements: `first`, those that share a node with it, those that share a node with these, and
+/// so on.
 fn layers(elements: &[[u32; 8]], lists: &NodeElements, first: u32) -> Vec<u32> {
     let mut order: Vec<u32> = Vec::with_capacity(elements.len());
     let mut seen = vec![false; elements.len()];
@@ -62,7 +64,8 @@ fn layers(elements: &[[u32; 8]], lists: &NodeElements, first: u32) -> Vec<u32> {
     order
 }
 
-/// Faces that belong to one element only, in the order of the elements, counter-clockwise seen from outside.
+/// Faces that belong to one element only, in the order of the elements, counter-clockwise seen from
+/// outside.
 pub fn boundary_faces(elements: &[[u32; 8]]) -> Vec<[u32; 4]> {
     let mut faces: Vec<([u32; 4], usize)> = Vec::with_capacity(6 * elements.len());
     for (e, element) in elements.iter().enumerate() {
@@ -78,7 +81,8 @@ pub fn boundary_faces(elements: &[[u32; 8]]) -> Vec<[u32; 4]> {
     single.into_iter().map(|id| FACES[id % 6].map(|l| elements[id / 6][l])).collect()
 }
 
-/// Area of a bilinear face, shared among its four nodes by their shape functions (2 x 2 Gauss points).
+/// Area of a bilinear face, shared among its four nodes by their shape functions (2 x 2 Gauss
+/// points).
 pub fn face_areas(corners: [[f64; 3]; 4]) -> [f64; 4] {
     const SIGN: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let g = 1.0 / 3f64.sqrt();
@@ -101,7 +105,8 @@ pub fn face_areas(corners: [[f64; 3]; 4]) -> [f64; 4] {
     share
 }
 
-/// Tributary area and local element size at each of `contact_nodes`, from all surface `faces` around them.
+/// Tributary area and local element size at each of `contact_nodes`, from all surface `faces`
+/// around them.
 pub fn contact_measures(nodes: &[[f64; 3]], faces: &[[u32; 4]], contact_nodes: &[u32]) -> (Vec<f64>, Vec<f64>) {
     let mut tributary = vec![0.0; nodes.len()];
     let mut around = vec![(0.0, 0usize); nodes.len()];

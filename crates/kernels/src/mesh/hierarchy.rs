@@ -1,15 +1,17 @@
 //! Logical blocks of cells and the multigrid hierarchy on them.
 //!
-//! A mesh is made of blocks, each a box of cells in three logical indices. Every index belongs to a class (x, y, r, d), shared by the
-//! blocks that touch, so that coarsening class by class ("every second index and the last") keeps the blocks conforming. Levels need
-//! no exact nesting: interpolation is trilinear in index space and injects at the coarse nodes.
+//! A mesh is made of blocks, each a box of cells in three logical indices. Every index belongs to a
+//! class (x, y, r, d), shared by the blocks that touch, so that coarsening class by class ("every
+//! second index and the last") keeps the blocks conforming. Levels need no exact nesting:
+//! interpolation is trilinear in index space and injects at the coarse nodes.
 
 use super::Prolongation;
 
 /// No level is made below this number of nodes: the smoother alone solves it.
 pub const COARSEST_NODES: usize = 300;
 
-/// A node by its block and its logical indices; nodes on a block's boundary have a name in each block that shares them.
+/// A node by its block and its logical indices; nodes on a block's boundary have a name in each
+/// block that shares them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Site {
     /// Number of the block.
@@ -18,7 +20,8 @@ pub struct Site {
     pub at: [usize; 3],
 }
 
-/// An index of a fine level in terms of the coarse one: it lies between `low` and `high`, at the share `toward_high` of the way.
+/// An index of a fine level in terms of the coarse one: it lies between `low` and `high`, at the
+/// share `toward_high` of the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
     /// Coarse index at or below.
@@ -44,7 +47,8 @@ pub trait Blocks: Sized {
     fn node_count(&self) -> usize;
     /// Node number of a site (of any of its names).
     fn number(&self, site: Site) -> u32;
-    /// Where index `axis` of a site lies between indices of the `coarse` blocks, given the coarsening of each class.
+    /// Where index `axis` of a site lies between indices of the `coarse` blocks, given the
+    /// coarsening of each class.
     fn between(&self, coarse: &Self, site: Site, axis: usize, maps: &[ClassMap]) -> Between;
 }
 
@@ -71,7 +75,8 @@ pub fn class_map(cells: usize) -> ClassMap {
         .collect()
 }
 
-/// All interpolations of `blocks`, finest first, down to about [`COARSEST_NODES`] nodes or until nothing coarsens any more.
+/// All interpolations of `blocks`, finest first, down to about [`COARSEST_NODES`] nodes or until
+/// nothing coarsens any more.
 pub fn hierarchy<B: Blocks>(blocks: B) -> Vec<Prolongation> {
     let mut levels = Vec::new();
     let mut fine = blocks;

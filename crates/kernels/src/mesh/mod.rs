@@ -1,10 +1,13 @@
-//! The mesh: hex8 elements of half the lower hemisphere, connectivity, node-to-element lists and the index hierarchy.
+//! The mesh: hex8 elements of half the lower hemisphere, connectivity, node-to-element lists and
+//! the index hierarchy.
 //!
-//! Lengths are in sphere radii. The pole is the origin, the rigid plane is z = 0, the centre of the sphere is (0, 0, 1), the symmetry
-//! plane is y = 0 and the body fills y >= 0, 0 <= z <= 1. A flat is half of a half ball of radius 2 about the origin.
+//! Lengths are in sphere radii. The pole is the origin, the rigid plane is z = 0, the centre of the
+//! sphere is (0, 0, 1), the symmetry plane is y = 0 and the body fills y >= 0, 0 <= z <= 1. A flat
+//! is half of a half ball of radius 2 about the origin.
 //!
-//! `sphere` builds the body, `brick` a box for tests. Both lay logical blocks of cells (`hierarchy`) whose indices give the numbering,
-//! the coordinates and the multigrid levels; `connectivity` derives lists and areas, `quality` measures elements.
+//! `sphere` builds the body, `brick` a box for tests. Both lay logical blocks of cells
+//! (`hierarchy`) whose indices give the numbering, the coordinates and the multigrid levels;
+//! `connectivity` derives lists and areas, `quality` measures elements.
 
 pub mod brick;
 pub mod connectivity;
@@ -42,7 +45,8 @@ pub enum MeshError {
 
 pub mod pattern;
 
-/// Sparse interpolation from a coarse level's nodes to a fine level's nodes, in rows of (coarse node, weight); the weights of a row sum to 1.
+/// Sparse interpolation from a coarse level's nodes to a fine level's nodes, in rows of (coarse
+/// node, weight); the weights of a row sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prolongation {
     /// Number of coarse nodes (columns).
@@ -55,7 +59,8 @@ pub struct Prolongation {
     pub weight: Vec<f64>,
 }
 
-/// For every node the elements around it, in increasing element order: the lists by which forces and tangents are gathered.
+/// For every node the elements around it, in increasing element order: the lists by which forces
+/// and tangents are gathered.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeElements {
     /// Starts of the nodes' lists, one more than there are nodes.
@@ -85,11 +90,12 @@ pub struct Mesh {
     pub contact_nodes: Vec<u32>,
     /// Outer faces that can touch the plane, counter-clockwise seen from outside.
     pub contact_faces: Vec<[u32; 4]>,
-    /// Reference area tributary to each contact node (the integral of its shape function over the surface); of the meshed half only,
-    /// so that a node on the symmetry plane has half of what the whole sphere would give it. In the order of `contact_nodes`.
+    /// Reference area tributary to each contact node (the integral of its shape function over the
+    /// surface); of the meshed half only, so that a node on the symmetry plane has half of what the
+    /// whole sphere would give it. In the order of `contact_nodes`.
     pub contact_area: Vec<f64>,
-    /// Local element size at each contact node, the root of the mean area of the surface faces around it; in the order of
-    /// `contact_nodes`.
+    /// Local element size at each contact node, the root of the mean area of the surface faces
+    /// around it; in the order of `contact_nodes`.
     pub contact_size: Vec<f64>,
     /// Nodes that move as the rigid plate (the equator plane), in increasing order.
     pub plate_nodes: Vec<u32>,

@@ -15,8 +15,9 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern of a mesh of hex8 elements on `node_count` nodes: nodes are coupled if they share an element; every node is coupled
-    /// with itself. `elements` name nodes below `node_count`; others are left out.
+    /// The pattern of a mesh of hex8 elements on `node_count` nodes: nodes are coupled if they
+    /// share an element; every node is coupled with itself. `elements` name nodes below
+    /// `node_count`; others are left out.
     pub fn from_elements(node_count: usize, elements: &[[u32; 8]]) -> Self {
         let known = |node: &u32| (*node as usize) < node_count;
         let mut start = vec![0u32; node_count + 1];
@@ -48,7 +49,8 @@ impl Pattern {
         Self::from_rows(rows)
     }
 
-    /// A pattern from the columns of each row. They must be increasing, and the diagonal is added where it is missing.
+    /// A pattern from the columns of each row. They must be increasing, and the diagonal is added
+    /// where it is missing.
     pub fn from_rows(rows: impl Iterator<Item = Vec<u32>>) -> Self {
         let (mut row_start, mut column, mut diagonal) = (vec![0u32], Vec::new(), Vec::new());
         for (i, mut row) in rows.enumerate() {

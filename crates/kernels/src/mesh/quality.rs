@@ -34,7 +34,8 @@ fn determinant(c: [[f64; 3]; 3]) -> f64 {
         + c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0])
 }
 
-/// Jacobian determinant of an element's map at the natural coordinates `at`; its integral over [-1, 1]^3 is the volume.
+/// Jacobian determinant of an element's map at the natural coordinates `at`; its integral over [-1,
+/// 1]^3 is the volume.
 pub fn jacobian(corners: &[[f64; 3]; 8], at: [f64; 3]) -> f64 {
     determinant(tangents(corners, at))
 }
@@ -45,7 +46,8 @@ pub fn smallest_jacobian(corners: &[[f64; 3]; 8]) -> f64 {
     CORNERS.iter().flat_map(|c| [jacobian(corners, *c), jacobian(corners, c.map(|x| g * x))]).fold(f64::INFINITY, f64::min)
 }
 
-/// Smallest corner Jacobian with unit edges, 1 for a brick, 0 for a flat corner (Knupp 2000, the scaled Jacobian of a hexahedron).
+/// Smallest corner Jacobian with unit edges, 1 for a brick, 0 for a flat corner (Knupp 2000, the
+/// scaled Jacobian of a hexahedron).
 pub fn scaled_jacobian(corners: &[[f64; 3]; 8]) -> f64 {
     CORNERS
         .iter()

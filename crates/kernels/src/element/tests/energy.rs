@@ -30,12 +30,13 @@ fn the_elastic_force_is_the_derivative_of_the_energy() {
     }
 }
 
-/// (work - elastic energy - plastic work)/work of a straight path in n steps by the trapezoidal rule, and the bound of what the plastic
-/// work leaves out.
+/// (work - elastic energy - plastic work)/work of a straight path in n steps by the trapezoidal
+/// rule, and the bound of what the plastic work leaves out.
 ///
-/// Simo & Hughes's flow rule, L_v b_e = -2/3 gamma tr(b_e) n, dissipates `|s| gamma (tr b_e/3) n : n b_e^-1`, which is
-/// `sigma d alpha (1 - dev b_e : n^2 + ...)` and not `sigma d alpha` alone. With |tr n^3| <= 1/sqrt(6) the difference is at most
-/// |dev b_e|/sqrt(6) of the plastic work, in first order of the elastic strain.
+/// Simo & Hughes's flow rule, L_v b_e = -2/3 gamma tr(b_e) n, dissipates `|s| gamma (tr b_e/3) n :
+/// n b_e^-1`, which is `sigma d alpha (1 - dev b_e : n^2 + ...)` and not `sigma d alpha` alone.
+/// With |tr n^3| <= 1/sqrt(6) the difference is at most |dev b_e|/sqrt(6) of the plastic work, in
+/// first order of the elastic strain.
 fn imbalance(yield_stress: f64, n: usize) -> (f64, f64) {
     let g = geometry();
     let m = Material {
@@ -64,7 +65,8 @@ fn imbalance(yield_stress: f64, n: usize) -> (f64, f64) {
 
 #[test]
 fn the_work_of_a_plastic_path_is_stored_or_dissipated() {
-    // Fine steps leave what the flow rule's dissipation and sigma d alpha differ by, of the size of the elastic strain.
+    // Fine steps leave what the flow rule's dissipation and sigma d alpha differ by, of the size of
+    // the elastic strain.
     let (fine, bound) = imbalance(2e-3, 1280);
     assert!(fine.abs() < bound, "{fine:e} {bound:e}");
     let (finer, tenth) = imbalance(2e-4, 1280);

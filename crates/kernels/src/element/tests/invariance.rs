@@ -21,7 +21,8 @@ fn a_rigid_motion_has_no_force() {
             assert!(largest(&f) < 1e-14, "angle {angle}: {:e}", largest(&f));
         }
     }
-    // A translation loses nothing at all: the gradients sum to zero in each direction up to their rounding.
+    // A translation loses nothing at all: the gradients sum to zero in each direction up to their
+    // rounding.
     let f = force(&g, &elastic(), &State::default(), &ZERO, &[[0.1, -0.2, 0.3]; NODES]);
     assert!(largest(&f) < 1e-16, "{:e}", largest(&f));
 }

@@ -1,8 +1,10 @@
-//! The thick cylinder of MacNeal & Harder (1985, Finite Elem. Anal. Des. 1, 3-20, section 3.6): nearly incompressible, plane strain.
+//! The thick cylinder of MacNeal & Harder (1985, Finite Elem. Anal. Des. 1, 3-20, section 3.6):
+//! nearly incompressible, plane strain.
 //!
-//! A wedge of ten degrees, five elements from the bore (radius 3) to the outside (radius 9), one along the axis. Every node moves along its
-//! radius, so that the problem has six unknowns. The same elements with the dilatation of each quadrature point in the place of the
-//! mean (which is the displacement element) lock.
+//! A wedge of ten degrees, five elements from the bore (radius 3) to the outside (radius 9), one
+//! along the axis. Every node moves along its radius, so that the problem has six unknowns. The
+//! same elements with the dilatation of each quadrature point in the place of the mean (which is
+//! the displacement element) lock.
 
 use super::*;
 use crate::element::hex8::{PAIRS, pair, tangent};
@@ -12,7 +14,8 @@ const LAYERS: usize = RADII.len() - 1;
 /// Half the angle of the wedge.
 const HALF: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
-/// One quadrature point as an element of its own: its mean dilatation is that of the point. Eight of them are the displacement element.
+/// One quadrature point as an element of its own: its mean dilatation is that of the point. Eight
+/// of them are the displacement element.
 fn points_apart(g: &Geometry<f64>) -> Vec<Geometry<f64>> {
     (0..QUADRATURE_POINTS)
         .map(|q| {
@@ -102,7 +105,8 @@ impl Cylinder {
                 break;
             }
             assert!(iteration < 29, "no convergence: {residual:?}");
-            // The free rings, by elimination (the matrix is symmetric and positive, no pivots needed).
+            // The free rings, by elimination (the matrix is symmetric and positive, no pivots
+            // needed).
             let mut r = residual;
             for i in 1..6 {
                 for row in i + 1..6 {
@@ -127,7 +131,8 @@ impl Cylinder {
             }
         }
         self.q = q;
-        // The face is the chord of the bore; its normal leans from the nodes' radii by half the angle.
+        // The face is the chord of the bore; its normal leans from the nodes' radii by half the
+        // angle.
         f[0] / (2.0 * (RADII[0] + u) * HALF.sin() * HALF.cos())
     }
 }

@@ -19,7 +19,8 @@ pub type Matrix = [[f64; 3]; 3];
 
 pub const ZERO: Nodal<f64> = [[0.0; 3]; NODES];
 
-/// A well-formed but irregular element: a unit cube (the sizes differ) with every corner moved by up to a tenth.
+/// A well-formed but irregular element: a unit cube (the sizes differ) with every corner moved by
+/// up to a tenth.
 pub fn irregular() -> [[f64; 3]; NODES] {
     let mut noise = Noise::new(7);
     CORNERS.map(|c| std::array::from_fn(|i| 0.5 * [1.0, 1.2, 0.9][i] * c[i] + 0.1 * noise.next()))

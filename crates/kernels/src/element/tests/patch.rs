@@ -1,4 +1,5 @@
-//! The patch test at finite strain: a homogeneous deformation of an irregular mesh is in equilibrium and its stress uniform.
+//! The patch test at finite strain: a homogeneous deformation of an irregular mesh is in
+//! equilibrium and its stress uniform.
 
 use super::*;
 use crate::element::hex8::fields;
@@ -55,7 +56,8 @@ impl Patch {
         forces
     }
 
-    /// The largest force on an inner node over the largest on any node, and the spread of the stress over its size.
+    /// The largest force on an inner node over the largest on any node, and the spread of the
+    /// stress over its size.
     fn check(&mut self, material: &Material<f64>, h: &Matrix) -> (f64, f64, [f64; 6]) {
         let forces = self.deform(material, h);
         let size = |f: &[f64; 3]| f.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -1,4 +1,5 @@
-//! The kernels in f32 against themselves in f64: only the rounding of f32 may lie between them, at small strains too.
+//! The kernels in f32 against themselves in f64: only the rounding of f32 may lie between them, at
+//! small strains too.
 
 use super::*;
 use crate::element::hex8::{PAIRS, tangent};
@@ -19,7 +20,8 @@ fn forces_and_tangents_keep_their_digits_in_f32() {
         for amplitude in [1e-5, 1e-3, 0.1] {
             let (state, committed) =
                 if material.hardening == Hardening::Elastic { (State::default(), ZERO) } else { loaded(&g64, &material) };
-            // The inputs are the rounded ones for both, so that the difference is that of the arithmetic.
+            // The inputs are the rounded ones for both, so that the difference is that of the
+            // arithmetic.
             let (state32, committed32) = (cast_state::<f32>(&state), single(&committed));
             let state64 = State {
                 points: state32

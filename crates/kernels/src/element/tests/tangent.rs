@@ -138,7 +138,8 @@ fn the_plastic_tangent_lacks_the_antisymmetric_moduli_and_nothing_else() {
         let numeric = differences(&g, &m, &state, &committed, &increment);
         let error = distance(&exact, &numeric) / size(&k);
         assert!(error < 1e-8, "{:?}: {error:e}", m.hardening);
-        // beta_4 <= |s_trial|/mu_bar, which is of the size of the elastic strain and the increment: a small part of the whole.
+        // beta_4 <= |s_trial|/mu_bar, which is of the size of the elastic strain and the increment:
+        // a small part of the whole.
         let share = distance(&k, &numeric) / size(&k);
         assert!(share > 1e-5 && share < 2e-2, "{:?}: {share:e}", m.hardening);
     }
@@ -148,7 +149,8 @@ fn the_plastic_tangent_lacks_the_antisymmetric_moduli_and_nothing_else() {
 fn an_elastic_step_after_plastic_flow_has_the_exact_tangent() {
     let (g, m) = (geometry(), hardening());
     let (state, committed) = loaded(&g, &m);
-    // A tenth of a per mille back along the way it came, far inside the yield surface for the differences.
+    // A tenth of a per mille back along the way it came, far inside the yield surface for the
+    // differences.
     let increment = committed.map(|x| x.map(|v| -0.08 * v));
     let (extra, yielding) = left_out(&g, &m, &state, &committed, &increment);
     assert_eq!((yielding, size(&extra)), (0, 0.0));
@@ -171,7 +173,8 @@ fn the_tangent_is_symmetric() {
             assert!((k[3 * i + j] - k[3 * j + i]).abs() < 1e-15 * scale, "{a} {i} {j}: {k:?}");
         }
     }
-    // The nodes in the opposite order (the element turned by 180 degrees about x) exchange the triangles: the blocks that were not formed are the transposes.
+    // The nodes in the opposite order (the element turned by 180 degrees about x) exchange the
+    // triangles: the blocks that were not formed are the transposes.
     const TURN: [usize; 8] = [7, 6, 5, 4, 3, 2, 1, 0];
     let turned = Geometry::<f64>::new(&TURN.map(|a| irregular()[a])).unwrap();
     let u = wild(33, 0.1);

@@ -104,7 +104,8 @@ fn a_basis_in_f32_costs_no_iterations() {
         let mut wide = Wide { matrix: &problem.matrix, fixed: &fixed, hierarchy };
         let mut solver = LinearSolver::new(SolverKind::Multigrid, &problem.matrix.pattern, &problem.prolongations).unwrap();
         solver.update(&problem.matrix, &problem.fixed).unwrap();
-        // Measured to 1e-8: 42 against 40 (plastic); to 1e-5: 58 against 52 (nearly incompressible).
+        // Measured to 1e-8: 42 against 40 (plastic); to 1e-5: 58 against 52 (nearly
+        // incompressible).
         for tolerance in [1e-3, 1e-5] {
             let in_f64 = Fgmres::<f64>::new(n, 60).solve(&mut wide, &b, &mut vec![0.0; n], tolerance, 200).iterations;
             let in_f32 = solver.solve(&b, tolerance, &mut vec![0.0; n]).unwrap().iterations;

@@ -1,4 +1,5 @@
-//! Small-strain elasticity on a graded brick: the test problems of this room, shared with its benchmark.
+//! Small-strain elasticity on a graded brick: the test problems of this room, shared with its
+//! benchmark.
 
 use super::{BlockMatrix, Mesh, Pattern, Prolongation};
 
@@ -246,7 +247,8 @@ fn stiffness(corners: &[[f64; 3]; 8], shear: f64, bulk: f64, mean_dilatation: bo
     k
 }
 
-/// Every second index and the last in each direction, linear in the index between them, down to 3 nodes in a direction.
+/// Every second index and the last in each direction, linear in the index between them, down to 3
+/// nodes in a direction.
 fn prolongations(mut count: [usize; 3]) -> Vec<Prolongation> {
     let mut chain = Vec::new();
     while count.iter().any(|&n| n > 4) {

@@ -93,8 +93,8 @@ fn fixed_unknowns_hold_exactly() {
 
 #[test]
 fn iterations_hardly_grow_with_the_mesh() {
-    // Graded 1:10 in every direction; 648 to 46,875 unknowns. Measured 6/7/7, 7/9/12, 7/9/12 (to 1e-3): by 5 where
-    // the unknowns are 70 times as many.
+    // Graded 1:10 in every direction; 648 to 46,875 unknowns. Measured 6/7/7, 7/9/12, 7/9/12 (to
+    // 1e-3): by 5 where the unknowns are 70 times as many.
     for (name, make, bound) in
         [("elastic", Brick::elastic as fn(usize) -> Brick, 9), ("plastic", Brick::plastic, 14), ("slipping", Brick::slipping, 14)]
     {
@@ -274,7 +274,8 @@ fn not_a_number_is_an_error() {
 
 #[test]
 fn a_stall_falls_back_to_the_direct_solver_where_that_is_allowed() {
-    // Indefinite far beyond what the smoother bears: springs of the wrong sign as strong as the body.
+    // Indefinite far beyond what the smoother bears: springs of the wrong sign as strong as the
+    // body.
     let mut problem = Brick::elastic(6).problem();
     for i in 0..problem.matrix.rows() {
         let at = problem.matrix.pattern.diagonal[i] as usize;

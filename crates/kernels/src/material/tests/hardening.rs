@@ -51,7 +51,8 @@ fn slope_and_work_are_derivative_and_integral() {
             let slope = law.slope(alpha, law.flow_stress(alpha));
             let tolerance = 1e-6 * slope + 1e-15 / e;
             assert!((slope - numeric).abs() < tolerance, "{name} {alpha}: slope {slope:e} {numeric:e}");
-            // alpha = end t^10 takes the infinite slope of a power law out; the kinks of the table leave O(1/n^2).
+            // alpha = end t^10 takes the infinite slope of a power law out; the kinks of the table
+            // leave O(1/n^2).
             let n = 20_000;
             let integral: f64 = (0..n)
                 .map(|i| {

@@ -1,4 +1,5 @@
-//! What must not change: objectivity, det b_e_bar = 1, the yield surface, and the refusal of impossible deformations.
+//! What must not change: objectivity, det b_e_bar = 1, the yield surface, and the refusal of
+//! impossible deformations.
 
 use super::*;
 use crate::material::{PointError, elastic_energy_deviatoric, return_mapping};
@@ -68,7 +69,8 @@ fn ten_thousand_plastic_steps_keep_the_determinant_of_b_e() {
             worst = worst.max(determinant_excess(&state.be).abs());
         }
         if name == "elastic" {
-            // No return renews the trace here: roundings add up, in proportion to b_e_bar, which is large by now.
+            // No return renews the trace here: roundings add up, in proportion to b_e_bar, which is
+            // large by now.
             let size = state.be.iter().fold(1.0_f64, |w, x| w.max(x.abs()));
             assert!(worst < 1e-15 * 10_000.0 * size.powi(3), "{worst:e} at {size}");
         } else {
@@ -89,7 +91,8 @@ fn yielding_ends_on_the_yield_surface() {
             let flow = material.hardening.flow_stress(response.state.alpha);
             let off = von_mises(&response.stress) / flow - 1.0;
             assert!(off.abs() < 1e-14, "{name} {step}: {off:e}");
-            // Plastic work: between the two flow stresses times the increment, and the sum of increments is the law's own.
+            // Plastic work: between the two flow stresses times the increment, and the sum of
+            // increments is the law's own.
             let increment = response.state.alpha - state.alpha;
             let least = material.hardening.flow_stress(state.alpha) * increment;
             let slack = 1e-15 * material.hardening.plastic_work(response.state.alpha, flow);

@@ -45,7 +45,8 @@ pub fn material<R: Real>(hardening: Hardening<R>) -> Material<R> {
     Material { elasticity: Elasticity::new(1.0, 0.3), hardening }
 }
 
-/// d = f - I pushed through the mapping, in f64; panics (in a test) where the mapping reports an error.
+/// d = f - I pushed through the mapping, in f64; panics (in a test) where the mapping reports an
+/// error.
 pub fn respond(material: &Material<f64>, d: &Matrix, state: &PointState<f64>) -> super::Response<f64> {
     super::return_mapping(material, d, state).unwrap()
 }

@@ -1,7 +1,8 @@
 use super::*;
 use crate::material::multistep::{Flow, anticipate, complete, weight};
 
-/// Isochoric stretch whose axes turn: strain far beyond yield on a curved path, no two increments of which have one direction.
+/// Isochoric stretch whose axes turn: strain far beyond yield on a curved path, no two increments
+/// of which have one direction.
 fn path(t: f64) -> Matrix {
     let turn = rotation([0.0, 0.0, 1.0], 0.9 * t);
     let stretch = 0.06 * t;
@@ -20,7 +21,8 @@ fn inverse(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|k| c(k, i) / det))
 }
 
-/// Stress and alpha at the end of the path in `steps` steps, whose lengths follow the ratio `growth`.
+/// Stress and alpha at the end of the path in `steps` steps, whose lengths follow the ratio
+/// `growth`.
 fn integrate(material: &Material<f64>, steps: usize, growth: f64, second_order: bool) -> ([f64; 6], f64) {
     let total: f64 = (0..steps).map(|i| growth.powf(i as f64 / steps as f64)).sum();
     let (mut state, mut flow, mut stress) = (PointState::default(), Flow::default(), [0.0; 6]);
@@ -72,7 +74,8 @@ fn nothing_anticipated_is_backward_euler() {
     let (response, flow) = complete(&material, &d, &committed, &committed, plain).unwrap();
     assert_eq!(response, plain);
     assert!((flow.alpha - (plain.state.alpha - committed.alpha)).abs() < 1e-18);
-    // What the deviator lost is the plastic strain: |flow| = sqrt 6 delta alpha for small elastic strains, b_e being twice the strain.
+    // What the deviator lost is the plastic strain: |flow| = sqrt 6 delta alpha for small elastic
+    // strains, b_e being twice the strain.
     let length = crate::material::j2::norm_squared(&flow.strain).sqrt();
     assert!((length / (6.0_f64.sqrt() * flow.alpha) - 1.0).abs() < 0.02, "{length} {}", flow.alpha);
 }
@@ -86,7 +89,8 @@ fn a_point_that_unloads_has_not_flowed() {
     assert!(flow.alpha > 0.0);
     let start = anticipate(&first.state, &flow, weight(1.0));
     assert!(start.alpha > first.state.alpha);
-    // From the state that has anticipated flow this is an elastic step; from the committed one it is an elastic unloading.
+    // From the state that has anticipated flow this is an elastic step; from the committed one it
+    // is an elastic unloading.
     let back: Matrix = [[0.0, 0.0048, 0.0], [0.0; 3], [0.0; 3]].map(|r: [f64; 3]| r.map(|x| x));
     let found = respond(&material, &back, &start);
     assert!(!found.yielding);

@@ -21,7 +21,8 @@ fn lie_derivative(material: &Material<f64>, d: &Matrix, state: &PointState<f64>,
     std::array::from_fn(|i| std::array::from_fn(|k| (plus[i][k] - minus[i][k]) / (2.0 * e) - ls[i][k] - ls[k][i]))
 }
 
-/// What symmetrising leaves out of the exact moduli: -mu_bar beta_4 (n (x) dev n^2 - dev n^2 (x) n).
+/// What symmetrising leaves out of the exact moduli: -mu_bar beta_4 (n (x) dev n^2 - dev n^2 (x)
+/// n).
 fn antisymmetric(response: &Response<f64>) -> [[f64; 6]; 6] {
     let n = full(&response.normal);
     let square = multiply(&n, &n);
@@ -95,7 +96,8 @@ fn symmetrised_moduli_differ_by_the_antisymmetric_part_alone() {
     // Engineering shears double a column.
     let expected = entries.clone().fold(0.0_f64, |w, (b, x)| w.max(if b < 3 { x.abs() } else { 2.0 * x.abs() }));
     assert!((difference - expected).abs() < 2e-8, "{difference:e} {expected:e}");
-    // |n| = 1 and |dev n^2| <= 1/sqrt(6): no entry is above mu_bar beta_4/sqrt(6), where beta_4 = O(strain increment).
+    // |n| = 1 and |dev n^2| <= 1/sqrt(6): no entry is above mu_bar beta_4/sqrt(6), where beta_4 =
+    // O(strain increment).
     let largest = entries.fold(0.0_f64, |w, (_, x)| w.max(x.abs()));
     assert!(
         largest > 1e-4 * response.mu_bar && largest <= response.mu_bar * response.beta_4.abs() / 6.0_f64.sqrt(),

@@ -18,15 +18,16 @@ fn elastic_stretch(material: &Material<f64>, stress: f64) -> f64 {
     a
 }
 
-/// d eps_p/d alpha = (a + 2 a^-1/2)/(2 a + a^-1/2), from L_v b_e_bar = -2/3 gamma tr(b_e_bar) n: 1 but for the elastic strain.
+/// d eps_p/d alpha = (a + 2 a^-1/2)/(2 a + a^-1/2), from L_v b_e_bar = -2/3 gamma tr(b_e_bar) n: 1
+/// but for the elastic strain.
 fn plastic_rate(material: &Material<f64>, stress: f64) -> f64 {
     let a = elastic_stretch(material, stress);
     let lateral = 1.0 / a.sqrt();
     (a + 2.0 * lateral) / (2.0 * a + lateral)
 }
 
-/// The exact solution at the end of monotonic uniaxial tension with equivalent plastic strain `alpha`: logarithmic strain and axial
-/// Kirchhoff stress, with J from J U'(J) = sigma/3.
+/// The exact solution at the end of monotonic uniaxial tension with equivalent plastic strain
+/// `alpha`: logarithmic strain and axial Kirchhoff stress, with J from J U'(J) = sigma/3.
 fn exact(material: &Material<f64>, alpha: f64) -> (f64, f64) {
     // Midpoints in t with alpha = end t^4, for the infinite slope of power laws at 0.
     let n = 4000;
@@ -65,7 +66,8 @@ fn every_law_follows_its_exact_curve() {
             for (error, steps) in errors.iter().zip([10.0, 100.0, 1000.0]) {
                 assert!(error.1 < 0.55 * strain / steps + 1e-6 && error.0 <= error.1 + 1e-6, "{context}");
             }
-            // First order or better: ten times the steps, a tenth of the error, until rounding and the quadrature.
+            // First order or better: ten times the steps, a tenth of the error, until rounding and
+            // the quadrature.
             for (coarse, fine) in errors.iter().zip(&errors[1..]) {
                 assert!(fine.1 < 0.15 * coarse.1 + 3e-7, "{context}");
                 assert!(fine.0 < 0.15 * coarse.0 + 3e-7, "{context}");
@@ -123,7 +125,8 @@ fn reversal_yields_at_the_opposite_stress() {
 
 #[test]
 fn work_is_conserved() {
-    // External work = elastic energy + dissipation; plastic work counts sigma d alpha, dissipation sigma d eps_p.
+    // External work = elastic energy + dissipation; plastic work counts sigma d alpha, dissipation
+    // sigma d eps_p.
     for (name, hardening) in laws::<f64>() {
         let material = material(hardening);
         let records = uniaxial(&material, 0.2, 2000).unwrap();

@@ -1,6 +1,7 @@
 //! The logical blocks of the sphere's mesh: a butterfly (O-grid) in three dimensions.
 //!
-//! A half disc is a centre block (x by y cells) and a ring block (perimeter s by r cells) around its three outer sides:
+//! A half disc is a centre block (x by y cells) and a ring block (perimeter s by r cells) around
+//! its three outer sides:
 //!
 //! ```text
 //!        s = 3m . . . s = m          the centre block, y >= 0, its perimeter s counted counter-clockwise from (x = 2m, y = 0),
@@ -9,8 +10,9 @@
 //!  s = 4m +----+----+ s = 0
 //! ```
 //!
-//! The shell is this disc times the depth d, from the sphere's surface (d = 0) to the core's surface (d = nd); the core is the centre
-//! block times r: its floor r = 0 lies on the shell's centre, its walls on the shell's rings, its lid r = nr on the equator plane.
+//! The shell is this disc times the depth d, from the sphere's surface (d = 0) to the core's
+//! surface (d = nd); the core is the centre block times r: its floor r = 0 lies on the shell's
+//! centre, its walls on the shell's rings, its lid r = nr on the equator plane.
 
 use crate::mesh::hierarchy::{Between, Blocks, ClassMap, Site};
 
@@ -101,7 +103,8 @@ impl Butterfly {
     /// Elements in VTK_HEXAHEDRON order, block after block.
     pub fn elements(&self) -> Vec<[u32; 8]> {
         let mut elements = Vec::with_capacity(self.element_count());
-        // The sides' (s, r, d) is left-handed, (r, s, d) right-handed: its two first edges are swapped.
+        // The sides' (s, r, d) is left-handed, (r, s, d) right-handed: its two first edges are
+        // swapped.
         let blocks = [
             (BOTTOM, [self.nx, self.ny, self.nd], [[0, 0], [1, 0], [1, 1], [0, 1]]),
             (SIDE, [self.perimeter_cells(), self.nr, self.nd], [[0, 0], [0, 1], [1, 1], [1, 0]]),
@@ -122,7 +125,8 @@ impl Butterfly {
         elements
     }
 
-    /// Faces on the sphere's surface over the centre block and the first `rings` rings, counter-clockwise seen from outside.
+    /// Faces on the sphere's surface over the centre block and the first `rings` rings,
+    /// counter-clockwise seen from outside.
     pub fn surface_faces(&self, rings: usize) -> Vec<[u32; 4]> {
         let mut faces = Vec::with_capacity(self.nx * self.ny + rings * self.perimeter_cells());
         let mut push = |block, a, b, turn: [[usize; 2]; 4]| {
@@ -193,7 +197,8 @@ impl Blocks for Butterfly {
         let index = site.at[axis];
         match (site.block, axis) {
             (SIDE, 0) => {
-                // The perimeter runs along y, then x, then y again: each side follows the class it touches.
+                // The perimeter runs along y, then x, then y again: each side follows the class it
+                // touches.
                 let (i, j) = self.on_perimeter(index);
                 let on_top = (self.ny + 1..=self.ny + self.nx).contains(&index);
                 let along = if on_top { x[i] } else { y[j] };

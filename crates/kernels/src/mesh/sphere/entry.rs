@@ -1,10 +1,12 @@
 //! Where the surface's nodes lie so that they come into contact evenly.
 //!
-//! A point carries the pressure of its tributary area, and it does so from the moment it touches: the force of a growing contact rises in steps
-//! wherever many points touch at once, or where none does for a while. Regular meshes do both; counted in points, a square grid has the
-//! ripple of Gauss's circle problem. So the points are moved along their radii until each touches when the area inside its circle is that of all points
-//! before it and half its own: the area in contact then follows a growing circle to within half a point. The moves are at most a spacing, the
-//! lines of the mesh stay smooth, and nothing is tuned.
+//! A point carries the pressure of its tributary area, and it does so from the moment it touches:
+//! the force of a growing contact rises in steps wherever many points touch at once, or where none
+//! does for a while. Regular meshes do both; counted in points, a square grid has the ripple of
+//! Gauss's circle problem. So the points are moved along their radii until each touches when the
+//! area inside its circle is that of all points before it and half its own: the area in contact
+//! then follows a growing circle to within half a point. The moves are at most a spacing, the lines
+//! of the mesh stay smooth, and nothing is tuned.
 
 use super::butterfly::{BOTTOM, SIDE};
 use super::geometry::{Geometry, SHELL_DEPTH};
@@ -19,10 +21,12 @@ const RELAXATION: f64 = 0.3;
 const REACH: f64 = 1.5;
 /// Spacings beyond over which the moves fade away.
 const FADING: f64 = 3.0;
-/// Radii closer than this, in spacings, count as equal: which of two such points comes first is then the angle's to say, not rounding's.
+/// Radii closer than this, in spacings, count as equal: which of two such points comes first is
+/// then the angle's to say, not rounding's.
 const TIE: f64 = 1e-6;
 
-/// Radial moves of the surface's nodes in the half ball's plane, by their number (surface nodes come first); `layout` without moves.
+/// Radial moves of the surface's nodes in the half ball's plane, by their number (surface nodes
+/// come first); `layout` without moves.
 pub fn even_entry(layout: &Layout) -> Vec<f64> {
     let blocks = layout.blocks;
     let geometry = Geometry::new(layout);
@@ -50,7 +54,8 @@ pub fn even_entry(layout: &Layout) -> Vec<f64> {
         let mut moved = radius.clone();
         for &n in &order {
             let own = if mirrored[n] == n { area[n] } else { 2.0 * area[n] };
-            // Half a circle of this radius has the area of the points inside and half of this one's.
+            // Half a circle of this radius has the area of the points inside and half of this
+            // one's.
             let even = ((2.0 * inside + own) / std::f64::consts::PI).sqrt();
             let share = (1.0 - (radius[n] - even_end) / (FADING * layout.spacing)).clamp(0.0, 1.0);
             if radius[n] > 0.0 {

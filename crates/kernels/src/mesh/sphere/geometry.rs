@@ -1,14 +1,15 @@
 //! Where the butterfly's nodes lie.
 //!
-//! The half ball |X| <= 2, Z >= 0 is mapped onto the lower hemisphere by the inversion that takes the plane Z = 0 to the sphere's
-//! surface, the half sphere |X| = 2 to the equator plane and the origin to the pole, where its scale is one. Inversions are conformal, so
-//! the mesh is laid out in the half ball, where the contact surface is a plane: what is orthogonal there stays orthogonal here. With
-//! N = 1 + kappa Z + kappa^2 |X|^2/4 and the body's curvature kappa = 1,
+//! The half ball |X| <= 2, Z >= 0 is mapped onto the lower hemisphere by the inversion that takes
+//! the plane Z = 0 to the sphere's surface, the half sphere |X| = 2 to the equator plane and the
+//! origin to the pole, where its scale is one. Inversions are conformal, so the mesh is laid out in
+//! the half ball, where the contact surface is a plane: what is orthogonal there stays orthogonal
+//! here. With N = 1 + kappa Z + kappa^2 |X|^2/4 and the body's curvature kappa = 1,
 //!
 //!   x = X/N,   y = Y/N,   z = (Z + kappa |X|^2/2)/N;
 //!
-//! on Z = 0 this is the stereographic projection, |X| = 2 tan(theta/2). With kappa = 0 it is the half ball itself: a flat, whose plate is the half
-//! sphere |X| = 2.
+//! on Z = 0 this is the stereographic projection, |X| = 2 tan(theta/2). With kappa = 0 it is the
+//! half ball itself: a flat, whose plate is the half sphere |X| = 2.
 
 use super::butterfly::{BOTTOM, Butterfly, CORE, SIDE};
 use super::layout::Layout;
@@ -21,7 +22,8 @@ pub const SHELL_DEPTH: f64 = 1.4;
 const FLOOR_SPREAD: f64 = 1.0;
 /// Polar angle of the core's wall far from the pole.
 const WALL_ANGLE: f64 = 0.62;
-/// Inclination of the depth lines where they meet the core: at the rim of its floor, and far from the pole.
+/// Inclination of the depth lines where they meet the core: at the rim of its floor, and far from
+/// the pole.
 const RIM_INCLINATION: f64 = 0.38;
 const WALL_INCLINATION: f64 = 1.15;
 
@@ -31,7 +33,8 @@ pub fn smooth_step(x: f64) -> f64 {
     x * x * (3.0 - 2.0 * x)
 }
 
-/// Polar position of a surface node in the half ball's plane Z = 0: distance from the pole and angle in the octant.
+/// Polar position of a surface node in the half ball's plane Z = 0: distance from the pole and
+/// angle in the octant.
 #[derive(Clone, Copy, Debug)]
 struct Polar {
     radius: f64,
@@ -77,14 +80,16 @@ impl<'a> Geometry<'a> {
         [x / n, y / n, if self.is_on_plate(site) { 1.0 } else { (z + 0.5 * square) / n }]
     }
 
-    /// Whether a node lies on the half sphere |X| = 2, which moves as the rigid plate: the sphere's equator.
+    /// Whether a node lies on the half sphere |X| = 2, which moves as the rigid plate: the sphere's
+    /// equator.
     pub fn is_on_plate(&self, site: Site) -> bool {
         site.block != BOTTOM && site.at[if site.block == SIDE { 1 } else { 2 }] == self.blocks.nr
     }
 
     /// Position of a node with x >= 0 in the half ball.
     fn in_half_ball(&self, site: Site) -> [f64; 3] {
-        // In the octant 0 <= y <= x; `swap` mirrors at the diagonal, and keeps y = 0 and x = 0 exact.
+        // In the octant 0 <= y <= x; `swap` mirrors at the diagonal, and keeps y = 0 and x = 0
+        // exact.
         let m = self.layout.m;
         let [a, b, c] = site.at;
         let (big, small, swap) = match site.block {
@@ -115,7 +120,8 @@ impl<'a> Geometry<'a> {
         if swap { [near, far, up] } else { [far, near, up] }
     }
 
-    /// How square the centre block's lines are, from 1 at the centre to the layout's squareness at its perimeter.
+    /// How square the centre block's lines are, from 1 at the centre to the layout's squareness at
+    /// its perimeter.
     fn squareness(&self, share: f64) -> f64 {
         1.0 - (1.0 - self.layout.squareness) * share * share
     }
@@ -134,7 +140,8 @@ impl<'a> Geometry<'a> {
         let angle = square + turn * (t * FRAC_PI_4 - square);
         let square_offset = l.squareness * (1.0 / square.cos() - 1.0);
         let fade = 1.0 - smooth_step((r as f64 - l.fine_rings as f64) / l.fading_rings as f64);
-        // Even from the x axis to the y axis, so that the contact's edge meets every phase of the ring spacing equally often.
+        // Even from the x axis to the y axis, so that the contact's edge meets every phase of the
+        // ring spacing equally often.
         let quarter = if swap { 1.0 - 0.5 * t } else { 0.5 * t };
         let spread = l.spread * quarter * l.spacing * fade;
         let radius = l.radii[r] + (1.0 - turn) * l.radii[r] * square_offset + turn * spread;
@@ -149,7 +156,8 @@ impl<'a> Geometry<'a> {
         (distance, angle)
     }
 
-    /// A point of the core at level `r` of its wall: angle around the axis, distance from the axis and height.
+    /// A point of the core at level `r` of its wall: angle around the axis, distance from the axis
+    /// and height.
     fn core(&self, big: usize, t: f64, r: usize) -> (f64, [f64; 2]) {
         let share = big as f64 / self.layout.m as f64;
         let turn = smooth_step(r as f64 / self.layout.rounding_rings as f64) * share * share;
@@ -163,7 +171,8 @@ impl<'a> Geometry<'a> {
         (angle, [distance * polar.sin(), distance * (floor + bulge * (polar.cos() - floor))])
     }
 
-    /// A point on a depth line from the surface to the core: a cubic of Hermite in the half plane of its angle.
+    /// A point on a depth line from the surface to the core: a cubic of Hermite in the half plane
+    /// of its angle.
     fn depth_line(&self, surface: Polar, end: (f64, [f64; 2]), start_length: f64, inclination: f64, d: usize) -> (f64, [f64; 2]) {
         let s = self.layout.depths[d];
         let (end_angle, end) = end;

@@ -6,7 +6,8 @@ use super::entry::even_entry;
 use super::geometry::SHELL_DEPTH;
 use crate::mesh::MeshError;
 
-/// Growth of the rings' spacing outside the fine zone that the count aims at, up to 16 elements per contact radius.
+/// Growth of the rings' spacing outside the fine zone that the count aims at, up to 16 elements per
+/// contact radius.
 const RING_GROWTH: f64 = 1.22;
 /// Growth of the layers' thickness in the shell that the count aims at.
 const LAYER_GROWTH: f64 = 1.14;
@@ -22,7 +23,8 @@ pub struct Layout {
     pub m: usize,
     /// Cells along the index classes.
     pub blocks: Butterfly,
-    /// Spacing of the rings in the fine zone: the contact radius over the elements per contact radius.
+    /// Spacing of the rings in the fine zone: the contact radius over the elements per contact
+    /// radius.
     pub spacing: f64,
     /// Mean radii of the rings, from the centre block's half-width (r = 0) to the equator, 2.
     pub radii: Vec<f64>,
@@ -36,10 +38,12 @@ pub struct Layout {
     pub squareness: f64,
     /// Rings over which the square turns into the fine zone's rings.
     pub rounding_rings: usize,
-    /// Spacings over which the distances of one ring's nodes from the pole are spread, evenly from the x axis to the y axis: 1 makes
-    /// the nodes enter a growing contact one by one instead of ring by ring.
+    /// Spacings over which the distances of one ring's nodes from the pole are spread, evenly from
+    /// the x axis to the y axis: 1 makes the nodes enter a growing contact one by one instead of
+    /// ring by ring.
     pub spread: f64,
-    /// Radial moves of the surface nodes by their number, in the half ball's plane, that make them touch evenly; none if empty.
+    /// Radial moves of the surface nodes by their number, in the half ball's plane, that make them
+    /// touch evenly; none if empty.
     pub shifts: Vec<f64>,
     /// Rings outside the fine zone over which the spread fades away.
     pub fading_rings: usize,
@@ -47,7 +51,8 @@ pub struct Layout {
     pub fine_radius: f64,
 }
 
-/// Distance from the pole in the stereographic projection of a point of the sphere's surface at the distance `rho` from the axis.
+/// Distance from the pole in the stereographic projection of a point of the sphere's surface at the
+/// distance `rho` from the axis.
 pub fn stereographic(rho: f64) -> f64 {
     2.0 * rho / (1.0 + (1.0 - rho * rho).sqrt())
 }
@@ -111,7 +116,8 @@ impl Layout {
         let fine_end = (m + fine_rings) as f64 * spacing;
 
         let remaining = (2.0 - fine_end) / spacing;
-        // Finer meshes are finer outside too, though not in proportion: the far field matters little.
+        // Finer meshes are finer outside too, though not in proportion: the far field matters
+        // little.
         let wanted = sizes_for(remaining, RING_GROWTH.powf((16.0 / count as f64).sqrt().min(1.0)));
         let nr = nearest_even(fine_rings as f64 + wanted).max(nearest_even(fine_rings as f64 + 2.0));
         let outer = nr - fine_rings;

@@ -1,4 +1,5 @@
-//! The sphere's mesh: an O-grid of half the lower hemisphere, graded from the pole; and the same of a flat.
+//! The sphere's mesh: an O-grid of half the lower hemisphere, graded from the pole; and the same of
+//! a flat.
 
 mod butterfly;
 mod entry;
@@ -35,7 +36,8 @@ pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
     Ok(mesh_of(&Layout::new(spec)?.touching_evenly()))
 }
 
-/// The mesh of a flat: half of the half ball |X| <= 2, z >= 0, with the plane z = 0 in place of the sphere's surface and the half sphere |X| = 2 as its plate.
+/// The mesh of a flat: half of the half ball |X| <= 2, z >= 0, with the plane z = 0 in place of the
+/// sphere's surface and the half sphere |X| = 2 as its plate.
 ///
 /// # Errors
 /// A value of `spec` out of range.

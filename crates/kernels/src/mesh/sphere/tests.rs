@@ -9,8 +9,8 @@ fn spec(contact_radius: f64, elements_per_contact_radius: usize, fine_zone: f64)
     SphereSpec { contact_radius, elements_per_contact_radius, fine_zone }
 }
 
-/// Root mean square and largest relative difference between the area tributary to the nodes closer to the axis than rho and the
-/// spherical cap's, for rho over `range`.
+/// Root mean square and largest relative difference between the area tributary to the nodes closer
+/// to the axis than rho and the spherical cap's, for rho over `range`.
 fn entry_ripple(mesh: &Mesh, range: [f64; 2]) -> (f64, f64) {
     let nodes = mesh.contact_nodes.iter().map(|&n| mesh.nodes[n as usize]);
     let mut entries: Vec<(f64, f64)> = nodes.zip(&mesh.contact_area).map(|(x, &area)| (x[0].hypot(x[1]), area)).collect();
@@ -28,7 +28,8 @@ fn entry_ripple(mesh: &Mesh, range: [f64; 2]) -> (f64, f64) {
     ((sum / samples as f64).sqrt(), largest)
 }
 
-/// Smallest scaled Jacobian within 1.5 contact radii of the pole and overall, and whether all Jacobians are positive.
+/// Smallest scaled Jacobian within 1.5 contact radii of the pole and overall, and whether all
+/// Jacobians are positive.
 fn quality_of(mesh: &Mesh, contact_radius: f64) -> (f64, f64, bool) {
     let (mut fine, mut all, mut positive) = (1f64, 1f64, true);
     for e in 0..mesh.elements.len() {
@@ -200,7 +201,8 @@ fn contact_covers_the_fine_zone_with_its_areas() {
         let mesh = sphere_mesh(&spec).unwrap();
         assert_eq!(mesh.fine_radius, (spec.fine_zone * spec.contact_radius).min(0.85));
         assert!(mesh.contact_nodes.is_sorted() && mesh.contact_nodes.iter().all(|n| mesh.plate_nodes.binary_search(n).is_err()));
-        // Every node of the sphere's surface up to the end of the fine zone, and the end of the fine zone itself.
+        // Every node of the sphere's surface up to the end of the fine zone, and the end of the
+        // fine zone itself.
         let position = |n: &u32| mesh.nodes[*n as usize];
         let rho = |x: [f64; 3]| x[0].hypot(x[1]);
         assert!(mesh.contact_nodes.iter().map(|n| rho(position(n))).fold(0.0, f64::max) > mesh.fine_radius);
@@ -239,7 +241,8 @@ fn interpolation_keeps_linear_functions_of_the_indices() {
                     butterfly::SIDE => [b.perimeter_cells(), b.nr, b.nd],
                     _ => [b.nx, b.ny, b.nr],
                 };
-                // The fine indices of the coarse nodes; around the perimeter, those of the centre block.
+                // The fine indices of the coarse nodes; around the perimeter, those of the centre
+                // block.
                 let logical = |b: &Butterfly, [s, q, c]: [usize; 3]| match block {
                     butterfly::SIDE => (b.on_perimeter(s), q, c),
                     _ => ((s, q), 0, c),
@@ -304,10 +307,12 @@ fn impossible_descriptions_are_errors() {
     }
 }
 
-/// Against circles and against a spread alone, the contact area grows evenly wherever the contact's edge may be.
+/// Against circles and against a spread alone, the contact area grows evenly wherever the contact's
+/// edge may be.
 #[test]
 fn the_contact_area_enters_evenly() {
-    // Elements per contact radius; bounds on the ripple's root mean square over 0.5 to 1 and 0.8 to 1.3 contact radii.
+    // Elements per contact radius; bounds on the ripple's root mean square over 0.5 to 1 and 0.8 to
+    // 1.3 contact radii.
     for (count, all, near) in [(4, 0.05, 0.04), (5, 0.04, 0.03), (8, 0.014, 0.010), (16, 0.004, 0.003), (24, 0.002, 0.0015)] {
         let spec = spec(0.2087, count, 1.3);
         let ripple = |layout: &Layout, from: f64, to: f64| entry_ripple(&mesh_of(layout), [from * 0.2087, to * 0.2087]);
