@@ -154,7 +154,9 @@ def test_a_law_is_checked_path_by_path(table: asperity.Law, law: asperity.Law) -
 def test_an_export_is_the_programs(law: asperity.Law, case: asperity.Case, tmp_path: Path) -> None:
     files = law.export("c", tmp_path, case)
     assert [file.name for file in files][:4] == ["asperity_law.h", "law.asperity", "asperity_contact.h", "asperity_contact3d.h"]
-    assert files[0].read_text() == law.export("c", case=case)
+    include = '#include "asperity_contact.h"\n'
+    contact = (tmp_path / "asperity_contact.h").read_text()
+    assert files[0].read_text().replace(include, contact, 1) == law.export("c", case=case)
     assert "asperity_setup" in law.export("c"), "without a case one header for all materials"
     with pytest.raises(asperity.CaseError, match='format: is "fortran"'):
         law.export("fortran")

@@ -240,9 +240,6 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
     };
     let Some(dir) = &args.out else {
         print(&law_source(&law, args.format, case.as_ref()).map_err(in_case)?)?;
-        if args.format == Language::C {
-            eprintln!("asperity_law.h includes asperity_contact.h, which --out DIR writes beside it");
-        }
         return Ok(Outcome::Done);
     };
     let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };

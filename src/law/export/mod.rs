@@ -69,11 +69,16 @@ pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Resu
 /// As [`law_files`].
 pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Result<String, LawError> {
     match (language, law) {
-        (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(source(law, Language::C)),
-        (Language::C, law) => engine_source(law, case),
+        (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(in_one_file(&source(law, Language::C))),
+        (Language::C, law) => Ok(in_one_file(&engine_source(law, case)?)),
         (Language::Python, LawFile::Formulas(law)) => Ok(source(law, Language::Python)),
         (Language::Python, LawFile::Table(table)) => table_source(table),
     }
+}
+
+/// A header with the update in place of the line that includes it.
+fn in_one_file(header: &str) -> String {
+    header.replacen("#include \"asperity_contact.h\"\n", &contact_header(), 1)
 }
 
 /// The header for all materials, the update that it includes, test vectors, and the program that
