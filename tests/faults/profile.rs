@@ -24,5 +24,8 @@ fn release_builds_leave_the_checks_out_of_the_kernels_alone() {
         .filter(|(_, set)| set["overflow-checks"].as_bool() == Some(false))
         .map(|(name, _)| name.as_str())
         .collect();
-    assert_eq!(without, ["*", "asperity-kernels"], "\"*\" is what others wrote");
+    // "*" and gemm's products are what others wrote.
+    assert!(without.contains(&"*"));
+    let ours: Vec<&str> = without.into_iter().filter(|name| name.starts_with("asperity")).collect();
+    assert_eq!(ours, ["asperity-kernels"]);
 }
