@@ -287,7 +287,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1 to 1000",
-        meaning: "Newton iterations of a step before it is cut in half; up to twice as many while it converges fast",
+        meaning: "Newton iterations of a step before it is cut in half; from 10 on up to twice as many while it converges fast",
         example: "25",
         ..key("solver", "max_iterations", Whole(1, 1000), Defaults("25"))
     },

@@ -102,7 +102,7 @@ fn stop_and_go<R: Real>(problem: &Problem) -> Seen {
 #[test]
 fn a_run_that_stops_after_every_attempt_is_the_run_that_never_stops() {
     // So few iterations that steps are bisected, some of them twice.
-    let seen = stop_and_go::<f64>(&problem("0.3", "max_iterations = 3\ntolerance = 1e-8"));
+    let seen = stop_and_go::<f64>(&problem("0.3", "max_iterations = 4"));
     assert_eq!(seen.ends.len(), 12);
     let cutbacks: usize = seen.rows.iter().map(|row| row.cutbacks).sum();
     assert!(cutbacks > 3, "{cutbacks}");

@@ -47,9 +47,10 @@ const DOWNHILL_MERIT: f64 = 4.0;
 const KINK: f64 = 3.0;
 
 /// A step that has used up its iterations goes on, up to twice as many, as long as so many of them
-/// lowered the merit by this factor.
+/// lowered the merit by this factor. Not where it has only a few: who asks for that means it.
 const LAST_ITERATIONS: usize = 3;
 const CONVERGING: f64 = 0.2;
+const FEW_ITERATIONS: usize = 10;
 
 /// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times
 /// areas of the order of R^2.
@@ -311,8 +312,8 @@ impl Newton {
     /// The merit has fallen so much in the last iterations that a few more will do: a step is not
     /// given up then.
     fn is_about_to_converge(&self, report: &StepReport) -> bool {
-        let before = report.iterations.len().checked_sub(LAST_ITERATIONS).map(|i| report.iterations[i].merit);
-        before.is_some_and(|before| self.current.merit < CONVERGING * before * self.scale())
+        let done = &report.iterations;
+        done.len() >= FEW_ITERATIONS && self.current.merit < CONVERGING * done[done.len() - LAST_ITERATIONS].merit * self.scale()
     }
 
     /// Sets the first iterate: the guess if it can be evaluated, the start otherwise.
