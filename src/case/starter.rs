@@ -96,7 +96,7 @@ mod tests {
             // Of the opponents one is enough.
             let uncommented: Vec<&str> = text
                 .lines()
-                .filter(|line| *line != "# equal = true")
+                .filter(|line| *line != "# equal = true" && *line != "# plot_width = \"85mm\"")
                 .map(|line| line.strip_prefix("# ").filter(is_key).unwrap_or(line))
                 .collect();
             let uncommented = uncommented.join("\n");

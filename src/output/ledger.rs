@@ -15,7 +15,9 @@ pub struct Ledger {
     pub rows: Vec<StepRecord>,
     /// Steps whose fields or contact table are written, increasing.
     pub saved: Vec<usize>,
-    /// Contact at the ends of segments, for the plots.
+    /// Steps whose contact table alone is written, for the plots, increasing.
+    pub panels: Vec<usize>,
+    /// Contact at the ends of segments and at those steps.
     pub tables: Tables,
     /// Linear systems that multigrid left to the direct solver.
     pub fallbacks: usize,

@@ -6,6 +6,7 @@
 //! whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job keeps what
 //! it computed.
 
+mod parquet;
 #[cfg(feature = "plots")]
 pub mod plots;
 
@@ -44,6 +45,7 @@ pub use estimate::{ErrorEstimate, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, history_columns, read_history};
 pub use lock::{DirectoryLock, LOCK_NAME};
+pub use parquet::write_parquet;
 pub use path_share::PathShare;
 #[cfg(feature = "plots")]
 pub use plots::{Picture, PlotInputs, write_plots};
