@@ -57,7 +57,7 @@ impl From<Format> for PictureFormat {
 /// The units of axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Units {
-    /// Those of the case if its [units] names them, else none.
+    /// Those of the case if its table `units` names them, else none.
     #[default]
     Auto,
     /// None: forces over E R^2, lengths over R, stresses over E.

@@ -252,7 +252,7 @@ impl Canvas {
         self.add(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" {}/>", number(radius), attributes(paint)))
     }
 
-    /// A text, its subscripts and superscripts set (see [`subscripts`]).
+    /// A text, its subscripts and superscripts set (see `text.rs`).
     pub fn text(&self, text: &str, (x, y): Place, ink: impl Into<Ink>, writing: Writing) -> Drawn {
         let Ink { colour, opacity } = ink.into();
         let (x, y) = (number(self.left + x), number(self.top + y));
