@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::tables::Tables;
 use super::{OutsideSteps, StepRecord};
+use crate::compute::traffic::Account;
 use crate::simulation::scout::Scout;
 use crate::simulation::zone::Zone;
 use crate::solver::phases::PhaseTimes;
@@ -25,6 +26,8 @@ pub struct Ledger {
     pub times: PhaseTimes,
     /// Time beside the steps.
     pub outside: OutsideSteps,
+    /// What passed between the host and the device.
+    pub traffic: Account,
     /// Notes for the summary.
     pub messages: Vec<String>,
     /// The finely meshed zone, as far as it is known.

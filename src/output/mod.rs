@@ -34,6 +34,7 @@ mod time_by_phase;
 mod units;
 mod vtu;
 
+pub use crate::compute::traffic::{DeviceTraffic, Traffic};
 pub use crate::simulation::record::StepRecord;
 pub use atomic::{draft_of, write_atomically};
 pub use checkpoint::{Checkpoint, case_difference};

@@ -134,6 +134,7 @@ impl ResultWriter {
             None => (HistoryWriter::create(&out.history())?, Collection::new(&out.collection())),
             Some(checkpoint) => {
                 ledger = checkpoint.ledger.clone();
+                ledger.traffic.reopened();
                 for row in &ledger.rows {
                     share.after(row);
                 }
@@ -281,6 +282,7 @@ impl ResultWriter {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.ledger.fallbacks,
+            device_traffic: self.ledger.traffic.sum(),
             wall_s,
             cpu_s,
             time_by_phase: TimeByPhase::new(&self.ledger.times, &self.ledger.outside, wall_s),
@@ -377,11 +379,13 @@ impl Observer for ResultWriter {
         self.ledger.rows.push(row);
         self.ledger.fallbacks += view.report.fallbacks;
         self.ledger.times += view.report.times;
+        self.ledger.traffic.step(view.report.traffic, view.traffic());
         if self.fields == Fields::All {
             let contact = self.contact(view);
             self.save(view, &contact)?;
         }
         self.save_panel(view)?;
+        self.ledger.traffic.read(view.traffic());
         let position = Position {
             step: row.step,
             segment: row.segment,
@@ -410,6 +414,7 @@ impl Observer for ResultWriter {
         if self.plots {
             self.ledger.tables.add(&self.ledger.rows, contact);
         }
+        self.ledger.traffic.read(view.traffic());
         self.ledger.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
@@ -424,6 +429,7 @@ impl Observer for ResultWriter {
         let ledger = &mut self.ledger;
         (ledger.rows, ledger.saved, ledger.panels, ledger.tables) = Default::default();
         ledger.fallbacks = 0;
+        ledger.traffic.starts_over();
         ledger.remeshed += 1;
         self.meshed(problem);
         Ok(())

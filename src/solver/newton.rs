@@ -10,6 +10,7 @@ use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, pla
 use super::{Control, Iteration, Settings, SolverError, StepFailure};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
+use crate::compute::traffic::Traffic;
 use crate::contact::coulomb::{Friction, Status};
 use crate::contact::rigid::Rigid;
 use crate::linalg::LinalgError;
@@ -99,6 +100,8 @@ pub struct StepReport {
     pub landed_again: usize,
     /// Time by phase, that of failed attempts since the last converged step included.
     pub times: PhaseTimes,
+    /// What passed to the device and back, likewise.
+    pub traffic: Traffic,
 }
 
 impl StepReport {
