@@ -1017,6 +1017,30 @@ ASPERITY_FN void asperity_press(
     }
 }
 
+/* By how much the sliders' force is beyond the curve at x. Where both are near to each other float has too few digits: there it is done in double. */
+ASPERITY_FN asperity_real asperity_excess(
+    int form, const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real slip_force, asperity_real x, asperity_real plain) {
+#ifdef ASPERITY_SINGLE
+    if (form != 2) {
+        const asperity_real *weight = asperity_weights();
+        double sum[2] = {0.0, 0.0};
+        int i;
+        for (i = 0; i < ASPERITY_SLIDERS; i++) {
+            sum[0] += (double)weight[i] * (double)deflection[0][i];
+            sum[1] += (double)weight[i] * (double)deflection[1][i];
+        }
+        return (float)((double)v->k_t * sqrt(sum[0] * sum[0] + sum[1] * sum[1]) - (double)slip_force * (1.0 - pow(1.0 - (double)x, (double)v->n)));
+    }
+#else
+    (void)form;
+    (void)v;
+    (void)deflection;
+    (void)slip_force;
+    (void)x;
+#endif
+    return plain;
+}
+
 /* Moves delta_T with h held; returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_shear(
     const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
@@ -1051,7 +1075,8 @@ ASPERITY_FN asperity_real asperity_shear(
     direction[0] = out->f_t[0] / trial;
     direction[1] = out->f_t[1] / trial;
     along = direction[0] * p->force[0] + direction[1] * p->force[1];
-    excess = trial - bound;
+    excess = asperity_excess(t->form, v, s->deflection, slip_force, s->x, trial - bound);
+    excess = excess > ASPERITY_R(0.0) ? excess : ASPERITY_R(0.0);
     travel = trial - along;
     beyond = excess < travel ? excess / travel : ASPERITY_R(1.0); /* share of the increment that is beyond the curve */
     forward = direction[0] * d0 + direction[1] * d1;
