@@ -78,22 +78,40 @@ fn given(shape: &[f64; POINTS], x: f64) -> [f64; 2] {
     [below + slope * (x - point_x(j)), slope]
 }
 
-/// The least x at which a shape that is given by numbers has the value `f`, or that of its peak.
-fn given_inverse(shape: &[f64; POINTS], f: f64) -> f64 {
+/// The least x at which a shape that is given by numbers has the value `f`, or that of its peak; and
+/// the point before it.
+fn given_inverse(shape: &[f64; POINTS], f: f64) -> (f64, usize) {
     if f <= 0.0 {
-        return 0.0;
+        return (0.0, 0);
     }
-    let (mut below, mut peak, mut place) = (0.0, 0.0, 0.0);
-    for j in 0..POINTS {
-        if shape[j] >= f {
-            return point_x(j) + (f - below) / (shape[j] - below) * (point_x(j + 1) - point_x(j));
+    let (mut peak, mut place) = (0.0, (0.0, 0));
+    for (j, &here) in shape.iter().enumerate() {
+        if here >= f {
+            return (given_between(shape, f, j), j);
         }
-        below = shape[j];
-        if below > peak {
-            (peak, place) = (below, point_x(j + 1));
+        if here > peak {
+            (peak, place) = (here, (point_x(j + 1), j));
         }
     }
     place
+}
+
+/// The x between point `j` and the next at which a shape that is given by numbers has the value
+/// `f`.
+fn given_between(shape: &[f64; POINTS], f: f64, j: usize) -> f64 {
+    let below = if j == 0 { 0.0 } else { shape[j - 1] };
+    point_x(j) + (f - below) / (shape[j] - below) * (point_x(j + 1) - point_x(j))
+}
+
+/// As [`given_inverse`] of a lesser `f`, back along the curve from after point `j`.
+fn given_back(shape: &[f64; POINTS], f: f64, mut j: usize) -> f64 {
+    if f <= 0.0 {
+        return 0.0;
+    }
+    while j > 0 && shape[j - 1] >= f {
+        j -= 1;
+    }
+    given_between(shape, f, j)
 }
 
 /// f_T(x) = 1 - (1 - x)^n and its derivative, 0 <= x <= 1.
@@ -110,12 +128,17 @@ fn tangential_shape(p: &ContactParameters, virgin: &Virgin, x: f64) -> [f64; 2] 
     [1.0 - power * rest, n * power]
 }
 
-/// The x at which f_T has the value `f`.
-fn tangential_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> f64 {
+/// The x at which f_T has the value `f`, and the point before it of a shape by numbers.
+fn tangential_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> (f64, usize) {
     if p.form == BY_NUMBERS {
         return given_inverse(&virgin.shapes[0], f);
     }
-    if f >= 1.0 { 1.0 } else { 1.0 - (1.0 - f).powf(1.0 / virgin.point.n) }
+    (if f >= 1.0 { 1.0 } else { 1.0 - (1.0 - f).powf(1.0 / virgin.point.n) }, 0)
+}
+
+/// As [`tangential_shape_inverse`] of a lesser `f`, back along the curve from after point `j`.
+fn tangential_shape_back(p: &ContactParameters, virgin: &Virgin, f: f64, j: usize) -> f64 {
+    if p.form == BY_NUMBERS { given_back(&virgin.shapes[0], f, j) } else { tangential_shape_inverse(p, virgin, f).0 }
 }
 
 /// f_N(x) and its derivative, 0 <= x <= 1; the derivative is 0 at both ends.
@@ -152,7 +175,7 @@ fn normal_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> f64 {
         return 1.0;
     }
     if p.form == BY_NUMBERS {
-        return given_inverse(&virgin.shapes[1], f);
+        return given_inverse(&virgin.shapes[1], f).0;
     }
     let (m, n) = (virgin.point.m_exponent, virgin.point.n_exponent);
     if p.form == 0.0 { 1.0 - (1.0 - f.powf(1.0 / n)).powf(1.0 / m) } else { (1.0 - (1.0 - f).powf(1.0 / n)).powf(1.0 / m) }
@@ -322,7 +345,7 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     if is_elastic(virgin) {
         return Pressed { f_n, x: elastic, df_n_dh: stiffness }; // pressing leaves F_T as it is
     }
-    let bound = tangential_shape_inverse(p, virgin, f_t / slip_force);
+    let (bound, before) = tangential_shape_inverse(p, virgin, f_t / slip_force);
     let cap = normal_cap(p, virgin, bound);
     let share = if f_t < slip_force { f_t / slip_force } else { 1.0 };
     let soft = 1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0);
@@ -333,7 +356,7 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     let flow = if trial > cap { rate * (trial - cap) / virgin.point.f_n0 } else { 0.0 };
     let most = slip_force * tangential_shape(p, virgin, bound)[0];
     let keep = (-flow).exp() * if most < f_t { most / f_t } else { 1.0 };
-    let x = tangential_shape_inverse(p, virgin, keep * f_t / slip_force);
+    let x = tangential_shape_back(p, virgin, keep * f_t / slip_force, before);
     let raised = normal_cap(p, virgin, x);
     let rises = slip_force * tangential_shape(p, virgin, x)[1];
     let falls = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1];

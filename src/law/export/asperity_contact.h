@@ -42,6 +42,13 @@ typedef long long int64_t;
 #define ASPERITY_LANES
 #endif
 
+/* Lanes that straddle lines of the cache cost twice. */
+#if defined(__GNUC__) && !defined(__CUDACC__)
+#define ASPERITY_ALIGNED __attribute__((aligned(64)))
+#else
+#define ASPERITY_ALIGNED
+#endif
+
 #ifdef __CUDACC__
 #define ASPERITY_FN static inline __host__ __device__
 #else
@@ -79,10 +86,19 @@ typedef uint64_t asperity_bits;
 #endif
 #define ASPERITY_R(x) ((asperity_real)(x))
 
+/* a b + c, in one operation where the machine has it. */
+#if defined(FP_FAST_FMA) && !defined(ASPERITY_SINGLE)
+#define ASPERITY_FMA(a, b, c) fma(a, b, c)
+#elif defined(FP_FAST_FMAF) && defined(ASPERITY_SINGLE)
+#define ASPERITY_FMA(a, b, c) fmaf(a, b, c)
+#else
+#define ASPERITY_FMA(a, b, c) ((a) * (b) + (c))
+#endif
+
 #define ASPERITY_KNOTS @KNOTS@
 #define ASPERITY_COLUMNS @COLUMNS@
 #define ASPERITY_SLIDERS 16 /* asperity_weights() and asperity_sliders() are written for this number */
-#define ASPERITY_POINTS @POINTS@   /* of a shape that is given by numbers, x = (j/points)^2 */
+#define ASPERITY_POINTS @POINTS@ /* of a shape that is given by numbers, x = (j/points)^2; asperity_given_search() is written for 24 */
 #define ASPERITY_LEVELS @LEVELS@
 
 /* A law. Lengths over R, forces over E R^2. */
@@ -95,10 +111,11 @@ typedef struct asperity_table {
     asperity_real effective_modulus; /* E*, over E: 1/(1 - nu^2) on a plane, half of it between two spheres */
     asperity_real effective_radius;  /* of Hertz's contact, over R: 1 on a plane, 1/2 between two spheres */
     asperity_real deepest;           /* h up to which the law was made */
-    asperity_real log_first;         /* ln h of the first knot */
+    asperity_real first;             /* h of the first knot */
     asperity_real log_step;
-    /* ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T, and their slopes a step */
-    asperity_real knots[ASPERITY_KNOTS][2][ASPERITY_COLUMNS];
+    /* F_N0, 1/a, 1/delta_T_slip, k_T, F_N_slip/F_N0, n, M, N at a knot; towards the next, of the logarithms of the first four and of the others, the
+     * coefficients of u, u^2 and u^3, where u is the share of a step. So nothing is lost to the size of a logarithm in float. */
+    asperity_real knots[ASPERITY_KNOTS][4][ASPERITY_COLUMNS];
     asperity_real shapes[ASPERITY_LEVELS][2][ASPERITY_POINTS];
 } asperity_table;
 
@@ -131,13 +148,16 @@ typedef struct asperity_tangent {
 
 /* What a virgin contact answers at one indentation. */
 typedef struct asperity_curve {
-    asperity_real f_n0, f_n_slip, delta_t_slip, n, m, big_n, k_t, contact_radius;
+    asperity_real f_n0, f_n_slip, n, m, big_n, k_t;
+    asperity_real per_slip;      /* 1/delta_T_slip, */
+    asperity_real per_a;         /* 1/a, of F_N0 */
+    asperity_real per_force, per_gamma, per_backbone, per_n; /* and 1/F_N0, ... */
     asperity_real slope;    /* dF_N0/dh */
     asperity_real gamma;    /* unloading: F_N = F_N0 (e/depth)^gamma */
     asperity_real depth;
     asperity_real backbone; /* exponent of the sliders' */
     int elastic;            /* whether shear costs no normal force */
-    asperity_real lost[ASPERITY_SLIDERS]; /* approach over depth at which a slider's annulus loses contact */
+    ASPERITY_ALIGNED asperity_real lost[ASPERITY_SLIDERS]; /* approach over depth at which a slider's annulus loses contact */
     const asperity_real (*shallow)[ASPERITY_POINTS]; /* shapes by numbers: those of the level above and of the one below, */
     const asperity_real (*deep)[ASPERITY_POINTS];
     asperity_real between;                           /* and the place between them */
@@ -169,8 +189,11 @@ ASPERITY_FN void asperity_exponentials(asperity_real *x, int count) {
         float y = x[i], r, p;
         int k = (int)(y * 1.44269504f + 128.5f) - 128;
         uint32_t bits;
-        r = (y - (float)k * 0.693359375f) + (float)k * 2.12194440e-4f;
-        p = 1.0f + r * (1.0f + r * (0.5f + r * (1.6666667e-1f + r * (4.1666667e-2f + r * (8.3333333e-3f + r * (1.3888889e-3f + r * 1.984127e-4f))))));
+        r = ASPERITY_FMA((float)k, 2.12194440e-4f, ASPERITY_FMA((float)k, -0.693359375f, y));
+        p = ASPERITY_FMA(r, 1.984127e-4f, 1.3888889e-3f);
+        p = ASPERITY_FMA(r, ASPERITY_FMA(r, p, 8.3333333e-3f), 4.1666667e-2f);
+        p = ASPERITY_FMA(r, ASPERITY_FMA(r, p, 1.6666667e-1f), 0.5f);
+        p = ASPERITY_FMA(r, ASPERITY_FMA(r, p, 1.0f), 1.0f);
         memcpy(&bits, &p, sizeof bits);
         bits += (uint32_t)k << 23;
         memcpy(&p, &bits, sizeof bits);
@@ -182,11 +205,13 @@ ASPERITY_FN void asperity_exponentials(asperity_real *x, int count) {
         double y = x[i], r, r2, r4, p;
         int k = (int)(y * 1.4426950408889634 + 1024.5) - 1024;
         uint64_t bits;
-        r = (y - (double)k * 6.93147180369123816490e-01) - (double)k * 1.90821492927058770002e-10;
+        r = ASPERITY_FMA((double)k, -1.90821492927058770002e-10, ASPERITY_FMA((double)k, -6.93147180369123816490e-01, y));
         r2 = r * r;
         r4 = r2 * r2;
-        p = ((1.0 + r) + r2 * (1.0 / 2.0 + r * (1.0 / 6.0))) + r4 * ((1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0))) +
-            r4 * r4 * ((1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0)) + r4 * (1.0 / 479001600.0 + r * (1.0 / 6227020800.0)));
+        p = ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 39916800.0, 1.0 / 3628800.0), ASPERITY_FMA(r, 1.0 / 362880.0, 1.0 / 40320.0));
+        p = ASPERITY_FMA(r4, ASPERITY_FMA(r, 1.0 / 6227020800.0, 1.0 / 479001600.0), p);
+        p = ASPERITY_FMA(r4, p, ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 5040.0, 1.0 / 720.0), ASPERITY_FMA(r, 1.0 / 120.0, 1.0 / 24.0)));
+        p = ASPERITY_FMA(r4, p, ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 6.0, 1.0 / 2.0), 1.0 + r));
         memcpy(&bits, &p, sizeof bits);
         bits += (uint64_t)(int64_t)k << 52;
         memcpy(&p, &bits, sizeof bits);
@@ -213,34 +238,124 @@ ASPERITY_FN asperity_real asperity_inverse_root(asperity_real x) {
     memcpy(&bits, &x, sizeof bits);
     bits = ASPERITY_ROOT_BITS - (bits >> 1);
     memcpy(&y, &bits, sizeof bits);
-    y *= ASPERITY_R(1.5) - half * y * y;
-    y *= ASPERITY_R(1.5) - half * y * y;
-    y *= ASPERITY_R(1.5) - half * y * y;
+    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
+    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
+    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
 #ifndef ASPERITY_SINGLE
-    y *= ASPERITY_R(1.5) - half * y * y;
+    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
 #endif
     return y;
 }
 
-/* base^exponent, 0 <= base. */
-ASPERITY_FN asperity_real asperity_power(asperity_real base, asperity_real exponent) {
-    return base > ASPERITY_R(0.0) ? ASPERITY_EXP(exponent * ASPERITY_LOG(base)) : ASPERITY_R(0.0);
+/* ln(1 + r), |r| <= 1/64, by its series. */
+ASPERITY_FN asperity_real asperity_log_series(asperity_real r) {
+    asperity_real r2 = r * r, p, q;
+    p = ASPERITY_FMA(r2, ASPERITY_FMA(r, ASPERITY_R(1.0 / 9.0), ASPERITY_R(-1.0 / 8.0)), ASPERITY_FMA(r, ASPERITY_R(1.0 / 7.0), ASPERITY_R(-1.0 / 6.0)));
+    q = ASPERITY_FMA(r2, ASPERITY_FMA(r, ASPERITY_R(1.0 / 5.0), ASPERITY_R(-1.0 / 4.0)), ASPERITY_FMA(r, ASPERITY_R(1.0 / 3.0), ASPERITY_R(-1.0 / 2.0)));
+    return ASPERITY_FMA(r2, ASPERITY_FMA(r2 * r2, p, q), r);
 }
 
-/* e^x. */
+/* ln x, x > 0, in line: of 2^k c (1 + r), with c from 32 places and |r| <= 1/64. */
+ASPERITY_FN asperity_real asperity_logarithm(asperity_real x) {
+    static const asperity_real inverse[32] = {
+        ASPERITY_R(1.4223978268922088), ASPERITY_R(1.391468746307456), ASPERITY_R(1.3618562535370686), ASPERITY_R(1.3334780249593055),
+        ASPERITY_R(1.3062584608976362), ASPERITY_R(1.2801280128012802), ASPERITY_R(1.2550225896376046), ASPERITY_R(1.2308830328247804),
+        ASPERITY_R(1.207654650645305), ASPERITY_R(1.1852868044242475), ASPERITY_R(1.163732539879329), ASPERITY_R(1.1429482579925057),
+        ASPERITY_R(1.122893420546364), ASPERITY_R(1.1035302861389817), ASPERITY_R(1.084823673058967), ASPERITY_R(1.066740745885131),
+        ASPERITY_R(1.0492508230867432), ASPERITY_R(1.0323252032520325), ASPERITY_R(1.0159370078740158), ASPERITY_R(1.0),
+        ASPERITY_R(0.9699196326061997), ASPERITY_R(0.9413800562405364), ASPERITY_R(0.9144723412941417), ASPERITY_R(0.8890603897356743),
+        ASPERITY_R(0.8650228310502284), ASPERITY_R(0.8422510822510821), ASPERITY_R(0.8206477067236561), ASPERITY_R(0.8001250195343023),
+        ASPERITY_R(0.7806038970697605), ASPERITY_R(0.7620127569099929), ASPERITY_R(0.7442866801893171), ASPERITY_R(0.7273666537517758)};
+    static const asperity_real log_c[32] = {
+        ASPERITY_R(-0.3523440580008923), ASPERITY_R(-0.3303598412985515), ASPERITY_R(-0.3088486614358244), ASPERITY_R(-0.28779058528352974),
+        ASPERITY_R(-0.26716691395221637), ASPERITY_R(-0.2469600829318592), ASPERITY_R(-0.2271535721329931), ASPERITY_R(-0.2077318246738307),
+        ASPERITY_R(-0.18868017341225488), ASPERITY_R(-0.1699847743527869), ASPERITY_R(-0.1516325461705557), ASPERITY_R(-0.1336111151900369),
+        ASPERITY_R(-0.11590876523852209), ASPERITY_R(-0.09851439186497558), ASPERITY_R(-0.08141746047599635), ASPERITY_R(-0.06460796799339279),
+        ASPERITY_R(-0.0480764076837151), ASPERITY_R(-0.03181373684993537), ASPERITY_R(-0.01581134711020277), ASPERITY_R(0.0),
+        ASPERITY_R(0.030542063900505807), ASPERITY_R(0.06040833545244689), ASPERITY_R(0.08940805622954394), ASPERITY_R(0.11759011581397946),
+        ASPERITY_R(0.1449993781208599), ASPERITY_R(0.1716771117439915), ASPERITY_R(0.1976613642714418), ASPERITY_R(0.22298728910590676),
+        ASPERITY_R(0.24768743184511172), ASPERITY_R(0.2717919820839289), ASPERITY_R(0.2953289955317206), ASPERITY_R(0.31832459054884527)};
+#ifdef ASPERITY_SINGLE
+    const asperity_bits from = 0x3f320000u;
+    const int digits = 23;
+    const float least = 1e-30f, greatest = 1e30f;
+    int64_t away;
+#else
+    const asperity_bits from = 0x3fe6400000000000ull;
+    const int digits = 52;
+    const double least = 1e-300, greatest = 1e300;
+    int64_t away;
+#endif
+    asperity_bits bits;
+    asperity_real z, r, k;
+    int place;
+    if (!(x > least && x < greatest)) {
+        return ASPERITY_LOG(x);
+    }
+    memcpy(&bits, &x, sizeof bits);
+    away = (int64_t)bits - (int64_t)from;
+    place = (int)(away >> (digits - 5)) & 31;
+    k = ASPERITY_R((int)(away >> digits));
+    bits -= (asperity_bits)((away >> digits) * ((int64_t)1 << digits));
+    memcpy(&z, &bits, sizeof z);
+    r = ASPERITY_FMA(z, inverse[place], ASPERITY_R(-1.0));
+    return ASPERITY_FMA(k, ASPERITY_R(0.6931471805599453), log_c[place]) + asperity_log_series(r);
+}
+
+/* e^x of one number, in the range of the other: 2^(k/32) e^r. */
 ASPERITY_FN asperity_real asperity_exponential(asperity_real x) {
-    asperity_exponentials(&x, 1);
-    return x;
+    static const asperity_real root[32] = {
+        ASPERITY_R(1.0), ASPERITY_R(1.0218971486541166), ASPERITY_R(1.0442737824274138), ASPERITY_R(1.0671404006768237),
+        ASPERITY_R(1.0905077326652577), ASPERITY_R(1.1143867425958924), ASPERITY_R(1.1387886347566916), ASPERITY_R(1.1637248587775775),
+        ASPERITY_R(1.189207115002721), ASPERITY_R(1.215247359980469), ASPERITY_R(1.241857812073484), ASPERITY_R(1.2690509571917332),
+        ASPERITY_R(1.2968395546510096), ASPERITY_R(1.3252366431597413), ASPERITY_R(1.3542555469368927), ASPERITY_R(1.383909881963832),
+        ASPERITY_R(1.4142135623730951), ASPERITY_R(1.4451808069770467), ASPERITY_R(1.4768261459394993), ASPERITY_R(1.5091644275934228),
+        ASPERITY_R(1.5422108254079407), ASPERITY_R(1.5759808451078865), ASPERITY_R(1.6104903319492543), ASPERITY_R(1.645755478153965),
+        ASPERITY_R(1.681792830507429), ASPERITY_R(1.718619298122478), ASPERITY_R(1.7562521603732995), ASPERITY_R(1.7947090750031072),
+        ASPERITY_R(1.8340080864093424), ASPERITY_R(1.8741676341103), ASPERITY_R(1.9152065613971474), ASPERITY_R(1.9571441241754002)};
+#ifdef ASPERITY_SINGLE
+    const asperity_real most = 80.0f, high = 0.02165985107421875f, low = 9.983182795409192e-07f;
+    const int digits = 23;
+#else
+    const asperity_real most = 700.0, high = 0.021660849335603416, low = 5.689487495325457e-11;
+    const int digits = 52;
+#endif
+    asperity_real r = x, r2, scaled;
+    asperity_bits bits;
+    int k;
+    r = r < most ? r : most;
+    r = r > -most ? r : -most;
+    k = (int)(r * ASPERITY_R(46.16624130844683) + ASPERITY_R(32768.5)) - 32768;
+    r = ASPERITY_FMA(ASPERITY_R(k), -low, ASPERITY_FMA(ASPERITY_R(k), -high, r));
+    r2 = r * r;
+    scaled = root[k & 31];
+    memcpy(&bits, &scaled, sizeof bits);
+    bits += (asperity_bits)(k >> 5) << digits;
+    memcpy(&scaled, &bits, sizeof bits);
+    x = ASPERITY_FMA(r2, ASPERITY_FMA(r2, ASPERITY_R(1.0 / 720.0), ASPERITY_FMA(r, ASPERITY_R(1.0 / 120.0), ASPERITY_R(1.0 / 24.0))), ASPERITY_FMA(r, ASPERITY_R(1.0 / 6.0), ASPERITY_R(1.0 / 2.0)));
+    return ASPERITY_FMA(scaled, ASPERITY_FMA(r2, x, r), scaled);
+}
+
+/* e^x of a number that is small in most steps of time: then its series. */
+ASPERITY_FN asperity_real asperity_exponential_near(asperity_real x) {
+    asperity_real x2 = x * x, near, far;
+    if (ASPERITY_ABS(x) > ASPERITY_R(0.03125)) {
+        return asperity_exponential(x);
+    }
+    near = ASPERITY_FMA(x, ASPERITY_R(1.0 / 6.0), ASPERITY_R(1.0 / 2.0));
+    far = ASPERITY_FMA(x2, ASPERITY_FMA(x, ASPERITY_R(1.0 / 5040.0), ASPERITY_R(1.0 / 720.0)), ASPERITY_FMA(x, ASPERITY_R(1.0 / 120.0), ASPERITY_R(1.0 / 24.0)));
+    return ASPERITY_R(1.0) + ASPERITY_FMA(x2, ASPERITY_FMA(x2, far, near), x);
+}
+
+/* base^exponent, 0 <= base. */
+ASPERITY_FN asperity_real asperity_power(asperity_real base, asperity_real exponent) {
+    return base > ASPERITY_R(0.0) ? asperity_exponential(exponent * asperity_logarithm(base)) : ASPERITY_R(0.0);
 }
 
 /* ln(a/b), a, b > 0: by its series where they are near to each other, as from one step of time to the next. */
 ASPERITY_FN asperity_real asperity_log_ratio(asperity_real a, asperity_real b) {
-    asperity_real z = (a - b) / b, z2 = z * z, z4 = z2 * z2;
-    if (ASPERITY_ABS(z) > ASPERITY_R(0.015625)) {
-        return ASPERITY_LOG(a / b);
-    }
-    return z - z2 * ((ASPERITY_R(1.0 / 2.0) - z * ASPERITY_R(1.0 / 3.0)) + z2 * (ASPERITY_R(1.0 / 4.0) - z * ASPERITY_R(1.0 / 5.0)) +
-                     z4 * ((ASPERITY_R(1.0 / 6.0) - z * ASPERITY_R(1.0 / 7.0)) + z2 * (ASPERITY_R(1.0 / 8.0) - z * ASPERITY_R(1.0 / 9.0))));
+    asperity_real z = (a - b) / b;
+    return ASPERITY_ABS(z) > ASPERITY_R(0.015625) ? ASPERITY_LOG(a / b) : asperity_log_series(z);
 }
 
 /* Whether a number is finite, also where the compiler was told that all are. */
@@ -322,83 +437,84 @@ ASPERITY_FN void asperity_sliders(asperity_real backbone, asperity_real lost[ASP
     }
 }
 
-/* A row of the table at ln h: its position, its columns, the slope of the first, and the logarithms among them, whose exponentials are then taken together. */
+/* A row of the table: its position, its columns, the slope of the first; and what the first four have grown by from their knot, as logarithms. */
 typedef struct asperity_row {
     asperity_real position, slope, column[ASPERITY_COLUMNS];
 } asperity_row;
 
-ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h, asperity_row *row, asperity_real logarithm[4]) {
+/* The row at ln(h/first). */
+ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h, asperity_row *row, asperity_real growth[4]) {
     /* Powers of h in Hertz's contact, for what lies below the first knot. */
     static const asperity_real hertz[ASPERITY_COLUMNS] = {
-        ASPERITY_R(1.5), ASPERITY_R(0.5), ASPERITY_R(0.0), ASPERITY_R(1.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.5)};
-    asperity_real position = (log_h - t->log_first) / t->log_step, last = ASPERITY_R(ASPERITY_KNOTS - 1), slope, *column = row->column;
-    int c;
+        ASPERITY_R(1.5), ASPERITY_R(-0.5), ASPERITY_R(-1.0), ASPERITY_R(0.5), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.0)};
+    asperity_real per_step = ASPERITY_R(1.0) / t->log_step, position = log_h * per_step, last = ASPERITY_R(ASPERITY_KNOTS - 1);
+    asperity_real slope, u, grown[ASPERITY_COLUMNS] ASPERITY_ALIGNED;
+    int c, i = 0;
     if (position < ASPERITY_R(0.0)) {
         for (c = 0; c < ASPERITY_COLUMNS; c++) {
-            column[c] = t->knots[0][0][c] + hertz[c] * t->log_step * position;
+            grown[c] = hertz[c] * log_h;
         }
-        slope = hertz[0] * t->log_step;
+        slope = hertz[0];
     } else if (position >= last) {
         /* Logarithms go on straight, the others stay. */
+        i = ASPERITY_KNOTS - 1;
         for (c = 0; c < ASPERITY_COLUMNS; c++) {
-            column[c] = t->knots[ASPERITY_KNOTS - 1][0][c];
-            column[c] += hertz[c] > ASPERITY_R(0.0) ? t->knots[ASPERITY_KNOTS - 1][1][c] * (position - last) : ASPERITY_R(0.0);
+            grown[c] = c < 4 ? t->knots[i][1][c] * (position - last) : ASPERITY_R(0.0);
         }
-        slope = t->knots[ASPERITY_KNOTS - 1][1][0];
+        slope = t->knots[i][1][0] * per_step;
     } else {
-        int i = (int)position;
-        asperity_real u = position - ASPERITY_R(i);
-        const asperity_real *y0 = t->knots[i][0], *s0 = t->knots[i][1], *y1 = t->knots[i + 1][0], *s1 = t->knots[i + 1][1];
+        const asperity_real *k1, *k2, *k3;
+        i = (int)position;
+        k1 = t->knots[i][1];
+        k2 = t->knots[i][2];
+        k3 = t->knots[i][3];
+        u = position - ASPERITY_R(i);
+        ASPERITY_LANES
         for (c = 0; c < ASPERITY_COLUMNS; c++) {
-            asperity_real rise = y1[c] - y0[c], quadratic = ASPERITY_R(3.0) * rise - ASPERITY_R(2.0) * s0[c] - s1[c], cubic = s0[c] + s1[c] - ASPERITY_R(2.0) * rise;
-            column[c] = y0[c] + u * (s0[c] + u * (quadratic + u * cubic));
+            grown[c] = u * ASPERITY_FMA(u, ASPERITY_FMA(u, k3[c], k2[c]), k1[c]);
         }
-        {
-            asperity_real rise = y1[0] - y0[0], quadratic = ASPERITY_R(3.0) * rise - ASPERITY_R(2.0) * s0[0] - s1[0], cubic = s0[0] + s1[0] - ASPERITY_R(2.0) * rise;
-            slope = s0[0] + u * (ASPERITY_R(2.0) * quadratic + ASPERITY_R(3.0) * u * cubic);
-        }
+        slope = (k1[0] + u * (ASPERITY_R(2.0) * k2[0] + ASPERITY_R(3.0) * u * k3[0])) * per_step;
     }
     row->position = position;
     row->slope = slope;
-    logarithm[0] = column[0];
-    logarithm[1] = column[1];
-    logarithm[2] = column[3];
-    logarithm[3] = column[7];
+    for (c = 0; c < 4; c++) {
+        growth[c] = grown[c];
+        row->column[c] = t->knots[i][0][c];
+        row->column[c + 4] = t->knots[i][0][c + 4] + grown[c + 4];
+    }
 }
 
 /* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need. */
 ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_curve *v) {
     const asperity_real *column = row->column;
-    asperity_real a, start, end, force;
-    v->f_n0 = exponential[0];
-    a = exponential[1];
-    v->f_n_slip = column[2] * v->f_n0;
-    v->delta_t_slip = exponential[2];
-    v->n = column[4];
-    v->m = column[5];
-    v->big_n = column[6];
-    v->k_t = exponential[3];
+    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share;
+    v->f_n0 = column[0] * exponential[0];
+    v->per_a = column[1] * exponential[1];
+    v->f_n_slip = column[4] * v->f_n0;
+    v->per_slip = column[2] * exponential[2];
+    v->n = column[5];
+    v->m = column[6];
+    v->big_n = column[7];
+    v->k_t = column[3] * exponential[3];
     /* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
-    force = ASPERITY_R(4.0) * t->effective_modulus * a * a * a / (ASPERITY_R(3.0) * t->effective_radius);
-    v->gamma = ASPERITY_R(1.2732395447351628) + ASPERITY_R(1.5 - 1.2732395447351628) * (v->f_n0 < force ? v->f_n0 / force : ASPERITY_R(1.0));
-    v->depth = v->gamma * v->f_n0 / (ASPERITY_R(2.0) * t->effective_modulus * a);
-    v->slope = v->f_n0 * row->slope / (t->log_step * h);
-    if (t->form == 2) {
-        v->backbone = v->big_n;
-        v->contact_radius = v->m * a;
-    } else {
-        v->backbone = v->gamma < v->n ? v->gamma : v->n;
-        v->contact_radius = a;
-    }
+    share = v->f_n0 * (ASPERITY_R(1.5) * t->effective_radius * softness) * (v->per_a * v->per_a * v->per_a);
+    v->gamma = ASPERITY_R(1.2732395447351628) + ASPERITY_R(1.5 - 1.2732395447351628) * (share < ASPERITY_R(1.0) ? share : ASPERITY_R(1.0));
+    v->depth = v->gamma * (v->f_n0 * v->per_a * softness);
+    v->slope = v->f_n0 * row->slope / h;
+    v->backbone = t->form == 2 ? v->big_n : (v->gamma < v->n ? v->gamma : v->n);
     v->elastic = v->f_n_slip >= ASPERITY_R(1.0 - 1e-6) * v->f_n0;
     /* The sliders must be able to follow the virgin curve: neither softer at its start nor slower to slip. */
-    start = v->n * t->friction * v->f_n_slip / v->delta_t_slip;
-    end = v->backbone * t->friction * v->f_n0 / v->delta_t_slip;
+    start = t->friction * v->per_slip * v->n * v->f_n_slip;
+    end = t->friction * v->per_slip * v->backbone * v->f_n0;
     v->k_t = v->k_t < start ? start : v->k_t;
     v->k_t = v->k_t < end ? end : v->k_t;
     if (!whole) {
         return;
     }
+    v->per_force = ASPERITY_R(1.0) / v->f_n0;
+    v->per_gamma = ASPERITY_R(1.0) / v->gamma;
+    v->per_backbone = ASPERITY_R(1.0) / v->backbone;
+    v->per_n = ASPERITY_R(1.0) / v->n;
     asperity_sliders(v->backbone, v->lost);
     if (t->form == 2) {
         asperity_real level = row->position * (ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1)), most = ASPERITY_R(ASPERITY_LEVELS - 1);
@@ -416,9 +532,14 @@ ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, c
 ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h, int whole, asperity_curve *v) {
     asperity_row row;
     asperity_real exponential[4];
-    asperity_read_row(t, ASPERITY_LOG(h), &row, exponential);
+    asperity_read_row(t, ASPERITY_LOG(h / t->first), &row, exponential);
     asperity_exponentials(exponential, 4);
     asperity_make_curve(t, h, &row, exponential, whole, v);
+}
+
+/* Radius of the contact of first loading. */
+ASPERITY_FN asperity_real asperity_radius(const asperity_table *t, const asperity_curve *v) {
+    return (t->form == 2 ? v->m : ASPERITY_R(1.0)) / v->per_a;
 }
 
 /* x at point j of a shape that is given by numbers, */
@@ -436,107 +557,193 @@ ASPERITY_FN asperity_real asperity_point(const asperity_curve *v, int kind, int 
     return low + v->between * (v->deep[kind][j - 1] - low);
 }
 
-/* It at an x between point j and the next. */
-ASPERITY_FN asperity_real asperity_given_after(const asperity_curve *v, int kind, asperity_real x, int j, asperity_real *derivative) {
+/* The last point that is not beyond x, of those that have one after them. */
+ASPERITY_FN int asperity_point_before(asperity_real x) {
+    int j = (int)(ASPERITY_R(ASPERITY_POINTS) * ASPERITY_SQRT(x));
+    return j > ASPERITY_POINTS - 1 ? ASPERITY_POINTS - 1 : j;
+}
+
+/* The shape at an x between point j and the next, */
+ASPERITY_FN asperity_real asperity_given(const asperity_curve *v, int kind, asperity_real x, int j) {
+    asperity_real below = asperity_point(v, kind, j), rise = asperity_point(v, kind, j + 1) - below;
+    return below + rise * ((x - asperity_point_x(j)) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1)));
+}
+
+/* its derivative there, */
+ASPERITY_FN asperity_real asperity_given_slope(const asperity_curve *v, int kind, int j) {
+    return (asperity_point(v, kind, j + 1) - asperity_point(v, kind, j)) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1));
+}
+
+/* and the x between point j and the next at which it is f. */
+ASPERITY_FN asperity_real asperity_given_between(const asperity_curve *v, int kind, asperity_real f, int j) {
     asperity_real below = asperity_point(v, kind, j);
-    *derivative = (asperity_point(v, kind, j + 1) - below) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1));
-    return below + *derivative * (x - asperity_point_x(j));
+    return asperity_point_x(j) + (f - below) / (asperity_point(v, kind, j + 1) - below) * (ASPERITY_R(2 * j + 1) * (ASPERITY_R(1.0) / ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS)));
 }
 
-/* It anywhere, 0 <= x <= 1. */
-ASPERITY_FN asperity_real asperity_given(const asperity_curve *v, int kind, asperity_real x, asperity_real *derivative) {
-    int j;
-    if (x >= ASPERITY_R(1.0)) {
-        *derivative = ASPERITY_R(0.0);
-        return asperity_point(v, kind, ASPERITY_POINTS);
-    }
-    j = (int)(ASPERITY_R(ASPERITY_POINTS) * ASPERITY_SQRT(x));
-    j = j > ASPERITY_POINTS - 1 ? ASPERITY_POINTS - 1 : j;
-    return asperity_given_after(v, kind, x, j, derivative);
+/* A place on the virgin curves. */
+typedef struct asperity_place {
+    asperity_real x, f_t, f_n;
+    int after; /* the point of the shapes by numbers before it */
+} asperity_place;
+
+/* The lesser and the greater of two numbers. */
+ASPERITY_FN asperity_real asperity_least(asperity_real a, asperity_real b) {
+    return a < b ? a : b;
 }
 
-/* The least x at which it has the value f, or that of its peak; `after`: the point before it, -1 at a peak. */
-ASPERITY_FN asperity_real asperity_given_inverse(const asperity_curve *v, int kind, asperity_real f, int *after) {
+ASPERITY_FN asperity_real asperity_most(asperity_real a, asperity_real b) {
+    return a > b ? a : b;
+}
+
+/* The point before the least x at which a shape by numbers has the value f > 0; ASPERITY_POINTS where it stays below. */
+ASPERITY_FN int asperity_given_search(const asperity_curve *v, int kind, asperity_real f) {
+    static const asperity_real ramp[8] = {
+        ASPERITY_R(0.0), ASPERITY_R(1.0), ASPERITY_R(2.0), ASPERITY_R(3.0), ASPERITY_R(4.0), ASPERITY_R(5.0), ASPERITY_R(6.0), ASPERITY_R(7.0)};
     const asperity_real *shallow = v->shallow[kind], *deep = v->deep[kind];
-    asperity_real between = v->between, below, peak = ASPERITY_R(0.0), place = ASPERITY_R(0.0);
-    int j, first = ASPERITY_POINTS;
-    *after = 0;
-    if (f <= ASPERITY_R(0.0)) {
-        return ASPERITY_R(0.0);
-    }
+    asperity_real between = v->between, lane[8];
+    int j;
     ASPERITY_LANES
-    for (j = 0; j < ASPERITY_POINTS; j++) {
-        int here = shallow[j] + between * (deep[j] - shallow[j]) >= f ? j : ASPERITY_POINTS;
-        first = here < first ? here : first;
+    for (j = 0; j < 8; j++) {
+        asperity_real near = shallow[j] + between * (deep[j] - shallow[j]), middle = shallow[j + 8] + between * (deep[j + 8] - shallow[j + 8]);
+        asperity_real far = shallow[j + 16] + between * (deep[j + 16] - shallow[j + 16]), place = ASPERITY_R(ASPERITY_POINTS);
+        place = far >= f ? ramp[j] + ASPERITY_R(16.0) : place;
+        place = middle >= f ? ramp[j] + ASPERITY_R(8.0) : place;
+        lane[j] = near >= f ? ramp[j] : place;
     }
-    *after = first < ASPERITY_POINTS ? first : -1;
-    if (first < ASPERITY_POINTS) {
-        below = asperity_point(v, kind, first);
-        return asperity_point_x(first) + (f - below) / (asperity_point(v, kind, first + 1) - below) * (asperity_point_x(first + 1) - asperity_point_x(first));
-    }
+    return (int)asperity_least(
+        asperity_least(asperity_least(lane[0], lane[1]), asperity_least(lane[2], lane[3])), asperity_least(asperity_least(lane[4], lane[5]), asperity_least(lane[6], lane[7])));
+}
+
+/* The point before the first peak of a shape by numbers. */
+ASPERITY_FN int asperity_given_peak(const asperity_curve *v, int kind) {
+    asperity_real peak = ASPERITY_R(0.0);
+    int j, place = 0;
     for (j = 1; j <= ASPERITY_POINTS; j++) {
-        below = asperity_point(v, kind, j);
-        if (below > peak) {
-            peak = below;
-            place = asperity_point_x(j);
+        asperity_real here = asperity_point(v, kind, j);
+        if (here > peak) {
+            peak = here;
+            place = j - 1;
         }
     }
     return place;
 }
 
-/* f_T(x), 0 <= x <= 1. */
-ASPERITY_FN asperity_real asperity_tangential_shape(int form, const asperity_curve *v, asperity_real x, asperity_real *derivative) {
-    asperity_real rest = ASPERITY_R(1.0) - x, power;
-    if (form == 2) {
-        return asperity_given(v, 0, x, derivative);
+/* f_N of a law of formulas at x, 0 < x < 1, with the logarithm of 1 - x. */
+ASPERITY_FN asperity_real asperity_complements(int form, const asperity_curve *v, asperity_real x, asperity_real log_rest) {
+    const asperity_real one = ASPERITY_R(1.0);
+    if (form == 0) {
+        return asperity_power(one - asperity_exponential(v->m * log_rest), v->big_n);
     }
-    *derivative = ASPERITY_R(0.0);
-    if (rest <= ASPERITY_R(0.0)) {
-        return ASPERITY_R(1.0);
-    }
-    power = asperity_power(rest, v->n - ASPERITY_R(1.0));
-    *derivative = v->n * power;
-    return ASPERITY_R(1.0) - power * rest;
+    return one - asperity_power(one - asperity_power(x, v->m), v->big_n);
 }
 
-ASPERITY_FN asperity_real asperity_tangential_shape_inverse(int form, const asperity_curve *v, asperity_real f, int *after) {
-    *after = -1;
-    if (form == 2) {
-        return asperity_given_inverse(v, 0, f, after);
+/* f_T and f_N at x, 0 <= x <= 1. */
+ASPERITY_FN void asperity_shapes(int form, const asperity_curve *v, asperity_real x, asperity_place *place) {
+    const asperity_real one = ASPERITY_R(1.0);
+    asperity_real log_rest;
+    place->x = x;
+    place->after = 0;
+    place->f_t = place->f_n = ASPERITY_R(0.0);
+    if (x <= ASPERITY_R(0.0)) {
+        return;
     }
-    return f >= ASPERITY_R(1.0) ? ASPERITY_R(1.0) : ASPERITY_R(1.0) - asperity_power(ASPERITY_R(1.0) - f, ASPERITY_R(1.0) / v->n);
+    if (form == 2) {
+        place->after = asperity_point_before(x);
+        place->f_t = asperity_given(v, 0, x, place->after);
+        place->f_n = x < one ? asperity_given(v, 1, x, place->after) : one;
+        return;
+    }
+    place->f_t = place->f_n = one;
+    if (x >= one) {
+        return;
+    }
+    log_rest = asperity_logarithm(one - x);
+    place->f_t = one - asperity_exponential(v->n * log_rest);
+    place->f_n = asperity_complements(form, v, x, log_rest);
 }
 
-/* f_N(x), 0 <= x <= 1; its derivative is 0 at both ends. `after`: the point before x of a shape by numbers, -1 where it is not known. */
-ASPERITY_FN asperity_real asperity_normal_shape(int form, const asperity_curve *v, asperity_real x, int after, asperity_real *derivative) {
-    asperity_real rest, risen, power;
-    *derivative = ASPERITY_R(0.0);
+/* f_T(x) alone. */
+ASPERITY_FN asperity_real asperity_tangential_shape(int form, const asperity_curve *v, asperity_real x) {
     if (x <= ASPERITY_R(0.0)) {
         return ASPERITY_R(0.0);
     }
-    if (x >= ASPERITY_R(1.0)) {
-        return ASPERITY_R(1.0);
-    }
     if (form == 2) {
-        return after < 0 ? asperity_given(v, 1, x, derivative) : asperity_given_after(v, 1, x, after, derivative);
+        return asperity_given(v, 0, x, asperity_point_before(x));
     }
-    if (form == 0) {
-        rest = asperity_power(ASPERITY_R(1.0) - x, v->m);
-        risen = ASPERITY_R(1.0) - rest;
-        power = asperity_power(risen, v->big_n - ASPERITY_R(1.0));
-        *derivative = v->big_n * power * v->m * rest / (ASPERITY_R(1.0) - x);
-        return power * risen;
-    }
-    risen = asperity_power(x, v->m);
-    rest = ASPERITY_R(1.0) - risen;
-    power = rest > ASPERITY_R(0.0) ? asperity_power(rest, v->big_n - ASPERITY_R(1.0)) : ASPERITY_R(0.0);
-    *derivative = v->big_n * power * v->m * risen / x;
-    return ASPERITY_R(1.0) - power * rest;
+    return ASPERITY_R(1.0) - asperity_power(ASPERITY_R(1.0) - x, v->n);
 }
 
-ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity_curve *v, asperity_real f) {
+/* Their derivatives; those of f_N, and at x = 1 both, are 0 at the ends. */
+ASPERITY_FN void asperity_slopes(int form, const asperity_curve *v, asperity_real x, asperity_real slope[2]) {
+    const asperity_real one = ASPERITY_R(1.0), zero = ASPERITY_R(0.0);
+    asperity_real rest, risen;
+    slope[0] = slope[1] = zero;
+    if (x >= one) {
+        return;
+    }
+    if (form == 2) {
+        int j = asperity_point_before(x);
+        slope[0] = asperity_given_slope(v, 0, j);
+        slope[1] = x > zero ? asperity_given_slope(v, 1, j) : zero;
+        return;
+    }
+    slope[0] = v->n * asperity_power(one - x, v->n - one);
+    if (x <= zero) {
+        return;
+    }
+    if (form == 0) {
+        rest = asperity_power(one - x, v->m);
+        slope[1] = v->big_n * asperity_power(one - rest, v->big_n - one) * v->m * rest / (one - x);
+    } else {
+        risen = asperity_power(x, v->m);
+        slope[1] = v->big_n * asperity_power(one - risen, v->big_n - one) * v->m * risen / x;
+    }
+}
+
+/* The least x at which f_T has the value f, or its peak where it stays below. */
+ASPERITY_FN void asperity_place_of(int form, const asperity_curve *v, asperity_real f, asperity_place *place) {
+    const asperity_real one = ASPERITY_R(1.0);
+    place->after = 0;
+    place->f_t = f;
+    if (f <= ASPERITY_R(0.0)) {
+        place->x = place->f_t = place->f_n = ASPERITY_R(0.0);
+    } else if (form == 2) {
+        int j = asperity_given_search(v, 0, f);
+        if (j == ASPERITY_POINTS) {
+            j = asperity_given_peak(v, 0);
+            place->f_t = asperity_point(v, 0, j + 1);
+        }
+        place->after = j;
+        place->x = asperity_given_between(v, 0, place->f_t, j);
+        place->f_n = asperity_given(v, 1, place->x, j);
+    } else if (f >= one) {
+        place->x = place->f_t = place->f_n = one;
+    } else {
+        asperity_real log_rest = asperity_logarithm(one - f) * v->per_n;
+        place->x = one - asperity_exponential(log_rest);
+        place->f_n = asperity_complements(form, v, place->x, log_rest);
+    }
+}
+
+/* From a place back along the curve to where f_T is f, which is less. */
+ASPERITY_FN void asperity_back(int form, const asperity_curve *v, asperity_real f, asperity_place *place) {
+    if (form == 2 && f > ASPERITY_R(0.0)) {
+        int j = place->after;
+        while (j > 0 && asperity_point(v, 0, j) >= f) {
+            j--;
+        }
+        place->after = j;
+        place->f_t = f;
+        place->x = asperity_given_between(v, 0, f, j);
+        place->f_n = asperity_given(v, 1, place->x, j);
+    } else {
+        asperity_place_of(form, v, f, place);
+    }
+}
+
+/* The least x at which f_N has the value f. */
+ASPERITY_FN asperity_real asperity_normal_inverse(int form, const asperity_curve *v, asperity_real f) {
     asperity_real one = ASPERITY_R(1.0), inner;
-    int after;
     if (f <= ASPERITY_R(0.0)) {
         return ASPERITY_R(0.0);
     }
@@ -544,7 +751,8 @@ ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity
         return one;
     }
     if (form == 2) {
-        return asperity_given_inverse(v, 1, f, &after);
+        int j = asperity_given_search(v, 1, f);
+        return j < ASPERITY_POINTS ? asperity_given_between(v, 1, f, j) : asperity_point_x(asperity_given_peak(v, 1) + 1);
     }
     if (form == 0) {
         inner = one - asperity_power(f, one / v->big_n);
@@ -552,12 +760,6 @@ ASPERITY_FN asperity_real asperity_normal_shape_inverse(int form, const asperity
     }
     inner = one - asperity_power(one - f, one / v->big_n);
     return inner > ASPERITY_R(0.0) ? asperity_power(inner, one / v->m) : ASPERITY_R(0.0);
-}
-
-/* F_N on the virgin curve at x. */
-ASPERITY_FN asperity_real asperity_cap(int form, const asperity_curve *v, asperity_real x, int after) {
-    asperity_real derivative;
-    return v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(form, v, x, after, &derivative);
 }
 
 /* The x of the virgin curve that has the normal force f_n. */
@@ -568,12 +770,12 @@ ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *
     if (f_n <= v->f_n_slip) {
         return ASPERITY_R(1.0);
     }
-    return asperity_normal_shape_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
+    return asperity_normal_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
 }
 
 /* Elastic unloading: ln(F_N/F_N0) at the approach e > 0. */
 ASPERITY_FN asperity_real asperity_level_at(const asperity_curve *v, asperity_real e) {
-    return e == v->depth ? ASPERITY_R(0.0) : v->gamma * ASPERITY_LOG(e / v->depth);
+    return e == v->depth ? ASPERITY_R(0.0) : v->gamma * asperity_logarithm(e / v->depth);
 }
 
 /* F_N at the approach e. */
@@ -597,47 +799,62 @@ ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v
     }
 }
 
-/* Moves the sliders from `from` and holds each to its limit; returns what they dissipate over k_T. */
-ASPERITY_FN asperity_real asperity_slide(
-    asperity_real from[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], asperity_real d0, asperity_real d1,
-    asperity_real to[2][ASPERITY_SLIDERS]) {
-    asperity_real q0[ASPERITY_SLIDERS], q1[ASPERITY_SLIDERS], square[ASPERITY_SLIDERS], over[ASPERITY_SLIDERS];
-    int i, beyond = 0;
+/* The sliders as they would be, were they not held to their limits. */
+typedef struct asperity_moved {
+    ASPERITY_ALIGNED asperity_real q[2][ASPERITY_SLIDERS];
+    asperity_real square[ASPERITY_SLIDERS];                           /* of the deflection's length */
+    asperity_real size[ASPERITY_SLIDERS], per_size[ASPERITY_SLIDERS]; /* it and its inverse, once asked */
+} asperity_moved;
+
+ASPERITY_FN void asperity_move(asperity_real from[2][ASPERITY_SLIDERS], asperity_real d0, asperity_real d1, asperity_moved *moved) {
+    int i;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real p0 = from[0][i] + d0, p1 = from[1][i] + d1, size = p0 * p0 + p1 * p1, most = limit[i] * limit[i];
-        q0[i] = p0;
-        q1[i] = p1;
-        beyond |= size > most;
-        square[i] = size > most ? size : most;
+        asperity_real q0 = from[0][i] + d0, q1 = from[1][i] + d1;
+        moved->q[0][i] = q0;
+        moved->q[1][i] = q1;
+        moved->square[i] = q0 * q0 + q1 * q1;
     }
-    if (!beyond) {
-        ASPERITY_LANES
-        for (i = 0; i < ASPERITY_SLIDERS; i++) {
-            to[0][i] = q0[i];
-            to[1][i] = q1[i];
-        }
-        return ASPERITY_R(0.0);
-    }
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        /* 1, but for rounding, of one within its limit. */
-        asperity_real inverse = asperity_inverse_root(square[i]), keep = limit[i] * inverse;
-        over[i] = limit[i] * (square[i] * inverse - limit[i]);
-        to[0][i] = keep * q0[i];
-        to[1][i] = keep * q1[i];
-    }
-    return asperity_sum(asperity_weights(), over);
 }
 
 /* Whether a slider is beyond its limit. */
-ASPERITY_FN int asperity_exceeds(asperity_real deflection[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS]) {
-    int i, beyond = 0;
+ASPERITY_FN int asperity_exceeds(const asperity_moved *moved, const asperity_real limit[ASPERITY_SLIDERS]) {
+    asperity_real lane[4];
+    int i;
+    ASPERITY_LANES
+    for (i = 0; i < 4; i++) {
+        asperity_real a = moved->square[i] - limit[i] * limit[i], b = moved->square[i + 4] - limit[i + 4] * limit[i + 4];
+        asperity_real c = moved->square[i + 8] - limit[i + 8] * limit[i + 8], d = moved->square[i + 12] - limit[i + 12] * limit[i + 12];
+        a = a > b ? a : b;
+        c = c > d ? c : d;
+        lane[i] = a > c ? a : c;
+    }
+    return asperity_most(asperity_most(lane[0], lane[2]), asperity_most(lane[1], lane[3])) > ASPERITY_R(0.0);
+}
+
+ASPERITY_FN void asperity_measure(asperity_moved *moved) {
+    int i;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        beyond |= deflection[0][i] * deflection[0][i] + deflection[1][i] * deflection[1][i] > limit[i] * limit[i];
+        asperity_real inverse = asperity_inverse_root(moved->square[i]);
+        moved->per_size[i] = inverse;
+        moved->size[i] = moved->square[i] * inverse;
     }
-    return beyond;
+}
+
+/* Holds each slider to its limit; returns what they dissipate over k_T. */
+ASPERITY_FN asperity_real asperity_hold(const asperity_moved *moved, const asperity_real limit[ASPERITY_SLIDERS], asperity_real to[2][ASPERITY_SLIDERS]) {
+    ASPERITY_ALIGNED asperity_real over[ASPERITY_SLIDERS];
+    int i;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        asperity_real most = limit[i], keep = most * moved->per_size[i], beyond = moved->size[i] - most;
+        keep = keep < ASPERITY_R(1.0) ? keep : ASPERITY_R(1.0);
+        over[i] = most * (beyond > ASPERITY_R(0.0) ? beyond : ASPERITY_R(0.0));
+        to[0][i] = keep * moved->q[0][i];
+        to[1][i] = keep * moved->q[1][i];
+    }
+    return asperity_sum(asperity_weights(), over);
 }
 
 /* Tangential force of the sliders. */
@@ -648,7 +865,7 @@ ASPERITY_FN void asperity_slider_force(const asperity_curve *v, asperity_real de
 
 /* Their energy. */
 ASPERITY_FN asperity_real asperity_slider_energy(const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS]) {
-    asperity_real square[ASPERITY_SLIDERS];
+    ASPERITY_ALIGNED asperity_real square[ASPERITY_SLIDERS];
     int i;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
@@ -659,16 +876,15 @@ ASPERITY_FN asperity_real asperity_slider_energy(const asperity_curve *v, asperi
 
 /* Their stiffness after an increment: a slider at its limit only turns. */
 ASPERITY_FN void asperity_slider_stiffness(
-    const asperity_curve *v, asperity_real before[2][ASPERITY_SLIDERS], const asperity_real limit[ASPERITY_SLIDERS], asperity_real d0, asperity_real d1,
-    asperity_real stiffness[2][2]) {
+    const asperity_curve *v, const asperity_moved *moved, const asperity_real limit[ASPERITY_SLIDERS], asperity_real stiffness[2][2]) {
     const asperity_real *weight = asperity_weights();
     asperity_real sum0 = ASPERITY_R(0.0), sum1 = ASPERITY_R(0.0), sum2 = ASPERITY_R(0.0);
     int i;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real q0 = before[0][i] + d0, q1 = before[1][i] + d1, size = ASPERITY_SQRT(q0 * q0 + q1 * q1), k = v->k_t * weight[i];
+        asperity_real size = ASPERITY_SQRT(moved->square[i]), k = v->k_t * weight[i];
         if (size > ASPERITY_AT_BOUND * limit[i]) {
-            asperity_real m0 = q0 / size, m1 = q1 / size;
+            asperity_real m0 = moved->q[0][i] / size, m1 = moved->q[1][i] / size;
             k = k * limit[i] / size;
             sum0 += k * m1 * m1;
             sum1 -= k * m0 * m1;
@@ -693,44 +909,41 @@ ASPERITY_FN void asperity_scale(asperity_real deflection[2][ASPERITY_SLIDERS], a
     }
 }
 
+/* A contact at work: an asperity_state. */
+typedef struct asperity_work {
+    ASPERITY_ALIGNED asperity_real deflection[2][ASPERITY_SLIDERS];
+    asperity_real h, h_max, approach, x;
+} asperity_work;
+
 /* What the press leaves for the shear. */
 typedef struct asperity_pressed {
     asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
-    asperity_real level;                 /* ln(F_N/F_N0) */
-    asperity_real approach;              /* elastic, of that F_N; negative: not asked yet */
-    asperity_real force[2];              /* of the sliders */
-    asperity_real limit[ASPERITY_SLIDERS];
+    asperity_real shape;                 /* f_T(x); negative: not asked yet */
+    asperity_real eta;                   /* (F_N/F_N0)^(1/backbone) */
+    asperity_real approach;              /* elastic, of that F_N */
+    asperity_real force[2], f_t;         /* of the sliders, and its size */
+    asperity_place place;                /* on the virgin curves, of that force */
+    ASPERITY_ALIGNED asperity_real limit[ASPERITY_SLIDERS];
 } asperity_pressed;
 
-/* Moves h with delta_T held. `old` is the curve at the h_max before, `level` ln(F_N/F_N0) there. */
+/* What the sliders hold, and where that is on the virgin curves. */
+ASPERITY_FN void asperity_stand(const asperity_table *t, const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_pressed *p) {
+    asperity_slider_force(v, deflection, p->force);
+    p->f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
+    asperity_place_of(t->form, v, p->f_t * (ASPERITY_R(1.0) / (t->friction * v->f_n_slip)), &p->place);
+}
+
+/* Moves h with delta_T held. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, and `stiffness` its slope. */
 ASPERITY_FN void asperity_press(
-    const asperity_table *t, asperity_state *s, const asperity_curve *v, const asperity_curve *old, asperity_real level, asperity_real h, int derivatives, asperity_pressed *p) {
+    const asperity_table *t, asperity_work *s, const asperity_curve *v, asperity_real trial, asperity_real stiffness, asperity_real h, int derivatives, asperity_pressed *p) {
     const asperity_real zero = ASPERITY_R(0.0);
-    int grown = h > s->h_max, first = grown && (s->x == zero || !(s->h_max > zero)), after;
-    asperity_real dh = h - s->h, e = s->approach + dh, trial = v->f_n0, stiffness = v->slope, elastic, f_t, slip_force, bound, cap, share, soft, rate, flow, most;
-    asperity_real rises, falls, gain, along, slope, raised, keep, derivative, shape, at_trial = zero;
+    int grown = h > s->h_max;
+    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, share, soft, rate, flow, falls, gain, along, slope[2], raised, keep, change;
+    asperity_place place;
     p->slip = zero;
-    if (grown && s->h_max > zero) {
-        /* The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it. */
-        keep = old->k_t / v->k_t;
-        if (keep < ASPERITY_R(1.0)) {
-            asperity_scale(s->deflection, keep);
-        }
-    }
-    if (!first) {
-        /* Most steps are small: what F_N was is near to what it is. */
-        at_trial = e > zero ? (s->approach > zero ? level + old->gamma * asperity_log_ratio(e, s->approach) : asperity_level_at(old, e)) : zero;
-        trial = e > zero ? old->f_n0 * asperity_exponential(at_trial) : zero;
-        stiffness = e > zero ? old->gamma * trial / e : zero;
-    }
-    p->f_n = trial < v->f_n0 ? trial : v->f_n0;
-    p->level = trial < v->f_n0 ? (grown ? asperity_log_ratio(trial, v->f_n0) : at_trial) : zero;
-    p->approach = trial < v->f_n0 ? (grown ? -ASPERITY_R(1.0) : e) : v->depth;
+    p->shape = -ASPERITY_R(1.0);
     p->df_n_dh = stiffness;
-    asperity_limits(t->friction, v, p->f_n, p->level < zero ? asperity_exponential(p->level / v->backbone) : ASPERITY_R(1.0), p->limit);
-    if (dh <= zero) {
-        asperity_slider_force(v, s->deflection, p->force);
-    }
+    asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
     if (dh == zero) {
         p->x = s->x;
         p->df_n_dh = s->x == zero && s->h == s->h_max ? v->slope : stiffness;
@@ -744,79 +957,117 @@ ASPERITY_FN void asperity_press(
     if (trial >= v->f_n0 && grown) {
         stiffness = v->slope;
     }
-    if (asperity_exceeds(s->deflection, p->limit)) {
-        p->slip = v->k_t * asperity_slide(s->deflection, p->limit, zero, zero, s->deflection);
+    {
+        asperity_moved moved;
+        asperity_move(s->deflection, zero, zero, &moved);
+        if (asperity_exceeds(&moved, p->limit)) {
+            asperity_measure(&moved);
+            p->slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
+            asperity_stand(t, v, s->deflection, p);
+        }
     }
     p->df_n_dh = stiffness;
-    asperity_slider_force(v, s->deflection, p->force);
-    f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
+    place = p->place;
+    f_t = p->f_t;
     slip_force = t->friction * v->f_n_slip;
+    per_slip_force = ASPERITY_R(1.0) / slip_force;
     if (t->form == 2 || v->elastic) {
         p->x = asperity_mobilisation(t->form, v, p->f_n);
-        /* Pressing leaves F_T as it is in an elastic contact, and below the virgin curve. */
-        if (v->elastic || f_t <= slip_force * asperity_tangential_shape(t->form, v, p->x, &derivative)) {
+        if (v->elastic) {
+            return; /* pressing leaves F_T as it is */
+        }
+        p->shape = asperity_tangential_shape(t->form, v, p->x);
+        if (f_t <= slip_force * p->shape) {
             return;
         }
     }
-    bound = asperity_tangential_shape_inverse(t->form, v, f_t / slip_force, &after);
-    cap = asperity_cap(t->form, v, bound, after);
+    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
     if (t->form != 2 && p->f_n <= cap) {
         p->x = asperity_mobilisation(t->form, v, p->f_n); /* the same, as these curves only rise, and cheaper on it */
         return;
     }
-    share = f_t < slip_force ? f_t / slip_force : ASPERITY_R(1.0);
-    soft = ASPERITY_R(1.0) - v->slope * v->depth / (v->gamma * v->f_n0);
+    share = f_t < slip_force ? f_t * per_slip_force : ASPERITY_R(1.0);
+    soft = ASPERITY_R(1.0) - v->slope * v->depth * (v->per_gamma * v->per_force);
     soft = soft > zero ? soft * soft : zero;
     rate = ASPERITY_R(2.6) * (soft * soft) * (ASPERITY_R(1.0) - ASPERITY_R(0.5) * (share * share));
-    flow = trial > cap ? rate * (trial - cap) / v->f_n0 : zero;
-    most = t->form == 2 && after < 0 ? slip_force * asperity_tangential_shape(t->form, v, bound, &derivative) : (t->form == 2 ? f_t : slip_force);
-    keep = asperity_exponential(-flow) * (most < f_t ? most / f_t : ASPERITY_R(1.0));
-    p->x = asperity_tangential_shape_inverse(t->form, v, keep * f_t / slip_force, &after);
-    shape = asperity_normal_shape(t->form, v, p->x, after, &derivative);
-    raised = v->f_n0 - (v->f_n0 - v->f_n_slip) * shape;
+    flow = trial > cap ? rate * ((trial - cap) * v->per_force) : zero;
+    keep = slip_force * place.f_t < f_t ? slip_force * place.f_t / f_t : ASPERITY_R(1.0);
+    keep *= asperity_exponential_near(-flow);
+    asperity_back(t->form, v, keep * f_t * per_slip_force, &place);
+    p->x = place.x;
+    p->shape = place.f_t;
+    raised = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
     if (derivatives) {
-        falls = (v->f_n0 - v->f_n_slip) * derivative;
-        asperity_tangential_shape(t->form, v, p->x, &derivative);
-        rises = slip_force * derivative;
-        gain = rises > zero ? falls * keep * f_t / (v->f_n0 * rises) : zero;
+        asperity_slopes(t->form, v, p->x, slope);
+        falls = (v->f_n0 - v->f_n_slip) * slope[1];
+        gain = slope[0] > zero ? falls * keep * f_t / (v->f_n0 * slip_force * slope[0]) : zero;
         along = v->slope * (raised / v->f_n0 + gain);
-        slope = along + rate * gain * (stiffness - along);
-        p->df_n_dh = raised < p->f_n && slope < stiffness ? slope : stiffness;
+        along += rate * gain * (stiffness - along);
+        p->df_n_dh = raised < p->f_n && along < stiffness ? along : stiffness;
     }
     asperity_scale(s->deflection, keep);
     p->force[0] *= keep;
     p->force[1] *= keep;
     if (raised < p->f_n) {
-        p->level += asperity_log_ratio(raised, p->f_n);
+        change = asperity_log_ratio(raised, p->f_n);
         p->f_n = raised;
-        p->approach = -ASPERITY_R(1.0);
-        asperity_limits(t->friction, v, p->f_n, asperity_exponential(p->level / v->backbone), p->limit);
+        p->eta *= asperity_exponential_near(change * v->per_backbone);
+        p->approach *= asperity_exponential_near(change * v->per_gamma);
+        asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
     }
+}
+
+/* By how much the sliders' force is beyond the curve at x. Where both are near to each other float has too few digits: there it is done in double. */
+ASPERITY_FN asperity_real asperity_excess(
+    int form, const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real slip_force, asperity_real x, asperity_real plain) {
+#ifdef ASPERITY_SINGLE
+    if (form != 2) {
+        const asperity_real *weight = asperity_weights();
+        double sum[2] = {0.0, 0.0};
+        int i;
+        for (i = 0; i < ASPERITY_SLIDERS; i++) {
+            sum[0] += (double)weight[i] * (double)deflection[0][i];
+            sum[1] += (double)weight[i] * (double)deflection[1][i];
+        }
+        return (float)((double)v->k_t * sqrt(sum[0] * sum[0] + sum[1] * sum[1]) - (double)slip_force * (1.0 - pow(1.0 - (double)x, (double)v->n)));
+    }
+#else
+    (void)form;
+    (void)v;
+    (void)deflection;
+    (void)slip_force;
+    (void)x;
+#endif
+    return plain;
 }
 
 /* Moves delta_T with h held; returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_shear(
-    const asperity_table *t, asperity_state *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
+    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
     asperity_real d0, asperity_real d1) {
-    asperity_real before[2][ASPERITY_SLIDERS], held[2], stiffness[2][2], direction[2], m[2], slip;
-    asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, x, cap, shape_slope, normal_slope, size, per_x, loss, keep, rate, radial, f_n = p->f_n;
-    int i, j;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        before[0][i] = s->deflection[0][i];
-        before[1][i] = s->deflection[1][i];
+    asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = ASPERITY_R(0.0);
+    asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, x, cap, size, per_x, loss, keep, rate, radial, change, f_n = p->f_n;
+    asperity_moved moved;
+    asperity_place place;
+    int i, j, measured;
+    asperity_move(s->deflection, d0, d1, &moved);
+    measured = asperity_exceeds(&moved, p->limit);
+    if (measured) {
+        asperity_measure(&moved);
+        slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
+    } else {
+        memcpy(s->deflection, moved.q, sizeof moved.q);
     }
-    slip = v->k_t * asperity_slide(before, p->limit, d0, d1, s->deflection);
     out->f_n = f_n;
     asperity_slider_force(v, s->deflection, out->f_t);
     if (tangent) {
-        asperity_slider_stiffness(v, before, p->limit, d0, d1, tangent->df_t_ddelta);
+        asperity_slider_stiffness(v, &moved, p->limit, tangent->df_t_ddelta);
     }
     if (s->x >= ASPERITY_R(1.0) || v->elastic) {
         return slip;
     }
     slip_force = t->friction * v->f_n_slip;
-    bound = slip_force * asperity_tangential_shape(t->form, v, s->x, &shape_slope);
+    bound = slip_force * (p->shape >= ASPERITY_R(0.0) ? p->shape : asperity_tangential_shape(t->form, v, s->x));
     trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
     if (trial <= ASPERITY_AT_BOUND * bound) {
         return slip;
@@ -824,38 +1075,43 @@ ASPERITY_FN asperity_real asperity_shear(
     direction[0] = out->f_t[0] / trial;
     direction[1] = out->f_t[1] / trial;
     along = direction[0] * p->force[0] + direction[1] * p->force[1];
-    excess = trial - bound;
+    excess = asperity_excess(t->form, v, s->deflection, slip_force, s->x, trial - bound);
+    excess = excess > ASPERITY_R(0.0) ? excess : ASPERITY_R(0.0);
     travel = trial - along;
     beyond = excess < travel ? excess / travel : ASPERITY_R(1.0); /* share of the increment that is beyond the curve */
     forward = direction[0] * d0 + direction[1] * d1;
     forward = forward > ASPERITY_R(0.0) ? forward : ASPERITY_R(0.0);
-    x = s->x + beyond * forward / v->delta_t_slip;
+    x = s->x + beyond * forward * v->per_slip;
     s->x = x < ASPERITY_R(1.0) ? x : ASPERITY_R(1.0);
-    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * asperity_normal_shape(t->form, v, s->x, -1, &normal_slope);
+    asperity_shapes(t->form, v, s->x, &place);
+    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
     out->f_n = cap < f_n ? cap : f_n;
     if (out->f_n != f_n) {
-        asperity_real levels[2];
-        p->level += asperity_log_ratio(out->f_n, f_n);
-        levels[0] = p->level / v->backbone;
-        levels[1] = p->level / v->gamma;
-        asperity_exponentials(levels, 2);
-        p->approach = v->depth * levels[1];
-        asperity_limits(t->friction, v, out->f_n, levels[0], p->limit);
-        slip = v->k_t * asperity_slide(before, p->limit, d0, d1, s->deflection);
+        change = asperity_log_ratio(out->f_n, f_n);
+        p->approach *= asperity_exponential_near(change * v->per_gamma);
+        p->eta *= asperity_exponential_near(change * v->per_backbone);
+        asperity_limits(t->friction, v, out->f_n, p->eta, p->limit);
+        if (measured || asperity_exceeds(&moved, p->limit)) {
+            if (!measured) {
+                asperity_measure(&moved);
+            }
+            slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
+        }
     }
     asperity_slider_force(v, s->deflection, held);
-    bound = slip_force * asperity_tangential_shape(t->form, v, s->x, &shape_slope);
+    bound = slip_force * place.f_t;
     size = ASPERITY_SQRT(held[0] * held[0] + held[1] * held[1]);
     out->f_t[0] = held[0];
     out->f_t[1] = held[1];
     keep = size > bound ? bound / size : ASPERITY_R(1.0);
     if (tangent) {
-        per_x = beyond / v->delta_t_slip;
-        loss = (v->f_n0 - v->f_n_slip) * normal_slope;
-        asperity_slider_stiffness(v, before, p->limit, d0, d1, stiffness);
+        asperity_slopes(t->form, v, s->x, slope);
+        per_x = beyond * v->per_slip;
+        loss = (v->f_n0 - v->f_n_slip) * slope[1];
+        asperity_slider_stiffness(v, &moved, p->limit, stiffness);
         m[0] = held[0] / size;
         m[1] = held[1] / size;
-        rate = slip_force * shape_slope * per_x;
+        rate = slip_force * slope[0] * per_x;
         for (j = 0; j < 2; j++) {
             tangent->df_n_ddelta[j] = -loss * per_x * direction[j];
             radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j];
@@ -888,8 +1144,21 @@ ASPERITY_FN asperity_real asperity_energy(const asperity_curve *v, asperity_real
     return f_n * approach / (v->gamma + ASPERITY_R(1.0)) + asperity_slider_energy(v, deflection);
 }
 
-/* *to = *from, without the string instruction that compilers make of it. */
-ASPERITY_FN void asperity_copy(const asperity_state *from, asperity_state *to) {
+/* To work and back, without the string instruction that compilers make of a copy. */
+ASPERITY_FN void asperity_begin(const asperity_state *from, asperity_work *to) {
+    int i;
+    to->h = from->h;
+    to->h_max = from->h_max;
+    to->approach = from->approach;
+    to->x = from->x;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        to->deflection[0][i] = from->deflection[0][i];
+        to->deflection[1][i] = from->deflection[1][i];
+    }
+}
+
+ASPERITY_FN void asperity_end(const asperity_work *from, asperity_state *to) {
     int i;
     to->h = from->h;
     to->h_max = from->h_max;
@@ -907,18 +1176,20 @@ ASPERITY_FN void asperity_copy(const asperity_state *from, asperity_state *to) {
 ASPERITY_FN void asperity_update(
     const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_real h, const asperity_real increment[2],
     asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
-    const asperity_real zero = ASPERITY_R(0.0);
-    asperity_state s;
+    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
+    asperity_work s;
     asperity_row row, old_row;
     asperity_curve v, old;
     const asperity_curve *before = &v;
     asperity_pressed p;
-    asperity_real inverse = ASPERITY_R(1.0) / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, log_h, exponential[8], level, old_n, old_t[2], stored, total, slip;
+    asperity_real inverse = one / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, e, log_h, exponential[4] ASPERITY_ALIGNED, old_exponential[4] ASPERITY_ALIGNED;
+    asperity_real level, at_trial, trial, stiffness, old_n, old_t[2], stored, total, slip, keep;
+    int grown, touched, first;
     memset(out, 0, sizeof *out);
     if (tangent) {
         memset(tangent, 0, sizeof *tangent);
     }
-    h *= inverse;
+    h /= radius; /* not by its inverse: an unloading takes small differences of it */
     d0 = increment[0] * inverse;
     d1 = increment[1] * inverse;
     if (!asperity_is_finite(h) || !asperity_is_finite(d0) || !asperity_is_finite(d1)) {
@@ -936,13 +1207,15 @@ ASPERITY_FN void asperity_update(
         d0 = d0 / size * ASPERITY_MOST;
         d1 = d1 / size * ASPERITY_MOST;
     }
-    greatest = h > state->h_max ? h : state->h_max;
+    grown = h > state->h_max;
+    greatest = grown ? h : state->h_max;
     dh = h - state->h;
-    if (!(greatest > zero) || (h <= state->h_max && state->approach <= zero && state->approach + dh <= zero)) {
+    e = state->approach + dh;
+    if (!(greatest > zero) || (!grown && state->approach <= zero && e <= zero)) {
         /* An open gap, before the first contact or over a dent: no slider is deflected. */
         asperity_real h_max = state->h_max, approach = state->approach, place = state->x;
         if (greatest > zero) {
-            place = dh == zero ? place : ASPERITY_R(1.0);
+            place = dh == zero ? place : one;
             approach += dh;
         }
         if (next != state) {
@@ -954,44 +1227,91 @@ ASPERITY_FN void asperity_update(
         next->x = place;
         return;
     }
-    asperity_copy(state, &s);
-    log_h = ASPERITY_LOG(greatest);
+    touched = state->h_max > zero;
+    keep = one;
+    log_h = asperity_logarithm(greatest * (one / t->first));
     asperity_read_row(t, log_h, &row, exponential);
-    if (h > s.h_max && s.h_max > zero) {
-        asperity_read_row(t, log_h + asperity_log_ratio(s.h_max, h), &old_row, exponential + 4);
-        asperity_exponentials(exponential, 8);
-        asperity_make_curve(t, s.h_max, &old_row, exponential + 4, 0, &old);
+    if (grown && touched) {
+        asperity_read_row(t, log_h + asperity_log_ratio(state->h_max, h), &old_row, old_exponential);
+        asperity_exponentials(exponential, 4);
+        asperity_exponentials(old_exponential, 4);
+        asperity_make_curve(t, greatest, &row, exponential, 1, &v);
+        asperity_make_curve(t, state->h_max, &old_row, old_exponential, 0, &old);
         before = &old;
+        /* The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it. */
+        keep = old.k_t / v.k_t;
+        keep = keep < one ? keep : one;
     } else {
         asperity_exponentials(exponential, 4);
+        asperity_make_curve(t, greatest, &row, exponential, 1, &v);
     }
-    asperity_make_curve(t, greatest, &row, exponential, 1, &v);
-    level = s.h_max > zero && s.approach > zero ? asperity_level_at(before, s.approach) : zero;
-    old_n = s.h_max > zero && s.approach > zero ? before->f_n0 * asperity_exponential(level) : zero;
+    asperity_begin(state, &s);
     asperity_slider_force(before, s.deflection, old_t);
-    stored = old_n > zero ? asperity_energy(before, old_n, s.approach, s.deflection) : zero;
-    if (h <= s.h_max && s.approach + dh <= zero) {
+    stored = asperity_slider_energy(before, s.deflection);
+    if (keep < one) {
+        asperity_scale(s.deflection, keep);
+    }
+    /* Early: it does not wait for what comes next. */
+    if (dh > zero && !v.elastic) {
+        asperity_stand(t, &v, s.deflection, &p);
+    } else {
+        asperity_slider_force(&v, s.deflection, p.force);
+    }
+    first = grown && (state->x == zero || !touched);
+    level = at_trial = zero;
+    old_n = zero;
+    trial = v.f_n0;
+    stiffness = v.slope;
+    p.eta = one;
+    p.approach = v.depth;
+    if (touched && state->approach > zero) {
+        level = asperity_level_at(before, state->approach);
+        old_n = before->f_n0;
+    }
+    if (first) {
+        old_n *= asperity_exponential(level);
+    } else {
+        /* Most steps are small: what F_N was is near to what it is. */
+        if (e > zero) {
+            at_trial = state->approach > zero ? level + before->gamma * asperity_log_ratio(e, state->approach) : asperity_level_at(before, e);
+        }
+        old_n *= asperity_exponential(level);
+        trial = e > zero ? before->f_n0 * asperity_exponential(at_trial) : zero;
+        stiffness = e > zero ? before->gamma * trial / e : zero;
+        if (trial < v.f_n0) {
+            at_trial += grown ? asperity_log_ratio(before->f_n0, v.f_n0) : zero;
+            p.eta = e > zero ? asperity_exponential(at_trial * v.per_backbone) : zero;
+            p.approach = e;
+            if (grown) {
+                p.approach = e > zero ? v.depth * asperity_exponential(at_trial * v.per_gamma) : zero;
+            }
+        }
+    }
+    p.f_n = trial < v.f_n0 ? trial : v.f_n0;
+    stored = old_n > zero ? old_n * s.approach / (before->gamma + one) + stored : zero;
+    if (!grown && e <= zero) {
         /* Contact is lost: what it stored was given back or slipped away. */
         total = ASPERITY_R(0.5) * (old_n * dh + old_t[0] * d0 + old_t[1] * d1) + stored;
         out->friction = total > zero ? work * total : zero;
         next->h = h;
         next->h_max = s.h_max;
-        next->x = dh == zero ? s.x : ASPERITY_R(1.0);
-        next->approach = s.approach + dh;
+        next->x = dh == zero ? s.x : one;
+        next->approach = e;
         memset(next->deflection, 0, sizeof next->deflection);
         return;
     }
-    asperity_press(t, &s, &v, before, level, h, tangent != NULL, &p);
+    asperity_press(t, &s, &v, trial, stiffness, h, tangent != NULL, &p);
     s.h = h;
     s.h_max = greatest;
     s.x = p.x;
+    size = p.f_n;
     slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, d0, d1);
-    if (dh != zero || out->f_n != p.f_n) {
-        s.approach = p.approach >= zero ? p.approach : v.depth * asperity_exponential(p.level / v.gamma);
+    if (dh != zero || out->f_n != size) {
+        s.approach = p.approach;
     }
     if (tangent) {
         tangent->df_n_dh = p.df_n_dh * modulus * radius;
-        tangent->a = v.contact_radius * asperity_power(s.approach / v.depth, v.gamma - ASPERITY_R(1.0)) * radius;
+        tangent->a = asperity_radius(t, &v) * asperity_power(s.approach / v.depth, v.gamma - one) * radius;
         tangent->df_n_ddelta[0] *= modulus * radius;
         tangent->df_n_ddelta[1] *= modulus * radius;
         tangent->df_t_ddelta[0][0] *= modulus * radius;
@@ -1010,7 +1330,7 @@ ASPERITY_FN void asperity_update(
     out->f_n *= force;
     out->f_t[0] *= force;
     out->f_t[1] *= force;
-    asperity_copy(&s, next);
+    asperity_end(&s, next);
 }
 
 /* Elastic energy that a contact stores. */
@@ -1051,7 +1371,7 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
     if (!file) {
         return 1;
     }
-    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 1) {
+    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 2) {
         fclose(file);
         return 2;
     }
@@ -1060,11 +1380,11 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
            asperity_read_number(file, "friction", &t->friction) && asperity_read_number(file, "effective_modulus", &t->effective_modulus) &&
            asperity_read_number(file, "effective_radius", &t->effective_radius) &&
            asperity_read_number(file, "deepest", &t->deepest) && asperity_read_number(file, "form", &form) &&
-           asperity_read_number(file, "log_first", &t->log_first) && asperity_read_number(file, "log_step", &t->log_step);
+           asperity_read_number(file, "first", &t->first) && asperity_read_number(file, "log_step", &t->log_step);
     t->form = good ? (int)form : 0;
     good = good && fscanf(file, " %31s", body) == 1 && strcmp(body, "knots") == 0;
     for (i = 0; good && i < ASPERITY_KNOTS; i++) {
-        for (j = 0; good && j < 2; j++) {
+        for (j = 0; good && j < 4; j++) {
             for (k = 0; good && k < ASPERITY_COLUMNS; k++) {
                 good = fscanf(file, "%lf", &number) == 1;
                 t->knots[i][j][k] = ASPERITY_R(number);

@@ -425,6 +425,7 @@ static inline double asperity_knot_slope(const asperity_draft *p, int column, in
 
 /* The table of the material `m` with Coulomb friction `friction` >= 0. Returns 0, or nonzero if a number is out of its range: then `t` is not to be used. */
 static inline int asperity_setup(asperity_table *t, const asperity_material *m, double friction) {
+    static const int place[ASPERITY_COLUMNS] = {0, 1, 4, 2, 5, 6, 7, 3};
     double first = 1e-6, log_modulus, a, h;
     asperity_draft draft, *p = &draft;
     int i, j;
@@ -461,7 +462,7 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
     t->friction = ASPERITY_R(friction);
     t->effective_modulus = ASPERITY_R(p->effective_modulus / m->youngs_modulus);
     t->effective_radius = ASPERITY_R(1.0);
-    t->log_first = ASPERITY_R(p->log_first);
+    t->first = ASPERITY_R(exp(p->log_first));
     t->log_step = ASPERITY_R(p->log_step);
     log_modulus = log(m->youngs_modulus);
     for (i = 0; i < ASPERITY_KNOTS; i++) {
@@ -470,8 +471,17 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
             t->deepest = ASPERITY_R(h);
         }
         for (j = 0; j < ASPERITY_COLUMNS; j++) {
-            t->knots[i][0][j] = ASPERITY_R(p->table[i][j] - (j == 0 || j == 7 ? log_modulus : 0.0));
-            t->knots[i][1][j] = ASPERITY_R(asperity_knot_slope(p, j, i));
+            /* The update needs 1/a and 1/delta_T_slip, and first what has a logarithm in the table. */
+            double sign = j == 1 || j == 3 ? -1.0 : 1.0, value = p->table[i][j], slope = asperity_knot_slope(p, j, i);
+            int k = place[j];
+            double start = sign * (value - (j == 0 || j == 7 ? log_modulus : 0.0));
+            t->knots[i][0][k] = ASPERITY_R(k < 4 ? exp(start) : start);
+            t->knots[i][1][k] = ASPERITY_R(sign * slope);
+            if (i + 1 < ASPERITY_KNOTS) {
+                double rise = p->table[i + 1][j] - value, next = asperity_knot_slope(p, j, i + 1);
+                t->knots[i][2][k] = ASPERITY_R(sign * (3.0 * rise - 2.0 * slope - next));
+                t->knots[i][3][k] = ASPERITY_R(sign * (slope + next - 2.0 * rise));
+            }
         }
     }
     return 0;

@@ -539,18 +539,31 @@ def given(shape, x):
 
 
 def given_inverse(shape, f):
-    """The least x at which it has the value f, or that of its peak."""
+    """The least x at which it has the value f, or that of its peak; and the point before it."""
     if f <= 0.0:
-        return 0.0
-    below = peak = place = 0.0
+        return 0.0, 0
+    peak, place = 0.0, (0.0, 0)
     for j in range(POINTS):
         if shape[j] >= f:
-            return point_x(j) + (f - below) / (shape[j] - below) * (point_x(j + 1) - point_x(j))
-        below = shape[j]
-        if below > peak:
-            peak = below
-            place = point_x(j + 1)
+            return given_between(shape, f, j), j
+        if shape[j] > peak:
+            peak, place = shape[j], (point_x(j + 1), j)
     return place
+
+
+def given_between(shape, f, j):
+    """The x between point j and the next at which it has the value f."""
+    below = 0.0 if j == 0 else shape[j - 1]
+    return point_x(j) + (f - below) / (shape[j] - below) * (point_x(j + 1) - point_x(j))
+
+
+def given_back(shape, f, j):
+    """As given_inverse of a lesser f, back along the curve from after point j."""
+    if f <= 0.0:
+        return 0.0
+    while j > 0 and shape[j - 1] >= f:
+        j -= 1
+    return given_between(shape, f, j)
 
 
 def tangential_shape(v, x):
@@ -565,10 +578,17 @@ def tangential_shape(v, x):
 
 
 def tangential_shape_inverse(v, f):
-    """The x at which f_T has the value f."""
+    """The x at which f_T has the value f, and the point before it of a shape by numbers."""
     if NORMAL_CURVE == 2:
         return given_inverse(v.shapes[0], f)
-    return 1.0 if f >= 1.0 else 1.0 - (1.0 - f) ** (1.0 / v.n)
+    return (1.0 if f >= 1.0 else 1.0 - (1.0 - f) ** (1.0 / v.n)), 0
+
+
+def tangential_shape_back(v, f, j):
+    """As tangential_shape_inverse of a lesser f, back along the curve from after point j."""
+    if NORMAL_CURVE == 2:
+        return given_back(v.shapes[0], f, j)
+    return tangential_shape_inverse(v, f)[0]
 
 
 def normal_shape(v, x):
@@ -598,7 +618,7 @@ def normal_shape_inverse(v, f):
     if f >= 1.0:
         return 1.0
     if NORMAL_CURVE == 2:
-        return given_inverse(v.shapes[1], f)
+        return given_inverse(v.shapes[1], f)[0]
     if NORMAL_CURVE == 0:
         return 1.0 - (1.0 - f ** (1.0 / v.n_exponent)) ** (1.0 / v.m_exponent)
     return (1.0 - (1.0 - f) ** (1.0 / v.n_exponent)) ** (1.0 / v.m_exponent)
@@ -735,7 +755,7 @@ def press(p, s, v, h):
     slip_force = p.friction * v.f_n_slip
     if f_t <= slip_force * tangential_shape(v, elastic)[0] or is_elastic(v):
         return f_n, elastic, stiffness
-    bound = tangential_shape_inverse(v, f_t / slip_force)
+    bound, before = tangential_shape_inverse(v, f_t / slip_force)
     cap = normal_cap(v, bound)
     share = f_t / slip_force if f_t < slip_force else 1.0
     soft = 1.0 - v.slope * v.depth / (v.gamma * v.f_n0)
@@ -744,7 +764,7 @@ def press(p, s, v, h):
     flow = rate * (trial - cap) / v.f_n0 if trial > cap else 0.0
     most = slip_force * tangential_shape(v, bound)[0]
     keep = math.exp(-flow) * (most / f_t if most < f_t else 1.0)
-    x = tangential_shape_inverse(v, keep * f_t / slip_force)
+    x = tangential_shape_back(v, keep * f_t / slip_force, before)
     raised = normal_cap(v, x)
     rises = slip_force * tangential_shape(v, x)[1]
     falls = (v.f_n0 - v.f_n_slip) * normal_shape(v, x)[1]

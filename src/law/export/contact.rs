@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use super::vectors::{SEED, unit_vectors};
 use super::{ExportedFile, fill, plain, sizes};
 use crate::case::Case;
-use crate::law::contact::{ContactParameters, KNOTS};
+use crate::law::contact::{COLUMNS, ContactParameters, KNOTS};
 use crate::law::tabulated::Against;
 use crate::law::{LawError, LawFile};
 
@@ -15,7 +15,10 @@ pub(super) const CONTACT_3D: &str = include_str!("asperity_contact3d.h");
 const CHECK: &str = include_str!("asperity_contact_check.c");
 
 /// Version of the table's file.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
+
+/// Columns of the parameters' table in the order of the header's.
+const ORDER: [usize; COLUMNS] = [0, 1, 3, 7, 2, 4, 5, 6];
 
 /// What an engine gets.
 struct Unit {
@@ -92,10 +95,24 @@ impl Unit {
         1.0
     }
 
-    /// Values and slopes at the knots, in the order in which the update reads them.
-    fn knots(&self) -> Vec<[Vec<f64>; 2]> {
-        let slopes = |i: usize| (0..self.parameters.table[i].len()).map(|column| self.parameters.knot_slope(column, i)).collect();
-        (0..KNOTS).map(|i| [self.parameters.table[i].to_vec(), slopes(i)]).collect()
+    /// The cubics from knot to knot as the update reads them: coefficients of 1, u, u^2, u^3 of all
+    /// columns, the logarithms first. Of those the first coefficient is the quantity itself, and of
+    /// a and delta_T_slip all are of the inverse.
+    fn knots(&self) -> Vec<[Vec<f64>; 4]> {
+        let parameters = &self.parameters;
+        let cubic = |i: usize, column: usize| {
+            let (value, slope) = (parameters.table[i][column], parameters.knot_slope(column, i));
+            let [square, cube] = if i + 1 < KNOTS {
+                let (rise, next) = (parameters.table[i + 1][column] - value, parameters.knot_slope(column, i + 1));
+                [3.0 * rise - 2.0 * slope - next, slope + next - 2.0 * rise]
+            } else {
+                [0.0, 0.0]
+            };
+            let sign = if column == 1 || column == 3 { -1.0 } else { 1.0 };
+            let start = if ORDER[..4].contains(&column) { (sign * value).exp() } else { value };
+            [start, sign * slope, sign * square, sign * cube]
+        };
+        (0..KNOTS).map(|i| [0, 1, 2, 3].map(|power| ORDER.iter().map(|&column| cubic(i, column)[power]).collect())).collect()
     }
 
     /// The single numbers by the names that they have in the file.
@@ -109,7 +126,7 @@ impl Unit {
             ("effective_radius", p.radius),
             ("deepest", self.deepest),
             ("form", p.form),
-            ("log_first", p.log_first),
+            ("first", p.log_first.exp()),
             ("log_step", p.log_step),
         ]
     }
@@ -135,19 +152,19 @@ impl Unit {
         let number = |x: f64| format!("ASPERITY_R({x:?})");
         let row = |values: &[f64]| format!("{{{}}}", values.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "));
         let numbers = self.numbers().map(|(_, value)| number(value));
-        let [share, nu, friction, modulus, curvature, deepest, _, log_first, log_step] = numbers;
+        let [share, nu, friction, modulus, curvature, deepest, _, first, log_step] = numbers;
         let mut text = format!(
             "/* asperity_law.h: {}, h/R up to {}. Written by asperity {}. */\n#ifndef ASPERITY_LAW_H\n#define ASPERITY_LAW_H\n\n\
              #include \"asperity_contact.h\"\n\nstatic const asperity_table asperity_law = {{\n    {}, {}, {share}, {nu}, {friction}, {modulus}, {curvature}, \
-             {deepest}, {log_first}, {log_step},\n    {{\n",
+             {deepest}, {first}, {log_step},\n    {{\n",
             self.source,
             self.deepest,
             env!("CARGO_PKG_VERSION"),
             u8::from(self.plane()),
             self.parameters.form,
         );
-        for [values, slopes] in self.knots() {
-            let _ = writeln!(text, "        {{{}, {}}},", row(&values), row(&slopes));
+        for cubics in self.knots() {
+            let _ = writeln!(text, "        {{{}}},", cubics.map(|values| row(&values)).join(", "));
         }
         text.push_str("    },\n    {\n");
         for [tangential, normal] in &self.parameters.shapes {
