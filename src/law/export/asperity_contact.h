@@ -1029,7 +1029,7 @@ ASPERITY_FN asperity_real asperity_excess(
             sum[0] += (double)weight[i] * (double)deflection[0][i];
             sum[1] += (double)weight[i] * (double)deflection[1][i];
         }
-        return (float)((double)v->k_t * sqrt(sum[0] * sum[0] + sum[1] * sum[1]) - (double)slip_force * (1.0 - pow(1.0 - (double)x, (double)v->n)));
+        return (float)((double)v->k_t * sqrt(sum[0] * sum[0] + sum[1] * sum[1]) - (double)slip_force * (1.0 - exp((double)v->n * log(1.0 - (double)x))));
     }
 #else
     (void)form;
