@@ -1,6 +1,7 @@
 //! One step: semismooth Newton with a backtracking line search on the contact merit, inexact linear
 //! solves.
 
+use super::encounter::Encounter;
 use super::pair::Systems;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, turn};
@@ -199,6 +200,18 @@ impl Newton {
         self.boundary.pair = Some(meeting);
     }
 
+    /// Sets the interface with another body for the next step.
+    pub fn encounter(&mut self, encounter: Encounter) {
+        self.boundary.encounter = Some(encounter);
+    }
+
+    /// Work that friction dissipates in the step to the accepted trial, on the meshed half, where
+    /// the forces at the contact were `before` (three a node) at its start; between two bodies
+    /// alone.
+    pub fn interface_friction_work(&self, before: &[f64]) -> Option<f64> {
+        self.boundary.encounter.as_ref().map(|encounter| encounter.friction_work(&self.current, before))
+    }
+
     /// Leaves the even part of a guess where the step is symmetric.
     pub fn symmetrise(&self, guess: &mut [f64]) {
         if let Systems::Pair(solver) = &self.linear {
@@ -342,7 +355,7 @@ impl Newton {
             // Nothing touches: the body follows the plate as it is.
             let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
             let shift = [control.delta_t - start[plate], 0.0, -self.current.h - start[plate + 2]];
-            for (u, s) in self.current.u.chunks_exact_mut(3).zip(std::iter::repeat(shift)) {
+            for (u, s) in self.current.u.chunks_exact_mut(3).take(self.boundary.own_nodes).zip(std::iter::repeat(shift)) {
                 for i in 0..3 {
                     u[i] += s[i];
                 }
@@ -442,15 +455,18 @@ impl Newton {
         if self.boundary.against.is_some() {
             turn(matrix, mesh, &self.current.frames);
         }
-        if self.boundary.pair.is_none() {
+        if self.boundary.pair.is_none() && self.boundary.encounter.is_none() {
             apply_contact(matrix, mesh, &self.current.rows);
         }
         right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
         lap.end(&mut self.times, Phase::Contact);
-        match (&mut self.linear, &self.boundary.pair) {
-            (Systems::Plane(solver), None) => solver.refresh(&self.fixed)?,
-            (Systems::Pair(solver), Some(pair)) => {
+        match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
+            (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
+            (Systems::Pair(solver), Some(pair), None) => {
                 solver.refresh(&pair.interface, &self.current.rows, &self.fixed, &self.boundary.prescribed)?;
+            }
+            (Systems::Couple(solver), None, Some(encounter)) => {
+                solver.refresh(&encounter.interface, &self.current.rows, &self.fixed)?;
             }
             _ => return Ok(Err(StepFailure::Linear("the solver is made for another opponent".into()))),
         }
@@ -509,7 +525,7 @@ impl Newton {
         if first {
             let mut guess = vec![0.0; self.unit_rhs.len()];
             let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
-            guess.iter_mut().skip(2).step_by(3).for_each(|z| *z = -1.0);
+            guess.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
             self.current.contract(mesh, &self.boundary, &mut guess);
             let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };

@@ -9,6 +9,7 @@
 
 use std::sync::Arc;
 
+use super::couple::CoupleSolver;
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::bsr::Widen;
@@ -18,19 +19,27 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 
 /// Iterations after which FGMRES starts over, and after which it gives up.
-const RESTART: usize = 60;
-const MAX_ITERATIONS: usize = 120;
+pub(super) const RESTART: usize = 60;
+pub(super) const MAX_ITERATIONS: usize = 120;
 /// A system that stalls is good enough to go on from at this relative residual: the line search
 /// judges what it gives.
-const STALLED: f64 = 0.3;
+pub(super) const STALLED: f64 = 0.3;
 
-/// The solver of one body's systems, or of an equal pair's.
+/// The solver of one body's systems, of an equal pair's, or of two bodies'.
 #[derive(Debug)]
 pub enum Systems {
     /// Over a plane.
     Plane(Box<LinearSolver>),
     /// Against its own image.
     Pair(Box<PairSolver>),
+    /// Against another body.
+    Couple(Box<CoupleSolver>),
+}
+
+impl From<CoupleSolver> for Systems {
+    fn from(solver: CoupleSolver) -> Self {
+        Self::Couple(Box::new(solver))
+    }
 }
 
 impl From<LinearSolver> for Systems {
@@ -51,6 +60,7 @@ impl Systems {
         match self {
             Self::Plane(solver) => solver.matrix_mut(),
             Self::Pair(solver) => solver.matrix_mut(),
+            Self::Couple(solver) => solver.matrix_mut(),
         }
     }
 
@@ -65,6 +75,7 @@ impl Systems {
                 solver.solve(rhs, tolerance, x)
             }
             Self::Pair(solver) => solver.solve(rhs, tolerance, x),
+            Self::Couple(solver) => solver.solve(rhs, tolerance, x),
         }
     }
 
@@ -76,6 +87,7 @@ impl Systems {
         match self {
             Self::Plane(solver) => solver.residual_norm(rhs, x),
             Self::Pair(solver) => Ok(solver.residual_norm(rhs, x)),
+            Self::Couple(solver) => Ok(solver.residual_norm(rhs, x)),
         }
     }
 }
@@ -343,6 +355,6 @@ impl System<f32> for PairSolver {
     }
 }
 
-fn clear<T: Default>(fixed: &[bool], x: &mut [T]) {
+pub(super) fn clear<T: Default>(fixed: &[bool], x: &mut [T]) {
     x.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed).for_each(|(x, _)| *x = T::default());
 }
