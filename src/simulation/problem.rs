@@ -62,6 +62,13 @@ pub struct Problem {
 const PRESS_STEPS: f64 = 14.0;
 const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
 const SHEAR_STEPS: usize = 15;
+/// Two bodies have their linear systems solved further than one: by how much the loosest tolerance
+/// is smaller, and how far the first of a step is solved (see [`first_linear`]). Else points that
+/// flow in one of the bodies are thrown back, as the plate strains one of them alone at first: at
+/// E_2/E_1 = 3, R_2/R_1 = 2 and 8 elements a press took 154 iterations with 493 of Krylov, and
+/// takes 88 with 352.
+const COUPLE_LINEAR: f64 = 0.3;
+const COUPLE_FIRST: f64 = 0.01;
 /// Largest indentation of the path, scaled.
 fn largest_indentation(case: &Case) -> f64 {
     case.path.iter().fold(0.0, |h, s| match s {
@@ -170,6 +177,7 @@ impl Problem {
         let mesh = mesh_of(&case, &zone)?;
         // Of two spheres it knows R* alone.
         let lambda = johnson_parameter(&laws, case.compliance()[0], nu, zone.contact_radius / case.effective_radius());
+        let two_bodies = opponent.is_some();
         let largest_nu = match &case.opponent {
             Some(Opponent::Deforming { material, .. }) => nu.max(material.poissons_ratio),
             _ => nu,
@@ -179,8 +187,8 @@ impl Problem {
             settings: Settings {
                 tolerance: case.solver.tolerance,
                 max_iterations: case.solver.max_iterations,
-                loosest_linear: loosest_linear(largest_nu),
-                first_linear: first_linear(lambda),
+                loosest_linear: loosest_linear(largest_nu) * if two_bodies { COUPLE_LINEAR } else { 1.0 },
+                first_linear: if two_bodies { COUPLE_FIRST } else { first_linear(lambda) },
                 monotone_from: monotone_from(lambda),
             },
             max_cutbacks: case.solver.max_cutbacks,
