@@ -50,7 +50,8 @@ impl Encounter {
     /// The interface of a step that starts from displacement `start` and is expected to lead to
     /// `expected` (three a node), with body `slave` (0 the sphere, 1 the opponent) as the slave.
     pub fn new(mesh: &Mesh, slave: usize, series: Series, start: &[f64], expected: &[f64]) -> Self {
-        let interface = Arc::new(Interface::new(mesh, expected, slave));
+        // What bends less says where the interface goes.
+        let interface = Arc::new(Interface::new(mesh, expected, slave, 1.0 - series.master_share));
         let reference = interface.relative(mesh.nodes.as_flattened());
         Self { reference, start: interface.relative(start), interface, series }
     }

@@ -5,7 +5,8 @@
 //! diag(1, 1, -1) and each body in its own coordinates (see [`crate::mesh::couple`]), the relative
 //! position of slave node i is `w_i = x_i - R sum_j M_ij x_j`, in the slave's coordinates. Its
 //! conditions are those of a point over a plane, in a frame of its own: tangents t_1 (in the plane
-//! of x and the normal) and t_2, and the normal n, the mean of the two surfaces'. So the unknowns y
+//! of x and the normal) and t_2, and the normal n, a mean of the two surfaces' in which the stiffer
+//! one, which bends less, counts for more. So the unknowns y
 //! of a step are w in these frames at slave nodes and u elsewhere: `u = T y`. The forces that
 //! belong to y are `T^T f`: at a slave node the force that the interface carries there, at a master
 //! node the body's own and what the slave exerts on it, which is nothing together in equilibrium.
@@ -47,9 +48,9 @@ fn at(x: &[f64], node: usize) -> [f64; 3] {
 
 impl Interface {
     /// The interface between the two bodies of a mesh with displacement `u` (three a node), of
-    /// which body `slave` (0 the sphere, 1 the opponent) is the slave; none if the mesh is of one
-    /// body.
-    pub fn new(mesh: &Mesh, u: &[f64], slave: usize) -> Self {
+    /// which body `slave` (0 the sphere, 1 the opponent) is the slave and the master's normal has
+    /// the weight `of_master` (0 to 1); none if the mesh is of one body.
+    pub fn new(mesh: &Mesh, u: &[f64], slave: usize, of_master: f64) -> Self {
         let Some(couple) = &mesh.couple else { return Self::default() };
         let split = |body: usize, first: usize, end: usize| if body == 0 { 0..first } else { first..end };
         let surface = |body: usize| {
@@ -77,10 +78,10 @@ impl Interface {
         for (k, row) in rows.iter().enumerate() {
             let contact = first + row.slave;
             let on_symmetry = mesh.nodes[node(contact)][1] == 0.0;
-            let mut normal = up[row.slave];
+            let mut normal = up[row.slave].map(|n| (1.0 - of_master) * n);
             for &(j, w) in &row.image {
                 let other = across(other_up[j]);
-                (0..3).for_each(|c| normal[c] -= w * other[c]);
+                (0..3).for_each(|c| normal[c] -= of_master * w * other[c]);
                 if w > most[first_master + j] {
                     (most[first_master + j], interface.facing[first_master + j]) = (w, Some(k));
                 }
@@ -213,7 +214,7 @@ mod tests {
         for (radius, slave) in [(2.0, 0), (2.0, 1), (f64::INFINITY, 0), (1.0, 1)] {
             let mesh = bodies(0.2, 4, radius);
             for by in [0.0, 0.3, 1.0, 3.0] {
-                let interface = Interface::new(&mesh, &slid(&mesh, 0.05 * by), slave);
+                let interface = Interface::new(&mesh, &slid(&mesh, 0.05 * by), slave, 0.5);
                 assert!(interface.slaves.len() > 20, "{}", interface.slaves.len());
                 let n = 3 * mesh.nodes.len();
                 let y: Vec<f64> = (0..n).map(|i| (0.37 * i as f64).sin()).collect();
@@ -252,7 +253,7 @@ mod tests {
             for slip in [0.0, 0.3, 1.0, 3.0] {
                 let by = slip * 0.2 / elements as f64;
                 let u: Vec<f64> = (0..mesh.nodes.len()).flat_map(|n| [if n < parts.node { by } else { 0.0 }, 0.0, 0.0]).collect();
-                let interface = Interface::new(&mesh, &u, 0);
+                let interface = Interface::new(&mesh, &u, 0, 0.5);
                 let mut force = vec![0.0; mesh.contact_nodes.len()];
                 for k in 0..interface.slaves.len() {
                     interface.masters[k].iter().for_each(|&(contact, _, w)| force[contact] += interface.area[k] * w);
