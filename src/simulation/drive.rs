@@ -349,13 +349,16 @@ impl<'a> Drive<'a> {
                 self.newton.symmetrise(guess);
             }
         }
-        if let Some((slave, series)) = self.problem.couple {
+        if let Some(couple) = self.problem.couple {
             let expected = guess.as_deref().unwrap_or(&self.state.u);
-            let encounter = Encounter::new(&self.mesh, slave, series, &self.state.u, expected);
+            let encounter = Encounter::new(&self.mesh, couple, &self.state.u, expected, self.state.direction == 0.0);
             if let Some(guess) = &mut guess {
                 encounter.separate(&self.mesh, guess);
             }
             self.newton.encounter(encounter);
+            if let Some(guess) = &mut guess {
+                self.newton.symmetrise(guess);
+            }
         }
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;

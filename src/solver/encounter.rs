@@ -8,6 +8,7 @@ use crate::compute::CaseModel;
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Status, contact_rows};
 use crate::contact::couple::Interface;
 use crate::contact::frame::to_frame;
+use crate::contact::pair::leave_even;
 use crate::material::Material;
 use crate::mesh::Mesh;
 
@@ -22,6 +23,8 @@ pub struct Encounter {
     start: Vec<[f64; 3]>,
     /// Stiffness of the two bodies in series.
     series: Series,
+    /// All is even in x.
+    pub symmetric: bool,
 }
 
 /// Young's moduli of two bodies as springs in series.
@@ -48,12 +51,13 @@ pub fn youngs_modulus(material: &Material<f64>) -> f64 {
 
 impl Encounter {
     /// The interface of a step that starts from displacement `start` and is expected to lead to
-    /// `expected` (three a node), with body `slave` (0 the sphere, 1 the opponent) as the slave.
-    pub fn new(mesh: &Mesh, slave: usize, series: Series, start: &[f64], expected: &[f64]) -> Self {
+    /// `expected` (three a node), with body `slave` (0 the sphere, 1 the opponent) as the slave;
+    /// both displacements and the step are even in x if it is `symmetric`.
+    pub fn new(mesh: &Mesh, (slave, series): (usize, Series), start: &[f64], expected: &[f64], symmetric: bool) -> Self {
         // What bends less says where the interface goes.
         let interface = Arc::new(Interface::new(mesh, expected, slave, 1.0 - series.master_share));
         let reference = interface.relative(mesh.nodes.as_flattened());
-        Self { reference, start: interface.relative(start), interface, series }
+        Self { reference, start: interface.relative(start), interface, series, symmetric }
     }
 
     /// Moves points of a guess that have passed the other body back to it, each side by its share
@@ -107,6 +111,9 @@ impl Trial {
     pub(super) fn meet_body(&mut self, model: &CaseModel, boundary: &Boundary, encounter: &Encounter) {
         let (mesh, interface) = (&model.mesh, &encounter.interface);
         self.residual.copy_from_slice(&self.force);
+        if boundary.is_even() {
+            leave_even(&boundary.mirror, &mut self.residual);
+        }
         interface.reduce(&mut self.residual);
         let open = contact_rows(
             Friction::Coulomb(0.0),

@@ -2,7 +2,7 @@
 //! solves.
 
 use super::encounter::Encounter;
-use super::pair::Systems;
+use super::pair::{Systems, mirror_nodes};
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, turn};
 use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
@@ -10,6 +10,7 @@ use super::{Control, Iteration, Settings, SolverError, StepFailure};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
 use crate::contact::coulomb::{Friction, Status};
+use crate::contact::pair::leave_even;
 use crate::contact::rigid::Rigid;
 use crate::linalg::LinalgError;
 use crate::mesh::Mesh;
@@ -124,6 +125,8 @@ impl Newton {
         let mut boundary = Boundary::new(mesh);
         if let Systems::Pair(solver) = &linear {
             boundary.mirror = solver.mirror().to_vec();
+        } else if matches!(linear, Systems::Couple(_)) {
+            boundary.mirror = mirror_nodes(mesh).unwrap_or_default();
         }
         Self {
             boundary,
@@ -216,6 +219,8 @@ impl Newton {
     pub fn symmetrise(&self, guess: &mut [f64]) {
         if let Systems::Pair(solver) = &self.linear {
             solver.symmetrise(guess);
+        } else if self.boundary.is_even() {
+            leave_even(&self.boundary.mirror, guess);
         }
     }
 
@@ -511,6 +516,10 @@ impl Newton {
         self.current.expand(mesh, &self.boundary, &mut self.delta);
         if let Systems::Pair(solver) = &self.linear {
             solver.symmetrise(&mut self.delta);
+        } else if self.boundary.is_even() {
+            leave_even(&self.boundary.mirror, &mut self.delta);
+            self.correction.copy_from_slice(&self.delta);
+            self.current.contract(mesh, &self.boundary, &mut self.correction);
         }
         lap.end(&mut self.times, Phase::LinearSolve);
         Ok(Ok((krylov, fallback, delta_h)))

@@ -131,9 +131,13 @@ struct Work {
 /// The node opposite in x of each node of a mesh that is its own mirror image; `None` if it is not.
 pub fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
     // + 0: no -0 among the keys.
-    let key = |x: &[f64; 3], sign: f64| [sign * x[0] + 0.0, x[1], x[2]].map(f64::to_bits);
-    let nodes: std::collections::HashMap<[u64; 3], u32> = mesh.nodes.iter().zip(0..).map(|(x, n)| (key(x, 1.0), n)).collect();
-    mesh.nodes.iter().map(|x| nodes.get(&key(x, -1.0)).copied()).collect()
+    let key = |n: usize, sign: f64| {
+        let x = mesh.nodes[n];
+        (mesh.couple.as_ref().map_or(0, |couple| couple.body_of(n)), [sign * x[0] + 0.0, x[1], x[2]].map(f64::to_bits))
+    };
+    let all = 0..mesh.nodes.len();
+    let nodes: std::collections::HashMap<(usize, [u64; 3]), u32> = all.clone().zip(0..).map(|(n, i)| (key(n, 1.0), i)).collect();
+    all.map(|n| nodes.get(&key(n, -1.0)).copied()).collect()
 }
 
 impl PairSolver {

@@ -42,7 +42,7 @@ pub struct Boundary {
     /// Nodes and contact nodes of the sphere; those of another body follow them.
     pub own_nodes: usize,
     pub own_contacts: usize,
-    /// Of an equal pair: the node opposite in x of each node.
+    /// Of two bodies: the node opposite in x of each node.
     pub mirror: Vec<u32>,
 }
 
@@ -111,6 +111,12 @@ impl Boundary {
             own_contacts: mesh.couple.as_ref().map_or(mesh.contact_nodes.len(), |couple| couple.contact),
             mirror: Vec::new(),
         }
+    }
+
+    /// With another body: whether all of the step is even in x. Rounding is not, nor the points that
+    /// it makes flow on one side alone: what they add is left out.
+    pub fn is_even(&self) -> bool {
+        !self.mirror.is_empty() && self.encounter.as_ref().is_some_and(|encounter| encounter.symmetric)
     }
 
     /// Writes the plate's position into a displacement.
