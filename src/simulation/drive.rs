@@ -509,13 +509,15 @@ impl<'a> Drive<'a> {
 
     /// The last accepted step.
     fn view(&mut self) -> StepView<'_> {
+        let (points, opponent_points) = self.state.points.split_at(self.own_contacts());
         StepView {
             record: self.state.record,
             report: &self.last_report,
             unfinished: std::mem::take(&mut self.newton.times),
             mesh: &self.mesh,
             displacement: &self.state.u,
-            points: &self.state.points[..self.mesh.couple.as_ref().map_or(self.state.points.len(), |couple| couple.contact)],
+            points,
+            opponent_points,
             backend: &mut *self.backend,
             case: self.case,
         }

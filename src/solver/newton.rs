@@ -230,6 +230,11 @@ impl Newton {
         (trial.point_forces(mesh, &self.boundary), trial.statuses(&self.boundary), trial.gaps(mesh, &self.boundary))
     }
 
+    /// Number of contact nodes of the sphere; those of another body follow them.
+    pub fn own_contacts(&self) -> usize {
+        self.boundary.own_contacts
+    }
+
     /// Number of unknown displacements that are not prescribed.
     pub fn free_unknowns(&self) -> usize {
         self.boundary.prescribed.iter().filter(|p| !**p).count()

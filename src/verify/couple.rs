@@ -125,7 +125,7 @@ fn main_job(elements: usize, travel: f64) -> Case {
     let mut case = sphere(NU, Hardening::Ideal { yield_stress: 400.0 }, 0.3, elements, path);
     // The same mesh for both, whatever radius each of them foresees.
     case.mesh.contact_radius = Some(0.21 * RADIUS);
-    (case.solver.press_steps, case.solver.shear_steps) = (Some(12), Some(6));
+    (case.solver.press_steps, case.solver.shear_steps) = (Some(20), Some(6));
     case.solver.tolerance = 1e-5;
     case
 }
