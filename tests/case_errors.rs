@@ -34,7 +34,6 @@ const MISTAKES: &[(&str, usize, &str, &str, &str)] = &[
     ("opponent-deforming-small", 18, "opponent.radius", "is 0.05", "a length from 0.1 to 10.0, 0.1 to 10 sphere.radius"),
     ("opponent-equal-radius", 18, "opponent.radius", "stands beside equal = true", "equal = true alone"),
     ("opponent-flat-radius", 17, "opponent.flat", "is true beside a radius", "one of flat = true and radius"),
-    ("opponent-flats", 18, "opponent.flat", "is true for both bodies", "flat = true for one of them"),
     ("opponent-radius-small", 18, "opponent.radius", "is 0.01", "at least 0.05 sphere.radius = 0.05"),
     ("opponent-rigid-material", 18, "opponent.material", "stands beside rigid = true", "no material, or no rigid"),
     ("opponent-stiff", 17, "opponent.material.youngs_modulus", "is 1000000000000.0", "1e-6 to 1e6 times material.youngs_modulus"),

@@ -241,7 +241,12 @@ pub const KEYS: &[Key] = &[
         range: ">= 0.05 R with rigid = true, else 0.1 R to 10 R",
         meaning: "radius of the sphere that it is pressed against; with R* from 1/R* = 1/R + 1/radius, or of a flat the radius itself, h is below 0.3 R*",
         example: "2.0",
-        ..key("opponent", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Optional("R if there is a material, else a rigid plane"))
+        ..key(
+            "opponent",
+            "radius",
+            Number(AtLeast(1e-75), AtMost(1e75), &[]),
+            Optional("R if there is a material, else a rigid plane"),
+        )
     },
     Key {
         range: "true, not beside a radius and with a sphere as the body, or false",
@@ -253,7 +258,12 @@ pub const KEYS: &[Key] = &[
         range: "a table with the keys of [material]; Young's modulus 1e-6 to 1e6 times that of the body",
         meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative displacements",
         example: "{ youngs_modulus = 400e3, poissons_ratio = 0.3, hardening = { law = \"elastic\" } }",
-        ..key("opponent", "material", Material, Optional("the body's own, if there is a radius or flat = true and not rigid = true"))
+        ..key(
+            "opponent",
+            "material",
+            Material,
+            Optional("the body's own, if there is a radius or flat = true and not rigid = true"),
+        )
     },
     Key {
         range: "4 to 32",

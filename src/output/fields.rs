@@ -45,7 +45,8 @@ pub fn write_fields(
         };
     }
 
-    let stress: Vec<[f64; 6]> = stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * units.youngs_modulus)).collect();
+    let stress: Vec<[f64; 6]> =
+        stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * units.youngs_modulus)).collect();
     let point_fields = [
         Field::vector("displacement", &moved),
         Field::scalar("contact_pressure", pressure),

@@ -46,7 +46,13 @@ mod tests {
         assert!((quality::volume(&space) / (2.0 * quality::volume(&sphere)) - 1.0).abs() < 1e-12);
         assert!((0..space.elements.len()).all(|e| quality::scaled_jacobian(&quality::corners(&space, e)) > 0.0));
         // One body is where it is.
-        assert_eq!((vectors_in_space(&sphere, &sphere.nodes), elements_in_space(&sphere)), (sphere.nodes.clone(), sphere.elements.clone()));
-        assert_eq!((bodies(&sphere), bodies(&mesh).map(|bodies| bodies.iter().sum::<i32>() as usize)), (None, Some(sphere.elements.len())));
+        assert_eq!(
+            (vectors_in_space(&sphere, &sphere.nodes), elements_in_space(&sphere)),
+            (sphere.nodes.clone(), sphere.elements.clone())
+        );
+        assert_eq!(
+            (bodies(&sphere), bodies(&mesh).map(|bodies| bodies.iter().sum::<i32>() as usize)),
+            (None, Some(sphere.elements.len()))
+        );
     }
 }

@@ -243,7 +243,8 @@ impl Simulation {
         let Some(last) = follower.last() else { return Ok(None) };
         let mesh = &follower.problem().model.mesh;
         let length = |x: &[f64; 3]| x.map(|x| x * radius);
-        let stress: Vec<[f64; 6]> = stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * youngs_modulus)).collect();
+        let stress: Vec<[f64; 6]> =
+            stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * youngs_modulus)).collect();
         Ok(Some(StepFields {
             nodes: vectors_in_space(mesh, &mesh.nodes).iter().map(length).collect(),
             elements: elements_in_space(mesh),

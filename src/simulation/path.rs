@@ -277,7 +277,17 @@ mod tests {
     use super::*;
 
     fn start(a: f64, friction: f64) -> Start {
-        Start { h: 0.02, h_max: 0.02, delta_t: 0.0, f_n: 7e-4 * (a / 0.2).powi(2), a, friction, nu: 0.3, compliance: [1.0; 2], reversed: false }
+        Start {
+            h: 0.02,
+            h_max: 0.02,
+            delta_t: 0.0,
+            f_n: 7e-4 * (a / 0.2).powi(2),
+            a,
+            friction,
+            nu: 0.3,
+            compliance: [1.0; 2],
+            reversed: false,
+        }
     }
 
     /// Ends of the steps of a shear.

@@ -98,9 +98,7 @@ fn sheared(runner: &mut Runner<'_>, mu: f64) -> Result<Vec<Check>, VerifyError> 
     let history = runner.follow(&case)?;
     let (own, other) = (runner.equator(NU)?, runner.equator(nu_2)?);
     let (f_n, a) = (history.end(0).f_n, history.end(0).a);
-    let between = |one: f64, two: f64, force: f64| {
-        force / (YOUNGS_MODULUS * RADIUS) * (one + two / (STIFFER * LARGER))
-    };
+    let between = |one: f64, two: f64, force: f64| force / (YOUNGS_MODULUS * RADIUS) * (one + two / (STIFFER * LARGER));
     let mut checks = vec![Check::relative(
         "two bodies",
         format!("beta = 0: F_N, mu = {mu}"),

@@ -67,10 +67,8 @@ impl Interface {
         };
         let (first, plane, faces, up) = surface(slave);
         let (first_master, other_plane, other_faces, other_up) = surface(1 - slave);
-        let rows = weights_between(
-            Surface { points: &plane, faces: &faces },
-            Surface { points: &other_plane, faces: &other_faces },
-        );
+        let rows =
+            weights_between(Surface { points: &plane, faces: &faces }, Surface { points: &other_plane, faces: &other_faces });
         let node = |contact: usize| mesh.contact_nodes[contact] as usize;
         let contacts = mesh.contact_nodes.len();
         let mut interface = Self { contacts, facing: vec![None; contacts], ..Self::default() };
@@ -194,8 +192,11 @@ mod tests {
 
     fn bodies(a: f64, elements: usize, radius: f64) -> Mesh {
         let spec = |a| SphereSpec { contact_radius: a, elements_per_contact_radius: elements, fine_zone: 1.3 };
-        let other =
-            if radius.is_finite() { scaled(opponent_mesh(&spec(a / radius)).unwrap(), radius) } else { flat_mesh(&spec(a)).unwrap() };
+        let other = if radius.is_finite() {
+            scaled(opponent_mesh(&spec(a / radius)).unwrap(), radius)
+        } else {
+            flat_mesh(&spec(a)).unwrap()
+        };
         couple(sphere_mesh(&spec(a)).unwrap(), other)
     }
 
@@ -237,7 +238,9 @@ mod tests {
                 let sum = |part: &[[f64; 3]], c: usize| part.iter().map(|f| f[c]).sum::<f64>();
                 let (own, other) = nodal.split_at(first);
                 let whole = sum(own, 2).abs();
-                assert!((sum(own, 0) + sum(other, 0)).abs() < 1e-12 * whole && (sum(own, 2) - sum(other, 2)).abs() < 1e-12 * whole);
+                assert!(
+                    (sum(own, 0) + sum(other, 0)).abs() < 1e-12 * whole && (sum(own, 2) - sum(other, 2)).abs() < 1e-12 * whole
+                );
             }
         }
     }
