@@ -101,11 +101,15 @@ fn asked_zone(case: &Case, laws: &[&Hardening<f64>]) -> Zone {
     let (r, modulus) = (case.effective_radius(), 1.0 / case.compliance()[0]);
     let predicted =
         || r * predicted_contact_radius(modulus, case.material.poissons_ratio, flow_stress, largest_indentation(case) / r);
-    let smaller = match case.opponent {
+    Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone).within(smaller_radius(case))
+}
+
+/// Radius of the smaller of the spheres that are meshed, of a scaled case.
+fn smaller_radius(case: &Case) -> f64 {
+    match case.opponent {
         Some(Opponent::Deforming { radius: Some(radius), .. }) => radius.min(1.0),
         _ => 1.0,
-    };
-    Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone).within(smaller)
+    }
 }
 
 /// The mesh that a scaled case has with a fine zone: of one body or, with another one against it,
@@ -175,7 +179,7 @@ impl Problem {
         let material = case.material.constants::<f64>()?;
         let opponent = opponent_material(&case)?;
         let laws: Vec<&Hardening<f64>> = std::iter::once(&material).chain(&opponent).map(|m| &m.hardening).collect();
-        let zone = zone.unwrap_or_else(|| asked_zone(&case, &laws));
+        let zone = zone.map_or_else(|| asked_zone(&case, &laws), |zone| zone.within(smaller_radius(&case)));
         let elements = case.mesh.elements_per_contact_radius;
         let mesh = mesh_of(&case, &zone)?;
         // Of two spheres it knows R* alone.
@@ -224,6 +228,14 @@ impl Problem {
         // scout's.
         let Self { equal_pair, bodies, resolution, .. } = *self;
         Ok(Self { equal_pair, bodies, resolution, ..Self::on(&self.case, Some(zone))? })
+    }
+
+    /// The fine zone for a contact that has left this one (see [`Zone::grown`]); `None` if no zone of
+    /// all the bodies is larger.
+    pub fn grown_zone(&self, reach: f64, contact_radius: f64, margin: f64) -> Option<Zone> {
+        let smaller = smaller_radius(&self.case);
+        let zone = self.zone.grown(reach, contact_radius, margin)?.within(smaller);
+        (zone.radius_within(smaller) > self.zone.radius_within(smaller) * (1.0 + 1e-9)).then_some(zone)
     }
 
     /// Makes the stiffer of two bodies the slave: a check on the interface, which costs iterations.

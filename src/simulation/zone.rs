@@ -41,6 +41,12 @@ impl Zone {
         Self { contact_radius, ..self }
     }
 
+    /// Distance from the axis to which the zone reaches on the smaller of two spheres, of this
+    /// radius.
+    pub fn radius_within(&self, radius: f64) -> f64 {
+        self.radius().min(LARGEST_FINE_RADIUS * radius)
+    }
+
     /// Distance from the axis to which the zone reaches.
     pub fn radius(&self) -> f64 {
         (self.fine_zone * self.contact_radius).min(LARGEST_FINE_RADIUS)
