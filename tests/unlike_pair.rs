@@ -1,7 +1,6 @@
 //! Two unlike bodies that both deform: forces, friction and energies; equal ones against the image;
 //! the bodies exchanged; slaves and masters exchanged; forwards and back; fields of both.
 
-mod common;
 mod paths;
 
 use asperity::case::Case;

@@ -25,7 +25,7 @@ pub fn estimated_elements(case: &Case) -> usize {
     let share = case.effective_radius() / radius;
     let contact = case.mesh.contact_radius.map_or((2.0 * share * deepest / radius).sqrt(), |a| a / radius).clamp(0.005, 0.3);
     let n = case.mesh.elements_per_contact_radius as f64;
-    // Of another body the ratio of a to its radius hardly matters: the logarithm is of the sphere's.
+    // Another body counts as much: the ratio of a to its radius hardly matters.
     let meshed = if matches!(case.opponent, Some(Opponent::Deforming { .. })) { 2.0 } else { 1.0 };
     (meshed * n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln())).ceil() as usize
 }

@@ -10,8 +10,8 @@ use super::{Material, Opponent, Sphere};
 /// Smallest radius of a rigid sphere over that of the body: a contact of 0.005 R, the smallest that
 /// is meshed for, should not be a large part of it.
 const SMALLEST_RIGID: f64 = 0.05;
-/// Radii of another sphere that deforms over that of the body: both are meshed, with elements of the
-/// same size where they meet.
+/// Radii of another sphere that deforms over that of the body: both are meshed, with elements of
+/// one size where they meet.
 const DEFORMING_RATIOS: RangeInclusive<f64> = 0.1..=10.0;
 /// Young's moduli of the opponent over that of the body: beyond, one of them is rigid.
 const MODULUS_RATIOS: RangeInclusive<f64> = 1e-6..=1e6;

@@ -35,7 +35,7 @@ impl Zone {
         Self { contact_radius: contact_radius.clamp(SMALLEST_CONTACT, LARGEST_CONTACT), fine_zone }
     }
 
-    /// The zone as far as a sphere of this radius, if it is smaller than the other one, can have it.
+    /// The zone as far as a sphere of this radius, the smaller one of two, can have it.
     pub fn within(self, radius: f64) -> Self {
         let contact_radius = self.contact_radius.min((LARGEST_CONTACT * radius).max(SMALLEST_CONTACT));
         Self { contact_radius, ..self }

@@ -113,8 +113,8 @@ impl Boundary {
         }
     }
 
-    /// With another body: whether all of the step is even in x. Rounding is not, nor the points that
-    /// it makes flow on one side alone: what they add is left out.
+    /// With another body: whether all of the step is even in x. Rounding is not, nor the points
+    /// that it makes flow on one side alone: what they add is left out.
     pub fn is_even(&self) -> bool {
         !self.mirror.is_empty() && self.encounter.as_ref().is_some_and(|encounter| encounter.symmetric)
     }
@@ -341,8 +341,8 @@ impl Trial {
     }
 
     /// What contact exerts on each contact node, along the axes: of a plane [`Trial::point_force`],
-    /// of a rigid sphere the same in its frame; of two bodies what the interface's forces, projected
-    /// as those are, come to at the nodes of both sides.
+    /// of a rigid sphere the same in its frame; of two bodies what the interface's forces,
+    /// projected as those are, come to at the nodes of both sides.
     pub fn point_forces(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<[f64; 3]> {
         if let Some(encounter) = &boundary.encounter {
             return encounter.interface.nodal(&self.interface_forces(encounter));
