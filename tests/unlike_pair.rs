@@ -109,7 +109,7 @@ fn which_body_is_called_the_sphere_makes_no_difference() {
         assert!((one.curvature + other.curvature).abs() < 2e-3, "{} and {}", one.curvature, other.curvature);
         let theirs = other.work_plastic - other.work_plastic_opponent;
         assert!(
-            (one.work_plastic_opponent - theirs).abs() < 1e-3 * one.work_plastic,
+            (one.work_plastic_opponent - theirs).abs() <= 1e-3 * one.work_plastic,
             "{} and {theirs}",
             one.work_plastic_opponent
         );

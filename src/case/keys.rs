@@ -238,7 +238,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0.05 R with rigid = true, else 0.1 R to 10 R",
+        range: ">= 0.05 R if it is rigid, else 0.1 R to 10 R",
         meaning: "radius of the sphere that it is pressed against; with R* from 1/R* = 1/R + 1/radius, or of a flat the radius itself, h is below 0.3 R*",
         example: "2.0",
         ..key(
@@ -250,7 +250,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true, not beside a radius and with a sphere as the body, or false",
-        meaning: "the opponent is a flat that deforms, half a ball of radius 2 R (with rigid = true, the rigid plane)",
+        meaning: "the opponent is a flat that deforms, half a ball of radius 2 R; if it is rigid, the plane",
         example: "true",
         ..key("opponent", "flat", Truth, Optional("a sphere if there is a radius or a material, else a rigid plane"))
     },
@@ -258,12 +258,7 @@ pub const KEYS: &[Key] = &[
         range: "a table with the keys of [material]; Young's modulus 1e-6 to 1e6 times that of the body",
         meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative displacements",
         example: "{ youngs_modulus = 400e3, poissons_ratio = 0.3, hardening = { law = \"elastic\" } }",
-        ..key(
-            "opponent",
-            "material",
-            Material,
-            Optional("the body's own, if there is a radius or flat = true and not rigid = true"),
-        )
+        ..key("opponent", "material", Material, Optional("the body's own where there is a radius or a flat that is not rigid"))
     },
     Key {
         range: "4 to 32",

@@ -230,8 +230,8 @@ impl Problem {
         Ok(Self { equal_pair, bodies, resolution, ..Self::on(&self.case, Some(zone))? })
     }
 
-    /// The fine zone for a contact that has left this one (see [`Zone::grown`]); `None` if none that
-    /// all bodies can have is larger.
+    /// The fine zone for a contact that has left this one (see [`Zone::grown`]); `None` if
+    /// none that all bodies can have is larger.
     pub fn grown_zone(&self, reach: f64, contact_radius: f64, margin: f64) -> Option<Zone> {
         let smaller = smaller_radius(&self.case);
         let zone = self.zone.grown(reach, contact_radius, margin)?.within(smaller);
