@@ -162,7 +162,11 @@ fn the_schemas_know_every_key_of_the_fixtures() {
     assert_eq!(schema["properties"]["mesh"]["properties"]["elements_per_contact_radius"]["maximum"], 32);
     assert_eq!(schema["properties"]["solver"]["properties"]["tolerance"]["default"], 3e-4);
     let study = json(&asperity(&["schema", "study"]));
-    assert_eq!(study["required"], serde_json::json!(["base", "grid"]));
+    assert_eq!(study["required"], serde_json::json!(["base"]));
+    for sweep in ["grid", "zip", "list"] {
+        assert!(study["properties"][sweep]["description"].is_string() || sweep == "zip", "{sweep}");
+        assert!(study["anyOf"].as_array().expect("one of them").contains(&serde_json::json!({ "required": [sweep] })), "{sweep}");
+    }
     assert!(study["properties"]["base"]["required"].is_null());
 }
 

@@ -30,13 +30,15 @@ macro_rules! for_every_backend {
         }
         mod gpu_f64 {
             $(#[test] fn $body() {
-                let Some(context) = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64) else { return };
+                let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64);
+                let Some(context) = context else { return };
                 super::$body::<f64, _>(&super::Gpu(context), &super::Bounds::F64);
             })+
         }
         mod gpu_f32 {
             $(#[test] fn $body() {
-                let Some(context) = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F32) else { return };
+                let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F32);
+                let Some(context) = context else { return };
                 super::$body::<f32, _>(&super::Gpu(context), &super::Bounds::F32);
             })+
         }

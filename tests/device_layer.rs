@@ -6,6 +6,7 @@ mod device;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
 use asperity::internals::compute::gpu::{DeviceRequest, GpuContext, GpuError};
+use asperity::internals::compute::traffic::Traffic;
 use asperity::material::{Elasticity, Hardening, Material};
 use device::device;
 use std::process::Command;
@@ -47,6 +48,20 @@ fn kernels_of_a_list_run_in_order_and_come_back() {
         let expected: Vec<f32> = start.iter().map(|x| 32.0 * x).collect();
         assert_eq!(double(&context, &start, 5).unwrap(), expected);
     }
+}
+
+/// Of the account that `summary.json` has: every transfer comes with a ticket of eight bytes, by
+/// which it is known to be fresh.
+#[test]
+fn what_passes_to_the_device_and_back_is_counted() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let before = context.traffic();
+    double(&context, &[1.0; 1000], 5).unwrap();
+    let expected = Traffic { dispatches: 5, submissions: 2, waits: 1, bytes_up: 4008, bytes_down: 4008 };
+    assert_eq!(context.traffic() - before, expected);
+    double(&context, &[1.0; 1000], 0).unwrap();
+    let nothing_run = Traffic { submissions: 1, dispatches: 0, ..expected };
+    assert_eq!(context.traffic() - before, expected + nothing_run);
 }
 
 #[test]

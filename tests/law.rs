@@ -61,7 +61,7 @@ fn a_known_law_is_found_again() {
     assert_eq!(all.cases, 36);
     assert!(all.f_t_rms < 0.005 && all.f_n_rms < 0.005, "{all:?}");
     // What is not used is told.
-    assert_eq!(law.provenance.left_out, [("0036".to_owned(), "failed".to_owned())]);
+    assert_eq!(law.provenance.left_out, [("c0036".to_owned(), "failed".to_owned())]);
 }
 
 #[test]
@@ -185,12 +185,12 @@ fn what_is_no_study_and_no_law_is_refused() {
         assert!(said.starts_with("error: ") && said.contains(told) && said.lines().count() == 1, "{told}: {said}");
     };
     refuse(&["law", "fit", text(&folder.path().join("nowhere"))], "is not a study");
-    fs::write(folder.path().join("study.csv"), "case,status\n0000,done\n").expect("study.csv");
+    fs::write(folder.path().join("study.csv"), "case,status\nc0000,done\n").expect("study.csv");
     refuse(&["law", "fit", text(folder.path())], "no column directory");
-    fs::write(folder.path().join("study.csv"), "case,directory,status\n0000,cases/0000,failed\n").expect("study.csv");
+    fs::write(folder.path().join("study.csv"), "case,directory,status\nc0000,cases/c0000,failed\n").expect("study.csv");
     refuse(&["law", "fit", text(folder.path())], "0 usable cases of 0 materials");
     assert!(matches!(fit(folder.path(), &Prior::BuiltIn), Err(LawError::TooFewCases { needed_cases: 8, .. })));
-    fs::write(folder.path().join("study.csv"), "case,directory,status\n0000,cases/0000,done\n").expect("study.csv");
+    fs::write(folder.path().join("study.csv"), "case,directory,status\nc0000,cases/c0000,done\n").expect("study.csv");
     refuse(&["law", "fit", text(folder.path())], "case.toml");
 
     let case = folder.path().join("case.toml");

@@ -130,6 +130,8 @@ fn a_run_is_drawn_from_its_directory() {
     // entry in the legend.
     assert!(pressure.contains("Hertz's shape, same") && !pressure.contains("Hertz, elastic"), "{pressure}");
 
+    prints(&out, folder.path());
+
     // With a law beside it.
     let study = folder.path().join("study");
     synthetic::write_study(&study, 0.0);
@@ -149,6 +151,55 @@ fn a_run_is_drawn_from_its_directory() {
     fs::remove_file(out.join("history.csv")).expect("no history");
     let refused = asperity(&["plot", text(&out)]).code(2);
     assert!(stderr(&refused).contains("history.csv"), "{}", stderr(&refused));
+}
+
+/// PDF and PNG of the asked size, with text, and axes in the units that are asked for.
+fn prints(out: &Path, folder: &Path) {
+    let listed = |drawn: &assert_cmd::assert::Assert, ending: &str| {
+        let files: Vec<PathBuf> = stdout(drawn).lines().map(PathBuf::from).collect();
+        assert!(files.len() == 7 && files.iter().all(|file| file.extension().is_some_and(|end| end == ending)), "{files:?}");
+        files
+    };
+    let drawn = asperity(&["plot", text(out), "--format", "pdf", "--width", "85mm"]).code(0);
+    for file in listed(&drawn, "pdf") {
+        let pdf = fs::read(&file).expect("a PDF");
+        let words = String::from_utf8_lossy(&pdf);
+        let page = words.split("/MediaBox").nth(1).and_then(|rest| rest.split(']').next()).expect("a page");
+        let width: f64 = page.split_whitespace().nth(2).expect("a width").parse().expect("a number");
+        assert!((width - 85.0 / 25.4 * 72.0).abs() < 0.1, "{}: {width}", file.display());
+        assert!(words.starts_with("%PDF-") && words.contains("/FontFile"), "{}", file.display());
+    }
+    let drawn = asperity(&["plot", text(out), "--format", "png", "--width", "640px"]).code(0);
+    for file in listed(&drawn, "png") {
+        let png = resvg::tiny_skia::Pixmap::load_png(&file).expect("a PNG");
+        assert_eq!(png.width(), 640, "{}", file.display());
+        // Dark text on the white card.
+        let dark = png.pixels().iter().filter(|pixel| pixel.red() < 0x60 && pixel.alpha() == 255).count();
+        assert!(dark > 500, "{}: {dark}", file.display());
+    }
+    // A narrow picture is laid out anew: the same words, all of them on the card.
+    asperity(&["plot", text(out), "--width", "85mm"]).code(0);
+    let narrow = Parsed::of(&out.join("plots/forces.svg"));
+    let head: Vec<&str> = narrow.attributes.iter().take(3).map(|(_, value)| value.as_str()).collect();
+    assert!(head[0] == "85.0000mm" && head[2].starts_with("0 0 361 "), "{head:?}");
+    assert!(narrow.words.contains("tangential displacement, 103 δT / R") && narrow.words.contains("force, 103 F / (E R2)"));
+
+    // In the units of the case, by the names that it gives them.
+    asperity(&["plot", text(out), "--units", "case"]).code(0);
+    assert!(Parsed::of(&out.join("plots/pressure.svg")).words.contains("contact pressure p (case's unit of stress)"));
+    let labelled = folder.join("labelled");
+    fs::create_dir_all(&labelled).expect("a folder");
+    for file in ["history.csv", "summary.json"] {
+        fs::copy(out.join(file), labelled.join(file)).expect("a copy");
+    }
+    let case = fs::read_to_string(out.join("case.toml")).expect("the case");
+    fs::write(labelled.join("case.toml"), case + "\n[units]\nlength = \"mm\"\nforce = \"N\"\n").expect("the case");
+    asperity(&["plot", text(&labelled)]).code(0);
+    let words = Parsed::of(&labelled.join("plots/forces.svg")).words;
+    assert!(words.contains("tangential displacement δT (mm)") && words.contains("force F (N)"), "{words}");
+    let refused = asperity(&["plot", text(out), "--width", "85"]).code(2);
+    assert!(stderr(&refused).contains("as in \"85mm\""), "{}", stderr(&refused));
+    asperity(&["plot", text(out)]).code(0);
 }
 
 #[test]
@@ -183,7 +234,9 @@ fn a_study_is_drawn_into_one_report() {
         assert!(key.starts_with("xmlns") || !value.contains("://"), "{key} = {value}");
     }
     let style = fs::read_to_string(study.join("report.html")).expect("the report");
-    assert!(!style.contains("@import") && !style.contains("url("), "the style fetches nothing");
+    // A colour that goes over into another is named by its place in the same file.
+    assert!(!style.contains("@import") && !style.replace("url(#", "").contains("url("), "the style fetches nothing");
+    assert!(style.contains("text-decoration=\"overline\">H<"), "H with its bar");
     // A row a case and the one that failed with its reason, the formulas, the errors, the range,
     // the study.
     for told in [
@@ -239,7 +292,7 @@ fn what_is_neither_is_refused_by_name() {
     fs::write(study.join("law.json"), "{}").expect("a broken law");
     refused(&["plot", text(&study)], &["law.json", "not a law"]);
     fs::remove_file(study.join("law.json")).expect("no law");
-    fs::remove_file(study.join("cases/0003/history.csv")).expect("a case without history");
-    refused(&["plot", text(&study)], &["cases/0003/history.csv"]);
+    fs::remove_file(study.join("cases/c0003/history.csv")).expect("a case without history");
+    refused(&["plot", text(&study)], &["cases/c0003/history.csv"]);
     assert!(!study.join("report.html").exists() && !study.join("plots").exists(), "nothing is half done");
 }

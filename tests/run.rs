@@ -88,7 +88,20 @@ fn leaves_every_file_of_the_contract() {
     assert_eq!(steps, (1..=history.len()).collect::<Vec<_>>());
     let press = history.iter().filter(|row| row.segment == 0).count();
     let ends = [press, history.len()].map(|step| format!("step_{step:04}"));
-    assert_eq!(names(&dir.join("contact")), ends.clone().map(|name| name + ".csv"));
+    // The contact at the ends of the segments and, for the picture of stick and slip, at four
+    // shares of mu on the way.
+    let ratio = |row: &StepRecord| row.f_t / (0.3 * row.f_n);
+    let passed =
+        |i: usize| [0.3, 0.6, 0.8, 0.95].iter().any(|&share| ratio(&history[i - 1]) < share && ratio(&history[i]) >= share);
+    let mut tables: Vec<usize> = (press..history.len()).filter(|&i| passed(i)).map(|i| history[i].step).collect();
+    assert!((3..=4).contains(&tables.len()), "{tables:?}");
+    tables.extend([press, history.len()]);
+    tables.sort_unstable();
+    tables.dedup();
+    let tables: Vec<String> = tables.into_iter().map(|step| format!("step_{step:04}.csv")).collect();
+    assert_eq!(names(&dir.join("contact")), tables);
+    let slip = fs::read_to_string(dir.join("plots/slip.svg")).expect("a picture");
+    assert_eq!(slip.matches("δ</tspan><tspan").count(), tables.len() - 1, "a panel for each table of the shear");
     assert_eq!(names(&dir.join("fields")), ["case.pvd".to_owned(), ends[0].clone() + ".vtu", ends[1].clone() + ".vtu"]);
     assert_eq!(
         names(&dir.join("plots")),
@@ -201,7 +214,7 @@ fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
 
 #[test]
 fn fields_open_in_python_and_agree_with_the_history() {
-    let Some(python) = python::python("fields_open_in_python_and_agree_with_the_history") else { return };
+    let Some(python) = python::python("fields_open_in_python_and_agree_with_the_history", &["meshio", "numpy"]) else { return };
     let scratch = scratch(SHEAR);
     let (history, _) = done(&scratch, "out", &[]);
     let out = OutputDirectory::existing(scratch.path("out"));

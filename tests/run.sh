@@ -36,19 +36,20 @@ install_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}"
 }
 
-# meshio, which opens the fields as ParaView would; the tests look for it in target/python. Without
-# it they say that they skip.
-install_meshio() {
+# meshio, which opens the fields as ParaView would, and pandas with pyarrow, which read the tables; the
+# tests look for them in target/python. Without them they say that they skip.
+install_readers() {
     local python=target/python/bin/python
-    "$python" -c "import meshio" 2>/dev/null || python3 -c "import meshio" 2>/dev/null && return 0
-    python3 -m venv target/python && timeout 300 "$python" -m pip install --quiet --disable-pip-version-check meshio==5.3.5 numpy ||
-        echo "meshio could not be installed; the tests that open the fields with it will be skipped" >&2
+    local modules="import meshio, pandas, pyarrow"
+    "$python" -c "$modules" 2>/dev/null || python3 -c "$modules" 2>/dev/null && return 0
+    python3 -m venv target/python && timeout 300 "$python" -m pip install --quiet --disable-pip-version-check meshio==5.3.5 numpy pandas pyarrow ||
+        echo "meshio, pandas and pyarrow could not be installed; the tests that use them will be skipped" >&2
 }
 
 begin "packages"
 install_packages
-begin "meshio"
-install_meshio
+begin "meshio, pandas, pyarrow"
+install_readers
 
 # Mesa wants a runtime directory of the user's own, and says so otherwise.
 if [ -z "${XDG_RUNTIME_DIR:-}" ]; then

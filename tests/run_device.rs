@@ -4,6 +4,7 @@ mod device;
 
 use asperity::internals::compute::gpu::Precision;
 use asperity::internals::compute::lost::LOSE_VARIABLE;
+use asperity::output::DeviceTraffic;
 use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 use std::fs;
 use std::path::Path;
@@ -63,14 +64,28 @@ fn a_device_is_named_with_its_precision_and_gives_the_same_force() {
     let Some(context) = device::device("run_device", Precision::F64) else { return };
     let dir = tempfile::tempdir().unwrap();
     let (cpu, _) = done(dir.path(), &["--device", "cpu"], &[]);
-    assert!(cpu.device.starts_with("CPU") && cpu.precision == "f64");
+    assert!(cpu.device.starts_with("CPU") && cpu.precision == "f64" && cpu.device_traffic.is_none());
     for (precision, most) in [("f64", 1e-7), ("f32", 5e-4)] {
         let (gpu, _) = done(dir.path(), &["--device", "gpu", "--precision", precision], &[]);
         assert!(gpu.device.contains(&context.adapter().name) && gpu.precision == precision, "{gpu:?}");
         assert!(gpu.messages.is_empty(), "{:?}", gpu.messages);
         let ratio = gpu.f_n0.unwrap() / cpu.f_n0.unwrap();
         assert!((ratio - 1.0).abs() < most, "{precision}: {ratio}");
+        check_traffic(&gpu, if precision == "f64" { 8 } else { 4 });
     }
+}
+
+/// Every Newton iteration asks for a tangent, which comes down whole, and for the forces and the
+/// contact at one trial or more.
+fn check_traffic(summary: &Summary, number: u64) {
+    let DeviceTraffic { total, steps } = summary.device_traffic.expect("the device's account");
+    let iterations = summary.newton_iterations as u64;
+    assert!(steps.dispatches >= 7 * iterations && steps.submissions >= steps.waits, "{steps:?}");
+    assert!(steps.bytes_up >= 2 * iterations * number * summary.unknowns as u64, "{steps:?}");
+    assert!(steps.bytes_down >= 9 * iterations * number * summary.unknowns as u64, "{steps:?}");
+    // The geometry goes up once.
+    let beside = total - steps;
+    assert!(beside.bytes_up >= 24 * 8 * number * summary.elements as u64 && beside.waits < steps.waits, "{total:?}");
 }
 
 #[test]

@@ -130,7 +130,7 @@ fn a_directory_and_a_row_for_every_case_and_shares_give_the_same() {
         "{said}"
     );
     assert!(
-        said.lines().last().is_some_and(|line| line.starts_with("4/4  000") && line.ends_with("(4 done, 0 running, 0 failed)")),
+        said.lines().last().is_some_and(|line| line.starts_with("4/4  c000") && line.ends_with("(4 done, 0 running, 0 failed)")),
         "{said}"
     );
     assert!(stdout(&output).starts_with("4 done, 0 failed, 0 pending; a row each in "), "{}", stdout(&output));
@@ -143,10 +143,10 @@ fn a_directory_and_a_row_for_every_case_and_shares_give_the_same() {
         fs::read(scratch.out("study.toml")).expect("the study")
     );
     for (row, [id, stress, friction]) in whole.iter().zip([
-        ["0001", "400.0", "0.1"],
-        ["0002", "400.0", "stick"],
-        ["0003", "1600.0", "0.1"],
-        ["0004", "1600.0", "stick"],
+        ["c0001", "400.0", "0.1"],
+        ["c0002", "400.0", "stick"],
+        ["c0003", "1600.0", "0.1"],
+        ["c0004", "1600.0", "stick"],
     ]) {
         assert_eq!([&row["case"], &row["material.hardening.yield_stress"], &row["contact.friction"]], [id, stress, friction]);
         assert_eq!((row["status"].as_str(), row["reason"].as_str()), ("done", ""));
@@ -183,7 +183,7 @@ fn a_directory_and_a_row_for_every_case_and_shares_give_the_same() {
     let output = scratch.ends_with(0, "shares", &["--resume"]);
     assert!(stderr(&output).contains("; 4 done and 0 failed before; 0 to compute"), "{}", stderr(&output));
     assert_eq!(fs::read(scratch.out("shares").join("study.csv")).expect("a table"), table);
-    for id in ["0001", "0002", "0003", "0004"] {
+    for id in ["c0001", "c0002", "c0003", "c0004"] {
         assert_eq!(history(&scratch.case("shares", id)), history(&scratch.case("whole", id)), "{id}");
     }
 }
@@ -196,17 +196,17 @@ fn a_case_that_fails_stops_no_other_and_its_row_says_why() {
     let found: Vec<&str> = table.iter().map(|row| row["status"].as_str()).collect();
     // The second one's contact leaves its fine mesh, and is computed on a larger one.
     assert_eq!(found, ["done", "done", "not-converged", "not-converged"], "{}", stderr(&output));
-    assert!(stderr(&output).contains("0002: note: the contact reaches "), "{}", stderr(&output));
+    assert!(stderr(&output).contains("c0002: note: the contact reaches "), "{}", stderr(&output));
     assert!(table[2]["reason"].starts_with("no convergence: step 1 of segment 0"), "{table:?}");
     let message = stderr(&output);
     let last = message.lines().last().unwrap_or_default();
     assert!(
-        last.starts_with("error: 2 of 4 cases failed, the first in ") && last.contains("cases/0003: no convergence"),
+        last.starts_with("error: 2 of 4 cases failed, the first in ") && last.contains("cases/c0003: no convergence"),
         "{message}"
     );
     assert!(last.ends_with("study.csv"), "{message}");
     // What was computed is kept, and has its row.
-    assert!(!read_history(&scratch.case("out", "0002").history()).expect("a history").is_empty());
+    assert!(!read_history(&scratch.case("out", "c0002").history()).expect("a history").is_empty());
     assert!(table[1]["F_N0"].parse::<f64>().is_ok_and(|force| force > 0.0));
 
     // The same program would do the same: they are not computed again, unless that is asked for.
@@ -249,20 +249,21 @@ fn an_interrupted_study_goes_on_where_it_was() {
                 "{message}"
             );
         }
-        let (ended, id) = before.iter().zip(["0001", "0002", "0003", "0004"]).find(|(status, _)| *status == "done").expect("one");
+        let (ended, id) =
+            before.iter().zip(["c0001", "c0002", "c0003", "c0004"]).find(|(status, _)| *status == "done").expect("one");
         let summary = scratch.case(name, id).summary();
         let written = fs::metadata(&summary).and_then(|file| file.modified()).expect("a summary");
 
         // A killed program may have finished a case that the table does not know of yet.
         let unfinished =
-            ["0001", "0002", "0003", "0004"].into_iter().filter(|id| scratch.case(name, id).checkpoint().exists()).count();
+            ["c0001", "c0002", "c0003", "c0004"].into_iter().filter(|id| scratch.case(name, id).checkpoint().exists()).count();
         let output = scratch.ends_with(0, name, &["--threads", "2", "--resume", "-v"]);
         assert!(stderr(&output).contains(" done and 0 failed before; "), "{}", stderr(&output));
         // An interrupted case goes on from where it was.
         assert_eq!(stderr(&output).matches(": resumed after step ").count(), unfinished, "{name}: {}", stderr(&output));
         assert_eq!(timeless(rows(&scratch.out(name))), timeless(rows(&scratch.out("whole"))), "{name}, {ended}");
         assert_eq!(fs::metadata(&summary).and_then(|file| file.modified()).expect("a summary"), written, "{name}");
-        for id in ["0001", "0002", "0003", "0004"] {
+        for id in ["c0001", "c0002", "c0003", "c0004"] {
             assert_eq!(history(&scratch.case(name, id)), history(&scratch.case("whole", id)), "{name}, {id}");
             assert!(!scratch.case(name, id).checkpoint().exists());
         }
@@ -274,8 +275,8 @@ fn going_on_computes_what_is_not_the_very_case_or_has_no_summary() {
     let scratch = Scratch::new(GRID);
     scratch.ends_with(0, "out", &["-q"]);
     let whole = timeless(rows(&scratch.out("out")));
-    fs::remove_file(scratch.case("out", "0002").summary()).expect("a summary");
-    let case = scratch.case("out", "0003").case();
+    fs::remove_file(scratch.case("out", "c0002").summary()).expect("a summary");
+    let case = scratch.case("out", "c0003").case();
     let text = fs::read_to_string(&case).expect("a case");
     fs::write(&case, text.replace("friction = 0.1", "friction = 0.2")).expect("a case");
     let output = scratch.ends_with(0, "out", &["--resume", "--threads", "2"]);
@@ -308,7 +309,7 @@ fn a_grid_that_has_grown_keeps_what_it_has() {
     scratch.ends_with(0, "out", &["-q"]);
     let before = rows(&scratch.out("out"));
     let written = |id: &str| fs::metadata(scratch.case("out", id).summary()).and_then(|file| file.modified()).expect("a summary");
-    let times: Vec<_> = ["0001", "0002", "0003", "0004"].map(written).into();
+    let times: Vec<_> = ["c0001", "c0002", "c0003", "c0004"].map(written).into();
     // Two values more: the numbers of the grid are others now.
     let grown = GRID.replace("[0.1, \"stick\"]", "[0.05, 0.1, \"stick\"]").replace("[400.0, 1600.0]", "[400.0, 800.0, 1600.0]");
     fs::write(scratch.out("study.toml"), format!("{BASE}{grown}")).expect("the study");
@@ -325,9 +326,9 @@ fn a_grid_that_has_grown_keeps_what_it_has() {
         assert!(old.is_none_or(|old| old == row), "{old:?} {row:?}");
         let case = Case::load(&scratch.out("out").join(&row["directory"]).join("case.toml"), &[]).expect("a case");
         assert_eq!(case.material.hardening.yield_stress(200e3), stress.parse().ok());
-        assert_eq!((row["status"].as_str(), row["case"].len()), ("done", 4));
+        assert_eq!((row["status"].as_str(), row["case"].len()), ("done", 5));
     }
-    assert_eq!(["0001", "0002", "0003", "0004"].map(written).to_vec(), times);
+    assert_eq!(["c0001", "c0002", "c0003", "c0004"].map(written).to_vec(), times);
     let output = scratch.ends_with(0, "out", &["--resume"]);
     assert!(stderr(&output).contains("; 9 done and 0 failed before; 0 to compute"), "{}", stderr(&output));
     assert_eq!(rows(&scratch.out("out")), after);
@@ -341,7 +342,7 @@ fn a_grid_that_has_grown_keeps_what_it_has() {
     let output = scratch.ends_with(0, "out", &["--resume"]);
     let message = stderr(&output);
     assert!(message.contains("; 4 done and 0 failed before; 2 to compute"), "{message}");
-    assert!(message.contains("5 of the cases in ") && message.contains("are left as they are: cases/000"), "{message}");
+    assert!(message.contains("5 of the cases in ") && message.contains("are left as they are: cases/c000"), "{message}");
     assert!(kept.iter().all(|path| path.exists()) && rows(&scratch.out("out")).len() == 6);
 }
 
@@ -382,7 +383,7 @@ fn directories_of_shares_are_merged_and_what_is_missing_is_said() {
         stdout(&output)
     );
     assert_eq!(timeless(rows(&scratch.out("all"))), timeless(rows(&scratch.out("whole"))));
-    for id in ["0001", "0002", "0003", "0004"] {
+    for id in ["c0001", "c0002", "c0003", "c0004"] {
         assert_eq!(history(&scratch.case("all", id)), history(&scratch.case("whole", id)), "{id}");
         assert_eq!(scratch.case("all", id).contact_steps().expect("tables").len(), 2);
     }

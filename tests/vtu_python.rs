@@ -16,7 +16,10 @@ fn json(fields: &[Field]) -> serde_json::Value {
 
 #[test]
 fn meshio_reads_what_was_written_and_pyvista_where_there_is_one() {
-    let Some(python) = python::python("meshio_reads_what_was_written_and_pyvista_where_there_is_one") else { return };
+    let Some(python) = python::python("meshio_reads_what_was_written_and_pyvista_where_there_is_one", &["meshio", "numpy"])
+    else {
+        return;
+    };
     // Two hexahedra in a row, with numbers that a decimal detour would spoil.
     let mut points = Vec::new();
     for x in 0..3 {

@@ -3,7 +3,7 @@
 //! `asperity explain`, `asperity init` and `asperity schema` are made from [`KEYS`]. The tests
 //! below hold it against the parser: a key that one of the two lacks fails them.
 
-use Kind::{Material, Number, Points, ShareOrTrue, Truth, Whole, Word};
+use Kind::{Material, Number, Points, ShareOrTrue, Text, Truth, Whole, Word};
 use Limit::{Above, AtLeast, AtMost, Free};
 use Presence::{Defaults, Optional, Required};
 
@@ -43,6 +43,8 @@ pub enum Kind {
     ShareOrTrue,
     /// One of some words.
     Word(&'static [&'static str]),
+    /// Any text of the range that the key gives.
+    Text,
     /// Pairs of numbers.
     Points,
     /// A table with the keys of `[material]`, and below it those of its hardening.
@@ -87,7 +89,7 @@ impl Key {
 }
 
 /// The tables of a case file in the order in which they are written, with what each is about.
-pub const TABLES: [(&str, &str); 9] = [
+pub const TABLES: [(&str, &str); 10] = [
     ("sphere", "the body"),
     ("material", "what it is made of"),
     ("material.hardening", "yield stress over equivalent plastic strain alpha"),
@@ -96,12 +98,15 @@ pub const TABLES: [(&str, &str); 9] = [
     ("mesh", "how finely it is meshed; every key is optional"),
     ("solver", "how the equations are solved; every key is optional"),
     ("output", "what is written besides history and summary; every key is optional"),
+    ("units", "names of the units on the axes of pictures; they change no number, every key is optional"),
     ("path", "the segments, followed in order; the first one presses"),
 ];
 
 /// The words of `material.hardening.law`.
 pub const LAWS: [&str; 7] = ["elastic", "ideal", "linear", "power", "hollomon", "voce", "table"];
 
+const UNIT_LABEL: &str = "1 to 16 letters";
+const UNIT_OMITTED: &str = "the axes are normalised, or named after the case if another label is there";
 const STRESS: &str = "stress";
 const LENGTH: &str = "length";
 
@@ -331,15 +336,51 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"none\", \"segments\" or \"all\"",
-        meaning: "steps after which fields/*.vtu and contact/*.csv are written: none, the last of each segment, all; in a study, none",
+        meaning: "steps after which fields/*.vtu and contact/*.csv are written: none, the last of each segment (and contact/*.csv of up to four steps of the first shear, for plots/slip.svg), all; in a study, none",
         example: "\"segments\"",
         ..key("output", "fields", Word(&["none", "segments", "all"]), Defaults("\"segments\""))
     },
     Key {
         range: "true or false",
-        meaning: "whether plots/*.svg are drawn; in a study only if its base says so",
+        meaning: "whether the pictures in plots are drawn; in a study only if its base says so",
         example: "true",
         ..key("output", "plots", Truth, Defaults("true"))
+    },
+    Key {
+        range: "\"svg\", \"pdf\" or \"png\"",
+        meaning: "format of the pictures; a PNG has 300 pixels to the inch, or as many as plot_width says in px",
+        example: "\"svg\"",
+        ..key("output", "plot_format", Word(&["svg", "pdf", "png"]), Optional("svg"))
+    },
+    Key {
+        range: "60 to 10000 px in mm, cm, in, pt or px, as in \"85mm\"",
+        meaning: "width of the pictures; each is laid out anew for it, so that its text is as large in a narrow one",
+        example: "\"85mm\"",
+        ..key("output", "plot_width", Text, Optional("each has a width of its own"))
+    },
+    Key {
+        range: "true or false",
+        meaning: "whether history.parquet is written beside history.csv when the run ends",
+        example: "false",
+        ..key("output", "parquet", Truth, Optional("history.csv alone"))
+    },
+    Key {
+        range: UNIT_LABEL,
+        meaning: "unit of the radius and of displacements, as in \"mm\"",
+        example: "\"mm\"",
+        ..key("units", "length", Text, Optional(UNIT_OMITTED))
+    },
+    Key {
+        range: UNIT_LABEL,
+        meaning: "unit of forces, as in \"N\"",
+        example: "\"N\"",
+        ..key("units", "force", Text, Optional(UNIT_OMITTED))
+    },
+    Key {
+        range: UNIT_LABEL,
+        meaning: "unit of Young's modulus and of pressures, as in \"MPa\"",
+        example: "\"MPa\"",
+        ..key("units", "stress", Text, Optional(UNIT_OMITTED))
     },
     Key {
         unit: LENGTH,
@@ -517,6 +558,7 @@ mod tests {
                     }
                     assert!(refused(law, key, "\"no such word\""), "{}", key.dotted());
                 }
+                Text => assert!(refused(law, key, "1.0") && refused(law, key, "\"\""), "{}", key.dotted()),
                 Points | Material => assert!(refused(law, key, "1.0"), "{}", key.dotted()),
             }
         }
@@ -563,7 +605,7 @@ mod tests {
         assert_eq!(found("path.7.shear"), ["path.N.shear"]);
         assert_eq!(found("exponent").len(), 2);
         assert_eq!(found("hardening.law"), ["material.hardening.law"]);
-        assert_eq!(found("output").len(), 2);
+        assert_eq!(found("output").len(), 5);
         assert!(found("shear_").is_empty());
         assert_eq!(nearest("frictoin").as_deref(), Some("friction"));
     }

@@ -13,6 +13,7 @@ pub mod keys;
 mod mistakes;
 mod opponent;
 mod path;
+mod pictures;
 mod read;
 mod reader;
 mod scale;
@@ -29,6 +30,7 @@ pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
 pub use hardening::Hardening;
 pub use mistakes::mistakes;
 pub use path::{Hold, Segment, ShearTarget};
+pub use pictures::{PictureFormat, PictureWidth, UnitLabels, WIDTHS, WidthUnit};
 pub(crate) use read::CONTACT_RADII;
 pub use reader::{Field, Reader};
 pub use schema::{case_schema, study_schema};
@@ -55,6 +57,9 @@ pub struct Case {
     pub solver: Solver,
     /// What is written.
     pub output: Output,
+    /// What the user's units are called, in pictures.
+    #[serde(skip_serializing_if = "UnitLabels::is_empty")]
+    pub units: UnitLabels,
     /// The segments, in order; the first one presses.
     pub path: Vec<Segment>,
 }
@@ -215,6 +220,15 @@ pub struct Output {
     pub fields: Fields,
     /// Whether to draw plots.
     pub plots: bool,
+    /// In which format they are written.
+    #[serde(skip_serializing_if = "is_default")]
+    pub plot_format: PictureFormat,
+    /// How wide they are; by default as wide as each is laid out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plot_width: Option<PictureWidth>,
+    /// Whether the history is written as `history.parquet` too.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub parquet: bool,
 }
 
 /// The steps after which fields are written.
@@ -252,6 +266,12 @@ impl Default for Solver {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { fields: Fields::Segments, plots: true }
+        Self { fields: Fields::Segments, plots: true, plot_format: PictureFormat::Svg, plot_width: None, parquet: false }
     }
+}
+
+/// What is as it would be without a word is not written out: a case file of before stays what it
+/// was.
+fn is_default(format: &PictureFormat) -> bool {
+    *format == PictureFormat::default()
 }

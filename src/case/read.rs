@@ -6,8 +6,8 @@ use super::document::Document;
 use super::error::{CaseError, Place};
 use super::reader::Reader;
 use super::{
-    Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, Solver, Sphere, estimate, opponent,
-    path,
+    Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere,
+    UnitLabels, estimate, opponent, path, pictures,
 };
 use crate::bounded;
 
@@ -46,7 +46,7 @@ impl Case {
     /// The same for a case that may need more memory than it may take.
     pub(super) fn of_any_size(document: &Document) -> Result<Self, CaseError> {
         let root = Reader::new(document)?;
-        root.only(&["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "path"])?;
+        root.only(&["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "units", "path"])?;
         let sphere = read_sphere(&root.require_table("sphere", "a table with radius")?)?;
         let material = read_material_of(&root)?;
         let opponent = opponent::read(&root, &sphere, &material)?;
@@ -55,6 +55,7 @@ impl Case {
             mesh: read_mesh(&root.table("mesh")?, sphere.radius)?,
             solver: read_solver(&root.table("solver")?)?,
             output: read_output(&root.table("output")?)?,
+            units: UnitLabels::read(&root.table("units")?)?,
             path: path::read(&root, &path::Lengths::of(&sphere, opponent.as_ref()), contact.friction)?,
             opponent,
             sphere,
@@ -204,13 +205,20 @@ fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
 }
 
 fn read_output(table: &Reader<'_>) -> Result<Output, CaseError> {
-    table.only(&["fields", "plots"])?;
+    table.only(&["fields", "plots", "plot_format", "plot_width", "parquet"])?;
     let mut output = Output::default();
     if let Some(field) = table.get("fields") {
         output.fields = field.choice(&[("none", Fields::None), ("segments", Fields::Segments), ("all", Fields::All)])?;
     }
     if let Some(field) = table.get("plots") {
         output.plots = field.boolean()?;
+    }
+    if let Some(field) = table.get("plot_format") {
+        output.plot_format = field.choice(&PictureFormat::ALL.map(|format| (format.ending(), format)))?;
+    }
+    output.plot_width = table.get("plot_width").map(|field| pictures::read_width(&field)).transpose()?;
+    if let Some(field) = table.get("parquet") {
+        output.parquet = field.boolean()?;
     }
     Ok(output)
 }

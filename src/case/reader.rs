@@ -143,6 +143,11 @@ impl<'d> Field<'d> {
         }
     }
 
+    /// A text, `allowed` for other types.
+    pub fn string(&self, allowed: &str) -> Result<&'d str, CaseError> {
+        self.text().ok_or_else(|| self.wrong_type(allowed))
+    }
+
     /// The items of an array, `allowed` for other types.
     pub fn array(&self, allowed: &str) -> Result<Vec<Field<'d>>, CaseError> {
         let Value::Array(items) = &self.entry.value else {

@@ -42,6 +42,7 @@ impl Case {
             mesh: Mesh { contact_radius: self.mesh.contact_radius.map(|a| a / radius), ..self.mesh.clone() },
             solver: self.solver.clone(),
             output: self.output.clone(),
+            units: self.units.clone(),
             path: self.path.iter().map(segment).collect(),
         }
     }

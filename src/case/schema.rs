@@ -15,7 +15,7 @@ pub fn case_schema() -> Value {
 }
 
 /// The schema of a study file: a case under `base`, from which nothing has to be there as the grid
-/// may give it, and lists of values under `grid`.
+/// may give it, and what varies it under `grid`, `zip` and `list`.
 pub fn study_schema() -> Value {
     let values = json!({
         "anyOf": [
@@ -29,13 +29,27 @@ pub fn study_schema() -> Value {
         "minProperties": 1,
         "additionalProperties": { "$ref": "#/$defs/values" }
     });
+    let zipped = json!({
+        "type": "object",
+        "description": "dotted keys of the case with lists of one length, gone through together",
+        "minProperties": 1,
+        "additionalProperties": { "$ref": "#/$defs/values" }
+    });
+    let zip = json!({ "anyOf": [zipped, { "type": "array", "minItems": 1, "items": zipped }] });
+    let list = json!({
+        "type": "array",
+        "description": "cases one by one: dotted keys of the case with a value each",
+        "minItems": 1,
+        "items": { "type": "object", "minProperties": 1 }
+    });
     json!({
         "$schema": DRAFT,
         "title": "Asperity study",
         "type": "object",
         "additionalProperties": false,
-        "required": ["base", "grid"],
-        "properties": { "base": case(false), "grid": grid },
+        "required": ["base"],
+        "anyOf": [{ "required": ["grid"] }, { "required": ["zip"] }, { "required": ["list"] }],
+        "properties": { "base": case(false), "grid": grid, "zip": zip, "list": list },
         "$defs": { "values": values }
     })
 }
@@ -122,6 +136,7 @@ fn property(key: &Key) -> Value {
         Kind::Word(words) => json!({ "enum": words }),
         // Filled in where the table is put together.
         Kind::Material => json!({ "type": "object" }),
+        Kind::Text => json!({ "type": "string", "minLength": 1, "maxLength": 16 }),
         Kind::Points => json!({
             "type": "array",
             "minItems": 1,

@@ -96,7 +96,10 @@ mod tests {
             // Of the opponents the rigid one is enough.
             let uncommented: Vec<&str> = text
                 .lines()
-                .filter(|line| !["# equal = ", "# flat = ", "# material = "].iter().any(|start| line.starts_with(start)))
+                .filter(|line| {
+                    let left_out = ["# equal = ", "# flat = ", "# material = ", "# plot_width = \"85mm\""];
+                    !left_out.iter().any(|start| line.starts_with(start))
+                })
                 .map(|line| line.strip_prefix("# ").filter(is_key).unwrap_or(line))
                 .collect();
             let uncommented = uncommented.join("\n");

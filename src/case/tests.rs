@@ -32,7 +32,8 @@ fn the_reference_case_reads_with_the_documented_defaults() {
             error_estimate: true,
             max_memory_gib: 8.0,
         },
-        output: Output { fields: Fields::Segments, plots: true },
+        output: Output::default(),
+        units: UnitLabels::default(),
         path: vec![
             Segment::Indentation { indentation: 0.02 },
             Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation },

@@ -2,13 +2,22 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
+use super::{Case, Friction, Hold, Opponent, Output, Segment, ShearTarget, UnitLabels};
 
 impl Case {
     /// The case as TOML.
     pub fn to_toml(&self) -> String {
         // Every key is a string and no value is null, so there is nothing that TOML could not hold.
         toml::to_string(self).unwrap_or_else(|error| format!("# {error}\n"))
+    }
+}
+
+impl Case {
+    /// The case as TOML without what changes no result: two cases are one if this is the same.
+    pub fn identity(&self) -> String {
+        let Output { plot_format, plot_width, .. } = Output::default();
+        let output = Output { plot_format, plot_width, ..self.output.clone() };
+        Self { units: UnitLabels::default(), output, ..self.clone() }.to_toml()
     }
 }
 

@@ -61,8 +61,7 @@ fn study_text(study: &Study) -> String {
 
 fn study_json(study: &Study) -> Value {
     let seconds: f64 = study.cases.iter().map(|case| estimated_seconds(&case.case)).sum();
-    let keys: Vec<Value> =
-        study.keys.iter().zip(&study.counts).map(|(key, values)| json!({ "key": key, "values": values })).collect();
+    let keys: Vec<Value> = study.axes.iter().map(|(key, values)| json!({ "key": key, "values": values })).collect();
     let first = study.cases.first().map(|case| case_json(&case.case));
     json!({ "kind": "study", "cases": study.cases.len(), "grid": keys, "estimated_seconds": seconds, "first": first })
 }

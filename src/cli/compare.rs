@@ -2,13 +2,15 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::Args;
 use serde_json::{Map, Value, json};
 
 use super::{CliError, Outcome, print, print_json};
-use crate::case::Case;
-use crate::output::plots::{OverlaidRun, plot_overlay};
+use crate::case::{Case, PictureFormat, PictureWidth};
+use crate::output::plots::axes::{Axes, AxisUnits};
+use crate::output::plots::{OverlaidRun, Sheet, View, plot_overlay};
 use crate::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 
 /// Compare runs: a table of results with differences, and the curves in one picture.
@@ -20,9 +22,12 @@ pub struct CompareArgs {
     /// Directories of runs; the others are compared with the first.
     #[arg(value_name = "DIR", required = true, num_args = 2..)]
     pub dirs: Vec<PathBuf>,
-    /// File for the picture of the curves; an existing file is replaced.
-    #[arg(long, value_name = "FILE.svg", default_value = "compare.svg")]
+    /// File for the picture of the curves, .svg, .pdf or .png; an existing file is replaced.
+    #[arg(long, value_name = "FILE", default_value = "compare.svg", value_parser = picture_file)]
     pub out: PathBuf,
+    /// Width of the picture, as in 85mm, 3.3in or 640px.
+    #[arg(long, value_name = "WIDTH", value_parser = PictureWidth::from_str)]
+    pub width: Option<PictureWidth>,
     /// Print the table as JSON.
     #[arg(long)]
     pub json: bool,
@@ -97,9 +102,11 @@ pub fn compare(args: &CompareArgs) -> Result<Outcome, CliError> {
             OverlaidRun { name: &run.name, history: &run.history, length, force }
         })
         .collect();
-    let units = if unlike { ["over R", "over E R^2"] } else { ["case's unit of length", "case's unit of force"] };
-    let picture = plot_overlay(&overlaid, units)?;
-    picture.write(&args.out)?;
+    let first = &runs[0].case;
+    // What is divided already has no unit any more.
+    let axes = if unlike { Axes::normalised(1.0, 1.0) } else { Axes::of(first, AxisUnits::Auto) };
+    let picture = plot_overlay(&overlaid, &View { axes, sheet: Sheet { width: args.width } })?;
+    picture.write(&args.out, format_of(&args.out).unwrap_or_default())?;
     if args.json {
         print_json(&as_json(&runs, unlike))?;
     } else {
@@ -111,6 +118,18 @@ pub fn compare(args: &CompareArgs) -> Result<Outcome, CliError> {
         let _ = writeln!(std::io::stderr(), "warning: {}: {}", run.name, run.summary.status);
     }
     Ok(Outcome::Done)
+}
+
+/// The format that the ending of a file's name stands for.
+fn format_of(file: &Path) -> Option<PictureFormat> {
+    let ending = file.extension()?.to_str()?.to_ascii_lowercase();
+    PictureFormat::ALL.into_iter().find(|format| format.ending() == ending)
+}
+
+fn picture_file(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    let refused = || "the name of a picture ends in .svg, .pdf or .png".to_owned();
+    format_of(&file).map(|_| file).ok_or_else(refused)
 }
 
 /// The values of a quantity, and how far each is from the first, as a share.

@@ -8,7 +8,7 @@ use super::{CliError, Outcome, print};
 use crate::case::keys::{self, KEYS, Key, Presence, TABLES};
 
 /// What `explain` says of the tables of a study file, which are not keys of a case.
-const STUDY: [(&str, &str); 2] = [
+const STUDY: [(&str, &str); 4] = [
     (
         "base",
         "The case from which every case of a study is made: the tables of a case file under base, as in [base.sphere] and \
@@ -18,6 +18,16 @@ const STUDY: [(&str, &str); 2] = [
         "grid",
         "Dotted keys of the case with lists of values, as in \"contact.friction\" = [0.1, 0.3, \"stick\"] or \"path.0.indentation\" = \
          [0.005, 0.02]. Every combination is a case, the last key fastest; a value may be a whole table. At most 100000 cases.",
+    ),
+    (
+        "zip",
+        "Dotted keys of the case with lists of one length, which are gone through together: the first value of each, the second of each, and so on. \
+         Where there is a grid too, every one of its combinations meets each of them. [[zip]] may be there several times.",
+    ),
+    (
+        "list",
+        "Cases one by one: [[list]] and below it dotted keys of the case with a value each, as in \"contact.friction\" = 0.1. What a case does not say is \
+         the base's. Where there is a grid or a zip too, every one of their combinations meets each case of the list.",
     ),
 ];
 

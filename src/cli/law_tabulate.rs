@@ -10,7 +10,7 @@ use clap::Args;
 use super::options::{DeviceArgs, Verbosity};
 use super::study::{compute, options};
 use super::{CliError, Outcome, print};
-use crate::case::Case;
+use crate::case::{Case, PictureFormat};
 use crate::law::LawError;
 use crate::law::tabulated::{Built, build, depths, picture, study_text};
 use crate::study::{Options, Study};
@@ -72,7 +72,7 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     let law = args.out.join("law.json");
     built.table.write(&law)?;
     let drawn = args.out.join("tabulated.svg");
-    picture(&built)?.write(&drawn)?;
+    picture(&built)?.write(&drawn, PictureFormat::Svg)?;
     print(&format!("{}\nlaw in {}, picture in {}\n", summary(&built), law.display(), drawn.display()))?;
     Ok(if built.missing.is_empty() { Outcome::Done } else { Outcome::CasesFailed })
 }

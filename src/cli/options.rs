@@ -6,6 +6,8 @@ use clap::{ArgAction, Args, ValueEnum};
 use log::LevelFilter;
 
 use super::CliError;
+use crate::case::PictureFormat;
+use crate::output::plots::axes::AxisUnits;
 
 /// Where the kernels run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -29,6 +31,49 @@ pub enum Precision {
     F32,
     /// Double precision.
     F64,
+}
+
+/// The format of a picture's file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For browsers and drawing programs.
+    Svg,
+    /// For LaTeX and for print, with its font.
+    Pdf,
+    /// 300 pixels to the inch, or as many as --width says in px.
+    Png,
+}
+
+impl From<Format> for PictureFormat {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Svg => Self::Svg,
+            Format::Pdf => Self::Pdf,
+            Format::Png => Self::Png,
+        }
+    }
+}
+
+/// The units of axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Units {
+    /// Those of the case if its table `units` names them, else none.
+    #[default]
+    Auto,
+    /// None: forces over E R^2, lengths over R, stresses over E.
+    None,
+    /// Those of the case.
+    Case,
+}
+
+impl From<Units> for AxisUnits {
+    fn from(units: Units) -> Self {
+        match units {
+            Units::Auto => Self::Auto,
+            Units::None => Self::Normalised,
+            Units::Case => Self::Case,
+        }
+    }
 }
 
 /// Where and how precisely to compute.

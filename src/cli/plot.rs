@@ -2,15 +2,18 @@
 
 use std::fs;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::Args;
 
+use super::options::{Format, Units};
 use super::{CliError, Outcome, print};
-use crate::case::Case;
+use crate::case::{Case, PictureFormat, PictureWidth};
 use crate::law::plots::{law_beside_run, table_beside_run};
 use crate::law::{LawError, LawFile};
-use crate::output::plots::replot;
+use crate::output::plots::axes::Axes;
+use crate::output::plots::{Sheet, View, replot};
 use crate::output::{OutputDirectory, read_history};
 use crate::study::{StudyDirectory, report};
 
@@ -25,6 +28,17 @@ pub struct PlotArgs {
     /// A law to draw beside the simulations. For a study, DIR/law.json is used if it exists.
     #[arg(long, value_name = "LAW.json")]
     pub law: Option<PathBuf>,
+    /// Format of the pictures; by default that of the case, SVG for a study. The report of a study
+    /// has its pictures as SVG.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub format: Option<Format>,
+    /// Width of each picture, as in 85mm, 8.5cm, 3.3in, 240pt or 640px; it is laid out anew for it.
+    /// By default that of the case, or each picture's own.
+    #[arg(long, value_name = "WIDTH", value_parser = PictureWidth::from_str)]
+    pub width: Option<PictureWidth>,
+    /// Units on the axes of a run's pictures.
+    #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
+    pub units: Units,
 }
 
 /// Finds out what the directory is and draws it.
@@ -38,11 +52,11 @@ pub fn plot(args: &PlotArgs) -> Result<Outcome, CliError> {
     }
     let study = StudyDirectory::new(dir);
     if study.holds_study() {
-        return plot_study(&study, args.law.as_deref());
+        return plot_study(&study, args);
     }
     let run = OutputDirectory::existing(dir);
     if run.holds_result() {
-        return plot_run(&run, args.law.as_deref());
+        return plot_run(&run, args);
     }
     let missing = |path: PathBuf, otherwise: &str| {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -55,9 +69,9 @@ pub fn plot(args: &PlotArgs) -> Result<Outcome, CliError> {
     )))
 }
 
-fn plot_study(study: &StudyDirectory, law: Option<&Path>) -> Result<Outcome, CliError> {
+fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
     let own = study.root().join("law.json");
-    let path = law.map(Path::to_owned).or_else(|| own.exists().then_some(own));
+    let path = args.law.clone().or_else(|| own.exists().then_some(own));
     let law = path.as_deref().map(LawFile::read).transpose()?;
     let formulas = match &law {
         Some(LawFile::Formulas(law)) => Some(law.as_ref()),
@@ -65,22 +79,25 @@ fn plot_study(study: &StudyDirectory, law: Option<&Path>) -> Result<Outcome, Cli
         // formulas.
         Some(LawFile::Table(_)) | None => None,
     };
-    let written = report::write_report(study, formulas)?;
+    let format = args.format.map_or(PictureFormat::Svg, PictureFormat::from);
+    let written = report::write_report(study, formulas, Sheet { width: args.width }, format)?;
     tell(&written)
 }
 
-fn plot_run(run: &OutputDirectory, law: Option<&Path>) -> Result<Outcome, CliError> {
-    let law = law.map(LawFile::read).transpose()?;
+fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
+    let law = args.law.as_deref().map(LawFile::read).transpose()?;
     let case = Case::load(&run.case(), &[])?;
     let history = read_history(&run.history())?;
-    let mut pictures = replot(run, &case, &history)?;
+    let width = args.width.or(case.output.plot_width);
+    let view = View { axes: Axes::of(&case, args.units.into()), sheet: Sheet { width } };
+    let mut pictures = replot(run, &case, &history, &view)?;
     if let Some(law) = &law {
         let in_case = |source: LawError| CliError::LawCase { file: run.case(), source: Box::new(source) };
         let (picture, out_of_range) = match law {
             LawFile::Formulas(law) => {
-                law_beside_run(law, &case, &history).map(|(picture, prediction)| (picture, prediction.out_of_range))
+                law_beside_run(law, &case, &history, &view).map(|(picture, prediction)| (picture, prediction.out_of_range))
             }
-            LawFile::Table(_) => table_beside_run(law, &case, &history),
+            LawFile::Table(_) => table_beside_run(law, &case, &history, &view),
         }
         .map_err(in_case)?;
         super::law::warn_out_of_range(&run.case(), &out_of_range);
@@ -90,10 +107,11 @@ fn plot_run(run: &OutputDirectory, law: Option<&Path>) -> Result<Outcome, CliErr
         // A closed stderr does not change what was drawn.
         let _ = writeln!(std::io::stderr(), "warning: {} has no steps yet: there is nothing to draw", run.history().display());
     }
+    let format = args.format.map_or(case.output.plot_format, PictureFormat::from);
     let mut written = Vec::new();
     for picture in &pictures {
-        let path = run.plot(picture.name);
-        picture.write(&path)?;
+        let path = run.plot(picture.name, format);
+        picture.write(&path, format)?;
         written.push(path);
     }
     tell(&written)

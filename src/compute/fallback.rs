@@ -2,6 +2,7 @@
 //! states.
 
 use super::cpu::Cpu;
+use super::traffic::Traffic;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest, Outcome,
     TangentRequest,
@@ -21,6 +22,8 @@ pub struct Fallback {
     /// What the present step of each case anticipates.
     weights: Vec<f64>,
     commits: usize,
+    /// What had passed to the device and back when it failed.
+    traffic: Option<Traffic>,
     notes: Vec<String>,
 }
 
@@ -31,7 +34,7 @@ impl Fallback {
         let committed = models.iter().map(|_| None).collect();
         let weights = vec![0.0; models.len()];
         let name = device.description().device;
-        Self { device: Some(device), cpu: None, models, name, committed, weights, commits: 0, notes: Vec::new() }
+        Self { device: Some(device), cpu: None, models, name, committed, weights, commits: 0, traffic: None, notes: Vec::new() }
     }
 
     /// Calls `f` on the device; if that fails, on the CPU, now and ever after.
@@ -50,6 +53,7 @@ impl Fallback {
 
     /// Leaves the device for the CPU, which starts from the committed states.
     fn give_up(&mut self, reason: &str) -> Result<(), ComputeError> {
+        self.traffic = self.traffic();
         self.device = None;
         let mut cpu = Cpu::new(self.models.clone())?;
         for (case, state) in self.committed.iter().enumerate() {
@@ -83,6 +87,10 @@ impl Compute for Fallback {
 
     fn models(&self) -> &[CaseModel] {
         &self.models
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        self.device.as_ref().map_or(self.traffic, |device| device.traffic())
     }
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {

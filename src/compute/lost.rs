@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::gpu::GpuContext;
+use super::traffic::Traffic;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest,
     TangentRequest,
@@ -49,6 +50,10 @@ impl Compute for LostAfter {
 
     fn models(&self) -> &[CaseModel] {
         self.backend.models()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        self.backend.traffic()
     }
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {

@@ -19,6 +19,7 @@ pub mod handle;
 pub mod lost;
 pub mod select;
 mod sweep;
+pub mod traffic;
 
 #[cfg(test)]
 mod tests;
@@ -31,6 +32,7 @@ use crate::contact::coulomb::{Friction, Rows};
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
+use traffic::Traffic;
 
 /// One case of a batch, scaled: lengths by R, stresses by E.
 #[derive(Clone, Debug)]
@@ -220,5 +222,9 @@ pub trait Compute: Send {
     /// failed, say.
     fn take_notes(&mut self) -> Vec<String> {
         Vec::new()
+    }
+    /// What has passed between the host and the device so far; `None` without a device.
+    fn traffic(&self) -> Option<Traffic> {
+        None
     }
 }

@@ -17,7 +17,7 @@ pub struct StudyTable {
 /// One case of a [`StudyTable`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StudyRow {
-    /// The case's name.
+    /// The case's number, as its directory is called; in the table `c` stands before it.
     pub id: String,
     /// Its directory, from the study's.
     pub directory: String,

@@ -17,7 +17,7 @@ pub(super) fn elastic_sample(friction: f64) -> Sample {
         .collect();
     let variables = body.variables(h0, contact.contact_radius, contact.normal_force);
     Sample {
-        id: "0000".to_owned(),
+        id: "c0000".to_owned(),
         body,
         material: 0,
         friction,

@@ -22,7 +22,7 @@ use crate::simulation::zone::Zone;
 const NAME: &str = "asperity checkpoint";
 /// To be raised with every change of what is stored, and of the order and the steps in which a run
 /// goes on from it. The version of the program is compared as well.
-const FORMAT: u32 = 7;
+const FORMAT: u32 = 9;
 
 /// An unfinished run: its case, what it depends on, and what it has written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -123,7 +123,9 @@ impl Checkpoint {
     /// # Errors
     /// [`OutputError::Checkpoint`] with the file.
     pub fn check_files(&self, out: &OutputDirectory, case: &Case) -> Result<(), OutputError> {
-        let Some(missing) = out.missing(&self.ledger.saved, case.output.fields != Fields::None) else { return Ok(()) };
+        let Some(missing) = out.missing(&self.ledger.saved, &self.ledger.panels, case.output.fields != Fields::None) else {
+            return Ok(());
+        };
         let problem = format!(
             "{} was written before it and is gone or empty; restore the file, or run with --force and without --resume to begin anew",
             missing.display()
@@ -163,7 +165,9 @@ fn head() -> String {
 /// case.
 pub fn case_difference(there: &str, here: &str) -> Option<String> {
     let (found, wanted) = (flat(there), flat(here));
-    let keys: std::collections::BTreeSet<&String> = found.keys().chain(wanted.keys()).collect();
+    // How pictures look changes no result.
+    let matters = |key: &&String| !(key.starts_with("units.") || key.starts_with("output.plot_"));
+    let keys: std::collections::BTreeSet<&String> = found.keys().chain(wanted.keys()).filter(matters).collect();
     let told = |values: &BTreeMap<String, String>, key| values.get(key).map_or("absent", String::as_str).to_owned();
     let differs = keys.into_iter().find(|key| found.get(*key) != wanted.get(*key));
     differs.map(|key| format!("{key} is {} there and {} here", told(&found, key), told(&wanted, key)))

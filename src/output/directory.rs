@@ -5,6 +5,7 @@ use super::lock::LOCK_NAME;
 use super::tables::RUN_PICTURES;
 use super::{OutputError, write_atomically};
 use crate::bounded;
+use crate::case::PictureFormat;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -47,6 +48,11 @@ impl OutputDirectory {
         self.root.join("history.csv")
     }
 
+    /// `history.parquet`, the same rows.
+    pub fn parquet(&self) -> PathBuf {
+        self.root.join("history.parquet")
+    }
+
     /// `summary.json`.
     pub fn summary(&self) -> PathBuf {
         self.root.join("summary.json")
@@ -77,9 +83,9 @@ impl OutputDirectory {
         self.root.join(format!("contact/step_{step:04}.csv"))
     }
 
-    /// `plots/NAME.svg`.
-    pub fn plot(&self, name: &str) -> PathBuf {
-        self.root.join(format!("plots/{name}.svg"))
+    /// `plots/NAME.svg`, or with the ending of another format.
+    pub fn plot(&self, name: &str, format: PictureFormat) -> PathBuf {
+        self.root.join(format!("plots/{name}.{}", format.ending()))
     }
 
     /// Step numbers for which there is a contact file, increasing; none if there is no such folder.
@@ -107,11 +113,13 @@ impl OutputDirectory {
     }
 
     /// Removes what an interrupted run left here beyond its checkpoint, in which the fields and
-    /// contact tables of the steps `saved` are: later ones, summary and pictures, and drafts.
-    /// History and collection, which have entries of several steps, stay and have to be cut back.
-    pub fn cut_back(&self, saved: &[usize]) -> Result<(), OutputError> {
+    /// contact tables of the steps `saved` and the tables of `panels` are: later ones, summary and
+    /// pictures, and drafts. History and collection, which have entries of several steps, stay and
+    /// have to be cut back.
+    pub fn cut_back(&self, saved: &[usize], panels: &[usize]) -> Result<(), OutputError> {
+        let saved = saved.iter().flat_map(|&step| [self.fields(step), self.contact(step)]);
         let files: Vec<String> =
-            saved.iter().flat_map(|&step| [self.fields(step), self.contact(step)]).map(|path| file_name(&path)).collect();
+            saved.chain(panels.iter().map(|&step| self.contact(step))).map(|path| file_name(&path)).collect();
         self.clear_but(|folder, name| match folder {
             "" => matches!(name, "history.csv" | "checkpoint.bin" | "run.log"),
             "plots" => false,
@@ -131,10 +139,13 @@ impl OutputDirectory {
     }
 
     /// A file that there should be, as a checkpoint tells, and that is gone or empty: fields (where
-    /// the case has them written) and contact tables of the steps `saved`.
-    pub fn missing(&self, saved: &[usize], fields: bool) -> Option<PathBuf> {
+    /// the case has them written) and contact tables of the steps `saved`, tables alone of the
+    /// steps `panels`.
+    pub fn missing(&self, saved: &[usize], panels: &[usize], fields: bool) -> Option<PathBuf> {
         let files = saved.iter().flat_map(|&step| [Some(self.contact(step)), fields.then(|| self.fields(step))]).flatten();
-        files.into_iter().find(|path| !fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0))
+        files
+            .chain(panels.iter().map(|&step| self.contact(step)))
+            .find(|path| !fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0))
     }
 
     /// Names in the folder that are no run's drafts nor its lock, the least first: what one has to
@@ -210,10 +221,12 @@ fn ours(folder: &str, name: &str) -> bool {
     };
     let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || ours(folder, name));
     let named = match folder {
-        "" => matches!(name, "history.csv" | "summary.json" | "checkpoint.bin" | "run.log"),
+        "" => matches!(name, "history.csv" | "history.parquet" | "summary.json" | "checkpoint.bin" | "run.log"),
         "fields" => name == "case.pvd" || step(".vtu"),
         "contact" => step(".csv"),
-        "plots" => name.strip_suffix(".svg").is_some_and(|name| RUN_PICTURES.contains(&name)),
+        "plots" => name.rsplit_once('.').is_some_and(|(name, ending)| {
+            RUN_PICTURES.contains(&name) && PictureFormat::ALL.iter().any(|format| format.ending() == ending)
+        }),
         _ => false,
     };
     named || draft()
@@ -284,7 +297,7 @@ mod tests {
         fs::create_dir(&foreign).unwrap();
         fs::write(foreign.join("step_0001.vtu"), "mine").unwrap();
         std::os::unix::fs::symlink(&foreign, out.root().join("fields")).unwrap();
-        for refused in [out.clear(), out.cut_back(&[]), out.tidy()] {
+        for refused in [out.clear(), out.cut_back(&[], &[]), out.tidy()] {
             let message = refused.unwrap_err().to_string();
             assert!(message.contains("out/fields") && message.contains("is a link"), "{message}");
         }
@@ -298,10 +311,10 @@ mod tests {
         for path in [out.contact(3), out.fields(3), out.contact(4)] {
             write_atomically(&path, |out| out.write_all(b"x")).unwrap();
         }
-        assert_eq!((out.missing(&[3], true), out.missing(&[3, 4], false)), (None, None));
-        assert_eq!(out.missing(&[3, 4], true), Some(out.fields(4)));
+        assert_eq!((out.missing(&[3], &[], true), out.missing(&[3, 4], &[], false)), (None, None));
+        assert_eq!(out.missing(&[3, 4], &[], true), Some(out.fields(4)));
         fs::write(out.contact(3), "").unwrap();
-        assert_eq!(out.missing(&[3, 4], true), Some(out.contact(3)));
+        assert_eq!(out.missing(&[3, 4], &[], true), Some(out.contact(3)));
     }
 
     #[test]
@@ -322,7 +335,7 @@ mod tests {
         for name in gone.iter().chain(&kept).chain(&["fields/case.pvd"]) {
             write_atomically(&folder.path().join(name), |_| Ok(())).unwrap();
         }
-        out.cut_back(&[7, 20]).unwrap();
+        out.cut_back(&[7, 20], &[]).unwrap();
         assert!(gone.iter().all(|name| !folder.path().join(name).exists()));
         assert!(kept.iter().all(|name| folder.path().join(name).exists()) && out.collection().exists());
     }

@@ -79,6 +79,14 @@ pub enum OutputError {
         /// Infinite, or not a number.
         value: f64,
     },
+    /// A file cannot be made in its format.
+    #[error("cannot write {}: {problem}", path.display())]
+    Format {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// Why not, and what to do.
+        problem: String,
+    },
     /// Data handed to a writer do not fit each other.
     #[error("cannot write {}: {problem}; this is a fault of the program, please report it", path.display())]
     Inconsistent {
@@ -110,6 +118,7 @@ impl OutputError {
             | Self::Link { path }
             | Self::Gone { path }
             | Self::NotFinite { path, .. }
+            | Self::Format { path, .. }
             | Self::Inconsistent { path, .. } => path,
             Self::Locked { dir, .. } => dir,
         }

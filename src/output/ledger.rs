@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::tables::Tables;
 use super::{OutsideSteps, StepRecord};
+use crate::compute::traffic::Account;
 use crate::simulation::scout::Scout;
 use crate::simulation::zone::Zone;
 use crate::solver::phases::PhaseTimes;
@@ -15,7 +16,9 @@ pub struct Ledger {
     pub rows: Vec<StepRecord>,
     /// Steps whose fields or contact table are written, increasing.
     pub saved: Vec<usize>,
-    /// Contact at the ends of segments, for the plots.
+    /// Steps whose contact table alone is written, for the plots, increasing.
+    pub panels: Vec<usize>,
+    /// Contact at the ends of segments and at those steps.
     pub tables: Tables,
     /// Linear systems that multigrid left to the direct solver.
     pub fallbacks: usize,
@@ -23,6 +26,8 @@ pub struct Ledger {
     pub times: PhaseTimes,
     /// Time beside the steps.
     pub outside: OutsideSteps,
+    /// What passed between the host and the device.
+    pub traffic: Account,
     /// Notes for the summary.
     pub messages: Vec<String>,
     /// The finely meshed zone, as far as it is known.

@@ -6,6 +6,7 @@
 //! whole ([`write_atomically`]); `history.csv` grows by whole rows, so that a killed job keeps what
 //! it computed.
 
+mod parquet;
 #[cfg(feature = "plots")]
 pub mod plots;
 
@@ -34,6 +35,7 @@ mod time_by_phase;
 mod units;
 mod vtu;
 
+pub use crate::compute::traffic::{DeviceTraffic, Traffic};
 pub use crate::simulation::record::StepRecord;
 pub use atomic::{draft_of, write_atomically};
 pub use checkpoint::{Checkpoint, case_difference};
@@ -45,6 +47,7 @@ pub use estimate::{ErrorEstimate, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, history_columns, read_history};
 pub use lock::{DirectoryLock, LOCK_NAME};
+pub use parquet::write_parquet;
 pub use path_share::PathShare;
 #[cfg(feature = "plots")]
 pub use plots::{Picture, PlotInputs, write_plots};

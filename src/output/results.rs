@@ -10,11 +10,13 @@ use super::clock::Clock;
 use super::finite::{check_saved, check_summary};
 use super::ledger::Ledger;
 use super::path_share::PathShare;
+use super::tables::is_panel;
+use super::units::coefficient;
 use super::{
     Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, Position, Progress, Status, StepRecord,
-    Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields,
+    Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields, write_parquet,
 };
-use crate::case::{Case, Fields, Segment};
+use crate::case::{Case, Fields, PictureFormat, Segment};
 use crate::compute::{ComputeError, Description};
 use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::drive::{Observer, StepView};
@@ -39,6 +41,36 @@ const CHECKPOINT_SHARE: u32 = 20;
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
+/// What is drawn at the end, and how.
+#[cfg(feature = "plots")]
+struct Pictures {
+    inputs: super::PlotInputs,
+    view: super::plots::View,
+    format: PictureFormat,
+}
+
+#[cfg(feature = "plots")]
+impl Pictures {
+    fn of(case: &Case) -> Self {
+        Self { inputs: super::PlotInputs::of(case), view: super::plots::View::of(case), format: case.output.plot_format }
+    }
+}
+
+/// Refuses what this program was built without before anything is computed.
+fn check_formats(case: &Case, out: &OutputDirectory) -> Result<(), OutputError> {
+    if case.output.parquet && !cfg!(feature = "parquet") {
+        let problem = "this program was built without the feature \"parquet\"; leave out output.parquet".to_owned();
+        return Err(OutputError::Format { path: out.parquet(), problem });
+    }
+    match case.output.plot_format {
+        PictureFormat::Pdf | PictureFormat::Png if case.output.plots && !cfg!(feature = "print") => {
+            let problem = "this program was built without the feature \"print\"; set output.plot_format = \"svg\"".to_owned();
+            Err(OutputError::Format { path: out.plot("forces", case.output.plot_format), problem })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Writes `history.csv` row by row, fields and contact tables of the steps that are to be saved,
 /// and at the end plots and summary.
 pub struct ResultWriter {
@@ -50,7 +82,10 @@ pub struct ResultWriter {
     /// Keep what the pictures show, and draw them at the end where this build can.
     plots: bool,
     #[cfg(feature = "plots")]
-    plot_inputs: super::PlotInputs,
+    pictures: Pictures,
+    friction: Option<f64>,
+    /// Write `history.parquet` at the end.
+    parquet: bool,
     inputs: SummaryInputs,
     setting: Setting,
     clock: Clock,
@@ -92,16 +127,18 @@ impl ResultWriter {
         resumed: Option<&Checkpoint>,
     ) -> Result<Self, OutputError> {
         let out = OutputDirectory::existing(dir);
+        check_formats(case, &out)?;
         let mut ledger = Ledger { cpu_before: Some(0.0), ..Ledger::default() };
         let mut share = PathShare::new(&case.path);
         let (history, collection) = match resumed {
             None => (HistoryWriter::create(&out.history())?, Collection::new(&out.collection())),
             Some(checkpoint) => {
                 ledger = checkpoint.ledger.clone();
+                ledger.traffic.reopened();
                 for row in &ledger.rows {
                     share.after(row);
                 }
-                out.cut_back(&ledger.saved)?;
+                out.cut_back(&ledger.saved, &ledger.panels)?;
                 let saved = ledger.saved.iter().filter(|_| case.output.fields != Fields::None);
                 let collection =
                     Collection::resume(&out.collection(), saved.map(|&step| (ledger.path_length(step), out.fields(step))))?;
@@ -116,7 +153,9 @@ impl ResultWriter {
             contact_tables: false,
             plots: case.output.plots,
             #[cfg(feature = "plots")]
-            plot_inputs: super::PlotInputs::of(case),
+            pictures: Pictures::of(case),
+            friction: coefficient(case.contact.friction),
+            parquet: case.output.parquet,
             inputs: SummaryInputs::of(case),
             began_on: setting.computed_on.clone(),
             setting,
@@ -196,7 +235,8 @@ impl ResultWriter {
     #[cfg(feature = "plots")]
     fn draw(&self) -> Result<(), OutputError> {
         if self.plots {
-            super::write_plots(&self.out, &self.ledger.rows, &self.ledger.tables, &self.plot_inputs)?;
+            let Pictures { inputs, view, format } = &self.pictures;
+            super::write_plots(&self.out, &self.ledger.rows, &self.ledger.tables, inputs, view, *format)?;
         }
         Ok(())
     }
@@ -215,7 +255,10 @@ impl ResultWriter {
         self.progress.finish(&last_line(status, self.ledger.rows.len()));
         self.ledger.messages.extend(message.map(str::to_owned));
         let begun = Instant::now();
-        let plots = self.draw();
+        let plots = self.draw().and_then(|()| match self.parquet {
+            true => write_parquet(&self.out.parquet(), &self.ledger.rows),
+            false => Ok(()),
+        });
         let mut status = if self.failed { Status::Failed } else { status };
         if let Err(error) = &plots {
             self.ledger.messages.push(error.to_string());
@@ -239,6 +282,7 @@ impl ResultWriter {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.ledger.fallbacks,
+            device_traffic: self.ledger.traffic.sum(),
             wall_s,
             cpu_s,
             time_by_phase: TimeByPhase::new(&self.ledger.times, &self.ledger.outside, wall_s),
@@ -298,6 +342,21 @@ impl ResultWriter {
         Ok(())
     }
 
+    /// Keeps the contact of a step of the shear for the plots, with its table, from which they can
+    /// be drawn again.
+    fn save_panel(&mut self, view: &StepView<'_>) -> Result<(), Failed> {
+        if !self.plots || !is_panel(&self.ledger.rows, self.friction) {
+            return Ok(());
+        }
+        let (step, contact) = (view.record.step, self.contact(view));
+        if self.fields == Fields::Segments {
+            write_contact(&self.out.contact(step), &contact)?;
+            self.ledger.panels.push(step);
+        }
+        self.ledger.tables.add(&self.ledger.rows, contact);
+        Ok(())
+    }
+
     fn detail(&self, row: &StepRecord) -> String {
         let mut text = format!("h {:.4e}  F_N {:.4e}", row.h, row.f_n);
         if row.delta_t != 0.0 {
@@ -322,10 +381,13 @@ impl Observer for ResultWriter {
         self.ledger.rows.push(row);
         self.ledger.fallbacks += view.report.fallbacks;
         self.ledger.times += view.report.times;
+        self.ledger.traffic.step(view.report.traffic, view.traffic());
         if self.fields == Fields::All {
             let contact = self.contact(view);
             self.save(view, &contact)?;
         }
+        self.save_panel(view)?;
+        self.ledger.traffic.read(view.traffic());
         let position = Position {
             step: row.step,
             segment: row.segment,
@@ -354,20 +416,22 @@ impl Observer for ResultWriter {
         if self.plots {
             self.ledger.tables.add(&self.ledger.rows, contact);
         }
+        self.ledger.traffic.read(view.traffic());
         self.ledger.outside.output += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
     fn starts_over(&mut self, problem: &Problem, unknowns: usize) -> Result<(), Failed> {
-        self.out.cut_back(&[])?;
+        self.out.cut_back(&[], &[])?;
         self.history = HistoryWriter::create(&self.out.history())?;
         self.collection = Collection::new(&self.out.collection());
         self.share = PathShare::new(&self.path);
         self.setting.elements = problem.model.mesh.elements.len();
         self.setting.unknowns = unknowns;
         let ledger = &mut self.ledger;
-        (ledger.rows, ledger.saved, ledger.tables) = Default::default();
+        (ledger.rows, ledger.saved, ledger.panels, ledger.tables) = Default::default();
         ledger.fallbacks = 0;
+        ledger.traffic.starts_over();
         ledger.remeshed += 1;
         self.meshed(problem);
         Ok(())

@@ -2,6 +2,7 @@
 
 use super::{OutputError, StepRecord, TimeByPhase, write_atomically};
 use crate::bounded;
+use crate::compute::traffic::DeviceTraffic;
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;
@@ -158,6 +159,8 @@ pub struct Summary {
     pub device: String,
     /// Precision of the kernels, f32 or f64.
     pub precision: String,
+    /// What passed between the host and the device; null where the CPU ran the kernels.
+    pub device_traffic: Option<DeviceTraffic>,
     /// How the run ended.
     pub status: Status,
     /// Version of the program.

@@ -2,6 +2,7 @@
 
 use super::Canceller;
 use crate::case::{Case, Segment};
+use crate::compute::traffic::Account;
 use crate::output::{
     Clock, ErrorEstimate, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary, SummaryInputs,
     TimeByPhase, Units, last_line,
@@ -27,6 +28,7 @@ pub struct Memory {
     scout: Option<Scout>,
     remeshed: usize,
     fallbacks: usize,
+    traffic: Account,
     times: PhaseTimes,
     outside: OutsideSteps,
     messages: Vec<String>,
@@ -55,6 +57,7 @@ impl Memory {
             scout: None,
             remeshed: 0,
             fallbacks: 0,
+            traffic: Account::default(),
             times: PhaseTimes::default(),
             outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
             messages: Vec::new(),
@@ -81,6 +84,7 @@ impl Memory {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.fallbacks,
+            device_traffic: self.traffic.sum(),
             wall_s,
             cpu_s: self.clock.cpu_seconds(),
             time_by_phase: TimeByPhase::new(&self.times, &self.outside, wall_s),
@@ -108,6 +112,7 @@ impl Observer for Memory {
         }
         self.fallbacks += view.report.fallbacks;
         self.times += view.report.times;
+        self.traffic.step(view.report.traffic, view.traffic());
         let row = view.record.in_units(&self.units);
         self.progress.step(&Position {
             step: row.step,
@@ -121,6 +126,7 @@ impl Observer for Memory {
 
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
         self.times += view.unfinished;
+        self.traffic.read(view.traffic());
         Ok(())
     }
 
@@ -135,6 +141,7 @@ impl Observer for Memory {
         self.spacing = problem.spacing;
         self.share = PathShare::new(&self.path);
         self.fallbacks = 0;
+        self.traffic.starts_over();
         self.remeshed += 1;
         Ok(())
     }

@@ -299,6 +299,11 @@ impl Simulation {
                 Some(checkpoint) => {
                     checkpoint.check_precision(&OutputDirectory::existing(out).checkpoint(), computed_on.precision)?;
                     checkpoint.snapshot().check(&problem.model.mesh).map_err(|error| refused(out, &error.to_string()))?;
+                    // Labels of pictures may have changed since.
+                    let directory = OutputDirectory::existing(out);
+                    if directory.read_case().as_deref() != Some(&case.to_toml()) {
+                        directory.write_case(&case.to_toml())?;
+                    }
                 }
                 None => prepare(out, case)?,
             }

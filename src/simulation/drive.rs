@@ -17,6 +17,7 @@ use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::{Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
+use crate::compute::traffic::Traffic;
 use crate::compute::{Compute, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::contact::frame::to_frame;
@@ -45,6 +46,8 @@ pub struct Drive<'a> {
     full_slip: Option<bool>,
     /// How Newton went in the last accepted step.
     last_report: StepReport,
+    /// The device's account before the first attempt at the next step.
+    traffic_before: Option<Traffic>,
 }
 
 /// Share of the last step by which a press step is extrapolated. Measured: 0.45 to 0.75 need the
@@ -79,6 +82,7 @@ impl<'a> Drive<'a> {
             held_force: None,
             full_slip: None,
             last_report: StepReport::default(),
+            traffic_before: None,
         }
     }
 
@@ -321,6 +325,7 @@ impl<'a> Drive<'a> {
 
     /// One Newton solve towards a target; commits nothing.
     fn attempt(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+        self.traffic_before = self.traffic_before.or_else(|| self.backend.traffic());
         let mut guess = self.guess(target);
         let h = match (target.hold_force, self.state.last_increment) {
             // Where the force is held the indentation is an unknown, and goes on as the
@@ -415,6 +420,9 @@ impl<'a> Drive<'a> {
         let mut lap = Lap::start();
         let (energies, outcome) = CaseHandle { backend: &mut *self.backend, case: self.case }.commit(&accepted.u)?;
         lap.end(&mut report.times, Phase::Commit);
+        if let (Some(before), Some(after)) = (self.traffic_before.take(), self.backend.traffic()) {
+            report.traffic = after - before;
+        }
         if let Outcome::Inverted { element, point } = outcome {
             return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
         }

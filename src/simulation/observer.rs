@@ -3,6 +3,7 @@
 use super::checkpoint::Snapshot;
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
+use crate::compute::traffic::Traffic;
 use crate::compute::{CaseFields, Compute, ComputeError};
 use crate::mesh::Mesh;
 use crate::solver::newton::StepReport;
@@ -56,6 +57,11 @@ pub struct StepView<'a> {
 }
 
 impl StepView<'_> {
+    /// What has passed to the device and back so far; `None` without a device.
+    pub fn traffic(&self) -> Option<Traffic> {
+        self.backend.traffic()
+    }
+
     /// Stresses and strains of the step.
     pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
         self.backend.fields(self.case)

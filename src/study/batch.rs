@@ -14,6 +14,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
     Outcome, TangentRequest,
@@ -44,6 +45,7 @@ struct Request {
 struct Told {
     description: Description,
     notes: Vec<String>,
+    traffic: Option<Traffic>,
 }
 
 /// A backend that will be shared.
@@ -69,7 +71,7 @@ pub struct Guest {
 /// A host for a backend and a guest for each of its cases.
 pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Guest>) {
     let models = Arc::new(backend.models().to_vec());
-    let told = Arc::new(Mutex::new(Told { description: backend.description(), notes: Vec::new() }));
+    let told = Arc::new(Mutex::new(Told { description: backend.description(), notes: Vec::new(), traffic: backend.traffic() }));
     let (sender, requests) = channel();
     let guest = |_| Guest {
         models: models.clone(),
@@ -92,11 +94,13 @@ impl Host {
             waiting.extend(self.requests.try_iter());
             let answers = self.answer(waiting);
             let notes = self.backend.take_notes();
+            let mut told = lock(&self.told);
+            told.traffic = self.backend.traffic();
             if !notes.is_empty() {
-                let mut told = lock(&self.told);
                 told.description = self.backend.description();
                 told.notes.extend(notes);
             }
+            drop(told);
             for (reply, answer) in answers {
                 // A guest that has gone needs no answer.
                 let _ = reply.send(answer);
@@ -242,6 +246,10 @@ impl Compute for Guest {
 
     fn models(&self) -> &[CaseModel] {
         &self.models
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        lock(&self.told).traffic
     }
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {

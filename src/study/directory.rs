@@ -1,4 +1,4 @@
-//! Where the results of a study lie: `study.toml`, `study.csv` and `cases/0001/`, each an ordinary
+//! Where the results of a study lie: `study.toml`, `study.csv` and `cases/c0001/`, each an ordinary
 //! run's directory; `plots/*.svg` and `report.html` of `asperity plot`.
 
 use std::fs;
@@ -9,12 +9,25 @@ use super::StudyError;
 use super::file::Study;
 use super::place::{Placed, place};
 use super::row::FIRST_COLUMNS;
+use crate::case::PictureFormat;
 use crate::law::table::StudyTable;
 use crate::output::{DirectoryLock, LOCK_NAME, OutputDirectory, draft_of, write_atomically};
 
 /// Names of all pictures of a study, by which an earlier study's are removed.
 const STUDY_PICTURES: [&str; 8] =
     ["johnson", "area", "fall", "parameters", "collapse-tangential", "collapse-normal", "cases", "errors"];
+
+/// The name of a case and of its directory. The letter keeps it text for whoever reads `study.csv`:
+/// 0001 would become 1.
+pub(super) fn case_id(number: usize, digits: usize) -> String {
+    format!("c{number:0digits$}")
+}
+
+/// Whether a directory may be that of a case. Earlier versions wrote the number alone.
+pub(super) fn is_case_id(name: &str) -> bool {
+    let number = name.strip_prefix('c').unwrap_or(name);
+    !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
+}
 
 /// The folder of one study.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,9 +56,9 @@ impl StudyDirectory {
         self.root.join("study.csv")
     }
 
-    /// `plots/NAME.svg`.
-    pub fn plot(&self, name: &str) -> PathBuf {
-        self.root.join(format!("plots/{name}.svg"))
+    /// `plots/NAME.svg`, or with the ending of another format.
+    pub fn plot(&self, name: &str, format: PictureFormat) -> PathBuf {
+        self.root.join(format!("plots/{name}.{}", format.ending()))
     }
 
     /// `report.html`.
@@ -128,7 +141,7 @@ impl StudyDirectory {
         if cases.is_dir() {
             for name in names(&cases).map_err(failed)? {
                 let out = OutputDirectory::existing(cases.join(&name));
-                if name.bytes().all(|byte| byte.is_ascii_digit()) && out.holds_result() {
+                if is_case_id(&name) && out.holds_result() {
                     let lock = DirectoryLock::take(out.root())?;
                     out.clear()?;
                     fs::remove_file(out.case()).map_err(failed)?;
@@ -144,7 +157,7 @@ impl StudyDirectory {
         for name in names(&self.root).map_err(failed)?.iter().filter(|name| own_draft(name)) {
             fs::remove_file(self.root.join(name)).map_err(failed)?;
         }
-        let pictures = STUDY_PICTURES.into_iter().map(|name| self.plot(name));
+        let pictures = STUDY_PICTURES.into_iter().flat_map(|name| PictureFormat::ALL.map(|format| self.plot(name, format)));
         for file in pictures.chain([self.report(), self.study(), self.table()]) {
             if file.is_file() {
                 fs::remove_file(&file).map_err(failed)?;

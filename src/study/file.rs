@@ -9,15 +9,17 @@
 //! "contact.friction" = [0.1, 0.3, "stick"]
 //! "path.0.indentation" = [0.005, 0.02]
 //! ```
-//! A value may be a whole table, such as one hardening law for each kind of material. The last key
-//! of the file runs fastest.
+//! Beside the grid, or in its place, keys may be gone through together (`[zip]`) and cases listed
+//! one by one (`[[list]]`), see [`super::sweep`]. A value may be a whole table, such as one
+//! hardening law for each kind of material. The last key of the file runs fastest.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::StudyError;
+use super::directory::case_id;
+use super::sweep::{Sweep, SweepKey, not_allowed, require};
 use crate::bounded;
-use crate::case::{Case, CaseError, Document, Entry, Place, Reader, Value, short};
+use crate::case::{Case, CaseError, Document, Entry, Reader, Value, short};
 
 /// Most combinations that a grid may have.
 const MOST_CASES: usize = 100_000;
@@ -26,17 +28,14 @@ const MOST_CASES: usize = 100_000;
 const MOST_VALUES: usize = 20_000_000;
 
 const BASE: &str = "the case's own tables under base, as in [base.sphere]";
-const GRID: &str = "dotted keys of the case with lists of values, as in \"contact.friction\" = [0.1, 0.3]";
-const LIST: &str = "a list of values, as in [0.1, 0.3]";
-
 /// One case of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyCase {
-    /// Number of the combination in grid order, from 1, with leading zeros: the name of its
-    /// directory.
+    /// Number of the combination in grid order, from 1, as in `c0001`: the name of its directory.
     pub id: String,
-    /// Its values of the grid's keys, in the order of the keys, as text: numbers in digits, strings
-    /// bare, tables as inline TOML.
+    /// Its values of the study's keys, in the order of the keys, as text: numbers in digits,
+    /// strings bare, tables as inline TOML; empty where a case of the list leaves a key to the
+    /// base.
     pub values: Vec<String>,
     /// The case, in the user's units.
     pub case: Case,
@@ -47,19 +46,20 @@ pub struct StudyCase {
 pub struct Study {
     /// The file as it was read.
     pub text: String,
-    /// The grid's keys in the order of their lines.
+    /// The keys that are varied, in the order of their lines.
     pub keys: Vec<String>,
-    /// How many values each key has.
-    pub counts: Vec<usize>,
-    /// Every combination, the last key fastest. Where the base says nothing about it, a case of a
-    /// study writes no fields and no plots.
+    /// What varies them, with the number of its values: a key of the grid, the keys of a zip, the
+    /// list.
+    pub axes: Vec<(String, usize)>,
+    /// Every combination, the last of those fastest. Where the base says nothing about it, a case
+    /// of a study writes no fields and no plots.
     pub cases: Vec<StudyCase>,
 }
 
 impl Study {
     /// Whether a document is meant as a study, not as a case.
     pub fn is_study(document: &Document) -> bool {
-        matches!(&document.root.value, Value::Table(table) if table.contains_key("base") || table.contains_key("grid"))
+        matches!(&document.root.value, Value::Table(table) if ["base", "grid", "zip"].iter().any(|name| table.contains_key(*name)))
     }
 
     /// Reads a study file and checks every combination of its grid.
@@ -81,29 +81,28 @@ impl Study {
     pub fn parse(text: &str, file: &str) -> Result<Self, StudyError> {
         let document = Document::parse(text, file)?;
         let root = Reader::new(&document)?;
-        root.only(&["base", "grid"])?;
+        root.only(&["base", "grid", "zip", "list"])?;
         root.require_table("base", BASE)?;
-        root.require_table("grid", GRID)?;
-        let grid = read_grid(&document)?;
+        require(&root)?;
+        let sweep = Sweep::read(&document)?;
         let base = document.table("base").ok_or_else(|| root.missing("base", BASE))?;
         let base = with_study_defaults(base)?;
-        let count = grid.iter().try_fold(1usize, |count, key| count.checked_mul(key.values.len()).filter(|n| *n <= MOST_CASES));
-        let Some(count) = count else {
-            let refused =
-                not_allowed(&grid[0].place, "grid", &format!("has more than {MOST_CASES} combinations"), "fewer values");
-            return Err(refused.into());
+        let place = sweep.axes.first().map_or(&document.root.place, |axis| &axis.place);
+        let Some(count) = sweep.count(MOST_CASES) else {
+            return Err(not_allowed(place, "grid", &format!("has more than {MOST_CASES} combinations"), "fewer values").into());
         };
+        let row = |row: &Vec<(usize, Entry)>| row.iter().map(|(_, entry)| values_of(&entry.value)).sum::<usize>();
         let values = values_of(&base.root.value)
-            + grid.iter().map(|key| key.values.iter().map(|v| values_of(&v.value)).max().unwrap_or(0)).sum::<usize>();
+            + sweep.axes.iter().map(|axis| axis.rows.iter().map(row).max().unwrap_or(0)).sum::<usize>();
         if values.saturating_mul(count) > MOST_VALUES {
             let what = format!("has {count} combinations of about {values} values each, more than {MOST_VALUES} together");
-            return Err(not_allowed(&grid[0].place, "grid", &what, "fewer combinations, or a shorter path or table").into());
+            return Err(not_allowed(place, "grid", &what, "fewer combinations, or a shorter path or table").into());
         }
-        let cases = check_all(&base, &grid, count, file)?;
+        let cases = check_all(&base, &sweep, count, file)?;
         Ok(Self {
             text: text.to_owned(),
-            keys: grid.iter().map(|key| key.name.clone()).collect(),
-            counts: grid.iter().map(|key| key.values.len()).collect(),
+            keys: sweep.keys.into_iter().map(|key| key.name).collect(),
+            axes: sweep.axes.into_iter().map(|axis| (axis.label, axis.rows.len())).collect(),
             cases,
         })
     }
@@ -119,71 +118,11 @@ impl Study {
         describe(self.keys.iter().map(String::as_str).zip(case.values.iter().map(String::as_str)))
     }
 
-    /// The size of the grid in words: `12 cases: contact.friction (3) x path.0.indentation (4)`.
+    /// The size of the study in words: `12 cases: contact.friction (3) x path.0.indentation (4)`.
     pub fn size(&self) -> String {
-        let keys: Vec<String> = self.keys.iter().zip(&self.counts).map(|(key, count)| format!("{key} ({count})")).collect();
-        format!("{} case{}: {}", self.cases.len(), if self.cases.len() == 1 { "" } else { "s" }, keys.join(" x "))
+        let axes: Vec<String> = self.axes.iter().map(|(name, count)| format!("{name} ({count})")).collect();
+        format!("{} case{}: {}", self.cases.len(), if self.cases.len() == 1 { "" } else { "s" }, axes.join(" x "))
     }
-}
-
-/// One key of the grid.
-struct GridKey {
-    name: String,
-    place: Place,
-    values: Vec<Entry>,
-}
-
-/// The grid's keys in the order of their lines, those of one line in alphabetical order.
-/// `contact.friction = [..]` without quotes is the same key as `"contact.friction" = [..]`.
-fn read_grid(document: &Document) -> Result<Vec<GridKey>, CaseError> {
-    let mut keys = Vec::new();
-    if let Value::Table(root) = &document.root.value
-        && let Some(grid) = root.get("grid")
-        && let Value::Table(table) = &grid.value
-    {
-        collect(table, "", &mut keys)?;
-        if keys.is_empty() {
-            return Err(not_allowed(&grid.place, "grid", "is empty", GRID));
-        }
-    }
-    keys.sort_by(|a, b| a.place.line().cmp(&b.place.line()).then_with(|| a.name.cmp(&b.name)));
-    let mut seen = BTreeSet::new();
-    match keys.iter().find(|key| !seen.insert(&key.name)) {
-        Some(twice) => Err(not_allowed(&twice.place, &grid_key(&twice.name), "is there twice", "each key once")),
-        None => Ok(keys),
-    }
-}
-
-fn collect(table: &BTreeMap<String, Entry>, above: &str, keys: &mut Vec<GridKey>) -> Result<(), CaseError> {
-    for (part, entry) in table {
-        let name = if above.is_empty() { part.clone() } else { format!("{above}.{part}") };
-        match &entry.value {
-            Value::Table(inner) if !inner.is_empty() => collect(inner, &name, keys)?,
-            Value::Array(values) if values.is_empty() => {
-                return Err(not_allowed(&entry.place, &grid_key(&name), "is an empty list", LIST));
-            }
-            Value::Array(values) => {
-                let mut seen = BTreeSet::new();
-                for value in values {
-                    let text = plain(&value.value);
-                    let what = format!("has the value {text} twice");
-                    if !seen.insert(text) {
-                        return Err(not_allowed(&value.place, &grid_key(&name), &what, "each value once"));
-                    }
-                }
-                keys.push(GridKey { name, place: entry.place.clone(), values: values.clone() });
-            }
-            other => {
-                return Err(CaseError::WrongType {
-                    place: entry.place.clone(),
-                    key: grid_key(&name),
-                    found: other.describe(),
-                    allowed: LIST.to_owned(),
-                });
-            }
-        }
-    }
-    Ok(())
 }
 
 /// How many values there are, in tables and arrays too.
@@ -193,14 +132,6 @@ fn values_of(value: &Value) -> usize {
         Value::Table(table) => 1 + table.values().map(|entry| values_of(&entry.value)).sum::<usize>(),
         _ => 1,
     }
-}
-
-fn grid_key(name: &str) -> String {
-    format!("grid.{name}")
-}
-
-fn not_allowed(place: &Place, key: &str, what: &str, allowed: &str) -> CaseError {
-    CaseError::NotAllowed { place: place.clone(), key: key.to_owned(), what: what.to_owned(), allowed: allowed.to_owned() }
 }
 
 /// No fields and no plots for each of hundreds of cases, unless the base asks for them.
@@ -218,21 +149,22 @@ fn with_study_defaults(mut base: Document) -> Result<Document, CaseError> {
 
 /// Every combination as a case. The first refusal is the one that is told; where all are refused
 /// alike, it is the base or a key that is wrong and not the combination.
-fn check_all(base: &Document, grid: &[GridKey], count: usize, file: &str) -> Result<Vec<StudyCase>, StudyError> {
+fn check_all(base: &Document, sweep: &Sweep, count: usize, file: &str) -> Result<Vec<StudyCase>, StudyError> {
     let width = count.to_string().len().max(4);
+    let keys = &sweep.keys;
     // A table is set before a key within it, wherever they stand in the file.
-    let mut order: Vec<usize> = (0..grid.len()).collect();
-    order.sort_by_key(|&key| grid[key].name.split('.').count());
+    let mut order: Vec<usize> = (0..keys.len()).collect();
+    order.sort_by_key(|&key| keys[key].name.split('.').count());
     let mut cases = Vec::with_capacity(count);
     let mut refused: Vec<(CaseError, String)> = Vec::new();
     for number in 0..count {
-        let chosen = choice(grid, number);
-        let values: Vec<String> = chosen.iter().map(|entry| plain(&entry.value)).collect();
-        let combination = || describe(grid.iter().map(|key| key.name.as_str()).zip(values.iter().map(String::as_str)));
+        let chosen = sweep.choice(number);
+        let values: Vec<String> = chosen.iter().map(|entry| entry.map_or(String::new(), |entry| plain(&entry.value))).collect();
+        let combination = || describe(keys.iter().map(|key| key.name.as_str()).zip(values.iter().map(String::as_str)));
         let mut document = base.clone();
-        let set = order.iter().try_for_each(|&key| {
-            let (name, entry) = (&grid[key].name, chosen[key]);
-            let refuse = |what: String| not_allowed(&entry.place, &grid_key(name), &what, "a dotted key of the case");
+        let set = order.iter().filter_map(|&key| Some((&keys[key], chosen[key]?))).try_for_each(|(key, entry)| {
+            let SweepKey { name, told } = key;
+            let refuse = |what: String| not_allowed(&entry.place, told, &what, "a dotted key of the case");
             document.set(name, entry.clone()).map_err(refuse)
         });
         match set.and_then(|()| Case::from_document(&document)) {
@@ -242,7 +174,7 @@ fn check_all(base: &Document, grid: &[GridKey], count: usize, file: &str) -> Res
                     source,
                     combination: combination(),
                 })?;
-                cases.push(StudyCase { id: format!("{:0width$}", number + 1), values, case });
+                cases.push(StudyCase { id: case_id(number + 1, width), values, case });
             }
             Err(error) => refused.push((error, combination())),
         }
@@ -256,28 +188,17 @@ fn check_all(base: &Document, grid: &[GridKey], count: usize, file: &str) -> Res
     }
 }
 
-/// The values of a combination, the last key fastest.
-fn choice(grid: &[GridKey], mut number: usize) -> Vec<&Entry> {
-    let mut chosen: Vec<&Entry> = grid
-        .iter()
-        .rev()
-        .map(|key| {
-            let entry = &key.values[number % key.values.len()];
-            number /= key.values.len();
-            entry
-        })
-        .collect();
-    chosen.reverse();
-    chosen
-}
-
 fn describe<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>) -> String {
-    let text = pairs.map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ");
+    let text = pairs
+        .filter(|(_, value)| !value.is_empty())
+        .map(|(key, value)| format!("{key} = {value}"))
+        .collect::<Vec<_>>()
+        .join(", ");
     short(&text).into_owned()
 }
 
 /// A value as text: a string bare, everything else as TOML on one line.
-fn plain(value: &Value) -> String {
+pub(super) fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         other => inline(other),
@@ -333,9 +254,9 @@ indentation = 0.02
         assert_eq!(study.keys, ["path.0.indentation", "contact.friction"]);
         assert_eq!(study.size(), "6 cases: path.0.indentation (2) x contact.friction (3)");
         let rows: Vec<_> = study.cases.iter().map(|case| (case.id.as_str(), case.values.join(" "))).collect();
-        assert_eq!(rows[0], ("0001", "0.005 0.1".into()));
-        assert_eq!(rows[1], ("0002", "0.005 stick".into()));
-        assert_eq!(rows[5], ("0006", "0.02 1".into()));
+        assert_eq!(rows[0], ("c0001", "0.005 0.1".into()));
+        assert_eq!(rows[1], ("c0002", "0.005 stick".into()));
+        assert_eq!(rows[5], ("c0006", "0.02 1".into()));
         assert_eq!(study.cases[1].case.contact.friction, Friction::Stick);
         assert_eq!(study.combination(&study.cases[5]), "path.0.indentation = 0.02, contact.friction = 1");
         assert!(study.cases.iter().all(|case| case.case.output.fields == Fields::None && !case.case.output.plots));
@@ -366,6 +287,78 @@ indentation = 0.02
         assert!(
             refused("\"contact.friction\" = [0.1]\ncontact.friction = [0.2]").contains("grid.contact.friction: is there twice")
         );
+    }
+
+    const ZIPPED: &str = "\"contact.friction\" = [0.1, 0.3]\n\
+        [zip]\n\"material.youngs_modulus\" = [200e3, 70e3]\nmaterial.hardening.yield_stress = [400.0, 100.0]\n";
+
+    #[test]
+    fn a_zip_goes_through_its_keys_together_beside_the_grid() {
+        let study = study(ZIPPED).unwrap();
+        assert_eq!(study.keys, ["contact.friction", "material.youngs_modulus", "material.hardening.yield_stress"]);
+        let size = "4 cases: contact.friction (2) x material.youngs_modulus with material.hardening.yield_stress (2)";
+        assert_eq!(study.size(), size);
+        let values: Vec<String> = study.cases.iter().map(|case| case.values.join(" ")).collect();
+        assert_eq!(values, ["0.1 200000.0 400.0", "0.1 70000.0 100.0", "0.3 200000.0 400.0", "0.3 70000.0 100.0"]);
+        assert_eq!(study.cases[1].case.material.youngs_modulus, 70e3);
+        // Alone, and several of them, each with every row of the others.
+        let alone = Study::parse(&format!("{BASE_CASE}[zip]\ncontact.friction = [0.1, 0.3]"), "study.toml").unwrap();
+        assert_eq!(alone.cases.len(), 2);
+        let two = "[[zip]]\ncontact.friction = [0.1, 0.3]\n[[zip]]\npath.0.indentation = [0.01, 0.02, 0.03]";
+        assert_eq!(Study::parse(&format!("{BASE_CASE}{two}"), "study.toml").unwrap().cases.len(), 6);
+    }
+
+    #[test]
+    fn a_list_says_its_cases_itself_and_leaves_the_rest_to_the_base() {
+        let list = "[[list]]\n\"path.0.indentation\" = 0.01\n[[list]]\ncontact.friction = \"stick\"\n\
+                    \"material.hardening\" = { law = \"linear\", yield_stress = 300.0, modulus = 50.0 }\n";
+        let study = Study::parse(&format!("{BASE_CASE}{list}"), "study.toml").unwrap();
+        assert_eq!(study.keys, ["path.0.indentation", "contact.friction", "material.hardening"]);
+        assert_eq!(study.size(), "2 cases: list (2)");
+        assert_eq!(study.cases[0].values, ["0.01", "", ""]);
+        assert_eq!(study.combination(&study.cases[0]), "path.0.indentation = 0.01");
+        assert_eq!(
+            (study.cases[0].case.contact.friction, study.cases[1].case.contact.friction),
+            (Friction::Coefficient(0.3), Friction::Stick)
+        );
+        assert_eq!(study.cases[1].case.material.hardening, Hardening::Linear { yield_stress: 300.0, modulus: 50.0 });
+        // With every value of a grid.
+        let both = Study::parse(&format!("{BASE_CASE}[grid]\n\"mesh.fine_zone\" = [1.3, 1.4, 1.5]\n{list}"), "study.toml");
+        assert_eq!(both.unwrap().size(), "6 cases: mesh.fine_zone (3) x list (2)");
+    }
+
+    #[test]
+    fn mistakes_of_zips_and_lists_name_line_and_key() {
+        for (sweep, parts) in [
+            (
+                "[zip]\na.b = [1, 2]\nc.d = [1, 2, 3]",
+                &["study.toml:16: zip.c.d: has 3 values, and zip.a.b has 2", "lists of one length"][..],
+            ),
+            ("[zip]\ncontact.friction = 0.1", &["zip.contact.friction: is the number 0.1", "a list of values"]),
+            ("[zip]\n", &["study.toml:14: zip: is empty"]),
+            ("zip = 3\n", &["zip"]),
+            ("[zip]\ncontact.friction = [0.1, 0.1]", &["zip: has contact.friction = 0.1 twice"]),
+            ("[grid]\ncontact.friction = [0.1]\n[zip]\ncontact.friction = [0.2]", &["zip.contact.friction: is there twice"]),
+            (
+                "[zip]\ncontact.frictoin = [0.1, 0.2]",
+                &["study.toml:15: contact.frictoin: unknown key", "did you mean `friction`"],
+            ),
+            ("[[list]]\n", &["list.0: is empty"]),
+            ("[list]\ncontact.friction = 0.1", &["study.toml:14: list: is a table", "[[list]]"]),
+            (
+                "[[list]]\ncontact.friction = -0.1\n[[list]]\ncontact.friction = 0.1",
+                &["study.toml:15: contact.friction: is -0.1", "1 of 2"],
+            ),
+            (
+                "[[list]]\ncontact.friction = 0.1\n[[list]]\ncontact.friction = 0.1",
+                &["study.toml:17: list: has contact.friction = 0.1 twice"],
+            ),
+        ] {
+            // A key of the top level stands before all tables.
+            let text = if sweep.starts_with('[') { format!("{BASE_CASE}{sweep}") } else { format!("{sweep}{BASE_CASE}") };
+            let message = Study::parse(&text, "study.toml").expect_err("no study").to_string();
+            assert!(parts.iter().all(|part| message.contains(part)), "{sweep}\n{message}");
+        }
     }
 
     #[test]

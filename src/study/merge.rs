@@ -109,7 +109,7 @@ fn copy(from: &OutputDirectory, to: &OutputDirectory, case: &str) -> Result<bool
     }
     to.clear()?;
     to.write_case(case)?;
-    let mut files = vec![from.history(), from.checkpoint()];
+    let mut files = vec![from.history(), from.parquet(), from.checkpoint()];
     for folder in ["fields", "contact", "plots"] {
         let path = from.root().join(folder);
         if path.is_dir() && !path.is_symlink() {

@@ -22,6 +22,7 @@ mod schedule;
 mod shard;
 mod simulate;
 pub mod slurm;
+mod sweep;
 
 #[cfg(test)]
 mod tests;

@@ -7,7 +7,7 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use super::StudyError;
-use super::directory::StudyDirectory;
+use super::directory::{StudyDirectory, case_id, is_case_id};
 use super::file::Study;
 use crate::case::Case;
 use crate::law::table::StudyTable;
@@ -62,7 +62,7 @@ fn numbered(directory: &StudyDirectory) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(&cases)? {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if name.bytes().all(|byte| byte.is_ascii_digit()) && OutputDirectory::existing(cases.join(&name)).holds_result() {
+        if is_case_id(&name) && OutputDirectory::existing(cases.join(&name)).holds_result() {
             names.push(name);
         }
     }
@@ -76,7 +76,7 @@ fn told(directory: &StudyDirectory, study: &Study) -> Option<Vec<String>> {
     let mut names = BTreeSet::new();
     for (row, case) in table.rows.iter().zip(&study.cases) {
         let same = study.keys.iter().zip(&case.values).all(|(key, value)| table.cell(row, key) == value);
-        let number = row.id.bytes().all(|byte| byte.is_ascii_digit()) && row.directory == StudyDirectory::relative(&row.id);
+        let number = is_case_id(&row.id) && row.directory == StudyDirectory::relative(&row.id);
         if !(same && number && names.insert(row.id.clone())) {
             return None;
         }
@@ -87,12 +87,12 @@ fn told(directory: &StudyDirectory, study: &Study) -> Option<Vec<String>> {
 /// For each case the directory that holds it, if there is one: that of its own number rather than
 /// another.
 fn found(directory: &StudyDirectory, study: &Study, there: &[String]) -> Vec<Option<String>> {
-    let holds = |id: &str| Case::load(&directory.case(id).case(), &[]).ok().map(|case| case.to_toml());
+    let holds = |id: &str| Case::load(&directory.case(id).case(), &[]).ok().map(|case| case.identity());
     let held: Vec<(&String, String)> = there.iter().filter_map(|id| Some((id, holds(id)?))).collect();
     let mut by_case: BTreeMap<&str, Vec<&String>> = BTreeMap::new();
     held.iter().for_each(|(id, case)| by_case.entry(case).or_default().push(id));
     let one_of = |case: &super::StudyCase| {
-        let ids = by_case.get(case.case.to_toml().as_str())?;
+        let ids = by_case.get(case.case.identity().as_str())?;
         ids.iter().find(|id| ***id == case.id).or(ids.first()).map(|id| (*id).clone())
     };
     study.cases.iter().map(one_of).collect()
@@ -108,7 +108,7 @@ fn with_free_numbers(study: &Study, ids: Vec<Option<String>>, there: &[String]) 
         let mut id = own.to_owned();
         while !taken.insert(id.clone()) {
             next += 1;
-            id = format!("{next:0width$}", width = own.len());
+            id = case_id(next, own.len() - 1);
         }
         id
     };

@@ -231,16 +231,16 @@ mod tests {
         progress.begin("5 cases", &[1.0, 2.0, 4.0, 1.0, 1.0], &[0, 1, 2], 1, 1);
         progress.started();
         progress.started();
-        progress.message("0001", "note: once");
-        progress.message("0002", "note: once");
-        progress.finished(0, "0001", &row(Status::Done, "note: once"));
-        progress.finished(1, "0002", &row(Status::NotConverged, "no convergence:\n step 3"));
+        progress.message("c0001", "note: once");
+        progress.message("c0002", "note: once");
+        progress.finished(0, "c0001", &row(Status::Done, "note: once"));
+        progress.finished(1, "c0002", &row(Status::NotConverged, "no convergence:\n step 3"));
         progress.end();
         let text = String::from_utf8(text.0.lock().unwrap().clone()).unwrap();
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[..2], ["5 cases", "0001: note: once"]);
-        assert!(lines[2].starts_with("3/5  0001 done  (2 done, 1 running, 1 failed, about "), "{text}");
-        assert!(lines[3].starts_with("4/5  0002 not-converged: no convergence: step 3  (2 done, 0 running, 2 failed"), "{text}");
+        assert_eq!(lines[..2], ["5 cases", "c0001: note: once"]);
+        assert!(lines[2].starts_with("3/5  c0001 done  (2 done, 1 running, 1 failed, about "), "{text}");
+        assert!(lines[3].starts_with("4/5  c0002 not-converged: no convergence: step 3  (2 done, 0 running, 2 failed"), "{text}");
         assert_eq!(lines.len(), 4);
     }
 
@@ -251,7 +251,7 @@ mod tests {
         progress.begin("", &[1.0, 9.0, 100.0], &[0, 1], 1, 0);
         progress.advanced(1, 0.5);
         assert!((progress.state().share() - 0.45).abs() < 1e-12);
-        progress.finished(0, "0001", &row(Status::Done, ""));
+        progress.finished(0, "c0001", &row(Status::Done, ""));
         assert!((progress.state().share() - 0.55).abs() < 1e-12);
     }
 }

@@ -129,7 +129,8 @@ impl Row {
     /// The case as its directory shows it: pending, unless `case.toml` there is this very case and
     /// there is a summary.
     pub fn read(case: &Case, out: &OutputDirectory) -> Self {
-        let this = out.holds_result() && Case::load(&out.case(), &[]).is_ok_and(|found| found == *case);
+        let same = |found: Case| found.identity() == case.identity();
+        let this = out.holds_result() && Case::load(&out.case(), &[]).is_ok_and(same);
         match this.then(|| Summary::read(&out.summary())) {
             Some(Ok(summary)) => Self::of(summary),
             _ => Self::pending(),

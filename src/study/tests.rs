@@ -202,7 +202,7 @@ fn a_row_is_the_summary_of_the_very_case() {
     let study = study();
     let directory = StudyDirectory::new(scratch.path());
     let (mine, other) = (&study.cases[0].case, &study.cases[1].case);
-    let out = OutputDirectory::create(directory.case("0001").root()).expect("a directory");
+    let out = OutputDirectory::create(directory.case("c0001").root()).expect("a directory");
     assert_eq!(Row::read(mine, &out), Row::pending());
     let mut summary = Summary { status: Status::Done, f_n0: Some(5.0), a0: Some(0.2), h0: Some(0.01), ..Summary::default() };
     summary.messages.push("note: a note".to_owned());
@@ -251,7 +251,7 @@ fn the_table_has_the_promised_columns_and_normalised_variables() {
     let records: Vec<csv::StringRecord> = reader.records().map(|record| record.expect("a row")).collect();
     let column = |row: usize, name: &str| &records[row][header.iter().position(|column| column == name).expect("a column")];
     let number = |name: &str| column(0, name).parse::<f64>().expect("a number");
-    assert_eq!(&records[0].iter().take(6).collect::<Vec<_>>().join(","), "0001,cases/0001,done,,400.0,0.1");
+    assert_eq!(&records[0].iter().take(6).collect::<Vec<_>>().join(","), "c0001,cases/c0001,done,,400.0,0.1");
     assert_eq!([number("E"), number("sigma_Y"), number("R"), number("newton_iterations")], [200e3, 400.0, 2.0, 12.0]);
     // An ideally plastic sphere beyond first yield: sigma_rep = sigma_Y.
     let lambda = 200e3 / (1.0 - 0.09) / 400.0 * a0 / 2.0;
@@ -277,7 +277,7 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     directory.prepare(&spaced, Earlier::Keep).expect("the same study");
     // Results of a case that another study does not have: it is refused, whatever it is that
     // differs.
-    let first = OutputDirectory::create(directory.case("0001").root()).expect("a directory");
+    let first = OutputDirectory::create(directory.case("c0001").root()).expect("a directory");
     first.write_case(&study.cases[0].case.to_toml()).expect("a case");
     let friction = "\"contact.friction\" = [0.1, \"stick\"]";
     let ratio = "\"material.poissons_ratio\" = [0.1, 0.2]";
@@ -298,20 +298,20 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     // One that has it keeps it, under its number; who has it no more is named.
     let grown = STUDY.replace("[0.1, \"stick\"]", "[0.05, 0.1]").replace("[400.0, 800.0]", "[200.0, 400.0]");
     let grown = Study::parse(&grown, "study.toml").expect("a study");
-    let second = OutputDirectory::create(directory.case("0002").root()).expect("a directory");
+    let second = OutputDirectory::create(directory.case("c0002").root()).expect("a directory");
     second.write_case(&study.cases[1].case.to_toml()).expect("a case");
     let placed = directory.prepare(&grown, Earlier::Keep).expect("a study that has grown");
     let ids: Vec<&str> = placed.study.cases.iter().map(|case| case.id.as_str()).collect();
-    assert_eq!((ids, placed.strangers, placed.begun), (vec!["0005", "0006", "0003", "0001"], vec!["0002".to_owned()], 1));
+    assert_eq!((ids, placed.strangers, placed.begun), (vec!["c0005", "c0006", "c0003", "c0001"], vec!["c0002".to_owned()], 1));
     // A case of ours, with a file of the user's beside it, and a directory of the user's.
-    let out = OutputDirectory::create(directory.case("0003").root()).expect("a directory");
+    let out = OutputDirectory::create(directory.case("c0003").root()).expect("a directory");
     out.write_case(&study.cases[2].case.to_toml()).expect("a case");
     std::fs::write(directory.root().join("notes.txt"), "mine").expect("a file");
-    std::fs::create_dir_all(directory.case("0004").root()).expect("a directory");
-    std::fs::write(directory.case("0004").root().join("notes.txt"), "mine").expect("a file");
+    std::fs::create_dir_all(directory.case("c0004").root()).expect("a directory");
+    std::fs::write(directory.case("c0004").root().join("notes.txt"), "mine").expect("a file");
     directory.prepare(&study, Earlier::Replace).expect("replaced");
     assert!(!directory.holds_study() && !out.root().exists());
-    assert!(directory.root().join("notes.txt").exists() && directory.case("0004").root().join("notes.txt").exists());
+    assert!(directory.root().join("notes.txt").exists() && directory.case("c0004").root().join("notes.txt").exists());
     let error = directory.prepare(&study, Earlier::Refuse).expect_err("not a study").to_string();
     assert!(error.contains("is not an Asperity study") && error.contains("nothing was changed"), "{error}");
     let file = StudyDirectory::new(directory.root().join("notes.txt"));

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::VerifyError;
 use super::equator::Equator;
 use crate::case::{
-    Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere,
+    Case, Contact, Fields, Friction, Hardening, Hold, Material, Mesh, Output, Segment, ShearTarget, Solver, Sphere, UnitLabels,
 };
 use crate::compute::{CaseModel, Compute, ComputeError, Description};
 use crate::output::{ContactPoint, Recorder};
@@ -130,7 +130,8 @@ pub fn sphere(poissons_ratio: f64, hardening: Hardening, friction: f64, elements
         contact: Contact { friction: Friction::Coefficient(friction) },
         mesh: Mesh { elements_per_contact_radius: elements, ..Mesh::default() },
         solver: Solver::default(),
-        output: Output { fields: Fields::None, plots: false },
+        output: Output { fields: Fields::None, plots: false, ..Output::default() },
+        units: UnitLabels::default(),
         path,
     }
 }

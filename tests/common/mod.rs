@@ -9,6 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use asperity::output::{DeviceTraffic, Traffic};
 use asperity::output::{Summary, TimeByPhase};
 use tempfile::TempDir;
 
@@ -76,12 +77,13 @@ pub fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// The summary of a run without what may differ between two runs of one case: times and the number
-/// of threads.
+/// The summary of a run without what may differ between two runs of one case: times, the number of
+/// threads, and what a run that goes on has to send to a device once more.
 pub fn timeless(dir: &Path) -> Summary {
     let summary = Summary::read(&dir.join("summary.json")).expect("a summary");
     let device = summary.device.split(" (").next().unwrap_or_default().to_owned();
-    Summary { wall_s: 0.0, cpu_s: None, time_by_phase: TimeByPhase::default(), device, ..summary }
+    let device_traffic = summary.device_traffic.map(|traffic| DeviceTraffic { total: Traffic::default(), ..traffic });
+    Summary { wall_s: 0.0, cpu_s: None, time_by_phase: TimeByPhase::default(), device, device_traffic, ..summary }
 }
 
 /// In what two results differ, see [`timeless`]; `None` if they hold the same files with the same

@@ -94,7 +94,7 @@ pub fn write_study(dir: &Path, noise: f64) {
                 let text = case_text(hardening, friction, h);
                 let case = Case::parse(&text, "synthetic.toml", &[]).expect("a case");
                 let (inputs, curve) = truth(&case, friction, 2.0 * h);
-                let id = format!("{count:04}");
+                let id = format!("c{count:04}");
                 let directory = OutputDirectory::create(dir.join("cases").join(&id)).expect("a directory");
                 directory.write_case(&case.to_toml()).expect("case.toml");
                 let mut history = HistoryWriter::create(&directory.history()).expect("history.csv");
@@ -128,6 +128,6 @@ pub fn write_study(dir: &Path, noise: f64) {
             }
         }
     }
-    table.push_str(&format!("{count:04},cases/{count:04},failed,a step did not converge,0.1\n"));
+    table.push_str(&format!("c{count:04},cases/c{count:04},failed,a step did not converge,0.1\n"));
     fs::write(dir.join("study.csv"), table).expect("study.csv");
 }

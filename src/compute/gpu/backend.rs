@@ -9,6 +9,7 @@ use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::error::GpuError;
 use crate::compute::cpu::Cpu;
+use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
     Outcome, TangentRequest,
@@ -99,6 +100,10 @@ impl<R: DeviceReal> Compute for Gpu<R> {
 
     fn models(&self) -> &[CaseModel] {
         &self.models
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        self.context().map(|context| context.traffic())
     }
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {

@@ -272,8 +272,10 @@ impl GpuContext {
         self.scoped(&buffer.what, || {
             for (i, piece) in bytes.chunks(UPLOAD_PIECE).enumerate() {
                 self.queue.write_buffer(&buffer.raw, (start + i * UPLOAD_PIECE) as u64, piece);
+                self.meter.went_up(piece.len() as u64);
                 if bytes.len() > UPLOAD_PIECE {
                     self.queue.submit([]);
+                    self.meter.submitted(0);
                 }
             }
         })
@@ -318,6 +320,9 @@ impl GpuContext {
             encoder.copy_buffer_to_buffer(&staging.ticket, 0, &staging.mapped, ticket_at, 8);
             self.queue.submit([encoder.finish()])
         })?;
+        self.meter.submitted(0);
+        self.meter.went_up(size_of_val(&ticket) as u64);
+        self.meter.came_down(bytes + size_of_val(&ticket) as u64);
         let slice = staging.mapped.slice(..ticket_at + TICKET_BYTES);
         let outcome = Arc::new(std::sync::OnceLock::new());
         let report = Arc::clone(&outcome);

@@ -4,8 +4,10 @@ use super::adapters::{self, Adapter, AdapterKind, Choice, DeviceRequest};
 use super::buffers::{MemoryBudget, Staging};
 use super::error::GpuError;
 use super::health::DeviceHealth;
+use super::meter::Meter;
 use super::pipelines::PipelineCache;
 use super::shader_sources::Precision;
+use crate::compute::traffic::Traffic;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -29,6 +31,7 @@ pub struct GpuContext {
     pub(super) budget: Arc<MemoryBudget>,
     pub(super) pipelines: PipelineCache,
     pub(super) staging: Mutex<Option<Staging>>,
+    pub(super) meter: Meter,
     pub(super) checked: bool,
     adapter: Adapter,
 }
@@ -89,7 +92,8 @@ impl GpuContext {
         });
         let budget = Arc::new(MemoryBudget::for_adapter(description.kind));
         let (pipelines, staging, checked) = (PipelineCache::default(), Mutex::new(None), cfg!(debug_assertions));
-        Ok(Self { device, queue, health, budget, pipelines, staging, checked, adapter: description })
+        let meter = Meter::default();
+        Ok(Self { device, queue, health, budget, pipelines, staging, meter, checked, adapter: description })
     }
 
     /// The same with kernels compiled with or without bounds checks; the default is with in debug
@@ -123,6 +127,11 @@ impl GpuContext {
     /// The memory budget: what is taken of how much.
     pub fn budget(&self) -> &MemoryBudget {
         &self.budget
+    }
+
+    /// What has passed between the host and this device since it was opened.
+    pub fn traffic(&self) -> Traffic {
+        self.meter.read()
     }
 
     /// The device's state of health.
@@ -174,6 +183,7 @@ impl GpuContext {
     /// Waits for a submission and checks that the device survived it.
     pub(super) fn wait(&self, what: &str, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         let poll = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(Duration::from_secs(PATIENCE_S)) };
+        self.meter.waited();
         let waited = self.device.poll(poll);
         self.check()?;
         match waited {

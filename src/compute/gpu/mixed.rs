@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::backend::Gpu;
 use super::context::GpuContext;
 use crate::compute::cpu::Cpu;
+use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest, Outcome,
     TangentRequest,
@@ -46,6 +47,10 @@ impl Compute for Mixed {
 
     fn models(&self) -> &[CaseModel] {
         self.residual.models()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        self.tangent.traffic()
     }
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {

@@ -23,6 +23,7 @@ pub mod error;
 pub mod health;
 pub mod lint;
 pub mod material;
+mod meter;
 pub mod mixed;
 pub mod pipelines;
 pub mod report;

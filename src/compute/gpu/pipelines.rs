@@ -34,7 +34,8 @@ pub(super) struct PipelineCache {
 pub struct Recorder<'a> {
     context: &'a GpuContext,
     encoder: wgpu::CommandEncoder,
-    dispatches: usize,
+    commands: usize,
+    dispatches: u64,
 }
 
 impl GpuContext {
@@ -130,7 +131,7 @@ impl GpuContext {
     /// Starts a list of kernels to be run in one submission.
     pub fn record(&self) -> Recorder<'_> {
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("kernels") };
-        Recorder { context: self, encoder: self.device.create_command_encoder(&descriptor), dispatches: 0 }
+        Recorder { context: self, encoder: self.device.create_command_encoder(&descriptor), commands: 0, dispatches: 0 }
     }
 }
 
@@ -156,6 +157,7 @@ impl Recorder<'_> {
         pass.set_pipeline(&bound.pipeline.raw);
         pass.set_bind_group(0, &bound.group, &[]);
         pass.dispatch_workgroups(groups as u32, cases as u32, 1);
+        self.commands += 1;
         self.dispatches += 1;
         Ok(())
     }
@@ -179,7 +181,7 @@ impl Recorder<'_> {
         }
         let size = size_of::<T>() as u64;
         self.encoder.copy_buffer_to_buffer(&from.raw, first as u64 * size, &to.raw, to_first as u64 * size, count as u64 * size);
-        self.dispatches += 1;
+        self.commands += 1;
         Ok(())
     }
 
@@ -188,10 +190,11 @@ impl Recorder<'_> {
     /// # Errors
     /// [`GpuError::Rejected`], or the device's fault.
     pub fn submit(self) -> Result<(), GpuError> {
-        if self.dispatches == 0 {
+        if self.commands == 0 {
             return self.context.check();
         }
         self.context.scoped("a list of kernels", || self.context.queue.submit([self.encoder.finish()]))?;
+        self.context.meter.submitted(self.dispatches);
         Ok(())
     }
 }

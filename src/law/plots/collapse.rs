@@ -7,10 +7,9 @@ use crate::law::fit::inputs;
 use crate::law::forms;
 use crate::law::model::Parameters;
 use crate::law::{Law, LawError};
-use crate::output::plots::Picture;
-use crate::output::plots::canvas::{Canvas, Drawn};
-use crate::output::plots::chart::{Axis, Chart, Line, Series, draw_chart};
+use crate::output::plots::chart::{Axis, Chart, Line, Series, draw_chart, draw_charts};
 use crate::output::plots::style::INK;
+use crate::output::plots::{Picture, Sheet};
 
 /// Curves whose F_N falls by less than this share say nothing of f_N.
 const LEAST_FALL: f64 = 0.02;
@@ -18,7 +17,7 @@ const LEAST_FALL: f64 = 0.02;
 const END: f64 = 1.4;
 
 /// F_T over mu F_N_slip: over x, and over the law's f_T(x).
-pub fn tangential(samples: &[Sample], law: Option<&Law>) -> Result<Picture, LawError> {
+pub fn tangential(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Picture, LawError> {
     let all: Vec<&Sample> = samples.iter().collect();
     let share = |sample: &Sample, point: &Point| point.f_t / (sample.friction * sample.f_n_slip);
     let name = "F_T / (μ F_{N,slip})";
@@ -30,17 +29,18 @@ pub fn tangential(samples: &[Sample], law: Option<&Law>) -> Result<Picture, LawE
     let Some(law) = law else {
         let caption =
             "Every shear in normalised variables. Without a law δ_T_slip is the displacement at which F_T/F_N reaches 0.99 μ.";
-        return Ok(Picture::draw("collapse-tangential", caption, SINGLE, |root| draw_chart(root, &left))?);
+        return Ok(Picture::draw("collapse-tangential", caption, sheet.chart(SINGLE), |root| draw_chart(root, &left))?);
     };
     let f_t = |x: f64, p: &Parameters| forms::f_t(x, p.n);
     let right = diagonal(name, "law: f_T(x) = 1 − (1 − x)^n", samples, lines(&all, Some(law), share, f_t));
     let caption = "Every shear in normalised variables, coloured by Λ. Left: over x = δ_T/δ_T_slip, with f_T for some n. Right: over the law's f_T(x) \
                    with the case's n; all curves fall on the diagonal where the law holds. δ_T_slip and n are the law's, F_N_slip the simulation's.";
-    Ok(Picture::draw("collapse-tangential", caption, DOUBLE, |root| pair(root, [&left, &right]))?)
+    let (size, columns) = sheet.charts(DOUBLE, 2);
+    Ok(Picture::draw("collapse-tangential", caption, size, |root| draw_charts(root, columns, &[left, right]))?)
 }
 
 /// The fall of F_N over its whole: over x, and over the law's f_N(x). `None` if no F_N falls.
-pub fn normal(samples: &[Sample], law: Option<&Law>) -> Result<Option<Picture>, LawError> {
+pub fn normal(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Option<Picture>, LawError> {
     let falling: Vec<&Sample> = samples.iter().filter(|s| s.f_n_slip < (1.0 - LEAST_FALL) * s.f_n0).collect();
     if falling.is_empty() {
         return Ok(None);
@@ -50,22 +50,19 @@ pub fn normal(samples: &[Sample], law: Option<&Law>) -> Result<Option<Picture>, 
     let left = panel("Fall of the normal force", name, samples, lines(&falling, law, share, |x, _| x));
     let Some(law) = law else {
         let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, in normalised variables.";
-        return Ok(Some(Picture::draw("collapse-normal", caption, SINGLE, |root| draw_chart(root, &left))?));
+        return Ok(Some(Picture::draw("collapse-normal", caption, sheet.chart(SINGLE), |root| draw_chart(root, &left))?));
     };
     let f_n = |x: f64, p: &Parameters| law.forms.normal_curve.value(x, p.m_exponent, p.n_exponent);
     let label = format!("law: f_N(x) = {}", law.forms.normal_curve.label().replace('-', " − "));
     let right = diagonal(name, &label, samples, lines(&falling, Some(law), share, f_n));
     let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, coloured by Λ. Left: over x = δ_T/δ_T_slip. Right: over \
                    the law's f_N(x) with the case's M and N. δ_T_slip, M and N are the law's, F_N0 and F_N_slip the simulation's.";
-    Ok(Some(Picture::draw("collapse-normal", caption, DOUBLE, |root| pair(root, [&left, &right]))?))
+    let (size, columns) = sheet.charts(DOUBLE, 2);
+    Ok(Some(Picture::draw("collapse-normal", caption, size, |root| draw_charts(root, columns, &[left, right]))?))
 }
 
 const SINGLE: (u32, u32) = (720, 540);
 const DOUBLE: (u32, u32) = (1180, 540);
-
-fn pair(root: &Canvas, charts: [&Chart; 2]) -> Drawn {
-    root.columns(2).iter().zip(charts).try_for_each(|(area, chart)| draw_chart(area, chart))
-}
 
 /// A line a sample: `across`(x, law's parameters) and `up`(sample, point), coloured by Lambda.
 fn lines(

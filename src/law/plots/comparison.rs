@@ -6,9 +6,9 @@ use crate::law::fit::{case_errors, inputs};
 use crate::law::report::{CaseErrors, FittedCase, LAMBDA_BOUNDS};
 use crate::law::variables::yield_lambda;
 use crate::law::{Law, LawError};
-use crate::output::plots::Picture;
-use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_chart, extent};
+use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_charts, extent};
 use crate::output::plots::style::{BLUE, GREY, INK, VERMILION, tick};
+use crate::output::plots::{Picture, Sheet};
 
 /// Errors of the law for a sample, its F_N0 and a0 being known.
 fn errors_of(law: &Law, sample: &Sample) -> CaseErrors {
@@ -22,7 +22,7 @@ fn greatest(errors: &CaseErrors) -> f64 {
 }
 
 /// The case that the law describes best, the one in the middle and the worst one.
-pub fn cases(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
+pub fn cases(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture, LawError> {
     let mut ranked: Vec<(f64, &Sample)> = samples.iter().map(|sample| (greatest(&errors_of(law, sample)), sample)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let picks = [("Best", 0), ("Median", ranked.len() / 2), ("Worst", ranked.len().saturating_sub(1))];
@@ -42,12 +42,8 @@ pub fn cases(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
         .collect();
     let caption = "Marks: simulation; lines: the law, given the simulation's F_N0 and a0. Cases are ranked by their greatest error, in F_T as a share \
                    of its peak or in F_N as a share of F_N0.";
-    Ok(Picture::draw("cases", caption, (480 * 3, 470), |root| {
-        for (area, chart) in root.columns(3).iter().zip(&charts) {
-            draw_chart(area, chart)?;
-        }
-        Ok(())
-    })?)
+    let (size, columns) = sheet.charts((480 * 3, 470), 3);
+    Ok(Picture::draw("cases", caption, size, |root| draw_charts(root, columns, &charts))?)
 }
 
 /// A number with three digits.
@@ -106,7 +102,7 @@ pub fn greatest_errors(samples: &[Sample], law: &Law) -> (Vec<[f64; 2]>, bool) {
 }
 
 /// The greatest error of every case over Lambda, by mu.
-pub fn errors(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
+pub fn errors(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture, LawError> {
     let (all, cross_validated) = greatest_errors(samples, law);
     let error = |sample: &Sample| samples.iter().position(|other| other.id == sample.id).map_or([f64::NAN; 2], |i| all[i]);
     let chart = |i: usize, title: &str, label: &str| {
@@ -134,10 +130,6 @@ pub fn errors(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
         "The greatest error along each curve, F_N0 and a0 being known. {how} Grey lines part the regions of the error table: first yield, Λ = 20 \
          and 160."
     );
-    Ok(Picture::draw("errors", caption, (1180, 480), |root| {
-        for (area, chart) in root.columns(2).iter().zip(&charts) {
-            draw_chart(area, chart)?;
-        }
-        Ok(())
-    })?)
+    let (size, columns) = sheet.charts((1180, 480), 2);
+    Ok(Picture::draw("errors", caption, size, |root| draw_charts(root, columns, &charts))?)
 }

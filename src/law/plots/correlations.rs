@@ -7,8 +7,8 @@ use crate::law::fit::inputs;
 use crate::law::model::Axisymmetric;
 use crate::law::own_fit::own_fit;
 use crate::law::{Law, LawError};
-use crate::output::plots::Picture;
-use crate::output::plots::chart::{Axis, Chart, draw_chart, extent};
+use crate::output::plots::chart::{Axis, Chart, draw_chart, draw_charts, extent};
+use crate::output::plots::{Picture, Sheet};
 
 /// The law's reference sphere at the samples' median h/R.
 fn reference(samples: &[Sample], law: &Law) -> Reference {
@@ -17,7 +17,7 @@ fn reference(samples: &[Sample], law: &Law) -> Reference {
 }
 
 /// F_N_slip/F_N0 over Lambda.
-pub fn fall(samples: &[Sample], law: Option<&Law>) -> Result<Picture, LawError> {
+pub fn fall(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Picture, LawError> {
     let mut series = by_friction(samples, |sample| sample.f_n_slip / sample.f_n0);
     if let Some(law) = law {
         series.extend(reference(samples, law).by_friction(law, &frictions(samples), |p, _| p.f_n_slip / p.f_n0));
@@ -31,11 +31,11 @@ pub fn fall(samples: &[Sample], law: Option<&Law>) -> Result<Picture, LawError> 
     };
     let caption = "Normal force at full slip over that before the shear, h being held: nothing is lost where the contact is elastic. The law \
                    has hardening and a/R in it as well, so that its curves, of one reference sphere, need not meet every mark.";
-    Ok(Picture::draw("fall", caption, (860, 560), |root| draw_chart(root, &chart))?)
+    Ok(Picture::draw("fall", caption, sheet.chart((860, 560)), |root| draw_chart(root, &chart))?)
 }
 
 /// n and delta_T_slip over its elastic value: each case's own best ones, and the law's.
-pub fn parameters(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
+pub fn parameters(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture, LawError> {
     let own = |sample: &Sample| own_fit(law.forms.normal_curve, sample);
     let reference = reference(samples, law);
     let frictions = frictions(samples);
@@ -64,10 +64,6 @@ pub fn parameters(samples: &[Sample], law: &Law) -> Result<Picture, LawError> {
     ];
     let caption = "Marks: n and δ_T_slip of each case by least squares of its own F_T curve; the two go together, so that single curves leave \
                    them loosely determined. Lines: the law for a reference sphere. Both start from Cattaneo and Mindlin's 3/2 and 1.";
-    Ok(Picture::draw("parameters", caption, (1180, 520), |root| {
-        for (area, chart) in root.columns(2).iter().zip(&charts) {
-            draw_chart(area, chart)?;
-        }
-        Ok(())
-    })?)
+    let (size, columns) = sheet.charts((1180, 520), 2);
+    Ok(Picture::draw("parameters", caption, size, |root| draw_charts(root, columns, &charts))?)
 }

@@ -21,6 +21,7 @@ use super::data::StudyData;
 use super::variables::{Body, Variables};
 use super::{Law, LawError};
 use crate::case::Case;
+use crate::output::plots::Sheet;
 use crate::output::{OutputDirectory, Picture, Summary, SummaryInputs, read_history};
 
 /// The normal contact of a case before its shear, normalised: what Johnson's map and that of c^2
@@ -67,25 +68,30 @@ impl NormalContact {
 ///
 /// # Errors
 /// A drawing fails.
-pub fn study_pictures(contacts: &[NormalContact], data: &StudyData, law: Option<&Law>) -> Result<Vec<Picture>, LawError> {
+pub fn study_pictures(
+    contacts: &[NormalContact],
+    data: &StudyData,
+    law: Option<&Law>,
+    sheet: Sheet,
+) -> Result<Vec<Picture>, LawError> {
     let mut pictures = Vec::new();
     if contacts.iter().any(|contact| contact.variables.lambda > 0.0) {
-        pictures.extend([normal_maps::johnson(contacts, law)?, normal_maps::area(contacts, law)?]);
+        pictures.extend([normal_maps::johnson(contacts, law, sheet)?, normal_maps::area(contacts, law, sheet)?]);
     }
     let samples = data.samples.as_slice();
     if samples.is_empty() {
         return Ok(pictures);
     }
     if samples.iter().any(|sample| sample.variables.lambda > 0.0) {
-        pictures.push(correlations::fall(samples, law)?);
+        pictures.push(correlations::fall(samples, law, sheet)?);
         if let Some(law) = law {
-            pictures.push(correlations::parameters(samples, law)?);
+            pictures.push(correlations::parameters(samples, law, sheet)?);
         }
     }
-    pictures.push(collapse::tangential(samples, law)?);
-    pictures.extend(collapse::normal(samples, law)?);
+    pictures.push(collapse::tangential(samples, law, sheet)?);
+    pictures.extend(collapse::normal(samples, law, sheet)?);
     if let Some(law) = law {
-        pictures.extend([comparison::cases(samples, law)?, comparison::errors(samples, law)?]);
+        pictures.extend([comparison::cases(samples, law, sheet)?, comparison::errors(samples, law, sheet)?]);
     }
     Ok(pictures)
 }

@@ -11,9 +11,9 @@ use crate::analytical::{ElasticSphere, johnson};
 use crate::law::Law;
 use crate::law::variables::{Variables, yield_lambda};
 use crate::output::OutputError;
-use crate::output::plots::Picture;
 use crate::output::plots::chart::{Axis, Chart, Line, Mark, Series, draw_chart, extent};
 use crate::output::plots::style::{GREY, INK, TEAL, VIOLET};
+use crate::output::plots::{Picture, Sheet};
 
 const SIZE: (u32, u32) = (860, 600);
 /// Upper ends of the groups of hardening exponents, and their names.
@@ -26,7 +26,7 @@ const LARGE: f64 = 0.15;
 const STIFFNESS: f64 = 1000.0;
 
 /// Johnson's map: Hbar over Lambda.
-pub fn johnson(contacts: &[NormalContact], law: Option<&Law>) -> Result<Picture, OutputError> {
+pub fn johnson(contacts: &[NormalContact], law: Option<&Law>, sheet: Sheet) -> Result<Picture, OutputError> {
     let x = lambda_axis(contacts.iter().map(|contact| contact.variables.lambda));
     let over = |curve: &dyn Fn(f64) -> f64| along(&x, curve);
     let mut series = vec![
@@ -38,16 +38,16 @@ pub fn johnson(contacts: &[NormalContact], law: Option<&Law>) -> Result<Picture,
     series.extend(ours(contacts, |v| v.hardness));
     series.extend(reference(contacts, law, |v| v.hardness));
     let greatest = extent(contacts.iter().map(|contact| contact.variables.hardness)).1.max(3.0);
-    let y = Axis::linear("Hbar = F_N / (π a² σ_rep)", 0.0, 1.12 * greatest);
+    let y = Axis::linear("H̄ = F_N / (π a² σ_rep)", 0.0, 1.12 * greatest);
     let chart = Chart { title: "Johnson's map".into(), x, y, series, bar: None };
-    let caption = "Normalised hardness Hbar over Johnson's Λ, of every case before its shear. e is the local hardening exponent \
+    let caption = "Normalised hardness H̄ over Johnson's Λ, of every case before its shear. e is the local hardening exponent \
                    d ln σ/d ln ε_p at the representative strain; hollow marks are large contacts, a/R > 0.15, for which the published \
                    curves, of small deformation, are too high.";
-    Picture::draw("johnson", caption, SIZE, |root| draw_chart(root, &chart))
+    Picture::draw("johnson", caption, sheet.chart(SIZE), |root| draw_chart(root, &chart))
 }
 
 /// c^2 over Lambda.
-pub fn area(contacts: &[NormalContact], law: Option<&Law>) -> Result<Picture, OutputError> {
+pub fn area(contacts: &[NormalContact], law: Option<&Law>, sheet: Sheet) -> Result<Picture, OutputError> {
     let x = lambda_axis(contacts.iter().map(|contact| contact.variables.lambda));
     let mut series = vec![Series::solid("Hertz", GREY, vec![(x.range.0, 0.5), (x.range.1, 0.5)])];
     for (exponent, line, name) in [
@@ -72,7 +72,7 @@ pub fn area(contacts: &[NormalContact], law: Option<&Law>) -> Result<Picture, Ou
     };
     let caption = "Contact area over that of a sphere cut at h: 1/2 for Hertz, where the surface sinks in, above 1 where material piles up. \
                    e as in Johnson's map; hollow marks are large contacts, a/R > 0.15.";
-    Picture::draw("area", caption, SIZE, |root| draw_chart(root, &chart))
+    Picture::draw("area", caption, sheet.chart(SIZE), |root| draw_chart(root, &chart))
 }
 
 /// A function of Lambda over the whole axis.

@@ -6,14 +6,19 @@ use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::variables::Body;
 use crate::law::{Law, LawError, LawFile, model};
-use crate::output::plots::{Picture, plot_law};
+use crate::output::plots::{Picture, View, plot_law};
 use crate::output::{StepRecord, Summary, SummaryInputs};
 
 /// The forces of a run with those of the contact update along the same places, whatever the path.
 ///
 /// # Errors
 /// The law says nothing of the case; a drawing fails.
-pub fn table_beside_run(law: &LawFile, case: &Case, history: &[StepRecord]) -> Result<(Picture, Vec<OutOfRange>), LawError> {
+pub fn table_beside_run(
+    law: &LawFile,
+    case: &Case,
+    history: &[StepRecord],
+    view: &View,
+) -> Result<(Picture, Vec<OutOfRange>), LawError> {
     let parameters = law.contact_parameters(case)?;
     let places: Vec<[f64; 2]> = history.iter().map(|record| [record.h, record.delta_t]).collect();
     let forces = drive(&parameters, &places, 8);
@@ -22,7 +27,7 @@ pub fn table_beside_run(law: &LawFile, case: &Case, history: &[StepRecord]) -> R
     let pressed = places.windows(2).take_while(|pair| pair[1][1] == pair[0][1]).count();
     let curve: Vec<[f64; 3]> = points.skip(pressed).collect();
     let deepest = places.iter().map(|place| place[0]).fold(0.0, f64::max);
-    let picture = plot_law(history, &[("law, from h and δ_T".to_owned(), curve)])?;
+    let picture = plot_law(history, &[("law, from h and δ_T".to_owned(), curve)], view)?;
     Ok((picture, law.out_of_range(case, deepest)?))
 }
 
@@ -31,7 +36,7 @@ pub fn table_beside_run(law: &LawFile, case: &Case, history: &[StepRecord]) -> R
 ///
 /// # Errors
 /// [`LawError::NotCovered`] for a case that the law says nothing about; a drawing fails.
-pub fn law_beside_run(law: &Law, case: &Case, history: &[StepRecord]) -> Result<(Picture, Prediction), LawError> {
+pub fn law_beside_run(law: &Law, case: &Case, history: &[StepRecord], view: &View) -> Result<(Picture, Prediction), LawError> {
     let prediction = predict(law, case, NormalSource::Formulas)?;
     let direction = if prediction.curve.last().is_some_and(|point| point.delta_t < 0.0) { -1.0 } else { 1.0 };
     let friction = prediction.inputs.friction;
@@ -54,5 +59,5 @@ pub fn law_beside_run(law: &Law, case: &Case, history: &[StepRecord]) -> Result<
         laws.push(("law, F_N0 and a_0 known".to_owned(), curve(&known)));
     }
     laws.push(("law from the case alone".to_owned(), curve(&prediction.parameters)));
-    Ok((plot_law(history, &laws)?, prediction))
+    Ok((plot_law(history, &laws, view)?, prediction))
 }

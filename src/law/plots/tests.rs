@@ -6,7 +6,7 @@ use crate::law::tests::elastic_sample;
 fn a_study_without_plasticity_has_few_pictures() {
     let data = StudyData { samples: vec![elastic_sample(0.1), elastic_sample(0.3)], skipped: Vec::new() };
     let names = |contacts: &[NormalContact], data: &StudyData| -> Vec<&str> {
-        study_pictures(contacts, data, None).unwrap().iter().map(|picture| picture.name).collect()
+        study_pictures(contacts, data, None, Default::default()).unwrap().iter().map(|picture| picture.name).collect()
     };
     let sample = &data.samples[0];
     let contact = NormalContact {

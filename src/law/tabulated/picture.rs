@@ -5,9 +5,9 @@ use super::{Curves, DepthErrors, Level};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::law::LawError;
 use crate::law::contact::path::drive;
-use crate::output::plots::Picture;
-use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_chart, extent};
+use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_charts, extent};
 use crate::output::plots::style::{BLUE, GREEN, GREY, INK, VERMILION};
+use crate::output::plots::{Picture, Sheet};
 
 /// F_N0 and a0 over h with the simulations; the shears of the checked depths with what the table of
 /// the others says; the errors there.
@@ -18,12 +18,8 @@ pub fn picture(built: &Built) -> Result<Picture, LawError> {
     let charts = [normal(built)?, shears(built)?, errors(&built.table.errors)];
     let caption = "Left: the table (lines) and the depths it was made from (marks). Middle: depths between those of a table of every other depth, simulated (marks) \
                    and told by it (lines). Right: its errors there.";
-    Ok(Picture::draw("tabulated", caption, (480 * 3, 470), |root| {
-        for (area, chart) in root.columns(3).iter().zip(&charts) {
-            draw_chart(area, chart)?;
-        }
-        Ok(())
-    })?)
+    let (size, columns) = Sheet::default().charts((480 * 3, 470), 3);
+    Ok(Picture::draw("tabulated", caption, size, |root| draw_charts(root, columns, &charts))?)
 }
 
 fn normal(built: &Built) -> Result<Chart, LawError> {

@@ -5,6 +5,11 @@ use std::cell::RefCell;
 use std::fmt::{self, Write};
 use std::rc::Rc;
 
+use crate::case::WidthUnit;
+
+use super::sheet::Size;
+use super::text::{LINE_HEIGHT, number, subscripts};
+
 /// A colour, red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour(pub u8, pub u8, pub u8);
@@ -114,8 +119,6 @@ pub struct NotFinite(String);
 
 /// The reader's own font: nothing has to be loaded.
 const FONT: &str = "sans-serif";
-/// Height of a line over the size of its letters.
-const LINE_HEIGHT: f64 = 1.24;
 
 /// A place on a picture.
 pub type Place = (f64, f64);
@@ -134,11 +137,20 @@ pub struct Canvas {
 
 impl Canvas {
     /// An empty picture.
-    pub fn new((width, height): (u32, u32)) -> Self {
+    pub fn new(size: Size) -> Self {
+        let Size { width, height, .. } = size;
+        // A width in pixels that was asked for has its unit; it stands for that many pixels of a
+        // PNG.
+        let [across, down] = size.printed().map(|side| match (size.printed, side.unit) {
+            (None, _) => number(side.value),
+            (_, WidthUnit::Pixel) => format!("{}px", number(side.value)),
+            (_, unit) => format!("{:.4}{}", side.value, unit.symbol()),
+        });
         let head = format!(
-            "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\">\n"
+            "<svg width=\"{across}\" height=\"{down}\" viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\">\n",
+            number(width),
+            number(height)
         );
-        let [width, height] = [width, height].map(f64::from);
         Self { svg: Rc::new(RefCell::new(head)), left: 0.0, top: 0.0, width, height }
     }
 
@@ -152,10 +164,10 @@ impl Canvas {
         Self { svg: self.svg.clone(), left: self.left + left, top: self.top + top, width, height }
     }
 
-    /// Panels of equal width side by side.
-    pub fn columns(&self, count: usize) -> Vec<Self> {
-        let width = self.width / count as f64;
-        (0..count).map(|i| self.panel((i as f64 * width, 0.0), (width, self.height))).collect()
+    /// `count` panels of equal size, row by row.
+    pub fn grid(&self, count: usize, columns: usize) -> Vec<Self> {
+        let (width, height) = (self.width / columns as f64, self.height / count.div_ceil(columns).max(1) as f64);
+        (0..count).map(|i| self.panel(((i % columns) as f64 * width, (i / columns) as f64 * height), (width, height))).collect()
     }
 
     /// A line through points.
@@ -178,6 +190,49 @@ impl Canvas {
         self.add(&format!("<polygon {} points=\"{}\"/>", attributes(paint), self.places(points)))
     }
 
+    /// The area between closed lines, holes being those that lie within others.
+    pub fn area(&self, loops: &[Vec<Place>], paint: Paint) -> Drawn {
+        let mut path = String::new();
+        for points in loops.iter().filter(|points| points.len() > 2) {
+            // Writing to a String cannot fail.
+            let _ = write!(path, "M{}Z", self.places(points));
+        }
+        if path.is_empty() {
+            Ok(())
+        } else {
+            self.add(&format!("<path {} fill-rule=\"evenodd\" d=\"{path}\"/>", attributes(paint)))
+        }
+    }
+
+    /// A rectangle whose colour goes over from one side to the other: `colour` of 0 to 1, from the
+    /// left, or from the foot if `upwards`.
+    pub fn ramp(&self, [a, b]: [Place; 2], upwards: bool, colour: impl Fn(f64) -> Colour) -> Drawn {
+        const STOPS: u32 = 32;
+        let mut stops = String::new();
+        for i in 0..=STOPS {
+            let share = f64::from(i) / f64::from(STOPS);
+            let _ = write!(stops, "<stop offset=\"{share}\" stop-color=\"{}\"/>", colour(share));
+        }
+        let [x1, y1, x2, y2] = if upwards { [0, 1, 0, 0] } else { [0, 0, 1, 0] };
+        // The same name stands for the same colours, where several pictures are on one page.
+        let name = format!("ramp-{:08x}", crc32fast::hash(format!("{upwards}{stops}").as_bytes()));
+        let (x, y) = (self.left + a.0.min(b.0), self.top + a.1.min(b.1));
+        self.add(&format!(
+            "<linearGradient id=\"{name}\" x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\">{stops}</linearGradient>\n\
+             <rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"url(#{name})\"/>",
+            number(x),
+            number(y),
+            number((b.0 - a.0).abs()),
+            number((b.1 - a.1).abs()),
+        ))
+    }
+
+    /// Words for those who do not see the picture, and for programs.
+    pub fn describe(&self, text: &str) -> Drawn {
+        self.svg.borrow_mut().push_str(&format!("<desc>{}</desc>\n", quick_xml::escape::partial_escape(text.trim())));
+        Ok(())
+    }
+
     /// A rectangle between two opposite corners.
     pub fn rectangle(&self, [a, b]: [Place; 2], paint: Paint) -> Drawn {
         let (x, y) = (self.left + a.0.min(b.0), self.top + a.1.min(b.1));
@@ -197,7 +252,7 @@ impl Canvas {
         self.add(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" {}/>", number(radius), attributes(paint)))
     }
 
-    /// A text, its subscripts and superscripts set (see [`subscripts`]).
+    /// A text, its subscripts and superscripts set (see `text.rs`).
     pub fn text(&self, text: &str, (x, y): Place, ink: impl Into<Ink>, writing: Writing) -> Drawn {
         let Ink { colour, opacity } = ink.into();
         let (x, y) = (number(self.left + x), number(self.top + y));
@@ -251,63 +306,20 @@ fn attributes(paint: Paint) -> String {
     }
 }
 
-/// A number with two decimals at most.
-fn number(x: f64) -> String {
-    let text = format!("{x:.2}");
-    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if short == "-0" { "0".to_owned() } else { short.to_owned() }
-}
-
-/// Turns `_x` and `_{xyz}` of a text into subscripts of an SVG, `^x` and `^{xyz}` into
-/// superscripts: what follows a `_` is lowered and what follows a `^` is raised, up to the end of
-/// the word or of the braces. `size` is that of the letters, in pixels: sizes in per cent or in ems
-/// are not read alike everywhere.
-pub fn subscripts(text: &str, size: f64) -> String {
-    /// Size of what is off the line.
-    const SMALL: f64 = 0.75;
-    let mut out = String::new();
-    let mut rest = text;
-    let mut height = 0.0;
-    while !rest.is_empty() {
-        let (plain, after) = rest.split_at(rest.find(['_', '^']).unwrap_or(rest.len()));
-        if height != 0.0 && !plain.is_empty() {
-            // Back to the line; without the attribute some readers drop a space at the start of a
-            // span.
-            out.push_str(&format!("<tspan dy=\"{}\" xml:space=\"preserve\">{plain}</tspan>", number(-height * size)));
-            height = 0.0;
-        } else {
-            out.push_str(plain);
-        }
-        let target = match after.chars().next() {
-            Some('_') => 0.25,
-            Some(_) => -0.375,
-            None => break,
-        };
-        let after = &after[1..];
-        let (inner, after) = match after.strip_prefix('{').and_then(|after| after.split_once('}')) {
-            Some(pair) => pair,
-            None => after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len())),
-        };
-        if !inner.is_empty() {
-            let (shift, small) = (number((target - height) * size), number(SMALL * size));
-            out.push_str(&format!("<tspan dy=\"{shift}\" font-size=\"{small}\">{inner}</tspan>"));
-            height = target;
-        }
-        rest = after;
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const BLACK: Colour = Colour(0, 0, 0);
 
+    fn canvas(width: f64, height: f64) -> Canvas {
+        Canvas::new(Size { width, height, printed: None })
+    }
+
     #[test]
     fn places_have_two_decimals_and_panels_their_own() {
-        let canvas = Canvas::new((100, 50));
-        let right = canvas.columns(2).remove(1);
+        let canvas = canvas(100.0, 50.0);
+        let right = canvas.grid(2, 2).remove(1);
         assert_eq!((right.width, right.height), (50.0, 50.0));
         right
             .line(&[(0.126, 1.0), (-50.001, 1.0 / 3.0)], Stroke { dashes: Some([8.0, 4.0]), ..Stroke::solid(BLACK, 2.0) })
@@ -326,7 +338,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_text_and_nothing_else() {
-        let canvas = Canvas::new((10, 10));
+        let canvas = canvas(10.0, 10.0);
         canvas.text(" inf < a & F_N ", (1.0, 2.0), BLACK, Writing { upwards: true, ..Writing::new(12.4, Anchor::End) }).unwrap();
         let svg = canvas.finish();
         assert!(svg.contains("text-anchor=\"end\" font-family=\"sans-serif\" font-size=\"10\" opacity=\"1\""), "{svg}");
@@ -335,23 +347,10 @@ mod tests {
 
     #[test]
     fn what_is_not_a_number_is_refused() {
-        let canvas = Canvas::new((10, 10));
+        let canvas = canvas(10.0, 10.0);
         let stroke = Stroke::solid(BLACK, 1.0);
         assert!(canvas.line(&[(0.0, f64::NAN)], stroke).unwrap_err().to_string().contains("points=\"0,NaN\""));
         assert!(canvas.circle((f64::INFINITY, 0.0), 1.0, Paint::fill(BLACK)).is_err());
         assert_eq!(canvas.finish().lines().count(), 2);
-    }
-
-    #[test]
-    fn subscripts_are_lowered_and_the_line_goes_on() {
-        let low = |text: &str| format!("<tspan dy=\"3\" font-size=\"9\">{text}</tspan>");
-        let back = |text: &str| format!("<tspan dy=\"-3\" xml:space=\"preserve\">{text}</tspan>");
-        let subscripts = |text: &str| subscripts(text, 12.0);
-        assert_eq!(subscripts("plain &amp; simple"), "plain &amp; simple");
-        assert_eq!(subscripts("F_N"), format!("F{}", low("N")));
-        assert_eq!(subscripts("F_N/δ_{T,slip} x"), format!("F{}{}{}{}", low("N"), back("/δ"), low("T,slip"), back(" x")));
-        let up = "<tspan dy=\"-4.5\" font-size=\"9\">n</tspan>";
-        assert_eq!(subscripts("(1 − x)^n b"), format!("(1 − x){up}<tspan dy=\"4.5\" xml:space=\"preserve\"> b</tspan>"));
-        assert_eq!(subscripts("a_"), "a");
     }
 }

@@ -3,6 +3,10 @@
 
 use super::canvas::{Anchor, Canvas, Colour, Drawn, Ink, Paint, Place, Stroke, Writing};
 use super::style::{FAINT, INK, PALE, WHITE, tick, viridis};
+use super::text::text_width;
+
+/// About as many intervals between ticks has an axis at most.
+const MOST_TICKS: f64 = 6.0;
 
 /// One axis of a [`Chart`].
 #[derive(Clone, Debug, PartialEq)]
@@ -35,11 +39,12 @@ impl Axis {
         if self.logarithmic { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
     }
 
-    /// Where the grid lines are; the labelled ones with their text.
-    fn ticks(&self) -> Vec<(f64, Option<String>)> {
+    /// Where the grid lines are, about `count` of them on a linear axis; the labelled ones with
+    /// their text.
+    fn ticks(&self, count: f64) -> Vec<(f64, Option<String>)> {
         let (low, high) = self.range;
         if !self.logarithmic {
-            let step = nice_step((high - low) / 6.0);
+            let step = nice_step((high - low) / count);
             let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
             // Among denormal numbers steps are no longer even, or nothing; a chart without ticks is
             // still one.
@@ -50,11 +55,14 @@ impl Axis {
             return (first..=last).map(|i| i as f64 * step).map(|value| (value, Some(tick(value)))).collect();
         }
         let decades = (high / low).log10();
+        // Where there is little room, every other decade, or fewer.
+        let every = (decades / count).ceil().max(1.0) as i32;
         let mut ticks = Vec::new();
         for decade in low.log10().floor() as i32..=high.log10().ceil() as i32 {
             for digit in 1..10 {
                 let value = f64::from(digit) * 10f64.powi(decade);
-                let labelled = digit == 1 || decades < 2.2 && matches!(digit, 2 | 5);
+                let labelled =
+                    digit == 1 && decade % every == 0 || decades < 2.2 && count >= MOST_TICKS && matches!(digit, 2 | 5);
                 if value >= low * (1.0 - 1e-9) && value <= high * (1.0 + 1e-9) {
                     ticks.push((value, labelled.then(|| tick(value))));
                 }
@@ -128,12 +136,14 @@ pub struct Series {
     pub mark: Option<(Mark, f64)>,
     /// The points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
+    /// Whether an arrow on the line shows in which order the points follow each other.
+    pub arrow: bool,
 }
 
 impl Series {
     /// A line of two pixels.
     pub fn solid(label: impl Into<String>, colour: Colour, points: Vec<(f64, f64)>) -> Self {
-        Self { label: label.into(), colour, opacity: 1.0, line: Some(Line::Solid(2.0)), mark: None, points }
+        Self { label: label.into(), colour, opacity: 1.0, line: Some(Line::Solid(2.0)), mark: None, points, arrow: false }
     }
 
     /// A line of dashes, `dash` pixels long.
@@ -146,14 +156,18 @@ impl Series {
         Self { line: None, mark: Some((mark, 3.0)), ..Self::solid(label, colour, points) }
     }
 
+    /// With an arrow.
+    pub fn directed(self) -> Self {
+        Self { arrow: true, ..self }
+    }
+
     /// With a mark at each point.
     pub fn marked(self, mark: Mark) -> Self {
         Self { mark: Some((mark, 3.0)), ..self }
     }
 }
 
-/// What the colours of many curves stand for: viridis from the lower end to the upper one,
-/// logarithmic.
+/// What the colours of many curves stand for: viridis from the lower end to the upper one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
     /// The quantity and its range.
@@ -229,6 +243,14 @@ impl Frame<'_> {
         (enter <= leave).then(|| [at(enter), at(leave)])
     }
 
+    /// Whether anything of a series is inside of the frame. One without points is there for its
+    /// entry in the legend.
+    fn shows(&self, series: &Series) -> bool {
+        let finite = finite(&series.points);
+        let marked = series.mark.is_some() && finite.iter().any(|&(x, y)| self.holds((self.x(x), self.y(y))));
+        series.points.is_empty() || marked || series.line.is_some() && !self.pieces(&finite).is_empty()
+    }
+
     /// The pieces of a curve inside of the frame, in pixels.
     fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
         let mut pieces: Vec<Vec<Place>> = Vec::new();
@@ -253,6 +275,10 @@ impl Frame<'_> {
     }
 }
 
+fn finite(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    points.iter().copied().filter(|point| point.0.is_finite() && point.1.is_finite()).collect()
+}
+
 /// Without points that no eye could tell from the one before; the last one stays.
 fn thinned(piece: &[Place]) -> Vec<Place> {
     const CLOSE: f64 = 0.5;
@@ -266,12 +292,6 @@ fn thinned(piece: &[Place]) -> Vec<Place> {
     kept
 }
 
-/// Width of a text in pixels, roughly: enough to keep things apart.
-fn text_width(text: &str, size: f64) -> f64 {
-    let shown = text.chars().filter(|c| !matches!(c, '_' | '^' | '{' | '}')).count();
-    (0.52 * size * shown as f64).ceil()
-}
-
 fn draw_line(root: &Canvas, line: Line, ink: Ink, piece: &[Place]) -> Drawn {
     root.line(
         piece,
@@ -280,6 +300,30 @@ fn draw_line(root: &Canvas, line: Line, ink: Ink, piece: &[Place]) -> Drawn {
             Line::Dashed(dash) => Stroke { dashes: Some([dash, dash.min(4.0)]), ..Stroke::solid(ink, 2.0) },
         },
     )
+}
+
+/// An arrow head in the middle of a curve, along it; none on a short one.
+fn draw_arrow(root: &Canvas, ink: Ink, pieces: &[Vec<Place>]) -> Drawn {
+    const SHORTEST: f64 = 24.0;
+    let segments: Vec<[Place; 2]> = pieces.iter().flat_map(|piece| piece.windows(2).map(|pair| [pair[0], pair[1]])).collect();
+    let length = |[from, to]: &[Place; 2]| (to.0 - from.0).hypot(to.1 - from.1);
+    let whole: f64 = segments.iter().map(length).sum();
+    if whole < SHORTEST {
+        return Ok(());
+    }
+    let mut before = 0.0;
+    for segment in &segments {
+        let own = length(segment);
+        if before + own >= 0.5 * whole {
+            let [from, to] = *segment;
+            let (along, share) = (((to.0 - from.0) / own, (to.1 - from.1) / own), (0.5 * whole - before) / own);
+            let tip = (from.0 + share * (to.0 - from.0) + 6.0 * along.0, from.1 + share * (to.1 - from.1) + 6.0 * along.1);
+            let back = |aside: f64| (tip.0 - 16.0 * along.0 - aside * along.1, tip.1 - 16.0 * along.1 + aside * along.0);
+            return root.polygon(&[tip, back(4.0), back(-4.0)], Paint::fill(ink));
+        }
+        before += own;
+    }
+    Ok(())
 }
 
 fn draw_mark(root: &Canvas, (mark, r): (Mark, f64), ink: Ink, (x, y): Place) -> Drawn {
@@ -299,6 +343,8 @@ fn draw_mark(root: &Canvas, (mark, r): (Mark, f64), ink: Ink, (x, y): Place) -> 
 /// Height of a line of the legend.
 const LEGEND_LINE: f64 = 20.0;
 const LEGEND_SIZE: f64 = 13.0;
+/// Size of the numbers on axes.
+const TICK_SIZE: f64 = 13.0;
 const SAMPLE: f64 = 26.0;
 
 /// Where each entry of the legend stands in lines of the given width: (series, x, line), and the
@@ -317,13 +363,26 @@ fn legend_places(series: &[Series], width: f64) -> (Vec<(&Series, f64, usize)>, 
     (places, lines)
 }
 
+/// The size at which a text of at most `size` is no wider than `room`.
+fn fitting(text: &str, size: f64, room: f64) -> f64 {
+    size * (room / text_width(text, size)).min(1.0)
+}
+
 /// Draws the diagram over the whole canvas.
 pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
-    let (left, right) = (78.0, root.width - if chart.bar.is_some() { 96.0 } else { 26.0 });
-    let (legend, lines) = legend_places(&chart.series, right - left);
-    let frame = Frame { chart, left, right, top: 46.0 + LEGEND_LINE * lines as f64, bottom: root.height - 58.0 };
+    let high = (root.height - 130.0).max(1.0);
+    let y_ticks = chart.y.ticks((high / 38.0).clamp(2.0, MOST_TICKS));
+    let widest = y_ticks.iter().flat_map(|tick| &tick.1).map(|label| text_width(label, TICK_SIZE)).fold(0.0, f64::max);
+    let (left, right) = (38.0 + widest.max(24.0), root.width - if chart.bar.is_some() { 84.0 } else { 22.0 });
+    let frame = Frame { chart, left, right, top: 0.0, bottom: root.height - 58.0 };
+    // What is off the scale has no entry. The height of the frame does not matter for that.
+    let shown: Vec<Series> = chart.series.iter().filter(|series| frame.shows(series)).cloned().collect();
+    let (legend, lines) = legend_places(&shown, right - left);
+    let frame = Frame { top: 46.0 + LEGEND_LINE * lines as f64, ..frame };
+    let x_ticks = chart.x.ticks(((right - left) / 70.0).clamp(2.0, MOST_TICKS));
 
-    root.text(&chart.title, (left, 22.0), INK, Writing::new(18.0, Anchor::Start))?;
+    let title = Writing::new(fitting(&chart.title, 18.0, right - left), Anchor::Start);
+    root.text(&chart.title, (left, 22.0), INK, title)?;
     for (entry, x, line) in legend {
         let (x, y) = (left + x, 48.0 + LEGEND_LINE * line as f64);
         let ink = entry.colour.mix(entry.opacity.max(0.8));
@@ -333,32 +392,37 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
         if let Some((mark, size)) = entry.mark {
             draw_mark(root, (mark, size.max(3.0)), ink, (x + 0.5 * SAMPLE, y))?;
         }
-        root.text(&entry.label, (x + SAMPLE + 7.0, y), INK, Writing::new(LEGEND_SIZE, Anchor::Start))?;
+        let size = fitting(&entry.label, LEGEND_SIZE, right - x - SAMPLE - 7.0);
+        root.text(&entry.label, (x + SAMPLE + 7.0, y), INK, Writing::new(size, Anchor::Start))?;
     }
 
-    for (value, label) in chart.x.ticks() {
+    for (value, label) in x_ticks {
         let x = frame.x(value);
         let shade = if label.is_some() { FAINT } else { PALE };
         root.line(&[(x, frame.top), (x, frame.bottom)], Stroke::solid(shade, 1.0))?;
         if let Some(label) = label {
             root.line(&[(x, frame.bottom), (x, frame.bottom + 5.0)], Stroke::solid(INK, 1.0))?;
-            root.text(&label, (x, frame.bottom + 15.0), INK, Writing::new(13.0, Anchor::Middle))?;
+            root.text(&label, (x, frame.bottom + 15.0), INK, Writing::new(TICK_SIZE, Anchor::Middle))?;
         }
     }
-    for (value, label) in chart.y.ticks() {
+    for (value, label) in y_ticks {
         let y = frame.y(value);
         root.line(&[(frame.left, y), (frame.right, y)], Stroke::solid(FAINT, 1.0))?;
         if let Some(label) = label {
             root.line(&[(frame.left - 5.0, y), (frame.left, y)], Stroke::solid(INK, 1.0))?;
-            root.text(&label, (frame.left - 9.0, y), INK, Writing::new(13.0, Anchor::End))?;
+            root.text(&label, (frame.left - 9.0, y), INK, Writing::new(TICK_SIZE, Anchor::End))?;
         }
     }
     for series in &chart.series {
         let ink = series.colour.mix(series.opacity);
-        let finite: Vec<(f64, f64)> = series.points.iter().copied().filter(|p| p.0.is_finite() && p.1.is_finite()).collect();
+        let finite = finite(&series.points);
         if let Some(line) = series.line {
-            for piece in frame.pieces(&finite) {
-                draw_line(root, line, ink, &piece)?;
+            let pieces = frame.pieces(&finite);
+            for piece in &pieces {
+                draw_line(root, line, ink, piece)?;
+            }
+            if series.arrow {
+                draw_arrow(root, ink, &pieces)?;
             }
         }
         if let Some(mark) = series.mark {
@@ -370,19 +434,25 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
     root.rectangle([(frame.left, frame.top), (frame.right, frame.bottom)], Paint::outline(INK, 1.0))?;
 
     let middle = (0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
-    let name = Writing::new(15.0, Anchor::Middle);
-    root.text(&chart.x.label, (middle.0, root.height - 20.0), INK, name)?;
-    root.text(&chart.y.label, (16.0, middle.1), INK, Writing { upwards: true, ..name })?;
+    let name = |label: &str, room: f64| Writing::new(fitting(label, 15.0, room), Anchor::Middle);
+    root.text(&chart.x.label, (middle.0, root.height - 20.0), INK, name(&chart.x.label, right - left))?;
+    let up = name(&chart.y.label, frame.bottom - frame.top + 30.0);
+    root.text(&chart.y.label, (16.0, middle.1), INK, Writing { upwards: true, ..up })?;
     match &chart.bar {
         Some(bar) => draw_bar(root, bar, frame.right + 20.0, [frame.top + 24.0, frame.bottom]),
         None => Ok(()),
     }
 }
 
+/// Draws several diagrams in panels of equal size, row by row.
+pub fn draw_charts(root: &Canvas, columns: usize, charts: &[Chart]) -> Drawn {
+    root.grid(charts.len(), columns).iter().zip(charts).try_for_each(|(area, chart)| draw_chart(area, chart))
+}
+
 fn draw_bar(root: &Canvas, bar: &ColourBar, left: f64, [top, bottom]: [f64; 2]) -> Drawn {
     root.text(&bar.axis.label, (left, top - 16.0), INK, Writing::new(14.0, Anchor::Start))?;
-    ramp(root, left, 16.0, [top, bottom], |share| viridis(VIRIDIS_END * share))?;
-    for (value, label) in bar.axis.ticks().into_iter().filter_map(|(value, label)| Some((value, label?))) {
+    root.ramp([(left, top), (left + 16.0, bottom)], true, |share| viridis(VIRIDIS_END * share))?;
+    for (value, label) in bar.axis.ticks(MOST_TICKS).into_iter().filter_map(|(value, label)| Some((value, label?))) {
         let y = bottom - bar.axis.place(value) * (bottom - top);
         root.line(&[(left + 16.0, y), (left + 21.0, y)], Stroke::solid(INK, 1.0))?;
         root.text(&label, (left + 25.0, y), INK, Writing::new(13.0, Anchor::Start))?;
@@ -390,24 +460,13 @@ fn draw_bar(root: &Canvas, bar: &ColourBar, left: f64, [top, bottom]: [f64; 2]) 
     Ok(())
 }
 
-/// The colours of a bar, from 0 at its foot to 1 at its head, a line a pixel.
-/// Each line reaches down to the foot and is covered by the next one: where
-/// lines only met, a reader that smooths edges would let the card shine through.
-pub(super) fn ramp(root: &Canvas, left: f64, width: f64, [top, bottom]: [f64; 2], colour: impl Fn(f64) -> Colour) -> Drawn {
-    for line in 0..(bottom - top).floor() as u32 {
-        let y = top + f64::from(line);
-        let fill = Paint::fill(colour((bottom - y) / (bottom - top)));
-        root.rectangle([(left, y), (left + width, bottom)], fill)?;
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::sheet::Size;
     use super::*;
 
     fn labels(axis: &Axis) -> Vec<String> {
-        axis.ticks().into_iter().filter_map(|(_, label)| label).collect()
+        axis.ticks(MOST_TICKS).into_iter().filter_map(|(_, label)| label).collect()
     }
 
     #[test]
@@ -442,7 +501,7 @@ mod tests {
         let (x, y) = (Axis::linear("", 0.0, 1.0), Axis::linear("", 0.0, 1.0));
         let curve = (0..=200).map(|i| 0.005 * f64::from(i)).map(|x| (x, 0.2 + 0.3 * x * x)).collect();
         let chart = Chart { title: String::new(), x, y, series: vec![Series::solid("", INK, curve)], bar: None };
-        let canvas = Canvas::new((700, 400));
+        let canvas = Canvas::new(Size { width: 700.0, height: 400.0, printed: None });
         draw_chart(&canvas, &chart).unwrap();
         let svg = canvas.finish();
         let drawn = svg.lines().find(|line| line.contains("stroke-width=\"2\"")).unwrap();
@@ -476,8 +535,8 @@ mod tests {
         for (low, high) in
             [(0.0, 5e-324), (0.0, 1e-322), (5e-324, 1e-320), (-1e-310, 1e-308), (0.0, f64::MAX), (-f64::MAX, f64::MAX)]
         {
-            assert!(Axis::linear("F", low, high).ticks().len() <= 21, "{low:e} {high:e}");
+            assert!(Axis::linear("F", low, high).ticks(MOST_TICKS).len() <= 21, "{low:e} {high:e}");
         }
-        assert!(Axis::linear("F", 0.0, 1e-300).ticks().len() > 3);
+        assert!(Axis::linear("F", 0.0, 1e-300).ticks(MOST_TICKS).len() > 3);
     }
 }

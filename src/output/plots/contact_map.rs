@@ -2,79 +2,130 @@
 
 use super::super::tables::SlipPanel;
 use super::super::{ContactPoint, ContactStatus, Half, OutputError};
+use super::View;
+use super::axes::{Dimension, Shown};
 use super::canvas::{Anchor, Canvas, Colour, Drawn, Paint, Place, Stroke, Writing};
-use super::chart::{nice_step, ramp};
-use super::style::{BLUE, INK, ORANGE, Picture, WHITE, rounded, tick, viridis};
+use super::chart::nice_step;
+use super::field::{Field, clipped};
+use super::style::{BLUE, INK, ORANGE, Picture, rounded, tick, viridis};
+use super::text::text_width;
 
 const OPEN: Colour = Colour(0xdd, 0xdd, 0xdd);
+/// Colours of the pressure: as many areas lie upon each other.
+const LEVELS: u32 = 64;
+/// Height of the colour bar, its numbers and its name.
+const BAR: f64 = 74.0;
+/// Room beside a square for the numbers of its axes and their names.
+const MARGIN: f64 = 58.0;
+const FOOT: f64 = 56.0;
 
 /// The map of one step at current positions: open, stick and slip in the upper half, the pressure
 /// in the lower one. The shear runs to the right.
-pub fn plot_contact(points: &[ContactPoint]) -> Result<Picture, OutputError> {
+pub fn plot_contact(points: &[ContactPoint], view: &View) -> Result<Picture, OutputError> {
     let caption = "The contact surface at the last saved step in contact, at current positions, with the numbers of its points on both halves; the shear runs to the \
                    right.";
-    Picture::draw("contact", caption, (780, 640), |root| {
-        let map = Map { view: View::of(points), highest: highest(points), square: Square { left: 88.0, top: 52.0, side: 520.0 } };
+    let scales = Scales::of(points, view);
+    let window = Window::of(points);
+    let width = view.sheet.width_of(640.0);
+    let side = (width - MARGIN - 24.0).min(520.0);
+    let top = 78.0;
+    Picture::draw("contact", caption, view.sheet.size(width, top + side + FOOT + BAR), |root| {
+        let map = Map { window, scales: &scales, square: Square { left: MARGIN, top, side } };
         map.draw(root, points)?;
-        let Square { left, top, side } = map.square;
-        root.text("Contact surface", (left, 26.0), INK, text(18.0))?;
-        map.axes(root, true)?;
-        root.text("status", (left + 10.0, top + 16.0), INK, text(14.0))?;
-        root.text("pressure", (left + 10.0, top + side - 16.0), INK, text(14.0))?;
-        status_names(root, points, (640.0, top + 14.0), true)?;
-        pressure_bar(root, map.highest, 640.0, [top + 0.5 * side + 8.0, top + side])
+        root.text("Contact surface", (MARGIN, 24.0), INK, text(18.0))?;
+        map.axes(root, [true, true])?;
+        root.text("status", (MARGIN + 10.0, top + 16.0), INK, text(14.0))?;
+        root.text("pressure", (MARGIN + 10.0, top + side - 16.0), INK, text(14.0))?;
+        status_names(root, Some(points), (MARGIN, 54.0))?;
+        pressure_bar(root, &scales, (MARGIN, top + side + FOOT), side)
     })
 }
 
-/// Maps of some steps of a shear side by side, all to one scale: how slip eats into the contact
+/// Maps of some steps in the order of the shear, all to one scale: how slip eats into the contact
 /// from its edge.
-pub fn plot_slip(panels: &[SlipPanel]) -> Result<Picture, OutputError> {
-    const PANEL: (f64, f64) = (300.0, 322.0);
-    const HEAD: f64 = 48.0;
-    let columns = match panels.len() {
+pub fn plot_slip(panels: &[SlipPanel], view: &View) -> Result<Picture, OutputError> {
+    const HEAD: f64 = 74.0;
+    const NARROWEST: f64 = 170.0;
+    /// Narrowest square over which what it shows stands on one line.
+    const ONE_LINE: f64 = 200.0;
+    let most = match panels.len() {
         4 => 2,
         count => count.clamp(1, 3),
     };
-    let rows = panels.len().div_ceil(columns);
-    let left = columns as f64 * PANEL.0;
-    let size = (left as u32 + 196, (HEAD + rows.max(1) as f64 * PANEL.1) as u32 + 8);
-    let caption = "Stick and slip (upper halves) and pressure (lower halves) at saved steps of the shear, to one scale; \
+    let width = view.sheet.width_of((most as f64 * 310.0).max(380.0));
+    let columns = ((width / NARROWEST) as usize).clamp(1, most);
+    let across = width / columns as f64;
+    let side = (across - MARGIN - 14.0).min(300.0);
+    let rows = panels.len().div_ceil(columns).max(1);
+    // Over a panel's square, for what it shows.
+    let title = if side < ONE_LINE { 46.0 } else { 28.0 };
+    // Only the lowest panels name their axis.
+    let down = |rows: usize| rows as f64 * (title + side + 32.0);
+    let size = view.sheet.size(width, HEAD + down(rows) + FOOT - 32.0 + BAR);
+    let caption = "Stick and slip (upper halves) and pressure (lower halves) at saved steps of the shear, in their order and to one scale; \
                    the shear runs to the right.";
+    let all: Vec<ContactPoint> = panels.iter().flat_map(|panel| panel.points.iter().cloned()).collect();
+    let (window, scales) = (Window::of(&all), Scales::of(&all, view));
+    let farthest = super::curves::greatest(panels.iter().map(|panel| panel.delta_t));
+    let delta_t = view.axes.show(Dimension::Length, "", "δ_T", farthest);
     Picture::draw("slip", caption, size, |root| {
-        let all: Vec<ContactPoint> = panels.iter().flat_map(|panel| panel.points.iter().cloned()).collect();
-        let (view, highest) = (View::of(&all), highest(&all));
-        root.text("Stick and slip during the shear", (24.0, 26.0), INK, text(18.0))?;
+        root.text("Stick and slip during the shear", (MARGIN, 24.0), INK, text(18.0))?;
+        status_names(root, None, (MARGIN, 54.0))?;
         for (i, panel) in panels.iter().enumerate() {
-            // What sticks out of its square is covered in its own panel alone.
-            let corner = ((i % columns) as f64 * PANEL.0, HEAD + (i / columns) as f64 * PANEL.1);
-            let area = root.panel(corner, PANEL);
-            let map = Map { view, highest, square: Square { left: 62.0, top: 26.0, side: 228.0 } };
+            let corner = ((i % columns) as f64 * across, HEAD + down(i / columns));
+            let area = root.panel(corner, (across, title + side + FOOT));
+            let map = Map { window, scales: &scales, square: Square { left: MARGIN, top: title, side } };
             map.draw(&area, &panel.points)?;
-            let ratio = panel.ratio.map_or(String::new(), |ratio| format!(", F_T/F_N = {ratio:.3}"));
-            let head = format!("δ_T = {}{ratio}", tick(rounded(panel.delta_t)));
-            area.text(&head, (map.square.left, map.square.top - 13.0), INK, text(14.0))?;
-            // Named where no other panel stands below.
-            map.axes(&area, i + columns >= panels.len())?;
+            let place = format!("{} = {}", delta_t.short, tick(rounded(panel.delta_t * delta_t.factor)));
+            let ratio = panel.ratio.map(|ratio| format!("F_T/F_N = {:.3}", (1e3 * ratio).round() / 1e3 + 0.0));
+            let lines: Vec<String> = match ratio {
+                Some(ratio) if side < ONE_LINE => vec![place, ratio],
+                Some(ratio) => vec![format!("{place}, {ratio}")],
+                None => vec![place],
+            };
+            for (i, line) in lines.iter().rev().enumerate() {
+                let size = 14.0 * (side / text_width(line, 14.0)).min(1.0);
+                area.text(line, (MARGIN, title - 13.0 - 18.0 * i as f64), INK, text(size))?;
+            }
+            map.axes(&area, [i + columns >= panels.len(), i % columns == 0])?;
         }
-        let first = panels.last().map(|panel| panel.points.as_slice()).unwrap_or_default();
-        status_names(root, first, (left + 20.0, HEAD + 40.0), false)?;
-        pressure_bar(root, highest, left + 20.0, [HEAD + 130.0, HEAD + PANEL.1 - 68.0])
+        let length = (width - MARGIN - 40.0).min(420.0);
+        pressure_bar(root, &scales, (MARGIN, HEAD + down(rows) - 32.0 + FOOT), length)
     })
 }
 
-/// Greatest finite pressure.
-fn highest(points: &[ContactPoint]) -> f64 {
-    points.iter().map(|point| point.pressure).filter(|p| p.is_finite()).fold(0.0, f64::max)
+/// How lengths and pressures are shown.
+struct Scales {
+    length: Shown,
+    across: Shown,
+    pressure: Shown,
+    /// The pressure at the upper end of the colours, in the case's unit.
+    highest: f64,
+}
+
+impl Scales {
+    fn of(points: &[ContactPoint], view: &View) -> Self {
+        let highest = points.iter().map(|point| point.pressure).filter(|p| p.is_finite()).fold(0.0, f64::max);
+        // One unit for both directions, and for no direction a power of ten: contacts are a tenth
+        // of R or so.
+        let reach = f64::INFINITY;
+        Self {
+            length: view.axes.show(Dimension::Length, "along the shear", "x", reach),
+            across: view.axes.show(Dimension::Length, "", "y", reach),
+            pressure: view.axes.show(Dimension::Stress, "pressure", "p", highest),
+            highest,
+        }
+    }
 }
 
 /// The square that is shown: everything in contact and a third more.
 #[derive(Clone, Copy)]
-struct View {
+struct Window {
     centre: f64,
     reach: f64,
 }
 
-impl View {
+impl Window {
     fn of(points: &[ContactPoint]) -> Self {
         let closed: Vec<&ContactPoint> = points.iter().filter(|point| point.status != ContactStatus::Open).collect();
         let shown: Vec<&ContactPoint> = if closed.is_empty() { points.iter().collect() } else { closed };
@@ -82,9 +133,14 @@ impl View {
         let high = shown.iter().map(|point| point.current_x).fold(f64::NEG_INFINITY, f64::max);
         let side = shown.iter().map(|point| point.current_y.abs()).fold(0.0, f64::max);
         let cell = shown.iter().map(|point| point.area).fold(0.0, f64::max).sqrt();
-        let reach = 1.33 * (0.5 * (high - low)).max(side).max(2.0 * cell).max(f64::MIN_POSITIVE);
+        let reach = 1.25 * (0.5 * (high - low)).max(side).max(2.0 * cell).max(f64::MIN_POSITIVE);
         let centre = if shown.is_empty() { 0.0 } else { 0.5 * (low + high) };
         Self { centre, reach }
+    }
+
+    /// Whether a point is so near that what is drawn may depend on it.
+    fn is_near(&self, point: &ContactPoint) -> bool {
+        (point.current_x - self.centre).abs().max(point.current_y.abs()) <= 2.0 * self.reach
     }
 }
 
@@ -97,86 +153,93 @@ struct Square {
 }
 
 #[derive(Clone, Copy)]
-struct Map {
-    view: View,
-    /// The pressure at the upper end of the colours.
-    highest: f64,
+struct Map<'a> {
+    window: Window,
+    scales: &'a Scales,
     square: Square,
 }
 
-impl Map {
+impl Map<'_> {
     fn scale(&self) -> f64 {
-        0.5 * self.square.side / self.view.reach
+        0.5 * self.square.side / self.window.reach
     }
 
     fn pixel(&self, x: f64, y: f64) -> Place {
         let half = 0.5 * self.square.side;
-        (self.square.left + half + (x - self.view.centre) * self.scale(), self.square.top + half - y * self.scale())
+        (self.square.left + half + (x - self.window.centre) * self.scale(), self.square.top + half - y * self.scale())
     }
 
-    /// The points, and white over all of the area that is outside of the square.
+    /// Both halves, interpolated between the points.
     fn draw(&self, area: &Canvas, points: &[ContactPoint]) -> Drawn {
-        let middle = self.pixel(0.0, 0.0).1;
-        let reach = self.view.reach;
-        // The open ones first, so that they hide nothing of the contact.
-        let (closed, open): (Vec<&ContactPoint>, _) = points.iter().partition(|point| point.status != ContactStatus::Open);
-        for point in open.into_iter().chain(closed) {
-            if !((point.current_x - self.view.centre).abs() <= reach && point.current_y.abs() <= reach) {
-                continue;
-            }
-            // Discs that just overlap; each half shows half of a point on the symmetry line.
-            let area_shown = if point.half == Half::Both { 0.5 * point.area } else { point.area };
-            let radius = (0.6 * area_shown.max(0.0).sqrt() * self.scale()).clamp(1.5, 14.0);
-            let pressure = match point.status {
-                ContactStatus::Open => OPEN,
-                _ if self.highest > 0.0 => viridis(point.pressure / self.highest),
-                _ => viridis(0.0),
-            };
-            let (x, y) = self.pixel(point.current_x, point.current_y);
-            if point.half != Half::Mirrored {
-                area.circle((x, y.min(middle - radius)), radius, Paint::fill(status_colour(point.status)))?;
-            }
-            if point.half != Half::Meshed {
-                area.circle((x, y.max(middle + radius)), radius, Paint::fill(pressure))?;
-            }
-        }
         let Square { left, top, side } = self.square;
-        for cover in [
-            [(0.0, 0.0), (area.width, top)],
-            [(0.0, top + side), (area.width, area.height)],
-            [(0.0, top), (left, top + side)],
-            [(left + side, top), (area.width, top + side)],
-        ] {
-            area.rectangle(cover, Paint::fill(WHITE))?;
+        area.rectangle([(left, top), (left + side, top + side)], Paint::fill(OPEN))?;
+        for (half, upper) in [(Half::Meshed, true), (Half::Mirrored, false)] {
+            let own: Vec<&ContactPoint> = points
+                .iter()
+                .filter(|point| (point.half == half || point.half == Half::Both) && self.window.is_near(point))
+                .filter(|point| point.current_x.is_finite() && point.current_y.is_finite())
+                .collect();
+            let field = Field::new(own.iter().map(|point| self.pixel(point.current_x, point.current_y)).collect());
+            let region = |values: &[f64], level: f64, ink: Paint| {
+                let inside = |points: &Vec<Place>| clipped(points, [(left, top), (left + side, top + side)]);
+                area.area(&field.at_least(values, level).iter().map(inside).collect::<Vec<_>>(), ink)
+            };
+            // What is open has no value: the border is halfway to it.
+            let of_closed = |value: &dyn Fn(&ContactPoint) -> f64| -> Vec<f64> {
+                own.iter().map(|p| if p.status == ContactStatus::Open { f64::NAN } else { value(p) }).collect()
+            };
+            let closed = of_closed(&|_| 1.0);
+            if upper {
+                region(&closed, 0.5, Paint::fill(BLUE))?;
+                let slips = of_closed(&|point| f64::from(u8::from(point.status == ContactStatus::Slip)));
+                region(&slips, 0.5, Paint::fill(ORANGE))?;
+            } else {
+                let highest = if self.scales.highest > 0.0 { self.scales.highest } else { 1.0 };
+                let pressures = of_closed(&|point| point.pressure / highest);
+                region(&closed, 0.5, Paint::fill(viridis(0.0)))?;
+                for level in 0..LEVELS {
+                    let share = f64::from(level) / f64::from(LEVELS);
+                    region(&pressures, share, Paint::fill(viridis(share + 0.5 / f64::from(LEVELS))))?;
+                }
+            }
         }
+        let middle = self.pixel(0.0, 0.0).1;
         area.line(&[(left, middle), (left + side, middle)], Stroke::solid(INK, 1.0))?;
         area.rectangle([(left, top), (left + side, top + side)], Paint::outline(INK, 1.0))
     }
 
-    /// Ticks and their numbers, with the names of the axes; the horizontal name only where it is
+    /// Ticks and their numbers; the names of the axes along the shear and across it where they are
     /// wanted.
-    fn axes(&self, root: &Canvas, named: bool) -> Drawn {
+    fn axes(&self, root: &Canvas, named: [bool; 2]) -> Drawn {
         let Square { left, top, side } = self.square;
-        let (centre, reach) = (self.view.centre, self.view.reach);
-        let step = nice_step(2.0 * reach / 5.0);
+        let factor = self.scales.length.factor;
+        let (centre, reach) = (self.window.centre * factor, self.window.reach * factor);
+        let step = nice_step(2.0 * reach / (side / 70.0).clamp(3.0, 6.0));
+        // Between denormal numbers there are no even steps.
+        if !step.is_normal() {
+            return Ok(());
+        }
         for i in ((centre - reach) / step).ceil() as i64..=((centre + reach) / step).floor() as i64 {
-            let x = self.pixel(i as f64 * step, 0.0).0;
+            let x = self.pixel(i as f64 * step / factor, 0.0).0;
             root.line(&[(x, top + side), (x, top + side + 5.0)], Stroke::solid(INK, 1.0))?;
             root.text(&tick(i as f64 * step), (x, top + side + 15.0), INK, Writing::new(13.0, Anchor::Middle))?;
         }
         let count = (reach / step).floor() as i64;
         for i in -count..=count {
-            let y = self.pixel(0.0, i as f64 * step).1;
+            let y = self.pixel(0.0, i as f64 * step / factor).1;
             root.line(&[(left - 5.0, y), (left, y)], Stroke::solid(INK, 1.0))?;
             root.text(&tick(i as f64 * step), (left - 9.0, y), INK, Writing::new(13.0, Anchor::End))?;
         }
-        let name = Writing::new(15.0, Anchor::Middle);
-        if named {
-            let along = if side > 400.0 { "x, along the shear (case's unit of length)" } else { "x, along the shear" };
-            root.text(along, (left + 0.5 * side, top + side + 38.0), INK, name)?;
+        let name = |label: &str| Writing::new(15.0 * (side / text_width(label, 15.0)).min(1.0), Anchor::Middle);
+        if named[0] {
+            let label = &self.scales.length.label;
+            root.text(label, (left + 0.5 * side, top + side + 36.0), INK, name(label))?;
         }
-        let place = (left - if side > 400.0 { 68.0 } else { 52.0 }, top + 0.5 * side);
-        root.text("y", place, INK, Writing { upwards: true, ..name })
+        if named[1] {
+            let label = &self.scales.across.short;
+            root.text(label, (12.0, top + 0.5 * side), INK, Writing { upwards: true, ..name(label) })?;
+        }
+        Ok(())
     }
 }
 
@@ -184,40 +247,39 @@ fn text(size: f64) -> Writing {
     Writing::new(size, Anchor::Start)
 }
 
-fn status_colour(status: ContactStatus) -> Colour {
-    match status {
-        ContactStatus::Open => OPEN,
-        ContactStatus::Stick => BLUE,
-        ContactStatus::Slip => ORANGE,
-    }
-}
-
-/// The colours of the status, with the number of points of each if `counted`.
-fn status_names(root: &Canvas, points: &[ContactPoint], (left, top): Place, counted: bool) -> Drawn {
-    let names = [(ContactStatus::Stick, "stick"), (ContactStatus::Slip, "slip"), (ContactStatus::Open, "open")];
-    for (i, (status, name)) in names.into_iter().enumerate() {
-        let y = top + 24.0 * i as f64;
-        let count = points.iter().filter(|point| point.status == status).count();
-        root.circle((left + 8.0, y), 7.0, Paint::fill(status_colour(status)))?;
-        let label = if counted { format!("{name} ({count})") } else { name.to_owned() };
-        root.text(&label, (left + 24.0, y), INK, text(14.0))?;
+/// The colours of the status in a line, with the number of points of each if there are points.
+fn status_names(root: &Canvas, points: Option<&[ContactPoint]>, (left, y): Place) -> Drawn {
+    let names =
+        [(ContactStatus::Stick, BLUE, "stick"), (ContactStatus::Slip, ORANGE, "slip"), (ContactStatus::Open, OPEN, "open")];
+    let mut x = left;
+    for (status, colour, name) in names {
+        let count = points.map(|points| points.iter().filter(|point| point.status == status).count());
+        let label = count.map_or(name.to_owned(), |count| format!("{name} ({count})"));
+        root.rectangle([(x, y - 7.0), (x + 14.0, y + 7.0)], Paint::fill(colour))?;
+        root.text(&label, (x + 20.0, y), INK, text(14.0))?;
+        x += 36.0 + text_width(&label, 14.0);
     }
     Ok(())
 }
 
-fn pressure_bar(root: &Canvas, highest: f64, left: f64, [top, bottom]: [f64; 2]) -> Drawn {
-    if highest <= 0.0 {
+/// The colours of the pressure with their numbers and their name below.
+fn pressure_bar(root: &Canvas, scales: &Scales, (left, top): Place, length: f64) -> Drawn {
+    if scales.highest <= 0.0 {
         return Ok(());
     }
-    root.text("pressure (case's", (left, top), INK, text(14.0))?;
-    root.text("unit of stress)", (left, top + 17.0), INK, text(14.0))?;
-    let top = top + 36.0;
-    ramp(root, left, 20.0, [top, bottom], viridis)?;
-    for i in 0..=4 {
-        let share = f64::from(i) / 4.0;
-        let y = bottom - (bottom - top) * share;
-        root.line(&[(left + 20.0, y), (left + 25.0, y)], Stroke::solid(INK, 1.0))?;
-        root.text(&tick(rounded(highest * share)), (left + 29.0, y), INK, text(13.0))?;
+    let (height, highest) = (14.0, scales.highest * scales.pressure.factor);
+    root.ramp([(left, top), (left + length, top + height)], false, viridis)?;
+    let step = nice_step(highest / (length / 70.0).clamp(2.0, 6.0));
+    if !step.is_normal() {
+        return Ok(());
     }
-    Ok(())
+    for i in 0..=(highest / step * (1.0 + 1e-9)).floor() as u32 {
+        let value = f64::from(i) * step;
+        let x = left + length * value / highest;
+        root.line(&[(x, top + height), (x, top + height + 5.0)], Stroke::solid(INK, 1.0))?;
+        root.text(&tick(value), (x, top + height + 15.0), INK, Writing::new(13.0, Anchor::Middle))?;
+    }
+    let label = &scales.pressure.label;
+    let size = 15.0 * (length / text_width(label, 15.0)).min(1.0);
+    root.text(label, (left + 0.5 * length, top + height + 36.0), INK, Writing::new(size, Anchor::Middle))
 }

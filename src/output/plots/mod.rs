@@ -1,20 +1,27 @@
-//! `plots/*.svg`: what a run looks like, on a white card with dark text and colours that hold in
-//! print and for colour-blind readers.
+//! `plots/*`: what a run looks like, on a white card with dark text and colours that hold in print
+//! and for colour-blind readers.
 //!
-//! `canvas` writes SVG; `style` is the card, the colours and the writing of numbers; `chart` draws
-//! any diagram; the others are the pictures of a run. A picture is drawn into a [`Picture`] first
-//! and then written.
+//! `canvas` writes SVG, `text` and `field` help it; `style` is the card, the colours and the
+//! writing of numbers; `sheet` is the size on paper, `axes` the units; `chart` draws any diagram;
+//! the others are the pictures of a run. A picture is drawn into a [`Picture`] first and then
+//! written, by `print` also as PDF or PNG.
 
+pub mod axes;
 pub mod canvas;
 pub mod chart;
+pub mod sheet;
 pub mod style;
 
 mod contact_map;
 mod curves;
+mod field;
 mod inputs;
 mod overlay;
 mod pressure;
+mod print;
 mod replot;
+mod segments;
+mod text;
 
 pub use super::tables::{SlipPanel, Tables};
 pub use contact_map::{plot_contact, plot_slip};
@@ -22,11 +29,14 @@ pub use curves::{plot_forces, plot_indentation, plot_law, plot_ratio, plot_stick
 pub use overlay::{OverlaidRun, plot_overlay};
 pub use pressure::plot_pressure;
 pub use replot::replot;
+pub use sheet::Sheet;
 pub use style::Picture;
 
+use self::axes::{Axes, AxisUnits};
 use super::{OutputDirectory, OutputError, StepRecord};
 use crate::analytical::ElasticSphere;
 use crate::analytical::olsson_larsson::Hardening;
+use crate::case::{Case, PictureFormat};
 use std::path::PathBuf;
 
 /// What the plots show beside the computed curves, in the user's units.
@@ -41,6 +51,22 @@ pub struct PlotInputs {
     /// Bodies that deform (see [`crate::case::Case::bodies`]): closed forms are of one of them,
     /// over a plane.
     pub bodies: f64,
+}
+
+/// How pictures are made, whatever they show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// The units of axes.
+    pub axes: Axes,
+    /// The width.
+    pub sheet: Sheet,
+}
+
+impl View {
+    /// As the case has it.
+    pub fn of(case: &Case) -> Self {
+        Self { axes: Axes::of(case, AxisUnits::Auto), sheet: Sheet { width: case.output.plot_width } }
+    }
 }
 
 /// Most panels of the stick/slip picture.
@@ -59,23 +85,33 @@ fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
 ///
 /// # Errors
 /// A drawing fails.
-pub fn run_pictures(history: &[StepRecord], tables: &Tables, inputs: &PlotInputs) -> Result<Vec<Picture>, OutputError> {
+pub fn run_pictures(
+    history: &[StepRecord],
+    tables: &Tables,
+    inputs: &PlotInputs,
+    view: &View,
+) -> Result<Vec<Picture>, OutputError> {
     let mut pictures = Vec::new();
     let (pressing, shear) = super::tables::split(history);
     if !pressing.is_empty() {
-        pictures.push(plot_indentation(history, inputs)?);
+        pictures.push(plot_indentation(history, inputs, view)?);
     }
     if let Some((record, points)) = &tables.pressed {
-        pictures.push(plot_pressure(points, record, inputs)?);
+        pictures.push(plot_pressure(points, record, inputs, view)?);
     }
     if shear.len() > 1 {
-        pictures.extend([plot_forces(history)?, plot_ratio(history, inputs.friction)?, plot_stick(history, inputs.friction)?]);
+        let friction = inputs.friction;
+        pictures.extend([
+            plot_forces(history, view)?,
+            plot_ratio(history, friction, view)?,
+            plot_stick(history, friction, view)?,
+        ]);
     }
     if !tables.shear.is_empty() {
-        pictures.push(plot_slip(&spread(&tables.shear, PANELS))?);
+        pictures.push(plot_slip(&spread(&tables.shear, PANELS), view)?);
     }
     if !tables.last.is_empty() {
-        pictures.push(plot_contact(&tables.last)?);
+        pictures.push(plot_contact(&tables.last, view)?);
     }
     Ok(pictures)
 }
@@ -89,13 +125,15 @@ pub fn write_plots(
     history: &[StepRecord],
     tables: &Tables,
     inputs: &PlotInputs,
+    view: &View,
+    format: PictureFormat,
 ) -> Result<Vec<PathBuf>, OutputError> {
-    let pictures = run_pictures(history, tables, inputs)?;
+    let pictures = run_pictures(history, tables, inputs, view)?;
     pictures
         .iter()
         .map(|picture| {
-            let path = out.plot(picture.name);
-            picture.write(&path)?;
+            let path = out.plot(picture.name, format);
+            picture.write(&path, format)?;
             Ok(path)
         })
         .collect()

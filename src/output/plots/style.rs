@@ -2,6 +2,9 @@
 
 use super::super::{OutputError, write_atomically};
 use super::canvas::{Canvas, Colour, Drawn, Paint};
+use super::print::print;
+use super::sheet::Size;
+use crate::case::PictureFormat;
 use std::path::Path;
 
 /// The card.
@@ -34,7 +37,7 @@ pub const GROUPS: [Colour; 6] = [BLUE, VERMILION, GREEN, ORANGE, PURPLE, INK];
 /// A picture that is drawn and not yet written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Name of its file, without `.svg`.
+    /// Name of its file, without its ending.
     pub name: &'static str,
     /// What it shows and how to read it, a sentence or two.
     pub caption: String,
@@ -51,23 +54,25 @@ impl Picture {
     pub fn draw(
         name: &'static str,
         caption: impl Into<String>,
-        size: (u32, u32),
+        size: Size,
         picture: impl FnOnce(&Canvas) -> Drawn,
     ) -> Result<Self, OutputError> {
-        let canvas = Canvas::new(size);
+        let (canvas, caption) = (Canvas::new(size), caption.into());
         let drawn = canvas
             .rectangle([(0.0, 0.0), (canvas.width, canvas.height)], Paint::fill(WHITE))
+            .and_then(|()| canvas.describe(&caption))
             .and_then(|()| picture(&canvas))
             .map_err(|error| OutputError::Inconsistent { path: format!("{name}.svg").into(), problem: error.to_string() });
-        drawn.map(|()| Self { name, caption: caption.into(), svg: canvas.finish() })
+        drawn.map(|()| Self { name, caption, svg: canvas.finish() })
     }
 
     /// Writes it as `path`, whole or not at all.
     ///
     /// # Errors
-    /// The place cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        write_atomically(path, |out| out.write_all(self.svg.as_bytes()))
+    /// The place cannot be written; a program without the feature `print` makes SVG alone.
+    pub fn write(&self, path: &Path, format: PictureFormat) -> Result<(), OutputError> {
+        let bytes = print(&self.svg, format).map_err(|problem| OutputError::Format { path: path.to_owned(), problem })?;
+        write_atomically(path, |out| out.write_all(&bytes))
     }
 }
 

@@ -13,6 +13,12 @@ const INPUTS: PlotInputs = PlotInputs {
     bodies: 1.0,
 };
 
+const SVG: PictureFormat = PictureFormat::Svg;
+
+fn view() -> View {
+    View { axes: Axes::normalised(1.0, 200e3), sheet: Sheet::default() }
+}
+
 /// Olsson & Larsson's pressing with a ripple, then a shear of Cattaneo-Mindlin's shape under a
 /// falling force.
 pub(super) fn history() -> Vec<StepRecord> {
@@ -102,32 +108,35 @@ fn every_plot_is_sound_xml_with_its_labels() {
     // For a look: ASPERITY_KEEP_PLOTS=FOLDER cargo test --lib output::plots
     let root = std::env::var_os("ASPERITY_KEEP_PLOTS").map_or(folder.path().to_path_buf(), PathBuf::from);
     let out = OutputDirectory::create(root).unwrap();
-    let written = write_plots(&out, &history(), &tables(), &INPUTS).unwrap();
+    let written = write_plots(&out, &history(), &tables(), &INPUTS, &view(), SVG).unwrap();
     assert_eq!(written.len(), 7);
     for (name, labels) in [
-        ("indentation", ["simulation", "Hertz", "Olsson", "normal force FN"]),
-        ("pressure", ["same FN and a", "contact points", "contact radius a", "pressure p"]),
-        ("forces", ["FT, tangential", "FN, normal", "δT", "force"]),
+        ("indentation", ["0: press", "Hertz", "Olsson", "normal force, 103 FN / (E R2)"]),
+        ("pressure", ["same FN and a", "contact points", "contact radius a", "103 p / E"]),
+        ("forces", ["FT, tangential", "FN, normal", "103 δT / R", "force"]),
         ("ratio", ["μ = 0.3", "FT / FN", "Friction used", "δT"]),
         ("stick", ["Mindlin", "stick radius", "simulation", "δT"]),
         ("slip", ["FT/FN =", "stick", "slip", "along the shear"]),
-        ("contact", ["stick (", "slip (", "open (", "unit of stress"]),
+        ("contact", ["stick (", "slip (", "open (", "103 p / E"]),
     ] {
-        let words = parsed(&out.plot(name));
+        let words = parsed(&out.plot(name, SVG));
         for label in labels {
             assert!(words.contains(label), "{name}: {label} is missing in {words}");
         }
     }
-    // A point of the diagram for each meshed node, and the whole contact in the map: status of one
-    // half, pressure of the other, and both of the middle.
+    // A point of the diagram for each meshed node, and no dots in the maps: areas, one for each
+    // level of the pressure, with a smooth bar.
     let whole = contact();
     let of = |half: Half| whole.iter().filter(|point| point.half == half).count();
     assert!(of(Half::Meshed) == of(Half::Mirrored) && of(Half::Both) == 48);
-    let circles = |name: &str| fs::read_to_string(out.plot(name)).unwrap().matches("<circle").count();
-    assert!(circles("pressure") <= of(Half::Meshed) + of(Half::Both) + 1, "{}", circles("pressure"));
+    let count = |name: &str, what: &str| fs::read_to_string(out.plot(name, SVG)).unwrap().matches(what).count();
+    assert!(count("pressure", "<circle") <= of(Half::Meshed) + of(Half::Both) + 1, "{}", count("pressure", "<circle"));
+    assert_eq!((count("contact", "<circle"), count("slip", "<circle")), (0, 0));
+    assert!((40..=80).contains(&count("contact", "<path")), "{}", count("contact", "<path"));
+    assert_eq!(count("contact", "<linearGradient"), 1);
     // Hertz's elastic pressure is a curve or, where it is off the scale, a word in the caption;
     // never an entry of the legend without a curve.
-    let pictures = run_pictures(&history(), &tables(), &INPUTS).unwrap();
+    let pictures = run_pictures(&history(), &tables(), &INPUTS, &view()).unwrap();
     let pressure = pictures.iter().find(|picture| picture.name == "pressure").unwrap();
     assert_ne!(
         pressure.svg.contains("elastic at the same h"),
@@ -136,18 +145,107 @@ fn every_plot_is_sound_xml_with_its_labels() {
         pressure.caption
     );
     // Six of the seven, the first and the last among them.
-    let slip = parsed(&out.plot("slip"));
+    let slip = parsed(&out.plot("slip", SVG));
     assert_eq!(slip.matches("FT/FN =").count(), 6);
-    assert!(slip.contains("δT = 0.0039"), "{slip}");
+    assert!(slip.contains("103 δT / R = 3.9"), "{slip}");
+}
+
+/// Press, shear, shear back, unload.
+fn cycle() -> Vec<StepRecord> {
+    let mut rows = history();
+    let sheared = rows[rows.len() - 1];
+    let mut go = |segment: usize, count: usize, row: &dyn Fn(f64) -> StepRecord| {
+        for i in 1..=count {
+            let step = rows.len() + 1;
+            rows.push(StepRecord { step, segment, ..row(i as f64 / count as f64) });
+        }
+    };
+    let turn = |x: f64| StepRecord { delta_t: sheared.delta_t * (1.0 - 2.0 * x), f_t: sheared.f_t * (1.0 - 2.0 * x), ..sheared };
+    go(2, 10, &turn);
+    let back = turn(1.0);
+    go(3, 6, &|x| StepRecord { h: back.h * (1.0 - 0.1 * x), f_n: back.f_n * (1.0 - x), f_t: back.f_t * (1.0 - x), ..back });
+    rows
+}
+
+#[test]
+fn segments_have_colours_and_arrows_and_unloading_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let root =
+        std::env::var_os("ASPERITY_KEEP_PLOTS").map_or(folder.path().to_path_buf(), |keep| PathBuf::from(keep).join("cycle"));
+    let out = OutputDirectory::create(root).unwrap();
+    write_plots(&out, &cycle(), &Tables::default(), &INPUTS, &view(), SVG).unwrap();
+    let svg = |name: &str| fs::read_to_string(out.plot(name, SVG)).unwrap();
+    let arrows = |name: &str| svg(name).matches("<polygon").count();
+    for (name, segments, arrows_at_least) in
+        [("forces", ["1: shear", "2: shear back", "3: unload"], 4), ("indentation", ["0: press", "1: shear", "3: unload"], 3)]
+    {
+        let words = parsed(&out.plot(name, SVG));
+        assert!(segments.iter().all(|segment| words.contains(segment)), "{name}: {words}");
+        assert!(arrows(name) >= arrows_at_least, "{name}: {}", arrows(name));
+    }
+    // A curve of each segment in its own colour, F_T dashed.
+    for colour in [style::BLUE, style::VERMILION, style::GREEN] {
+        assert!(svg("forces").contains(&format!("stroke=\"{colour}\" stroke-width=\"2\" stroke-dasharray=\"6,4\"")), "{colour}");
+    }
+    // Forth and back the ratio has both signs; forth alone, no room for the other.
+    assert!(parsed(&out.plot("ratio", SVG)).contains("-0.2"));
+    let forth = plot_ratio(&history(), Some(0.3), &view()).unwrap().svg;
+    assert!(!forth.contains(">-0.1<") && forth.contains(">0.1<"), "{forth}");
+}
+
+#[test]
+fn a_dip_on_the_axis_is_explained_where_there_is_one() {
+    let record = history()[19];
+    let level = plot_pressure(&contact(), &record, &INPUTS, &view()).unwrap();
+    assert!(!level.svg.contains("friction's") && !level.caption.contains("friction's"));
+    let mut points = contact();
+    for point in points.iter_mut().filter(|point| point.pressure > 0.0) {
+        point.pressure = 600.0 + 2500.0 * point.current_x.hypot(point.current_y);
+    }
+    let dip = plot_pressure(&points, &record, &INPUTS, &view()).unwrap();
+    assert!(dip.svg.contains(">The dip on the axis is friction's, not the mesh's:") && dip.caption.contains("friction's"));
+    // Without friction it would be something else.
+    let smooth = plot_pressure(&points, &record, &PlotInputs { friction: Some(0.0), ..INPUTS }, &view()).unwrap();
+    assert!(!smooth.svg.contains("friction's"));
+}
+
+#[test]
+fn a_narrow_picture_keeps_its_text_on_the_card() {
+    let sheet = Sheet { width: Some("85mm".parse().unwrap()) };
+    let narrow = View { sheet, ..view() };
+    let pictures = run_pictures(&history(), &tables(), &INPUTS, &narrow).unwrap();
+    for picture in &pictures {
+        assert!(picture.svg.starts_with("<svg width=\"85.0000mm\""), "{}", &picture.svg[..60]);
+        if let Some(keep) = std::env::var_os("ASPERITY_KEEP_PLOTS") {
+            fs::write(PathBuf::from(keep).join(format!("narrow-{}.svg", picture.name)), &picture.svg).unwrap();
+        }
+        for line in picture.svg.lines().filter(|line| line.starts_with("<text") && !line.contains("rotate")) {
+            let attribute = |name: &str| -> f64 {
+                line.split(&format!(" {name}=\"")).nth(1).and_then(|rest| rest.split('"').next()).unwrap().parse().unwrap()
+            };
+            // Words without markup, at most as wide as all of them on the line.
+            let words: String = line.split('<').filter_map(|part| part.split_once('>')).map(|(_, words)| words).collect();
+            let width = text::text_width(&words.replace("&gt;", ">"), attribute("font-size") * text::LINE_HEIGHT);
+            let left = match line {
+                line if line.contains("\"middle\"") => attribute("x") - 0.5 * width,
+                line if line.contains("\"end\"") => attribute("x") - width,
+                _ => attribute("x"),
+            };
+            assert!(left > -12.0 && left + width < 361.0 + 12.0, "{}: {words}: {left} to {}", picture.name, left + width);
+        }
+    }
 }
 
 #[test]
 fn only_what_there_is_gets_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let out = OutputDirectory::create(folder.path()).unwrap();
-    assert!(write_plots(&out, &[], &Tables::default(), &INPUTS).unwrap().is_empty());
-    assert_eq!(write_plots(&out, &history()[..5], &Tables::default(), &INPUTS).unwrap(), [out.plot("indentation")]);
-    assert!(!out.plot("forces").exists());
+    assert!(write_plots(&out, &[], &Tables::default(), &INPUTS, &view(), SVG).unwrap().is_empty());
+    assert_eq!(
+        write_plots(&out, &history()[..5], &Tables::default(), &INPUTS, &view(), SVG).unwrap(),
+        [out.plot("indentation", SVG)]
+    );
+    assert!(!out.plot("forces", SVG).exists());
 }
 
 #[test]
@@ -162,7 +260,7 @@ fn odd_histories_do_not_break_the_plots() {
     rows[25].f_n = 0.0;
     rows[26].f_t = f64::NAN;
     let elastic = PlotInputs { hardening: None, friction: None, ..INPUTS };
-    assert_eq!(write_plots(&out, &rows, &Tables::default(), &elastic).unwrap().len(), 4);
+    assert_eq!(write_plots(&out, &rows, &Tables::default(), &elastic, &view(), SVG).unwrap().len(), 4);
     let mut open = contact();
     for point in &mut open {
         (point.status, point.pressure) = (ContactStatus::Open, 0.0);
@@ -171,14 +269,14 @@ fn odd_histories_do_not_break_the_plots() {
     tables.add(&rows[..20], open.clone());
     tables.add(&rows[..30], open[..1].to_vec());
     assert!(tables.last.is_empty() && tables.shear.len() == 1);
-    write_plots(&out, &rows, &tables, &elastic).unwrap();
-    plot_contact(&open).unwrap().write(&out.plot("contact")).unwrap();
-    parsed(&out.plot("contact"));
-    plot_contact(&open[..1]).unwrap();
-    plot_slip(&[]).unwrap();
+    write_plots(&out, &rows, &tables, &elastic, &view(), SVG).unwrap();
+    plot_contact(&open, &view()).unwrap().write(&out.plot("contact", SVG), SVG).unwrap();
+    parsed(&out.plot("contact", SVG));
+    plot_contact(&open[..1], &view()).unwrap();
+    plot_slip(&[], &view()).unwrap();
     // All zero: nothing to scale by.
     let flat = vec![StepRecord::default(), StepRecord { delta_t: 1.0, ..StepRecord::default() }];
-    write_plots(&out, &flat, &Tables::default(), &INPUTS).unwrap();
+    write_plots(&out, &flat, &Tables::default(), &INPUTS, &view(), SVG).unwrap();
 }
 
 #[test]
@@ -192,17 +290,17 @@ fn a_run_is_drawn_again_from_its_directory() {
     let mut writer = HistoryWriter::create(&out.history()).unwrap();
     history().iter().for_each(|row| writer.append(row).unwrap());
     let names = |pictures: Vec<Picture>| pictures.iter().map(|picture| picture.name).collect::<Vec<_>>();
-    let bare = names(replot(&out, &case, &history()).unwrap());
+    let bare = names(replot(&out, &case, &history(), &view()).unwrap());
     assert_eq!(bare, ["indentation", "forces", "ratio", "stick"]);
     // Step 99 is of another run.
     for step in [20, 22, 24, 26, 28, 30, 32, 34, 99] {
         write_contact(&out.contact(step), &contact()).unwrap();
     }
-    let again = replot(&out, &case, &history()).unwrap();
-    assert_eq!(again, run_pictures(&history(), &tables(), &INPUTS).unwrap());
+    let again = replot(&out, &case, &history(), &view()).unwrap();
+    assert_eq!(again, run_pictures(&history(), &tables(), &INPUTS, &view()).unwrap());
     assert!(names(again).iter().all(|name| RUN_PICTURES.contains(name)));
     fs::write(out.contact(34), "point\nx\n").unwrap();
-    assert!(replot(&out, &case, &history()).unwrap_err().to_string().contains("step_0034.csv"));
+    assert!(replot(&out, &case, &history(), &view()).unwrap_err().to_string().contains("step_0034.csv"));
 }
 
 #[test]

@@ -11,18 +11,26 @@ use self::html::{Table, escape, grid_value, number, percent};
 use super::row::{FIRST_COLUMNS, NUMBERS};
 use super::{StudyDirectory, StudyError};
 use crate::bounded;
+use crate::case::PictureFormat;
 use crate::law::Law;
 use crate::law::data::StudyData;
 use crate::law::plots::{NormalContact, greatest_errors, study_pictures};
 use crate::law::table::{StudyRow, StudyTable};
+use crate::output::plots::Sheet;
 use crate::output::{OutputDirectory, Picture, write_atomically};
 
-/// Draws a study into `plots/*.svg` and `report.html` of its directory and returns their paths, the
-/// report last.
+/// Draws a study into `plots` and `report.html` of its directory and returns their paths, the
+/// report last. The report has the pictures as SVG in their own widths, whatever those in `plots`
+/// are.
 ///
 /// # Errors
 /// A table, case or history that cannot be read; files that cannot be written.
-pub fn write_report(directory: &StudyDirectory, law: Option<&Law>) -> Result<Vec<PathBuf>, StudyError> {
+pub fn write_report(
+    directory: &StudyDirectory,
+    law: Option<&Law>,
+    sheet: Sheet,
+    format: PictureFormat,
+) -> Result<Vec<PathBuf>, StudyError> {
     let root = directory.root();
     let table = StudyTable::read(&directory.table())?;
     let data = StudyData::read(root)?;
@@ -30,12 +38,13 @@ pub fn write_report(directory: &StudyDirectory, law: Option<&Law>) -> Result<Vec
     for row in table.rows.iter().filter(|row| row.is_done()) {
         contacts.extend(NormalContact::read(&OutputDirectory::existing(root.join(&row.directory)))?);
     }
-    let pictures = study_pictures(&contacts, &data, law)?;
+    let pictures = study_pictures(&contacts, &data, law, Sheet::default())?;
     let html = Report { directory, table: &table, data: &data, law }.html(&pictures);
     let mut written = Vec::new();
-    for picture in &pictures {
-        let path = directory.plot(picture.name);
-        picture.write(&path)?;
+    let own = (sheet != Sheet::default()).then(|| study_pictures(&contacts, &data, law, sheet)).transpose()?;
+    for picture in own.as_ref().unwrap_or(&pictures) {
+        let path = directory.plot(picture.name, format);
+        picture.write(&path, format)?;
         written.push(path);
     }
     write_atomically(&directory.report(), |out| out.write_all(html.as_bytes()))?;

@@ -1,0 +1,147 @@
+//! Text of pictures: its width, its subscripts and superscripts.
+
+use std::fmt::Write as _;
+
+/// Height of a line over the size of its letters.
+pub const LINE_HEIGHT: f64 = 1.24;
+/// Size of what is off the line over that of the line.
+const SMALL: f64 = 0.75;
+/// Puts a bar over the letter before it.
+const MACRON: char = '\u{304}';
+
+/// Advance widths of the letters from space to tilde in DejaVu Sans, in thousandths of the size: a
+/// wide font, so that what fits in it fits in most.
+const WIDTHS: [u16; 95] = [
+    318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636, 636, 636, 636, 636, 636, 636,
+    636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632, 575, 775, 752, 295, 295, 656, 557, 863, 748, 787, 603, 787,
+    695, 635, 611, 732, 684, 989, 685, 611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352, 635, 634, 278, 278,
+    579, 278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838,
+];
+/// The same for every other letter.
+const OTHER: u16 = 640;
+
+/// Width in pixels of a text whose lines are `height` high.
+pub fn text_width(text: &str, height: f64) -> f64 {
+    let size = height / LINE_HEIGHT;
+    let (mut width, mut scale) = (0.0, 1.0);
+    let mut braced = false;
+    for letter in text.chars() {
+        match letter {
+            '_' | '^' => scale = SMALL,
+            '{' if scale < 1.0 => braced = true,
+            '}' if braced => (braced, scale) = (false, 1.0),
+            MACRON => {}
+            letter => {
+                if !braced && !letter.is_alphanumeric() {
+                    scale = 1.0;
+                }
+                let place = (letter as usize).checked_sub(' ' as usize);
+                let thousandths = place.and_then(|place| WIDTHS.get(place)).copied().unwrap_or(OTHER);
+                width += scale * f64::from(thousandths) / 1000.0;
+            }
+        }
+    }
+    width * size
+}
+
+/// A text in lines that are no wider than `width` pixels, broken between words.
+pub fn wrapped(text: &str, height: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), height) <= width => {
+                // Writing to a String cannot fail.
+                let _ = write!(line, " {word}");
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Turns `_x` and `_{xyz}` of a text into subscripts of an SVG, `^x` and `^{xyz}` into
+/// superscripts: what follows a `_` is lowered and what follows a `^` is raised, up to the end of
+/// the word or of the braces. A letter before a combining macron (U+0304) gets a bar, drawn, as few
+/// fonts place theirs well. `size` is that of the letters, in pixels: sizes in per cent or in ems
+/// are not read alike everywhere.
+pub fn subscripts(text: &str, size: f64) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    let mut height = 0.0;
+    while !rest.is_empty() {
+        let (plain, after) = rest.split_at(rest.find(['_', '^']).unwrap_or(rest.len()));
+        if height != 0.0 && !plain.is_empty() {
+            // Back to the line; without the attribute some readers drop a space at the start of a
+            // span.
+            out.push_str(&format!("<tspan dy=\"{}\" xml:space=\"preserve\">{plain}</tspan>", number(-height * size)));
+            height = 0.0;
+        } else {
+            out.push_str(plain);
+        }
+        let target = match after.chars().next() {
+            Some('_') => 0.25,
+            Some(_) => -0.375,
+            None => break,
+        };
+        let after = &after[1..];
+        let (inner, after) = match after.strip_prefix('{').and_then(|after| after.split_once('}')) {
+            Some(pair) => pair,
+            None => after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len())),
+        };
+        if !inner.is_empty() {
+            let (shift, small) = (number((target - height) * size), number(SMALL * size));
+            out.push_str(&format!("<tspan dy=\"{shift}\" font-size=\"{small}\">{inner}</tspan>"));
+            height = target;
+        }
+        rest = after;
+    }
+    barred(&out)
+}
+
+/// A letter and its macron as a letter under a line.
+fn barred(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        if letter != MACRON {
+            out.push(letter);
+        } else if let Some(below) = out.pop() {
+            out.push_str(&format!("<tspan text-decoration=\"overline\">{below}</tspan>"));
+        }
+    }
+    out
+}
+
+/// A number with two decimals at most.
+pub fn number(x: f64) -> String {
+    let text = format!("{x:.2}");
+    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subscripts_are_lowered_and_the_line_goes_on() {
+        let low = |text: &str| format!("<tspan dy=\"3\" font-size=\"9\">{text}</tspan>");
+        let back = |text: &str| format!("<tspan dy=\"-3\" xml:space=\"preserve\">{text}</tspan>");
+        let subscripts = |text: &str| subscripts(text, 12.0);
+        assert_eq!(subscripts("plain &amp; simple"), "plain &amp; simple");
+        assert_eq!(subscripts("F_N"), format!("F{}", low("N")));
+        assert_eq!(subscripts("F_N/δ_{T,slip} x"), format!("F{}{}{}{}", low("N"), back("/δ"), low("T,slip"), back(" x")));
+        let up = "<tspan dy=\"-4.5\" font-size=\"9\">n</tspan>";
+        assert_eq!(subscripts("(1 − x)^n b"), format!("(1 − x){up}<tspan dy=\"4.5\" xml:space=\"preserve\"> b</tspan>"));
+        assert_eq!(subscripts("a_"), "a");
+        assert_eq!(subscripts("H\u{304} = F_N"), format!("<tspan text-decoration=\"overline\">H</tspan> = F{}", low("N")));
+    }
+
+    #[test]
+    fn widths_are_those_of_a_wide_font() {
+        assert!((text_width("normal force", 12.4) - 63.8).abs() < 0.1, "{}", text_width("normal force", 12.4));
+        // What is lowered is smaller, up to the end of the word.
+        assert!(text_width("F_N", 13.0) < text_width("FN", 13.0) && text_width("F_N x", 13.0) > text_width("F_Nx", 13.0));
+        assert_eq!(text_width("H\u{304}", 13.0), text_width("H", 13.0));
+        assert_eq!(wrapped("one two three", 12.4, text_width("one two", 12.4)), ["one two", "three"]);
+    }
+}
