@@ -16,7 +16,7 @@ use std::sync::Arc;
 fn models() -> Vec<CaseModel> {
     let mesh = Arc::new(brick(2, 2, 2, [1.0; 3]).unwrap());
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() };
-    let model = CaseModel { mesh, material, friction: Friction::Coulomb(0.3) };
+    let model = CaseModel { mesh, material, friction: Friction::Coulomb(0.3), opponent: None };
     vec![model.clone(), model]
 }
 

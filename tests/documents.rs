@@ -202,6 +202,7 @@ commands_of! {
     commands_of_laws: "docs/laws.md";
     commands_of_performance: "docs/performance.md";
     commands_of_a_rigid_sphere: "docs/rigid-sphere.md";
+    commands_of_unlike_bodies: "docs/unlike-bodies.md";
     commands_of_rust: "docs/rust.md";
     commands_of_studies: "docs/studies.md";
     commands_of_troubleshooting: "docs/troubleshooting.md";

@@ -15,6 +15,9 @@ const SHEAR: [f64; 2] = [2e-4, 0.5];
 /// Radius of a rigid sphere over that of the body, evenly in its logarithm.
 const OPPONENT: [f64; 2] = [0.2, 5.0];
 
+/// Young's modulus of another body that deforms over that of the body, evenly in its logarithm.
+const STIFFNESS: [f64; 2] = [0.05, 20.0];
+
 /// What the body is pressed against.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Against {
@@ -24,6 +27,8 @@ pub enum Against {
     /// A rigid sphere, and every second body a flat; it moves as far in R*, or in the smaller
     /// radius.
     Rigid,
+    /// Another body of another material that deforms: a sphere, or one of the two a flat.
+    Unlike,
 }
 
 /// Case number `index` of a seed, as a case file; the same for ever.
@@ -51,6 +56,22 @@ pub fn case_text(seed: u64, index: usize, elements: usize, against: Against) -> 
             let opponent = format!("[opponent]\nrigid = true\nradius = {other:?}\n");
             let effective = radius * other / (radius + other);
             if draw.chance(0.5) { ("flat = true\n", opponent, radius.min(other)) } else { ("", opponent, effective) }
+        }
+        Against::Unlike => {
+            let other = radius * draw.logarithmic(OPPONENT);
+            let (shape, body, travel) = match draw.one_of(4) {
+                0 => ("flat = true".to_owned(), "", radius),
+                1 => (format!("radius = {other:?}"), "flat = true\n", radius.min(other)),
+                _ => (format!("radius = {other:?}"), "", radius * other / (radius + other)),
+            };
+            let (modulus, nu) = (modulus * draw.logarithmic(STIFFNESS), draw.even(POISSON));
+            let yield_ratio = draw.logarithmic(YIELD_RATIO);
+            let hardening = self::hardening(&mut draw, modulus, 1.0 / yield_ratio);
+            let opponent = format!(
+                "[opponent]\n{shape}\n[opponent.material]\nyoungs_modulus = {modulus:?}\npoissons_ratio = {nu:?}\n\
+                 [opponent.material.hardening]\n{hardening}\n"
+            );
+            (body, opponent, travel)
         }
     };
     let segments: String = path

@@ -39,6 +39,9 @@ struct Args {
     /// Against a rigid sphere, every second body a flat.
     #[arg(long, conflicts_with = "equal")]
     rigid: bool,
+    /// Against another body that deforms, some of them flats.
+    #[arg(long, conflicts_with_all = ["equal", "rigid"])]
+    unlike: bool,
     /// Write the measured numbers to this file, as JSON.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -52,9 +55,10 @@ struct Args {
 
 fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let args = Args::parse();
-    let against = match (args.equal, args.rigid) {
-        (true, _) => Against::Equal,
-        (_, true) => Against::Rigid,
+    let against = match (args.equal, args.rigid, args.unlike) {
+        (true, ..) => Against::Equal,
+        (_, true, _) => Against::Rigid,
+        (.., true) => Against::Unlike,
         _ => Against::Plane,
     };
     if let Some(index) = args.only {

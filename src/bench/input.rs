@@ -116,7 +116,7 @@ pub fn models(mesh: &Mesh, count: usize) -> Result<Vec<CaseModel>, BenchError> {
         mesh.nodes.iter_mut().flatten().for_each(|x| *x *= size);
         let hardening = Hardening::power(random.between(1e-3, 3e-3), random.between(3e-3, 6e-3), random.between(0.2, 0.5))?;
         let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
-        Ok(CaseModel { mesh: Arc::new(mesh), material, friction: Friction::Coulomb(random.between(0.1, 0.5)) })
+        Ok(CaseModel { mesh: Arc::new(mesh), material, friction: Friction::Coulomb(random.between(0.1, 0.5)), opponent: None })
     };
     (0..count).map(case).collect()
 }

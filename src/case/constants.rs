@@ -14,6 +14,15 @@ impl Material {
         let hardening = self.hardening.scaled(self.youngs_modulus).law(1.0)?;
         Ok(material::Material { elasticity: Elasticity::new(1.0, self.poissons_ratio), hardening })
     }
+
+    /// The material in the unit that its stresses have: its Young's modulus is what it is.
+    ///
+    /// # Errors
+    /// As [`Material::constants`].
+    pub fn constants_as_given<R: Real>(&self) -> Result<material::Material<R>, HardeningError> {
+        let hardening = self.hardening.law(self.youngs_modulus)?;
+        Ok(material::Material { elasticity: Elasticity::new(self.youngs_modulus, self.poissons_ratio), hardening })
+    }
 }
 
 impl Hardening {

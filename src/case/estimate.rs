@@ -2,7 +2,7 @@
 
 use super::error::CaseError;
 use super::reader::Reader;
-use super::{Case, Segment};
+use super::{Case, Opponent, Segment};
 
 /// Memory of an element with its share of the linear systems, in bytes: the 3x3 blocks in f64,
 /// their multigrid levels in f32, the Krylov basis and the state at the quadrature points.
@@ -25,7 +25,9 @@ pub fn estimated_elements(case: &Case) -> usize {
     let share = case.effective_radius() / radius;
     let contact = case.mesh.contact_radius.map_or((2.0 * share * deepest / radius).sqrt(), |a| a / radius).clamp(0.005, 0.3);
     let n = case.mesh.elements_per_contact_radius as f64;
-    (n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln())).ceil() as usize
+    // Another body counts as much: the ratio of a to its radius hardly matters.
+    let meshed = if matches!(case.opponent, Some(Opponent::Deforming { .. })) { 2.0 } else { 1.0 };
+    (meshed * n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln())).ceil() as usize
 }
 
 /// An estimate of the memory that the case's simulation takes, in GiB.

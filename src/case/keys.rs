@@ -3,7 +3,7 @@
 //! `asperity explain`, `asperity init` and `asperity schema` are made from [`KEYS`]. The tests
 //! below hold it against the parser: a key that one of the two lacks fails them.
 
-use Kind::{Number, Points, ShareOrTrue, Text, Truth, Whole, Word};
+use Kind::{Material, Number, Points, ShareOrTrue, Text, Truth, Whole, Word};
 use Limit::{Above, AtLeast, AtMost, Free};
 use Presence::{Defaults, Optional, Required};
 
@@ -47,6 +47,8 @@ pub enum Kind {
     Text,
     /// Pairs of numbers.
     Points,
+    /// A table with the keys of `[material]`, and below it those of its hardening.
+    Material,
 }
 
 /// A limit that does not depend on other keys.
@@ -127,7 +129,7 @@ pub const KEYS: &[Key] = &[
         ..key("sphere", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Required)
     },
     Key {
-        range: "true, with a rigid sphere as the opponent, or false",
+        range: "true, with another sphere as the opponent, or false",
         meaning: "the body is a flat, not a sphere: half a ball of radius 2 R, pressed on its flat face; R is still the unit of length",
         example: "true",
         ..key("sphere", "flat", Truth, Optional("a sphere"))
@@ -241,10 +243,27 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0.05 R, with rigid = true",
-        meaning: "radius of the rigid sphere; with R* from 1/R* = 1/R + 1/radius, or of a flat the radius itself, h is below 0.3 R*",
+        range: ">= 0.05 R if it is rigid, else 0.1 R to 10 R",
+        meaning: "radius of the sphere that it is pressed against; with R* from 1/R* = 1/R + 1/radius, or of a flat the radius itself, h is below 0.3 R*",
         example: "2.0",
-        ..key("opponent", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Optional("a rigid plane"))
+        ..key(
+            "opponent",
+            "radius",
+            Number(AtLeast(1e-75), AtMost(1e75), &[]),
+            Optional("R if there is a material, else a rigid plane"),
+        )
+    },
+    Key {
+        range: "true, not beside a radius and with a sphere as the body, or false",
+        meaning: "the opponent is a flat that deforms, half a ball of radius 2 R; if it is rigid, the plane",
+        example: "true",
+        ..key("opponent", "flat", Truth, Optional("a sphere if there is a radius or a material, else a rigid plane"))
+    },
+    Key {
+        range: "a table with the keys of [material]; Young's modulus 1e-6 to 1e6 times that of the body",
+        meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative displacements",
+        example: "{ youngs_modulus = 400e3, poissons_ratio = 0.3, hardening = { law = \"elastic\" } }",
+        ..key("opponent", "material", Material, Optional("the body's own where there is a radius or a flat that is not rigid"))
     },
     Key {
         range: "4 to 32",
@@ -401,6 +420,8 @@ pub const KEYS: &[Key] = &[
 pub fn find(name: &str) -> Vec<&'static Key> {
     let part = |part: &str| if part.parse::<usize>().is_ok() { "N".to_owned() } else { part.to_owned() };
     let wanted = name.split('.').map(part).collect::<Vec<_>>().join(".");
+    // The opponent's material has the keys of the body's.
+    let wanted = if wanted.starts_with("opponent.material.") { wanted.replacen("opponent.", "", 1) } else { wanted };
     let meant = |key: &Key| {
         let dotted = key.dotted();
         dotted == wanted || key.table == wanted || dotted.ends_with(&format!(".{wanted}"))
@@ -451,7 +472,7 @@ mod tests {
             while let Some(table) = tables.pop() {
                 let place = if table == "path" { "path.0".to_owned() } else { table.clone() };
                 let Some(known) = known(law, &place) else { continue };
-                assert_eq!(known, listed(law, &table), "{law}: [{table}]");
+                assert_eq!(known, listed(law, table.strip_prefix("opponent.").unwrap_or(&table)), "{law}: [{table}]");
                 let dotted = |name: &String| if table.is_empty() { name.clone() } else { format!("{table}.{name}") };
                 tables.extend(known.iter().map(dotted));
             }
@@ -488,6 +509,7 @@ mod tests {
                 // What goes with a rigid sphere alone.
                 let beside: &[&str] = match key.dotted().as_str() {
                     "opponent.radius" => &["opponent.rigid=true"],
+                    "opponent.flat" => &["path=[{indentation=0.01}]"],
                     "sphere.flat" => &["opponent.rigid=true", "opponent.radius=2.0"],
                     _ => &[],
                 };
@@ -537,7 +559,7 @@ mod tests {
                     assert!(refused(law, key, "\"no such word\""), "{}", key.dotted());
                 }
                 Text => assert!(refused(law, key, "1.0") && refused(law, key, "\"\""), "{}", key.dotted()),
-                Points => assert!(refused(law, key, "1.0"), "{}", key.dotted()),
+                Points | Material => assert!(refused(law, key, "1.0"), "{}", key.dotted()),
             }
         }
     }

@@ -11,6 +11,7 @@ mod estimate;
 mod hardening;
 pub mod keys;
 mod mistakes;
+mod opponent;
 mod path;
 mod pictures;
 mod read;
@@ -102,7 +103,7 @@ pub enum Friction {
 }
 
 /// What the sphere is pressed against, in place of a rigid plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Opponent {
     /// The same sphere. Indentation and shear are then the relative displacements of the two
     /// equators, twice what each of them moves.
@@ -112,32 +113,52 @@ pub enum Opponent {
         /// Its radius > 0, a length.
         radius: f64,
     },
+    /// Another body that deforms, meshed as the sphere is.
+    Deforming {
+        /// Its radius > 0, a length; `None` for a flat, half a ball of twice the sphere's radius.
+        radius: Option<f64>,
+        /// What it is made of.
+        material: Material,
+    },
 }
 
 impl Case {
-    /// Number of bodies that deform: their displacements add up to h and delta_T, their energies to
-    /// those of the contact.
+    /// Number of bodies of which only one is simulated: two in an equal pair, where each has half
+    /// of h and delta_T and of the energies.
     pub fn bodies(&self) -> f64 {
         match self.opponent {
-            None | Some(Opponent::Rigid { .. }) => 1.0,
+            None | Some(Opponent::Rigid { .. } | Opponent::Deforming { .. }) => 1.0,
             Some(Opponent::Equal) => 2.0,
         }
+    }
+
+    /// How much more than the sphere alone both bodies give way: along the normal (1/E* over (1 -
+    /// nu^2)/E) and along the surface ((2 - nu)/G likewise). Ones against what is rigid, and in an
+    /// equal pair, of which one body is simulated.
+    pub fn compliance(&self) -> [f64; 2] {
+        let Some(Opponent::Deforming { material, .. }) = &self.opponent else { return [1.0; 2] };
+        let of = |m: &Material| {
+            let (e, nu) = (m.youngs_modulus, m.poissons_ratio);
+            [(1.0 - nu * nu) / e, 2.0 * (1.0 + nu) * (2.0 - nu) / e]
+        };
+        let (own, other) = (of(&self.material), of(material));
+        [0, 1].map(|i| 1.0 + other[i] / own[i])
     }
 
     /// The effective radius R*, 1/R* = 1/R_1 + 1/R_2: that of the sphere which, pressed onto a
     /// plane, meets it as closely as these two surfaces meet.
     pub fn effective_radius(&self) -> f64 {
-        match self.opponent {
-            None => self.sphere.radius,
-            Some(Opponent::Equal) => 0.5 * self.sphere.radius,
-            Some(Opponent::Rigid { radius }) if self.sphere.flat => radius,
-            // The quotient, and not the radii, is what stays of the order of one.
-            Some(Opponent::Rigid { radius }) => self.sphere.radius / (1.0 + self.sphere.radius / radius),
-        }
+        let other = match self.opponent {
+            None | Some(Opponent::Deforming { radius: None, .. }) => return self.sphere.radius,
+            Some(Opponent::Equal) => return 0.5 * self.sphere.radius,
+            Some(Opponent::Rigid { radius } | Opponent::Deforming { radius: Some(radius), .. }) => radius,
+        };
+        // The quotient, and not the radii, is what stays of the order of one.
+        if self.sphere.flat { other } else { self.sphere.radius / (1.0 + self.sphere.radius / other) }
     }
 
-    /// Radius of the sphere over a plane that one body of this case is pressed like: R* against a
-    /// rigid sphere; R in an equal pair too, of which each body is pressed by its share of h.
+    /// Radius of the sphere over a plane that one body of this case is pressed like: R* against
+    /// another body; R in an equal pair too, of which each body is pressed by its share of h.
     pub fn body_radius(&self) -> f64 {
         self.bodies() * self.effective_radius()
     }

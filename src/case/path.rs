@@ -61,7 +61,7 @@ const MAX_SHEAR: f64 = 0.5;
 
 /// The lengths that limit a path.
 pub(super) struct Lengths {
-    /// Largest indentations are shares of this one: the radius, or with a rigid sphere R*.
+    /// Largest indentations are shares of this one: the radius, or with another sphere R*.
     press: f64,
     /// Largest displacements along the surface are shares of this one: the radius, or of two the
     /// smaller.
@@ -73,16 +73,18 @@ pub(super) struct Lengths {
 
 impl Lengths {
     /// Those of a body and what it is pressed against.
-    pub fn of(sphere: &Sphere, opponent: Option<Opponent>) -> Self {
+    pub fn of(sphere: &Sphere, opponent: Option<&Opponent>) -> Self {
         let radius = sphere.radius;
         match opponent {
-            Some(Opponent::Rigid { radius: other }) => Self {
+            Some(&Opponent::Rigid { radius: other } | &Opponent::Deforming { radius: Some(other), .. }) => Self {
                 press: if sphere.flat { other.min(radius) } else { radius / (1.0 + radius / other) },
                 shear: radius.min(other),
                 press_name: if sphere.flat { "of the smaller radius" } else { "effective radius" },
                 shear_name: "of the smaller radius",
             },
-            None | Some(Opponent::Equal) => Self { press: radius, shear: radius, press_name: "radius", shear_name: "radius" },
+            None | Some(Opponent::Equal | Opponent::Deforming { radius: None, .. }) => {
+                Self { press: radius, shear: radius, press_name: "radius", shear_name: "radius" }
+            }
         }
     }
 }

@@ -7,16 +7,13 @@ use super::error::{CaseError, Place};
 use super::reader::Reader;
 use super::{
     Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere,
-    UnitLabels, estimate, path, pictures,
+    UnitLabels, estimate, opponent, path, pictures,
 };
 use crate::bounded;
 
 /// Radius and Young's modulus, in the units of the case: between these energies, of the order of E
 /// R^3, are neither infinite nor nothing.
-const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
-/// Smallest radius of a rigid sphere over that of the body: a contact of 0.005 R, the smallest that
-/// is meshed for, should not be a large part of it.
-const SMALLEST_OPPONENT: f64 = 0.05;
+pub(super) const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
 /// Smallest and largest a/R that the sphere is meshed for.
 pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
 
@@ -50,24 +47,23 @@ impl Case {
     pub(super) fn of_any_size(document: &Document) -> Result<Self, CaseError> {
         let root = Reader::new(document)?;
         root.only(&["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "units", "path"])?;
-        let opponent = read_opponent(&root)?;
         let sphere = read_sphere(&root.require_table("sphere", "a table with radius")?)?;
-        check_bodies(&sphere, opponent, &root)?;
         let material = read_material_of(&root)?;
+        let opponent = opponent::read(&root, &sphere, &material)?;
         let contact = read_contact(&root.require_table("contact", "a table with friction")?)?;
         let case = Case {
-            opponent,
             mesh: read_mesh(&root.table("mesh")?, sphere.radius)?,
             solver: read_solver(&root.table("solver")?)?,
             output: read_output(&root.table("output")?)?,
             units: UnitLabels::read(&root.table("units")?)?,
-            path: path::read(&root, &path::Lengths::of(&sphere, opponent), contact.friction)?,
+            path: path::read(&root, &path::Lengths::of(&sphere, opponent.as_ref()), contact.friction)?,
+            opponent,
             sphere,
             material,
             contact,
         };
-        if let (Some(Opponent::Equal), Linear::Direct, Some(field)) =
-            (case.opponent, case.solver.linear, root.table("solver")?.get("linear"))
+        if let (Some(Opponent::Equal | Opponent::Deforming { .. }), Linear::Direct, Some(field)) =
+            (&case.opponent, case.solver.linear, root.table("solver")?.get("linear"))
         {
             return Err(
                 field.refuse("is \"direct\", which solves for one body alone", "\"multigrid\" with an opponent that deforms")
@@ -131,7 +127,7 @@ fn read_sphere(table: &Reader<'_>) -> Result<Sphere, CaseError> {
     Ok(Sphere { radius, flat: table.get("flat").map_or(Ok(false), |flat| flat.boolean())? })
 }
 
-fn read_material(table: &Reader<'_>) -> Result<Material, CaseError> {
+pub(super) fn read_material(table: &Reader<'_>) -> Result<Material, CaseError> {
     table.only(&["youngs_modulus", "poissons_ratio", "hardening"])?;
     let (stress, ratio) = ("a stress > 0 (from 1e-75 to 1e75)", "a number > -1 and < 0.5");
     let youngs_modulus = table.require("youngs_modulus", stress)?.number(stress, |e| MAGNITUDES.contains(&e))?;
@@ -150,46 +146,6 @@ fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
         None => Friction::Coefficient(field.number(allowed, |mu| mu >= 0.0)?),
     };
     Ok(Contact { friction })
-}
-
-fn read_opponent(root: &Reader<'_>) -> Result<Option<Opponent>, CaseError> {
-    let Some(field) = root.get("opponent") else { return Ok(None) };
-    let table = field.table()?;
-    table.only(&["equal", "rigid", "radius"])?;
-    let flag = |name| table.get(name).map_or(Ok(false), |field| field.boolean());
-    let (equal, rigid) = (flag("equal")?, flag("rigid")?);
-    let length = "a length > 0 (from 1e-75 to 1e75)";
-    match (equal, rigid, table.get("radius")) {
-        (true, true, _) => Err(table.refuse("is both equal and rigid", "one of equal = true and rigid = true")),
-        (_, false, Some(field)) => {
-            field.number(length, |radius| MAGNITUDES.contains(&radius))?;
-            Err(field.refuse("stands without rigid = true", "rigid = true beside it, or no radius"))
-        }
-        (true, false, None) => Ok(Some(Opponent::Equal)),
-        (false, true, Some(field)) => {
-            Ok(Some(Opponent::Rigid { radius: field.number(length, |radius| MAGNITUDES.contains(&radius))? }))
-        }
-        // Rigid without a radius: the plane.
-        (false, _, None) => Ok(None),
-    }
-}
-
-/// Refuses bodies that do not go together.
-fn check_bodies(sphere: &Sphere, opponent: Option<Opponent>, root: &Reader<'_>) -> Result<(), CaseError> {
-    let field = |table: &str, key: &str| root.table(table).map(|table| table.get(key));
-    let refused = match (sphere.flat, opponent) {
-        (true, None | Some(Opponent::Equal)) => {
-            let allowed = "flat = true where the opponent is a sphere: [opponent] rigid = true and its radius";
-            field("sphere", "flat")?.map(|field| field.refuse("is true, and a flat is pressed by a sphere alone", allowed))
-        }
-        (_, Some(Opponent::Rigid { radius })) if !(radius / sphere.radius >= SMALLEST_OPPONENT) => {
-            let least = SMALLEST_OPPONENT * sphere.radius;
-            let allowed = format!("a length of at least {SMALLEST_OPPONENT} sphere.radius = {least:?}");
-            field("opponent", "radius")?.map(|field| field.refuse(&format!("is {radius:?}"), &allowed))
-        }
-        _ => None,
-    };
-    refused.map_or(Ok(()), Err)
 }
 
 fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {

@@ -5,7 +5,7 @@ use super::{Case, Contact, Material, Mesh, Opponent, Segment, ShearTarget, Spher
 impl Case {
     /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2.
     /// Indentation and shear are what one body moves: half of the relative displacement in an equal
-    /// pair, which the copy is one no more. A rigid opponent is scaled too.
+    /// pair, which the copy is one no more. Any other opponent is scaled too.
     pub fn scaled(&self) -> Case {
         let (radius, modulus) = (self.sphere.radius, self.material.youngs_modulus);
         let travel = radius * self.bodies();
@@ -29,6 +29,14 @@ impl Case {
             contact: Contact { friction: self.contact.friction },
             opponent: match self.opponent {
                 Some(Opponent::Rigid { radius: other }) => Some(Opponent::Rigid { radius: other / radius }),
+                Some(Opponent::Deforming { radius: other, ref material }) => Some(Opponent::Deforming {
+                    radius: other.map(|other| other / radius),
+                    material: Material {
+                        youngs_modulus: material.youngs_modulus / modulus,
+                        poissons_ratio: material.poissons_ratio,
+                        hardening: material.hardening.scaled(modulus),
+                    },
+                }),
                 None | Some(Opponent::Equal) => None,
             },
             mesh: Mesh { contact_radius: self.mesh.contact_radius.map(|a| a / radius), ..self.mesh.clone() },

@@ -57,6 +57,7 @@ pub fn study_schema() -> Value {
 /// A case, as it stands in a file of its own or, `whole` being false, under the base of a study.
 fn case(whole: bool) -> Value {
     let mut properties = Map::new();
+    let mut material = Value::Null;
     for (table, about) in TABLES.into_iter().filter(|(table, _)| !table.contains('.')) {
         let mut schema = match table {
             "path" => path(),
@@ -67,6 +68,12 @@ fn case(whole: bool) -> Value {
             if whole {
                 schema["required"] = json!(["youngs_modulus", "poissons_ratio", "hardening"]);
             }
+            material = schema.clone();
+        }
+        if table == "opponent" {
+            let about = schema["properties"]["material"]["description"].take();
+            schema["properties"]["material"] = material.clone();
+            schema["properties"]["material"]["description"] = about;
         }
         schema["description"] = about.into();
         properties.insert(table.to_owned(), schema);
@@ -127,6 +134,8 @@ fn property(key: &Key) -> Value {
             json!({ "anyOf": [{ "const": true }, { "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1 }] })
         }
         Kind::Word(words) => json!({ "enum": words }),
+        // Filled in where the table is put together.
+        Kind::Material => json!({ "type": "object" }),
         Kind::Text => json!({ "type": "string", "minLength": 1, "maxLength": 16 }),
         Kind::Points => json!({
             "type": "array",

@@ -93,10 +93,13 @@ mod tests {
             assert!(text.lines().all(|line| line.len() <= 100), "{text}");
             // What stands there as a comment is what would be right without it.
             let is_key = |line: &&str| line.split_once(" = ").is_some_and(|(name, _)| KEYS.iter().any(|key| key.name == name));
-            // Of the opponents one is enough.
+            // Of the opponents the rigid one is enough.
             let uncommented: Vec<&str> = text
                 .lines()
-                .filter(|line| *line != "# equal = true" && *line != "# plot_width = \"85mm\"")
+                .filter(|line| {
+                    let left_out = ["# equal = ", "# flat = ", "# material = ", "# plot_width = \"85mm\""];
+                    !left_out.iter().any(|start| line.starts_with(start))
+                })
                 .map(|line| line.strip_prefix("# ").filter(is_key).unwrap_or(line))
                 .collect();
             let uncommented = uncommented.join("\n");

@@ -39,6 +39,13 @@ impl Serialize for Opponent {
                 map.serialize_entry("rigid", &true)?;
                 map.serialize_entry("radius", radius)?;
             }
+            Opponent::Deforming { radius, material } => {
+                match radius {
+                    Some(radius) => map.serialize_entry("radius", radius)?,
+                    None => map.serialize_entry("flat", &true)?,
+                }
+                map.serialize_entry("material", material)?;
+            }
         }
         map.end()
     }

@@ -27,6 +27,8 @@ const WAVE_CHUNK: usize = 16;
 /// One case as the CPU holds it.
 struct Case<R> {
     material: Material<R>,
+    /// Material of the elements from this one on.
+    opponent: (usize, Material<R>),
     friction: Friction<R>,
     mesh: Arc<Mesh>,
     geometry: Vec<Geometry<R>>,
@@ -107,6 +109,7 @@ impl<R: Real> Case<R> {
         mesh.symmetry_nodes.iter().for_each(|&n| on_plane[n as usize] = true);
         Ok(Self {
             material: model.material.cast(),
+            opponent: (model.opponent_from(), model.opponent.as_ref().unwrap_or(&model.material).cast()),
             friction: match model.friction {
                 Friction::Coulomb(mu) => Friction::Coulomb(R::of(mu)),
                 Friction::Stick => Friction::Stick,
@@ -119,6 +122,11 @@ impl<R: Real> Case<R> {
             geometry,
             mesh,
         })
+    }
+
+    #[inline(always)]
+    fn material(&self, element: usize) -> &Material<R> {
+        if element < self.opponent.0 { &self.material } else { &self.opponent.1 }
     }
 
     /// Committed displacement and increment of an element's nodes; the increment is formed in f64
@@ -200,7 +208,7 @@ impl<R: Real> Compute for Cpu<R> {
                 request.displacement,
                 &mut self.element_force,
                 |case, e, committed, increment, out| {
-                    *out = hex8::internal_force(&case.geometry[e], &case.material, &case.start[e], committed, increment)?;
+                    *out = hex8::internal_force(&case.geometry[e], case.material(e), &case.start[e], committed, increment)?;
                     Ok(())
                 },
             );
@@ -239,7 +247,7 @@ impl<R: Real> Compute for Cpu<R> {
                     request.displacement,
                     out,
                     |case, e, committed, increment, out| {
-                        hex8::tangent(&case.geometry[e], &case.material, &case.start[e], committed, increment, out)
+                        hex8::tangent(&case.geometry[e], case.material(e), &case.start[e], committed, increment, out)
                     },
                 );
                 if request.outcome != Outcome::Valid {
@@ -283,13 +291,19 @@ impl<R: Real> Compute for Cpu<R> {
             request.outcome =
                 case.each_element(0, CHUNK, request.displacement, &mut self.next, |case, e, committed, increment, out| {
                     let (state, start) = (&case.state[e], &case.start[e]);
-                    *out = hex8::update(&case.geometry[e], &case.material, state, start, committed, increment)?;
+                    *out = hex8::update(&case.geometry[e], case.material(e), state, start, committed, increment)?;
                     Ok(())
                 });
             if request.outcome == Outcome::Valid {
                 let case = &mut self.cases[request.case];
                 let mut energies = Energies::default();
-                for ((state, start), (next, elastic)) in case.state.iter_mut().zip(&mut case.start).zip(&self.next) {
+                let opponent = case.opponent.0;
+                for (e, ((state, start), (next, elastic))) in
+                    case.state.iter_mut().zip(&mut case.start).zip(&self.next).enumerate()
+                {
+                    if e >= opponent {
+                        energies.opponent_plastic += next.plastic_work.to_f64();
+                    }
                     *state = *next;
                     *start = next.points;
                     energies.elastic += elastic.to_f64();
@@ -308,7 +322,7 @@ impl<R: Real> Compute for Cpu<R> {
         let mut out = vec![([0.0; 6], 0.0, 0.0_f64); case.state.len()];
         let outcome = case.each_element(0, CHUNK, &case.committed, &mut out, |case, e, committed, _, out| {
             let geometry = &case.geometry[e];
-            let fields = hex8::fields(geometry, &case.material, &case.state[e].points, committed)?;
+            let fields = hex8::fields(geometry, case.material(e), &case.state[e].points, committed)?;
             for q in 0..hex8::QUADRATURE_POINTS {
                 let share = (geometry.volume.0[q] / geometry.total_volume).to_f64();
                 let alpha = case.state[e].points[q].alpha.to_f64();

@@ -43,6 +43,15 @@ pub struct CaseModel {
     pub material: Material<f64>,
     /// Friction between sphere and plane.
     pub friction: Friction<f64>,
+    /// Elasticity and hardening of the opponent, if the mesh is of two bodies.
+    pub opponent: Option<Material<f64>>,
+}
+
+impl CaseModel {
+    /// Index of the first element of the opponent: the number of elements if there is none.
+    pub fn opponent_from(&self) -> usize {
+        self.mesh.couple.as_ref().map_or(self.mesh.elements.len(), |couple| couple.element)
+    }
 }
 
 /// Why a trial displacement could not be evaluated; the solver answers by backtracking.
@@ -122,6 +131,8 @@ pub struct Energies {
     pub plastic: f64,
     /// Largest equivalent plastic strain of any quadrature point, no energy but measured with them.
     pub max_alpha: f64,
+    /// The opponent's share of the plastic work.
+    pub opponent_plastic: f64,
 }
 
 /// The committed state of a case, for output and checkpoints.

@@ -29,9 +29,19 @@ fn mesh(stretch: f64) -> Arc<Mesh> {
 fn models() -> Vec<CaseModel> {
     let material = |hardening| Material { elasticity: Elasticity::new(1.0, 0.3), hardening };
     vec![
-        CaseModel { mesh: mesh(1.0), material: material(Hardening::ideal(2e-3).unwrap()), friction: Friction::Coulomb(0.3) },
-        CaseModel { mesh: mesh(1.1), material: material(Hardening::Elastic), friction: Friction::Coulomb(0.0) },
-        CaseModel { mesh: mesh(0.9), material: material(Hardening::power(1e-3, 5e-3, 0.3).unwrap()), friction: Friction::Stick },
+        CaseModel {
+            mesh: mesh(1.0),
+            material: material(Hardening::ideal(2e-3).unwrap()),
+            friction: Friction::Coulomb(0.3),
+            opponent: None,
+        },
+        CaseModel { mesh: mesh(1.1), material: material(Hardening::Elastic), friction: Friction::Coulomb(0.0), opponent: None },
+        CaseModel {
+            mesh: mesh(0.9),
+            material: material(Hardening::power(1e-3, 5e-3, 0.3).unwrap()),
+            friction: Friction::Stick,
+            opponent: None,
+        },
     ]
 }
 

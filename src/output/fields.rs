@@ -1,5 +1,6 @@
 //! The fields of one step: what `fields/step_0020.vtu` shows.
 
+use super::space::{bodies, elements_in_space, stresses_in_space, vectors_in_space};
 use super::{ContactPoint, ContactStatus, Field, Grid, Half, OutputError, Units, write_vtu};
 use crate::compute::CaseFields;
 use crate::mesh::Mesh;
@@ -9,8 +10,8 @@ use std::path::Path;
 /// reference positions with, on the nodes, `displacement`, `contact_pressure`, `contact_traction`,
 /// `gap` and `contact_status` (0 open or away from the contact surface, 1 stick, 2 slip; the gap
 /// is -1 away from it) and, on the elements, `stress` (Cauchy), `mises`, `alpha` and `plastic` (1
-/// where the element has yielded), in the user's units. `displacement` and `fields` are scaled,
-/// `points` are in the user's units.
+/// where the element has yielded), in the user's units; of two bodies also `body` (0 the sphere, 1
+/// the opponent). `displacement` and `fields` are scaled, `points` are in the user's units.
 pub fn write_fields(
     path: &Path,
     mesh: &Mesh,
@@ -21,8 +22,8 @@ pub fn write_fields(
 ) -> Result<(), OutputError> {
     let nodes = mesh.nodes.len();
     let scaled = |x: &[f64; 3]| x.map(|x| x * units.radius);
-    let positions: Vec<[f64; 3]> = mesh.nodes.iter().map(scaled).collect();
-    let moved: Vec<[f64; 3]> = displacement.as_chunks::<3>().0.iter().map(scaled).collect();
+    let positions: Vec<[f64; 3]> = vectors_in_space(mesh, &mesh.nodes).iter().map(scaled).collect();
+    let moved: Vec<[f64; 3]> = vectors_in_space(mesh, displacement.as_chunks::<3>().0).iter().map(scaled).collect();
 
     let mut pressure = vec![0.0; nodes];
     let mut traction = vec![[0.0; 3]; nodes];
@@ -44,7 +45,8 @@ pub fn write_fields(
         };
     }
 
-    let stress: Vec<[f64; 6]> = fields.stress.iter().map(|stress| stress.map(|s| s * units.youngs_modulus)).collect();
+    let stress: Vec<[f64; 6]> =
+        stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * units.youngs_modulus)).collect();
     let point_fields = [
         Field::vector("displacement", &moved),
         Field::scalar("contact_pressure", pressure),
@@ -52,13 +54,15 @@ pub fn write_fields(
         Field::scalar("gap", gap),
         Field::integer("contact_status", status),
     ];
-    let cell_fields = [
+    let mut cell_fields = vec![
         Field::symmetric_tensor("stress", &stress),
         Field::scalar("mises", stress.iter().map(mises).collect()),
         Field::scalar("alpha", fields.alpha.clone()),
         Field::integer("plastic", fields.alpha.iter().map(|&alpha| i32::from(alpha > 0.0)).collect()),
     ];
-    write_vtu(path, &Grid { points: &positions, cells: &mesh.elements, symmetry_plane: Some(0.0) }, &point_fields, &cell_fields)
+    cell_fields.extend(bodies(mesh).map(|bodies| Field::integer("body", bodies)));
+    let cells = elements_in_space(mesh);
+    write_vtu(path, &Grid { points: &positions, cells: &cells, symmetry_plane: Some(0.0) }, &point_fields, &cell_fields)
 }
 
 /// Mises' equivalent stress sqrt(3/2 s:s) of xx, yy, zz, xy, yz, zx.

@@ -28,6 +28,7 @@ mod recorder;
 mod report;
 mod results;
 mod run_log;
+pub(crate) mod space;
 mod summary;
 mod tables;
 mod time_by_phase;

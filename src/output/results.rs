@@ -334,7 +334,9 @@ impl ResultWriter {
             return Err(error.into());
         }
         write_contact(&self.out.contact(step), contact)?;
-        write_fields(&path, view.mesh, view.displacement, &fields, contact, &self.units)?;
+        let other = view.opponent_points.iter().map(|point| ContactPoint::in_units(point, &self.units));
+        let all: Vec<ContactPoint> = contact.iter().cloned().chain(other).collect();
+        write_fields(&path, view.mesh, view.displacement, &fields, &all, &self.units)?;
         self.collection.push(self.ledger.path_length(step), &path)?;
         self.ledger.saved.push(step);
         Ok(())

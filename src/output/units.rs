@@ -55,6 +55,9 @@ impl StepRecord {
             energy_elastic: self.energy_elastic * energy,
             work_plastic: self.work_plastic * energy,
             work_friction: self.work_friction * energy,
+            h_opponent: self.h_opponent * travel,
+            work_plastic_opponent: self.work_plastic_opponent * energy,
+            curvature: self.curvature / length,
             // Counts, indices and ratios have no unit.
             ..*self
         }

@@ -22,10 +22,12 @@ pub(super) fn plan(case: &Case, computed_on: &Description) -> String {
         Friction::Coefficient(mu) => format!("mu = {mu}"),
         Friction::Stick => "full stick".to_owned(),
     };
-    let against = match case.opponent {
+    let against = match &case.opponent {
         None => String::new(),
         Some(Opponent::Equal) => " against an equal sphere".to_owned(),
         Some(Opponent::Rigid { radius }) => format!(" against a rigid sphere of radius {radius}"),
+        Some(Opponent::Deforming { radius: Some(radius), .. }) => format!(" against a sphere of radius {radius} that deforms"),
+        Some(Opponent::Deforming { radius: None, .. }) => " against a flat that deforms".to_owned(),
     };
     format!(
         "{}{against}; {friction}; {} elements along the contact radius; on {} in {}",

@@ -14,6 +14,7 @@ use super::{Canceller, Earlier, Options, Outcome, SessionError};
 use crate::case::Case;
 use crate::compute::select::{Selected, select};
 use crate::compute::{ComputeError, Description};
+use crate::output::space::{elements_in_space, stresses_in_space, vectors_in_space};
 use crate::output::{
     Checkpoint, Clock, ContactPoint, OutputDirectory, Progress, ResultWriter, Setting, SilentProgress, Status, StepRecord,
     Summary, Units, mises, read_history,
@@ -242,11 +243,12 @@ impl Simulation {
         let Some(last) = follower.last() else { return Ok(None) };
         let mesh = &follower.problem().model.mesh;
         let length = |x: &[f64; 3]| x.map(|x| x * radius);
-        let stress: Vec<[f64; 6]> = fields.stress.iter().map(|stress| stress.map(|s| s * youngs_modulus)).collect();
+        let stress: Vec<[f64; 6]> =
+            stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * youngs_modulus)).collect();
         Ok(Some(StepFields {
-            nodes: mesh.nodes.iter().map(length).collect(),
-            elements: mesh.elements.clone(),
-            displacement: last.displacement().as_chunks::<3>().0.iter().map(length).collect(),
+            nodes: vectors_in_space(mesh, &mesh.nodes).iter().map(length).collect(),
+            elements: elements_in_space(mesh),
+            displacement: vectors_in_space(mesh, last.displacement().as_chunks::<3>().0).iter().map(length).collect(),
             mises: stress.iter().map(mises).collect(),
             stress,
             alpha: fields.alpha,

@@ -4,12 +4,13 @@
 mod paused;
 mod segments;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::SimulationError;
 use super::checkpoint::{Committed, Place, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
-use super::footprint::footprint;
+use super::footprint::{bulge, footprint};
 pub use super::observer::{Observer, StepView};
 use super::path::{Resolution, Start, Target, indentation_targets, oblique_targets};
 use super::problem::Problem;
@@ -23,6 +24,7 @@ use crate::contact::frame::to_frame;
 use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
+use crate::solver::encounter::Encounter;
 use crate::solver::newton::{Newton, StepReport};
 use crate::solver::phases::{Lap, Phase};
 use crate::solver::rigid::position;
@@ -81,6 +83,20 @@ impl<'a> Drive<'a> {
             full_slip: None,
             last_report: StepReport::default(),
             traffic_before: None,
+        }
+    }
+
+    /// Number of contact nodes of the sphere: they come first.
+    fn own_contacts(&self) -> usize {
+        self.mesh.couple.as_ref().map_or(self.mesh.contact_nodes.len(), |couple| couple.contact)
+    }
+
+    /// The contact nodes at which the contact is known: of two bodies the slave's.
+    fn slave_contacts(&self) -> Range<usize> {
+        let (own, all) = (self.own_contacts(), self.mesh.contact_nodes.len());
+        match self.problem.couple {
+            Some((1, _)) => own..all,
+            _ => 0..own,
         }
     }
 
@@ -185,6 +201,7 @@ impl<'a> Drive<'a> {
                 Friction::Stick => f64::INFINITY,
             },
             nu: self.problem.case.material.poissons_ratio,
+            compliance: self.problem.case.compliance(),
             reversed: false,
         }
     }
@@ -337,6 +354,17 @@ impl<'a> Drive<'a> {
                 self.newton.symmetrise(guess);
             }
         }
+        if let Some(couple) = self.problem.couple {
+            let expected = guess.as_deref().unwrap_or(&self.state.u);
+            let encounter = Encounter::new(&self.mesh, couple, &self.state.u, expected, self.state.direction == 0.0);
+            if let Some(guess) = &mut guess {
+                encounter.separate(&self.mesh, guess);
+            }
+            self.newton.encounter(encounter);
+            if let Some(guess) = &mut guess {
+                self.newton.symmetrise(guess);
+            }
+        }
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;
         lap.end(&mut self.newton.times, Phase::Commit);
@@ -366,7 +394,7 @@ impl<'a> Drive<'a> {
             return None;
         };
         let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
-        if self.problem.equal_pair || self.problem.fully_plastic {
+        if self.problem.equal_pair || self.problem.couple.is_some() || self.problem.fully_plastic {
             return Some(guess);
         }
         if let Some(rigid) = self.problem.rigid {
@@ -399,11 +427,15 @@ impl<'a> Drive<'a> {
             return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
         }
         let (forces, statuses, gaps) = self.newton.contact_state(&self.mesh);
-        let force: [f64; 3] = std::array::from_fn(|c| forces.iter().map(|f| f[c]).sum());
-        let count = |s: Status| statuses.iter().filter(|status| **status == s).count();
+        let force: [f64; 3] = std::array::from_fn(|c| forces[..self.own_contacts()].iter().map(|f| f[c]).sum());
+        let slaves = self.slave_contacts();
+        let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
         let (h, contact_points, slipping_points) = (accepted.h, count(Status::Stick) + count(Status::Slip), count(Status::Slip));
         let length = self.state.length_to(target.h, target.delta_t);
-        let friction_work = self.friction_work(&accepted.u, &forces);
+        let friction_work = match self.newton.interface_friction_work(&self.state.force) {
+            Some(work) => work,
+            None => self.friction_work(&accepted.u, &forces),
+        };
         self.state.u_before.copy_from_slice(&self.state.u);
         self.state.u.copy_from_slice(&accepted.u);
         self.state.force.copy_from_slice(&accepted.force);
@@ -416,7 +448,11 @@ impl<'a> Drive<'a> {
         self.state.last_length = length;
         self.state.h_max = self.state.h_max.max(h);
         self.state.place_points(&self.mesh);
-        let size = footprint(&self.state.points, self.problem.spacing);
+        let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing);
+        // A slave that is the opponent lies the other way round.
+        let side = if slaves.start == 0 { 1.0 } else { -1.0 };
+        let shape = self.problem.couple.and_then(|_| bulge(&self.state.points[slaves]));
+        let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
         // 0 - x, not -x: no force is 0, not -0.
         let (f_n, f_t) = (2.0 * force[2], 0.0 - 2.0 * force[0]);
         self.state.record = StepRecord {
@@ -445,6 +481,9 @@ impl<'a> Drive<'a> {
             reach: self.state.reach(),
             relaxed: usize::from(report.relaxed),
             landed_again: report.landed_again,
+            h_opponent: depth,
+            work_plastic_opponent: 2.0 * energies.opponent_plastic,
+            curvature,
         };
         log::info!(
             "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
@@ -478,13 +517,15 @@ impl<'a> Drive<'a> {
 
     /// The last accepted step.
     fn view(&mut self) -> StepView<'_> {
+        let (points, opponent_points) = self.state.points.split_at(self.own_contacts());
         StepView {
             record: self.state.record,
             report: &self.last_report,
             unfinished: std::mem::take(&mut self.newton.times),
             mesh: &self.mesh,
             displacement: &self.state.u,
-            points: &self.state.points,
+            points,
+            opponent_points,
             backend: &mut *self.backend,
             case: self.case,
         }

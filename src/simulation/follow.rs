@@ -85,7 +85,7 @@ impl<'a> Follower<'a> {
             self.paused = Some(drive.pause());
             let grown = match &ending {
                 Ending::Outgrown(outgrowth) => {
-                    let zone = self.problem.zone.grown(outgrowth.reach, outgrowth.contact_radius, BLIND_MARGIN);
+                    let zone = self.problem.grown_zone(outgrowth.reach, outgrowth.contact_radius, BLIND_MARGIN);
                     zone.map(|zone| (zone, *outgrowth))
                 }
                 _ => None,

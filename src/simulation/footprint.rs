@@ -76,6 +76,17 @@ pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
     }
 }
 
+/// Height in the middle and curvature of the surface in contact: the paraboloid z = z_0 + kappa
+/// r^2/2 that fits its closed points best, by their areas. `None` for a few points.
+pub fn bulge(points: &[ContactPoint]) -> Option<[f64; 2]> {
+    let closed = || points.iter().filter(|p| p.status != Status::Open);
+    let force: f64 = closed().map(|p| p.force[2]).sum();
+    let centre = if force > 0.0 { closed().map(|p| p.force[2] * p.position[0]).sum::<f64>() / force } else { 0.0 };
+    let square = |p: &ContactPoint| (p.position[0] - centre).powi(2) + p.position[1].powi(2);
+    let (slope, height) = line(closed().map(|p| (p.area, square(p), p.position[2])))?;
+    Some([height, 2.0 * slope])
+}
+
 /// Slope and value at zero of the weighted least-squares line y(x), if there are points enough.
 fn line(points: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
     let (mut n, mut w, mut x1, mut y1, mut x2, mut xy) = (0, 0.0, 0.0, 0.0, 0.0, 0.0);

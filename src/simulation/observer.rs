@@ -48,8 +48,10 @@ pub struct StepView<'a> {
     pub mesh: &'a Mesh,
     /// Displacement, three a node.
     pub displacement: &'a [f64],
-    /// Every point that can touch.
+    /// Every point of the sphere that can touch.
     pub points: &'a [ContactPoint],
+    /// Every point of another body that deforms that can touch, in its own coordinates.
+    pub opponent_points: &'a [ContactPoint],
     pub(super) backend: &'a mut dyn Compute,
     pub(super) case: usize,
 }

@@ -34,6 +34,9 @@ pub struct Start {
     pub friction: f64,
     /// Poisson's ratio.
     pub nu: f64,
+    /// How much more than the sphere alone both bodies give way (see
+    /// [`crate::case::Case::compliance`]).
+    pub compliance: [f64; 2],
     /// The last shear went the other way.
     pub reversed: bool,
 }
@@ -77,16 +80,16 @@ impl Resolution {
 }
 
 impl Start {
-    /// Elastic modulus E/(1 - nu^2), scaled.
+    /// Elastic modulus E/(1 - nu^2), scaled; with another body that of both, E*.
     fn plane_modulus(&self) -> f64 {
-        1.0 / (1.0 - self.nu * self.nu)
+        1.0 / ((1.0 - self.nu * self.nu) * self.compliance[0])
     }
 
     /// Cattaneo's slip displacement, 3 mu F_N (2 - nu)/(16 G a), as the scale of a shear.
     pub fn slip_displacement(&self) -> f64 {
         let g = 0.5 / (1.0 + self.nu);
         let mu = self.friction.min(FRICTION_LIMIT);
-        let scale = 3.0 * mu * self.f_n * (2.0 - self.nu) / (16.0 * g * self.a.max(1e-12));
+        let scale = 3.0 * mu * self.f_n * (2.0 - self.nu) * self.compliance[1] / (16.0 * g * self.a.max(1e-12));
         // Without friction nothing happens in a shear, but the steps still need a length.
         let floor = 0.01 * self.a.max(1e-6);
         let scale = if scale > 1e-3 * floor { scale } else { floor };
@@ -274,7 +277,17 @@ mod tests {
     use super::*;
 
     fn start(a: f64, friction: f64) -> Start {
-        Start { h: 0.02, h_max: 0.02, delta_t: 0.0, f_n: 7e-4 * (a / 0.2).powi(2), a, friction, nu: 0.3, reversed: false }
+        Start {
+            h: 0.02,
+            h_max: 0.02,
+            delta_t: 0.0,
+            f_n: 7e-4 * (a / 0.2).powi(2),
+            a,
+            friction,
+            nu: 0.3,
+            compliance: [1.0; 2],
+            reversed: false,
+        }
     }
 
     /// Ends of the steps of a shear.

@@ -72,6 +72,18 @@ pub struct StepRecord {
     /// tangential force up to its end.
     #[serde(default)]
     pub landed_again: usize,
+    /// With another body that deforms: the part of h that its surface gives way in the middle of
+    /// the contact; the rest is the sphere's. As `curvature` of the paraboloid that fits the
+    /// interface best, and 0 while fewer than six points touch.
+    #[serde(default)]
+    pub h_opponent: f64,
+    /// With another body that deforms: its share of the plastic work.
+    #[serde(default)]
+    pub work_plastic_opponent: f64,
+    /// With another body that deforms: curvature of the interface, positive where it bends around
+    /// the sphere as around a rigid one.
+    #[serde(default)]
+    pub curvature: f64,
 }
 
 /// A contact point of a committed state, scaled.
@@ -84,7 +96,7 @@ pub struct ContactPoint {
     /// Current position.
     pub position: [f64; 3],
     /// Force of the plane on the point, of the meshed half: what contact exerts, without the pull
-    /// of the other half.
+    /// of the other half. A point of another body is in that body's own coordinates.
     pub force: [f64; 3],
     /// Gap to the plane, or to the opponent.
     pub gap: f64,

@@ -140,16 +140,32 @@ fn so_it_is_against_a_rigid_sphere() {
 }
 
 #[test]
+fn so_it_is_between_two_bodies() {
+    let text = include_str!("../../fixtures/cases/unlike.toml");
+    let sets = [
+        "mesh.elements_per_contact_radius=4",
+        "solver.press_steps=5",
+        "solver.shear_steps=4",
+        "solver.max_iterations=8",
+        "path=[{indentation=0.01},{shear=0.001},{release=true}]",
+    ];
+    let case = Case::parse(text, "case.toml", &sets.map(str::to_owned)).unwrap();
+    let seen = stop_and_go::<f64>(&Problem::new(&case).unwrap());
+    assert_eq!(seen.ends.len(), 3);
+}
+
+#[test]
 fn on_a_larger_zone_the_opponent_is_the_same() {
     let text = include_str!("../../fixtures/cases/ideal.toml");
-    for opponent in ["opponent.equal=true", "opponent={rigid=true,radius=2.0}"] {
+    for opponent in ["opponent.equal=true", "opponent={rigid=true,radius=2.0}", "opponent.radius=2.0"] {
         let sets = ["mesh.elements_per_contact_radius=4".to_owned(), opponent.to_owned()];
         let problem = Problem::new(&Case::parse(text, "case.toml", &sets).unwrap()).unwrap();
         let zone = problem.zone.grown(1.2 * problem.zone.radius(), 0.0, 1.0).unwrap();
         let grown = problem.on_zone(zone).unwrap();
         assert_eq!((grown.equal_pair, grown.bodies, grown.rigid), (problem.equal_pair, problem.bodies, problem.rigid));
         assert_eq!((&grown.case, grown.zone), (&problem.case, zone));
-        assert!(grown.equal_pair || grown.rigid == Some(Rigid { curvature: 0.5 }));
+        assert_eq!((grown.couple, &grown.model.opponent), (problem.couple, &problem.model.opponent));
+        assert!(grown.equal_pair || grown.couple.is_some() || grown.rigid == Some(Rigid { curvature: 0.5 }));
     }
 }
 

@@ -35,6 +35,18 @@ impl Zone {
         Self { contact_radius: contact_radius.clamp(SMALLEST_CONTACT, LARGEST_CONTACT), fine_zone }
     }
 
+    /// The zone as far as a sphere of this radius, the smaller one of two, can have it.
+    pub fn within(self, radius: f64) -> Self {
+        let contact_radius = self.contact_radius.min((LARGEST_CONTACT * radius).max(SMALLEST_CONTACT));
+        Self { contact_radius, ..self }
+    }
+
+    /// Distance from the axis to which the zone reaches on the smaller of two spheres, of this
+    /// radius.
+    pub fn radius_within(&self, radius: f64) -> f64 {
+        self.radius().min(LARGEST_FINE_RADIUS * radius)
+    }
+
     /// Distance from the axis to which the zone reaches.
     pub fn radius(&self) -> f64 {
         (self.fine_zone * self.contact_radius).min(LARGEST_FINE_RADIUS)

@@ -3,7 +3,8 @@
 
 mod line_search;
 
-use super::pair::Systems;
+use super::encounter::Encounter;
+use super::pair::{Systems, mirror_nodes};
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, turn};
 use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
@@ -12,6 +13,7 @@ use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
 use crate::compute::traffic::Traffic;
 use crate::contact::coulomb::{Friction, Status};
+use crate::contact::pair::leave_even;
 use crate::contact::rigid::Rigid;
 use crate::linalg::LinalgError;
 use crate::mesh::Mesh;
@@ -119,6 +121,8 @@ impl Newton {
         let mut boundary = Boundary::new(mesh);
         if let Systems::Pair(solver) = &linear {
             boundary.mirror = solver.mirror().to_vec();
+        } else if matches!(linear, Systems::Couple(_)) {
+            boundary.mirror = mirror_nodes(mesh).unwrap_or_default();
         }
         Self {
             boundary,
@@ -195,10 +199,24 @@ impl Newton {
         self.boundary.pair = Some(meeting);
     }
 
+    /// Sets the interface with another body for the next step.
+    pub fn encounter(&mut self, encounter: Encounter) {
+        self.boundary.encounter = Some(encounter);
+    }
+
+    /// Work that friction dissipates in the step to the accepted trial, on the meshed half, where
+    /// the forces at the contact were `before` (three a node) at its start; between two bodies
+    /// alone.
+    pub fn interface_friction_work(&self, before: &[f64]) -> Option<f64> {
+        self.boundary.encounter.as_ref().map(|encounter| encounter.friction_work(&self.current, before))
+    }
+
     /// Leaves the even part of a guess where the step is symmetric.
     pub fn symmetrise(&self, guess: &mut [f64]) {
         if let Systems::Pair(solver) = &self.linear {
             solver.symmetrise(guess);
+        } else if self.boundary.is_even() {
+            leave_even(&self.boundary.mirror, guess);
         }
     }
 
@@ -206,6 +224,11 @@ impl Newton {
     pub fn contact_state(&self, mesh: &Mesh) -> (Vec<[f64; 3]>, Vec<Status>, Vec<f64>) {
         let trial = &self.current;
         (trial.point_forces(mesh, &self.boundary), trial.statuses(&self.boundary), trial.gaps(mesh, &self.boundary))
+    }
+
+    /// Number of contact nodes of the sphere; those of another body follow them.
+    pub fn own_contacts(&self) -> usize {
+        self.boundary.own_contacts
     }
 
     /// Number of unknown displacements that are not prescribed.
@@ -338,7 +361,7 @@ impl Newton {
             // Nothing touches: the body follows the plate as it is.
             let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
             let shift = [control.delta_t - start[plate], 0.0, -self.current.h - start[plate + 2]];
-            for (u, s) in self.current.u.chunks_exact_mut(3).zip(std::iter::repeat(shift)) {
+            for (u, s) in self.current.u.chunks_exact_mut(3).take(self.boundary.own_nodes).zip(std::iter::repeat(shift)) {
                 for i in 0..3 {
                     u[i] += s[i];
                 }
@@ -438,15 +461,18 @@ impl Newton {
         if self.boundary.against.is_some() {
             turn(matrix, mesh, &self.current.frames);
         }
-        if self.boundary.pair.is_none() {
+        if self.boundary.pair.is_none() && self.boundary.encounter.is_none() {
             apply_contact(matrix, mesh, &self.current.rows);
         }
         right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
         lap.end(&mut self.times, Phase::Contact);
-        match (&mut self.linear, &self.boundary.pair) {
-            (Systems::Plane(solver), None) => solver.refresh(&self.fixed)?,
-            (Systems::Pair(solver), Some(pair)) => {
+        match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
+            (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
+            (Systems::Pair(solver), Some(pair), None) => {
                 solver.refresh(&pair.interface, &self.current.rows, &self.fixed, &self.boundary.prescribed)?;
+            }
+            (Systems::Couple(solver), None, Some(encounter)) => {
+                solver.refresh(&encounter.interface, &self.current.rows, &self.fixed)?;
             }
             _ => return Ok(Err(StepFailure::Linear("the solver is made for another opponent".into()))),
         }
@@ -491,6 +517,10 @@ impl Newton {
         self.current.expand(mesh, &self.boundary, &mut self.delta);
         if let Systems::Pair(solver) = &self.linear {
             solver.symmetrise(&mut self.delta);
+        } else if self.boundary.is_even() {
+            leave_even(&self.boundary.mirror, &mut self.delta);
+            self.correction.copy_from_slice(&self.delta);
+            self.current.contract(mesh, &self.boundary, &mut self.correction);
         }
         lap.end(&mut self.times, Phase::LinearSolve);
         Ok(Ok((krylov, fallback, delta_h)))
@@ -505,7 +535,7 @@ impl Newton {
         if first {
             let mut guess = vec![0.0; self.unit_rhs.len()];
             let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
-            guess.iter_mut().skip(2).step_by(3).for_each(|z| *z = -1.0);
+            guess.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
             self.current.contract(mesh, &self.boundary, &mut guess);
             let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };

@@ -9,6 +9,7 @@
 
 use std::sync::Arc;
 
+use super::couple::CoupleSolver;
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::bsr::Widen;
@@ -18,19 +19,27 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 
 /// Iterations after which FGMRES starts over, and after which it gives up.
-const RESTART: usize = 60;
-const MAX_ITERATIONS: usize = 120;
+pub(super) const RESTART: usize = 60;
+pub(super) const MAX_ITERATIONS: usize = 120;
 /// A system that stalls is good enough to go on from at this relative residual: the line search
 /// judges what it gives.
-const STALLED: f64 = 0.3;
+pub(super) const STALLED: f64 = 0.3;
 
-/// The solver of one body's systems, or of an equal pair's.
+/// The solver of one body's systems, of an equal pair's, or of two bodies'.
 #[derive(Debug)]
 pub enum Systems {
     /// Over a plane.
     Plane(Box<LinearSolver>),
     /// Against its own image.
     Pair(Box<PairSolver>),
+    /// Against another body.
+    Couple(Box<CoupleSolver>),
+}
+
+impl From<CoupleSolver> for Systems {
+    fn from(solver: CoupleSolver) -> Self {
+        Self::Couple(Box::new(solver))
+    }
 }
 
 impl From<LinearSolver> for Systems {
@@ -51,6 +60,7 @@ impl Systems {
         match self {
             Self::Plane(solver) => solver.matrix_mut(),
             Self::Pair(solver) => solver.matrix_mut(),
+            Self::Couple(solver) => solver.matrix_mut(),
         }
     }
 
@@ -65,6 +75,7 @@ impl Systems {
                 solver.solve(rhs, tolerance, x)
             }
             Self::Pair(solver) => solver.solve(rhs, tolerance, x),
+            Self::Couple(solver) => solver.solve(rhs, tolerance, x),
         }
     }
 
@@ -76,6 +87,7 @@ impl Systems {
         match self {
             Self::Plane(solver) => solver.residual_norm(rhs, x),
             Self::Pair(solver) => Ok(solver.residual_norm(rhs, x)),
+            Self::Couple(solver) => Ok(solver.residual_norm(rhs, x)),
         }
     }
 }
@@ -119,9 +131,13 @@ struct Work {
 /// The node opposite in x of each node of a mesh that is its own mirror image; `None` if it is not.
 pub fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
     // + 0: no -0 among the keys.
-    let key = |x: &[f64; 3], sign: f64| [sign * x[0] + 0.0, x[1], x[2]].map(f64::to_bits);
-    let nodes: std::collections::HashMap<[u64; 3], u32> = mesh.nodes.iter().zip(0..).map(|(x, n)| (key(x, 1.0), n)).collect();
-    mesh.nodes.iter().map(|x| nodes.get(&key(x, -1.0)).copied()).collect()
+    let key = |n: usize, sign: f64| {
+        let x = mesh.nodes[n];
+        (mesh.couple.as_ref().map_or(0, |couple| couple.body_of(n)), [sign * x[0] + 0.0, x[1], x[2]].map(f64::to_bits))
+    };
+    let all = 0..mesh.nodes.len();
+    let nodes: std::collections::HashMap<(usize, [u64; 3]), u32> = all.clone().zip(0..).map(|(n, i)| (key(n, 1.0), i)).collect();
+    all.map(|n| nodes.get(&key(n, -1.0)).copied()).collect()
 }
 
 impl PairSolver {
@@ -343,6 +359,6 @@ impl System<f32> for PairSolver {
     }
 }
 
-fn clear<T: Default>(fixed: &[bool], x: &mut [T]) {
+pub(super) fn clear<T: Default>(fixed: &[bool], x: &mut [T]) {
     x.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed).for_each(|(x, _)| *x = T::default());
 }

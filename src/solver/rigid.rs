@@ -5,6 +5,7 @@
 //! elsewhere. The tangent is turned block by block, so that whatever solves its systems finds what
 //! it finds over a plane.
 
+use super::couple::turn_node;
 use super::system::{Boundary, Trial};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Status, contact_rows};
@@ -104,15 +105,6 @@ impl Trial {
 /// Turns the rows and columns of contact nodes into their frames.
 pub(super) fn turn(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, frames: &[Frame]) {
     for (q, &node) in frames.iter().zip(&mesh.contact_nodes) {
-        for k in matrix.pattern.row(node as usize) {
-            let column = matrix.pattern.column[k] as usize;
-            let a = matrix.blocks[k];
-            matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|i| q[m / 3][i] * a[3 * i + m % 3]).sum());
-            // The pattern is symmetric.
-            if let Some(k) = matrix.pattern.position(column, node as usize) {
-                let a = matrix.blocks[k];
-                matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|j| a[3 * (m / 3) + j] * q[m % 3][j]).sum());
-            }
-        }
+        turn_node(matrix, node as usize, q);
     }
 }

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::couple::apply_rows;
+use super::encounter::Encounter;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, position};
 use super::{Control, Worst};
@@ -20,7 +22,7 @@ use crate::mesh::Mesh;
 /// Which displacements are prescribed, whatever the contact does.
 #[derive(Clone, Debug)]
 pub struct Boundary {
-    /// Nodes of the rigid plate.
+    /// Nodes of the rigid plate that moves; that of another body stands still.
     pub plate: Vec<u32>,
     /// Per unknown: prescribed by the plate or by symmetry.
     pub prescribed: Vec<bool>,
@@ -35,7 +37,12 @@ pub struct Boundary {
     pub pair: Option<Meeting>,
     /// A rigid sphere in place of the plane.
     pub against: Option<Against>,
-    /// Of an equal pair: the node opposite in x of each node.
+    /// Another body in place of the plane.
+    pub encounter: Option<Encounter>,
+    /// Nodes and contact nodes of the sphere; those of another body follow them.
+    pub own_nodes: usize,
+    pub own_contacts: usize,
+    /// Of two bodies: the node opposite in x of each node.
     pub mirror: Vec<u32>,
 }
 
@@ -91,15 +98,25 @@ impl Boundary {
         }
         let mean_size = mesh.contact_size.iter().sum::<f64>() / mesh.contact_size.len().max(1) as f64;
         let frictionless = vec![false; mesh.contact_nodes.len()];
+        let own_nodes = mesh.couple.as_ref().map_or(mesh.nodes.len(), |couple| couple.node);
         Self {
-            plate: mesh.plate_nodes.clone(),
+            plate: mesh.plate_nodes.iter().copied().filter(|&n| (n as usize) < own_nodes).collect(),
             prescribed,
             frictionless,
             weight: 0.1 * mean_size,
             pair: None,
             against: None,
+            encounter: None,
+            own_nodes,
+            own_contacts: mesh.couple.as_ref().map_or(mesh.contact_nodes.len(), |couple| couple.contact),
             mirror: Vec::new(),
         }
+    }
+
+    /// With another body: whether all of the step is even in x. Rounding is not, nor the points
+    /// that it makes flow on one side alone: what they add is left out.
+    pub fn is_even(&self) -> bool {
+        !self.mirror.is_empty() && self.encounter.as_ref().is_some_and(|encounter| encounter.symmetric)
     }
 
     /// Writes the plate's position into a displacement.
@@ -121,7 +138,7 @@ pub struct Trial {
     pub rows: Vec<Rows<f64>>,
     /// Residual: a force; for a prescribed unknown the displacement in excess.
     pub residual: Vec<f64>,
-    /// Of an equal pair: the force that the interface carries at each slave node, in its frame.
+    /// Of two bodies: the force that the interface carries at each slave node, in its frame.
     pub interface_force: Vec<[f64; 3]>,
     /// Against a rigid sphere: the frame of its surface at each contact node.
     pub frames: Vec<Frame>,
@@ -189,6 +206,8 @@ impl Trial {
         let mesh = case.model().mesh.clone();
         if let Some(pair) = &boundary.pair {
             self.meet(case.model(), boundary, pair);
+        } else if let Some(encounter) = &boundary.encounter {
+            self.meet_body(case.model(), boundary, encounter);
         } else if let Some(against) = &boundary.against {
             self.meet_rigid(case.model(), boundary, against);
         } else {
@@ -322,9 +341,12 @@ impl Trial {
     }
 
     /// What contact exerts on each contact node, along the axes: of a plane [`Trial::point_force`],
-    /// of a rigid sphere the same in its frame; of an equal pair what the interface's forces,
+    /// of a rigid sphere the same in its frame; of two bodies what the interface's forces,
     /// projected as those are, come to at the nodes of both sides.
     pub fn point_forces(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<[f64; 3]> {
+        if let Some(encounter) = &boundary.encounter {
+            return encounter.interface.nodal(&self.interface_forces(encounter));
+        }
         let Some(pair) = &boundary.pair else {
             let points = 0..self.rows.len();
             return match &boundary.against {
@@ -348,6 +370,10 @@ impl Trial {
     /// Status of each contact node; a master has that of the slave that carries most of its load.
     pub fn statuses(&self, boundary: &Boundary) -> Vec<Status> {
         let own = |i: usize| self.rows[i].status;
+        if let Some(encounter) = &boundary.encounter {
+            let facing = |k: &Option<usize>| k.map_or(Status::Open, |k| own(encounter.interface.slaves[k]));
+            return encounter.interface.facing.iter().map(facing).collect();
+        }
         match &boundary.pair {
             None => (0..self.rows.len()).map(own).collect(),
             Some(pair) => {
@@ -361,6 +387,8 @@ impl Trial {
     pub(super) fn expand(&self, mesh: &Mesh, boundary: &Boundary, x: &mut [f64]) {
         if let Some(pair) = &boundary.pair {
             pair.interface.expand(x);
+        } else if let Some(encounter) = &boundary.encounter {
+            encounter.interface.expand(x);
         } else if boundary.against.is_some() {
             self.to_axes(mesh, x);
         }
@@ -370,6 +398,8 @@ impl Trial {
     pub(super) fn contract(&self, mesh: &Mesh, boundary: &Boundary, x: &mut [f64]) {
         if let Some(pair) = &boundary.pair {
             pair.interface.contract(x);
+        } else if let Some(encounter) = &boundary.encounter {
+            encounter.interface.contract(x);
         } else if boundary.against.is_some() {
             self.to_frames(mesh, x);
         }
@@ -378,6 +408,9 @@ impl Trial {
     /// Gap at each contact node: to the plane or the rigid sphere, or between the bodies of an
     /// equal pair.
     pub fn gaps(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<f64> {
+        if let Some(encounter) = &boundary.encounter {
+            return encounter.gaps(mesh, &self.u);
+        }
         if let Some(against) = &boundary.against {
             return mesh.contact_nodes.iter().map(|&n| against.rigid.gap(&position(mesh, &self.u, n))).collect();
         }
@@ -395,10 +428,10 @@ impl Trial {
         }
     }
 
-    /// Tangential and normal force of the contact on the meshed half, [x, y, z].
+    /// Tangential and normal force of the contact on the meshed half of the sphere, [x, y, z].
     pub fn contact_force(&self, mesh: &Mesh, boundary: &Boundary) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for force in self.point_forces(mesh, boundary) {
+        for force in self.point_forces(mesh, boundary).into_iter().take(boundary.own_contacts) {
             for (s, f) in sum.iter_mut().zip(force) {
                 *s += f;
             }
@@ -463,22 +496,8 @@ pub fn fixed_unknowns(mesh: &Mesh, boundary: &Boundary, rows: &[Rows<f64>], fixe
 /// reads them.
 pub fn apply_contact(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, rows: &[Rows<f64>]) {
     for (rows, &node) in rows.iter().zip(&mesh.contact_nodes) {
-        let n = node as usize;
-        if rows.status != Status::Slip {
-            continue;
-        }
-        let diagonal = matrix.pattern.diagonal[n] as usize;
-        for k in matrix.pattern.row(n) {
-            let old = matrix.blocks[k];
-            let new = &mut matrix.blocks[k];
-            for i in 0..3 {
-                for j in 0..3 {
-                    new[3 * i + j] = (0..3).map(|m| rows.force_rows[i][m] * old[3 * m + j]).sum();
-                    if k == diagonal {
-                        new[3 * i + j] += rows.displacement_rows[i][j];
-                    }
-                }
-            }
+        if rows.status == Status::Slip {
+            apply_rows(matrix, node as usize, rows);
         }
     }
 }

@@ -19,6 +19,7 @@
 //! | `energy` | work = elastic + plastic + friction, with doubled steps | what is missing more than 1.6 times smaller |
 //! | `jaeger-ciavarella` | elastic shear after a plastic preload, from the unloading curve | 3 % of mu F_N |
 //! | `rigid-sphere` | the plane at a radius of 1e9 R; Hertz with R*; the hardness of a flat; friction, energies and cost of a shear | 1e-6; 1 %; 4 % |
+//! | `two-bodies` | Hertz with R* and E*; Cattaneo-Mindlin at beta = 0; the plane by a stiff flat; the equal pair by two meshes | 1 %; 2 % of mu F_N; 0.2 %; 0.1 % |
 //! | `invariance` | F_N(d) = F_N(-d), F_T(d) = -F_T(-d); other units | a hundred times the solver's tolerance |
 
 pub mod check;
@@ -28,6 +29,7 @@ pub mod runner;
 pub mod table;
 
 mod cattaneo_mindlin;
+mod couple;
 mod hertz;
 mod invariance;
 mod jaeger_ciavarella;
@@ -70,7 +72,7 @@ pub struct Family {
 }
 
 /// All families, in the order in which they run.
-pub const FAMILIES: [Family; 9] = [
+pub const FAMILIES: [Family; 10] = [
     Family { name: "hertz", checks: &["hertz", "first yield", "equator"], run: hertz::checks },
     Family {
         name: "cattaneo-mindlin",
@@ -83,6 +85,7 @@ pub const FAMILIES: [Family; 9] = [
     Family { name: "energy", checks: &["energy"], run: plastic::step_convergence },
     Family { name: "jaeger-ciavarella", checks: &["jaeger-ciavarella"], run: jaeger_ciavarella::checks },
     Family { name: "rigid-sphere", checks: &["rigid sphere"], run: rigid::checks },
+    Family { name: "two-bodies", checks: &["two bodies"], run: couple::checks },
     Family { name: "invariance", checks: &["symmetry", "units"], run: invariance::checks },
 ];
 

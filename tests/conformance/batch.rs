@@ -94,6 +94,7 @@ pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
         mesh: meshes[i % 2].clone(),
         material: Material { elasticity: Elasticity::new(1.0, [0.3, 0.0, 0.45][i % 3]), hardening: law.unwrap() },
         friction: frictions[i % 4],
+        opponent: None,
     };
     laws.into_iter().enumerate().map(model).collect()
 }

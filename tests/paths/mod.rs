@@ -27,11 +27,15 @@ impl Observer for Recorder {
 
 /// Follows the path of a case to its end, on the mesh that it asks for.
 pub fn follow(case: &Case) -> Steps {
-    let problem = Problem::new(case).expect("a problem");
+    follow_problem(case, &Problem::new(case).expect("a problem"))
+}
+
+/// The same for a problem that was made of the case.
+pub fn follow_problem(case: &Case, problem: &Problem) -> Steps {
     let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
     let mut recorder = Recorder { units: Units::of(case), taken: Vec::new() };
     let newton = problem.newton().expect("a solver");
-    let ending = Drive::new(&problem, &mut backend, 0, newton).run(&mut recorder).expect("no failure of the program");
+    let ending = Drive::new(problem, &mut backend, 0, newton).run(&mut recorder).expect("no failure of the program");
     assert_eq!(ending, Ending::Done, "{}", case.to_toml());
     recorder.taken
 }

@@ -210,6 +210,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                     elastic: component(0).sum(),
                     plastic: component(1).sum(),
                     max_alpha: component(2).fold(0.0, f64::max),
+                    opponent_plastic: 0.0,
                 };
                 self.committed[request.case].copy_from_slice(request.displacement);
             }

@@ -52,13 +52,17 @@ impl Against {
     /// What the sphere of a case meets.
     ///
     /// # Errors
-    /// [`LawError::NotCovered`] if that is a rigid sphere.
+    /// [`LawError::NotCovered`] if that is a rigid sphere or another body.
     pub fn of(case: &Case) -> Result<Self, LawError> {
-        match case.opponent {
+        match &case.opponent {
             None => Ok(Self::Plane),
             Some(Opponent::Equal) => Ok(Self::EqualSphere),
             Some(Opponent::Rigid { .. }) => Err(LawError::NotCovered {
                 problem: "the case is against a rigid sphere, and tables are of a plane or of an equal sphere",
+                remedy: "leave out [opponent] or give it equal = true, or simulate the case with `asperity run`",
+            }),
+            Some(Opponent::Deforming { .. }) => Err(LawError::NotCovered {
+                problem: "the case is against another body that deforms, and tables are of a plane or of an equal sphere",
                 remedy: "leave out [opponent] or give it equal = true, or simulate the case with `asperity run`",
             }),
         }

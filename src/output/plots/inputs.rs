@@ -17,6 +17,8 @@ impl PlotInputs {
             exponent,
         };
         let hardening = match material.hardening {
+            // Two materials have no law of their own.
+            _ if matches!(case.opponent, Some(case::Opponent::Deforming { .. })) => None,
             case::Hardening::Ideal { yield_stress } => Some(Hardening::Ideal { yield_stress }),
             case::Hardening::Linear { yield_stress, modulus } => Some(three(yield_stress, modulus, 1.0)),
             case::Hardening::Power { yield_stress, coefficient, exponent } => {
@@ -28,7 +30,8 @@ impl PlotInputs {
         Self {
             sphere: ElasticSphere {
                 radius: case.body_radius(),
-                youngs_modulus: material.youngs_modulus,
+                // Of two bodies E*.
+                youngs_modulus: material.youngs_modulus / case.compliance()[0],
                 poissons_ratio: material.poissons_ratio,
             },
             hardening,

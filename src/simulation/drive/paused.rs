@@ -36,8 +36,9 @@ impl Paused {
         &self.state.u
     }
 
-    /// Every point of the meshed half that can touch, as the last accepted step left it, scaled.
+    /// Every point of the sphere's meshed half that can touch, as the last accepted step left it,
+    /// scaled.
     pub fn points(&self) -> &[ContactPoint] {
-        &self.state.points
+        &self.state.points[..self.newton.own_contacts().min(self.state.points.len())]
     }
 }

@@ -142,7 +142,7 @@ impl Drive<'_> {
 
     /// Every point slips, but for points at the edge that carry next to nothing.
     fn slips_fully(&self) -> bool {
-        let closed = self.state.points.iter().filter(|p| p.status != Status::Open);
+        let closed = self.state.points[self.slave_contacts()].iter().filter(|p| p.status != Status::Open);
         let (mut stick, mut all) = (0.0, 0.0);
         for p in closed {
             all += p.force[2];

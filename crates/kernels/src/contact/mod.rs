@@ -6,6 +6,7 @@
 //! linearised rows of the contact conditions.
 
 pub mod coulomb;
+pub mod couple;
 pub mod frame;
 pub mod mortar;
 pub mod pair;

@@ -1,5 +1,5 @@
-//! Mortar integrals between a surface and its own image, turned half round the y axis: (x, y, z)
-//! goes to (-x, y, -z).
+//! Mortar integrals between two surfaces: those of two bodies, or a surface and its own image,
+//! turned half round the y axis: (x, y, z) goes to (-x, y, -z).
 //!
 //! Of an equal pair one body is meshed; the other is its image. The interface, seen along z, is
 //! halved at x = 0: on x >= 0 the body's own surface is the slave and the image of its surface at x
@@ -124,6 +124,54 @@ pub fn self_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64], 
     rows
 }
 
+/// A surface seen in the plane: positions of its nodes, and its quadrilaterals (either sense of
+/// rotation).
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<'a> {
+    /// Positions of the nodes.
+    pub points: &'a [Point],
+    /// Nodes of each face.
+    pub faces: &'a [[usize; 4]],
+}
+
+/// The weights of the slave nodes of one surface against another one: of those whose faces are all
+/// covered by it. `own` is the node itself with the weight one, `image` are nodes of the master.
+pub fn weights_between(slave: Surface<'_>, master: Surface<'_>) -> Vec<Weights> {
+    let facing = |s: Surface<'_>| -> Vec<Face> { s.faces.iter().map(|f| Face::new(f.map(|n| s.points[n]), *f)).collect() };
+    let others = facing(master);
+    let grid = Grid::new(&others);
+    let mut area = vec![0.0; slave.points.len()];
+    let mut covered = vec![true; slave.points.len()];
+    let mut touched = vec![false; slave.points.len()];
+    let mut faced: Vec<Vec<(usize, f64)>> = vec![Vec::new(); slave.points.len()];
+    for face in facing(slave) {
+        face.nodes.iter().for_each(|&n| touched[n] = true);
+        // Every point of the rule: weight, shape functions of both faces, the other's index.
+        let mut rule: Vec<(f64, [f64; 4], [f64; 4], usize)> = Vec::new();
+        for &m in &grid.near(&face) {
+            let polygon = clip(&face.corners, &others[m].corners);
+            exactly(&polygon, SLIVER * face.area, [&face, &others[m]], |weight, [own, other]| rule.push((weight, own, other, m)));
+        }
+        if !(rule.iter().map(|p| p.0).sum::<f64>() > COVERED * face.area) {
+            face.nodes.iter().for_each(|&n| covered[n] = false);
+            continue;
+        }
+        let psi = dual_functions(|f| rule.iter().for_each(|p| f(p.1, p.0)));
+        for (weight, n, other, m) in &rule {
+            for a in 0..4 {
+                area[face.nodes[a]] += weight * n[a];
+                let value = weight * (0..4).map(|b| psi[a][b] * n[b]).sum::<f64>();
+                (0..4).for_each(|b| add(&mut faced[face.nodes[a]], others[*m].nodes[b], value * other[b]));
+            }
+        }
+    }
+    let rows = (0..slave.points.len()).filter(|&n| touched[n] && covered[n] && area[n] > 0.0).map(|n| {
+        let image = faced[n].iter().map(|&(m, w)| (m, w / area[n])).filter(|(_, w)| w.abs() > 1e-12).collect();
+        Weights { slave: n, own: vec![(n, 1.0)], image, area: area[n], at_seam: false }
+    });
+    rows.collect()
+}
+
 fn add(entries: &mut Vec<(usize, f64)>, node: usize, value: f64) {
     match entries.iter_mut().find(|e| e.0 == node) {
         Some(entry) => entry.1 += value,
@@ -173,9 +221,14 @@ impl Face {
         (n, [by([eta - 1.0, 1.0 - eta, 1.0 + eta, -1.0 - eta]), by([xi - 1.0, -1.0 - xi, 1.0 + xi, 1.0 - xi])])
     }
 
-    /// Shape functions at a point of the plane (the bilinear map inverted by Newton's iteration).
+    /// Shape functions at a point of the plane.
     fn shape(&self, x: Point) -> [f64; 4] {
-        let mut local = [0.0; 2];
+        self.at(self.local(x, [0.0; 2])).0
+    }
+
+    /// Coordinates on the face of a point of the plane, from -1 to 1: the bilinear map inverted by
+    /// Newton's iteration from a guess.
+    fn local(&self, x: Point, mut local: Point) -> Point {
         for _ in 0..20 {
             let (n, [a, b]) = self.at(local);
             let r = [0, 1].map(|i| x[i] - (0..4).map(|c| n[c] * self.corners[c][i]).sum::<f64>());
@@ -189,7 +242,13 @@ impl Face {
                 break;
             }
         }
-        self.at(local).0
+        local
+    }
+
+    /// How many times larger the bilinear map is at one place than at another.
+    fn stretch(&self, local: Point) -> f64 {
+        let (_, [a, b]) = self.at(local);
+        a[0] * b[1] - a[1] * b[0]
     }
 
     /// Integrates over the face by Gauss's 3 x 3 rule.
@@ -292,6 +351,80 @@ fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
     }
 }
 
+/// What integrals over a polygon may be off by, of their value.
+const EXACT: f64 = 1e-12;
+/// Points of the largest rule along an edge.
+const MOST_POINTS: usize = 16;
+
+/// Calls `f` with weights and shape functions on both faces at the points of a rule over a convex
+/// polygon that lies on them.
+///
+/// Bilinear shape functions are no polynomials of the position. Gauss's rule with n points is off
+/// by rho^-2n where they are analytic in an ellipse of half axes that sum to rho: as large as the
+/// unevenness q of the map over a triangle lets it be, 1/rho + rho = 2/q. So each triangle has as
+/// many points as its faces' unevenness asks for.
+fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMut(f64, [[f64; 4]; 2])) {
+    if polygon.len() < 3 || area(polygon) <= smallest {
+        return;
+    }
+    let locals: Vec<[Point; 2]> = polygon.iter().map(|&x| faces.map(|face| face.local(x, [0.0; 2]))).collect();
+    for i in 1..polygon.len() - 1 {
+        let triangle = [0, i, i + 1];
+        let corners = triangle.map(|k| polygon[k]);
+        let size = area(&corners);
+        if !(size > 0.0) {
+            continue;
+        }
+        let uneven = (0..2).map(|side| {
+            let stretch = triangle.map(|k| faces[side].stretch(locals[k][side]));
+            let (low, high) = stretch.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), s| (l.min(*s), h.max(*s)));
+            ((high - low) / (high + low)).clamp(1e-6, 0.9)
+        });
+        let q = uneven.fold(0.0, f64::max);
+        let rho = (1.0 + (1.0 - q * q).sqrt()) / q;
+        // One more for the polynomials that are multiplied with them.
+        let n = (-0.5 * EXACT.ln() / rho.ln()).ceil() as usize + 2;
+        let rule = &gauss_rules()[n.min(MOST_POINTS)];
+        for &(u, wu) in rule {
+            for &(v, wv) in rule {
+                let l = [1.0 - u, u * (1.0 - v), u * v];
+                let mean = |of: &dyn Fn(usize) -> Point| [0, 1].map(|c| (0..3).map(|k| l[k] * of(k)[c]).sum::<f64>());
+                let x = mean(&|k| corners[k]);
+                let shapes = [0, 1].map(|side| {
+                    let guess = mean(&|k| locals[triangle[k]][side]);
+                    faces[side].at(faces[side].local(x, guess)).0
+                });
+                f(2.0 * size * u * wu * wv, shapes);
+            }
+        }
+    }
+}
+
+/// Gauss's rules on (0, 1) by their number of points: place and weight.
+fn gauss_rules() -> &'static [Vec<(f64, f64)>] {
+    static RULES: std::sync::OnceLock<Vec<Vec<(f64, f64)>>> = std::sync::OnceLock::new();
+    RULES.get_or_init(|| (0..=MOST_POINTS).map(gauss_rule).collect())
+}
+
+/// Legendre's polynomial of degree n has its zeros near cos(pi (i + 3/4)/(n + 1/2)).
+fn gauss_rule(n: usize) -> Vec<(f64, f64)> {
+    let point = |i: usize| {
+        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..20 {
+            let (mut p, mut before) = (1.0, 0.0);
+            for k in 1..=n {
+                let k = k as f64;
+                (p, before) = (((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k, p);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(point).collect()
+}
+
 /// Faces by the cells of a regular grid that their bounds touch.
 struct Grid {
     origin: Point,
@@ -352,6 +485,42 @@ mod tests {
             .flat_map(|j| (0..nx).map(move |i| (i, j)))
             .map(|(i, j)| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
         (points, faces.collect())
+    }
+
+    #[test]
+    fn a_surface_gives_another_one_its_own_share_of_a_uniform_pressure() {
+        // The other one is bent otherwise, and finer.
+        let (slave, faces) = patch(0.0);
+        let (nx, ny) = (15, 7);
+        let bent = |x: f64, y: f64| [x * (1.0 + 0.06 * (2.0 * y).cos()), y * (1.0 + 0.1 * (1.5 * x).sin())];
+        let at = |i: usize, j: usize| i + (nx + 1) * j;
+        let cells: Vec<[usize; 4]> = (0..ny)
+            .flat_map(|j| (0..nx).map(move |i| (i, j)))
+            .map(|(i, j)| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
+            .collect();
+        for shift in [0.0, 0.0375, 0.12, -0.3] {
+            let master: Vec<Point> = (0..=ny)
+                .flat_map(|j| (0..=nx).map(move |i| bent(2.4 * i as f64 / nx as f64 - 1.2, 1.2 * j as f64 / ny as f64)))
+                .map(|[x, y]| [x + shift, y])
+                .collect();
+            let rows = weights_between(Surface { points: &slave, faces: &faces }, Surface { points: &master, faces: &cells });
+            let mut force = vec![0.0; master.len()];
+            for row in &rows {
+                assert!((row.image.iter().map(|e| e.1).sum::<f64>() - 1.0).abs() < 1e-12, "{}", row.slave);
+                row.image.iter().for_each(|&(m, w)| force[m] += row.area * w);
+            }
+            let mut area = vec![0.0; master.len()];
+            for nodes in &cells {
+                let face = Face::new(nodes.map(|n| master[n]), *nodes);
+                face.shape_integrals().into_iter().zip(face.nodes).for_each(|(s, n)| area[n] += s);
+            }
+            let inner = |p: &Point| p[0].abs() < 0.55 - shift.abs() && p[1] < 0.5;
+            assert!(master.iter().any(inner));
+            for (n, p) in master.iter().enumerate().filter(|(_, p)| inner(p)) {
+                let off = (force[n] - area[n]) / area[n];
+                assert!(off.abs() < 1e-8, "shift {shift}, node {n} at {p:?}: {off:.2e}");
+            }
+        }
     }
 
     #[test]

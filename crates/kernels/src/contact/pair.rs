@@ -334,7 +334,7 @@ fn combine(row: &Weights, free_y: bool) -> Vec<(usize, [f64; 3])> {
 
 /// Unit normals into the body at the surface's nodes, means of those of the faces around them
 /// weighted by area. The body's surface looks down.
-fn inward_normals(positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<[f64; 3]> {
+pub(super) fn inward_normals(positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<[f64; 3]> {
     let mut normals = vec![[0.0; 3]; positions.len()];
     for face in faces {
         let [a, b, c, d] = face.map(|n| positions[n]);

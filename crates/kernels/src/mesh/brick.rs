@@ -84,6 +84,7 @@ pub fn brick(nx: usize, ny: usize, nz: usize, lengths: [f64; 3]) -> Result<Mesh,
         symmetry_nodes: on(1, 0),
         hierarchy: hierarchy(blocks),
         fine_radius: lengths[0].hypot(lengths[1]),
+        couple: None,
     })
 }
 

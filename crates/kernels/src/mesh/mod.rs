@@ -7,16 +7,19 @@
 //!
 //! `sphere` builds the body, `brick` a box for tests. Both lay logical blocks of cells
 //! (`hierarchy`) whose indices give the numbering, the coordinates and the multigrid levels;
-//! `connectivity` derives lists and areas, `quality` measures elements.
+//! `connectivity` derives lists and areas, `quality` measures elements, `couple` makes one mesh of
+//! two bodies.
 
 pub mod brick;
 pub mod connectivity;
+pub mod couple;
 pub mod hierarchy;
 pub mod quality;
 pub mod sphere;
 
 pub use brick::brick;
-pub use sphere::{SphereSpec, estimated_elements, flat_mesh, sphere_mesh};
+pub use couple::{Couple, couple};
+pub use sphere::{SphereSpec, estimated_elements, flat_mesh, opponent_mesh, sphere_mesh};
 
 /// What is wrong with the description of a mesh, and what to do about it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -105,4 +108,6 @@ pub struct Mesh {
     pub hierarchy: Vec<Prolongation>,
     /// Contact radius up to which the surface is finely meshed.
     pub fine_radius: f64,
+    /// Where the opponent begins, if the mesh is of two bodies.
+    pub couple: Option<Box<Couple>>,
 }

@@ -11,6 +11,9 @@ use crate::mesh::MeshError;
 const RING_GROWTH: f64 = 1.22;
 /// Growth of the layers' thickness in the shell that the count aims at.
 const LAYER_GROWTH: f64 = 1.14;
+/// Smallest a/R for which a layout is made: that of a sphere ten times as large as the one pressed
+/// against it.
+const SMALLEST_CONTACT: f64 = 0.000_5;
 /// Largest distance from the axis to which the fine zone may reach.
 const LARGEST_FINE_RADIUS: f64 = 0.85;
 
@@ -100,7 +103,7 @@ impl Layout {
     pub fn of(spec: &SphereSpec, flat: bool) -> Result<Layout, MeshError> {
         let projected = |rho: f64| if flat { rho } else { stereographic(rho) };
         let &SphereSpec { contact_radius, elements_per_contact_radius: count, fine_zone } = spec;
-        if !(0.005..=0.65).contains(&contact_radius) {
+        if !(SMALLEST_CONTACT..=0.65).contains(&contact_radius) {
             return Err(MeshError::ContactRadius(contact_radius));
         }
         if !(2..=32).contains(&count) {

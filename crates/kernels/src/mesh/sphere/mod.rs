@@ -16,6 +16,8 @@ use layout::Layout;
 
 /// Contact is watched this many fine radii from the pole.
 const CONTACT_MARGIN: f64 = 1.3;
+/// Smallest a/R that a body is meshed for.
+const SMALLEST_CONTACT: f64 = 0.005;
 
 /// Description of the mesh of a sphere, or of a flat, with lengths in radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +35,22 @@ pub struct SphereSpec {
 /// # Errors
 /// A value of `spec` out of range.
 pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
+    check(spec)?;
     Ok(mesh_of(&Layout::new(spec)?.touching_evenly()))
+}
+
+/// The mesh of the sphere that another, up to ten times smaller, is pressed against: the contact
+/// may be as much smaller beside it.
+///
+/// # Errors
+/// A value of `spec` out of range.
+pub fn opponent_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
+    Ok(mesh_of(&Layout::new(spec)?.touching_evenly()))
+}
+
+/// Refuses contacts that are too small beside the body itself.
+fn check(spec: &SphereSpec) -> Result<(), MeshError> {
+    if spec.contact_radius < SMALLEST_CONTACT { Err(MeshError::ContactRadius(spec.contact_radius)) } else { Ok(()) }
 }
 
 /// The mesh of a flat: half of the half ball |X| <= 2, z >= 0, with the plane z = 0 in place of the
@@ -42,6 +59,7 @@ pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
 /// # Errors
 /// A value of `spec` out of range.
 pub fn flat_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
+    check(spec)?;
     Ok(mesh_of(&Layout::of(spec, true)?.touching_evenly()))
 }
 
@@ -50,6 +68,7 @@ pub fn flat_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
 /// # Errors
 /// A value of `spec` out of range.
 pub fn estimated_elements(spec: &SphereSpec) -> Result<usize, MeshError> {
+    check(spec)?;
     Ok(Layout::new(spec)?.blocks.element_count())
 }
 
@@ -86,5 +105,6 @@ fn mesh_of(layout: &Layout) -> Mesh {
         contact_size,
         hierarchy: hierarchy(blocks),
         fine_radius: layout.fine_radius,
+        couple: None,
     }
 }

@@ -1,0 +1,297 @@
+//! The linear systems of two bodies that both deform, in the unknowns of their interface (see
+//! [`crate::contact::couple`]).
+//!
+//! The matrix T^T K T is applied, never formed: patterns, prolongations and coarse matrices stay
+//! those of each body, and sliding changes T alone. With the slave's unknowns first it reads
+//!
+//!   A_ss  A_sm      A_ss = K_s, closed points held; A_sm = K_s M, M the weights of the mortar;
+//!   A_ms  A_mm      its Schur complement is K_m + M^T S M, S the slave's stiffness at the interface.
+//!
+//! K_m stands for the Schur complement, which is at most 1 + E_s/E_m times as stiff if the slave is
+//! the softer body: a V-cycle of the master, whose surface is free, and then one of the slave on
+//! what that leaves of its equations, its contact points held as over a plane.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::pair::{MAX_ITERATIONS, RESTART, STALLED, clear};
+use crate::contact::coulomb::{Rows, Status};
+use crate::contact::couple::Interface;
+use crate::contact::frame::Frame;
+use crate::linalg::bsr::Widen;
+use crate::linalg::fgmres::{Fgmres, System};
+use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern, SolveReport};
+use crate::mesh::Mesh;
+use crate::real::Real;
+
+/// Solves for the unknowns y of two bodies.
+#[derive(Debug)]
+pub struct CoupleSolver {
+    /// The tangent of both, along the axes.
+    matrix: BlockMatrix<f64>,
+    /// The same in f32, for the products of the Krylov iteration.
+    single: BlockMatrix<f32>,
+    /// Which body is the slave.
+    slave: usize,
+    bodies: [Body; 2],
+    krylov: Fgmres<f32>,
+    contact_nodes: Vec<u32>,
+    interface: Arc<Interface>,
+    rows: Vec<Rows<f64>>,
+    fixed: Vec<bool>,
+    /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
+    reduced: Vec<f64>,
+    free: Vec<f64>,
+    work: Work,
+}
+
+/// One body's part of the preconditioner.
+#[derive(Debug)]
+struct Body {
+    /// Its unknowns, and its blocks among those of the matrix.
+    unknowns: Range<usize>,
+    blocks: Range<usize>,
+    /// Its tangent; the slave's in the frames of its contact points, with their rows.
+    matrix: BlockMatrix<f64>,
+    hierarchy: Hierarchy,
+    fixed: Vec<bool>,
+    z: Vec<f32>,
+}
+
+#[derive(Debug, Default)]
+struct Work {
+    y: Vec<f64>,
+    u: Vec<f64>,
+    f: Vec<f64>,
+}
+
+impl Body {
+    fn new(mesh: &Mesh, body: usize, whole: &Pattern) -> Result<Self, LinalgError> {
+        let (node, element, prolongations) = match &mesh.couple {
+            Some(couple) => (couple.node, couple.element, couple.hierarchies[body].as_slice()),
+            None => (mesh.nodes.len(), mesh.elements.len(), mesh.hierarchy.as_slice()),
+        };
+        let (nodes, elements) = match body {
+            0 => (0..node, 0..element),
+            _ => (node..mesh.nodes.len(), element..mesh.elements.len()),
+        };
+        let own: Vec<[u32; 8]> = mesh.elements[elements].iter().map(|e| e.map(|n| n - nodes.start as u32)).collect();
+        let pattern = Pattern::from_elements(nodes.len(), &own);
+        let first = if nodes.is_empty() { 0 } else { whole.row(nodes.start).start };
+        let unknowns = 3 * nodes.start..3 * nodes.end;
+        Ok(Self {
+            blocks: first..first + pattern.entries(),
+            hierarchy: Hierarchy::new(&pattern, prolongations)?,
+            matrix: BlockMatrix::zeros(pattern),
+            fixed: vec![false; unknowns.len()],
+            z: vec![0.0; unknowns.len()],
+            unknowns,
+        })
+    }
+}
+
+impl CoupleSolver {
+    /// Plans a solver for a mesh of two bodies of which `slave` (0 the sphere, 1 the opponent) is
+    /// the slave.
+    ///
+    /// # Errors
+    /// [`LinalgError::Hierarchy`] if prolongations do not fit, or if there are none.
+    pub fn new(mesh: &Mesh, pattern: &Pattern, slave: usize) -> Result<Self, LinalgError> {
+        let n = 3 * pattern.rows();
+        let zero = || vec![0.0; n];
+        Ok(Self {
+            matrix: BlockMatrix::zeros(pattern.clone()),
+            single: BlockMatrix::zeros(pattern.clone()),
+            slave,
+            bodies: [Body::new(mesh, 0, pattern)?, Body::new(mesh, 1, pattern)?],
+            krylov: Fgmres::new(n, RESTART),
+            contact_nodes: mesh.contact_nodes.clone(),
+            interface: Arc::default(),
+            rows: Vec::new(),
+            fixed: vec![false; n],
+            reduced: zero(),
+            free: zero(),
+            work: Work { y: zero(), u: zero(), f: zero() },
+        })
+    }
+
+    /// The tangent of both bodies, to be written in place before [`CoupleSolver::refresh`].
+    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+        &mut self.matrix
+    }
+
+    /// Which body is the slave.
+    pub fn slave(&self) -> usize {
+        self.slave
+    }
+
+    /// Takes over the tangent, the interface, its rows and which unknowns y are fixed.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::update`].
+    pub fn refresh(&mut self, interface: &Arc<Interface>, rows: &[Rows<f64>], fixed: &[bool]) -> Result<(), LinalgError> {
+        self.interface = interface.clone();
+        self.rows.clear();
+        self.rows.extend_from_slice(rows);
+        self.fixed.copy_from_slice(fixed);
+        self.single.blocks.iter_mut().zip(&self.matrix.blocks).for_each(|(s, b)| *s = b.map(|b| b as f32));
+        for body in &mut self.bodies {
+            body.matrix.blocks.copy_from_slice(&self.matrix.blocks[body.blocks.clone()]);
+            body.fixed.copy_from_slice(&fixed[body.unknowns.clone()]);
+        }
+        let body = &mut self.bodies[self.slave];
+        for (k, &slave) in interface.slaves.iter().enumerate() {
+            let node = self.contact_nodes[slave] as usize - body.unknowns.start / 3;
+            turn_node(&mut body.matrix, node, &interface.frames[k]);
+        }
+        for &slave in interface.slaves.iter().filter(|&&slave| rows[slave].status == Status::Slip) {
+            let node = self.contact_nodes[slave] as usize - body.unknowns.start / 3;
+            apply_rows(&mut body.matrix, node, &rows[slave]);
+        }
+        for body in &mut self.bodies {
+            body.hierarchy.update(&body.matrix, &body.fixed)?;
+        }
+        Ok(())
+    }
+
+    /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as
+    /// [`crate::linalg::LinearSolver::solve`].
+    ///
+    /// # Errors
+    /// [`LinalgError::Stalled`]; `y` is then the best iterate.
+    pub fn solve(&mut self, rhs: &[f64], tolerance: f64, y: &mut [f64]) -> Result<SolveReport, LinalgError> {
+        self.take_over(rhs);
+        self.free.copy_from_slice(y);
+        clear(&self.fixed, &mut self.free);
+        let (mut free, reduced) = (std::mem::take(&mut self.free), std::mem::take(&mut self.reduced));
+        let mut krylov = std::mem::replace(&mut self.krylov, Fgmres::new(0, 1));
+        let got = krylov.solve(self, &reduced, &mut free, tolerance, MAX_ITERATIONS);
+        (self.free, self.reduced, self.krylov) = (free, reduced, krylov);
+        for (i, y) in y.iter_mut().enumerate() {
+            *y = if self.fixed[i] { rhs[i] } else { self.free[i] };
+        }
+        if !got.converged && !(got.residual <= STALLED) {
+            return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
+        }
+        Ok(SolveReport {
+            iterations: got.iterations,
+            residual: got.residual,
+            converged: got.converged,
+            stagnated: !got.converged,
+            fallback: false,
+        })
+    }
+
+    /// |rhs - A y| over the free unknowns, the fixed ones at their values in `rhs`.
+    pub fn residual_norm(&mut self, rhs: &[f64], y: &[f64]) -> f64 {
+        self.take_over(rhs);
+        let mut free = y.to_vec();
+        clear(&self.fixed, &mut free);
+        let mut r = vec![0.0; free.len()];
+        System::<f32>::residual(self, &self.reduced, &free, &mut r);
+        r.iter().map(|r| r * r).sum::<f64>().sqrt()
+    }
+
+    /// Takes what the fixed unknowns contribute over to the right-hand side.
+    fn take_over(&mut self, rhs: &[f64]) {
+        let mut y = vec![0.0; rhs.len()];
+        (0..y.len()).filter(|&i| self.fixed[i]).for_each(|i| y[i] = rhs[i]);
+        let mut reduced = std::mem::take(&mut self.reduced);
+        reduced.copy_from_slice(rhs);
+        if y.iter().any(|y| *y != 0.0) {
+            let (mut u, mut f) = (vec![0.0; y.len()], vec![0.0; y.len()]);
+            self.apply(&self.matrix, &y, &mut u, &mut f);
+            reduced.iter_mut().zip(&f).for_each(|(r, f)| *r -= f);
+        }
+        clear(&self.fixed, &mut reduced);
+        self.reduced = reduced;
+    }
+
+    /// f = A y with the tangent in `matrix`; rows of fixed unknowns mean nothing.
+    fn apply<T: Real + Widen<f64>>(&self, matrix: &BlockMatrix<T>, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+        u.copy_from_slice(y);
+        self.interface.expand(u);
+        matrix.multiply(u, f);
+        self.interface.reduce(f);
+        for &slave in &self.interface.slaves {
+            let (rows, base) = (&self.rows[slave], 3 * self.contact_nodes[slave] as usize);
+            if rows.status == Status::Open {
+                continue;
+            }
+            let force = [f[base], f[base + 1], f[base + 2]];
+            let w = &y[base..base + 3];
+            for i in 0..3 {
+                f[base + i] = (0..3).map(|j| rows.force_rows[i][j] * force[j] + rows.displacement_rows[i][j] * w[j]).sum::<f64>();
+            }
+        }
+    }
+
+    /// One V-cycle of a body from its part of `r`; the result is in its `z`, and in `y`.
+    fn cycle(&mut self, body: usize, r: &mut [f64], y: &mut [f64]) {
+        let body = &mut self.bodies[body];
+        let range = body.unknowns.clone();
+        clear(&body.fixed, &mut r[range.clone()]);
+        body.hierarchy.v_cycle(&r[range.clone()], &mut body.z);
+        y[range].iter_mut().zip(&body.z).for_each(|(y, z)| *y = f64::from(*z));
+    }
+}
+
+impl System<f32> for CoupleSolver {
+    fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
+        let mut work = std::mem::take(&mut self.work);
+        let Work { y, u, f } = &mut work;
+        let (slave, master) = (self.slave, 1 - self.slave);
+        y.fill(0.0);
+        let mut r: Vec<f64> = v.iter().map(|v| f64::from(*v)).collect();
+        self.cycle(master, &mut r, y);
+        // What the master's part leaves of the slave's equations.
+        self.apply(&self.single, y, u, f);
+        let range = self.bodies[slave].unknowns.clone();
+        r[range.clone()].iter_mut().zip(&f[range]).for_each(|(r, f)| *r -= f);
+        self.cycle(slave, &mut r, y);
+        clear(&self.fixed, y);
+        z.iter_mut().zip(&*y).for_each(|(z, y)| *z = *y as f32);
+        self.apply(&self.single, y, u, f);
+        clear(&self.fixed, f);
+        w.iter_mut().zip(&*f).for_each(|(w, f)| *w = *f as f32);
+        self.work = work;
+    }
+
+    fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
+        let mut u = vec![0.0; x.len()];
+        self.apply(&self.matrix, x, &mut u, r);
+        r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+        clear(&self.fixed, r);
+    }
+}
+
+/// Turns the row and the column of a node into a frame.
+pub(super) fn turn_node(matrix: &mut BlockMatrix<f64>, node: usize, q: &Frame) {
+    for k in matrix.pattern.row(node) {
+        let column = matrix.pattern.column[k] as usize;
+        let a = matrix.blocks[k];
+        matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|i| q[m / 3][i] * a[3 * i + m % 3]).sum());
+        // The pattern is symmetric.
+        if let Some(k) = matrix.pattern.position(column, node) {
+            let a = matrix.blocks[k];
+            matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|j| a[3 * (m / 3) + j] * q[m % 3][j]).sum());
+        }
+    }
+}
+
+/// Replaces the rows of a node by the conditions of its contact.
+pub(super) fn apply_rows(matrix: &mut BlockMatrix<f64>, node: usize, rows: &Rows<f64>) {
+    let diagonal = matrix.pattern.diagonal[node] as usize;
+    for k in matrix.pattern.row(node) {
+        let old = matrix.blocks[k];
+        let new = &mut matrix.blocks[k];
+        for i in 0..3 {
+            for j in 0..3 {
+                new[3 * i + j] = (0..3).map(|m| rows.force_rows[i][m] * old[3 * m + j]).sum();
+                if k == diagonal {
+                    new[3 * i + j] += rows.displacement_rows[i][j];
+                }
+            }
+        }
+    }
+}
