@@ -2,7 +2,7 @@
 //! slip between them.
 //!
 //! The body that is softer is the slave. With the mortar weights M (see [`super::mortar`]), R =
-//! diag(1, 1, -1) and each body in its own coordinates (see [`crate::mesh::couple`]), the relative
+//! diag(1, 1, -1) and each body in its own coordinates (see [`mod@crate::mesh::couple`]), the relative
 //! position of slave node i is `w_i = x_i - R sum_j M_ij x_j`, in the slave's coordinates. Its
 //! conditions are those of a point over a plane, in a frame of its own: tangents t_1 (in the plane
 //! of x and the normal) and t_2, and the normal n, a mean of the two surfaces' in which the stiffer
