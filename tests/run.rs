@@ -218,7 +218,11 @@ fn fields_open_in_python_and_agree_with_the_history() {
     let scratch = scratch(SHEAR);
     let (history, _) = done(&scratch, "out", &[]);
     let out = OutputDirectory::existing(scratch.path("out"));
-    for step in out.contact_steps().expect("contact tables") {
+    // The steps of the picture of stick and slip have a contact table alone.
+    let saved: Vec<usize> =
+        out.contact_steps().expect("contact tables").into_iter().filter(|&step| out.fields(step).exists()).collect();
+    assert_eq!(saved.len(), 2);
+    for step in saved {
         let force = history[step - 1].f_n.to_string();
         let output = Command::new(&python)
             .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts/check_fields.py"))

@@ -25,6 +25,9 @@ pub fn check_row(path: &Path, row: &StepRecord) -> Result<(), OutputError> {
         ("work_friction", row.work_friction),
         ("max_alpha", row.max_alpha),
         ("reach", row.reach),
+        ("h_opponent", row.h_opponent),
+        ("work_plastic_opponent", row.work_plastic_opponent),
+        ("curvature", row.curvature),
     ];
     refuse(path, row.step, numbers.map(|(name, value)| (name, Some(value))))
 }
@@ -107,7 +110,7 @@ mod tests {
             assert!(message.starts_with(&format!("step 3: {column} is inf")), "{message}");
             refused += 1;
         }
-        assert_eq!(refused, 14);
+        assert_eq!(refused, 17);
         let message = check_row(path, &StepRecord { f_n: f64::NAN, ..row }).unwrap_err().to_string();
         assert!(message.starts_with("step 3: F_N is NaN"), "{message}");
     }

@@ -18,6 +18,5 @@ assert len(parquet) > 2 and parquet["step"].dtype.kind == "i" and parquet["F_N"]
 table = pd.read_csv(f"{study}/study.csv")
 ids = list(table["case"])
 assert all(isinstance(case, str) for case in ids) and ids == [f"c{i + 1:04}" for i in range(len(ids))], ids
-# The number is that of the directory, and a table written by pandas still has it.
-assert all(directory.endswith("/" + case[1:]) for case, directory in zip(ids, table["directory"])), table
+assert all(directory == f"cases/{case}" for case, directory in zip(ids, table["directory"])), table
 print("all tables equal,", len(parquet), "steps,", len(ids), "cases")
