@@ -78,8 +78,8 @@ fn given(shape: &[f64; POINTS], x: f64) -> [f64; 2] {
     [below + slope * (x - point_x(j)), slope]
 }
 
-/// The least x at which a shape that is given by numbers has the value `f`, or that of its peak; and
-/// the point before it.
+/// The least x at which a shape that is given by numbers has the value `f`, or that of its peak;
+/// and the point before it.
 fn given_inverse(shape: &[f64; POINTS], f: f64) -> (f64, usize) {
     if f <= 0.0 {
         return (0.0, 0);

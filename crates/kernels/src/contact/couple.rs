@@ -3,12 +3,13 @@
 //!
 //! The body that is softer is the slave. With the mortar weights M (see [`super::mortar`]), R =
 //! diag(1, 1, -1) and each body in its own coordinates (see [`mod@crate::mesh::couple`]), the
-//! relative position of slave node i is `w_i = x_i - R sum_j M_ij x_j`, in the slave's
-//! coordinates. Its conditions are those of a point over a plane, in a frame of its own: tangents
-//! t_1 (in the plane of x and the normal) and t_2, and the normal n, a mean of the two surfaces' in
-//! which the stiffer one, which bends less, counts for more. So the unknowns y of a step are w in
-//! these frames at slave nodes and u elsewhere: `u = T y`. The forces that belong to y are `T^T f`: at a slave node the force that the interface carries there, at a master
-//! node the body's own and what the slave exerts on it, which is nothing together in equilibrium.
+//! relative position of slave node i is `w_i = x_i - R sum_j M_ij x_j`, in the slave's coordinates.
+//! Its conditions are those of a point over a plane, in a frame of its own: tangents t_1 (in the
+//! plane of x and the normal) and t_2, and the normal n, a mean of the two surfaces' in which the
+//! stiffer one, which bends less, counts for more. So the unknowns y of a step are w in these
+//! frames at slave nodes and u elsewhere: `u = T y`. The forces that belong to y are `T^T f`: at a
+//! slave node the force that the interface carries there, at a master node the body's own and what
+//! the slave exerts on it, which is nothing together in equilibrium.
 
 use super::frame::{Frame, frame, from_frame, to_frame};
 use super::mortar::{Surface, weights_between};
