@@ -161,6 +161,11 @@ fn image(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
     let (image, case) = (runner.follow(&image)?, runner.follow(&case)?);
     let mut checks =
         compared("equal sphere, meshed, and image", &case, &image, 1e-3, "slaves and masters are other nodes: the mesh's error");
+    // Pressed, both have the same points; sheared, other ones are in contact at the edge.
+    if let Some(radius) = checks.last_mut() {
+        radius.tolerance = Some(5e-3);
+        radius.because = "other points at the edge: an element's share of the area";
+    }
     let both = |row: StepRecord| row.work_plastic_opponent / row.work_plastic;
     checks.push(Check::relative(
         "two bodies",
