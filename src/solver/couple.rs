@@ -14,13 +14,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::pair::{MAX_ITERATIONS, RESTART, STALLED, clear};
+use super::systems::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;
 use crate::linalg::bsr::Widen;
-use crate::linalg::fgmres::{Fgmres, System};
-use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern, SolveReport};
+use crate::linalg::fgmres::System;
+use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
 use crate::real::Real;
 
@@ -34,14 +34,10 @@ pub struct CoupleSolver {
     /// Which body is the slave.
     slave: usize,
     bodies: [Body; 2],
-    krylov: Fgmres<f32>,
     contact_nodes: Vec<u32>,
     interface: Arc<Interface>,
     rows: Vec<Rows<f64>>,
-    fixed: Vec<bool>,
-    /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
-    reduced: Vec<f64>,
-    free: Vec<f64>,
+    reduced: Reduced,
     work: Work,
 }
 
@@ -104,13 +100,10 @@ impl CoupleSolver {
             single: BlockMatrix::zeros(pattern.clone()),
             slave,
             bodies: [Body::new(mesh, 0, pattern)?, Body::new(mesh, 1, pattern)?],
-            krylov: Fgmres::new(n, RESTART),
             contact_nodes: mesh.contact_nodes.clone(),
             interface: Arc::default(),
             rows: Vec::new(),
-            fixed: vec![false; n],
-            reduced: zero(),
-            free: zero(),
+            reduced: Reduced::new(n),
             work: Work { y: zero(), u: zero(), f: zero() },
         })
     }
@@ -133,7 +126,7 @@ impl CoupleSolver {
         self.interface = interface.clone();
         self.rows.clear();
         self.rows.extend_from_slice(rows);
-        self.fixed.copy_from_slice(fixed);
+        self.reduced.fixed.copy_from_slice(fixed);
         self.single.blocks.iter_mut().zip(&self.matrix.blocks).for_each(|(s, b)| *s = b.map(|b| b as f32));
         for body in &mut self.bodies {
             body.matrix.blocks.copy_from_slice(&self.matrix.blocks[body.blocks.clone()]);
@@ -154,76 +147,13 @@ impl CoupleSolver {
         Ok(())
     }
 
-    /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as
-    /// [`crate::linalg::LinearSolver::solve`].
-    ///
-    /// # Errors
-    /// [`LinalgError::Stalled`]; `y` is then the best iterate.
-    pub fn solve(&mut self, rhs: &[f64], tolerance: f64, y: &mut [f64]) -> Result<SolveReport, LinalgError> {
-        self.take_over(rhs);
-        self.free.copy_from_slice(y);
-        clear(&self.fixed, &mut self.free);
-        let (mut free, reduced) = (std::mem::take(&mut self.free), std::mem::take(&mut self.reduced));
-        let mut krylov = std::mem::replace(&mut self.krylov, Fgmres::new(0, 1));
-        let got = krylov.solve(self, &reduced, &mut free, tolerance, MAX_ITERATIONS);
-        (self.free, self.reduced, self.krylov) = (free, reduced, krylov);
-        for (i, y) in y.iter_mut().enumerate() {
-            *y = if self.fixed[i] { rhs[i] } else { self.free[i] };
-        }
-        if !got.converged && !(got.residual <= STALLED) {
-            return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
-        }
-        Ok(SolveReport {
-            iterations: got.iterations,
-            residual: got.residual,
-            converged: got.converged,
-            stagnated: !got.converged,
-            fallback: false,
-        })
-    }
-
-    /// |rhs - A y| over the free unknowns, the fixed ones at their values in `rhs`.
-    pub fn residual_norm(&mut self, rhs: &[f64], y: &[f64]) -> f64 {
-        self.take_over(rhs);
-        let mut free = y.to_vec();
-        clear(&self.fixed, &mut free);
-        let mut r = vec![0.0; free.len()];
-        System::<f32>::residual(self, &self.reduced, &free, &mut r);
-        r.iter().map(|r| r * r).sum::<f64>().sqrt()
-    }
-
-    /// Takes what the fixed unknowns contribute over to the right-hand side.
-    fn take_over(&mut self, rhs: &[f64]) {
-        let mut y = vec![0.0; rhs.len()];
-        (0..y.len()).filter(|&i| self.fixed[i]).for_each(|i| y[i] = rhs[i]);
-        let mut reduced = std::mem::take(&mut self.reduced);
-        reduced.copy_from_slice(rhs);
-        if y.iter().any(|y| *y != 0.0) {
-            let (mut u, mut f) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-            self.apply(&self.matrix, &y, &mut u, &mut f);
-            reduced.iter_mut().zip(&f).for_each(|(r, f)| *r -= f);
-        }
-        clear(&self.fixed, &mut reduced);
-        self.reduced = reduced;
-    }
-
     /// f = A y with the tangent in `matrix`; rows of fixed unknowns mean nothing.
     fn apply<T: Real + Widen<f64>>(&self, matrix: &BlockMatrix<T>, y: &[f64], u: &mut [f64], f: &mut [f64]) {
         u.copy_from_slice(y);
         self.interface.expand(u);
         matrix.multiply(u, f);
         self.interface.reduce(f);
-        for &slave in &self.interface.slaves {
-            let (rows, base) = (&self.rows[slave], 3 * self.contact_nodes[slave] as usize);
-            if rows.status == Status::Open {
-                continue;
-            }
-            let force = [f[base], f[base + 1], f[base + 2]];
-            let w = &y[base..base + 3];
-            for i in 0..3 {
-                f[base + i] = (0..3).map(|j| rows.force_rows[i][j] * force[j] + rows.displacement_rows[i][j] * w[j]).sum::<f64>();
-            }
-        }
+        impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
     }
 
     /// One V-cycle of a body from its part of `r`; the result is in its `z`, and in `y`.
@@ -233,6 +163,20 @@ impl CoupleSolver {
         clear(&body.fixed, &mut r[range.clone()]);
         body.hierarchy.v_cycle(&r[range.clone()], &mut body.z);
         y[range].iter_mut().zip(&body.z).for_each(|(y, z)| *y = f64::from(*z));
+    }
+}
+
+impl Tied for CoupleSolver {
+    fn reduced(&mut self) -> &mut Reduced {
+        &mut self.reduced
+    }
+
+    fn fixed(&self) -> &[bool] {
+        &self.reduced.fixed
+    }
+
+    fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+        self.apply(&self.matrix, y, u, f);
     }
 }
 
@@ -249,19 +193,16 @@ impl System<f32> for CoupleSolver {
         let range = self.bodies[slave].unknowns.clone();
         r[range.clone()].iter_mut().zip(&f[range]).for_each(|(r, f)| *r -= f);
         self.cycle(slave, &mut r, y);
-        clear(&self.fixed, y);
+        clear(&self.reduced.fixed, y);
         z.iter_mut().zip(&*y).for_each(|(z, y)| *z = *y as f32);
         self.apply(&self.single, y, u, f);
-        clear(&self.fixed, f);
+        clear(&self.reduced.fixed, f);
         w.iter_mut().zip(&*f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;
     }
 
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
-        let mut u = vec![0.0; x.len()];
-        self.apply(&self.matrix, x, &mut u, r);
-        r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-        clear(&self.fixed, r);
+        self.remainder(b, x, r);
     }
 }
 

@@ -1,9 +1,9 @@
 //! From one accepted state to the next: a semismooth Newton iteration with a merit line search.
 //!
 //! `newton` iterates one step, `system` holds its residual and matrix, `rigid` those of a rigid
-//! sphere as the opponent, `encounter` those of another body, `pair` the linear systems of two
-//! equal spheres, `couple` those of two bodies, `phases` what its parts cost. Choosing steps and
-//! bisecting them is the simulation's business.
+//! sphere as the opponent, `encounter` those of another body, `systems` solves for the correction,
+//! with `pair` for two equal spheres and `couple` for two bodies, `phases` is what its parts cost.
+//! Choosing steps and bisecting them is the simulation's business.
 
 pub mod couple;
 pub mod encounter;
@@ -12,6 +12,7 @@ pub mod pair;
 pub mod phases;
 pub mod rigid;
 pub mod system;
+pub mod systems;
 
 #[cfg(test)]
 mod tests;

@@ -4,10 +4,11 @@
 mod line_search;
 
 use super::encounter::Encounter;
-use super::pair::{Systems, mirror_nodes};
+use super::pair::mirror_nodes;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, turn};
 use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
+use super::systems::Systems;
 use super::{Control, Iteration, Settings, SolverError, StepFailure};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;

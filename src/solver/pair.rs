@@ -9,88 +9,14 @@
 
 use std::sync::Arc;
 
-use super::couple::CoupleSolver;
+use super::systems::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::bsr::Widen;
-use crate::linalg::fgmres::{Fgmres, System};
-use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, Hierarchy, LinalgError, LinearSolver, Pattern, SolveReport};
+use crate::linalg::fgmres::System;
+use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
 use crate::real::Real;
-
-/// Iterations after which FGMRES starts over, and after which it gives up.
-pub(super) const RESTART: usize = 60;
-pub(super) const MAX_ITERATIONS: usize = 120;
-/// A system that stalls is good enough to go on from at this relative residual: the line search
-/// judges what it gives.
-pub(super) const STALLED: f64 = 0.3;
-
-/// The solver of one body's systems, of an equal pair's, or of two bodies'.
-#[derive(Debug)]
-pub enum Systems {
-    /// Over a plane.
-    Plane(Box<LinearSolver>),
-    /// Against its own image.
-    Pair(Box<PairSolver>),
-    /// Against another body.
-    Couple(Box<CoupleSolver>),
-}
-
-impl From<CoupleSolver> for Systems {
-    fn from(solver: CoupleSolver) -> Self {
-        Self::Couple(Box::new(solver))
-    }
-}
-
-impl From<LinearSolver> for Systems {
-    fn from(solver: LinearSolver) -> Self {
-        Self::Plane(Box::new(solver))
-    }
-}
-
-impl From<PairSolver> for Systems {
-    fn from(solver: PairSolver) -> Self {
-        Self::Pair(Box::new(solver))
-    }
-}
-
-impl Systems {
-    /// The tangent, to be written in place.
-    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
-        match self {
-            Self::Plane(solver) => solver.matrix_mut(),
-            Self::Pair(solver) => solver.matrix_mut(),
-            Self::Couple(solver) => solver.matrix_mut(),
-        }
-    }
-
-    /// Solves for the correction of the unknowns; without `fallback` never by the direct solver.
-    ///
-    /// # Errors
-    /// As [`LinearSolver::solve`].
-    pub fn solve(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64], fallback: bool) -> Result<SolveReport, LinalgError> {
-        match self {
-            Self::Plane(solver) => {
-                solver.set_fallback_limit(if fallback { DEFAULT_FALLBACK_LIMIT } else { 0 });
-                solver.solve(rhs, tolerance, x)
-            }
-            Self::Pair(solver) => solver.solve(rhs, tolerance, x),
-            Self::Couple(solver) => solver.solve(rhs, tolerance, x),
-        }
-    }
-
-    /// The norm of what is left of the free unknowns' equations.
-    ///
-    /// # Errors
-    /// As [`LinearSolver::residual_norm`].
-    pub fn residual_norm(&mut self, rhs: &[f64], x: &[f64]) -> Result<f64, LinalgError> {
-        match self {
-            Self::Plane(solver) => solver.residual_norm(rhs, x),
-            Self::Pair(solver) => Ok(solver.residual_norm(rhs, x)),
-            Self::Couple(solver) => Ok(solver.residual_norm(rhs, x)),
-        }
-    }
-}
 
 /// Solves for the unknowns y of a pair.
 #[derive(Debug)]
@@ -102,18 +28,14 @@ pub struct PairSolver {
     symmetric: bool,
     even: Hierarchy,
     odd: Hierarchy,
-    krylov: Fgmres<f32>,
     /// The node opposite in x.
     mirror: Vec<u32>,
     contact_nodes: Vec<u32>,
     interface: Arc<Interface>,
     rows: Vec<Rows<f64>>,
-    fixed: Vec<bool>,
     even_fixed: Vec<bool>,
     odd_fixed: Vec<bool>,
-    /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
-    reduced: Vec<f64>,
-    free: Vec<f64>,
+    reduced: Reduced,
     work: Work,
 }
 
@@ -156,16 +78,13 @@ impl PairSolver {
             symmetric: false,
             odd: hierarchy.clone(),
             even: hierarchy,
-            krylov: Fgmres::new(n, RESTART),
             mirror,
             contact_nodes: mesh.contact_nodes.clone(),
             interface: Arc::default(),
             rows: Vec::new(),
-            fixed: vec![false; n],
             even_fixed: vec![false; n],
             odd_fixed: vec![false; n],
-            reduced: zero(),
-            free: zero(),
+            reduced: Reduced::new(n),
             work: Work { load: small(), even: small(), odd: small(), z_even: small(), z_odd: small(), u: zero(), f: zero() },
         })
     }
@@ -209,7 +128,7 @@ impl PairSolver {
         self.interface = interface.clone();
         self.rows.clear();
         self.rows.extend_from_slice(rows);
-        self.fixed.copy_from_slice(fixed);
+        self.reduced.fixed.copy_from_slice(fixed);
         self.even_fixed.copy_from_slice(prescribed);
         self.odd_fixed.copy_from_slice(prescribed);
         for (i, &node) in self.contact_nodes.iter().enumerate() {
@@ -236,59 +155,6 @@ impl PairSolver {
         if self.symmetric { Ok(()) } else { self.odd.update(&self.matrix, &self.odd_fixed) }
     }
 
-    /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as
-    /// [`crate::linalg::LinearSolver::solve`].
-    ///
-    /// # Errors
-    /// [`LinalgError::Stalled`]; `y` is then the best iterate.
-    pub fn solve(&mut self, rhs: &[f64], tolerance: f64, y: &mut [f64]) -> Result<SolveReport, LinalgError> {
-        self.take_over(rhs);
-        self.free.copy_from_slice(y);
-        clear(&self.fixed, &mut self.free);
-        let (mut free, reduced) = (std::mem::take(&mut self.free), std::mem::take(&mut self.reduced));
-        let mut krylov = std::mem::replace(&mut self.krylov, Fgmres::new(0, 1));
-        let got = krylov.solve(self, &reduced, &mut free, tolerance, MAX_ITERATIONS);
-        (self.free, self.reduced, self.krylov) = (free, reduced, krylov);
-        for (i, y) in y.iter_mut().enumerate() {
-            *y = if self.fixed[i] { rhs[i] } else { self.free[i] };
-        }
-        if !got.converged && !(got.residual <= STALLED) {
-            return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
-        }
-        Ok(SolveReport {
-            iterations: got.iterations,
-            residual: got.residual,
-            converged: got.converged,
-            stagnated: !got.converged,
-            fallback: false,
-        })
-    }
-
-    /// |rhs - A y| over the free unknowns, the fixed ones at their values in `rhs`.
-    pub fn residual_norm(&mut self, rhs: &[f64], y: &[f64]) -> f64 {
-        self.take_over(rhs);
-        let mut free = y.to_vec();
-        clear(&self.fixed, &mut free);
-        let mut r = vec![0.0; free.len()];
-        System::<f32>::residual(self, &self.reduced, &free, &mut r);
-        r.iter().map(|r| r * r).sum::<f64>().sqrt()
-    }
-
-    /// Takes what the fixed unknowns contribute over to the right-hand side.
-    fn take_over(&mut self, rhs: &[f64]) {
-        let mut y = vec![0.0; rhs.len()];
-        (0..y.len()).filter(|&i| self.fixed[i]).for_each(|i| y[i] = rhs[i]);
-        let mut reduced = std::mem::take(&mut self.reduced);
-        reduced.copy_from_slice(rhs);
-        if y.iter().any(|y| *y != 0.0) {
-            let (mut u, mut f) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-            self.apply(&self.matrix, &y, &mut u, &mut f);
-            reduced.iter_mut().zip(&f).for_each(|(r, f)| *r -= f);
-        }
-        clear(&self.fixed, &mut reduced);
-        self.reduced = reduced;
-    }
-
     /// f = A y with the tangent in `matrix`; rows of fixed unknowns mean nothing.
     fn apply<T: Real + Widen<f64>>(&self, matrix: &BlockMatrix<T>, y: &[f64], u: &mut [f64], f: &mut [f64]) {
         u.copy_from_slice(y);
@@ -296,17 +162,21 @@ impl PairSolver {
         matrix.multiply(u, f);
         self.symmetrise(f);
         self.interface.reduce(f);
-        for &slave in &self.interface.slaves {
-            let (rows, base) = (&self.rows[slave], 3 * self.contact_nodes[slave] as usize);
-            if rows.status == Status::Open {
-                continue;
-            }
-            let force = [f[base], f[base + 1], f[base + 2]];
-            let w = &y[base..base + 3];
-            for i in 0..3 {
-                f[base + i] = (0..3).map(|j| rows.force_rows[i][j] * force[j] + rows.displacement_rows[i][j] * w[j]).sum::<f64>();
-            }
-        }
+        impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
+    }
+}
+
+impl Tied for PairSolver {
+    fn reduced(&mut self) -> &mut Reduced {
+        &mut self.reduced
+    }
+
+    fn fixed(&self) -> &[bool] {
+        &self.reduced.fixed
+    }
+
+    fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+        self.apply(&self.matrix, y, u, f);
     }
 }
 
@@ -314,7 +184,7 @@ impl System<f32> for PairSolver {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         let mut work = std::mem::take(&mut self.work);
         work.f.iter_mut().zip(v).for_each(|(f, v)| *f = f64::from(*v));
-        self.interface.loads(&work.f, &self.fixed, &mut work.u);
+        self.interface.loads(&work.f, &self.reduced.fixed, &mut work.u);
         work.load.iter_mut().zip(&work.u).for_each(|(load, u)| *load = *u as f32);
         for (n, &opposite) in self.mirror.iter().enumerate() {
             for c in 0..3 {
@@ -342,23 +212,16 @@ impl System<f32> for PairSolver {
             }
         }
         self.interface.contract(&mut work.u);
-        clear(&self.fixed, &mut work.u);
+        clear(&self.reduced.fixed, &mut work.u);
         z.iter_mut().zip(&work.u).for_each(|(z, u)| *z = *u as f32);
         let y: Vec<f64> = z.iter().map(|z| f64::from(*z)).collect();
         self.apply(&self.single, &y, &mut work.u, &mut work.f);
-        clear(&self.fixed, &mut work.f);
+        clear(&self.reduced.fixed, &mut work.f);
         w.iter_mut().zip(&work.f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;
     }
 
     fn residual(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
-        let mut u = vec![0.0; x.len()];
-        self.apply(&self.matrix, x, &mut u, r);
-        r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-        clear(&self.fixed, r);
+        self.remainder(b, x, r);
     }
-}
-
-pub(super) fn clear<T: Default>(fixed: &[bool], x: &mut [T]) {
-    x.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed).for_each(|(x, _)| *x = T::default());
 }

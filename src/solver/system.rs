@@ -246,6 +246,17 @@ impl Trial {
         Ok(())
     }
 
+    /// Before the slaves of an interface are gone through: no point is in contact.
+    pub(super) fn open_all(&mut self) {
+        let open = contact_rows(
+            Friction::Coulomb(0.0),
+            &Point { force: [0.0; 3], gap: 1.0, slip: [0.0; 2], weight: 1.0, on_symmetry_plane: false },
+        );
+        self.rows.fill(open);
+        self.force_scale = 0.0;
+        self.interface_force.clear();
+    }
+
     /// Contact rows of an equal pair at its slave nodes, and the residual of the unknowns y (see
     /// [`crate::contact::pair`]).
     fn meet(&mut self, model: &CaseModel, boundary: &Boundary, pair: &Meeting) {
@@ -255,13 +266,7 @@ impl Trial {
             leave_even(&boundary.mirror, &mut self.residual);
         }
         interface.reduce(&mut self.residual);
-        let open = contact_rows(
-            Friction::Coulomb(0.0),
-            &Point { force: [0.0; 3], gap: 1.0, slip: [0.0; 2], weight: 1.0, on_symmetry_plane: false },
-        );
-        self.rows.fill(open);
-        self.force_scale = 0.0;
-        self.interface_force.clear();
+        self.open_all();
         for (k, w) in interface.relative(&self.u).into_iter().enumerate() {
             let slave = interface.slaves[k];
             let base = 3 * mesh.contact_nodes[slave] as usize;
