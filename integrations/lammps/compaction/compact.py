@@ -197,7 +197,7 @@ def run(job):
 
 def picture(results, file):
     """Pressure over relative density: a diagram a material, a line a law and friction."""
-    figure, axes = plt.subplots(1, len(MATERIALS), figsize=(9.5, 4.2), squeeze=False)
+    figure, axes = plt.subplots(1, len(MATERIALS), figsize=(9.5, 4.8), squeeze=False)
     styles = {"asperity": ("this law", "-"), "mdr": ("MDR", "--"), "hertz": ("Hertz-Mindlin", ":")}
     for a, material in zip(axes[0], MATERIALS):
         shown = [(entry, rows) for entry, rows in results if entry["material"] == material and rows is not None]
@@ -208,12 +208,12 @@ def picture(results, file):
         ceiling = max((entry["end"] for entry, _ in shown if entry["law"] == "asperity"), default=None)
         if ceiling:
             a.set_ylim(0, 2.0 * ceiling)
-        if shown:
-            a.legend(fontsize=7)
         a.set_title(MATERIALS[material]["name"], fontsize=10)
         a.set_xlabel("relative density")
         a.set_ylabel("pressure on the lid, MPa")
-    figure.tight_layout()
+    lines = axes[0][0].get_legend_handles_labels() if axes[0][0].lines else axes[0][-1].get_legend_handles_labels()
+    figure.legend(*lines, loc="lower center", ncol=2, fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0, 0.17, 1, 1))
     figure.savefig(file)
     plt.close(figure)
 

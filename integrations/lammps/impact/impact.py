@@ -127,7 +127,7 @@ def thrown(history, normal, along, step):
 
 
 def own_way(program, case, rows, normal, along, step, out):
-    """Rebound of the simulated sphere: its restitution coefficient, its tangential velocity after over before, its angle from the normal; and how it was found."""
+    """The last path as finite_elements() gives it, and the rebound of the simulated sphere: its restitution coefficient, its tangential velocity after over before, its angle from the normal; and how it was found."""
     touching = rows[: int(np.argmax(rows[:, 1])) + 1 + int(np.argmin(rows[int(np.argmax(rows[:, 1])) :, 3] > 0))]
     h, delta = touching[:, 1], touching[:, 2]
     found = []
@@ -137,7 +137,7 @@ def own_way(program, case, rows, normal, along, step, out):
         found.append(v_n / normal)
         if number and abs(found[-1] - found[-2]) < SETTLED:
             break
-    return {"restitution": v_n / normal, "tangential": v_t / along, "angle": math.degrees(math.atan2(v_t, v_n)), "deepest": float(h.max()), "restitution_by_round": found, "complete": complete}
+    return history, {"restitution": v_n / normal, "tangential": v_t / along, "angle": math.degrees(math.atan2(v_t, v_n)), "deepest": float(h.max()), "restitution_by_round": found, "complete": complete}
 
 
 def picture(results, file):
@@ -158,19 +158,42 @@ def picture(results, file):
     plt.close(figure)
 
 
+def paths(curves, file):
+    """F_N and F_T/F_N over h of each angle: the law's sphere and the simulated one, in and out."""
+    figure, axes = plt.subplots(2, len(curves), figsize=(2.4 * len(curves), 4.4), sharex="col", squeeze=False)
+    for column, (angle, rows, history) in enumerate(curves):
+        for h, f_n, f_t, colour, label in ((rows[:, 1], rows[:, 3], rows[:, 4], "C0", "this law"), (history[0], history[2], history[3], "C3", "finite elements")):
+            carried = f_n > 0.02 * f_n.max()
+            axes[0][column].plot(h, f_n, color=colour, linewidth=1.2, label=label)
+            axes[1][column].plot(h[carried], f_t[carried] / f_n[carried], color=colour, linewidth=1.2)
+        axes[0][column].set_title(f"{angle:g} degrees", fontsize=9)
+        axes[1][column].set_xlabel("h/R", fontsize=8)
+        for a in axes[:, column]:
+            a.set_ylim(0, None)
+            a.tick_params(labelsize=7)
+    axes[0][0].set_ylabel("F_N", fontsize=8)
+    axes[1][0].set_ylabel("F_T/F_N", fontsize=8)
+    axes[0][0].legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(file)
+    plt.close(figure)
+
+
 def main():
     plugin, table, case, program, out = sys.argv[1:6]
     angles = [float(word) for word in sys.argv[6:]] or [15.0, 30.0, 45.0, 60.0, 75.0]
     modulus = tomllib.loads(Path(case).read_text())["material"]["youngs_modulus"]
-    results = []
+    results, curves = [], []
     for angle in angles:
         rows, (normal, along), (v_n, v_t, spin) = law(plugin, table, modulus, angle)
         entry = {"angle": angle, "deepest": float(rows[:, 1].max()), "law": {"restitution": v_n / normal, "tangential": v_t / along, "angle": math.degrees(math.atan2(v_t, v_n))}}
-        entry["finite_elements"] = own_way(program, case, rows, normal, along, STEP / math.sqrt(modulus), Path(out, f"{angle:g}"))
+        history, entry["finite_elements"] = own_way(program, case, rows, normal, along, STEP / math.sqrt(modulus), Path(out, f"{angle:g}"))
         results.append(entry)
+        curves.append((angle, rows, history))
         print(json.dumps(entry), flush=True)
     Path(out, "impact.json").write_text(json.dumps(results, indent=1) + "\n")
     picture(results, Path(out, "impact.svg"))
+    paths(curves, Path(out, "impact-paths.svg"))
 
 
 if __name__ == "__main__":
