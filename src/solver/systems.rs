@@ -1,5 +1,6 @@
-//! The solver of a step's linear systems, whatever the opponent; and what systems in the unknowns of
-//! an interface have in common: the equations y = u at fixed unknowns taken out, FGMRES for the rest.
+//! The solver of a step's linear systems, whatever the opponent; and what systems in the unknowns
+//! of an interface have in common: the equations y = u at fixed unknowns are taken out, and FGMRES
+//! solves the rest.
 
 use super::couple::CoupleSolver;
 use super::pair::PairSolver;
