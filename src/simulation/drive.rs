@@ -25,11 +25,11 @@ use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::encounter::Encounter;
-use crate::solver::newton::{Newton, StepReport};
+use crate::solver::newton::Newton;
 use crate::solver::phases::{Lap, Phase};
 use crate::solver::rigid::position;
 use crate::solver::system::Meeting;
-use crate::solver::{Control, StepFailure};
+use crate::solver::{Control, StepOutcome, StepReport};
 pub use paused::Paused;
 
 /// Follows a path.
@@ -232,14 +232,14 @@ impl<'a> Drive<'a> {
                 Friction::Coulomb(_) => self.attempt(&next)?,
             };
             match attempted {
-                Ok(report) => {
+                StepOutcome::Converged(report) => {
                     self.place.waiting.pop();
                     self.place.depth = self.place.depth.saturating_sub(1);
                     self.pace(report.iterations.len());
                     self.accept(&next, report, observer)?;
                     self.checkpoint(false, observer);
                 }
-                Err(failure) => {
+                StepOutcome::Failed(failure) => {
                     let r = &self.state.record;
                     log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
                     self.place.cutbacks += 1;
@@ -298,17 +298,20 @@ impl<'a> Drive<'a> {
     /// stick to before its end, and carries no tangential force in it. If the step fails so, those
     /// slide too that hold a large tangential force under little normal one: they are about to come
     /// off, and there may be no equilibrium with them nor without.
-    fn attempt_stuck(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+    fn attempt_stuck(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         let mut attempted = self.slide_beyond(f64::INFINITY, target)?;
         let ratios = if self.place.depth < SHALLOW { &SLIDING_RATIOS[..1] } else { &SLIDING_RATIOS[..] };
         for &ratio in ratios {
-            let Err(failure) = &attempted else { break };
+            let StepOutcome::Failed(failure) = &attempted else { break };
             log::info!(
                 "points sheared beyond {ratio} of their normal force slide in the step to delta_T = {:.5}: {failure}",
                 target.delta_t
             );
             self.place.wasted += failure.iterations();
-            attempted = self.slide_beyond(ratio, target)?.map(|report| StepReport { relaxed: true, ..report });
+            attempted = self.slide_beyond(ratio, target)?;
+            if let StepOutcome::Converged(report) = &mut attempted {
+                report.relaxed = true;
+            }
         }
         self.newton.set_sliding(&[]);
         Ok(attempted)
@@ -316,7 +319,7 @@ impl<'a> Drive<'a> {
 
     /// One Newton solve in which open points and those slide whose tangential force exceeds `ratio`
     /// times their normal one.
-    fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+    fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<StepOutcome, SimulationError> {
         let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
         let sliding: Vec<bool> = self.state.points.iter().map(beyond).collect();
         self.newton.set_sliding(&sliding);
@@ -324,7 +327,7 @@ impl<'a> Drive<'a> {
     }
 
     /// One Newton solve towards a target; commits nothing.
-    fn attempt(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+    fn attempt(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         self.traffic_before = self.traffic_before.or_else(|| self.backend.traffic());
         let mut guess = self.guess(target);
         let h = match (target.hold_force, self.state.last_increment) {

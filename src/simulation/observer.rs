@@ -6,7 +6,7 @@ use super::record::{ContactPoint, StepRecord};
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseFields, Compute, ComputeError};
 use crate::mesh::Mesh;
-use crate::solver::newton::StepReport;
+use crate::solver::StepReport;
 use crate::solver::phases::PhaseTimes;
 
 /// Watches a run.

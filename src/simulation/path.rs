@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::{Hold, Segment, ShearTarget};
-
 /// Where a step should end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
@@ -261,14 +259,6 @@ impl ShearSteps {
     /// A shear to full slip is given up beyond this distance.
     pub fn bound(&self, a: f64) -> f64 {
         (3.0 * self.range).max(0.25 * a)
-    }
-}
-
-/// Whether the segment holds the normal force, and its end if it has one.
-pub fn shear_target(segment: &Segment) -> Option<(ShearTarget, bool)> {
-    match segment {
-        Segment::Shear { shear, hold } => Some((*shear, *hold == Hold::NormalForce)),
-        _ => None,
     }
 }
 

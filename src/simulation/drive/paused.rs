@@ -5,7 +5,8 @@ use crate::compute::Compute;
 use crate::simulation::checkpoint::{Committed, Place};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::ContactPoint;
-use crate::solver::newton::{Newton, StepReport};
+use crate::solver::StepReport;
+use crate::solver::newton::Newton;
 
 /// A drive between two steps, without the problem and the backend that it borrows.
 pub struct Paused {
