@@ -10,6 +10,7 @@ mod error;
 mod estimate;
 mod hardening;
 pub mod keys;
+mod material;
 mod mistakes;
 mod opponent;
 mod path;

@@ -134,11 +134,7 @@ enum Usable {
 }
 
 /// A sample from a run's directory.
-fn read_sample(
-    id: &str,
-    directory: &OutputDirectory,
-    materials: &mut Vec<Case>,
-) -> Result<Usable, LawError> {
+fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Case>) -> Result<Usable, LawError> {
     let case = Case::load(&directory.case(), &[])?;
     if case.opponent.is_some() {
         return Ok(Usable::No("against another sphere, not a plane"));

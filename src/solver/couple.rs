@@ -14,7 +14,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::systems::{Reduced, Tied, clear, impose};
+use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;

@@ -4,12 +4,12 @@
 mod line_search;
 
 use super::encounter::Encounter;
+use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::pair::mirror_nodes;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, turn};
 use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
 use super::systems::Systems;
-use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::{Control, Settings, SolverError};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;

@@ -26,6 +26,7 @@ pub mod check;
 pub mod equator;
 pub mod report;
 pub mod runner;
+pub mod sphere;
 pub mod table;
 
 mod cattaneo_mindlin;

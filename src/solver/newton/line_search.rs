@@ -1,9 +1,9 @@
 //! How far along a correction: backtracking on the contact merit, and when the whole correction is
 //! taken although the merit grows.
 
-use super::super::system::Trial;
 use super::super::Control;
 use super::super::outcome::{Halt, StepFailure};
+use super::super::system::Trial;
 use super::Newton;
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;

@@ -2,10 +2,10 @@
 
 use super::SphereSpec;
 use super::butterfly::Butterfly;
-use super::entry::even_entry;
-use super::geometry::SHELL_DEPTH;
 use crate::mesh::MeshError;
 
+/// Depth of the shell under the pole, in contact radii.
+pub const SHELL_DEPTH: f64 = 1.4;
 /// Growth of the rings' spacing outside the fine zone that the count aims at, up to 16 elements per
 /// contact radius.
 const RING_GROWTH: f64 = 1.22;
@@ -82,12 +82,6 @@ fn sizes_for(sum: f64, q: f64) -> f64 {
 }
 
 impl Layout {
-    /// The layout with its surface nodes moved so that they touch evenly.
-    pub fn touching_evenly(mut self) -> Self {
-        self.shifts = even_entry(&self);
-        self
-    }
-
     /// The layout of a sphere for a description, its surface nodes not moved yet.
     ///
     /// # Errors
