@@ -6,7 +6,7 @@ use std::path::Path;
 use super::LawError;
 use super::table::StudyTable;
 use super::variables::{Body, Variables};
-use crate::case::{Case, Friction, Hold, Segment};
+use crate::case::{Case, Friction, Hold, Scaled, Segment};
 use crate::output::{OutputDirectory, StepRecord, Summary, SummaryInputs, read_history};
 
 /// One point of a shear, as sizes, in the case's units.
@@ -89,7 +89,7 @@ impl StudyData {
     /// No study there; a table, case or history that cannot be read.
     pub fn read(dir: &Path) -> Result<Self, LawError> {
         let mut data = Self { samples: Vec::new(), skipped: Vec::new() };
-        let mut materials: Vec<Case> = Vec::new();
+        let mut materials: Vec<Scaled<Case>> = Vec::new();
         for row in StudyTable::read(&dir.join("study.csv"))?.rows {
             let skipped = if row.is_done() {
                 let directory = OutputDirectory::existing(dir.join(&row.directory));
@@ -134,7 +134,7 @@ enum Usable {
 }
 
 /// A sample from a run's directory.
-fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Case>) -> Result<Usable, LawError> {
+fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled<Case>>) -> Result<Usable, LawError> {
     let case = Case::load(&directory.case(), &[])?;
     if case.opponent.is_some() {
         return Ok(Usable::No("against another sphere, not a plane"));
@@ -166,7 +166,7 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Case>)
     let body = Body::from_case(&case)?;
     let variables = body.variables(h0, a0, f_n0);
     let scaled = case.scaled();
-    let material = materials.iter().position(|known| known.material == scaled.material).unwrap_or_else(|| {
+    let material = materials.iter().position(|known| known.0.material == scaled.0.material).unwrap_or_else(|| {
         materials.push(scaled);
         materials.len() - 1
     });

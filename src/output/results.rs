@@ -323,7 +323,7 @@ impl ResultWriter {
 
     /// Writes fields and contact table of a step, once.
     fn save(&mut self, view: &mut StepView<'_>, contact: &[ContactPoint]) -> Result<(), Failed> {
-        let step = view.record.step;
+        let step = view.record.0.step;
         if self.ledger.saved.last() == Some(&step) {
             return Ok(());
         }
@@ -348,7 +348,7 @@ impl ResultWriter {
         if !self.plots || !is_panel(&self.ledger.rows, self.friction) {
             return Ok(());
         }
-        let (step, contact) = (view.record.step, self.contact(view));
+        let (step, contact) = (view.record.0.step, self.contact(view));
         if self.fields == Fields::Segments {
             write_contact(&self.out.contact(step), &contact)?;
             self.ledger.panels.push(step);
@@ -368,7 +368,7 @@ impl ResultWriter {
 
 impl Observer for ResultWriter {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        if view.record.step == 0 {
+        if view.record.0.step == 0 {
             // The undeformed state is no step that was computed.
             return Ok(());
         }
@@ -402,7 +402,7 @@ impl Observer for ResultWriter {
 
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
         self.ledger.times += view.unfinished;
-        if view.record.step == 0 {
+        if view.record.0.step == 0 {
             return Ok(());
         }
         let begun = Instant::now();
@@ -410,8 +410,8 @@ impl Observer for ResultWriter {
         if self.fields != Fields::None {
             self.save(view, &contact)?;
         } else if self.contact_tables {
-            write_contact(&self.out.contact(view.record.step), &contact)?;
-            self.ledger.saved.push(view.record.step);
+            write_contact(&self.out.contact(view.record.0.step), &contact)?;
+            self.ledger.saved.push(view.record.0.step);
         }
         if self.plots {
             self.ledger.tables.add(&self.ledger.rows, contact);

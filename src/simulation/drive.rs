@@ -15,7 +15,7 @@ pub use super::observer::{Observer, StepView};
 use super::path::{Resolution, Start, Target, indentation_targets, oblique_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
-use crate::case::{Segment, ShearTarget};
+use crate::case::{Scaled, Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::traffic::Traffic;
 use crate::compute::{Compute, ComputeError, Outcome};
@@ -138,7 +138,7 @@ impl<'a> Drive<'a> {
             observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
             self.place.begun = true;
         }
-        let path = &self.problem.case.path;
+        let path = &self.problem.case.0.path;
         while let Some(segment) = path.get(self.place.segment) {
             let start = match self.place.start {
                 Some(start) => start,
@@ -200,8 +200,8 @@ impl<'a> Drive<'a> {
                 Friction::Coulomb(mu) => mu,
                 Friction::Stick => f64::INFINITY,
             },
-            nu: self.problem.case.material.poissons_ratio,
-            compliance: self.problem.case.compliance(),
+            nu: self.problem.case.0.material.poissons_ratio,
+            compliance: self.problem.case.0.compliance(),
             reversed: false,
         }
     }
@@ -522,7 +522,7 @@ impl<'a> Drive<'a> {
     fn view(&mut self) -> StepView<'_> {
         let (points, opponent_points) = self.state.points.split_at(self.own_contacts());
         StepView {
-            record: self.state.record,
+            record: Scaled(self.state.record),
             report: &self.last_report,
             unfinished: std::mem::take(&mut self.newton.times),
             mesh: &self.mesh,

@@ -121,7 +121,7 @@ struct Seen {
 
 impl Observer for Seen {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.rows.push(view.record);
+        self.rows.push(view.record.0);
         Ok(())
     }
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {

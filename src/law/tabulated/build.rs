@@ -137,7 +137,7 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
 
 pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
     // In units of R and E, with what it meets.
-    let scaled = Case { opponent: case.opponent.clone(), ..case_of(&case.scaled(), elements) };
+    let scaled = Case { opponent: case.opponent.clone(), ..case_of(&case.scaled().0, elements) };
     let body = Body::from_case(&scaled)?;
     let friction = match scaled.contact.friction {
         Friction::Coefficient(mu) => mu,

@@ -268,7 +268,7 @@ impl Tabulated {
     /// [`LawError::OtherMaterial`] with what differs.
     pub fn covers(&self, case: &Case) -> Result<(), LawError> {
         let own = self.material()?;
-        let other = case.scaled().material;
+        let other = case.scaled().0.material;
         let refuse = |what: String| Err(LawError::OtherMaterial { what });
         let body = Against::of(case)?;
         if body != self.body {
