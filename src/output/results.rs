@@ -56,6 +56,11 @@ impl Pictures {
     }
 }
 
+/// What a run says that is to draw pictures and cannot: they are asked for by default, so that it is
+/// no error.
+const NO_PICTURES: &str = "no pictures are drawn: this program was built without the feature \"plots\". What they are drawn from is kept, \
+                           and `asperity plot` draws them; output.plots = false asks for none";
+
 /// Refuses what this program was built without before anything is computed.
 fn check_formats(case: &Case, out: &OutputDirectory) -> Result<(), OutputError> {
     if case.output.parquet && !cfg!(feature = "parquet") {
@@ -176,6 +181,10 @@ impl ResultWriter {
             out,
         };
         moved.iter().for_each(|text| results.note(text));
+        // A resumed run has noted it before.
+        if results.plots && cfg!(not(feature = "plots")) && resumed.is_none() {
+            results.note(NO_PICTURES);
+        }
         Ok(results)
     }
 
