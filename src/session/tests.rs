@@ -181,7 +181,12 @@ fn a_program_without_pictures_says_so_to_who_asks_for_them() {
         let summary = Simulation::with(&case, options).expect("a simulation").run().expect("a run").summary;
         let said = summary.messages.iter().any(|text| text.contains("no pictures are drawn") && text.contains("\"plots\""));
         let drawn = scratch.path().join("plots/forces.svg").is_file();
-        assert_eq!((said, drawn), (plots && cfg!(not(feature = "plots")), plots && cfg!(feature = "plots")), "{:?}", summary.messages);
+        assert_eq!(
+            (said, drawn),
+            (plots && cfg!(not(feature = "plots")), plots && cfg!(feature = "plots")),
+            "{:?}",
+            summary.messages
+        );
         // What they are drawn from is there all the same.
         let read = Summary::read(&OutputDirectory::existing(scratch.path()).summary()).expect("a summary");
         assert_eq!(read.messages, summary.messages);

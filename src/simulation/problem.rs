@@ -11,8 +11,7 @@ use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
 use crate::linalg::{LinearSolver, SolverKind};
-use crate::material::Material;
-use crate::material::hardening::{Hardening, HardeningError};
+use crate::material::{Hardening, Material, MaterialError};
 use crate::mesh::couple::{self, couple};
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
@@ -132,7 +131,7 @@ fn mesh_of(Scaled(case): &Scaled<Case>, zone: &Zone) -> Result<Mesh, MeshError> 
 }
 
 /// Constants of the opponent of a scaled case, if it deforms.
-fn opponent_material(Scaled(case): &Scaled<Case>) -> Result<Option<Material<f64>>, HardeningError> {
+fn opponent_material(Scaled(case): &Scaled<Case>) -> Result<Option<Material<f64>>, MaterialError> {
     match &case.opponent {
         Some(Opponent::Deforming { material, .. }) => material.constants_as_given().map(Some),
         _ => Ok(None),
