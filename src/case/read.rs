@@ -11,9 +11,10 @@ use super::{
     estimate, opponent, path, pictures,
 };
 use crate::bounded;
+use crate::mesh::{FINE_ZONES, LARGEST_CONTACT};
 
 /// Smallest and largest a/R that the sphere is meshed for.
-pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
+pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, LARGEST_CONTACT);
 
 impl Case {
     /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the
@@ -144,7 +145,7 @@ fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
         mesh.elements_per_contact_radius = field.count(4..=32)?;
     }
     if let Some(field) = table.get("fine_zone") {
-        mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| (1.1..=3.0).contains(&ratio))?;
+        mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| FINE_ZONES.contains(&ratio))?;
     }
     if let Some(field) = table.get("contact_radius") {
         let (smallest, largest) = CONTACT_RADII;

@@ -43,7 +43,6 @@ pub struct Drive<'a> {
     place: Place,
     /// Normal force that the present segment holds, of the meshed half.
     held_force: Option<f64>,
-    full_slip: Option<bool>,
     /// How Newton went in the last accepted step.
     last_report: StepReport,
     /// The device's account before the first attempt at the next step.
@@ -80,7 +79,6 @@ impl<'a> Drive<'a> {
             state,
             place: Place::default(),
             held_force: None,
-            full_slip: None,
             last_report: StepReport::default(),
             traffic_before: None,
         }
@@ -100,11 +98,6 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Whether the last shear to full slip reached it; `None` if there was none.
-    pub fn full_slip(&self) -> Option<bool> {
-        self.full_slip
-    }
-
     /// Puts the run back to where a snapshot of it was taken; [`Drive::run`] then goes on from
     /// there.
     ///
@@ -114,7 +107,7 @@ impl<'a> Drive<'a> {
         snapshot.check(&self.mesh)?;
         self.backend.restore(self.case, &snapshot.case)?;
         self.newton.set_force_scales(snapshot.force_scales);
-        (self.state, self.place, self.full_slip) = (snapshot.state, snapshot.place, snapshot.full_slip);
+        (self.state, self.place) = (snapshot.state, snapshot.place);
         self.state.place_points(&self.mesh);
         Ok(())
     }
@@ -126,7 +119,6 @@ impl<'a> Drive<'a> {
                 state: self.state.clone(),
                 place: self.place.clone(),
                 force_scales: self.newton.force_scales(),
-                full_slip: self.full_slip,
                 case: self.backend.state(self.case)?,
             })
         });

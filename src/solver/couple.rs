@@ -113,11 +113,6 @@ impl CoupleSolver {
         &mut self.matrix
     }
 
-    /// Which body is the slave.
-    pub fn slave(&self) -> usize {
-        self.slave
-    }
-
     /// Takes over the tangent, the interface, its rows and which unknowns y are fixed.
     ///
     /// # Errors

@@ -4,7 +4,6 @@
 use std::sync::Arc;
 
 use crate::contact::couple::Interface;
-use crate::material::Material;
 use crate::mesh::Mesh;
 
 /// The interface of two bodies in one step, and where it starts from.
@@ -36,12 +35,6 @@ impl Series {
     pub fn new(slave: f64, master: f64) -> Self {
         Self { modulus: slave * master / (slave + master), master_share: slave / (slave + master) }
     }
-}
-
-/// Young's modulus of a material.
-pub fn youngs_modulus(material: &Material<f64>) -> f64 {
-    let (bulk, shear) = (material.elasticity.bulk, material.elasticity.shear);
-    9.0 * bulk * shear / (3.0 * bulk + shear)
 }
 
 impl Encounter {

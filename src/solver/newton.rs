@@ -534,11 +534,4 @@ impl Newton {
             worst: self.current.worst(mesh, &self.boundary, self.scale()),
         }
     }
-
-    /// Counts of closed and of slipping contact points at the accepted trial.
-    pub fn contact_counts(&self) -> (usize, usize) {
-        let count = |s: Status| self.current.rows.iter().filter(|r| r.status == s).count();
-        let slipping = count(Status::Slip);
-        (count(Status::Stick) + slipping, slipping)
-    }
 }

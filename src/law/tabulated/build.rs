@@ -13,6 +13,7 @@ use crate::law::contact::path::drive;
 use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
 use crate::law::variables::{Body, yield_lambda};
+use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Least depth of one body that is simulated: the mesh has a contact radius of 0.005 R at least.
 const SHALLOWEST: f64 = 2e-5;
@@ -30,7 +31,7 @@ const LENGTH: f64 = 2.0;
 /// Share of F_N that the release at the end leaves.
 const LEFT: f64 = 0.5;
 /// F_T/F_N there over mu.
-const NEARLY_SLIPPING: f64 = 0.99;
+const NEARLY_SLIPPING: f64 = SLIP_DISPLACEMENT_RATIO;
 /// A depth nearer than this share of its size to first yield needs no Hertz contact below it.
 const NEAR: f64 = 1.3;
 

@@ -34,6 +34,7 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     /// The block that couples row node `row` to column node `column`, if the pattern has it.
+    #[cfg(test)]
     pub fn block(&self, row: usize, column: usize) -> Option<&[T; 9]> {
         self.pattern.position(row, column).map(|at| &self.blocks[at])
     }

@@ -58,11 +58,6 @@ impl Hierarchy {
         Ok(Self { levels, dense, fixed: Fixed::default() })
     }
 
-    /// Nodes and blocks of each level, finest first.
-    pub fn sizes(&self) -> Vec<[usize; 2]> {
-        self.levels.iter().map(|level| [level.b.len(), level.smoother.matrix.blocks.len()]).collect()
-    }
-
     /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed`
     /// unknowns (one flag an unknown) are eliminated: their rows and columns count as those of the
     /// identity, and contribute nothing to coarser levels.

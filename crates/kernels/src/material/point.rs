@@ -47,11 +47,6 @@ impl MaterialPoint {
         Self { material, state: PointState::default(), displacement_gradient: Gradient::default(), step: 0 }
     }
 
-    /// What the point remembers.
-    pub fn state(&self) -> &PointState<f64> {
-        &self.state
-    }
-
     /// The undeformed point, as step 0.
     pub fn start(&self) -> PointRecord {
         self.record(&[0.0; 6])
