@@ -4,8 +4,8 @@ use super::buffers::StorageBuffer;
 use super::compiled::Pipeline;
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::lint;
 use super::shader_sources::{Assembled, Binding, Kernel, Precision};
+use super::validate::validate;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
@@ -89,7 +89,7 @@ impl GpuContext {
                 }
             }
         });
-        made.map_err(|error| match (lint::validate(source), error) {
+        made.map_err(|error| match (validate(source), error) {
             // naga's own words with the place in the file, where it is the source that is wrong
             (Err(located), GpuError::Rejected { .. }) => located,
             (_, error) => error,
