@@ -1,5 +1,5 @@
-//! `asperity law tabulate`: the law of one material and one friction as curves in h, on a plane or
-//! between two equal spheres.
+//! `asperity law tabulate`: the law of one contact as curves in h: one material on a plane or on its
+//! equal, or two bodies.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -18,7 +18,7 @@ use crate::study::{Options, Study};
 /// The arguments of `law tabulate`.
 #[derive(Clone, Debug, Args)]
 pub struct TabulateArgs {
-    /// The case: its material, its friction, its opponent (a plane or an equal sphere), and its
+    /// The case: its material, its friction, its opponent (a plane or any other body), and its
     /// indentation, which is the deepest of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,

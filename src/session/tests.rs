@@ -180,7 +180,7 @@ fn a_program_without_pictures_says_so_to_who_asks_for_them() {
         let options = Options { out: Some(scratch.path().to_owned()), ..on_cpu() };
         let summary = Simulation::with(&case, options).expect("a simulation").run().expect("a run").summary;
         let said = summary.messages.iter().any(|text| text.contains("no pictures are drawn") && text.contains("\"plots\""));
-        let drawn = scratch.path().join("plots/forces.svg").is_file();
+        let drawn = std::fs::read_dir(scratch.path().join("plots")).is_ok_and(|mut files| files.next().is_some());
         assert_eq!(
             (said, drawn),
             (plots && cfg!(not(feature = "plots")), plots && cfg!(feature = "plots")),

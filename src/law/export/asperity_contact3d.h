@@ -239,7 +239,7 @@ ASPERITY_FN void asperity_spheres(
         v[k] = i->velocity[k] - j->velocity[k] - arm_i * across_i[k] - arm_j * across_j[k];
     }
     asperity_contact_forces(
-        law, ASPERITY_R(2.0) * i->radius * j->radius / (i->radius + j->radius), i->mass * j->mass / (i->mass + j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
+        law, i->radius * j->radius / (i->radius + j->radius) / law->table->effective_radius, i->mass * j->mass / (i->mass + j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
 }
 
 /* A sphere on a rigid plane; force_j and torque_j are those on the wall, about the point of contact. */
@@ -268,7 +268,7 @@ ASPERITY_FN void asperity_sphere_wall(
     for (k = 0; k < 3; k++) {
         v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
     }
-    asperity_contact_forces(law, i->radius, i->mass, i->radius - distance, wall->normal, v, spin, arm, ASPERITY_R(0.0), dt, before, after, out);
+    asperity_contact_forces(law, i->radius / law->table->effective_radius, i->mass, i->radius - distance, wall->normal, v, spin, arm, ASPERITY_R(0.0), dt, before, after, out);
 }
 
 #endif

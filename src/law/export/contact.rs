@@ -7,7 +7,7 @@ use super::vectors::{SEED, unit_vectors};
 use super::{ExportedFile, fill, plain, sizes};
 use crate::case::Case;
 use crate::law::contact::{COLUMNS, ContactParameters, KNOTS};
-use crate::law::tabulated::Against;
+use crate::law::tabulated::{Against, is_on_a_flat};
 use crate::law::{LawError, LawFile};
 
 const CONTACT: &str = include_str!("asperity_contact.h");
@@ -84,9 +84,14 @@ impl Unit {
         }
     }
 
-    /// Whether it is of a sphere on a plane.
+    /// Whether it is of a sphere on a flat: of a wall.
     fn plane(&self) -> bool {
-        self.body == Against::Plane
+        is_on_a_flat(&self.case)
+    }
+
+    /// What it is of: "plane" of a sphere on any flat, which is what an engine must know.
+    fn kind(&self) -> &'static str {
+        if self.plane() { Against::Plane.word() } else { self.body.word() }
     }
 
     /// What h and the tangential displacement are of what the two centres move: all of it, whatever
@@ -133,7 +138,7 @@ impl Unit {
 
     /// As a file that `asperity_read_table` reads.
     fn file(&self) -> String {
-        let mut text = format!("asperity-contact-table {VERSION}\nbody {}\n", if self.plane() { "plane" } else { "equal-pair" });
+        let mut text = format!("asperity-contact-table {VERSION}\nbody {}\n", self.kind());
         // Writing to a String cannot fail.
         for (name, value) in self.numbers() {
             let _ = writeln!(text, "{name} {value:?}");

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
+use super::against::first_yield;
 use super::measure::{Measured, Missing, measured};
 use super::spline::{Spline, smooth};
-use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, level_of};
+use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, equivalent, level_of};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
-use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
 use crate::law::LawError;
 use crate::law::contact::path::drive;
 use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
-use crate::law::variables::{Body, yield_lambda};
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Least depth of one body that is simulated: the mesh has a contact radius of 0.005 R at least.
@@ -61,23 +61,18 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
             remedy: "Give contact.friction a number",
         });
     }
-    // Each of two equal bodies gives way by half of h.
-    let bodies = Against::of(case)?.bodies();
+    let radius = case.sphere.radius;
     let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
         _ => deepest,
-    }) / (bodies * case.sphere.radius);
-    let first = first_yield(&Body::from_case(case)?).unwrap_or(HALF_SPACE).clamp(SHALLOWEST, HALF_SPACE).min(SPAN * deepest);
+    }) / radius;
+    // The limits are those of a sphere on a plane, in which R is R*.
+    let [shallowest, half_space] = [SHALLOWEST, HALF_SPACE].map(|h| h * radius / case.effective_radius());
+    let yielding = first_yield(case)?.map_or(half_space, |h| h / radius);
+    let first = yielding.clamp(shallowest, half_space).min(SPAN * deepest);
     let count = (((deepest / first).ln() / RATIO.ln()).ceil() as usize + 1).max(FEWEST);
     let last = 2 * count - 2;
-    Ok((0..=last).map(|i| bodies * first * (deepest / first).powf(i as f64 / last as f64)).collect())
-}
-
-/// h/R of one body at first yield; `None` for an elastic sphere.
-fn first_yield(body: &Body) -> Option<f64> {
-    let sphere = body.sphere;
-    let a = yield_lambda(sphere.poissons_ratio) * body.hardening.flow_stress(0.0) / sphere.effective_modulus();
-    (!body.is_elastic()).then_some(a * a)
+    Ok((0..=last).map(|i| first * (deepest / first).powf(i as f64 / last as f64)).collect())
 }
 
 /// The case of the study at one of its depths: pressed, sheared to full slip and back, and released
@@ -89,7 +84,7 @@ pub fn case_of(case: &Case, elements: usize) -> Case {
     case.solver.error_estimate = false;
     case.output.fields = crate::case::Fields::None;
     case.output.plots = false;
-    case.path = vec![Segment::Indentation { indentation: 0.01 * case.sphere.radius }];
+    case.path = vec![Segment::Indentation { indentation: 0.01 * case.effective_radius() }];
     if case.contact.friction != Friction::Coefficient(0.0) {
         let shear = |shear| Segment::Shear { shear, hold: Hold::Indentation };
         case.path.extend([shear(ShearTarget::FullSlip), shear(ShearTarget::Displacement(0.0))]);
@@ -137,26 +132,25 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
 }
 
 pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
-    // In units of R and E, with what it meets.
-    let scaled = Case { opponent: case.opponent.clone(), ..case_of(&case.scaled().0, elements) };
-    let body = Body::from_case(&scaled)?;
+    // In units of R and E, with what it meets, which an equal pair loses there.
+    let in_units = case.scaled().0;
+    let opponent = if case.opponent == Some(Opponent::Equal) { Some(Opponent::Equal) } else { in_units.opponent.clone() };
+    let scaled = Case { opponent, ..case_of(&in_units, elements) };
     let friction = match scaled.contact.friction {
         Friction::Coefficient(mu) => mu,
         Friction::Stick => f64::NAN,
     };
-    let against = Against::of(&scaled)?;
-    let sphere = against.equivalent(&body.sphere);
+    let sphere = equivalent(&scaled);
     let mut levels: Vec<Level> = depths.iter().map(|one| level(&sphere, friction, one)).collect();
     smoothed(&mut levels);
-    let yielding = first_yield(&body).map(|h| against.bodies() * h);
-    if let Some(yielding) = yielding.filter(|&h| NEAR * h < levels[0].h) {
+    if let Some(yielding) = first_yield(&scaled)?.filter(|&h| NEAR * h < levels[0].h) {
         levels.insert(0, hertzian(&sphere, friction, yielding));
     }
     let (from, to) = (levels[0].h, levels[levels.len() - 1].h);
     Ok(Tabulated {
         format: FORMAT.to_owned(),
         version: VERSION,
-        body: against,
+        body: Against::of(&scaled),
         program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
         case: scaled.to_toml(),
         range: Interval { from, to },
@@ -258,7 +252,9 @@ fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
             }
         }
     }
-    [best[1], 1.0 + AGAIN * (best[2] - 1.0)]
+    // A first reversal also loses what F_N shear has left to lose: more so where it has lost much.
+    let again = AGAIN * (start.f_n / one.f_n0 / KEPT).min(1.0);
+    [best[1], 1.0 + again * (best[2] - 1.0)]
 }
 
 /// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from
@@ -282,6 +278,8 @@ fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
 /// more sharply. Between that of the first and those after it, which a contact that goes to and fro
 /// has.
 const AGAIN: f64 = 0.65;
+/// Share of F_N0 left at full slip below which that share is less, in proportion.
+const KEPT: f64 = 0.6;
 /// Fall of F_T over mu F_N up to which a reversal is fitted: to nine tenths of the way to slip on
 /// the other side.
 const REVERSED: f64 = 1.9;

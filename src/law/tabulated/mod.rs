@@ -1,18 +1,18 @@
 //! The law of one material and one friction as curves in h, from simulations at some depths: exact
-//! where formulas for all materials are not. It is of a sphere on a rigid plane or of two equal
-//! spheres, and says which.
+//! where formulas for all materials are not. It is of one pair of bodies, and says which: a sphere
+//! on a rigid plane, two equal spheres, or any two that a case can describe.
 //!
 //! Lengths are over R and forces over E R^2, so that one table serves every radius.
 //! [`Tabulated::contact_parameters`] hands the curves to the contact update, and everything that
 //! uses a table goes through it: what is checked is what is exported.
 
+mod against;
 mod build;
 mod measure;
 #[cfg(feature = "plots")]
 mod picture;
 pub mod spline;
 
-use std::fmt;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -23,9 +23,9 @@ use super::contact::{Axial, ContactParameters, KNOTS, LEVELS, POINTS, Shapes};
 use super::forms::NormalCurve;
 use super::json;
 use super::model::{Interval, OutOfRange, Parameters};
-use crate::analytical::ElasticSphere;
 use crate::case::{self, Case, Friction, Opponent};
 
+pub use against::{Against, equivalent, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
 pub use measure::Missing;
 #[cfg(feature = "plots")]
@@ -35,67 +35,6 @@ pub use picture::picture;
 pub const FORMAT: &str = "asperity-law-table";
 /// Version of its layout.
 pub const VERSION: u32 = 1;
-
-/// What the sphere of a table meets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Against {
-    /// A rigid plane.
-    #[serde(rename = "plane")]
-    Plane,
-    /// A sphere like itself; h and delta_T are then relative displacements, twice what each of the
-    /// two moves.
-    #[serde(rename = "equal pair")]
-    EqualSphere,
-}
-
-impl Against {
-    /// What the sphere of a case meets.
-    ///
-    /// # Errors
-    /// [`LawError::NotCovered`] if that is a rigid sphere or another body.
-    pub fn of(case: &Case) -> Result<Self, LawError> {
-        match &case.opponent {
-            None => Ok(Self::Plane),
-            Some(Opponent::Equal) => Ok(Self::EqualSphere),
-            Some(Opponent::Rigid { .. }) => Err(LawError::NotCovered {
-                problem: "the case is against a rigid sphere, and tables are of a plane or of an equal sphere",
-                remedy: "leave out [opponent] or give it equal = true, or simulate the case with `asperity run`",
-            }),
-            Some(Opponent::Deforming { .. }) => Err(LawError::NotCovered {
-                problem: "the case is against another body that deforms, and tables are of a plane or of an equal sphere",
-                remedy: "leave out [opponent] or give it equal = true, or simulate the case with `asperity run`",
-            }),
-        }
-    }
-
-    /// Number of bodies that deform.
-    pub fn bodies(self) -> f64 {
-        match self {
-            Self::Plane => 1.0,
-            Self::EqualSphere => 2.0,
-        }
-    }
-
-    /// The sphere that makes the same elastic contact on a rigid plane: two equal bodies in series
-    /// have R* = R/2 and E* = E/(2 (1 - nu^2)), and half the tangential stiffness of one (Johnson
-    /// 1985, sections 4.2 and 7.2).
-    pub fn equivalent(self, sphere: &ElasticSphere) -> ElasticSphere {
-        ElasticSphere {
-            radius: sphere.radius / self.bodies(),
-            youngs_modulus: sphere.youngs_modulus / self.bodies(),
-            poissons_ratio: sphere.poissons_ratio,
-        }
-    }
-}
-
-impl fmt::Display for Against {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Plane => "a rigid plane",
-            Self::EqualSphere => "an equal sphere",
-        })
-    }
-}
 
 /// The law at one depth; lengths over R, forces over E R^2.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -213,7 +152,7 @@ impl Tabulated {
         if !matches!(case.contact.friction, Friction::Coefficient(_)) {
             return Err("is a tabulated law without a friction coefficient".to_owned());
         }
-        let body = Against::of(&case).map_err(|error| format!("has a case that no table is of: {error}"))?;
+        let body = Against::of(&case);
         if body != self.body {
             return Err(format!("says that it is against {}, and its case is against {body}", self.body));
         }
@@ -253,13 +192,20 @@ impl Tabulated {
         }
     }
 
+    /// The case of the table, R = 1 and E = 1.
+    ///
+    /// # Errors
+    /// [`LawError::BadLaw`], after reading it never.
+    fn scaled_case(&self) -> Result<Case, LawError> {
+        self.case().map_err(|problem| LawError::BadLaw { path: "law.json".into(), problem })
+    }
+
     /// The material, in units of its E.
     ///
     /// # Errors
     /// [`LawError::BadLaw`], after reading it never.
     pub fn material(&self) -> Result<case::Material, LawError> {
-        let bad = |problem| LawError::BadLaw { path: "law.json".into(), problem };
-        Ok(self.case().map_err(bad)?.material)
+        Ok(self.scaled_case()?.material)
     }
 
     /// Refuses a case of another material, of another friction, or against something else.
@@ -267,16 +213,12 @@ impl Tabulated {
     /// # Errors
     /// [`LawError::OtherMaterial`] with what differs.
     pub fn covers(&self, case: &Case) -> Result<(), LawError> {
-        let own = self.material()?;
-        let other = case.scaled().0.material;
+        let own = self.scaled_case()?;
+        let other = case.scaled().0;
         let refuse = |what: String| Err(LawError::OtherMaterial { what });
-        let body = Against::of(case)?;
+        let body = Against::of(case);
         if body != self.body {
             return refuse(format!("it is a contact with {body}, and the table is of one with {}", self.body));
-        }
-        let differ = |a: f64, b: f64| (a - b).abs() > SAME * a.abs().max(b.abs());
-        if differ(own.poissons_ratio, other.poissons_ratio) {
-            return refuse(format!("nu = {}, and the table is of nu = {}", other.poissons_ratio, own.poissons_ratio));
         }
         let mu = self.friction();
         match case.contact.friction {
@@ -284,11 +226,34 @@ impl Tabulated {
             Friction::Coefficient(friction) => return refuse(format!("mu = {friction}, and the table is of mu = {mu}")),
             Friction::Stick => return refuse(format!("friction = \"stick\", and the table is of mu = {mu}")),
         }
-        let [ours, theirs] = [&own, &other].map(|material| serde_json::to_value(&material.hardening));
-        match (ours, theirs) {
-            (Ok(ours), Ok(theirs)) if alike(&ours, &theirs) => Ok(()),
-            (Ok(ours), Ok(theirs)) => refuse(format!("over E, hardening is {theirs}, and that of the table is {ours}")),
-            _ => refuse("its hardening cannot be compared".to_owned()),
+        if own.sphere.flat != other.sphere.flat {
+            return refuse("which of the two bodies is flat differs".to_owned());
+        }
+        if let Some(what) = difference(&own.material, &other.material) {
+            return refuse(what);
+        }
+        match (&own.opponent, &other.opponent) {
+            (Some(Opponent::Rigid { radius: own }), Some(Opponent::Rigid { radius: other })) if differ(*own, *other) => {
+                refuse(format!("the rigid sphere has {other} R, and that of the table {own} R"))
+            }
+            (
+                Some(Opponent::Deforming { radius: own, material }),
+                Some(Opponent::Deforming { radius: others, material: other }),
+            ) => {
+                if let (Some(own), Some(others)) = (own, others)
+                    && differ(*own, *others)
+                {
+                    return refuse(format!("the other sphere has {others} R, and that of the table {own} R"));
+                }
+                if differ(material.youngs_modulus, other.youngs_modulus) {
+                    return refuse(format!(
+                        "the other body has {} times the sphere's E, and that of the table {}",
+                        other.youngs_modulus, material.youngs_modulus
+                    ));
+                }
+                difference(material, other).map_or(Ok(()), |what| refuse(format!("of the other body, {what}")))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -306,7 +271,6 @@ impl Tabulated {
     /// # Errors
     /// [`LawError::Contact`] where a number is none.
     pub fn unit_parameters(&self) -> Result<ContactParameters, LawError> {
-        let nu = self.material()?.poissons_ratio;
         let curves = Curves::new(&self.levels);
         let mu = self.friction();
         let level_at = |h: f64| curves.at(h.clamp(self.range.from, self.range.to));
@@ -324,7 +288,7 @@ impl Tabulated {
             };
             Axial { a: level.unloading_radius, k_t: level.k_t, law }
         };
-        let sphere = self.body.equivalent(&ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: nu });
+        let sphere = equivalent(&self.scaled_case()?);
         let range = [self.range.from, self.range.to];
         let curve = NormalCurve::PowerOfComplement;
         let parameters = ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), mu, curve, range, contact)?;
@@ -356,10 +320,31 @@ impl Tabulated {
     }
 }
 
-/// Greatest slope of f_T over x.
+/// Share of the force at full slip below which a point of f_T says nothing about its slope: there
+/// the tolerance of the simulated forces counts.
+const SLOPE_FROM: f64 = 0.1;
+
+/// Slope with which f_T begins: the greatest of a line from its start to a point of it.
 fn steepest(shape: &[f64]) -> f64 {
-    let x = |j: usize| (j as f64 / POINTS as f64).powi(2);
-    (0..shape.len()).map(|j| (shape[j] - if j == 0 { 0.0 } else { shape[j - 1] }) / (x(j + 1) - x(j))).fold(0.0, f64::max)
+    let x = |j: usize| ((j + 1) as f64 / POINTS as f64).powi(2);
+    shape.iter().enumerate().filter(|(_, f)| **f >= SLOPE_FROM).map(|(j, f)| f / x(j)).fold(0.0, f64::max)
+}
+
+/// Whether two numbers differ by more than rounding.
+fn differ(a: f64, b: f64) -> bool {
+    (a - b).abs() > SAME * a.abs().max(b.abs())
+}
+
+/// In what a material is not that of the table; both over the sphere's E.
+fn difference(own: &case::Material, other: &case::Material) -> Option<String> {
+    if differ(own.poissons_ratio, other.poissons_ratio) {
+        return Some(format!("nu = {}, and the table is of nu = {}", other.poissons_ratio, own.poissons_ratio));
+    }
+    match [own, other].map(|material| serde_json::to_value(&material.hardening)) {
+        [Ok(ours), Ok(theirs)] if alike(&ours, &theirs) => None,
+        [Ok(ours), Ok(theirs)] => Some(format!("over E, hardening is {theirs}, and that of the table is {ours}")),
+        _ => Some("its hardening cannot be compared".to_owned()),
+    }
 }
 
 /// Whether two values are the same but for rounding.

@@ -1,8 +1,8 @@
 //! The table beside the simulations, and its errors.
 
 use super::build::Built;
-use super::{Curves, DepthErrors, Level};
-use crate::analytical::{ElasticSphere, hertz};
+use super::{Curves, DepthErrors, Level, equivalent};
+use crate::analytical::hertz;
 use crate::law::LawError;
 use crate::law::contact::path::drive;
 use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_charts, extent};
@@ -23,8 +23,7 @@ pub fn picture(built: &Built) -> Result<Picture, LawError> {
 }
 
 fn normal(built: &Built) -> Result<Chart, LawError> {
-    let one = ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: built.table.material()?.poissons_ratio };
-    let sphere = built.table.body.equivalent(&one);
+    let sphere = equivalent(&built.table.scaled_case()?);
     let force = |h: f64, f_n0: f64| f_n0 / hertz::force(&sphere, h);
     let area = |h: f64, a0: f64| a0 * a0 / (sphere.radius * h);
     let levels: Vec<Level> = built.curve(150);

@@ -157,6 +157,48 @@ fn another_material_is_refused_by_name() {
 }
 
 #[test]
+fn another_opponent_is_refused_by_name() {
+    let pair = |opponent: &str| {
+        let text = format!(
+            "[sphere]\nradius = 2.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\n\
+             [material.hardening]\nlaw = \"ideal\"\nyield_stress = 400.0\n[contact]\nfriction = {MU}\n{opponent}\n\
+             [[path]]\nindentation = 0.04\n"
+        );
+        Case::parse(&text, "case.toml", &[]).unwrap()
+    };
+    let other = |radius: &str, modulus: &str, stress: f64| {
+        pair(&format!(
+            "[opponent]\n{radius}\n[opponent.material]\nyoungs_modulus = {modulus}\npoissons_ratio = 0.25\n\
+             [opponent.material.hardening]\nlaw = \"ideal\"\nyield_stress = {stress}"
+        ))
+    };
+    let deep: Vec<Measured> = depths().into_iter().map(|h| measured(h, 0.0)).collect();
+    let made = |case: &Case| LawFile::Table(Box::new(table(case, &deep, 8).unwrap()));
+    let answer = |law: &LawFile, case: &Case| law.contact_parameters(case).map(drop).map_err(|error| error.to_string());
+    let law = made(&other("radius = 3.0", "400e3", 900.0));
+    assert_eq!(answer(&law, &other("radius = 3.0", "400e3", 900.0)), Ok(()));
+    for (told, case) in [
+        ("2 R, and that of the table 1.5 R", other("radius = 4.0", "400e3", 900.0)),
+        ("the other body has 2.5 times the sphere's E", other("radius = 3.0", "500e3", 900.0)),
+        ("of the other body, over E, hardening", other("radius = 3.0", "400e3", 901.0)),
+        ("contact with a flat that deforms", other("flat = true", "400e3", 900.0)),
+        ("contact with a rigid plane", pair("")),
+        ("contact with an equal sphere", pair("[opponent]\nequal = true")),
+    ] {
+        let refused = answer(&law, &case).unwrap_err();
+        assert!(refused.contains(told), "{told}: {refused}");
+    }
+    let rigid = |radius: f64| pair(&format!("[opponent]\nrigid = true\nradius = {radius}"));
+    let refused = answer(&made(&rigid(3.0)), &rigid(5.0)).unwrap_err();
+    assert!(refused.contains("the rigid sphere has 2.5 R, and that of the table 1.5 R"), "{refused}");
+    // Written and read back, with its opponent.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("law.json");
+    law.write(&path).unwrap();
+    assert_eq!(LawFile::read(&path).unwrap(), law);
+}
+
+#[test]
 fn beyond_its_depths_it_answers_and_says_so() {
     let table = made();
     let parameters = table.contact_parameters(1.0, 1.0).unwrap();
