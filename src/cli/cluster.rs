@@ -8,8 +8,8 @@ use super::{CliError, Outcome};
 use crate::study::slurm::{self, Slurm};
 use crate::study::{self, Merged, Study, StudyDirectory};
 
-/// Writes the scripts, whose tasks have these `options` of the command too, and submits them if that
-/// is wanted.
+/// Writes the scripts, whose tasks have these `options` of the command too, and submits them if
+/// that is wanted.
 pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String], submit: bool) -> Result<Outcome, CliError> {
     let slurm = Slurm::parse(arguments)?;
     let program =
