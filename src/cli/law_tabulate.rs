@@ -1,5 +1,5 @@
-//! `asperity law tabulate`: the law of one contact as curves in h: one material on a plane or on its
-//! equal, or two bodies.
+//! `asperity law tabulate`: the law of one contact as curves in h, of one material on a plane or on
+//! its equal, or of two bodies.
 
 use std::fmt::Write as _;
 use std::io::Write as _;

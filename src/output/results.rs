@@ -56,8 +56,8 @@ impl Pictures {
     }
 }
 
-/// What a run says that is to draw pictures and cannot: they are asked for by default, so that it is
-/// no error.
+/// What a run says that is to draw pictures and cannot: they are asked for by default, so that it
+/// is no error.
 const NO_PICTURES: &str = "no pictures are drawn: this program was built without the feature \"plots\". What they are drawn from is kept, \
                            and `asperity plot` draws them; output.plots = false asks for none";
 

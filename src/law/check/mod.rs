@@ -19,8 +19,9 @@ use crate::simulation::problem::Problem;
 
 pub use protocol::{Path, materials, protocol};
 
-/// Increments of the update between two steps of a simulation.
-const INCREMENTS: usize = 8;
+/// Increments of the update between two steps of a simulation: an engine's steps are short, and an
+/// oblique press still depends on them a little.
+const INCREMENTS: usize = 64;
 /// Aims: root mean square and worst error of a force over the greatest of its path.
 pub const AIMS: [f64; 2] = [0.05, 0.12];
 

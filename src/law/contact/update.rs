@@ -293,6 +293,19 @@ struct Pressed {
     f_n: f64,
     x: f64,
     df_n_dh: f64,
+    /// By how many e-folds F_T has flowed.
+    flow: f64,
+}
+
+/// Share of a displacement that the sliders take where their force meanwhile flows by `flow`
+/// e-folds: (1 - e^-flow)/flow. Without it a press under shear would keep more of F_T the longer
+/// its steps are.
+fn taken(flow: f64) -> f64 {
+    if flow < 0.05 {
+        1.0 - flow * (0.5 - flow * (1.0 / 6.0 - flow * (1.0 / 24.0 - flow / 120.0)))
+    } else {
+        (1.0 - (-flow).exp()) / flow
+    }
 }
 
 /// Moves h with delta_T held. The elastic force follows the unloading curve; first loading caps it;
@@ -326,12 +339,12 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     if dh == 0.0 {
         // At rest on the virgin curve the next press is first loading.
         let slope = if state.x == 0.0 && state.h == state.h_max { virgin.slope } else { stiffness };
-        return Pressed { f_n, x: state.x, df_n_dh: slope };
+        return Pressed { f_n, x: state.x, df_n_dh: slope, flow: 0.0 };
     }
     let elastic = mobilisation(p, virgin, f_n);
     if dh < 0.0 {
         let x = if elastic > state.x { elastic } else { state.x };
-        return Pressed { f_n, x, df_n_dh: stiffness };
+        return Pressed { f_n, x, df_n_dh: stiffness, flow: 0.0 };
     }
     if trial >= virgin.point.f_n0 && grown {
         stiffness = virgin.slope;
@@ -340,10 +353,10 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     let f_t = length(slider_force(virgin, &state.deflection));
     let slip_force = p.friction * virgin.point.f_n_slip;
     if f_t <= slip_force * tangential_shape(p, virgin, elastic)[0] {
-        return Pressed { f_n, x: elastic, df_n_dh: stiffness };
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0 };
     }
     if is_elastic(virgin) {
-        return Pressed { f_n, x: elastic, df_n_dh: stiffness }; // pressing leaves F_T as it is
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0 }; // pressing leaves F_T as it is
     }
     let (bound, before) = tangential_shape_inverse(p, virgin, f_t / slip_force);
     let cap = normal_cap(p, virgin, bound);
@@ -369,7 +382,7 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     for q in &mut state.deflection {
         *q = [keep * q[0], keep * q[1]];
     }
-    Pressed { f_n, x, df_n_dh: slope }
+    Pressed { f_n, x, df_n_dh: slope, flow }
 }
 
 impl ContactState {
@@ -421,7 +434,12 @@ impl ContactParameters {
             return (next, out);
         }
         out.df_n_dh = pressed.df_n_dh;
-        shear(self, &mut next, &mut out, &virgin, pressed.f_n, increment);
+        let share = taken(pressed.flow);
+        shear(self, &mut next, &mut out, &virgin, pressed.f_n, [share * increment[0], share * increment[1]]);
+        for i in 0..2 {
+            out.df_t_ddelta[i] = [share * out.df_t_ddelta[i][0], share * out.df_t_ddelta[i][1]];
+            out.df_n_ddelta[i] *= share;
+        }
         out.a = virgin.point.a * (next.approach / virgin.depth).powf(virgin.gamma - 1.0);
         (next, out)
     }

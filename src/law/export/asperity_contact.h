@@ -918,6 +918,7 @@ typedef struct asperity_work {
 /* What the press leaves for the shear. */
 typedef struct asperity_pressed {
     asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
+    asperity_real flow;                  /* by how many e-folds F_T has flowed */
     asperity_real shape;                 /* f_T(x); negative: not asked yet */
     asperity_real eta;                   /* (F_N/F_N0)^(1/backbone) */
     asperity_real approach;              /* elastic, of that F_N */
@@ -933,6 +934,14 @@ ASPERITY_FN void asperity_stand(const asperity_table *t, const asperity_curve *v
     asperity_place_of(t->form, v, p->f_t * (ASPERITY_R(1.0) / (t->friction * v->f_n_slip)), &p->place);
 }
 
+/* Share of a displacement that the sliders take where their force meanwhile flows by `flow` e-folds, (1 - e^-flow)/flow. Without it a press under shear would keep more of F_T the longer its steps are. */
+ASPERITY_FN asperity_real asperity_taken(asperity_real flow) {
+    if (flow < ASPERITY_R(0.05)) {
+        return ASPERITY_R(1.0) - flow * (ASPERITY_R(0.5) - flow * (ASPERITY_R(1.0 / 6.0) - flow * (ASPERITY_R(1.0 / 24.0) - flow * ASPERITY_R(1.0 / 120.0))));
+    }
+    return (ASPERITY_R(1.0) - asperity_exponential_near(-flow)) / flow;
+}
+
 /* Moves h with delta_T held. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, and `stiffness` its slope. */
 ASPERITY_FN void asperity_press(
     const asperity_table *t, asperity_work *s, const asperity_curve *v, asperity_real trial, asperity_real stiffness, asperity_real h, int derivatives, asperity_pressed *p) {
@@ -940,7 +949,7 @@ ASPERITY_FN void asperity_press(
     int grown = h > s->h_max;
     asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, share, soft, rate, flow, falls, gain, along, slope[2], raised, keep, change;
     asperity_place place;
-    p->slip = zero;
+    p->slip = p->flow = zero;
     p->shape = -ASPERITY_R(1.0);
     p->df_n_dh = stiffness;
     asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
@@ -991,6 +1000,7 @@ ASPERITY_FN void asperity_press(
     soft = soft > zero ? soft * soft : zero;
     rate = ASPERITY_R(2.6) * (soft * soft) * (ASPERITY_R(1.0) - ASPERITY_R(0.5) * (share * share));
     flow = trial > cap ? rate * ((trial - cap) * v->per_force) : zero;
+    p->flow = flow;
     keep = slip_force * place.f_t < f_t ? slip_force * place.f_t / f_t : ASPERITY_R(1.0);
     keep *= asperity_exponential_near(-flow);
     asperity_back(t->form, v, keep * f_t * per_slip_force, &place);
@@ -1183,7 +1193,7 @@ ASPERITY_FN void asperity_update(
     const asperity_curve *before = &v;
     asperity_pressed p;
     asperity_real inverse = one / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, e, log_h, exponential[4] ASPERITY_ALIGNED, old_exponential[4] ASPERITY_ALIGNED;
-    asperity_real level, at_trial, trial, stiffness, old_n, old_t[2], stored, total, slip, keep;
+    asperity_real level, at_trial, trial, stiffness, old_n, old_t[2], stored, total, slip, keep, share;
     int grown, touched, first;
     memset(out, 0, sizeof *out);
     if (tangent) {
@@ -1305,19 +1315,20 @@ ASPERITY_FN void asperity_update(
     s.h_max = greatest;
     s.x = p.x;
     size = p.f_n;
-    slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, d0, d1);
+    share = asperity_taken(p.flow);
+    slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, share * d0, share * d1);
     if (dh != zero || out->f_n != size) {
         s.approach = p.approach;
     }
     if (tangent) {
         tangent->df_n_dh = p.df_n_dh * modulus * radius;
         tangent->a = asperity_radius(t, &v) * asperity_power(s.approach / v.depth, v.gamma - one) * radius;
-        tangent->df_n_ddelta[0] *= modulus * radius;
-        tangent->df_n_ddelta[1] *= modulus * radius;
-        tangent->df_t_ddelta[0][0] *= modulus * radius;
-        tangent->df_t_ddelta[0][1] *= modulus * radius;
-        tangent->df_t_ddelta[1][0] *= modulus * radius;
-        tangent->df_t_ddelta[1][1] *= modulus * radius;
+        tangent->df_n_ddelta[0] *= share * modulus * radius;
+        tangent->df_n_ddelta[1] *= share * modulus * radius;
+        tangent->df_t_ddelta[0][0] *= share * modulus * radius;
+        tangent->df_t_ddelta[0][1] *= share * modulus * radius;
+        tangent->df_t_ddelta[1][0] *= share * modulus * radius;
+        tangent->df_t_ddelta[1][1] *= share * modulus * radius;
     }
     out->stored = asperity_energy(&v, out->f_n, s.approach, s.deflection);
     /* What was done (by the mean of the forces before and after) and is not stored. The sliders' share is friction's, all of it in an elastic contact; the rest plastic flow's. */

@@ -722,8 +722,15 @@ def scale(deflection, keep):
     return [[keep * q[0], keep * q[1]] for q in deflection]
 
 
+def taken(flow):
+    """Share of a displacement that the sliders take where their force meanwhile flows by `flow` e-folds."""
+    if flow < 0.05:
+        return 1.0 - flow * (0.5 - flow * (1.0 / 6.0 - flow * (1.0 / 24.0 - flow / 120.0)))
+    return (1.0 - math.exp(-flow)) / flow
+
+
 def press(p, s, v, h):
-    """Moves h with delta_T held: the normal force, x, dF_N/dh."""
+    """Moves h with delta_T held: the normal force, x, dF_N/dh, and by how many e-folds F_T has flowed."""
     dh = h - s.h
     grown = h > s.h_max
     first = grown and (s.x == 0.0 or not s.h_max > 0.0)
@@ -743,10 +750,10 @@ def press(p, s, v, h):
         stiffness = v.gamma * trial / e if e > 0.0 else 0.0
     f_n = trial if trial < v.f_n0 else v.f_n0
     if dh == 0.0:
-        return f_n, s.x, v.slope if s.x == 0.0 and s.h == s.h_max else stiffness
+        return f_n, s.x, v.slope if s.x == 0.0 and s.h == s.h_max else stiffness, 0.0
     elastic = mobilisation(v, f_n)
     if dh < 0.0:
-        return f_n, elastic if elastic > s.x else s.x, stiffness
+        return f_n, elastic if elastic > s.x else s.x, stiffness, 0.0
     if trial >= v.f_n0 and grown:
         stiffness = v.slope
     s.deflection = slide(s.deflection, slider_limits(p, v, f_n), (0.0, 0.0))
@@ -754,7 +761,7 @@ def press(p, s, v, h):
     f_t = math.sqrt(force[0] * force[0] + force[1] * force[1])
     slip_force = p.friction * v.f_n_slip
     if f_t <= slip_force * tangential_shape(v, elastic)[0] or is_elastic(v):
-        return f_n, elastic, stiffness
+        return f_n, elastic, stiffness, 0.0
     bound, before = tangential_shape_inverse(v, f_t / slip_force)
     cap = normal_cap(v, bound)
     share = f_t / slip_force if f_t < slip_force else 1.0
@@ -774,7 +781,7 @@ def press(p, s, v, h):
     slope = slope if raised < f_n and slope < stiffness else stiffness
     f_n = raised if raised < f_n else f_n
     s.deflection = scale(s.deflection, keep)
-    return f_n, x, slope
+    return f_n, x, slope, flow
 
 
 def shear(p, s, out, v, f_n, increment):
@@ -853,7 +860,7 @@ def update(p, state, h, increment):
         s.h = h
         return s, out
     v = virgin(p, greatest)
-    f_n, x, df_n_dh = press(p, s, v, h)
+    f_n, x, df_n_dh, flow = press(p, s, v, h)
     if h != state.h:
         s.approach = approach_at(v, f_n) if f_n > 0.0 else state.approach + (h - state.h)
     s.h = h
@@ -863,7 +870,10 @@ def update(p, state, h, increment):
         s.deflection = [[0.0, 0.0] for _ in range(SLIDERS)]
         return s, out
     out.df_n_dh = df_n_dh
-    shear(p, s, out, v, f_n, increment)
+    share = taken(flow)
+    shear(p, s, out, v, f_n, (share * increment[0], share * increment[1]))
+    out.df_t_ddelta = [[share * k for k in row] for row in out.df_t_ddelta]
+    out.df_n_ddelta = [share * k for k in out.df_n_ddelta]
     out.a = v.a * (s.approach / v.depth) ** (v.gamma - 1.0)
     return s, out
 

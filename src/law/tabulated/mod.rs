@@ -220,17 +220,17 @@ impl Tabulated {
         if body != self.body {
             return refuse(format!("it is a contact with {body}, and the table is of one with {}", self.body));
         }
-        let mu = self.friction();
-        match case.contact.friction {
-            Friction::Coefficient(friction) if !differ(friction, mu) => {}
-            Friction::Coefficient(friction) => return refuse(format!("mu = {friction}, and the table is of mu = {mu}")),
-            Friction::Stick => return refuse(format!("friction = \"stick\", and the table is of mu = {mu}")),
-        }
         if own.sphere.flat != other.sphere.flat {
             return refuse("which of the two bodies is flat differs".to_owned());
         }
         if let Some(what) = difference(&own.material, &other.material) {
             return refuse(what);
+        }
+        let mu = self.friction();
+        match case.contact.friction {
+            Friction::Coefficient(friction) if !differ(friction, mu) => {}
+            Friction::Coefficient(friction) => return refuse(format!("mu = {friction}, and the table is of mu = {mu}")),
+            Friction::Stick => return refuse(format!("friction = \"stick\", and the table is of mu = {mu}")),
         }
         match (&own.opponent, &other.opponent) {
             (Some(Opponent::Rigid { radius: own }), Some(Opponent::Rigid { radius: other })) if differ(*own, *other) => {
