@@ -35,9 +35,9 @@ struct Tally {
 
 impl Observer for Tally {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        self.steps = view.record.step;
-        self.newton += view.record.newton_iterations;
-        self.krylov += view.record.krylov_iterations;
+        self.steps = view.record.0.step;
+        self.newton += view.record.0.newton_iterations;
+        self.krylov += view.record.0.krylov_iterations;
         self.times += view.report.times;
         Ok(())
     }

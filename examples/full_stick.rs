@@ -95,7 +95,7 @@ struct Watch {
 
 impl Observer for Watch {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        self.rows.push(view.record);
+        self.rows.push(view.record.0);
         Ok(())
     }
 

@@ -24,7 +24,7 @@ struct Watch {
 
 impl Observer for Watch {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
-        self.rows.push(view.record);
+        self.rows.push(view.record.0);
         self.fallbacks += view.report.fallbacks;
         Ok(())
     }

@@ -74,6 +74,10 @@ done
 begin "cargo doc"
 RUSTDOCFLAGS="-Dwarnings" cargo doc --no-deps
 
+# A library on the CPU alone runs a case, and says what it was built without.
+begin "cargo test --no-default-features --lib session"
+cargo test --quiet --no-default-features --lib session
+
 # Licences, versions, sources, and known faults where their database can be had. To build cargo-deny
 # takes longer than all tests: only where it is, or with ASPERITY_DENY=install.
 begin "cargo deny"

@@ -16,7 +16,7 @@ struct Records(Vec<StepRecord>);
 
 impl Observer for Records {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.0.push(view.record);
+        self.0.push(view.record.0);
         Ok(())
     }
     fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {

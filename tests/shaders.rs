@@ -1,8 +1,12 @@
 //! Every shader in both precisions, without a device: it compiles, does not contain what compiles
 //! and is wrong, and is what the kernel list says of it.
 
-use asperity::internals::compute::gpu::lint::{self, Checked, Rule};
+#[path = "shaders/lint.rs"]
+mod lint;
+
 use asperity::internals::compute::gpu::shader_sources::{Assembled, Binding, KERNELS, Kernel, MATH, Precision, Source, TENSOR};
+use asperity::internals::compute::gpu::validate::{Checked, validate};
+use lint::Rule;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -47,7 +51,7 @@ fn every_shader_file_is_in_some_kernel() {
 #[test]
 fn entry_points_and_bindings_are_as_listed() {
     each_kernel(|kernel, precision, source| {
-        let Checked { module, info } = lint::validate(source).unwrap();
+        let Checked { module, info } = validate(source).unwrap();
         assert_eq!(module.entry_points.len(), 1, "{}", kernel.name);
         let entry = &module.entry_points[0];
         assert_eq!((entry.name.as_str(), entry.workgroup_size), (kernel.name, [kernel.workgroup, 1, 1]));
@@ -88,7 +92,7 @@ fn entry_points_and_bindings_are_as_listed() {
 #[test]
 fn private_arrays_stay_small() {
     each_kernel(|kernel, precision, source| {
-        let largest = lint::private_bytes(&lint::validate(source).unwrap());
+        let largest = lint::private_bytes(&validate(source).unwrap());
         let limit = if precision == Precision::F64 { 1024 } else { 512 };
         assert!(largest[0].1 <= limit, "{} in {precision}: {} has {} bytes", kernel.name, largest[0].0, largest[0].1);
     });
@@ -164,7 +168,7 @@ fn the_spirv_is_valid() {
     }
     let folder = tempfile::tempdir().unwrap();
     each_kernel(|kernel, precision, source| {
-        let Checked { module, info } = lint::validate(source).unwrap();
+        let Checked { module, info } = validate(source).unwrap();
         let options = naga::back::spv::Options { lang_version: (1, 3), ..Default::default() };
         let words = naga::back::spv::write_vec(&module, &info, &options, None).unwrap();
         let path = folder.path().join(format!("{}_{precision}.spv", kernel.name));

@@ -55,7 +55,7 @@ type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 impl Observer for Watch {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        self.rows.push(view.record);
+        self.rows.push(view.record.0);
         Ok(())
     }
     fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
@@ -141,7 +141,7 @@ fn held_gap(case: &Case, rows: &[StepRecord]) -> Option<f64> {
 
 /// A case in few words.
 fn describe(case: &Case) -> String {
-    let scaled = case.scaled();
+    let scaled = case.scaled().0;
     let path: Vec<String> = scaled
         .path
         .iter()

@@ -6,7 +6,7 @@ use super::BenchError;
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::lanes::Lanes;
-use crate::material::{Elasticity, Hardening, HardeningError, Material, PointState, return_mapping};
+use crate::material::{Elasticity, Hardening, Material, MaterialError, PointState, return_mapping};
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::mesh::{Mesh, MeshError};
 use crate::real::Real;
@@ -36,7 +36,7 @@ impl Seeded {
 ///
 /// # Errors
 /// None, unless the constants here are no law.
-pub fn laws<R: Real>() -> Result<Vec<(&'static str, Material<R>)>, HardeningError> {
+pub fn laws<R: Real>() -> Result<Vec<(&'static str, Material<R>)>, MaterialError> {
     let laws = [
         ("elastic", Hardening::Elastic),
         ("ideal", Hardening::ideal(2e-3)?),

@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 use crate::compute::ComputeError;
 use crate::compute::gpu::{DeviceRequest, GpuContext, GpuError};
-use crate::material::HardeningError;
+use crate::material::MaterialError;
 use crate::mesh::MeshError;
 use copy::CopyRates;
 use report::{Header, Report};
@@ -44,7 +44,7 @@ pub enum BenchError {
     Mesh(#[from] MeshError),
     /// The bench's materials.
     #[error("the bench's own materials cannot be built: {0}")]
-    Material(#[from] HardeningError),
+    Material(#[from] MaterialError),
     /// A pool of threads.
     #[error("--threads {threads}: cannot start that many threads: {what}. Give fewer")]
     Threads {

@@ -3,7 +3,7 @@
 //! like are left out.
 
 use crate::compute::gpu::Evaluation;
-use crate::compute::gpu::batch::{CONTACT_ANSWER, CONTACT_TRIAL};
+use crate::compute::gpu::batch::{CONTACT_ANSWER, CONTACT_TRIAL, MODULI};
 use crate::compute::gpu::material::{ANSWER, RELATIVE, STATE, TANGENT};
 use crate::compute::gpu::resident::{GRADIENT, HISTORY};
 use crate::contact::coulomb::Rows;
@@ -24,8 +24,6 @@ pub struct Sizes {
     pub blocks: usize,
 }
 
-/// Components of `moduli` in `tangent.wgsl`.
-const MODULI: usize = 31;
 /// Indices in the lists and numbers of status.
 const INDEX: usize = 4;
 /// Pairs of nodes of an element with a <= b.

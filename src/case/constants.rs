@@ -1,16 +1,16 @@
 //! From a case file's material to the constants that the kernels take.
 
 use super::{Hardening, Material};
-use crate::material::{self, Elasticity, HardeningError};
+use crate::material::{self, Elasticity, MaterialError};
 use crate::real::Real;
 
 impl Material {
     /// The material with stresses divided by Young's modulus: E = 1.
     ///
     /// # Errors
-    /// [`HardeningError`] for parameters that no law has; the checks of a case file that was read
+    /// [`MaterialError`] for parameters that no law has; the checks of a case file that was read
     /// leave none.
-    pub fn constants<R: Real>(&self) -> Result<material::Material<R>, HardeningError> {
+    pub fn constants<R: Real>(&self) -> Result<material::Material<R>, MaterialError> {
         let hardening = self.hardening.scaled(self.youngs_modulus).law(1.0)?;
         Ok(material::Material { elasticity: Elasticity::new(1.0, self.poissons_ratio), hardening })
     }
@@ -19,7 +19,7 @@ impl Material {
     ///
     /// # Errors
     /// As [`Material::constants`].
-    pub fn constants_as_given<R: Real>(&self) -> Result<material::Material<R>, HardeningError> {
+    pub fn constants_as_given<R: Real>(&self) -> Result<material::Material<R>, MaterialError> {
         let hardening = self.hardening.law(self.youngs_modulus)?;
         Ok(material::Material { elasticity: Elasticity::new(self.youngs_modulus, self.poissons_ratio), hardening })
     }
@@ -29,8 +29,8 @@ impl Hardening {
     /// The hardening law; `youngs_modulus` in the unit of its stresses.
     ///
     /// # Errors
-    /// [`HardeningError`] for parameters that no law has.
-    pub fn law<R: Real>(&self, youngs_modulus: f64) -> Result<material::Hardening<R>, HardeningError> {
+    /// [`MaterialError`] for parameters that no law has.
+    pub fn law<R: Real>(&self, youngs_modulus: f64) -> Result<material::Hardening<R>, MaterialError> {
         use material::Hardening as Law;
         match *self {
             Hardening::Elastic => Ok(Law::Elastic),

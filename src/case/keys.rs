@@ -7,6 +7,8 @@ use Kind::{Material, Number, Points, ShareOrTrue, Text, Truth, Whole, Word};
 use Limit::{Above, AtLeast, AtMost, Free};
 use Presence::{Defaults, Optional, Required};
 
+use crate::mesh::FINE_ZONES;
+
 /// One key of a case file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
@@ -275,7 +277,7 @@ pub const KEYS: &[Key] = &[
         range: "1.1 to 3",
         meaning: "radius of the finely meshed zone over the contact radius; it is enlarged if the contact leaves it",
         example: "1.3",
-        ..key("mesh", "fine_zone", Number(AtLeast(1.1), AtMost(3.0), &[]), Defaults("1.3"))
+        ..key("mesh", "fine_zone", Number(AtLeast(*FINE_ZONES.start()), AtMost(*FINE_ZONES.end()), &[]), Defaults("1.3"))
     },
     Key {
         unit: LENGTH,

@@ -10,6 +10,7 @@ mod error;
 mod estimate;
 mod hardening;
 pub mod keys;
+mod material;
 mod mistakes;
 mod opponent;
 mod path;
@@ -33,6 +34,7 @@ pub use path::{Hold, Segment, ShearTarget};
 pub use pictures::{PictureFormat, PictureWidth, UnitLabels, WIDTHS, WidthUnit};
 pub(crate) use read::CONTACT_RADII;
 pub use reader::{Field, Reader};
+pub use scale::Scaled;
 pub use schema::{case_schema, study_schema};
 pub use starter::starter_case;
 

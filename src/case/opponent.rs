@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::error::CaseError;
-use super::read::{MAGNITUDES, read_material};
+use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
 use super::{Material, Opponent, Sphere};
 

@@ -4,18 +4,17 @@ use std::path::Path;
 
 use super::document::Document;
 use super::error::{CaseError, Place};
+use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
 use super::{
-    Case, Contact, Fields, Friction, Hardening, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere,
-    UnitLabels, estimate, opponent, path, pictures,
+    Case, Contact, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere, UnitLabels,
+    estimate, opponent, path, pictures,
 };
 use crate::bounded;
+use crate::mesh::{FINE_ZONES, LARGEST_CONTACT};
 
-/// Radius and Young's modulus, in the units of the case: between these energies, of the order of E
-/// R^3, are neither infinite nor nothing.
-pub(super) const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-75..=1e75;
 /// Smallest and largest a/R that the sphere is meshed for.
-pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, 0.65);
+pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, LARGEST_CONTACT);
 
 impl Case {
     /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the
@@ -127,15 +126,6 @@ fn read_sphere(table: &Reader<'_>) -> Result<Sphere, CaseError> {
     Ok(Sphere { radius, flat: table.get("flat").map_or(Ok(false), |flat| flat.boolean())? })
 }
 
-pub(super) fn read_material(table: &Reader<'_>) -> Result<Material, CaseError> {
-    table.only(&["youngs_modulus", "poissons_ratio", "hardening"])?;
-    let (stress, ratio) = ("a stress > 0 (from 1e-75 to 1e75)", "a number > -1 and < 0.5");
-    let youngs_modulus = table.require("youngs_modulus", stress)?.number(stress, |e| MAGNITUDES.contains(&e))?;
-    let poissons_ratio = table.require("poissons_ratio", ratio)?.number(ratio, |nu| nu > -1.0 && nu < 0.5)?;
-    let hardening = Hardening::read(&table.require_table("hardening", "a table with law")?, youngs_modulus)?;
-    Ok(Material { youngs_modulus, poissons_ratio, hardening })
-}
-
 fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
     table.only(&["friction"])?;
     let allowed = "a number >= 0, or \"stick\"";
@@ -155,7 +145,7 @@ fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
         mesh.elements_per_contact_radius = field.count(4..=32)?;
     }
     if let Some(field) = table.get("fine_zone") {
-        mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| (1.1..=3.0).contains(&ratio))?;
+        mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| FINE_ZONES.contains(&ratio))?;
     }
     if let Some(field) = table.get("contact_radius") {
         let (smallest, largest) = CONTACT_RADII;

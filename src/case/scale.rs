@@ -1,12 +1,21 @@
 //! The case in units in which R = 1 and E = 1, as one body sees it.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Case, Contact, Material, Mesh, Opponent, Segment, ShearTarget, Sphere};
+
+/// Lengths over R, stresses over E, forces over E R^2, energies over E R^3, of one body. It is no
+/// `T`, and none is made of it unseen: what is in the user's units is not taken for what is scaled,
+/// nor the other way round.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Scaled<T>(pub T);
 
 impl Case {
     /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2.
     /// Indentation and shear are what one body moves: half of the relative displacement in an equal
     /// pair, which the copy is one no more. Any other opponent is scaled too.
-    pub fn scaled(&self) -> Case {
+    pub fn scaled(&self) -> Scaled<Case> {
         let (radius, modulus) = (self.sphere.radius, self.material.youngs_modulus);
         let travel = radius * self.bodies();
         let segment = |segment: &Segment| match *segment {
@@ -19,7 +28,7 @@ impl Case {
             }
             unscaled => unscaled,
         };
-        Case {
+        Scaled(Case {
             sphere: Sphere { radius: 1.0, flat: self.sphere.flat },
             material: Material {
                 youngs_modulus: 1.0,
@@ -44,6 +53,6 @@ impl Case {
             output: self.output.clone(),
             units: self.units.clone(),
             path: self.path.iter().map(segment).collect(),
-        }
+        })
     }
 }

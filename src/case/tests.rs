@@ -104,9 +104,9 @@ fn scaling_makes_copies_in_other_units_alike() {
         "mesh.contact_radius=0.2e-3",
         "path.2.indentation=0.01e-3",
     ];
-    let (left, right) = (ideal(&settings).scaled(), ideal(&metres).scaled());
+    let (left, right) = (ideal(&settings).scaled().0, ideal(&metres).scaled().0);
     assert_eq!((left.sphere.radius, left.material.youngs_modulus), (1.0, 1.0));
-    assert_eq!(left.scaled(), left);
+    assert_eq!(left.scaled().0, left);
     let close = |a: f64, b: f64| assert!((a - b).abs() <= 4.0 * f64::EPSILON * b.abs(), "{a} against {b}");
     let numbers = |case: &Case| {
         let mut numbers =
@@ -207,6 +207,6 @@ fn both_at_once_and_a_share_of_the_force_read_back() {
     assert_eq!(case.path, expected);
     assert_eq!(parse(&case.to_toml(), &[]).expect("it reads back"), case);
     // What has a unit is scaled, a ratio is not.
-    let scaled = ideal(&["sphere.radius=2", "path=[{indentation=0.02,shear=-0.01},{release=0.5}]"]).scaled();
+    let scaled = ideal(&["sphere.radius=2", "path=[{indentation=0.02,shear=-0.01},{release=0.5}]"]).scaled().0;
     assert_eq!(scaled.path, [Segment::Oblique { indentation: 0.01, shear: -0.005 }, Segment::Release { share: 0.5 }]);
 }

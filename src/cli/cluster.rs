@@ -4,23 +4,20 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use clap::ValueEnum;
-
-use super::options::{Device, Precision};
-use super::study::StudyArgs;
 use super::{CliError, Outcome};
 use crate::study::slurm::{self, Slurm};
 use crate::study::{self, Merged, Study, StudyDirectory};
 
-/// Writes the scripts, and submits them if that is wanted.
-pub fn slurm(study: &Study, arguments: &[String], args: &StudyArgs) -> Result<Outcome, CliError> {
+/// Writes the scripts, whose tasks have these `options` of the command too, and submits them if
+/// that is wanted.
+pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String], submit: bool) -> Result<Outcome, CliError> {
     let slurm = Slurm::parse(arguments)?;
     let program =
-        std::env::current_exe().map_err(|source| CliError::Out { dir: args.out.clone(), what: "find this program", source })?;
-    study::prepare(study, &args.out)?;
-    let scripts = slurm::write(&StudyDirectory::new(&args.out), &slurm, &program, &options(args))?;
+        std::env::current_exe().map_err(|source| CliError::Out { dir: out.to_owned(), what: "find this program", source })?;
+    study::prepare(study, out)?;
+    let scripts = slurm::write(&StudyDirectory::new(out), &slurm, &program, options)?;
     let script = scripts.submit.display();
-    if !args.submit {
+    if !submit {
         super::print(&format!("{}, {} tasks; to submit them: bash {script}\n", study.size(), slurm.tasks))?;
         return Ok(Outcome::Done);
     }
@@ -33,21 +30,6 @@ pub fn slurm(study: &Study, arguments: &[String], args: &StudyArgs) -> Result<Ou
     }
     super::print(&format!("{}: {}", study.size(), String::from_utf8_lossy(&output.stdout)))?;
     Ok(Outcome::Done)
-}
-
-/// The options of this command that the tasks are to have too.
-fn options(args: &StudyArgs) -> Vec<String> {
-    let mut options = Vec::new();
-    if args.device.device != Device::default() {
-        options.extend(args.device.device.to_possible_value().map(|value| format!("--device={}", value.get_name())));
-    }
-    if args.device.precision != Precision::default() {
-        options.extend(args.device.precision.to_possible_value().map(|value| format!("--precision={}", value.get_name())));
-    }
-    if args.retry {
-        options.push("--retry".to_owned());
-    }
-    options
 }
 
 /// Joins directories and says what is missing.

@@ -3,7 +3,7 @@
 
 use super::CliError;
 use crate::case::short;
-use crate::compute::gpu::buffers::MEMORY_VARIABLE;
+use crate::compute::gpu::memory::MEMORY_VARIABLE;
 
 /// Refuses environment variables that mean nothing.
 ///

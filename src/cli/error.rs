@@ -7,7 +7,7 @@ use super::snippet;
 use crate::bench::BenchError;
 use crate::case::CaseError;
 use crate::law::LawError;
-use crate::material::HardeningError;
+use crate::material::MaterialError;
 use crate::output::OutputError;
 use crate::processor::TooOld;
 use crate::session::SessionError;
@@ -68,7 +68,7 @@ pub enum CliError {
         /// The case file.
         file: PathBuf,
         /// What the material says.
-        source: HardeningError,
+        source: MaterialError,
     },
     /// The deformation of `asperity point`.
     #[error("{what}")]

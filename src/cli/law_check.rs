@@ -62,7 +62,7 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
     for (name, case) in &cases {
         let checked = check(&law, case, args.elements as usize).map_err(in_case)?;
         let friction = case.contact.friction;
-        print(&format!("{name}, {friction:?}, {:?}\n{}\n", case.scaled().material.hardening, table(&checked)))?;
+        print(&format!("{name}, {friction:?}, {:?}\n{}\n", case.scaled().0.material.hardening, table(&checked)))?;
         count += checked.len();
         within += checked.iter().filter(|one| one.errors().iter().all(Errors::within)).count();
         failed += checked.iter().filter(|one| one.failure.is_some()).count();

@@ -7,7 +7,8 @@ use clap::{Args, ValueEnum};
 
 use super::{CliError, Outcome};
 use crate::case;
-use crate::material::point::{DriveError, PointRecord, along, simple_shear, uniaxial};
+use crate::material::MaterialError;
+use crate::material::point::{PointRecord, along, simple_shear, uniaxial};
 
 /// Strain that is reached unless `--strain` says otherwise.
 const STRAIN: f64 = 0.1;
@@ -119,7 +120,7 @@ pub fn read_path(file: &Path) -> Result<Vec<[[f64; 3]; 3]>, CliError> {
 }
 
 /// Prints the records, stresses and energies times `unit`.
-fn print(records: impl Iterator<Item = Result<PointRecord, DriveError>>, unit: f64) -> Result<Outcome, CliError> {
+fn print(records: impl Iterator<Item = Result<PointRecord, MaterialError>>, unit: f64) -> Result<Outcome, CliError> {
     let mut out = BufWriter::new(io::stdout().lock());
     match write(&mut out, records, unit) {
         Ok(None) => Ok(Outcome::Done),
@@ -136,9 +137,9 @@ fn print(records: impl Iterator<Item = Result<PointRecord, DriveError>>, unit: f
 /// Writes the header and a row for each record; returns the error that ended the path, if any.
 fn write(
     out: &mut impl Write,
-    records: impl Iterator<Item = Result<PointRecord, DriveError>>,
+    records: impl Iterator<Item = Result<PointRecord, MaterialError>>,
     unit: f64,
-) -> io::Result<Option<DriveError>> {
+) -> io::Result<Option<MaterialError>> {
     writeln!(out, "{COLUMNS}")?;
     for record in records {
         let record = match record {

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::backend::{device_choice, precision_choice};
 use super::input::Input;
-use super::options::{DeviceArgs, Verbosity};
+use super::options::{Device, DeviceArgs, Precision, Verbosity};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, cluster};
 use crate::compute::ComputeError;
@@ -75,12 +75,27 @@ pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
     // Clap lets no study pass without its file.
     let study = Input::read(args.study.as_deref().unwrap_or(Path::new("")))?.study()?;
     if let Some(arguments) = &args.slurm {
-        return cluster::slurm(&study, arguments, args);
+        return cluster::slurm(&study, arguments, &args.out, &options_of_tasks(args), args.submit);
     }
     let options =
         Options { shard: args.shard, resume: args.resume, retry: args.retry, force: args.force, ..options(&args.device) };
     let (report, interrupted) = compute(&study, &args.out, &options, args.verbosity.quiet)?;
     conclude(&report, interrupted, args)
+}
+
+/// The options of this command that the tasks are to have too.
+fn options_of_tasks(args: &StudyArgs) -> Vec<String> {
+    let mut options = Vec::new();
+    if args.device.device != Device::default() {
+        options.extend(args.device.device.to_possible_value().map(|value| format!("--device={}", value.get_name())));
+    }
+    if args.device.precision != Precision::default() {
+        options.extend(args.device.precision.to_possible_value().map(|value| format!("--precision={}", value.get_name())));
+    }
+    if args.retry {
+        options.push("--retry".to_owned());
+    }
+    options
 }
 
 /// A whole study, begun anew, on the device and the threads that the arguments name.

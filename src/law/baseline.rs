@@ -6,8 +6,7 @@
 //! Cattaneo and Mindlin's law, and that of a uniform pressure, the fully plastic limit.
 
 use super::data::Sample;
-use super::fit::case_errors;
-use super::report::{Candidate, Errors};
+use super::report::{Candidate, Errors, case_errors};
 use crate::analytical::mesarovic_johnson::Unloading;
 use crate::analytical::{ElasticSphere, hertz, jaeger_ciavarella};
 

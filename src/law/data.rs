@@ -6,7 +6,7 @@ use std::path::Path;
 use super::LawError;
 use super::table::StudyTable;
 use super::variables::{Body, Variables};
-use crate::case::{Case, Friction, Hold, Segment};
+use crate::case::{Case, Friction, Hold, Scaled, Segment};
 use crate::output::{OutputDirectory, StepRecord, Summary, SummaryInputs, read_history};
 
 /// One point of a shear, as sizes, in the case's units.
@@ -89,16 +89,16 @@ impl StudyData {
     /// No study there; a table, case or history that cannot be read.
     pub fn read(dir: &Path) -> Result<Self, LawError> {
         let mut data = Self { samples: Vec::new(), skipped: Vec::new() };
-        let mut materials: Vec<Case> = Vec::new();
+        let mut materials: Vec<Scaled<Case>> = Vec::new();
         for row in StudyTable::read(&dir.join("study.csv"))?.rows {
             let skipped = if row.is_done() {
                 let directory = OutputDirectory::existing(dir.join(&row.directory));
                 match read_sample(&row.id, &directory, &mut materials)? {
-                    Ok(sample) => {
-                        data.samples.push(sample);
+                    Usable::Yes(sample) => {
+                        data.samples.push(*sample);
                         continue;
                     }
-                    Err(reason) => reason.to_owned(),
+                    Usable::No(reason) => reason.to_owned(),
                 }
             } else {
                 row.status
@@ -126,48 +126,51 @@ impl StudyData {
     }
 }
 
-/// A sample from a run's directory, or why it is none.
-fn read_sample(
-    id: &str,
-    directory: &OutputDirectory,
-    materials: &mut Vec<Case>,
-) -> Result<Result<Sample, &'static str>, LawError> {
+/// Whether a law can be fitted to a run.
+enum Usable {
+    Yes(Box<Sample>),
+    /// Why not, as the end of "left out: 3 ...".
+    No(&'static str),
+}
+
+/// A sample from a run's directory.
+fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled<Case>>) -> Result<Usable, LawError> {
     let case = Case::load(&directory.case(), &[])?;
     if case.opponent.is_some() {
-        return Ok(Err("against another sphere, not a plane"));
+        return Ok(Usable::No("against another sphere, not a plane"));
     }
     let friction = match case.contact.friction {
         Friction::Coefficient(mu) if mu > 0.0 => mu,
-        Friction::Coefficient(_) => return Ok(Err("without friction")),
-        Friction::Stick => return Ok(Err("with full stick")),
+        Friction::Coefficient(_) => return Ok(Usable::No("without friction")),
+        Friction::Stick => return Ok(Usable::No("with full stick")),
     };
     match case.path.as_slice() {
         [Segment::Indentation { .. }, Segment::Shear { hold: Hold::Indentation, .. }, ..] => {}
         [Segment::Indentation { .. }, Segment::Shear { hold: Hold::NormalForce, .. }, ..] => {
-            return Ok(Err("sheared at constant normal force"));
+            return Ok(Usable::No("sheared at constant normal force"));
         }
-        _ => return Ok(Err("not pressed once and then sheared")),
+        _ => return Ok(Usable::No("not pressed once and then sheared")),
     }
     let history = read_history(&directory.history())?;
     let summary = Summary::from_history(&history, &SummaryInputs::of(&case));
     let (Some(h0), Some(a0), Some(f_n0), Some(k_t0), Some(delta_t_99), Some(_)) =
         (summary.h0, summary.a0, summary.f_n0, summary.k_t0, summary.delta_t_slip, summary.f_n_slip)
     else {
-        return Ok(Err("without full slip"));
+        return Ok(Usable::No("without full slip"));
     };
     let curve = first_stroke(&history, f_n0);
     let f_n_slip = curve.last().map_or(f_n0, |point| point.f_n);
     if curve.len() < 5 || !(f_n0 > 0.0 && a0 > 0.0 && h0 > 0.0 && f_n_slip > 0.0) {
-        return Ok(Err("with too few steps"));
+        return Ok(Usable::No("with too few steps"));
     }
     let body = Body::from_case(&case)?;
     let variables = body.variables(h0, a0, f_n0);
     let scaled = case.scaled();
-    let material = materials.iter().position(|known| known.material == scaled.material).unwrap_or_else(|| {
+    let material = materials.iter().position(|known| known.0.material == scaled.0.material).unwrap_or_else(|| {
         materials.push(scaled);
         materials.len() - 1
     });
-    Ok(Ok(Sample {
+    Ok(Usable::Yes(Box::new(Sample {
         id: id.to_owned(),
         body,
         material,
@@ -181,7 +184,7 @@ fn read_sample(
         variables,
         curve,
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,
-    }))
+    })))
 }
 
 /// The first shear as far as it goes in one direction, its start included.

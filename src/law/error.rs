@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::case::CaseError;
 use crate::law::contact::ContactError;
-use crate::material::HardeningError;
+use crate::material::MaterialError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
 
@@ -104,7 +104,7 @@ pub enum LawError {
     Contact(#[from] ContactError),
     /// The hardening law of a case.
     #[error(transparent)]
-    Hardening(#[from] HardeningError),
+    Hardening(#[from] MaterialError),
     /// A case file of the study.
     #[error(transparent)]
     Case(#[from] CaseError),

@@ -19,7 +19,7 @@ use super::model::{self, Axisymmetric, FORMAT, Interval, Law, Parameters, PriorU
 use super::normal::{self, NormalForm, NormalModel};
 use super::own_fit::own_fit;
 use super::prior::{Prior, WEIGHTS};
-use super::report::{Candidate, CaseErrors, Errors, FittedCase, NormalCandidate, by_region};
+use super::report::{Candidate, CaseErrors, Errors, FittedCase, NormalCandidate, by_region, case_errors};
 use super::variables::yield_lambda;
 use super::{baseline, folds};
 
@@ -140,21 +140,6 @@ fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -
     })
     .map_err(failed("F_N(delta_T)"))?;
     Ok(Constants { curve: array(&found), ..constants })
-}
-
-/// Errors of a curve against a sample's: `model`(delta_T) gives F_T and F_N.
-pub(super) fn case_errors(sample: &Sample, model: impl Fn(f64) -> (f64, f64)) -> CaseErrors {
-    let peak = sample.peak();
-    let (mut squares, mut greatest) = ([0.0; 2], [0.0_f64; 2]);
-    for at in &sample.curve {
-        let (f_t, f_n) = model(at.delta_t);
-        for (i, error) in [(f_t - at.f_t) / peak, (f_n - at.f_n) / sample.f_n0].into_iter().enumerate() {
-            squares[i] += error * error;
-            greatest[i] = greatest[i].max(error.abs());
-        }
-    }
-    let rms = squares.map(|sum| (sum / sample.curve.len() as f64).sqrt());
-    [rms[0], greatest[0], rms[1], greatest[1]]
 }
 
 fn law_errors(forms: &Forms, constants: &Constants, sample: &Sample, inputs: &Axisymmetric) -> CaseErrors {

@@ -6,10 +6,10 @@ use super::model::{Axisymmetric, Law, OutOfRange, Parameters};
 use super::normal::NormalState;
 use super::variables::Body;
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
-use crate::simulation::drive::{Ending, Observer, StepView};
+use crate::output::Recorder;
+use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
-use crate::simulation::record::StepRecord;
 
 /// Where F_N0 and a0 come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,28 +140,16 @@ fn displacements(slip: f64, end: f64) -> Vec<f64> {
 
 /// Simulates the press alone.
 fn press(case: &Case) -> Result<NormalState, LawError> {
-    /// Keeps the last step.
-    struct Last(StepRecord);
-    impl Observer for Last {
-        fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-            self.0 = view.record;
-            Ok(())
-        }
-        fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-            Ok(())
-        }
-        fn note(&mut self, _: &str) {}
-    }
     let mut case = case.clone();
     case.path.truncate(1);
     case.mesh.elements_per_contact_radius = case.mesh.elements_per_contact_radius.min(PRESS_ELEMENTS);
-    let mut last = Last(StepRecord::default());
-    match follow(Problem::new(&case)?, None, &mut |problem| on_cpu(problem), &mut last)?.ending {
+    let mut recorder = Recorder::new(&case, None);
+    match follow(Problem::new(&case)?, None, &mut |problem| on_cpu(problem), &mut recorder)?.ending {
         Ending::Done => {}
         Ending::NotConverged(reason) => return Err(LawError::Press(reason)),
         Ending::Outgrown(outgrowth) => return Err(LawError::Press(outgrowth.to_string())),
         Ending::Interrupted => return Err(LawError::Press("it was interrupted".to_owned())),
     }
-    let (radius, modulus) = (case.sphere.radius, case.material.youngs_modulus);
-    Ok(NormalState { a: last.0.a * radius, f_n: last.0.f_n * modulus * radius * radius })
+    let last = recorder.rows.last().copied().unwrap_or_default();
+    Ok(NormalState { a: last.a, f_n: last.f_n })
 }

@@ -5,6 +5,8 @@ use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
 
+use super::data::Sample;
+
 /// Errors over a number of cases. F_T as a share of the peak of F_T, F_N as a share of F_N0; rms
 /// over the points of each curve and over the cases, max over all points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -52,6 +54,21 @@ impl Errors {
         let Self { f_t_rms, f_t_max, f_n_rms, f_n_max, .. } = *self;
         format!("{} {} {} {}", percent(f_t_rms), percent(f_t_max), percent(f_n_rms), percent(f_n_max))
     }
+}
+
+/// Errors of a curve against a sample's: `model`(delta_T) gives F_T and F_N.
+pub fn case_errors(sample: &Sample, model: impl Fn(f64) -> (f64, f64)) -> CaseErrors {
+    let peak = sample.peak();
+    let (mut squares, mut greatest) = ([0.0; 2], [0.0_f64; 2]);
+    for at in &sample.curve {
+        let (f_t, f_n) = model(at.delta_t);
+        for (i, error) in [(f_t - at.f_t) / peak, (f_n - at.f_n) / sample.f_n0].into_iter().enumerate() {
+            squares[i] += error * error;
+            greatest[i] = greatest[i].max(error.abs());
+        }
+    }
+    let rms = squares.map(|sum| (sum / sample.curve.len() as f64).sqrt());
+    [rms[0], greatest[0], rms[1], greatest[1]]
 }
 
 /// A combination of forms, or a baseline, with its errors on cases that it was not fitted to.

@@ -7,7 +7,7 @@
 use crate::analytical::olsson_larsson::plastic_share;
 use crate::analytical::{ElasticSphere, johnson, yielding};
 use crate::case::{self, Case};
-use crate::material::hardening::{Hardening, HardeningError};
+use crate::material::{Hardening, MaterialError};
 
 /// What a sphere is made of: all that its axisymmetric contact depends on. Any one consistent
 /// system of units.
@@ -38,7 +38,7 @@ impl Body {
     ///
     /// # Errors
     /// A hardening law whose numbers make no law.
-    pub fn from_case(case: &Case) -> Result<Self, HardeningError> {
+    pub fn from_case(case: &Case) -> Result<Self, MaterialError> {
         Self::new(case.body_radius(), &case.material)
     }
 
@@ -46,7 +46,7 @@ impl Body {
     ///
     /// # Errors
     /// As [`from_case`](Self::from_case).
-    pub fn new(radius: f64, material: &case::Material) -> Result<Self, HardeningError> {
+    pub fn new(radius: f64, material: &case::Material) -> Result<Self, MaterialError> {
         let (youngs_modulus, poissons_ratio) = (material.youngs_modulus, material.poissons_ratio);
         Ok(Self {
             sphere: ElasticSphere { radius, youngs_modulus, poissons_ratio },

@@ -52,6 +52,8 @@ pub use path_share::PathShare;
 #[cfg(feature = "plots")]
 pub use plots::{Picture, PlotInputs, write_plots};
 #[cfg(feature = "bars")]
+pub(crate) use progress::BAR_PARTS;
+#[cfg(feature = "bars")]
 pub use progress::BarProgress;
 pub use progress::{PlainProgress, Position, Progress, SilentProgress, in_words, last_line, progress};
 pub use recorder::Recorder;

@@ -2,6 +2,7 @@
 
 use super::StepRecord;
 use crate::case::{Segment, ShearTarget};
+use crate::simulation::path::SHEAR_GROWTH;
 
 /// Follows a path, in the units of the records that it is shown.
 #[derive(Clone, Debug)]
@@ -16,8 +17,9 @@ pub struct PathShare {
     share: f64,
 }
 
-/// Shear increments grow as i^1.3, so that the step number grows as this power of the distance.
-const SHEAR_POWER: f64 = 1.0 / 2.3;
+/// Shear increments grow as a power of their number, so that the number grows as this power of the
+/// distance.
+const SHEAR_POWER: f64 = 1.0 / (1.0 + SHEAR_GROWTH);
 /// A shear to full slip is half-way after this many steps; where it ends is not known before.
 const FULL_SLIP_HALF: f64 = 12.0;
 

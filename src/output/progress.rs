@@ -111,9 +111,9 @@ pub struct BarProgress {
     remaining: Remaining,
 }
 
-/// The bar counts in these parts of the path.
+/// A bar counts in these parts of the path, or of a study.
 #[cfg(feature = "bars")]
-const BAR_PARTS: u64 = 1000;
+pub const BAR_PARTS: u64 = 1000;
 
 #[cfg(feature = "bars")]
 impl BarProgress {

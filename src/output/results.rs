@@ -56,6 +56,11 @@ impl Pictures {
     }
 }
 
+/// What a run says that is to draw pictures and cannot: they are asked for by default, so that it
+/// is no error.
+const NO_PICTURES: &str = "no pictures are drawn: this program was built without the feature \"plots\". What they are drawn from is kept, \
+                           and `asperity plot` draws them; output.plots = false asks for none";
+
 /// Refuses what this program was built without before anything is computed.
 fn check_formats(case: &Case, out: &OutputDirectory) -> Result<(), OutputError> {
     if case.output.parquet && !cfg!(feature = "parquet") {
@@ -176,6 +181,10 @@ impl ResultWriter {
             out,
         };
         moved.iter().for_each(|text| results.note(text));
+        // A resumed run has noted it before.
+        if results.plots && cfg!(not(feature = "plots")) && resumed.is_none() {
+            results.note(NO_PICTURES);
+        }
         Ok(results)
     }
 
@@ -323,7 +332,7 @@ impl ResultWriter {
 
     /// Writes fields and contact table of a step, once.
     fn save(&mut self, view: &mut StepView<'_>, contact: &[ContactPoint]) -> Result<(), Failed> {
-        let step = view.record.step;
+        let step = view.record.0.step;
         if self.ledger.saved.last() == Some(&step) {
             return Ok(());
         }
@@ -348,7 +357,7 @@ impl ResultWriter {
         if !self.plots || !is_panel(&self.ledger.rows, self.friction) {
             return Ok(());
         }
-        let (step, contact) = (view.record.step, self.contact(view));
+        let (step, contact) = (view.record.0.step, self.contact(view));
         if self.fields == Fields::Segments {
             write_contact(&self.out.contact(step), &contact)?;
             self.ledger.panels.push(step);
@@ -368,7 +377,7 @@ impl ResultWriter {
 
 impl Observer for ResultWriter {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        if view.record.step == 0 {
+        if view.record.0.step == 0 {
             // The undeformed state is no step that was computed.
             return Ok(());
         }
@@ -402,7 +411,7 @@ impl Observer for ResultWriter {
 
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
         self.ledger.times += view.unfinished;
-        if view.record.step == 0 {
+        if view.record.0.step == 0 {
             return Ok(());
         }
         let begun = Instant::now();
@@ -410,8 +419,8 @@ impl Observer for ResultWriter {
         if self.fields != Fields::None {
             self.save(view, &contact)?;
         } else if self.contact_tables {
-            write_contact(&self.out.contact(view.record.step), &contact)?;
-            self.ledger.saved.push(view.record.step);
+            write_contact(&self.out.contact(view.record.0.step), &contact)?;
+            self.ledger.saved.push(view.record.0.step);
         }
         if self.plots {
             self.ledger.tables.add(&self.ledger.rows, contact);

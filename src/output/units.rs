@@ -2,7 +2,7 @@
 //! user's units and the whole sphere.
 
 use super::{ContactPoint, ContactStatus, Half, StepRecord};
-use crate::case::{self, Case, Segment};
+use crate::case::{self, Case, Scaled, Segment};
 use crate::contact::coulomb::Status;
 use crate::simulation::record;
 
@@ -36,30 +36,31 @@ impl Units {
     }
 }
 
-impl StepRecord {
+impl Scaled<StepRecord> {
     /// The row in the user's units; the scaled one is of the whole sphere already, of one of a
     /// pair.
-    pub fn in_units(&self, units: &Units) -> Self {
+    pub fn in_units(&self, units: &Units) -> StepRecord {
+        let scaled = &self.0;
         let (length, force, energy) = (units.radius, units.force(), units.bodies * units.energy());
         let travel = units.bodies * length;
-        Self {
-            h: self.h * travel,
-            delta_t: self.delta_t * travel,
-            f_n: self.f_n * force,
-            f_t: self.f_t * force,
-            a: self.a * length,
-            stick_radius: self.stick_radius * length,
-            a_gap: self.a_gap * length,
-            reach: self.reach * length,
-            work_external: self.work_external * energy,
-            energy_elastic: self.energy_elastic * energy,
-            work_plastic: self.work_plastic * energy,
-            work_friction: self.work_friction * energy,
-            h_opponent: self.h_opponent * travel,
-            work_plastic_opponent: self.work_plastic_opponent * energy,
-            curvature: self.curvature / length,
+        StepRecord {
+            h: scaled.h * travel,
+            delta_t: scaled.delta_t * travel,
+            f_n: scaled.f_n * force,
+            f_t: scaled.f_t * force,
+            a: scaled.a * length,
+            stick_radius: scaled.stick_radius * length,
+            a_gap: scaled.a_gap * length,
+            reach: scaled.reach * length,
+            work_external: scaled.work_external * energy,
+            energy_elastic: scaled.energy_elastic * energy,
+            work_plastic: scaled.work_plastic * energy,
+            work_friction: scaled.work_friction * energy,
+            h_opponent: scaled.h_opponent * travel,
+            work_plastic_opponent: scaled.work_plastic_opponent * energy,
+            curvature: scaled.curvature / length,
             // Counts, indices and ratios have no unit.
-            ..*self
+            ..*scaled
         }
     }
 }
@@ -131,7 +132,7 @@ mod tests {
 
     #[test]
     fn every_quantity_has_its_own_unit() {
-        let scaled = StepRecord {
+        let scaled = Scaled(StepRecord {
             h: 1.0,
             f_n: 1.0,
             a: 1.0,
@@ -140,7 +141,7 @@ mod tests {
             max_alpha: 1.0,
             contact_points: 3,
             ..StepRecord::default()
-        };
+        });
         let row = scaled.in_units(&UNITS);
         assert_eq!((row.h, row.f_n, row.a, row.work_plastic), (2.0, 400.0, 2.0, 800.0));
         assert_eq!((row.merit, row.max_alpha, row.contact_points), (1.0, 1.0, 3));

@@ -106,7 +106,7 @@ impl Memory {
 
 impl Observer for Memory {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        if view.record.step == 0 {
+        if view.record.0.step == 0 {
             // The undeformed state is no step that was computed.
             return Ok(());
         }

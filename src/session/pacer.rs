@@ -54,7 +54,7 @@ impl<'a> Pacer<'a> {
 impl Observer for Pacer<'_> {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
         self.inner.step(view)?;
-        if view.record.step > 0 {
+        if view.record.0.step > 0 {
             self.rows.push(view.record.in_units(&self.units));
             self.accepted += 1;
         }

@@ -168,3 +168,27 @@ fn a_step_that_does_not_converge_is_an_outcome() {
     assert_eq!((outcome.status, simulation.history().len()), (Status::NotConverged, 0));
     assert!(outcome.message.is_some_and(|message| message.starts_with("no convergence: step 1 of segment 0")));
 }
+
+/// Pictures are drawn, or it is said that they are not; never neither.
+#[test]
+fn a_program_without_pictures_says_so_to_who_asks_for_them() {
+    for plots in [true, false] {
+        let scratch = tempfile::tempdir().expect("a scratch directory");
+        let mut case = case();
+        case.path.truncate(1);
+        case.output.plots = plots;
+        let options = Options { out: Some(scratch.path().to_owned()), ..on_cpu() };
+        let summary = Simulation::with(&case, options).expect("a simulation").run().expect("a run").summary;
+        let said = summary.messages.iter().any(|text| text.contains("no pictures are drawn") && text.contains("\"plots\""));
+        let drawn = std::fs::read_dir(scratch.path().join("plots")).is_ok_and(|mut files| files.next().is_some());
+        assert_eq!(
+            (said, drawn),
+            (plots && cfg!(not(feature = "plots")), plots && cfg!(feature = "plots")),
+            "{:?}",
+            summary.messages
+        );
+        // What they are drawn from is there all the same.
+        let read = Summary::read(&OutputDirectory::existing(scratch.path()).summary()).expect("a summary");
+        assert_eq!(read.messages, summary.messages);
+    }
+}

@@ -136,7 +136,6 @@ pub struct Snapshot {
     /// Force scales of the last accepted step and of all (see
     /// [`crate::solver::newton::Newton::force_scales`]).
     pub(super) force_scales: [f64; 2],
-    pub(super) full_slip: Option<bool>,
     pub(super) case: CaseState,
 }
 

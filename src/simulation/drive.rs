@@ -15,7 +15,7 @@ pub use super::observer::{Observer, StepView};
 use super::path::{Resolution, Start, Target, indentation_targets, oblique_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
-use crate::case::{Segment, ShearTarget};
+use crate::case::{Scaled, Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::traffic::Traffic;
 use crate::compute::{Compute, ComputeError, Outcome};
@@ -25,11 +25,11 @@ use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::encounter::Encounter;
-use crate::solver::newton::{Newton, StepReport};
+use crate::solver::newton::Newton;
 use crate::solver::phases::{Lap, Phase};
 use crate::solver::rigid::position;
 use crate::solver::system::Meeting;
-use crate::solver::{Control, StepFailure};
+use crate::solver::{Control, StepOutcome, StepReport};
 pub use paused::Paused;
 
 /// Follows a path.
@@ -43,7 +43,6 @@ pub struct Drive<'a> {
     place: Place,
     /// Normal force that the present segment holds, of the meshed half.
     held_force: Option<f64>,
-    full_slip: Option<bool>,
     /// How Newton went in the last accepted step.
     last_report: StepReport,
     /// The device's account before the first attempt at the next step.
@@ -80,7 +79,6 @@ impl<'a> Drive<'a> {
             state,
             place: Place::default(),
             held_force: None,
-            full_slip: None,
             last_report: StepReport::default(),
             traffic_before: None,
         }
@@ -100,11 +98,6 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Whether the last shear to full slip reached it; `None` if there was none.
-    pub fn full_slip(&self) -> Option<bool> {
-        self.full_slip
-    }
-
     /// Puts the run back to where a snapshot of it was taken; [`Drive::run`] then goes on from
     /// there.
     ///
@@ -114,7 +107,7 @@ impl<'a> Drive<'a> {
         snapshot.check(&self.mesh)?;
         self.backend.restore(self.case, &snapshot.case)?;
         self.newton.set_force_scales(snapshot.force_scales);
-        (self.state, self.place, self.full_slip) = (snapshot.state, snapshot.place, snapshot.full_slip);
+        (self.state, self.place) = (snapshot.state, snapshot.place);
         self.state.place_points(&self.mesh);
         Ok(())
     }
@@ -126,7 +119,6 @@ impl<'a> Drive<'a> {
                 state: self.state.clone(),
                 place: self.place.clone(),
                 force_scales: self.newton.force_scales(),
-                full_slip: self.full_slip,
                 case: self.backend.state(self.case)?,
             })
         });
@@ -138,7 +130,7 @@ impl<'a> Drive<'a> {
             observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
             self.place.begun = true;
         }
-        let path = &self.problem.case.path;
+        let path = &self.problem.case.0.path;
         while let Some(segment) = path.get(self.place.segment) {
             let start = match self.place.start {
                 Some(start) => start,
@@ -200,8 +192,8 @@ impl<'a> Drive<'a> {
                 Friction::Coulomb(mu) => mu,
                 Friction::Stick => f64::INFINITY,
             },
-            nu: self.problem.case.material.poissons_ratio,
-            compliance: self.problem.case.compliance(),
+            nu: self.problem.case.0.material.poissons_ratio,
+            compliance: self.problem.case.0.compliance(),
             reversed: false,
         }
     }
@@ -232,14 +224,14 @@ impl<'a> Drive<'a> {
                 Friction::Coulomb(_) => self.attempt(&next)?,
             };
             match attempted {
-                Ok(report) => {
+                StepOutcome::Converged(report) => {
                     self.place.waiting.pop();
                     self.place.depth = self.place.depth.saturating_sub(1);
                     self.pace(report.iterations.len());
                     self.accept(&next, report, observer)?;
                     self.checkpoint(false, observer);
                 }
-                Err(failure) => {
+                StepOutcome::Failed(failure) => {
                     let r = &self.state.record;
                     log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
                     self.place.cutbacks += 1;
@@ -298,17 +290,20 @@ impl<'a> Drive<'a> {
     /// stick to before its end, and carries no tangential force in it. If the step fails so, those
     /// slide too that hold a large tangential force under little normal one: they are about to come
     /// off, and there may be no equilibrium with them nor without.
-    fn attempt_stuck(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+    fn attempt_stuck(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         let mut attempted = self.slide_beyond(f64::INFINITY, target)?;
         let ratios = if self.place.depth < SHALLOW { &SLIDING_RATIOS[..1] } else { &SLIDING_RATIOS[..] };
         for &ratio in ratios {
-            let Err(failure) = &attempted else { break };
+            let StepOutcome::Failed(failure) = &attempted else { break };
             log::info!(
                 "points sheared beyond {ratio} of their normal force slide in the step to delta_T = {:.5}: {failure}",
                 target.delta_t
             );
             self.place.wasted += failure.iterations();
-            attempted = self.slide_beyond(ratio, target)?.map(|report| StepReport { relaxed: true, ..report });
+            attempted = self.slide_beyond(ratio, target)?;
+            if let StepOutcome::Converged(report) = &mut attempted {
+                report.relaxed = true;
+            }
         }
         self.newton.set_sliding(&[]);
         Ok(attempted)
@@ -316,7 +311,7 @@ impl<'a> Drive<'a> {
 
     /// One Newton solve in which open points and those slide whose tangential force exceeds `ratio`
     /// times their normal one.
-    fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+    fn slide_beyond(&mut self, ratio: f64, target: &Target) -> Result<StepOutcome, SimulationError> {
         let beyond = |p: &ContactPoint| p.status == Status::Open || p.force[0].hypot(p.force[1]) > ratio * p.force[2];
         let sliding: Vec<bool> = self.state.points.iter().map(beyond).collect();
         self.newton.set_sliding(&sliding);
@@ -324,7 +319,7 @@ impl<'a> Drive<'a> {
     }
 
     /// One Newton solve towards a target; commits nothing.
-    fn attempt(&mut self, target: &Target) -> Result<Result<StepReport, StepFailure>, SimulationError> {
+    fn attempt(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         self.traffic_before = self.traffic_before.or_else(|| self.backend.traffic());
         let mut guess = self.guess(target);
         let h = match (target.hold_force, self.state.last_increment) {
@@ -519,7 +514,7 @@ impl<'a> Drive<'a> {
     fn view(&mut self) -> StepView<'_> {
         let (points, opponent_points) = self.state.points.split_at(self.own_contacts());
         StepView {
-            record: self.state.record,
+            record: Scaled(self.state.record),
             report: &self.last_report,
             unfinished: std::mem::take(&mut self.newton.times),
             mesh: &self.mesh,

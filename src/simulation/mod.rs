@@ -34,7 +34,7 @@ pub enum SimulationError {
     Mesh(#[from] MeshError),
     /// The hardening law's numbers make no law.
     #[error("the material is not usable: {0}")]
-    Hardening(#[from] crate::material::hardening::HardeningError),
+    Hardening(#[from] crate::material::MaterialError),
     /// The solver or the device.
     #[error(transparent)]
     Solver(#[from] SolverError),

@@ -3,10 +3,11 @@
 use super::checkpoint::Snapshot;
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
+use crate::case::Scaled;
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseFields, Compute, ComputeError};
 use crate::mesh::Mesh;
-use crate::solver::newton::StepReport;
+use crate::solver::StepReport;
 use crate::solver::phases::PhaseTimes;
 
 /// Watches a run.
@@ -39,7 +40,7 @@ pub trait Observer {
 /// An accepted step, for output.
 pub struct StepView<'a> {
     /// Its row in the history.
-    pub record: StepRecord,
+    pub record: Scaled<StepRecord>,
     /// How Newton went.
     pub report: &'a StepReport,
     /// Time of attempts since then that led to no step.

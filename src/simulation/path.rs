@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::{Hold, Segment, ShearTarget};
-
 /// Where a step should end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
@@ -54,7 +52,7 @@ pub struct Resolution {
 
 /// Increments of a shear grow as i^1.3: its resolution is needed at the start, where sticking
 /// points begin to slip.
-const SHEAR_GROWTH: f64 = 1.3;
+pub const SHEAR_GROWTH: f64 = 1.3;
 /// The growing increments end at this many elastic slip displacements (full slip was seen at 3.3 of
 /// them in fully plastic contacts).
 const SHEAR_RANGE: f64 = 4.5;
@@ -64,7 +62,7 @@ const FRICTION_LIMIT: f64 = 0.3;
 /// First steps of a press, which grow; they are worth half as many of the others.
 const GROWING_STEPS: usize = 4;
 /// Steps of an unloading over its estimated elastic recovery.
-const RELEASE_STEPS: f64 = 12.0;
+pub const RELEASE_STEPS: f64 = 12.0;
 /// Where everything slips the increments of a shear of given length go on growing, up to this share
 /// of the contact radius.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
@@ -261,14 +259,6 @@ impl ShearSteps {
     /// A shear to full slip is given up beyond this distance.
     pub fn bound(&self, a: f64) -> f64 {
         (3.0 * self.range).max(0.25 * a)
-    }
-}
-
-/// Whether the segment holds the normal force, and its end if it has one.
-pub fn shear_target(segment: &Segment) -> Option<(ShearTarget, bool)> {
-    match segment {
-        Segment::Shear { shear, hold } => Some((*shear, *hold == Hold::NormalForce)),
-        _ => None,
     }
 }
 

@@ -6,14 +6,13 @@ use super::SimulationError;
 use super::path::Resolution;
 use super::zone::Zone;
 use crate::analytical::predicted_contact_radius;
-use crate::case::{self, Case, Opponent, Segment};
+use crate::case::{self, Case, Opponent, Scaled, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
 use crate::linalg::{LinearSolver, SolverKind};
-use crate::material::Material;
-use crate::material::hardening::{Hardening, HardeningError};
-use crate::mesh::couple::{couple, scaled};
+use crate::material::{Hardening, Material, MaterialError};
+use crate::mesh::couple::{self, couple};
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
 use crate::mesh::{Mesh, MeshError};
@@ -27,8 +26,8 @@ use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_
 /// A case ready to be simulated.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// The case, scaled.
-    pub case: Case,
+    /// The case.
+    pub case: Scaled<Case>,
     /// Mesh, material and friction, scaled.
     pub model: CaseModel,
     /// Step numbers.
@@ -70,7 +69,7 @@ const SHEAR_STEPS: usize = 15;
 const COUPLE_LINEAR: f64 = 0.3;
 const COUPLE_FIRST: f64 = 0.002;
 /// Largest indentation of the path, scaled.
-fn largest_indentation(case: &Case) -> f64 {
+fn largest_indentation(Scaled(case): &Scaled<Case>) -> f64 {
     case.path.iter().fold(0.0, |h, s| match s {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => h.max(*indentation),
         _ => h,
@@ -90,7 +89,8 @@ pub fn shear_steps(case: &Case) -> usize {
 }
 
 /// The fine zone that a scaled case asks for: its own contact radius, or else the predicted one.
-fn asked_zone(case: &Case, laws: &[&Hardening<f64>]) -> Zone {
+fn asked_zone(scaled: &Scaled<Case>, laws: &[&Hardening<f64>]) -> Zone {
+    let case = &scaled.0;
     let flow_stress = |alpha: f64| {
         laws.iter()
             .filter(|law| !matches!(law, Hardening::Elastic))
@@ -100,12 +100,12 @@ fn asked_zone(case: &Case, laws: &[&Hardening<f64>]) -> Zone {
     // Of two bodies the closed forms know R*, E* and the weaker yield stress alone.
     let (r, modulus) = (case.effective_radius(), 1.0 / case.compliance()[0]);
     let predicted =
-        || r * predicted_contact_radius(modulus, case.material.poissons_ratio, flow_stress, largest_indentation(case) / r);
-    Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone).within(smaller_radius(case))
+        || r * predicted_contact_radius(modulus, case.material.poissons_ratio, flow_stress, largest_indentation(scaled) / r);
+    Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone).within(smaller_radius(scaled))
 }
 
 /// Radius of the smaller of the spheres that are meshed, of a scaled case.
-fn smaller_radius(case: &Case) -> f64 {
+fn smaller_radius(Scaled(case): &Scaled<Case>) -> f64 {
     match case.opponent {
         Some(Opponent::Deforming { radius: Some(radius), .. }) => radius.min(1.0),
         _ => 1.0,
@@ -114,7 +114,7 @@ fn smaller_radius(case: &Case) -> f64 {
 
 /// The mesh that a scaled case has with a fine zone: of one body or, with another one against it,
 /// of both.
-fn mesh_of(case: &Case, zone: &Zone) -> Result<Mesh, MeshError> {
+fn mesh_of(Scaled(case): &Scaled<Case>, zone: &Zone) -> Result<Mesh, MeshError> {
     let spec = |radius: f64| SphereSpec {
         contact_radius: zone.contact_radius / radius,
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,
@@ -122,14 +122,16 @@ fn mesh_of(case: &Case, zone: &Zone) -> Result<Mesh, MeshError> {
     };
     let own = if case.sphere.flat { flat_mesh(&spec(1.0))? } else { sphere_mesh(&spec(1.0))? };
     Ok(match case.opponent {
-        Some(Opponent::Deforming { radius: Some(radius), .. }) => couple(own, scaled(opponent_mesh(&spec(radius))?, radius)),
+        Some(Opponent::Deforming { radius: Some(radius), .. }) => {
+            couple(own, couple::scaled(opponent_mesh(&spec(radius))?, radius))
+        }
         Some(Opponent::Deforming { radius: None, .. }) => couple(own, flat_mesh(&spec(1.0))?),
         None | Some(Opponent::Equal | Opponent::Rigid { .. }) => own,
     })
 }
 
 /// Constants of the opponent of a scaled case, if it deforms.
-fn opponent_material(case: &Case) -> Result<Option<Material<f64>>, HardeningError> {
+fn opponent_material(Scaled(case): &Scaled<Case>) -> Result<Option<Material<f64>>, MaterialError> {
     match &case.opponent {
         Some(Opponent::Deforming { material, .. }) => material.constants_as_given().map(Some),
         _ => Ok(None),
@@ -138,7 +140,7 @@ fn opponent_material(case: &Case) -> Result<Option<Material<f64>>, HardeningErro
 
 /// The softer body is the slave, of equal ones the sphere: the index of the slave, and the two in
 /// series.
-fn slave_and_series(case: &Case) -> Option<(usize, Series)> {
+fn slave_and_series(Scaled(case): &Scaled<Case>) -> Option<(usize, Series)> {
     let Some(Opponent::Deforming { material, .. }) = &case.opponent else { return None };
     let other = material.youngs_modulus;
     Some(if other < 1.0 { (1, Series::new(other, 1.0)) } else { (0, Series::new(1.0, other)) })
@@ -170,18 +172,19 @@ impl Problem {
     /// As [`Problem::new`].
     pub fn on(case: &Case, zone: Option<Zone>) -> Result<Self, SimulationError> {
         let (equal_pair, bodies) = (case.opponent == Some(Opponent::Equal), case.bodies());
-        let case = case.scaled();
+        let scaled = case.scaled();
+        let case = &scaled.0;
         let rigid = match case.opponent {
             Some(Opponent::Rigid { radius }) => Some(Rigid { curvature: 1.0 / radius }),
             None | Some(Opponent::Equal | Opponent::Deforming { .. }) => None,
         };
         let nu = case.material.poissons_ratio;
         let material = case.material.constants::<f64>()?;
-        let opponent = opponent_material(&case)?;
+        let opponent = opponent_material(&scaled)?;
         let laws: Vec<&Hardening<f64>> = std::iter::once(&material).chain(&opponent).map(|m| &m.hardening).collect();
-        let zone = zone.map_or_else(|| asked_zone(&case, &laws), |zone| zone.within(smaller_radius(&case)));
+        let zone = zone.map_or_else(|| asked_zone(&scaled, &laws), |zone| zone.within(smaller_radius(&scaled)));
         let elements = case.mesh.elements_per_contact_radius;
-        let mesh = mesh_of(&case, &zone)?;
+        let mesh = mesh_of(&scaled, &zone)?;
         // Of two spheres it knows R* alone.
         let lambda = johnson_parameter(&laws, case.compliance()[0], nu, zone.contact_radius / case.effective_radius());
         let two_bodies = opponent.is_some();
@@ -190,7 +193,7 @@ impl Problem {
             _ => nu,
         };
         Ok(Self {
-            resolution: Resolution { press_steps: press_steps(&case), shear_steps: shear_steps(&case), coarseness: 1.0 },
+            resolution: Resolution { press_steps: press_steps(case), shear_steps: shear_steps(case), coarseness: 1.0 },
             settings: Settings {
                 tolerance: case.solver.tolerance,
                 max_iterations: case.solver.max_iterations,
@@ -205,7 +208,7 @@ impl Problem {
             equal_pair,
             rigid,
             bodies,
-            couple: slave_and_series(&case),
+            couple: slave_and_series(&scaled),
             model: CaseModel {
                 mesh: Arc::new(mesh),
                 material,
@@ -215,7 +218,7 @@ impl Problem {
                 },
                 opponent,
             },
-            case,
+            case: scaled,
         })
     }
 
@@ -227,7 +230,7 @@ impl Problem {
         // The scaled case is that of one body: it does not say that there are two, nor that it is a
         // scout's.
         let Self { equal_pair, bodies, resolution, .. } = *self;
-        Ok(Self { equal_pair, bodies, resolution, ..Self::on(&self.case, Some(zone))? })
+        Ok(Self { equal_pair, bodies, resolution, ..Self::on(&self.case.0, Some(zone))? })
     }
 
     /// The fine zone for a contact that has left this one (see [`Zone::grown`]); `None` if
@@ -252,7 +255,7 @@ impl Problem {
     /// [`SimulationError::Hardening`].
     pub fn zone_of(case: &Case) -> Result<Zone, SimulationError> {
         let case = case.scaled();
-        let (own, opponent) = (case.material.constants::<f64>()?, opponent_material(&case)?);
+        let (own, opponent) = (case.0.material.constants::<f64>()?, opponent_material(&case)?);
         let laws: Vec<&Hardening<f64>> = std::iter::once(&own).chain(&opponent).map(|m| &m.hardening).collect();
         Ok(asked_zone(&case, &laws))
     }
@@ -275,7 +278,7 @@ impl Problem {
             let solver = CoupleSolver::new(mesh, &pattern, slave).map_err(SolverError::from)?;
             return Ok(Newton::new(mesh, solver, self.settings));
         }
-        let kind = match self.case.solver.linear {
+        let kind = match self.case.0.solver.linear {
             case::Linear::Multigrid => SolverKind::Multigrid,
             case::Linear::Direct => SolverKind::Direct,
         };

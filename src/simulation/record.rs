@@ -1,10 +1,9 @@
-//! What is remembered of every accepted step, scaled: lengths by R, forces by E R^2, of the whole
-//! sphere.
+//! What is remembered of every accepted step, of the whole sphere.
 
 use serde::{Deserialize, Serialize};
 
-/// One row of the history, of the whole sphere; scaled in the simulation, in the user's units in
-/// `history.csv`, whose columns it names.
+/// One row of the history, of the whole sphere, in the user's units; names are those of the columns
+/// of `history.csv`. The simulation shows it as a [`Scaled`](crate::case::Scaled) one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepRecord {
     /// Counts accepted steps; 0 is the undeformed state.

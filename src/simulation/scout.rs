@@ -12,13 +12,13 @@ use super::follow::{follow, on_cpu};
 use super::problem::{Problem, press_steps, shear_steps};
 use super::record::StepRecord;
 use super::zone::{LARGEST_FINE_ZONE, MARGIN, Zone};
-use crate::case::Case;
+use crate::case::{Case, Scaled};
 
 /// What a scout has found; scaled, lengths by R, forces by E R^2.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scout {
     /// Its accepted steps.
-    pub rows: Vec<StepRecord>,
+    pub rows: Vec<Scaled<StepRecord>>,
     /// Size of its elements in the contact.
     pub spacing: f64,
     /// Elements along the contact radius for which its mesh was made at first.
@@ -86,7 +86,7 @@ impl Scout {
     /// The zone for a run whose case asks for `asked` and whose elements there are of size
     /// `spacing`: that one, unless the contact leaves it.
     pub fn zone(&self, asked: Zone, spacing: f64) -> Zone {
-        let most = |of: fn(&StepRecord) -> f64| self.rows.iter().map(of).fold(0.0, f64::max);
+        let most = |of: fn(&StepRecord) -> f64| self.rows.iter().map(|row| of(&row.0)).fold(0.0, f64::max);
         let (reach, contact_radius) = (most(|row| row.reach), most(|row| row.a));
         // Where its outermost point is known to half an element only, the run itself shall find
         // out.
@@ -98,7 +98,7 @@ impl Scout {
 /// Keeps the rows of the last start.
 #[derive(Default)]
 struct Watch {
-    rows: Vec<StepRecord>,
+    rows: Vec<Scaled<StepRecord>>,
     spacing: f64,
     mesh_elements: usize,
     stop: Arc<AtomicBool>,
@@ -115,7 +115,7 @@ type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 impl Observer for Watch {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        if view.record.step > 0 {
+        if view.record.0.step > 0 {
             self.rows.push(view.record);
         }
         Ok(())

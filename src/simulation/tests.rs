@@ -24,7 +24,7 @@ fn problem(friction: &str, solver: &str) -> Problem {
     let mut problem = Problem::new(&Case::parse(&text, "case.toml", &[]).unwrap()).unwrap();
     // A case file may not ask for more of what does not touch.
     let shear = Segment::Shear { shear: ShearTarget::Displacement(0.002), hold: Hold::Indentation };
-    problem.case.path.extend([Segment::Release { share: 0.0 }, shear]);
+    problem.case.0.path.extend([Segment::Release { share: 0.0 }, shear]);
     problem
 }
 
@@ -41,11 +41,11 @@ struct Seen {
 
 impl Observer for Seen {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.rows.push(view.record);
+        self.rows.push(view.record.0);
         Ok(())
     }
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.ends.push(view.record.step);
+        self.ends.push(view.record.0.step);
         Ok(())
     }
     fn note(&mut self, text: &str) {
@@ -114,7 +114,7 @@ fn a_run_that_stops_after_every_attempt_is_the_run_that_never_stops() {
 fn so_it_is_in_single_precision_with_full_stick_and_with_the_direct_solver() {
     for (friction, solver, single) in [("\"stick\"", "", true), ("0.1", "linear = \"direct\"", false)] {
         let mut problem = problem(friction, solver);
-        problem.case.path.truncate(3);
+        problem.case.0.path.truncate(3);
         if single {
             stop_and_go::<f32>(&problem)
         } else {
@@ -126,7 +126,7 @@ fn so_it_is_in_single_precision_with_full_stick_and_with_the_direct_solver() {
 #[test]
 fn so_it_is_between_equal_spheres() {
     let mut problem = problem("0.3", "");
-    problem.case.path.truncate(3);
+    problem.case.0.path.truncate(3);
     problem.equal_pair = true;
     stop_and_go::<f64>(&problem);
 }
@@ -134,7 +134,7 @@ fn so_it_is_between_equal_spheres() {
 #[test]
 fn so_it_is_against_a_rigid_sphere() {
     let mut problem = problem("0.3", "");
-    problem.case.path.truncate(3);
+    problem.case.0.path.truncate(3);
     problem.rigid = Some(Rigid { curvature: 1.0 });
     stop_and_go::<f64>(&problem);
 }
@@ -172,8 +172,8 @@ fn on_a_larger_zone_the_opponent_is_the_same() {
 #[test]
 fn a_run_that_ends_early_ends_so_again() {
     let mut narrow = problem("0.3", "");
-    narrow.case.path.truncate(1);
-    narrow.case.path.push(Segment::Indentation { indentation: 0.08 });
+    narrow.case.0.path.truncate(1);
+    narrow.case.0.path.push(Segment::Indentation { indentation: 0.08 });
     let mut seen = Seen::default();
     assert!(matches!(follow::<f64>(&narrow, None, &mut seen).0, Ending::Outgrown(_)), "{seen:?}");
     stop_and_go::<f64>(&narrow);
@@ -188,7 +188,7 @@ fn a_snapshot_of_another_mesh_is_refused() {
     let coarse = problem("0.3", "");
     let mut seen = Seen { stop_after: Some(1), ..Seen::default() };
     follow::<f64>(&coarse, None, &mut seen);
-    let mut other = coarse.case.clone();
+    let mut other = coarse.case.0.clone();
     other.mesh.elements_per_contact_radius = 5;
     let other = Problem::new(&other).unwrap();
     let mut backend = Cpu::<f64>::new(vec![other.model.clone()]).unwrap();

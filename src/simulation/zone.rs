@@ -3,18 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::CONTACT_RADII;
+use crate::mesh::{FINE_ZONES, LARGEST_FINE_RADIUS};
 
 /// Below the smallest the sphere is a half-space anyway; the largest is what the mesh can resolve
 /// on a half ball.
 const SMALLEST_CONTACT: f64 = CONTACT_RADII.0;
 const LARGEST_CONTACT: f64 = CONTACT_RADII.1;
-/// Radius beyond which no fine zone reaches.
-const LARGEST_FINE_RADIUS: f64 = 0.85;
 /// Smallest fine zone in contact radii.
-const SMALLEST_FINE_ZONE: f64 = 1.1;
+const SMALLEST_FINE_ZONE: f64 = *FINE_ZONES.start();
 /// Largest fine zone in contact radii; beyond it the contact radius that is meshed for grows too,
 /// and with it the elements.
-pub const LARGEST_FINE_ZONE: f64 = 3.0;
+pub const LARGEST_FINE_ZONE: f64 = *FINE_ZONES.end();
 /// A zone is made so much larger than the reach along the whole path.
 pub const MARGIN: f64 = 1.15;
 /// A zone is made so much larger than a reach that will go on growing.

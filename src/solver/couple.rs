@@ -14,7 +14,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::systems::{Reduced, Tied, clear, impose};
+use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;
@@ -111,11 +111,6 @@ impl CoupleSolver {
     /// The tangent of both bodies, to be written in place before [`CoupleSolver::refresh`].
     pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
         &mut self.matrix
-    }
-
-    /// Which body is the slave.
-    pub fn slave(&self) -> usize {
-        self.slave
     }
 
     /// Takes over the tangent, the interface, its rows and which unknowns y are fixed.

@@ -1,18 +1,22 @@
 //! From one accepted state to the next: a semismooth Newton iteration with a merit line search.
 //!
-//! `newton` iterates one step, `system` holds its residual and matrix, `rigid` those of a rigid
-//! sphere as the opponent, `encounter` those of another body, `systems` solves for the correction,
-//! with `pair` for two equal spheres and `couple` for two bodies, `phases` is what its parts cost.
-//! Choosing steps and bisecting them is the simulation's business.
+//! `newton` iterates one step, of which `outcome` tells how it went, `system` holds its residual
+//! and matrix, `rigid` those of a rigid sphere as the opponent, `encounter` those of another body,
+//! `meet` what either does to a trial; `systems` solves for the correction, with `pair` for two
+//! equal spheres and `couple` for two bodies (`tied` is what these have in common), `phases` is
+//! what its parts cost. Choosing steps and bisecting them is the simulation's business.
 
 pub mod couple;
 pub mod encounter;
+mod meet;
 pub mod newton;
+pub mod outcome;
 pub mod pair;
 pub mod phases;
 pub mod rigid;
 pub mod system;
 pub mod systems;
+mod tied;
 
 #[cfg(test)]
 mod tests;
@@ -20,6 +24,7 @@ mod tests;
 use crate::compute::ComputeError;
 use crate::linalg::LinalgError;
 use crate::material::Elasticity;
+pub use outcome::{Iteration, StepFailure, StepOutcome, StepReport, Worst};
 
 /// How a step is to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,76 +94,6 @@ pub struct Control {
     pub delta_t: f64,
     /// Normal force of the meshed half to be reached, with h free.
     pub normal_force: Option<f64>,
-}
-
-/// One Newton iteration, for the report.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Iteration {
-    /// Merit before the iteration over the force scale.
-    pub merit: f64,
-    /// Step length that the line search took.
-    pub step_length: f64,
-    /// Krylov iterations (0 for the direct solver).
-    pub krylov: usize,
-    /// Contact points whose status changed.
-    pub changed: usize,
-}
-
-/// Why a step failed, with where it stood.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StepFailure {
-    /// The iterations are used up.
-    #[error("no convergence in {iterations} iterations: merit {merit:.2e} of the normal force, worst at {worst}")]
-    Iterations {
-        /// Iterations made.
-        iterations: usize,
-        /// Last merit over the force scale.
-        merit: f64,
-        /// Where the residual is largest.
-        worst: Worst,
-    },
-    /// No step length gave a valid deformation.
-    #[error("element {element} inverts at quadrature point {point} however short the step of the line search")]
-    Inverted {
-        /// Element index.
-        element: usize,
-        /// Quadrature point.
-        point: usize,
-    },
-    /// The linear system could not be solved.
-    #[error("the linear solver failed: {0}")]
-    Linear(String),
-}
-
-impl StepFailure {
-    /// Iterations that were made, at least one.
-    pub fn iterations(&self) -> usize {
-        match self {
-            Self::Iterations { iterations, .. } => *iterations,
-            _ => 1,
-        }
-    }
-}
-
-/// The degree of freedom with the largest residual.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Worst {
-    /// Node index.
-    pub node: usize,
-    /// Direction, 0 to 2.
-    pub direction: usize,
-    /// Its reference position.
-    pub position: [f64; 3],
-    /// Residual over the force scale.
-    pub residual: f64,
-}
-
-impl std::fmt::Display for Worst {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let [x, y, z] = self.position;
-        let axis = ["x", "y", "z"].get(self.direction).copied().unwrap_or("?");
-        write!(f, "node {} ({x:.4}, {y:.4}, {z:.4}) in {axis} ({:.1e})", self.node, self.residual)
-    }
 }
 
 /// A failure that no smaller step cures.

@@ -4,15 +4,15 @@
 mod line_search;
 
 use super::encounter::Encounter;
+use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::pair::mirror_nodes;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, turn};
 use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
 use super::systems::Systems;
-use super::{Control, Iteration, Settings, SolverError, StepFailure};
+use super::{Control, Settings, SolverError};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
-use crate::compute::traffic::Traffic;
 use crate::contact::coulomb::{Friction, Status};
 use crate::contact::pair::leave_even;
 use crate::contact::rigid::Rigid;
@@ -86,32 +86,6 @@ pub struct Newton {
     /// Time spent since the last converged step; whoever drives the iteration adds what else a step
     /// takes.
     pub times: PhaseTimes,
-}
-
-/// A converged step.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StepReport {
-    /// Its Newton iterations.
-    pub iterations: Vec<Iteration>,
-    /// Final merit over the force scale.
-    pub merit: f64,
-    /// Times the linear solver fell back to the direct one.
-    pub fallbacks: usize,
-    /// Accepted above the tolerance, at a kink of the merit.
-    pub relaxed: bool,
-    /// Under full stick: points that stuck when the step began, came off in it and came down again.
-    pub landed_again: usize,
-    /// Time by phase, that of failed attempts since the last converged step included.
-    pub times: PhaseTimes,
-    /// What passed to the device and back, likewise.
-    pub traffic: Traffic,
-}
-
-impl StepReport {
-    /// Krylov iterations of the step.
-    pub fn krylov(&self) -> usize {
-        self.iterations.iter().map(|i| i.krylov).sum()
-    }
 }
 
 impl Newton {
@@ -249,7 +223,22 @@ impl Newton {
         start_h: f64,
         guess: Option<&[f64]>,
         control: &Control,
-    ) -> Result<Result<StepReport, StepFailure>, SolverError> {
+    ) -> Result<StepOutcome, SolverError> {
+        match self.iterate(case, start, start_h, guess, control) {
+            Ok(report) => Ok(StepOutcome::Converged(report)),
+            Err(Halt::Step(failure)) => Ok(StepOutcome::Failed(failure)),
+            Err(Halt::Solver(error)) => Err(error),
+        }
+    }
+
+    fn iterate(
+        &mut self,
+        case: &mut dyn Evaluate,
+        start: &[f64],
+        start_h: f64,
+        guess: Option<&[f64]>,
+        control: &Control,
+    ) -> Result<StepReport, Halt> {
         let mesh = case.model().mesh.clone();
         self.came_off.fill(false);
         if let Some(against) = &mut self.boundary.against {
@@ -269,16 +258,13 @@ impl Newton {
                 report.relaxed = at_kink;
                 report.merit = if scale > 0.0 { self.current.merit / scale } else { 0.0 };
                 report.times = std::mem::take(&mut self.times);
-                return Ok(Ok(report));
+                return Ok(report);
             }
             if iteration >= most && !self.is_about_to_converge(&report) || iteration == 2 * most {
                 break;
             }
             let eta = self.forcing(previous).min(if control.normal_force.is_some() { TIGHT_LINEAR } else { 1.0 });
-            let (krylov, fallback, delta_h) = match self.linearise(case, &mesh, control, eta, iteration == 0)? {
-                Ok(done) => done,
-                Err(failure) => return Ok(Err(failure)),
-            };
+            let (krylov, fallback, delta_h) = self.linearise(case, &mesh, control, eta, iteration == 0)?;
             report.fallbacks += usize::from(fallback);
             highest = highest.max(self.current.merit);
             // An iteration that moves the plate has no merit before it to be compared with.
@@ -294,11 +280,7 @@ impl Newton {
                 && self.plate_is_placed(control)
                 && self.holds_force(case, control, 2.0 * HELD_TOLERANCE)
                 && previous <= KINK * self.settings.tolerance * scale;
-            let (step_length, changed) = match self.line_search(case, control, reference, delta_h)? {
-                Ok(found) => found,
-                Err(Outcome::Inverted { element, point }) => return Ok(Err(StepFailure::Inverted { element, point })),
-                Err(Outcome::Valid) => return Ok(Err(self.exhausted(&mesh, iteration + 1))),
-            };
+            let (step_length, changed) = self.line_search(case, control, reference, delta_h)?;
             if may_stay && self.current.merit >= previous {
                 // The line search has left the iterate that it started from in `best`.
                 std::mem::swap(&mut self.current, &mut self.best);
@@ -326,7 +308,7 @@ impl Newton {
                 self.current.merit / self.scale().max(f64::MIN_POSITIVE),
             );
         }
-        Ok(Err(self.exhausted(&mesh, report.iterations.len())))
+        Err(self.exhausted(&mesh, report.iterations.len()).into())
     }
 
     /// The merit has fallen so much in the last iterations that a few more will do: a step is not
@@ -448,11 +430,11 @@ impl Newton {
         control: &Control,
         eta: f64,
         first: bool,
-    ) -> Result<Result<(usize, bool, f64), StepFailure>, SolverError> {
+    ) -> Result<(usize, bool, f64), Halt> {
         let mut lap = Lap::start();
         let matrix = self.linear.matrix_mut();
         if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut matrix.blocks)? {
-            return Ok(Err(StepFailure::Inverted { element, point }));
+            return Err(StepFailure::Inverted { element, point }.into());
         }
         lap.end(&mut self.times, Phase::Tangent);
         if control.normal_force.is_some() {
@@ -475,13 +457,13 @@ impl Newton {
             (Systems::Couple(solver), None, Some(encounter)) => {
                 solver.refresh(&encounter.interface, &self.current.rows, &self.fixed)?;
             }
-            _ => return Ok(Err(StepFailure::Linear("the solver is made for another opponent".into()))),
+            _ => return Err(StepFailure::Linear("the solver is made for another opponent".into()).into()),
         }
         lap.end(&mut self.times, Phase::LinearUpdate);
         self.correction.fill(0.0);
         let solved = match self.linear.solve(&self.rhs, eta, &mut self.correction, true) {
             Ok(report) => report,
-            Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
+            Err(error) => return Err(StepFailure::Linear(error.to_string()).into()),
         };
         let (mut krylov, fallback) = (solved.iterations, solved.fallback);
         let mut delta_h = 0.0;
@@ -497,7 +479,7 @@ impl Newton {
             match self.linear.solve(&self.unit_rhs, tolerance, &mut self.unit_response, false) {
                 Ok(report) => krylov += report.iterations,
                 Err(LinalgError::Stalled { iterations, .. }) => krylov += iterations,
-                Err(error) => return Ok(Err(StepFailure::Linear(error.to_string()))),
+                Err(error) => return Err(StepFailure::Linear(error.to_string()).into()),
             }
             let (current, boundary, delta) = (&self.current, &self.boundary, &mut self.delta);
             let mut along = |x: &[f64]| {
@@ -508,7 +490,7 @@ impl Newton {
             let (by_delta, by_unit) = (along(&self.correction), along(&self.unit_response));
             delta_h = (target - self.current.plate_force + by_delta) / -by_unit;
             if !delta_h.is_finite() {
-                return Ok(Err(StepFailure::Linear("no contact carries the normal force that is to be held".into())));
+                return Err(StepFailure::Linear("no contact carries the normal force that is to be held".into()).into());
             }
             for (d, b) in self.correction.iter_mut().zip(&self.unit_response) {
                 *d += delta_h * b;
@@ -524,7 +506,7 @@ impl Newton {
             self.current.contract(mesh, &self.boundary, &mut self.correction);
         }
         lap.end(&mut self.times, Phase::LinearSolve);
-        Ok(Ok((krylov, fallback, delta_h)))
+        Ok((krylov, fallback, delta_h))
     }
 
     /// The relative residual to which the response to a unit indentation is solved, and the guess
@@ -551,12 +533,5 @@ impl Newton {
             merit: self.current.merit / self.scale().max(f64::MIN_POSITIVE),
             worst: self.current.worst(mesh, &self.boundary, self.scale()),
         }
-    }
-
-    /// Counts of closed and of slipping contact points at the accepted trial.
-    pub fn contact_counts(&self) -> (usize, usize) {
-        let count = |s: Status| self.current.rows.iter().filter(|r| r.status == s).count();
-        let slipping = count(Status::Slip);
-        (count(Status::Stick) + slipping, slipping)
     }
 }

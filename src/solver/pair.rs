@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::systems::{Reduced, Tied, clear, impose};
+use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::bsr::Widen;

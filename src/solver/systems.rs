@@ -1,19 +1,9 @@
-//! The solver of a step's linear systems, whatever the opponent; and what systems in the unknowns
-//! of an interface have in common: the equations y = u at fixed unknowns are taken out, and FGMRES
-//! solves the rest.
+//! The solver of a step's linear systems, whatever the opponent.
 
 use super::couple::CoupleSolver;
 use super::pair::PairSolver;
-use crate::contact::coulomb::{Rows, Status};
-use crate::linalg::fgmres::{Fgmres, System};
+use super::tied::Tied;
 use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, LinalgError, LinearSolver, SolveReport};
-
-/// Iterations after which FGMRES starts over, and after which it gives up.
-const RESTART: usize = 60;
-const MAX_ITERATIONS: usize = 120;
-/// A system that stalls is good enough to go on from at this relative residual: the line search
-/// judges what it gives.
-const STALLED: f64 = 0.3;
 
 /// The solver of one body's systems, of an equal pair's, or of two bodies'.
 #[derive(Debug)]
@@ -80,118 +70,4 @@ impl Systems {
             Self::Couple(solver) => Ok(solver.residual_norm(rhs, x)),
         }
     }
-}
-
-/// The part of a system that is left when fixed unknowns are taken out.
-#[derive(Debug)]
-pub(super) struct Reduced {
-    /// Which unknowns are fixed.
-    pub fixed: Vec<bool>,
-    /// Right-hand side with the fixed unknowns taken over, and the free part of the solution.
-    load: Vec<f64>,
-    free: Vec<f64>,
-    krylov: Fgmres<f32>,
-}
-
-impl Reduced {
-    /// For `n` unknowns, none of them fixed.
-    pub fn new(n: usize) -> Self {
-        Self { fixed: vec![false; n], load: vec![0.0; n], free: vec![0.0; n], krylov: Fgmres::new(n, RESTART) }
-    }
-}
-
-/// A system A y = b that is applied and never formed, in unknowns of which some are fixed.
-pub(super) trait Tied: System<f32> + Sized {
-    /// Its reduced system.
-    fn reduced(&mut self) -> &mut Reduced;
-    /// Which unknowns are fixed.
-    fn fixed(&self) -> &[bool];
-    /// f = A y in f64, with `u` to work in; rows of fixed unknowns mean nothing.
-    fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]);
-
-    /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as
-    /// [`crate::linalg::LinearSolver::solve`].
-    ///
-    /// # Errors
-    /// [`LinalgError::Stalled`]; `y` is then the best iterate.
-    fn solve(&mut self, rhs: &[f64], tolerance: f64, y: &mut [f64]) -> Result<SolveReport, LinalgError> {
-        self.take_over(rhs);
-        let reduced = self.reduced();
-        reduced.free.copy_from_slice(y);
-        clear(&reduced.fixed, &mut reduced.free);
-        let (mut free, load) = (std::mem::take(&mut reduced.free), std::mem::take(&mut reduced.load));
-        let mut krylov = std::mem::replace(&mut reduced.krylov, Fgmres::new(0, 1));
-        let got = krylov.solve(self, &load, &mut free, tolerance, MAX_ITERATIONS);
-        let reduced = self.reduced();
-        (reduced.free, reduced.load, reduced.krylov) = (free, load, krylov);
-        for (i, y) in y.iter_mut().enumerate() {
-            *y = if reduced.fixed[i] { rhs[i] } else { reduced.free[i] };
-        }
-        if !got.converged && !(got.residual <= STALLED) {
-            return Err(LinalgError::Stalled { iterations: got.iterations, residual: got.residual });
-        }
-        Ok(SolveReport {
-            iterations: got.iterations,
-            residual: got.residual,
-            converged: got.converged,
-            stagnated: !got.converged,
-            fallback: false,
-        })
-    }
-
-    /// |rhs - A y| over the free unknowns, the fixed ones at their values in `rhs`.
-    fn residual_norm(&mut self, rhs: &[f64], y: &[f64]) -> f64 {
-        self.take_over(rhs);
-        let mut free = y.to_vec();
-        clear(self.fixed(), &mut free);
-        let mut r = vec![0.0; free.len()];
-        let load = std::mem::take(&mut self.reduced().load);
-        self.remainder(&load, &free, &mut r);
-        self.reduced().load = load;
-        r.iter().map(|r| r * r).sum::<f64>().sqrt()
-    }
-
-    /// Takes what the fixed unknowns contribute over to the right-hand side.
-    fn take_over(&mut self, rhs: &[f64]) {
-        let mut y = vec![0.0; rhs.len()];
-        y.iter_mut().zip(rhs).zip(self.fixed()).filter(|(_, fixed)| **fixed).for_each(|((y, value), _)| *y = *value);
-        let mut load = std::mem::take(&mut self.reduced().load);
-        load.copy_from_slice(rhs);
-        if y.iter().any(|y| *y != 0.0) {
-            let (mut u, mut f) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-            self.product(&y, &mut u, &mut f);
-            load.iter_mut().zip(&f).for_each(|(load, f)| *load -= f);
-        }
-        clear(self.fixed(), &mut load);
-        self.reduced().load = load;
-    }
-
-    /// r = b - A x over the free unknowns.
-    fn remainder(&self, b: &[f64], x: &[f64], r: &mut [f64]) {
-        let mut u = vec![0.0; x.len()];
-        self.product(x, &mut u, r);
-        r.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-        clear(self.fixed(), r);
-    }
-}
-
-/// Puts the conditions of contact in the place of the forces `f` at slaves that are in contact, at
-/// unknowns `y`.
-pub(super) fn impose(rows: &[Rows<f64>], slaves: &[usize], contact_nodes: &[u32], y: &[f64], f: &mut [f64]) {
-    for &slave in slaves {
-        let (rows, base) = (&rows[slave], 3 * contact_nodes[slave] as usize);
-        if rows.status == Status::Open {
-            continue;
-        }
-        let force = [f[base], f[base + 1], f[base + 2]];
-        let w = &y[base..base + 3];
-        for i in 0..3 {
-            f[base + i] = (0..3).map(|j| rows.force_rows[i][j] * force[j] + rows.displacement_rows[i][j] * w[j]).sum::<f64>();
-        }
-    }
-}
-
-/// Sets what is fixed to zero.
-pub(super) fn clear<T: Default>(fixed: &[bool], x: &mut [T]) {
-    x.iter_mut().zip(fixed).filter(|(_, fixed)| **fixed).for_each(|(x, _)| *x = T::default());
 }

@@ -7,27 +7,14 @@ use std::path::{Path, PathBuf};
 
 use super::StudyError;
 use super::file::Study;
-use super::place::{Placed, place};
+use super::id::is_case_id;
 use super::row::FIRST_COLUMNS;
 use crate::case::PictureFormat;
-use crate::law::table::StudyTable;
 use crate::output::{DirectoryLock, LOCK_NAME, OutputDirectory, draft_of, write_atomically};
 
 /// Names of all pictures of a study, by which an earlier study's are removed.
 const STUDY_PICTURES: [&str; 8] =
     ["johnson", "area", "fall", "parameters", "collapse-tangential", "collapse-normal", "cases", "errors"];
-
-/// The name of a case and of its directory. The letter keeps it text for whoever reads `study.csv`:
-/// 0001 would become 1.
-pub(super) fn case_id(number: usize, digits: usize) -> String {
-    format!("c{number:0digits$}")
-}
-
-/// Whether a directory may be that of a case. Earlier versions wrote the number alone.
-pub(super) fn is_case_id(name: &str) -> bool {
-    let number = name.strip_prefix('c').unwrap_or(name);
-    !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
-}
 
 /// The folder of one study.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -66,11 +53,6 @@ impl StudyDirectory {
         self.root.join("report.html")
     }
 
-    /// The directory of a case from the study's, as `study.csv` names it.
-    pub fn relative(id: &str) -> String {
-        format!("cases/{id}")
-    }
-
     /// The directory of a case.
     pub fn case(&self, id: &str) -> OutputDirectory {
         OutputDirectory::existing(self.root.join("cases").join(id))
@@ -83,34 +65,6 @@ impl StudyDirectory {
         let mut head = Vec::new();
         let read = fs::File::open(self.table()).and_then(|file| file.take(expected.len() as u64).read_to_end(&mut head));
         read.is_ok() && head == expected.as_bytes()
-    }
-
-    /// Prepares the folder, and says where the results of the study's cases are. One that does not
-    /// exist is made, an empty one is used. In one that holds a study, results stay that are of
-    /// this study if it is to be kept, which takes that there are some, or none at all; if they are
-    /// to be replaced, what studies wrote is removed and everything else stays. Anything else is
-    /// refused, untouched.
-    ///
-    /// # Errors
-    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`],
-    /// [`StudyError::Earlier`], [`StudyError::Directory`], [`StudyError::Output`] where somebody
-    /// else computes one of the cases that are to be replaced.
-    pub fn prepare(&self, study: &Study, earlier: Earlier) -> Result<Placed, StudyError> {
-        let dir = &self.root;
-        self.recognise()?;
-        match earlier {
-            Earlier::Keep => {}
-            Earlier::Replace => self.clear()?,
-            Earlier::Refuse => {
-                let done =
-                    StudyTable::read(&self.table()).map_or(0, |table| table.rows.iter().filter(|row| row.is_done()).count());
-                if done > 0 {
-                    return Err(StudyError::Earlier { dir: dir.clone(), done });
-                }
-                self.clear()?;
-            }
-        }
-        place(self, study)
     }
 
     /// Refuses a folder that is neither absent nor empty nor a study's.
@@ -135,7 +89,7 @@ impl StudyDirectory {
     }
 
     /// Removes what earlier studies wrote.
-    fn clear(&self) -> Result<(), StudyError> {
+    pub(super) fn clear(&self) -> Result<(), StudyError> {
         let cases = self.root.join("cases");
         let failed = |source| StudyError::Directory { dir: self.root.clone(), what: "be cleared", source };
         if cases.is_dir() {

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::case::CaseError;
 use crate::compute::ComputeError;
 use crate::law::LawError;
-use crate::material::HardeningError;
+use crate::material::MaterialError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
 
@@ -35,7 +35,7 @@ pub enum StudyError {
         /// The study file.
         file: String,
         /// What the material says.
-        source: HardeningError,
+        source: MaterialError,
         /// The combination's grid values.
         combination: String,
     },

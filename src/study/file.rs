@@ -16,8 +16,8 @@
 use std::path::Path;
 
 use super::StudyError;
-use super::directory::case_id;
-use super::sweep::{Sweep, SweepKey, not_allowed, require};
+use super::id::case_id;
+use super::sweep::{Sweep, SweepKey, not_allowed, plain, require};
 use crate::bounded;
 use crate::case::{Case, CaseError, Document, Entry, Reader, Value, short};
 
@@ -195,29 +195,6 @@ fn describe<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>) -> String {
         .collect::<Vec<_>>()
         .join(", ");
     short(&text).into_owned()
-}
-
-/// A value as text: a string bare, everything else as TOML on one line.
-pub(super) fn plain(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        other => inline(other),
-    }
-}
-
-fn inline(value: &Value) -> String {
-    match value {
-        Value::String(text) => format!("{text:?}"),
-        Value::Integer(number) => number.to_string(),
-        Value::Float(number) => format!("{number:?}"),
-        Value::Boolean(truth) => truth.to_string(),
-        Value::Datetime(date) => date.clone(),
-        Value::Array(items) => format!("[{}]", items.iter().map(|item| inline(&item.value)).collect::<Vec<_>>().join(", ")),
-        Value::Table(table) => {
-            let pairs: Vec<String> = table.iter().map(|(key, entry)| format!("{key} = {}", inline(&entry.value))).collect();
-            format!("{{ {} }}", pairs.join(", "))
-        }
-    }
 }
 
 #[cfg(test)]

@@ -74,7 +74,7 @@ pub fn merge(sources: &[PathBuf], out: &Path) -> Result<Merged, StudyError> {
         }
     }
     let rows = read_rows(&study, &target);
-    write_table(&target, &study, &rows)?;
+    write_table(&target.table(), &study, &rows)?;
     let all: Vec<usize> = (0..rows.len()).collect();
     merged.report = Report::of(&study, &rows, &all);
     let open = study.cases.iter().zip(&rows).filter(|(_, row)| row.status == RowStatus::Pending);

@@ -11,6 +11,7 @@ mod batch;
 mod directory;
 mod error;
 mod file;
+mod id;
 mod merge;
 mod place;
 mod progress;

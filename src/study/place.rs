@@ -7,8 +7,9 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use super::StudyError;
-use super::directory::{StudyDirectory, case_id, is_case_id};
+use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
+use super::id::{case_id, directory_of, is_case_id};
 use crate::case::Case;
 use crate::law::table::StudyTable;
 use crate::output::{DirectoryLock, OutputDirectory, OutputError};
@@ -22,6 +23,35 @@ pub struct Placed {
     pub strangers: Vec<String>,
     /// How many of its cases have a directory.
     pub begun: usize,
+}
+
+impl StudyDirectory {
+    /// Prepares the folder, and says where the results of the study's cases are. One that does not
+    /// exist is made, an empty one is used. In one that holds a study, results stay that are of
+    /// this study if it is to be kept, which takes that there are some, or none at all; if they are
+    /// to be replaced, what studies wrote is removed and everything else stays. Anything else is
+    /// refused, untouched.
+    ///
+    /// # Errors
+    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::OtherStudy`],
+    /// [`StudyError::Earlier`], [`StudyError::Directory`], [`StudyError::Output`] where somebody
+    /// else computes one of the cases that are to be replaced.
+    pub fn prepare(&self, study: &Study, earlier: Earlier) -> Result<Placed, StudyError> {
+        self.recognise()?;
+        match earlier {
+            Earlier::Keep => {}
+            Earlier::Replace => self.clear()?,
+            Earlier::Refuse => {
+                let done =
+                    StudyTable::read(&self.table()).map_or(0, |table| table.rows.iter().filter(|row| row.is_done()).count());
+                if done > 0 {
+                    return Err(StudyError::Earlier { dir: self.root().to_owned(), done });
+                }
+                self.clear()?;
+            }
+        }
+        place(self, study)
+    }
 }
 
 /// Finds the directories of the study's cases in its folder, as it is.
@@ -76,7 +106,7 @@ fn told(directory: &StudyDirectory, study: &Study) -> Option<Vec<String>> {
     let mut names = BTreeSet::new();
     for (row, case) in table.rows.iter().zip(&study.cases) {
         let same = study.keys.iter().zip(&case.values).all(|(key, value)| table.cell(row, key) == value);
-        let number = is_case_id(&row.id) && row.directory == StudyDirectory::relative(&row.id);
+        let number = is_case_id(&row.id) && row.directory == directory_of(&row.id);
         if !(same && number && names.insert(row.id.clone())) {
             return None;
         }

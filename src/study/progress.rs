@@ -9,10 +9,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::row::{Row, RowStatus};
-use crate::output::{Position, Progress, in_words};
-
-/// The bar counts in these parts of the work.
-const BAR_PARTS: u64 = 1000;
+use crate::output::{BAR_PARTS, Position, Progress, in_words};
 
 /// Told by all workers about their cases.
 pub struct StudyProgress {

@@ -2,16 +2,34 @@
 //! made again from the directories.
 
 use std::io;
+use std::path::Path;
 
 use super::StudyError;
-use super::directory::StudyDirectory;
 use super::file::{Study, StudyCase};
+use super::id::directory_of;
 use crate::case::{Case, Friction};
 use crate::law::variables::{Body, Variables};
 use crate::output::{OutputDirectory, Status, Summary, write_atomically};
 
+/// A column of text by its name, and how it is read.
+type TextColumn = (&'static str, fn(&StudyCase, &Row) -> String);
+
+const TEXTS: [TextColumn; 4] = [
+    ("case", |case, _| case.id.clone()),
+    ("directory", |case, _| directory_of(&case.id)),
+    ("status", |_, row| row.status.to_string()),
+    ("reason", |_, row| row.reason.clone()),
+];
+
 /// First columns of `study.csv`; the grid's keys follow, and then [`NUMBERS`].
-pub const FIRST_COLUMNS: [&str; 4] = ["case", "directory", "status", "reason"];
+pub const FIRST_COLUMNS: [&str; TEXTS.len()] = {
+    let (mut names, mut i) = ([""; TEXTS.len()], 0);
+    while i < names.len() {
+        names[i] = TEXTS[i].0;
+        i += 1;
+    }
+    names
+};
 
 /// What the last columns are made of.
 struct Numbers<'a> {
@@ -156,7 +174,7 @@ impl Row {
 ///
 /// # Errors
 /// [`StudyError::Output`].
-pub fn write_table(directory: &StudyDirectory, study: &Study, rows: &[Row]) -> Result<(), StudyError> {
+pub fn write_table(table: &Path, study: &Study, rows: &[Row]) -> Result<(), StudyError> {
     let write = |out: &mut dyn io::Write| {
         let mut writer = csv::Writer::from_writer(out);
         let keys = study.keys.iter().map(String::as_str);
@@ -166,11 +184,11 @@ pub fn write_table(directory: &StudyDirectory, study: &Study, rows: &[Row]) -> R
         }
         writer.flush()
     };
-    Ok(write_atomically(&directory.table(), write)?)
+    Ok(write_atomically(table, write)?)
 }
 
 fn fields(case: &StudyCase, row: &Row) -> Vec<String> {
-    let mut fields = vec![case.id.clone(), StudyDirectory::relative(&case.id), row.status.to_string(), row.reason.clone()];
+    let mut fields: Vec<String> = TEXTS.iter().map(|(_, read)| read(case, row)).collect();
     fields.extend(case.values.iter().cloned());
     // The shortest digits that give the same number back.
     let text =

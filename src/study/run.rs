@@ -16,6 +16,7 @@ use super::StudyError;
 use super::batch::{Guest, share};
 use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
+use super::id::directory_of;
 use super::place::{Placed, alone};
 use super::progress::StudyProgress;
 use super::row::{Row, RowStatus, write_table};
@@ -193,10 +194,10 @@ pub(super) fn begin(
         let Placed { study, strangers, begun } = directory.prepare(study, earlier)?;
         let mut rows = read_rows(&study, directory);
         adjust(&mut rows)?;
-        write_table(directory, &study, &rows)?;
+        write_table(&directory.table(), &study, &rows)?;
         directory.write_study(&study)?;
         if !strangers.is_empty() {
-            let names: Vec<String> = strangers.iter().take(10).map(|id| StudyDirectory::relative(id)).collect();
+            let names: Vec<String> = strangers.iter().take(10).map(|id| directory_of(id)).collect();
             let more = if strangers.len() > names.len() { ", ..." } else { "" };
             log::warn!(
                 "{} of the cases in {} do not belong to this study any more and are left as they are: {}{more}; {begun} do",
@@ -272,7 +273,11 @@ impl Table<'_> {
     fn write(&self) -> Result<(), StudyError> {
         let gone = || io::Error::new(io::ErrorKind::NotFound, "it was removed while the study went on");
         let failed = |source| StudyError::Directory { dir: self.directory.root().to_owned(), what: "be found", source };
-        if self.directory.root().is_dir() { write_table(self.directory, self.study, &self.rows) } else { Err(failed(gone())) }
+        if self.directory.root().is_dir() {
+            write_table(&self.directory.table(), self.study, &self.rows)
+        } else {
+            Err(failed(gone()))
+        }
     }
 
     fn write_if_due(&mut self) -> Result<(), StudyError> {

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use crate::case::{Case, Friction, Segment, estimated_elements};
+use crate::simulation::path::RELEASE_STEPS;
 use crate::simulation::problem::press_steps;
 
 /// One of some shares of a study, `1/4` to `4/4`.
@@ -74,7 +75,7 @@ pub fn cost(case: &Case) -> f64 {
                 press_steps(case) as f64
             }
             Segment::Shear { .. } => SHEAR_STEPS,
-            Segment::Release { .. } => 12.0,
+            Segment::Release { .. } => RELEASE_STEPS,
         };
     }
     // Of the order of Johnson's Lambda: contact strain over yield strain.

@@ -17,7 +17,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::file::plain;
 use crate::case::{CaseError, Document, Entry, Place, Reader, Value};
 
 pub const GRID: &str = "dotted keys of the case with lists of values, as in \"contact.friction\" = [0.1, 0.3]";
@@ -310,4 +309,27 @@ pub fn require(root: &Reader<'_>) -> Result<(), CaseError> {
         return Ok(());
     }
     Err(root.missing("grid", GRID))
+}
+
+/// A value as text: a string bare, everything else as TOML on one line.
+pub(super) fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        other => inline(other),
+    }
+}
+
+fn inline(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("{text:?}"),
+        Value::Integer(number) => number.to_string(),
+        Value::Float(number) => format!("{number:?}"),
+        Value::Boolean(truth) => truth.to_string(),
+        Value::Datetime(date) => date.clone(),
+        Value::Array(items) => format!("[{}]", items.iter().map(|item| inline(&item.value)).collect::<Vec<_>>().join(", ")),
+        Value::Table(table) => {
+            let pairs: Vec<String> = table.iter().map(|(key, entry)| format!("{key} = {}", inline(&entry.value))).collect();
+            format!("{{ {} }}", pairs.join(", "))
+        }
+    }
 }

@@ -121,7 +121,7 @@ struct Seen {
 
 impl Observer for Seen {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
-        self.rows.push(view.record);
+        self.rows.push(view.record.0);
         Ok(())
     }
     fn segment_end(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
@@ -238,7 +238,7 @@ fn the_table_has_the_promised_columns_and_normalised_variables() {
         ..Summary::default()
     };
     let rows: Vec<Row> = [Row::of(summary), Row::pending(), Row::pending(), Row::pending()].into();
-    write_table(&directory, &study, &rows).expect("a table");
+    write_table(&directory.table(), &study, &rows).expect("a table");
     assert!(directory.holds_study());
     let mut reader = csv::Reader::from_path(directory.table()).expect("a table");
     let header: Vec<String> = reader.headers().expect("a header").iter().map(str::to_owned).collect();
@@ -270,7 +270,7 @@ fn a_directory_is_kept_only_for_the_very_study_and_never_taken_from_the_user() {
     std::fs::create_dir_all(directory.root()).expect("a directory");
     directory.prepare(&study, Earlier::Refuse).expect("a new directory");
     directory.prepare(&study, Earlier::Keep).expect("an empty directory");
-    write_table(&directory, &study, &vec![Row::pending(); 4]).expect("a table");
+    write_table(&directory.table(), &study, &vec![Row::pending(); 4]).expect("a table");
     directory.prepare(&study, Earlier::Keep).expect("killed early");
     directory.write_study(&study).expect("a copy");
     let spaced = Study::parse(&format!("# the same\n{STUDY}"), "study.toml").expect("a study");

@@ -7,7 +7,8 @@
 //! that the closed forms are evaluated at the contact's own displacement.
 
 use super::equator::Equator;
-use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
+use super::runner::Runner;
+use super::sphere::{History, RADIUS, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::analytical::{ElasticSphere, hertz};

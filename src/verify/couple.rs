@@ -1,7 +1,8 @@
 //! Two unlike bodies that both deform: Hertz with R* and E*; Cattaneo and Mindlin where pressure
 //! and shear do not act on each other; a stiff flat as the plane; an equal sphere as the image.
 
-use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
+use super::runner::Runner;
+use super::sphere::{History, RADIUS, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hardening, Hold, Material, Opponent, Segment};

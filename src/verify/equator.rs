@@ -12,7 +12,7 @@
 //! has four times the a/R of the other: what grows with a/R is the body's, what does not is the
 //! contact's and the mesh's.
 
-use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
+use super::sphere::{History, RADIUS, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
 use crate::analytical::cattaneo_mindlin::initial_stiffness;
 use crate::analytical::{ElasticSphere, hertz};
@@ -34,14 +34,18 @@ const RADII: [f64; 2] = [0.01 * RADIUS, 0.04 * RADIUS];
 const SHEAR: f64 = 1e-5;
 
 impl Equator {
-    /// Measures both for one Poisson's ratio.
+    /// Measures both for one Poisson's ratio, with so many elements along the contact radius and
+    /// what `follow` makes of a case.
     ///
     /// # Errors
-    /// As those of [`Runner::follow`].
-    pub fn measure(runner: &mut Runner<'_>, nu: f64) -> Result<Self, VerifyError> {
-        let elements = runner.elements(8);
-        let small = runner.follow(&case(nu, elements, RADII[0]))?;
-        let large = runner.follow(&case(nu, elements, RADII[1]))?;
+    /// Those of `follow`.
+    pub fn measure(
+        nu: f64,
+        elements: usize,
+        mut follow: impl FnMut(&Case) -> Result<History, VerifyError>,
+    ) -> Result<Self, VerifyError> {
+        let small = follow(&case(nu, elements, RADII[0]))?;
+        let large = follow(&case(nu, elements, RADII[1]))?;
         Ok(Self::between(&ball(nu), [&small, &large].map(ends)))
     }
 

@@ -4,7 +4,8 @@
 //! The plate's displacement is prescribed at the equator: what the body between adds is taken off
 //! (`equator`).
 
-use super::runner::{RADIUS, Runner, YOUNGS_MODULUS, press, sphere};
+use super::runner::Runner;
+use super::sphere::{RADIUS, YOUNGS_MODULUS, press, sphere};
 use super::{Check, VerifyError};
 use crate::analytical::yielding::{critical_indentation, first_yield};
 use crate::analytical::{ElasticSphere, hertz};

@@ -1,6 +1,7 @@
 //! What must not change the result: the sign of the shear, and the units.
 
-use super::runner::{History, RADIUS, Runner, press, shear, sphere};
+use super::runner::Runner;
+use super::sphere::{History, RADIUS, press, shear, sphere};
 use super::{Check, VerifyError};
 use crate::case::{Case, Hardening, Hold, Segment, ShearTarget};
 use crate::simulation::record::StepRecord;

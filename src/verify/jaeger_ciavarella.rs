@@ -7,7 +7,8 @@
 //! plane's shape.
 
 use super::equator::Equator;
-use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
+use super::runner::Runner;
+use super::sphere::{History, RADIUS, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
 use crate::analytical::mesarovic_johnson::Unloading;
 use crate::analytical::olsson_larsson::{self, OlssonLarsson};

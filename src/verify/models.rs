@@ -20,7 +20,8 @@
 //! is 3 to 5 % smaller and 4 to 9 % harder. Without it ours are 0 to 2 % below the models.
 
 use super::equator::Equator;
-use super::runner::{RADIUS, Runner, YOUNGS_MODULUS, press, sphere};
+use super::runner::Runner;
+use super::sphere::{RADIUS, YOUNGS_MODULUS, press, sphere};
 use super::{Check, VerifyError};
 use crate::analytical::jackson_green::JacksonGreen;
 use crate::analytical::olsson_larsson::{self, OlssonLarsson};

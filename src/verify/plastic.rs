@@ -8,7 +8,8 @@
 use std::f64::consts::PI;
 
 use super::models::models;
-use super::runner::{History, RADIUS, Runner, full_slip, press, sphere};
+use super::runner::Runner;
+use super::sphere::{History, RADIUS, full_slip, press, sphere};
 use super::{Check, VerifyError};
 use crate::case::{Case, Hardening};
 use crate::simulation::record::StepRecord;

@@ -9,7 +9,8 @@
 //! With friction the profile dips on the axis. That is friction's doing: without it the same mesh
 //! gives the highest pressure there.
 
-use super::runner::{RADIUS, Runner, press, sphere};
+use super::runner::Runner;
+use super::sphere::{RADIUS, press, sphere};
 use super::{Check, VerifyError};
 use crate::case::Hardening;
 use crate::output::{ContactPoint, ContactStatus};

@@ -3,7 +3,8 @@
 
 use std::f64::consts::PI;
 
-use super::runner::{History, RADIUS, Runner, YOUNGS_MODULUS, press, shear, sphere};
+use super::runner::Runner;
+use super::sphere::{History, RADIUS, YOUNGS_MODULUS, press, shear, sphere};
 use super::{Check, VerifyError};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Hardening, Hold, Opponent, Segment};

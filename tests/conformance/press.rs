@@ -72,8 +72,8 @@ struct Recorder<'a> {
 
 impl Observer for Recorder<'_> {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
-        self.history.push(view.record);
-        if let Some((_, context)) = self.destroy.filter(|(step, _)| *step == view.record.step) {
+        self.history.push(view.record.0);
+        if let Some((_, context)) = self.destroy.filter(|(step, _)| *step == view.record.0.step) {
             context.destroy();
         }
         Ok(())

@@ -20,8 +20,8 @@ use crate::compute::gather::GatherPlan;
 use crate::compute::{CaseModel, ComputeError, Outcome};
 use crate::contact::coulomb::CONTACT_WEIGHT;
 
-/// Components of `moduli`.
-const MODULI: usize = 31;
+/// Components of `moduli` in `tangent.wgsl`.
+pub const MODULI: usize = 31;
 /// Numbers that go to a contact point: force, increment.
 pub const CONTACT_TRIAL: usize = 6;
 /// Numbers that come from it: residual, force rows, displacement rows.

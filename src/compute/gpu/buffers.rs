@@ -1,18 +1,14 @@
 //! Typed arrays on the device, within a memory budget; reading back is proved fresh.
 
-use super::adapters::AdapterKind;
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::memory::{Reservation, Staging};
 use super::shader_sources::Precision;
 use crate::real::Real;
 use bytemuck::{Pod, cast_slice};
 use std::marker::PhantomData;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The environment variable for the device memory budget, MiB.
-pub const MEMORY_VARIABLE: &str = "ASPERITY_GPU_MEMORY";
-const MIB: u64 = 1 << 20;
 /// Uploads go through pieces of this size, so that the driver's copy of what is on the way stays
 /// small.
 const UPLOAD_PIECE: usize = 32 << 20;
@@ -32,84 +28,6 @@ impl DeviceReal for f32 {
 
 impl DeviceReal for f64 {
     const PRECISION: Precision = Precision::F64;
-}
-
-/// Our own account of device memory. Drivers overcommit: a device may accept twice what it has and
-/// fail long after.
-#[derive(Debug)]
-pub struct MemoryBudget {
-    limit: u64,
-    used: AtomicU64,
-}
-
-impl MemoryBudget {
-    /// A budget of `limit` bytes.
-    pub fn new(limit: u64) -> Self {
-        Self { limit, used: AtomicU64::new(0) }
-    }
-
-    /// The budget from `ASPERITY_GPU_MEMORY` (MiB), else what devices of this kind have today at
-    /// the least: wgpu cannot say how much there is. 4 GiB for a GPU with its own memory, 2 GiB
-    /// where memory is shared with the CPU.
-    pub fn for_adapter(kind: AdapterKind) -> Self {
-        let default = if matches!(kind, AdapterKind::Discrete | AdapterKind::Virtual) { 4096 } else { 2048 };
-        let mib: u64 = match std::env::var(MEMORY_VARIABLE) {
-            Err(_) => default,
-            Ok(text) => text.trim().parse().unwrap_or_else(|_| {
-                log::warn!("{MEMORY_VARIABLE}={text} is not a whole number of MiB; {default} is used");
-                default
-            }),
-        };
-        Self::new(mib.saturating_mul(MIB))
-    }
-
-    /// The budget, bytes.
-    pub fn limit(&self) -> u64 {
-        self.limit
-    }
-
-    /// What is taken, bytes.
-    pub fn used(&self) -> u64 {
-        self.used.load(Ordering::Relaxed)
-    }
-
-    /// Takes `bytes` for `what` until the reservation is dropped.
-    ///
-    /// # Errors
-    /// [`GpuError::OutOfBudget`].
-    pub fn reserve(self: &Arc<Self>, what: &str, bytes: u64) -> Result<Reservation, GpuError> {
-        let fits = |used: u64| used.checked_add(bytes).filter(|&sum| sum <= self.limit);
-        match self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, fits) {
-            Ok(_) => Ok(Reservation { budget: Arc::clone(self), bytes }),
-            Err(used) => Err(GpuError::OutOfBudget {
-                what: what.to_owned(),
-                needed_mib: bytes as f64 / MIB as f64,
-                used_mib: used as f64 / MIB as f64,
-                budget_mib: self.limit as f64 / MIB as f64,
-            }),
-        }
-    }
-}
-
-/// A share of a [`MemoryBudget`], given back when dropped.
-#[derive(Debug)]
-pub struct Reservation {
-    budget: Arc<MemoryBudget>,
-    bytes: u64,
-}
-
-impl Drop for Reservation {
-    fn drop(&mut self) {
-        self.budget.used.fetch_sub(self.bytes, Ordering::Relaxed);
-    }
-}
-
-/// The buffer that downloads are mapped from, with the running number of the last ticket.
-pub(super) struct Staging {
-    mapped: wgpu::Buffer,
-    ticket: wgpu::Buffer,
-    number: u64,
-    _reservation: Reservation,
 }
 
 /// `count` records from `first` on, small enough to be processed in one go.
@@ -363,7 +281,7 @@ impl GpuContext {
             let reservation = self.budget.reserve("staging", needed)?;
             let mapped = self.buffer("staging", needed, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST)?;
             let ticket = self.buffer("ticket", TICKET_BYTES, wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST)?;
-            *slot = Some(Staging { mapped, ticket, number, _reservation: reservation });
+            *slot = Some(Staging { mapped, ticket, number, reservation });
         }
         slot.as_mut().ok_or_else(|| GpuError::Lost { reason: "no staging buffer".to_owned() })
     }
@@ -392,19 +310,5 @@ mod tests {
         assert_eq!(chunks("state", 0, 1, 1, 1, 1), Ok(vec![]));
         assert!(matches!(chunks("state", 3, 9, 9, 8, 100), Err(GpuError::TooLarge { bytes: 9, limit: 8, .. })));
         assert!(matches!(chunks("state", 3, 9, 19, 9, 18), Err(GpuError::TooLarge { bytes: 19, limit: 18, .. })));
-    }
-
-    #[test]
-    fn a_reservation_is_given_back() {
-        let budget = Arc::new(MemoryBudget::new(10 * MIB));
-        let first = budget.reserve("a", 6 * MIB).unwrap();
-        let error = budget.reserve("tangents", 5 * MIB).unwrap_err();
-        let expected = GpuError::OutOfBudget { what: "tangents".into(), needed_mib: 5.0, used_mib: 6.0, budget_mib: 10.0 };
-        assert_eq!(error, expected);
-        assert!(error.to_string().contains("tangents needs 5 MiB of device memory, 6 of 10 MiB are taken"), "{error}");
-        drop(first);
-        let _second = budget.reserve("b", 10 * MIB).unwrap();
-        assert_eq!(budget.used(), 10 * MIB);
-        assert!(budget.reserve("c", u64::MAX).is_err());
     }
 }

@@ -1,11 +1,11 @@
 //! Opening a device, and watching over it.
 
 use super::adapters::{self, Adapter, AdapterKind, Choice, DeviceRequest};
-use super::buffers::{MemoryBudget, Staging};
+use super::compiled::PipelineCache;
 use super::error::GpuError;
 use super::health::DeviceHealth;
+use super::memory::{MemoryBudget, Staging};
 use super::meter::Meter;
-use super::pipelines::PipelineCache;
 use super::shader_sources::Precision;
 use crate::compute::traffic::Traffic;
 use std::sync::{Arc, Mutex, PoisonError};

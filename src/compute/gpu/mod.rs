@@ -3,7 +3,7 @@
 //!
 //! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory
 //! budget, [`shader_sources`] lists the WGSL of every kernel, [`pipelines`] compiles and dispatches
-//! it, [`lint`] proves things about it that no compiler checks.
+//! it, [`validate`](mod@validate) says where a source does not compile.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
 //! device; [`backend`] is the [`Compute`](super::Compute) of it in one precision, [`mixed`] that of
@@ -18,17 +18,19 @@ pub mod backend;
 pub mod batch;
 pub mod block_plan;
 pub mod buffers;
+mod compiled;
 pub mod context;
 pub mod error;
 pub mod health;
-pub mod lint;
 pub mod material;
+pub mod memory;
 mod meter;
 pub mod mixed;
 pub mod pipelines;
 pub mod report;
 pub mod resident;
 pub mod shader_sources;
+pub mod validate;
 
 pub use adapters::{Adapter, AdapterKind, Choice, DeviceRequest};
 pub use backend::Gpu;

@@ -1,33 +1,19 @@
 //! Compiling kernels once, and running them.
 
 use super::buffers::StorageBuffer;
+use super::compiled::Pipeline;
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::lint;
 use super::shader_sources::{Assembled, Binding, Kernel, Precision};
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use super::validate::validate;
+use std::sync::{Arc, PoisonError};
 use std::time::Instant;
-
-/// A compiled kernel.
-#[derive(Debug)]
-pub struct Pipeline {
-    raw: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
-    kernel: &'static Kernel,
-}
 
 /// A kernel with its arguments, ready to run; made once and run often.
 #[derive(Debug)]
 pub struct Bound {
     pipeline: Arc<Pipeline>,
     group: wgpu::BindGroup,
-}
-
-/// Compiled kernels by name and precision.
-#[derive(Debug, Default)]
-pub(super) struct PipelineCache {
-    compiled: Mutex<BTreeMap<(&'static str, Precision), Arc<Pipeline>>>,
 }
 
 /// Kernels to be run one after the other, each seeing what those before it wrote.
@@ -103,7 +89,7 @@ impl GpuContext {
                 }
             }
         });
-        made.map_err(|error| match (lint::validate(source), error) {
+        made.map_err(|error| match (validate(source), error) {
             // naga's own words with the place in the file, where it is the source that is wrong
             (Err(located), GpuError::Rejected { .. }) => located,
             (_, error) => error,

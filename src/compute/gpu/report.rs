@@ -1,7 +1,7 @@
 //! What `asperity devices` says.
 
 use super::adapters::{ADAPTER_VARIABLE, Adapter, DeviceRequest, choose};
-use super::buffers::MEMORY_VARIABLE;
+use super::memory::MEMORY_VARIABLE;
 use serde_json::{Value, json};
 use std::fmt::Write;
 

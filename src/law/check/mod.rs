@@ -3,7 +3,8 @@
 mod protocol;
 
 use std::fmt::Write as _;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
@@ -11,8 +12,8 @@ use super::contact::path::drive;
 use super::contact::{ContactParameters, ContactState};
 use super::{LawError, LawFile};
 use crate::case::Case;
-use crate::output::{StepRecord, Units};
-use crate::simulation::drive::{Ending, Observer, StepView};
+use crate::output::{Recorder, StepRecord};
+use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
 
@@ -107,7 +108,7 @@ impl Checked {
 /// # Errors
 /// The law says nothing of the case; a simulation cannot be set up.
 pub fn check(law: &LawFile, case: &Case, elements: usize) -> Result<Vec<Checked>, LawError> {
-    check_until(law, case, elements, &AtomicBool::new(false))
+    check_until(law, case, elements, &Arc::default())
 }
 
 /// As [`check`]; once `stop` is set, the simulations end after their present step, which their
@@ -115,47 +116,21 @@ pub fn check(law: &LawFile, case: &Case, elements: usize) -> Result<Vec<Checked>
 ///
 /// # Errors
 /// Those of [`check`].
-pub fn check_until(law: &LawFile, case: &Case, elements: usize, stop: &AtomicBool) -> Result<Vec<Checked>, LawError> {
+pub fn check_until(law: &LawFile, case: &Case, elements: usize, stop: &Arc<AtomicBool>) -> Result<Vec<Checked>, LawError> {
     let parameters = law.contact_parameters(case)?;
     protocol(case, &parameters, elements).par_iter().with_max_len(1).map(|path| run(path, &parameters, stop)).collect()
 }
 
-fn run(path: &Path, parameters: &ContactParameters, stop: &AtomicBool) -> Result<Checked, LawError> {
-    /// Keeps the steps of the last start.
-    struct Watch<'a> {
-        rows: Vec<StepRecord>,
-        units: Units,
-        stop: &'a AtomicBool,
-    }
-    type Failed = Box<dyn std::error::Error + Send + Sync>;
-    impl Observer for Watch<'_> {
-        fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-            self.rows.push(view.record.in_units(&self.units));
-            Ok(())
-        }
-        fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
-            Ok(())
-        }
-        fn note(&mut self, text: &str) {
-            log::info!("{text}");
-        }
-        fn starts_over(&mut self, _: &Problem, _: usize) -> Result<(), Failed> {
-            self.rows.clear();
-            Ok(())
-        }
-        fn stop_requested(&self) -> bool {
-            self.stop.load(Ordering::Relaxed)
-        }
-    }
-    let mut watch = Watch { rows: Vec::new(), units: Units::of(&path.case), stop };
-    let followed = follow(Problem::new(&path.case)?, None, &mut |problem| on_cpu(problem), &mut watch)?;
+fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> Result<Checked, LawError> {
+    let mut recorder = Recorder::new(&path.case, Some(stop.clone()));
+    let followed = follow(Problem::new(&path.case)?, None, &mut |problem| on_cpu(problem), &mut recorder)?;
     let failure = match followed.ending {
         Ending::Done => None,
         Ending::NotConverged(reason) => Some(reason),
         Ending::Outgrown(outgrowth) => Some(outgrowth.to_string()),
         Ending::Interrupted => Some("interrupted".to_owned()),
     };
-    let rows: Vec<StepRecord> = watch.rows.into_iter().filter(|row| row.step > 0).collect();
+    let rows: Vec<StepRecord> = recorder.rows.into_iter().filter(|row| row.step > 0).collect();
     let places: Vec<[f64; 2]> = rows.iter().map(|row| [row.h, row.delta_t]).collect();
     let law = drive(parameters, &places, INCREMENTS);
     let simulated = rows.last().map_or(0.0, |row| row.work_plastic + row.work_friction);

@@ -4,6 +4,7 @@
 use crate::case::{Case, Fields, Friction, Hardening, Hold, Segment, ShearTarget};
 use crate::law::contact::ContactParameters;
 use crate::law::contact::path::follow;
+use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// A path of the protocol.
 #[derive(Clone, Debug)]
@@ -15,7 +16,7 @@ pub struct Path {
 }
 
 /// F_T/F_N over mu at which a shear counts as full.
-const FULL: f64 = 0.99;
+const FULL: f64 = SLIP_DISPLACEMENT_RATIO;
 
 /// The protocol for the material, the friction and the greatest depth of `case`; the shears are
 /// measured in the displacement at which the law has 0.99 mu.

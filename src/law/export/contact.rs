@@ -55,7 +55,7 @@ impl Unit {
             (LawFile::Formulas(formulas), Some(case)) => {
                 // Refuses what the law does not cover before the numbers lose their units.
                 law.contact_parameters(case)?;
-                let unit = case.scaled();
+                let unit = case.scaled().0;
                 let parameters = law.contact_parameters(&unit)?;
                 let mut deepest: f64 = 0.0;
                 for i in 0..KNOTS {

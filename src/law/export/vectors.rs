@@ -11,7 +11,7 @@ use crate::law::folds::splitmix;
 use crate::law::model::Law;
 use crate::law::tabulated::Tabulated;
 use crate::law::variables::Body;
-use crate::material::hardening::{Hardening, HardeningError};
+use crate::material::{Hardening, MaterialError};
 
 /// Seed of the vectors that are exported.
 pub const SEED: u64 = 2014;
@@ -41,7 +41,7 @@ impl Random {
 }
 
 /// A hardening law by the number it has in the exports, and its numbers there.
-fn hardening(kind: usize, e: f64, random: &mut Random) -> Result<(Hardening<f64>, [f64; 3]), HardeningError> {
+fn hardening(kind: usize, e: f64, random: &mut Random) -> Result<(Hardening<f64>, [f64; 3]), MaterialError> {
     let stress = e * (10f64).powf(random.between(-4.0, -1.8));
     Ok(match kind {
         1 => (Hardening::ideal(stress)?, [stress, 0.0, 0.0]),

@@ -2,8 +2,8 @@
 
 use super::groups::{by_friction, lambda_axis};
 use crate::law::data::Sample;
-use crate::law::fit::{case_errors, inputs};
-use crate::law::report::{CaseErrors, FittedCase, LAMBDA_BOUNDS};
+use crate::law::fit::inputs;
+use crate::law::report::{CaseErrors, FittedCase, LAMBDA_BOUNDS, case_errors};
 use crate::law::variables::yield_lambda;
 use crate::law::{Law, LawError};
 use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_charts, extent};

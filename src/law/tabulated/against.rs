@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Material, Opponent};
 use crate::law::variables::yield_lambda;
-use crate::material::hardening::{Hardening, HardeningError};
+use crate::material::{Hardening, MaterialError};
 
 /// What the sphere of a table meets. Its radius and its material are in the table's case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -107,7 +107,7 @@ pub fn equivalent(case: &Case) -> ElasticSphere {
 ///
 /// # Errors
 /// A hardening law whose numbers make no law.
-pub fn first_yield(case: &Case) -> Result<Option<f64>, HardeningError> {
+pub fn first_yield(case: &Case) -> Result<Option<f64>, MaterialError> {
     let sphere = equivalent(case);
     let mut first: Option<f64> = None;
     for material in bodies(case) {

@@ -13,6 +13,7 @@ use crate::law::LawError;
 use crate::law::contact::path::drive;
 use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
+use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Least depth of one body that is simulated: the mesh has a contact radius of 0.005 R at least.
 const SHALLOWEST: f64 = 2e-5;
@@ -30,7 +31,7 @@ const LENGTH: f64 = 2.0;
 /// Share of F_N that the release at the end leaves.
 const LEFT: f64 = 0.5;
 /// F_T/F_N there over mu.
-const NEARLY_SLIPPING: f64 = 0.99;
+const NEARLY_SLIPPING: f64 = SLIP_DISPLACEMENT_RATIO;
 /// A depth nearer than this share of its size to first yield needs no Hertz contact below it.
 const NEAR: f64 = 1.3;
 
@@ -132,7 +133,7 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
 
 pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
     // In units of R and E, with what it meets, which an equal pair loses there.
-    let in_units = case.scaled();
+    let in_units = case.scaled().0;
     let opponent = if case.opponent == Some(Opponent::Equal) { Some(Opponent::Equal) } else { in_units.opponent.clone() };
     let scaled = Case { opponent, ..case_of(&in_units, elements) };
     let friction = match scaled.contact.friction {

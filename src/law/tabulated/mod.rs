@@ -214,7 +214,7 @@ impl Tabulated {
     /// [`LawError::OtherMaterial`] with what differs.
     pub fn covers(&self, case: &Case) -> Result<(), LawError> {
         let own = self.scaled_case()?;
-        let other = case.scaled();
+        let other = case.scaled().0;
         let refuse = |what: String| Err(LawError::OtherMaterial { what });
         let body = Against::of(case);
         if body != self.body {

@@ -5,30 +5,30 @@ use crate::compute::Compute;
 use crate::simulation::checkpoint::{Committed, Place};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::ContactPoint;
-use crate::solver::newton::{Newton, StepReport};
+use crate::solver::StepReport;
+use crate::solver::newton::Newton;
 
 /// A drive between two steps, without the problem and the backend that it borrows.
 pub struct Paused {
     newton: Newton,
     state: Committed,
     place: Place,
-    full_slip: Option<bool>,
     last_report: StepReport,
 }
 
 impl Drive<'_> {
     /// Gives problem and backend back after an interruption or at the end of the path.
     pub fn pause(self) -> Paused {
-        let Self { newton, state, place, full_slip, last_report, .. } = self;
-        Paused { newton, state, place, full_slip, last_report }
+        let Self { newton, state, place, last_report, .. } = self;
+        Paused { newton, state, place, last_report }
     }
 }
 
 impl Paused {
     /// Takes the path up again, with the problem and the backend that [`Drive::pause`] gave back.
     pub fn go_on<'a>(self, problem: &'a Problem, backend: &'a mut dyn Compute, case: usize) -> Drive<'a> {
-        let Self { newton, state, place, full_slip, last_report } = self;
-        Drive { state, place, full_slip, last_report, ..Drive::new(problem, backend, case, newton) }
+        let Self { newton, state, place, last_report } = self;
+        Drive { state, place, last_report, ..Drive::new(problem, backend, case, newton) }
     }
 
     /// Displacement of the last accepted step, three numbers a node, scaled.

@@ -121,11 +121,9 @@ impl Drive<'_> {
             if length.is_infinite() {
                 let before = self.place.force_before;
                 if self.slips_fully() && (self.state.record.f_t - before) * direction <= PLATEAU * before.abs() {
-                    self.full_slip = Some(true);
                     break;
                 }
                 if distance >= bound {
-                    self.full_slip = Some(false);
                     observer.note(&format!(
                         "shear: full slip was not reached within delta_T = {:.4} R; {} of {} contact points slip",
                         self.problem.bodies * distance,

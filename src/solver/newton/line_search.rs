@@ -1,8 +1,9 @@
 //! How far along a correction: backtracking on the contact merit, and when the whole correction is
 //! taken although the merit grows.
 
+use super::super::Control;
+use super::super::outcome::{Halt, StepFailure};
 use super::super::system::Trial;
-use super::super::{Control, SolverError};
 use super::Newton;
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
@@ -21,17 +22,17 @@ const DOWNHILL_MERIT: f64 = 4.0;
 impl Newton {
     /// Backtracks along `self.delta` until the merit falls below `reference`; otherwise takes the
     /// best there was, or the whole correction where that would creep while the energy falls all
-    /// the way. `Err` if no length is valid.
+    /// the way. Every length may invert an element: the shortest one tells which.
     pub(super) fn line_search(
         &mut self,
         case: &mut dyn Evaluate,
         control: &Control,
         reference: f64,
         delta_h: f64,
-    ) -> Result<Result<(f64, usize), Outcome>, SolverError> {
+    ) -> Result<(f64, usize), Halt> {
         let mut best: Option<f64> = None;
         let mut best_merit = f64::INFINITY;
-        let mut invalid = Outcome::Valid;
+        let mut inverted = (0, 0);
         let slope = self.slope(&self.current, control, delta_h);
         let stick = case.model().friction == Friction::Stick;
         let mut leap = false;
@@ -45,8 +46,8 @@ impl Newton {
                 self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, control.delta_t);
             }
             let outcome = self.candidate.evaluate(case, &self.boundary, control, &mut self.times)?;
-            if outcome != Outcome::Valid {
-                invalid = outcome;
+            if let Outcome::Inverted { element, point } = outcome {
+                inverted = (element, point);
                 continue;
             }
             if s == 1.0 && self.candidate.merit < DOWNHILL_MERIT * self.current.merit {
@@ -62,7 +63,10 @@ impl Newton {
                 break;
             }
         }
-        let Some(mut s) = best else { return Ok(Err(invalid)) };
+        let Some(mut s) = best else {
+            let (element, point) = inverted;
+            return Err(StepFailure::Inverted { element, point }.into());
+        };
         if s <= CREEPING && leap {
             s = 1.0;
             for ((u, u0), d) in self.best.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
@@ -74,7 +78,7 @@ impl Newton {
         }
         let changed = self.best.rows.iter().zip(&self.current.rows).filter(|(a, b)| a.status != b.status).count();
         std::mem::swap(&mut self.current, &mut self.best);
-        Ok(Ok((s, changed)))
+        Ok((s, changed))
     }
 
     /// Merit of the candidate without the tangential forces of points that come off in it. Under

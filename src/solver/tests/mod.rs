@@ -8,8 +8,8 @@ mod quadratic;
 
 use std::sync::Arc;
 
-use super::newton::{Newton, StepReport};
-use super::{Control, Settings, StepFailure};
+use super::newton::Newton;
+use super::{Control, Settings, StepFailure, StepOutcome, StepReport};
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::{CaseModel, Compute, Energies, Outcome};
@@ -49,7 +49,10 @@ impl Rig {
     /// Solves a step without committing it.
     pub fn attempt(&mut self, control: &Control) -> Result<StepReport, StepFailure> {
         let mut handle = CaseHandle { backend: &mut self.backend, case: 0 };
-        self.newton.solve(&mut handle, &self.u, self.h, None, control).unwrap()
+        match self.newton.solve(&mut handle, &self.u, self.h, None, control).unwrap() {
+            StepOutcome::Converged(report) => Ok(report),
+            StepOutcome::Failed(failure) => Err(failure),
+        }
     }
 
     /// Solves a step and commits it.

@@ -39,8 +39,6 @@ pub struct Interface {
     pub slave_of: Vec<Option<usize>>,
     /// Per slave: frame [t_1, t_2, n].
     pub frames: Vec<Frame>,
-    /// Area of the interface that belongs to each slave.
-    pub area: Vec<f64>,
     /// Per contact node: the slave that it has most to do with.
     pub facing: Vec<Option<usize>>,
     /// Nodes of the contact nodes.
@@ -155,7 +153,6 @@ impl Interface {
             slaves: rows.iter().map(|row| row.slave).collect(),
             slave_of,
             frames,
-            area: rows.iter().map(|row| row.area).collect(),
             facing: facing.into_iter().map(|f| f.map(|(k, _)| k)).collect(),
             nodes,
             masters,

@@ -34,11 +34,12 @@ impl<T: Real> BlockMatrix<T> {
     }
 
     /// The block that couples row node `row` to column node `column`, if the pattern has it.
+    #[cfg(test)]
     pub fn block(&self, row: usize, column: usize) -> Option<&[T; 9]> {
         self.pattern.position(row, column).map(|at| &self.blocks[at])
     }
 
-    /// As [`BlockMatrix::block`], for writing.
+    /// The block of a row and a column for writing; `None` where the pattern has none.
     pub fn block_mut(&mut self, row: usize, column: usize) -> Option<&mut [T; 9]> {
         self.pattern.position(row, column).map(|at| &mut self.blocks[at])
     }

@@ -5,7 +5,6 @@ use wide::f32x4;
 
 use super::bsr::{BlockMatrix, Pattern};
 use super::kernel::Node;
-use super::multigrid::mask;
 use super::parallel::{each, each_row};
 use crate::mesh::Prolongation;
 
@@ -175,5 +174,14 @@ impl Transfer {
 fn add_scaled(sum: &mut [f32; 9], w: f32, a: &[f32; 9]) {
     for m in 0..9 {
         sum[m] += w * a[m];
+    }
+}
+
+/// Zeroes the rows and columns whose bits are set.
+pub(super) fn mask(block: &mut [f32; 9], rows: u8, columns: u8) {
+    for (m, a) in block.iter_mut().enumerate() {
+        if (rows >> (m / 3) | columns >> (m % 3)) & 1 != 0 {
+            *a = 0.0;
+        }
     }
 }

@@ -87,12 +87,6 @@ pub enum LinalgError {
         /// Allowed memory, bytes.
         limit: usize,
     },
-    /// The factorisation failed for want of memory or of index range.
-    #[error("the direct factorisation failed ({what}); use the multigrid solver or a coarser mesh")]
-    Factorisation {
-        /// What the factorisation reported.
-        what: String,
-    },
     /// A solution was asked for before a successful update.
     #[error("the linear solver has no matrix; call update before solve")]
     NotUpdated,
@@ -209,7 +203,7 @@ impl LinearSolver {
     ///
     /// # Errors
     /// [`LinalgError::Size`], [`LinalgError::NotFinite`]; from the direct solver also
-    /// [`LinalgError::TooLarge`], [`LinalgError::Singular`] and [`LinalgError::Factorisation`].
+    /// [`LinalgError::TooLarge`] and [`LinalgError::Singular`].
     pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
         self.updated = false;
         size("the matrix", matrix.blocks.len(), self.matrix.blocks.len())?;

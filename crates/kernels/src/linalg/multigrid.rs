@@ -7,7 +7,7 @@ use super::bsr::{BlockMatrix, Pattern};
 use super::chebyshev::Smoother;
 use super::coarsest::Dense;
 use super::fixed::Fixed;
-use super::galerkin::Transfer;
+use super::galerkin::{Transfer, mask};
 use super::kernel::{Node, row_times};
 use super::parallel::{each, each_row};
 use super::{LinalgError, size};
@@ -56,11 +56,6 @@ impl Hierarchy {
         let dense = (3 * fine.rows() <= DENSE_UNKNOWNS).then(Dense::default);
         levels.push(Level::new(fine, COARSEST_DEGREE, None));
         Ok(Self { levels, dense, fixed: Fixed::default() })
-    }
-
-    /// Nodes and blocks of each level, finest first.
-    pub fn sizes(&self) -> Vec<[usize; 2]> {
-        self.levels.iter().map(|level| [level.b.len(), level.smoother.matrix.blocks.len()]).collect()
     }
 
     /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed`
@@ -186,15 +181,6 @@ impl Level {
     fn new(pattern: Pattern, degree: usize, transfer: Option<Transfer>) -> Self {
         let zero = vec![[0.0; 4]; pattern.rows()];
         Self { smoother: Smoother::new(pattern, degree), transfer, b: zero.clone(), x: zero.clone(), r: zero }
-    }
-}
-
-/// Zeroes the rows and columns whose bits are set.
-pub(super) fn mask(block: &mut [f32; 9], rows: u8, columns: u8) {
-    for (m, a) in block.iter_mut().enumerate() {
-        if (rows >> (m / 3) | columns >> (m % 3)) & 1 != 0 {
-            *a = 0.0;
-        }
     }
 }
 

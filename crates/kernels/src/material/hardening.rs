@@ -15,33 +15,9 @@
 
 // `!(x > 0)` is true for a NaN, which is what it is written for.
 
+use super::MaterialError;
 use crate::lanes::Number;
 use crate::real::Real;
-
-/// Why a hardening law cannot be built.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum HardeningError {
-    /// A parameter is out of its range, or not finite.
-    #[error("hardening law \"{law}\": {parameter} = {value}: {remedy}")]
-    Parameter {
-        /// The law, as in the case file.
-        law: &'static str,
-        /// The key in the case file.
-        parameter: &'static str,
-        /// What was given.
-        value: f64,
-        /// What is allowed.
-        remedy: &'static str,
-    },
-    /// A table that is no function, or softens faster than the solid unloads.
-    #[error("hardening law \"table\": point {index}: {remedy}")]
-    Table {
-        /// The point, counted from 0.
-        index: usize,
-        /// What is wrong with it, and what is allowed.
-        remedy: &'static str,
-    },
-}
 
 /// The flow stress sigma(alpha) of an isotropically hardening solid.
 ///
@@ -137,28 +113,28 @@ impl Hardening<f64> {
     }
 }
 
-fn positive(law: &'static str, parameter: &'static str, value: f64) -> Result<f64, HardeningError> {
+fn positive(law: &'static str, parameter: &'static str, value: f64) -> Result<f64, MaterialError> {
     if value > 0.0 && value.is_finite() {
         return Ok(value);
     }
-    Err(HardeningError::Parameter { law, parameter, value, remedy: "give a finite number above 0" })
+    Err(MaterialError::Parameter { law, parameter, value, remedy: "give a finite number above 0" })
 }
 
-fn not_negative(law: &'static str, parameter: &'static str, value: f64) -> Result<f64, HardeningError> {
+fn not_negative(law: &'static str, parameter: &'static str, value: f64) -> Result<f64, MaterialError> {
     if value >= 0.0 && value.is_finite() {
         return Ok(value);
     }
-    Err(HardeningError::Parameter { law, parameter, value, remedy: "give a finite number, 0 or more" })
+    Err(MaterialError::Parameter { law, parameter, value, remedy: "give a finite number, 0 or more" })
 }
 
 impl<R: Real> Hardening<R> {
     /// No hardening: sigma = sigma_Y > 0.
-    pub fn ideal(yield_stress: f64) -> Result<Self, HardeningError> {
+    pub fn ideal(yield_stress: f64) -> Result<Self, MaterialError> {
         Ok(Self::Ideal { yield_stress: R::of(positive("ideal", "yield_stress", yield_stress)?) })
     }
 
     /// sigma_Y + H alpha; sigma_Y > 0, H >= 0.
-    pub fn linear(yield_stress: f64, modulus: f64) -> Result<Self, HardeningError> {
+    pub fn linear(yield_stress: f64, modulus: f64) -> Result<Self, MaterialError> {
         Ok(Self::Linear {
             yield_stress: R::of(positive("linear", "yield_stress", yield_stress)?),
             modulus: R::of(not_negative("linear", "modulus", modulus)?),
@@ -166,10 +142,10 @@ impl<R: Real> Hardening<R> {
     }
 
     /// sigma_Y + K alpha^n; sigma_Y > 0, K >= 0, 0 < n <= 1.
-    pub fn power(yield_stress: f64, coefficient: f64, exponent: f64) -> Result<Self, HardeningError> {
+    pub fn power(yield_stress: f64, coefficient: f64, exponent: f64) -> Result<Self, MaterialError> {
         if !(exponent > 0.0 && exponent <= 1.0) {
             let remedy = "give n of sigma_Y + K alpha^n, above 0 and at most 1";
-            return Err(HardeningError::Parameter { law: "power", parameter: "exponent", value: exponent, remedy });
+            return Err(MaterialError::Parameter { law: "power", parameter: "exponent", value: exponent, remedy });
         }
         Ok(Self::Power {
             yield_stress: R::of(positive("power", "yield_stress", yield_stress)?),
@@ -179,13 +155,13 @@ impl<R: Real> Hardening<R> {
     }
 
     /// sigma_0 eps^(1/m), eps = alpha + sigma/E; sigma_0 > 0, m > 1, E > 0.
-    pub fn hollomon(coefficient: f64, exponent: f64, youngs_modulus: f64) -> Result<Self, HardeningError> {
+    pub fn hollomon(coefficient: f64, exponent: f64, youngs_modulus: f64) -> Result<Self, MaterialError> {
         let law = "hollomon";
         let coefficient = positive(law, "coefficient", coefficient)?;
         let youngs_modulus = positive(law, "youngs_modulus", youngs_modulus)?;
         if !(exponent > 1.0 && exponent.is_finite()) {
             let remedy = "give m of sigma = sigma_0 eps^(1/m), a finite number above 1";
-            return Err(HardeningError::Parameter { law, parameter: "exponent", value: exponent, remedy });
+            return Err(MaterialError::Parameter { law, parameter: "exponent", value: exponent, remedy });
         }
         // (sigma_0^m / E)^(1/(m-1)) = E (sigma_0/E)^(m/(m-1)), which does not overflow.
         let yield_stress = youngs_modulus * (coefficient / youngs_modulus).powf(exponent / (exponent - 1.0));
@@ -199,12 +175,12 @@ impl<R: Real> Hardening<R> {
     }
 
     /// sigma_Y + (sigma_sat - sigma_Y)(1 - exp(-rate alpha)); sigma_sat >= sigma_Y > 0, rate > 0.
-    pub fn voce(yield_stress: f64, saturation_stress: f64, rate: f64) -> Result<Self, HardeningError> {
+    pub fn voce(yield_stress: f64, saturation_stress: f64, rate: f64) -> Result<Self, MaterialError> {
         let yield_stress = positive("voce", "yield_stress", yield_stress)?;
         if !(saturation_stress >= yield_stress && saturation_stress.is_finite()) {
             let remedy = "give a finite stress not below yield_stress";
             let (law, parameter) = ("voce", "saturation_stress");
-            return Err(HardeningError::Parameter { law, parameter, value: saturation_stress, remedy });
+            return Err(MaterialError::Parameter { law, parameter, value: saturation_stress, remedy });
         }
         Ok(Self::Voce {
             yield_stress: R::of(yield_stress),
@@ -215,8 +191,8 @@ impl<R: Real> Hardening<R> {
 
     /// Piecewise linear through `[alpha, sigma]`, constant beyond the last point; alpha from 0 and
     /// increasing, sigma > 0 and not decreasing.
-    pub fn table(points: &[[f64; 2]]) -> Result<Self, HardeningError> {
-        let fail = |index, remedy| Err(HardeningError::Table { index, remedy });
+    pub fn table(points: &[[f64; 2]]) -> Result<Self, MaterialError> {
+        let fail = |index, remedy| Err(MaterialError::Table { index, remedy });
         if points.is_empty() {
             return fail(0, "is missing: give at least one [alpha, stress]");
         }

@@ -18,12 +18,14 @@
 //! Symmetric tensors are `[xx, yy, zz, xy, yz, zx]`, tensor components everywhere: no engineering
 //! factors. Stresses are in the unit of the moduli given (inside the program: scaled by E).
 
+mod error;
 pub mod hardening;
 pub mod j2;
 pub mod multistep;
 pub mod point;
 
-pub use hardening::{Hardening, HardeningError};
+pub use error::MaterialError;
+pub use hardening::Hardening;
 pub use j2::{Response, deviatoric_tangent, return_mapping, return_mapping_of_eight};
 
 use serde::{Deserialize, Serialize};

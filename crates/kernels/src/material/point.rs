@@ -4,44 +4,13 @@
 use super::hardening::increasing_root;
 use super::j2::determinant_minus_one;
 use super::{
-    Material, PointError, PointState, Response, deviatoric_tangent, elastic_energy_deviatoric, elastic_energy_volumetric,
-    pressure, return_mapping,
+    Material, MaterialError, PointError, PointState, Response, deviatoric_tangent, elastic_energy_deviatoric,
+    elastic_energy_volumetric, pressure, return_mapping,
 };
 
 /// A deformation gradient or displacement gradient: rows are components, columns the direction of
 /// the derivative.
 type Gradient = [[f64; 3]; 3];
-
-/// Why a path could not be followed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DriveError {
-    /// The point has no answer for the step.
-    #[error("step {step}: {source}")]
-    Point {
-        /// The step, counted from 1; of a given path also its row.
-        step: usize,
-        /// What the point said.
-        source: PointError,
-    },
-    /// The deformation gradient of the path has no positive determinant.
-    #[error("step {step}: det F = {determinant}: give deformation gradients with a determinant above 0")]
-    Gradient {
-        /// The step, counted from 1; of a given path also its row.
-        step: usize,
-        /// det F.
-        determinant: f64,
-    },
-    /// No lateral stretch frees the sides of stress.
-    #[error(
-        "step {step}: no lateral stretch makes the lateral stress vanish (left: {residual:e} of Young's modulus): take more steps or a smaller strain"
-    )]
-    Lateral {
-        /// The step, counted from 1.
-        step: usize,
-        /// Lateral Kirchhoff stress over E.
-        residual: f64,
-    },
-}
 
 /// The point after one step. Stresses and energies are in the unit of the material's moduli.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,11 +47,6 @@ impl MaterialPoint {
         Self { material, state: PointState::default(), displacement_gradient: Gradient::default(), step: 0 }
     }
 
-    /// What the point remembers.
-    pub fn state(&self) -> &PointState<f64> {
-        &self.state
-    }
-
     /// The undeformed point, as step 0.
     pub fn start(&self) -> PointRecord {
         self.record(&[0.0; 6])
@@ -91,17 +55,17 @@ impl MaterialPoint {
     /// Deforms the point to F, given as F - I, in one step.
     ///
     /// # Errors
-    /// [`DriveError`]; the point then is as before.
-    pub fn advance(&mut self, displacement_gradient: &Gradient) -> Result<PointRecord, DriveError> {
+    /// [`MaterialError`]; the point then is as before.
+    pub fn advance(&mut self, displacement_gradient: &Gradient) -> Result<PointRecord, MaterialError> {
         let step = self.step + 1;
         let determinant = 1.0 + determinant_minus_one(displacement_gradient);
         // A NaN is refused too.
         if !(determinant > 0.0 && determinant.is_finite()) {
-            return Err(DriveError::Gradient { step, determinant });
+            return Err(MaterialError::Gradient { step, determinant });
         }
         let relative = relative(displacement_gradient, &self.displacement_gradient);
         let response =
-            return_mapping(&self.material, &relative, &self.state).map_err(|source| DriveError::Point { step, source })?;
+            return_mapping(&self.material, &relative, &self.state).map_err(|source| MaterialError::Point { step, source })?;
         self.state = response.state;
         self.displacement_gradient = *displacement_gradient;
         self.step = step;
@@ -115,8 +79,8 @@ impl MaterialPoint {
     /// consistent tangent (exact here: dev n^2 is parallel to n in uniaxial stress).
     ///
     /// # Errors
-    /// [`DriveError`]; the point then is as before.
-    pub fn stretch(&mut self, axial: f64) -> Result<PointRecord, DriveError> {
+    /// [`MaterialError`]; the point then is as before.
+    pub fn stretch(&mut self, axial: f64) -> Result<PointRecord, MaterialError> {
         let step = self.step + 1;
         let before = self.displacement_gradient;
         let (axial_before, lateral_before) = (before[0][0].ln_1p(), before[1][1].ln_1p());
@@ -130,11 +94,11 @@ impl MaterialPoint {
         let reach = 0.5 + increment.abs();
         let middle = -0.5 * increment;
         let root = increasing_root(middle - reach, middle + reach, middle, |lateral| stress(lateral).unwrap_or((f64::NAN, 1.0)));
-        let (value, derivative) = stress(root).map_err(|source| DriveError::Point { step, source })?;
+        let (value, derivative) = stress(root).map_err(|source| MaterialError::Point { step, source })?;
         let root = if derivative > 0.0 { root - value / derivative } else { root };
         let target = diagonal(axial.exp_m1(), (lateral_before + root).exp_m1());
-        let after =
-            return_mapping(&self.material, &relative(root), &self.state).map_err(|source| DriveError::Point { step, source })?;
+        let after = return_mapping(&self.material, &relative(root), &self.state)
+            .map_err(|source| MaterialError::Point { step, source })?;
         let elasticity = &self.material.elasticity;
         // From F as it is kept: a lateral stretch so small that F - I does not hold it is refused
         // here too.
@@ -143,7 +107,7 @@ impl MaterialPoint {
         let youngs_modulus = 9.0 * elasticity.bulk * elasticity.shear / (3.0 * elasticity.bulk + elasticity.shear);
         let residual = lateral_stress / youngs_modulus;
         if residual.is_nan() || residual.abs() > 1e-9 {
-            return Err(DriveError::Lateral { step, residual });
+            return Err(MaterialError::Lateral { step, residual });
         }
         self.advance(&target)
     }
@@ -194,7 +158,7 @@ enum Target {
 fn drive(
     material: &Material<f64>,
     targets: impl IntoIterator<Item = Target>,
-) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
+) -> impl Iterator<Item = Result<PointRecord, MaterialError>> {
     let mut point = MaterialPoint::new(material.clone());
     let mut failed = false;
     let start = Ok(point.start());
@@ -215,7 +179,7 @@ fn drive(
 /// Uniaxial stress along x to the logarithmic strain `strain` (negative: compression) in `steps`
 /// equal steps; the sides are free. The first record is the undeformed point; after the error of a
 /// step the iterator ends.
-pub fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
+pub fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> impl Iterator<Item = Result<PointRecord, MaterialError>> {
     drive(material, (1..=steps).map(move |step| Target::Stretch(strain * (step as f64 / steps as f64))))
 }
 
@@ -225,7 +189,7 @@ pub fn simple_shear(
     material: &Material<f64>,
     strain: f64,
     steps: usize,
-) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
+) -> impl Iterator<Item = Result<PointRecord, MaterialError>> {
     let targets = (1..=steps).map(move |step| {
         let mut gradient = Gradient::default();
         gradient[0][1] = strain * (step as f64 / steps as f64);
@@ -239,7 +203,7 @@ pub fn simple_shear(
 pub fn along(
     material: &Material<f64>,
     path: impl IntoIterator<Item = Gradient>,
-) -> impl Iterator<Item = Result<PointRecord, DriveError>> {
+) -> impl Iterator<Item = Result<PointRecord, MaterialError>> {
     let targets = path.into_iter().map(|gradient| {
         let identity = |i: usize, k: usize| if i == k { 1.0 } else { 0.0 };
         Target::Deform(std::array::from_fn(|i| std::array::from_fn(|k| gradient[i][k] - identity(i, k))))

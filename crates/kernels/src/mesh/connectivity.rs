@@ -66,6 +66,7 @@ fn layers(elements: &[[u32; 8]], lists: &NodeElements, first: u32) -> Vec<u32> {
 
 /// Faces that belong to one element only, in the order of the elements, counter-clockwise seen from
 /// outside.
+#[cfg(test)]
 pub fn boundary_faces(elements: &[[u32; 8]]) -> Vec<[u32; 4]> {
     let mut faces: Vec<([u32; 4], usize)> = Vec::with_capacity(6 * elements.len());
     for (e, element) in elements.iter().enumerate() {

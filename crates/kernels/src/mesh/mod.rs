@@ -19,7 +19,9 @@ pub mod sphere;
 
 pub use brick::brick;
 pub use couple::{Couple, couple};
-pub use sphere::{SphereSpec, estimated_elements, flat_mesh, opponent_mesh, sphere_mesh};
+pub use sphere::{
+    FINE_ZONES, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh, opponent_mesh, sphere_mesh,
+};
 
 /// What is wrong with the description of a mesh, and what to do about it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! The laws one by one: stress, slope, work, the scalar return, and what the constructors refuse.
 
 use super::*;
-use crate::material::HardeningError;
+use crate::material::MaterialError;
 
 const STRAINS: [f64; 8] = [1e-8, 1e-5, 1e-3, 4e-3, 0.03, 0.1, 0.5, 2.0];
 
@@ -105,8 +105,8 @@ fn a_table_return_stops_at_and_crosses_kinks() {
 
 #[test]
 fn constructors_refuse_what_is_no_law() {
-    let parameter = |law: Result<Hardening<f64>, HardeningError>, name: &str| match law {
-        Err(HardeningError::Parameter { parameter, .. }) => assert_eq!(parameter, name),
+    let parameter = |law: Result<Hardening<f64>, MaterialError>, name: &str| match law {
+        Err(MaterialError::Parameter { parameter, .. }) => assert_eq!(parameter, name),
         other => panic!("{other:?}"),
     };
     parameter(Hardening::ideal(0.0), "yield_stress");
@@ -121,7 +121,7 @@ fn constructors_refuse_what_is_no_law() {
     parameter(Hardening::voce(2.0, 1.0, 1.0), "saturation_stress");
     parameter(Hardening::voce(2.0, 3.0, 0.0), "rate");
     let point = |points: &[[f64; 2]], at: usize| match Hardening::<f64>::table(points) {
-        Err(HardeningError::Table { index, .. }) => assert_eq!(index, at),
+        Err(MaterialError::Table { index, .. }) => assert_eq!(index, at),
         other => panic!("{other:?}"),
     };
     point(&[], 0);

@@ -1,9 +1,10 @@
 //! Uniaxial stress to finite strain against the exact curve of every law, shear, and reversal.
 
 use super::*;
-use crate::material::point::{self, DriveError, MaterialPoint, PointRecord, along, simple_shear};
+use crate::material::MaterialError;
+use crate::material::point::{self, MaterialPoint, PointRecord, along, simple_shear};
 
-fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> Result<Vec<PointRecord>, DriveError> {
+fn uniaxial(material: &Material<f64>, strain: f64, steps: usize) -> Result<Vec<PointRecord>, MaterialError> {
     point::uniaxial(material, strain, steps).collect()
 }
 
@@ -189,7 +190,7 @@ fn impossible_paths_name_the_step() {
     let mirrored = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut answers = along(&material, [IDENTITY, mirrored, IDENTITY]);
     assert!(answers.next().unwrap().is_ok() && answers.next().unwrap().is_ok());
-    assert_eq!(answers.next(), Some(Err(DriveError::Gradient { step: 2, determinant: -1.0 })));
+    assert_eq!(answers.next(), Some(Err(MaterialError::Gradient { step: 2, determinant: -1.0 })));
     assert_eq!(answers.next(), None);
     let error = along(&material, [[[f64::NAN; 3]; 3]]).last().unwrap().unwrap_err();
     assert!(error.to_string().starts_with("step 1"), "{error}");

@@ -9,8 +9,8 @@
 //! of the mesh stay smooth, and nothing is tuned.
 
 use super::butterfly::{BOTTOM, SIDE};
-use super::geometry::{Geometry, SHELL_DEPTH};
-use super::layout::Layout;
+use super::geometry::Geometry;
+use super::layout::{Layout, SHELL_DEPTH};
 use crate::mesh::connectivity::face_areas;
 use crate::mesh::hierarchy::{Blocks, Site};
 
@@ -25,9 +25,17 @@ const FADING: f64 = 3.0;
 /// then the angle's to say, not rounding's.
 const TIE: f64 = 1e-6;
 
+impl Layout {
+    /// The layout with its surface nodes moved so that they touch evenly.
+    pub fn touching_evenly(mut self) -> Self {
+        self.shifts = even_entry(&self);
+        self
+    }
+}
+
 /// Radial moves of the surface's nodes in the half ball's plane, by their number (surface nodes
 /// come first); `layout` without moves.
-pub fn even_entry(layout: &Layout) -> Vec<f64> {
+fn even_entry(layout: &Layout) -> Vec<f64> {
     let blocks = layout.blocks;
     let geometry = Geometry::new(layout);
     let sites: Vec<Site> =

@@ -16,8 +16,6 @@ use super::layout::Layout;
 use crate::mesh::hierarchy::{Blocks, Site};
 use std::f64::consts::FRAC_PI_4;
 
-/// Depth of the shell under the pole, in contact radii.
-pub const SHELL_DEPTH: f64 = 1.4;
 /// Half-width of the core's floor against that of the surface's centre block.
 const FLOOR_SPREAD: f64 = 1.0;
 /// Polar angle of the core's wall far from the pole.

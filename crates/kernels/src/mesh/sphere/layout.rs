@@ -2,10 +2,10 @@
 
 use super::SphereSpec;
 use super::butterfly::Butterfly;
-use super::entry::even_entry;
-use super::geometry::SHELL_DEPTH;
 use crate::mesh::MeshError;
 
+/// Depth of the shell under the pole, in contact radii.
+pub const SHELL_DEPTH: f64 = 1.4;
 /// Growth of the rings' spacing outside the fine zone that the count aims at, up to 16 elements per
 /// contact radius.
 const RING_GROWTH: f64 = 1.22;
@@ -14,8 +14,12 @@ const LAYER_GROWTH: f64 = 1.14;
 /// Smallest a/R for which a layout is made: that of a sphere ten times as large as the one pressed
 /// against it.
 const SMALLEST_CONTACT: f64 = 0.000_5;
+/// Largest a/R for which a layout is made.
+pub const LARGEST_CONTACT: f64 = 0.65;
+/// Radii of the finely meshed surface that there may be, in contact radii.
+pub const FINE_ZONES: std::ops::RangeInclusive<f64> = 1.1..=3.0;
 /// Largest distance from the axis to which the fine zone may reach.
-const LARGEST_FINE_RADIUS: f64 = 0.85;
+pub const LARGEST_FINE_RADIUS: f64 = 0.85;
 
 /// Counts and gradings of a sphere's mesh; lengths in the half ball of `geometry`.
 #[derive(Clone, Debug)]
@@ -82,12 +86,6 @@ fn sizes_for(sum: f64, q: f64) -> f64 {
 }
 
 impl Layout {
-    /// The layout with its surface nodes moved so that they touch evenly.
-    pub fn touching_evenly(mut self) -> Self {
-        self.shifts = even_entry(&self);
-        self
-    }
-
     /// The layout of a sphere for a description, its surface nodes not moved yet.
     ///
     /// # Errors
@@ -103,13 +101,13 @@ impl Layout {
     pub fn of(spec: &SphereSpec, flat: bool) -> Result<Layout, MeshError> {
         let projected = |rho: f64| if flat { rho } else { stereographic(rho) };
         let &SphereSpec { contact_radius, elements_per_contact_radius: count, fine_zone } = spec;
-        if !(SMALLEST_CONTACT..=0.65).contains(&contact_radius) {
+        if !(SMALLEST_CONTACT..=LARGEST_CONTACT).contains(&contact_radius) {
             return Err(MeshError::ContactRadius(contact_radius));
         }
         if !(2..=32).contains(&count) {
             return Err(MeshError::ElementsPerContactRadius(count));
         }
-        if !(1.1..=3.0).contains(&fine_zone) {
+        if !FINE_ZONES.contains(&fine_zone) {
             return Err(MeshError::FineZone(fine_zone));
         }
         let spacing = projected(contact_radius) / count as f64;

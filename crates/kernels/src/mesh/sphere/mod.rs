@@ -13,6 +13,7 @@ use super::hierarchy::{Blocks, hierarchy};
 use super::{Mesh, MeshError};
 use geometry::Geometry;
 use layout::Layout;
+pub use layout::{FINE_ZONES, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
 
 /// Contact is watched this many fine radii from the pole.
 const CONTACT_MARGIN: f64 = 1.3;
@@ -67,7 +68,7 @@ pub fn flat_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
 ///
 /// # Errors
 /// A value of `spec` out of range.
-pub fn estimated_elements(spec: &SphereSpec) -> Result<usize, MeshError> {
+pub fn element_count(spec: &SphereSpec) -> Result<usize, MeshError> {
     check(spec)?;
     Ok(Layout::new(spec)?.blocks.element_count())
 }

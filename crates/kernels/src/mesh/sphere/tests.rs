@@ -68,7 +68,7 @@ fn elements_are_positive_and_well_shaped_over_the_range() {
         let (fine, all, positive) = quality_of(&mesh, spec.contact_radius);
         assert!(positive, "{spec:?}");
         assert!(fine > 0.58 && all > 0.58, "{spec:?}: scaled Jacobians {fine} and {all}");
-        assert_eq!(mesh.elements.len(), estimated_elements(&spec).unwrap(), "{spec:?}");
+        assert_eq!(mesh.elements.len(), element_count(&spec).unwrap(), "{spec:?}");
     }
 }
 
@@ -291,7 +291,7 @@ fn the_standard_mesh_has_the_size_that_the_design_asks_for() {
     let mesh = sphere_mesh(&spec(0.2087, 16, 1.3)).unwrap();
     assert!((12_000..=16_000).contains(&mesh.elements.len()), "{}", mesh.elements.len());
     assert!((45_000..=50_000).contains(&(3 * mesh.nodes.len())), "{}", mesh.nodes.len());
-    assert!(estimated_elements(&spec(0.01, 16, 1.3)).unwrap() < 25_000);
+    assert!(element_count(&spec(0.01, 16, 1.3)).unwrap() < 25_000);
 }
 
 #[test]
@@ -300,7 +300,7 @@ fn impossible_descriptions_are_errors() {
         assert!(matches!(sphere_mesh(&spec(a, 16, 1.3)), Err(MeshError::ContactRadius(_))));
     }
     for count in [0, 1, 33, usize::MAX] {
-        assert!(matches!(estimated_elements(&spec(0.2, count, 1.3)), Err(MeshError::ElementsPerContactRadius(_))));
+        assert!(matches!(element_count(&spec(0.2, count, 1.3)), Err(MeshError::ElementsPerContactRadius(_))));
     }
     for fine_zone in [1.0, 3.1, f64::INFINITY, f64::NAN] {
         assert!(matches!(sphere_mesh(&spec(0.2, 16, fine_zone)), Err(MeshError::FineZone(_))));

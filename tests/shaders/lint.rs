@@ -5,21 +5,13 @@
 //! f32 in a source that is meant for both precisions. All of these are found here without a device,
 //! on naga's intermediate representation and on the text.
 
-use super::error::GpuError;
-use super::shader_sources::{Assembled, Precision};
+use asperity::internals::compute::gpu::GpuError;
+use asperity::internals::compute::gpu::shader_sources::{Assembled, Precision};
+use asperity::internals::compute::gpu::validate::{Checked, validate};
 use naga::proc::TypeResolution;
-use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
+use naga::valid::FunctionInfo;
 use naga::{BinaryOperator, Expression, Function, Handle, MathFunction, Module, ScalarKind, Span, TypeInner};
 use std::fmt;
-
-/// A parsed and validated source.
-#[derive(Debug)]
-pub struct Checked {
-    /// naga's module.
-    pub module: Module,
-    /// The types of its expressions.
-    pub info: ModuleInfo,
-}
 
 /// What is wrong with a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -55,34 +47,6 @@ pub struct Finding {
     pub place: String,
     /// What is wrong.
     pub rule: Rule,
-}
-
-/// Parses and validates a source as wgpu will, without a device.
-///
-/// # Errors
-/// [`GpuError::Shader`] with file and line.
-pub fn validate(source: &Assembled) -> Result<Checked, GpuError> {
-    let fail = |byte: Option<u32>, message: String| GpuError::Shader { place: source.place(byte.unwrap_or(0) as usize), message };
-    let module = naga::front::wgsl::parse_str(&source.text)
-        .map_err(|e| fail(e.location(&source.text).map(|l| l.offset), e.message().to_owned()))?;
-    let capabilities = match source.precision {
-        Precision::F32 => Capabilities::empty(),
-        Precision::F64 => Capabilities::FLOAT64,
-    };
-    match Validator::new(ValidationFlags::all(), capabilities).validate(&module) {
-        Ok(info) => Ok(Checked { module, info }),
-        Err(e) => {
-            // the innermost of naga's labels is the expression, the outermost the function
-            let start = e.spans().filter_map(|(span, _)| span.to_range()).max_by_key(|r| r.start).map(|r| r.start as u32);
-            let mut message = e.as_inner().to_string();
-            let mut cause = std::error::Error::source(e.as_inner());
-            while let Some(inner) = cause {
-                message = format!("{message}: {inner}");
-                cause = inner.source();
-            }
-            Err(fail(start, message))
-        }
-    }
 }
 
 /// Every violation in a source, in the order of the source.
@@ -272,29 +236,12 @@ fn names_precision(word: &str) -> bool {
     matches!(word, "f16" | "f32" | "f64") || vector("vec") || vector("mat") || literal
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::compute::gpu::shader_sources::Source;
-
-    #[test]
-    fn words_that_name_a_precision() {
-        for word in ["f32", "f64", "0f", "5f", "0lf", "1h", "vec3f", "mat3x3f", "1e5f"] {
-            assert!(names_precision(word), "{word}");
-        }
-        for word in ["real", "vec3", "vec3u", "vec2i", "0u", "12i", "0xff", "half", "f", "of", "1e5", "", "matf_x", "vector_f"] {
-            assert!(!names_precision(word), "{word}");
-        }
+#[test]
+fn words_that_name_a_precision() {
+    for word in ["f32", "f64", "0f", "5f", "0lf", "1h", "vec3f", "mat3x3f", "1e5f"] {
+        assert!(names_precision(word), "{word}");
     }
-
-    #[test]
-    fn a_parse_error_names_file_and_line() {
-        let prelude = Source { path: "shaders/prelude.wgsl", text: "alias real = f32;\n" };
-        let broken = Source { path: "shaders/broken.wgsl", text: "fn f() {\n    let a = ;\n}\n" };
-        let error = validate(&Assembled::new(Precision::F32, &[prelude, broken])).unwrap_err();
-        assert!(matches!(&error, GpuError::Shader { place, .. } if place == "shaders/broken.wgsl:2"), "{error}");
-        let wrong = Source { path: "shaders/wrong.wgsl", text: "\nfn f() -> real {\n    return 1u;\n}\n" };
-        let error = validate(&Assembled::new(Precision::F32, &[prelude, wrong])).unwrap_err();
-        assert!(matches!(&error, GpuError::Shader { place, .. } if place == "shaders/wrong.wgsl:3"), "{error}");
+    for word in ["real", "vec3", "vec3u", "vec2i", "0u", "12i", "0xff", "half", "f", "of", "1e5", "", "matf_x", "vector_f"] {
+        assert!(!names_precision(word), "{word}");
     }
 }

@@ -1,0 +1,19 @@
+//! Kernels that are compiled.
+
+use super::shader_sources::{Kernel, Precision};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+/// A compiled kernel.
+#[derive(Debug)]
+pub struct Pipeline {
+    pub(super) raw: wgpu::ComputePipeline,
+    pub(super) layout: wgpu::BindGroupLayout,
+    pub(super) kernel: &'static Kernel,
+}
+
+/// Compiled kernels by name and precision.
+#[derive(Debug, Default)]
+pub(super) struct PipelineCache {
+    pub compiled: Mutex<BTreeMap<(&'static str, Precision), Arc<Pipeline>>>,
+}

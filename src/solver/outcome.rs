@@ -1,0 +1,145 @@
+//! How a step went: what it took, or why it failed.
+
+use super::SolverError;
+use super::phases::PhaseTimes;
+use crate::compute::ComputeError;
+use crate::compute::traffic::Traffic;
+use crate::linalg::LinalgError;
+
+/// How an attempt at a step went.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StepOutcome {
+    /// There is equilibrium.
+    Converged(StepReport),
+    /// There is none that was found; a smaller step may have one.
+    Failed(StepFailure),
+}
+
+/// A converged step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Its Newton iterations.
+    pub iterations: Vec<Iteration>,
+    /// Final merit over the force scale.
+    pub merit: f64,
+    /// Times the linear solver fell back to the direct one.
+    pub fallbacks: usize,
+    /// Accepted above the tolerance, at a kink of the merit.
+    pub relaxed: bool,
+    /// Under full stick: points that stuck when the step began, came off in it and came down again.
+    pub landed_again: usize,
+    /// Time by phase, that of failed attempts since the last converged step included.
+    pub times: PhaseTimes,
+    /// What passed to the device and back, likewise.
+    pub traffic: Traffic,
+}
+
+impl StepReport {
+    /// Krylov iterations of the step.
+    pub fn krylov(&self) -> usize {
+        self.iterations.iter().map(|i| i.krylov).sum()
+    }
+}
+
+/// One Newton iteration, for the report.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Iteration {
+    /// Merit before the iteration over the force scale.
+    pub merit: f64,
+    /// Step length that the line search took.
+    pub step_length: f64,
+    /// Krylov iterations (0 for the direct solver).
+    pub krylov: usize,
+    /// Contact points whose status changed.
+    pub changed: usize,
+}
+
+/// Why a step failed, with where it stood.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepFailure {
+    /// The iterations are used up.
+    #[error("no convergence in {iterations} iterations: merit {merit:.2e} of the normal force, worst at {worst}")]
+    Iterations {
+        /// Iterations made.
+        iterations: usize,
+        /// Last merit over the force scale.
+        merit: f64,
+        /// Where the residual is largest.
+        worst: Worst,
+    },
+    /// No step length gave a valid deformation.
+    #[error("element {element} inverts at quadrature point {point} however short the step of the line search")]
+    Inverted {
+        /// Element index.
+        element: usize,
+        /// Quadrature point.
+        point: usize,
+    },
+    /// The linear system could not be solved.
+    #[error("the linear solver failed: {0}")]
+    Linear(String),
+}
+
+impl StepFailure {
+    /// Iterations that were made, at least one.
+    pub fn iterations(&self) -> usize {
+        match self {
+            Self::Iterations { iterations, .. } => *iterations,
+            _ => 1,
+        }
+    }
+}
+
+/// The degree of freedom with the largest residual.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Worst {
+    /// Node index.
+    pub node: usize,
+    /// Direction, 0 to 2.
+    pub direction: usize,
+    /// Its reference position.
+    pub position: [f64; 3],
+    /// Residual over the force scale.
+    pub residual: f64,
+}
+
+impl std::fmt::Display for Worst {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [x, y, z] = self.position;
+        let axis = ["x", "y", "z"].get(self.direction).copied().unwrap_or("?");
+        write!(f, "node {} ({x:.4}, {y:.4}, {z:.4}) in {axis} ({:.1e})", self.node, self.residual)
+    }
+}
+
+/// What ends the iteration of a step before it has converged.
+#[derive(Debug)]
+pub(super) enum Halt {
+    /// The step, which may do with less.
+    Step(StepFailure),
+    /// What no smaller step cures.
+    Solver(SolverError),
+}
+
+impl From<StepFailure> for Halt {
+    fn from(failure: StepFailure) -> Self {
+        Self::Step(failure)
+    }
+}
+
+impl From<SolverError> for Halt {
+    fn from(error: SolverError) -> Self {
+        Self::Solver(error)
+    }
+}
+
+impl From<ComputeError> for Halt {
+    fn from(error: ComputeError) -> Self {
+        Self::Solver(error.into())
+    }
+}
+
+impl From<LinalgError> for Halt {
+    fn from(error: LinalgError) -> Self {
+        Self::Solver(error.into())
+    }
+}
