@@ -303,8 +303,78 @@ fn a_damaged_table_is_refused() {
     }
 }
 
+/// The table of two unlike spheres is scaled by R*, whichever of the two comes first; that of a flat
+/// which deforms is a wall's.
+#[test]
+fn a_pair_is_scaled_by_the_effective_radius() {
+    if !has("gcc", "a_pair_is_scaled_by_the_effective_radius") {
+        return;
+    }
+    let program = r#"
+#include "asperity_law.h"
+#include "asperity_contact3d.h"
+#include <stdlib.h>
+int main(int count, char **arguments) {
+    asperity_law3d law = {&asperity_law, 3.0, 0.0};
+    asperity_body one, two;
+    asperity_contact c, d;
+    asperity_forces f, g;
+    double scale = atof(arguments[1]), ratio = atof(arguments[2]), h = 0.004 * scale, increment[2] = {0.0, 0.0};
+    asperity_state s;
+    asperity_response r;
+    (void)count;
+    memset(&one, 0, sizeof one);
+    memset(&c, 0, sizeof c);
+    memset(&s, 0, sizeof s);
+    one.radius = scale;
+    one.mass = 1.0;
+    two = one;
+    two.radius = ratio * scale;
+    d = c;
+    one.position[2] = one.radius + two.radius - h;
+    asperity_update(&asperity_law, scale, 3.0, &s, h, increment, &s, &r, NULL);
+    asperity_spheres(&law, &one, &two, 1.0, &c, &c, &f);
+    asperity_spheres(&law, &two, &one, 1.0, &d, &d, &g);
+    printf("%d %.17g %.17g %.17g", asperity_law.plane, r.f_n, f.f_n, g.f_n);
+    return 0;
+}
+"#;
+    for (opponent, plane) in [("radius = 3.0", "0"), ("flat = true", "1")] {
+        let law = table_against(
+            "law = \"ideal\"\nyield_stress = 0.002",
+            &format!(
+                "[opponent]\n{opponent}\n[opponent.material]\nyoungs_modulus = 2.0\npoissons_ratio = 0.4\n\
+                 [opponent.material.hardening]\nlaw = \"ideal\"\nyield_stress = 0.005"
+            ),
+        );
+        let dir = tempfile::tempdir().unwrap();
+        for file in law_files(&law, Language::C, None).unwrap() {
+            fs::write(dir.path().join(file.name), file.content).unwrap();
+        }
+        fs::write(dir.path().join("pair.c"), program).unwrap();
+        for scale in ["1.0", "0.0025"] {
+            let run = compile_and_run(dir.path(), "pair.c", &["gcc", "-std=c99"], &[scale, "3.0"]);
+            let told = text(&run);
+            let numbers: Vec<&str> = told.split_whitespace().collect();
+            assert_eq!(numbers[0], plane, "{told}");
+            let [bare, spheres, exchanged] = [1, 2, 3].map(|i| numbers[i].parse::<f64>().unwrap());
+            assert!(bare > 0.0, "{told}");
+            // A wall's table is refused between spheres: no force.
+            let expected = if plane == "1" { 0.0 } else { bare };
+            for force in [spheres, exchanged] {
+                assert!((force - expected).abs() <= 1e-12 * bare, "{opponent} {scale}: {told}");
+            }
+        }
+    }
+}
+
 /// A made-up table of a hardening law given as TOML.
 fn table(hardening: &str) -> LawFile {
+    table_against(hardening, "")
+}
+
+/// The same against an opponent, as TOML.
+fn table_against(hardening: &str, opponent: &str) -> LawFile {
     let level = |i: i32| {
         let h = 1e-4 * 1.6f64.powi(i);
         let plasticity = f64::from(i) / 11.0;
@@ -328,11 +398,17 @@ fn table(hardening: &str) -> LawFile {
     LawFile::Table(Box::new(Tabulated {
         format: tabulated::FORMAT.to_owned(),
         version: tabulated::VERSION,
-        body: tabulated::Against::Plane,
+        body: if opponent.is_empty() {
+            tabulated::Against::Plane
+        } else if opponent.contains("flat = true") {
+            tabulated::Against::Flat
+        } else {
+            tabulated::Against::OtherSphere
+        },
         program: "a test".to_owned(),
         case: format!(
             "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1.0\npoissons_ratio = 0.25\n[material.hardening]\n{hardening}\n[contact]\n\
-             friction = 0.4\n[[path]]\nindentation = 0.01\n"
+             friction = 0.4\n{opponent}\n[[path]]\nindentation = 0.01\n"
         ),
         range: Interval { from: levels[0].h, to: levels[11].h },
         elements_per_contact_radius: 8,
