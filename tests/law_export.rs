@@ -303,8 +303,8 @@ fn a_damaged_table_is_refused() {
     }
 }
 
-/// The table of two unlike spheres is scaled by R*, whichever of the two comes first; that of a flat
-/// which deforms is a wall's.
+/// The table of two unlike spheres is scaled by R*, whichever of the two comes first; that of a
+/// flat which deforms is a wall's.
 #[test]
 fn a_pair_is_scaled_by_the_effective_radius() {
     if !has("gcc", "a_pair_is_scaled_by_the_effective_radius") {
