@@ -1,7 +1,7 @@
 //! One increment of one contact. The C and the Python twin have the same functions in the same
 //! order and do the same operations.
 
-use super::virgin::{BY_NUMBERS, ContactParameters, POINTS, SLIDERS, Virgin};
+use super::virgin::{BY_NUMBERS, ContactParameters, POINTS, SLIDERS, Virgin, VirginPoint};
 
 /// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
 /// file as it is.
@@ -16,8 +16,11 @@ pub struct ContactState {
     /// the residual dent.
     pub approach: f64,
     /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of
-    /// its loss of F_N to shear.
+    /// its loss of F_N to shear. Beyond 1, up to 2, of what reversed slip costs besides.
     pub x: f64,
+    /// x of the virgin curves at which the contact last yielded to shear: 0 after a press without
+    /// F_T, 1 after full slip. The edge of a contact that was not sheared slips sooner.
+    pub sheared: f64,
     /// Tangential deflections of the sliders, length, innermost (last to slip) first.
     pub deflection: [[f64; 2]; SLIDERS],
 }
@@ -48,12 +51,41 @@ const AT_CAP: f64 = 1.0 - 1e-9;
 /// its elastic stiffness.
 const AT_BOUND: f64 = 1.0 + 1e-10;
 
-/// A sheared contact that is pressed on flows; F_T then falls e-fold for each share 1/YIELDING of
-/// F_N0 by which its elastic response to the press exceeds its virgin curve. Of a rigid-plastic
-/// contact; one that presses on elastically keeps its F_T (Mindlin & Deresiewicz 1953), and between
-/// them it goes with the fourth power of what the virgin curve is softer by. Of simulated oblique
-/// presses and presses of sheared contacts.
-const YIELDING: f64 = 2.6;
+/// A contact that is pressed while F_T acts yields where F_N (1 + c r^2) = F_N0, r = F_T/F_N, and
+/// flows normal to that curve: a steady oblique press has d(delta_T)/dh = 2 c r/(1 - c r^2). c is
+/// that of the virgin curve, [`yield_coefficient`]. The indentation grows meanwhile, so that F_N
+/// falls less: by this share of c in a rigid-plastic contact, and
+const PRESSED: f64 = 0.8;
+
+/// by less where the recovered approach takes this share of the press.
+const RECOVERED: f64 = 0.8;
+
+/// Least 1 - c r^2: beyond it F_N falls along the yield curve however it is pressed.
+const LEAST_NORMAL: f64 = 0.25;
+
+/// The stiffness with which F_T answers a contact at yield: the mean of what the virgin curve has
+/// there and of what the yield curve and elasticity give.
+const BETWEEN: f64 = 0.5;
+
+/// Share of the difference of those two by which F_T rises beyond the virgin curve while the
+/// contact is pressed. Of simulated oblique presses.
+const CARRIED: f64 = 0.2;
+
+/// x over which a sudden shear takes F_N from the yield curve of a press down to the virgin one.
+const RELAXATION: f64 = 0.1;
+
+/// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
+const REVERSED: f64 = 0.06;
+
+/// The measure of that loss: x gathers this many times the share of the sliders that slip, times
+/// that of those that stick, over the displacement that mu F_N_slip takes at k_T.
+const GATHERED: f64 = 2.0;
+
+/// Share of mu F_N from which a contact slides on as it did: nothing is lost then.
+const SLIDING: f64 = 0.98;
+
+/// x after all of that loss.
+const MOST: f64 = 2.0;
 
 /// F_N_slip/F_N0 from which a contact counts as elastic.
 const ELASTIC: f64 = 1.0 - 1e-6;
@@ -128,6 +160,16 @@ fn tangential_shape(p: &ContactParameters, virgin: &Virgin, x: f64) -> [f64; 2] 
     [1.0 - power * rest, n * power]
 }
 
+/// The derivative of f_T at `x`, which is after point `j`.
+fn tangential_slope(p: &ContactParameters, virgin: &Virgin, x: f64, j: usize) -> f64 {
+    if p.form == BY_NUMBERS {
+        let shape = &virgin.shapes[0];
+        let below = if j == 0 { 0.0 } else { shape[j - 1] };
+        return (shape[j] - below) / (point_x(j + 1) - point_x(j));
+    }
+    tangential_shape(p, virgin, x)[1]
+}
+
 /// The x at which f_T has the value `f`, and the point before it of a shape by numbers.
 fn tangential_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> (f64, usize) {
     if p.form == BY_NUMBERS {
@@ -187,8 +229,36 @@ fn normal_cap(p: &ContactParameters, virgin: &Virgin, x: f64) -> f64 {
 }
 
 /// Whether shear costs no normal force: the sliders alone then are Cattaneo and Mindlin's contact.
-fn is_elastic(virgin: &Virgin) -> bool {
-    virgin.point.f_n_slip >= ELASTIC * virgin.point.f_n0
+pub(super) fn is_elastic(point: &VirginPoint) -> bool {
+    point.f_n_slip >= ELASTIC * point.f_n0
+}
+
+/// c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows; by its points at
+/// 40 % and all of the slip force. The linear part belongs to a sudden shear alone. Not less than
+/// half of what it is without that part.
+fn yield_coefficient(p: &ContactParameters, virgin: &Virgin) -> f64 {
+    if !(p.friction > 0.0) {
+        return 0.0;
+    }
+    let loss = virgin.point.f_n0 - virgin.point.f_n_slip;
+    let at_slip = loss / (virgin.point.f_n_slip * p.friction);
+    let (x, _) = tangential_shape_inverse(p, virgin, 0.4);
+    let lost = loss * normal_shape(p, virgin, x)[0];
+    let f_n = virgin.point.f_n0 - lost;
+    let r = 0.4 * p.friction * virgin.point.f_n_slip / f_n;
+    let before = lost / (f_n * r);
+    let (c, least) = ((at_slip - before) / (p.friction - r), 0.5 * at_slip / p.friction);
+    if c > least { c } else { least }
+}
+
+/// Greatest F_N of a contact that is pressed with the tangential force `f_t`, and q, the square of
+/// its root: F_N (1 + c r^2) = F_N0 with the share of c that a press has; at its apex F_N0/2.
+fn pressed_cap(virgin: &Virgin, c: f64, f_t: f64) -> [f64; 2] {
+    let f_n0 = virgin.point.f_n0;
+    let share = PRESSED * (1.0 - RECOVERED * (virgin.slope * virgin.depth / (virgin.gamma * f_n0)));
+    let force = f_t / f_n0;
+    let q = 1.0 - 4.0 * share * c * (force * force);
+    if q > 0.0 { [0.5 * f_n0 * (1.0 + q.sqrt()), q] } else { [0.5 * f_n0, 0.0] }
 }
 
 /// The x of the virgin curve that has the normal force `f_n`.
@@ -197,7 +267,8 @@ fn mobilisation(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> f64 {
         return 0.0;
     }
     if f_n <= virgin.point.f_n_slip {
-        return 1.0;
+        let x = 1.0 + (1.0 - f_n / virgin.point.f_n_slip) / REVERSED;
+        return if x < MOST { x } else { MOST };
     }
     normal_shape_inverse(p, virgin, (virgin.point.f_n0 - f_n) / (virgin.point.f_n0 - virgin.point.f_n_slip))
 }
@@ -295,6 +366,8 @@ struct Pressed {
     df_n_dh: f64,
     /// By how many e-folds F_T has flowed.
     flow: f64,
+    /// Stiffness by which F_T may rise beyond the virgin curve.
+    carried: f64,
 }
 
 /// Share of a displacement that the sliders take where their force meanwhile flows by `flow`
@@ -309,13 +382,15 @@ fn taken(flow: f64) -> f64 {
 }
 
 /// Moves h with delta_T held. The elastic force follows the unloading curve; first loading caps it;
-/// a sheared contact that is pressed against its cap loses tangential force to plastic flow as it
-/// gains normal force.
+/// a sheared contact that is pressed against its yield curve loses tangential force to plastic flow
+/// as it gains normal force.
 fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f64) -> Pressed {
     let dh = h - state.h;
     let grown = h > state.h_max;
     let first = grown && (state.x == 0.0 || !(state.h_max > 0.0));
-    let (mut trial, mut stiffness) = (virgin.point.f_n0, virgin.slope);
+    let f_n0 = virgin.point.f_n0;
+    let (mut trial, mut stiffness) = (f_n0, virgin.slope);
+    let mut elastic_stiffness = virgin.gamma * f_n0 / virgin.depth;
     let e = state.approach + dh;
     if grown && state.h_max > 0.0 {
         let old = p.virgin(state.h_max);
@@ -330,59 +405,91 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
         if !first {
             trial = force_at(&old, e);
             stiffness = if e > 0.0 { old.gamma * trial / e } else { 0.0 };
+            elastic_stiffness = stiffness;
         }
     } else if !grown {
         trial = force_at(virgin, e);
         stiffness = if e > 0.0 { virgin.gamma * trial / e } else { 0.0 };
+        elastic_stiffness = stiffness;
     }
-    let f_n = if trial < virgin.point.f_n0 { trial } else { virgin.point.f_n0 };
+    let f_n = if trial < f_n0 { trial } else { f_n0 };
     if dh == 0.0 {
         // At rest on the virgin curve the next press is first loading.
         let slope = if state.x == 0.0 && state.h == state.h_max { virgin.slope } else { stiffness };
-        return Pressed { f_n, x: state.x, df_n_dh: slope, flow: 0.0 };
+        return Pressed { f_n, x: state.x, df_n_dh: slope, flow: 0.0, carried: 0.0 };
     }
     let elastic = mobilisation(p, virgin, f_n);
     if dh < 0.0 {
         let x = if elastic > state.x { elastic } else { state.x };
-        return Pressed { f_n, x, df_n_dh: stiffness, flow: 0.0 };
+        return Pressed { f_n, x, df_n_dh: stiffness, flow: 0.0, carried: 0.0 };
     }
-    if trial >= virgin.point.f_n0 && grown {
+    if trial >= f_n0 && grown {
         stiffness = virgin.slope;
     }
     slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [0.0, 0.0]);
     let f_t = length(slider_force(virgin, &state.deflection));
+    if is_elastic(&virgin.point) {
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0, carried: 0.0 }; // pressing leaves F_T as it is
+    }
     let slip_force = p.friction * virgin.point.f_n_slip;
-    if f_t <= slip_force * tangential_shape(p, virgin, elastic)[0] {
-        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0 };
+    let (place, before) = tangential_shape_inverse(p, virgin, f_t / slip_force);
+    let cap = normal_cap(p, virgin, place);
+    if trial <= cap || f_t == 0.0 {
+        if f_n >= AT_CAP * f_n0 {
+            state.sheared = 0.0;
+        }
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0, carried: 0.0 };
     }
-    if is_elastic(virgin) {
-        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0 }; // pressing leaves F_T as it is
-    }
-    let (bound, before) = tangential_shape_inverse(p, virgin, f_t / slip_force);
-    let cap = normal_cap(p, virgin, bound);
-    let share = if f_t < slip_force { f_t / slip_force } else { 1.0 };
-    let soft = 1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0);
-    let soft = if soft > 0.0 { soft * soft } else { 0.0 };
-    // Towards full slip the flow is more along the plane. Were it to fade there an oblique press
-    // would have two steady states.
-    let rate = YIELDING * (soft * soft) * (1.0 - 0.5 * (share * share));
-    let flow = if trial > cap { rate * (trial - cap) / virgin.point.f_n0 } else { 0.0 };
-    let most = slip_force * tangential_shape(p, virgin, bound)[0];
-    let keep = (-flow).exp() * if most < f_t { most / f_t } else { 1.0 };
-    let x = tangential_shape_back(p, virgin, keep * f_t / slip_force, before);
-    let raised = normal_cap(p, virgin, x);
-    let rises = slip_force * tangential_shape(p, virgin, x)[1];
-    let falls = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1];
-    // What F_N gains for a share of F_T lost, over F_N0; the curve itself grows with h.
-    let gain = if rises > 0.0 { falls * keep * f_t / (virgin.point.f_n0 * rises) } else { 0.0 };
-    let along = virgin.slope * (raised / virgin.point.f_n0 + gain);
-    let slope = along + rate * gain * (stiffness - along);
-    let slope = if raised < f_n && slope < stiffness { slope } else { stiffness };
+    let c = yield_coefficient(p, virgin);
+    let highest = pressed_cap(virgin, c, f_t)[0];
+    // The yield curve's normal, and with it and the elastic stiffnesses how F_T answers there.
+    let r = f_t / f_n;
+    let normal = 1.0 - c * (r * r);
+    let normal = if normal > LEAST_NORMAL { normal } else { LEAST_NORMAL };
+    let tangential = 2.0 * c * r;
+    let sticking = if r < p.friction { (1.0 - r / p.friction).powf((virgin.backbone - 1.0) / virgin.backbone) } else { 0.0 };
+    let k_t = virgin.point.k_t * sticking;
+    let normal_part = normal * normal * elastic_stiffness;
+    let yielding = normal_part * k_t / (normal_part + tangential * tangential * k_t);
+    let rises = slip_force * tangential_slope(p, virgin, place, before) / virgin.point.delta_t_slip;
+    let rises = if rises > 0.0 { rises } else { 0.0 };
+    let rises = if rises < virgin.point.k_t { rises } else { virgin.point.k_t };
+    // Between the virgin curve and the yield curve the contact yields in part.
+    let part = if highest > cap { (trial - cap) / (highest - cap) } else { 1.0 };
+    let part = if part < 1.0 { part } else { 1.0 };
+    let softer = if grown { 1.0 - virgin.slope * f_n / (f_n0 * elastic_stiffness) } else { 1.0 };
+    let plastic = if softer > 0.0 { softer * dh } else { 0.0 };
+    let most = (trial - cap) / elastic_stiffness;
+    let plastic = if plastic < most { plastic } else { most };
+    let flow = 2.0 * c / normal * (rises + BETWEEN * (yielding - rises)) * part * plastic / f_n;
+    let keep = (-flow).exp();
+    // A force beyond the peak of the virgin curve stays at its place.
+    let left = keep * f_t / slip_force;
+    let x = if left < tangential_shape(p, virgin, place)[0] { tangential_shape_back(p, virgin, left, before) } else { place };
+    let [pressed, q] = pressed_cap(virgin, c, keep * f_t);
+    let on_curve = normal_cap(p, virgin, x);
+    let raised = if pressed > on_curve { pressed } else { on_curve };
+    let rate = flow / dh;
+    let along = if pressed > on_curve {
+        let root = q.sqrt();
+        // At the apex F_N grows with the contact alone.
+        let turns = if root > 0.0 { 0.5 * (1.0 - q) / root } else { 0.0 };
+        virgin.slope * (0.5 * (1.0 + root) + turns) + f_n0 * turns * rate
+    } else {
+        let rises = slip_force * tangential_shape(p, virgin, x)[1];
+        let falls = (f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1];
+        // What F_N gains for a share of F_T lost, over F_N0; the curve itself grows with h.
+        let gain = if rises > 0.0 { falls * keep * f_t / (f_n0 * rises) } else { 0.0 };
+        virgin.slope * (raised / f_n0 + gain) + f_n0 * gain * rate
+    };
+    let slope = if raised < f_n && along < stiffness { along } else { stiffness };
     let f_n = if raised < f_n { raised } else { f_n };
     for q in &mut state.deflection {
         *q = [keep * q[0], keep * q[1]];
     }
-    Pressed { f_n, x, df_n_dh: slope, flow }
+    state.sheared = x;
+    let carried = if yielding > rises { CARRIED * part * (yielding - rises) } else { 0.0 };
+    Pressed { f_n, x, df_n_dh: slope, flow, carried }
 }
 
 impl ContactState {
@@ -421,7 +528,7 @@ impl ContactParameters {
             next.h = h;
             return (next, out);
         }
-        let virgin = self.virgin(greatest);
+        let virgin = self.virgin_sheared(greatest, state.sheared);
         let pressed = press(self, &mut next, &virgin, h);
         if h != state.h {
             next.approach = if pressed.f_n > 0.0 { approach_at(&virgin, pressed.f_n) } else { state.approach + (h - state.h) };
@@ -435,7 +542,7 @@ impl ContactParameters {
         }
         out.df_n_dh = pressed.df_n_dh;
         let share = taken(pressed.flow);
-        shear(self, &mut next, &mut out, &virgin, pressed.f_n, [share * increment[0], share * increment[1]]);
+        shear(self, &mut next, &mut out, &virgin, &pressed, [share * increment[0], share * increment[1]]);
         for i in 0..2 {
             out.df_t_ddelta[i] = [share * out.df_t_ddelta[i][0], share * out.df_t_ddelta[i][1]];
             out.df_n_ddelta[i] *= share;
@@ -459,6 +566,56 @@ impl ContactParameters {
     }
 }
 
+/// The sliders slip and stick while F_N is at that of full slip, or the contact was released: it
+/// loses what a reversal of the slip costs besides.
+fn reverse(
+    p: &ContactParameters,
+    next: &mut ContactState,
+    out: &mut ContactResponse,
+    virgin: &Virgin,
+    before: &[[f64; 2]; SLIDERS],
+    force_before: [f64; 2],
+    increment: [f64; 2],
+) {
+    let size = length(increment);
+    if next.x >= MOST || !(size > 0.0) || length(force_before) > SLIDING * (p.friction * out.f_n) {
+        return;
+    }
+    let k_t = virgin.point.k_t;
+    let rise = [out.f_t[0] - force_before[0], out.f_t[1] - force_before[1]];
+    let risen = length(rise);
+    let stick = risen / (k_t * size);
+    if !(stick > 0.0 && stick < 1.0) {
+        return;
+    }
+    let rate = 4.0 * GATHERED * (MOST - next.x) * (k_t / (p.friction * virgin.point.f_n_slip));
+    let x = next.x + rate * (stick * (1.0 - stick)) * size;
+    next.x = if x < MOST { x } else { MOST };
+    let cap = virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0));
+    if !(cap < out.f_n) {
+        return;
+    }
+    out.f_n = cap;
+    next.approach = approach_at(virgin, cap);
+    let limit = slider_limits(p, virgin, cap);
+    next.deflection = *before;
+    slide(&mut next.deflection, &limit, increment);
+    out.f_t = slider_force(virgin, &next.deflection);
+    let loss = if next.x < MOST { REVERSED * virgin.point.f_n_slip * rate } else { 0.0 };
+    for j in 0..2 {
+        let stiffer = (rise[0] * out.df_t_ddelta[0][j] + rise[1] * out.df_t_ddelta[1][j]) / (risen * k_t);
+        out.df_n_ddelta[j] = -loss * ((1.0 - 2.0 * stick) * stiffer + stick * stick * increment[j] / size);
+    }
+    out.df_t_ddelta = slider_stiffness(virgin, before, &limit, increment);
+    for j in 0..2 {
+        // The limits of what slips fall with F_N.
+        let falls = (1.0 - stick) * out.df_n_ddelta[j] / cap;
+        for i in 0..2 {
+            out.df_t_ddelta[i][j] += falls * out.f_t[i];
+        }
+    }
+}
+
 /// Moves delta_T with h held. Inside the virgin curve the sliders answer; on it F_T and F_N follow
 /// the law in x.
 fn shear(
@@ -466,9 +623,10 @@ fn shear(
     next: &mut ContactState,
     out: &mut ContactResponse,
     virgin: &Virgin,
-    f_n: f64,
+    pressed: &Pressed,
     increment: [f64; 2],
 ) {
+    let f_n = pressed.f_n;
     let before = next.deflection;
     let force_before = slider_force(virgin, &before);
     let limit = slider_limits(p, virgin, f_n);
@@ -476,10 +634,32 @@ fn shear(
     out.f_n = f_n;
     out.f_t = slider_force(virgin, &next.deflection);
     out.df_t_ddelta = slider_stiffness(virgin, &before, &limit, increment);
+    if is_elastic(&virgin.point) {
+        return;
+    }
+    if next.x >= 1.0 && pressed.carried == 0.0 {
+        reverse(p, next, out, virgin, &before, force_before, increment);
+        return;
+    }
     let slip_force = p.friction * virgin.point.f_n_slip;
-    let bound = slip_force * tangential_shape(p, virgin, next.x)[0];
+    let mut at = if next.x < 1.0 { next.x } else { 1.0 };
+    let mut bound = slip_force * tangential_shape(p, virgin, at)[0];
     let trial = length(out.f_t);
-    if next.x >= 1.0 || trial <= AT_BOUND * bound || is_elastic(virgin) {
+    if trial <= AT_BOUND * bound {
+        return;
+    }
+    // A press raises F_N above the virgin curve: there the place on it is that of F_T.
+    let carried = length(force_before);
+    let (place, _) = tangential_shape_inverse(p, virgin, carried / slip_force);
+    if place > at {
+        at = place;
+        bound = slip_force * tangential_shape(p, virgin, at)[0];
+    }
+    let beyond_peak = carried > AT_BOUND * bound;
+    if beyond_peak {
+        bound = carried;
+    }
+    if trial <= AT_BOUND * bound {
         return;
     }
     let direction = [out.f_t[0] / trial, out.f_t[1] / trial];
@@ -489,23 +669,41 @@ fn shear(
     let beyond = if excess < travel { excess / travel } else { 1.0 };
     let forward = direction[0] * increment[0] + direction[1] * increment[1];
     let forward = if forward > 0.0 { forward } else { 0.0 };
-    let x = next.x + beyond * forward / virgin.point.delta_t_slip;
-    next.x = if x < 1.0 { x } else { 1.0 };
-    let cap = normal_cap(p, virgin, next.x);
-    out.f_n = if cap < f_n { cap } else { f_n };
+    let dx = beyond * forward / virgin.point.delta_t_slip;
+    let x = if at + dx < 1.0 { at + dx } else { 1.0 };
+    let cap = normal_cap(p, virgin, x);
+    let above = f_n - normal_cap(p, virgin, at);
+    let above = if above > 0.0 { above * (-dx / RELAXATION).exp() } else { 0.0 };
+    let relaxed = cap + above;
+    out.f_n = if relaxed < f_n { relaxed } else { f_n };
+    next.x = if out.f_n > cap {
+        mobilisation(p, virgin, out.f_n)
+    } else if out.f_n <= virgin.point.f_n_slip {
+        1.0
+    } else {
+        x
+    };
+    next.sheared = x;
     next.approach = approach_at(virgin, out.f_n);
     let limit = slider_limits(p, virgin, out.f_n);
     next.deflection = before;
     slide(&mut next.deflection, &limit, increment);
     let held = slider_force(virgin, &next.deflection);
     let stiffness = slider_stiffness(virgin, &before, &limit, increment);
-    let [shape, shape_slope] = tangential_shape(p, virgin, next.x);
-    let bound = slip_force * shape;
+    let [shape, shape_slope] = tangential_shape(p, virgin, x);
+    let mut rate = slip_force * shape_slope / virgin.point.delta_t_slip;
+    bound = slip_force * shape;
+    if beyond_peak && carried > bound {
+        bound = carried;
+        rate = 0.0;
+    }
+    bound += pressed.carried * (beyond * forward);
+    rate = (rate + pressed.carried) * beyond;
     let size = length(held);
     out.f_t = held;
     out.df_t_ddelta = stiffness;
     let per_x = beyond / virgin.point.delta_t_slip;
-    let loss = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, next.x)[1];
+    let loss = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1] + above / RELAXATION;
     out.df_n_ddelta = [-loss * per_x * direction[0], -loss * per_x * direction[1]];
     if size <= bound {
         return;
@@ -516,7 +714,6 @@ fn shear(
     }
     let m = [held[0] / size, held[1] / size];
     out.f_t = [bound * m[0], bound * m[1]];
-    let rate = slip_force * shape_slope * per_x;
     for j in 0..2 {
         let radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j];
         for i in 0..2 {

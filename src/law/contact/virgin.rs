@@ -5,6 +5,7 @@
 //! search. Its last digits differ from the formulas that filled it by some 1e-4; what counts is
 //! that every language fills and reads it by the same operations.
 
+use super::update::is_elastic;
 use crate::law::forms::NormalCurve;
 use crate::law::model::Parameters;
 
@@ -20,6 +21,10 @@ pub const LEVELS: usize = 16;
 pub const BY_NUMBERS: f64 = 2.0;
 /// Number of sliders that stand for the contact's annuli.
 pub const SLIDERS: usize = 16;
+
+/// Exponent of the sliders' backbone of a contact that was never sheared. Of simulated oblique
+/// rebounds; fades with the eighth power of 1 - x.
+const UNSHEARED: f64 = 1.8;
 
 /// Powers of h in a Hertz contact of the quantities whose logarithms are tabulated.
 const ELASTIC_POWERS: [f64; COLUMNS] = [1.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5];
@@ -342,6 +347,13 @@ impl ContactParameters {
 
     /// First loading at the indentation `h` > 0.
     pub fn virgin(&self, h: f64) -> Virgin {
+        self.virgin_sheared(h, 1.0)
+    }
+
+    /// The same with the sliders of a contact that has yielded to shear at the place `sheared` of
+    /// the virgin curves: those of the table after full slip; where it was hardly sheared, the
+    /// tractions are lost sooner as it is released.
+    pub(super) fn virgin_sheared(&self, h: f64, sheared: f64) -> Virgin {
         let position = (h.ln() - self.log_first) / self.log_step;
         let [log_f, log_f_slope] = self.column(0, position);
         let f_n0 = log_f.exp();
@@ -369,9 +381,16 @@ impl ContactParameters {
         if k_t < end {
             k_t = end;
         }
+        let point = VirginPoint { a: contact_radius, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent };
+        if backbone < UNSHEARED && !is_elastic(&point) {
+            let rest = if sheared < 1.0 { 1.0 - sheared } else { 0.0 };
+            let rest = rest * rest;
+            let rest = rest * rest;
+            backbone += (UNSHEARED - backbone) * (rest * rest);
+        }
         let (weight, lost) = sliders(backbone);
         Virgin {
-            point: VirginPoint { a: contact_radius, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent },
+            point,
             slope: f_n0 * log_f_slope / (self.log_step * h),
             gamma,
             depth: gamma * f_n0 / (2.0 * self.effective_modulus * a),

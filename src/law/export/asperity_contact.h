@@ -124,7 +124,8 @@ typedef struct asperity_state {
     asperity_real h;
     asperity_real h_max;
     asperity_real approach; /* elastic: what is recovered until contact is lost; negative: the gap over the residual dent */
-    asperity_real x;        /* place on the virgin curves: the measure of F_N lost to shear */
+    asperity_real x;        /* place on the virgin curves: the measure of F_N lost to shear; beyond 1, up to 2, of what reversed slip costs besides */
+    asperity_real sheared;  /* the place at which the contact last yielded to shear */
     asperity_real deflection[2][ASPERITY_SLIDERS];
 } asperity_state;
 
@@ -145,6 +146,19 @@ typedef struct asperity_tangent {
     asperity_real df_n_ddelta[2];
     asperity_real a;
 } asperity_tangent;
+
+/* Of simulated oblique presses, rebounds and reversals; asperity's model of the update says what they are. */
+#define ASPERITY_PRESSED ASPERITY_R(0.8)
+#define ASPERITY_RECOVERED ASPERITY_R(0.8)
+#define ASPERITY_LEAST_NORMAL ASPERITY_R(0.25)
+#define ASPERITY_BETWEEN ASPERITY_R(0.5)
+#define ASPERITY_CARRIED ASPERITY_R(0.2)
+#define ASPERITY_RELAXATION ASPERITY_R(0.1)
+#define ASPERITY_REVERSED ASPERITY_R(0.06)
+#define ASPERITY_SLIDING ASPERITY_R(0.98)
+#define ASPERITY_GATHERED ASPERITY_R(2.0)
+#define ASPERITY_ALL_LOST ASPERITY_R(2.0) /* x after all of what reversed slip costs */
+#define ASPERITY_UNSHEARED ASPERITY_R(1.8)
 
 /* What a virgin contact answers at one indentation. */
 typedef struct asperity_curve {
@@ -484,10 +498,11 @@ ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h,
     }
 }
 
-/* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need. */
-ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_curve *v) {
+/* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need.
+ * The sliders of a contact that has yielded to shear at the place `sheared`: those of the table after full slip; where it was hardly sheared, tractions are lost sooner as it is released. */
+ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_real sheared, asperity_curve *v) {
     const asperity_real *column = row->column;
-    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share;
+    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share, rest;
     v->f_n0 = column[0] * exponential[0];
     v->per_a = column[1] * exponential[1];
     v->f_n_slip = column[4] * v->f_n0;
@@ -510,6 +525,12 @@ ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, c
     v->k_t = v->k_t < end ? end : v->k_t;
     if (!whole) {
         return;
+    }
+    if (v->backbone < ASPERITY_UNSHEARED && !v->elastic) {
+        rest = sheared < ASPERITY_R(1.0) ? ASPERITY_R(1.0) - sheared : ASPERITY_R(0.0);
+        rest *= rest;
+        rest *= rest;
+        v->backbone += (ASPERITY_UNSHEARED - v->backbone) * (rest * rest);
     }
     v->per_force = ASPERITY_R(1.0) / v->f_n0;
     v->per_gamma = ASPERITY_R(1.0) / v->gamma;
@@ -534,7 +555,7 @@ ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h
     asperity_real exponential[4];
     asperity_read_row(t, ASPERITY_LOG(h / t->first), &row, exponential);
     asperity_exponentials(exponential, 4);
-    asperity_make_curve(t, h, &row, exponential, whole, v);
+    asperity_make_curve(t, h, &row, exponential, whole, ASPERITY_R(1.0), v);
 }
 
 /* Radius of the contact of first loading. */
@@ -700,6 +721,14 @@ ASPERITY_FN void asperity_slopes(int form, const asperity_curve *v, asperity_rea
     }
 }
 
+/* The derivative of f_T at a place of a known f_T. */
+ASPERITY_FN asperity_real asperity_tangential_slope(int form, const asperity_curve *v, const asperity_place *place) {
+    if (form == 2) {
+        return asperity_given_slope(v, 0, place->after);
+    }
+    return place->x < ASPERITY_R(1.0) ? v->n * (ASPERITY_R(1.0) - place->f_t) / (ASPERITY_R(1.0) - place->x) : ASPERITY_R(0.0);
+}
+
 /* The least x at which f_T has the value f, or its peak where it stays below. */
 ASPERITY_FN void asperity_place_of(int form, const asperity_curve *v, asperity_real f, asperity_place *place) {
     const asperity_real one = ASPERITY_R(1.0);
@@ -768,7 +797,8 @@ ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *
         return ASPERITY_R(0.0);
     }
     if (f_n <= v->f_n_slip) {
-        return ASPERITY_R(1.0);
+        asperity_real x = ASPERITY_R(1.0) + (ASPERITY_R(1.0) - f_n / v->f_n_slip) / ASPERITY_REVERSED;
+        return x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
     }
     return asperity_normal_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
 }
@@ -912,14 +942,16 @@ ASPERITY_FN void asperity_scale(asperity_real deflection[2][ASPERITY_SLIDERS], a
 /* A contact at work: an asperity_state. */
 typedef struct asperity_work {
     ASPERITY_ALIGNED asperity_real deflection[2][ASPERITY_SLIDERS];
-    asperity_real h, h_max, approach, x;
+    asperity_real h, h_max, approach, x, sheared;
 } asperity_work;
 
 /* What the press leaves for the shear. */
 typedef struct asperity_pressed {
     asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
     asperity_real flow;                  /* by how many e-folds F_T has flowed */
+    asperity_real carried;               /* stiffness by which F_T may rise beyond the virgin curve */
     asperity_real shape;                 /* f_T(x); negative: not asked yet */
+    int placed;                          /* whether `place` and `f_t` are of the force as it is */
     asperity_real eta;                   /* (F_N/F_N0)^(1/backbone) */
     asperity_real approach;              /* elastic, of that F_N */
     asperity_real force[2], f_t;         /* of the sliders, and its size */
@@ -942,15 +974,45 @@ ASPERITY_FN asperity_real asperity_taken(asperity_real flow) {
     return (ASPERITY_R(1.0) - asperity_exponential_near(-flow)) / flow;
 }
 
-/* Moves h with delta_T held. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, and `stiffness` its slope. */
-ASPERITY_FN void asperity_press(
-    const asperity_table *t, asperity_work *s, const asperity_curve *v, asperity_real trial, asperity_real stiffness, asperity_real h, int derivatives, asperity_pressed *p) {
-    const asperity_real zero = ASPERITY_R(0.0);
-    int grown = h > s->h_max;
-    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, share, soft, rate, flow, falls, gain, along, slope[2], raised, keep, change;
+/* c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows; by its points at 40 % and all of the slip force. */
+ASPERITY_FN asperity_real asperity_yield_coefficient(const asperity_table *t, const asperity_curve *v) {
+    asperity_real loss, lost, at_slip, f_n, r, before, c, least;
     asperity_place place;
-    p->slip = p->flow = zero;
-    p->shape = -ASPERITY_R(1.0);
+    if (!(t->friction > ASPERITY_R(0.0))) {
+        return ASPERITY_R(0.0);
+    }
+    loss = v->f_n0 - v->f_n_slip;
+    at_slip = loss / (v->f_n_slip * t->friction);
+    asperity_place_of(t->form, v, ASPERITY_R(0.4), &place);
+    lost = loss * place.f_n;
+    f_n = v->f_n0 - lost;
+    r = ASPERITY_R(0.4) * t->friction * v->f_n_slip / f_n;
+    before = lost / (f_n * r);
+    c = (at_slip - before) / (t->friction - r);
+    least = ASPERITY_R(0.5) * at_slip / t->friction;
+    return c > least ? c : least;
+}
+
+/* Greatest F_N of a contact that is pressed with the tangential force f_t, of its share of c: F_N (1 + c r^2) = F_N0, at its apex F_N0/2. `root`: of the discriminant. */
+ASPERITY_FN asperity_real asperity_pressed_cap(const asperity_curve *v, asperity_real c, asperity_real f_t, asperity_real *root) {
+    asperity_real force = f_t * v->per_force, q = ASPERITY_R(1.0) - ASPERITY_R(4.0) * c * (force * force);
+    *root = q > ASPERITY_R(0.0) ? ASPERITY_SQRT(q) : ASPERITY_R(0.0);
+    return ASPERITY_R(0.5) * v->f_n0 * (ASPERITY_R(1.0) + *root);
+}
+
+/* Moves h with delta_T held. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, `stiffness` its
+ * slope, and `elastic_stiffness` that of the elastic response. */
+ASPERITY_FN void asperity_press(
+    const asperity_table *t, asperity_work *s, const asperity_curve *v, asperity_real trial, asperity_real stiffness, asperity_real elastic_stiffness, asperity_real h, int derivatives,
+    asperity_pressed *p) {
+    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
+    int grown = h > s->h_max;
+    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, c, share, highest, r, normal, tangential, sticking, k_t, normal_part, yielding, rises, part, softer, plastic, most, flow;
+    asperity_real falls, gain, turns, along, slope[2], raised, pressed, on_curve, root, keep, left, change;
+    asperity_place place;
+    p->slip = p->flow = p->carried = zero;
+    p->shape = -one;
+    p->placed = 0;
     p->df_n_dh = stiffness;
     asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
     if (dh == zero) {
@@ -972,52 +1034,79 @@ ASPERITY_FN void asperity_press(
         if (asperity_exceeds(&moved, p->limit)) {
             asperity_measure(&moved);
             p->slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
-            asperity_stand(t, v, s->deflection, p);
+            if (!v->elastic) {
+                asperity_stand(t, v, s->deflection, p);
+            } else {
+                asperity_slider_force(v, s->deflection, p->force);
+            }
         }
     }
     p->df_n_dh = stiffness;
+    if (v->elastic) {
+        p->x = asperity_mobilisation(t->form, v, p->f_n);
+        return; /* pressing leaves F_T as it is */
+    }
+    p->placed = 1;
     place = p->place;
     f_t = p->f_t;
-    slip_force = t->friction * v->f_n_slip;
-    per_slip_force = ASPERITY_R(1.0) / slip_force;
-    if (t->form == 2 || v->elastic) {
-        p->x = asperity_mobilisation(t->form, v, p->f_n);
-        if (v->elastic) {
-            return; /* pressing leaves F_T as it is */
-        }
-        p->shape = asperity_tangential_shape(t->form, v, p->x);
-        if (f_t <= slip_force * p->shape) {
-            return;
-        }
-    }
     cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
-    if (t->form != 2 && p->f_n <= cap) {
-        p->x = asperity_mobilisation(t->form, v, p->f_n); /* the same, as these curves only rise, and cheaper on it */
+    if (trial <= cap || f_t == zero) {
+        p->x = asperity_mobilisation(t->form, v, p->f_n);
+        s->sheared = p->f_n >= ASPERITY_AT_CAP * v->f_n0 ? zero : s->sheared;
         return;
     }
-    share = f_t < slip_force ? f_t * per_slip_force : ASPERITY_R(1.0);
-    soft = ASPERITY_R(1.0) - v->slope * v->depth * (v->per_gamma * v->per_force);
-    soft = soft > zero ? soft * soft : zero;
-    rate = ASPERITY_R(2.6) * (soft * soft) * (ASPERITY_R(1.0) - ASPERITY_R(0.5) * (share * share));
-    flow = trial > cap ? rate * ((trial - cap) * v->per_force) : zero;
+    slip_force = t->friction * v->f_n_slip;
+    per_slip_force = one / slip_force;
+    c = asperity_yield_coefficient(t, v);
+    share = ASPERITY_PRESSED * (one - ASPERITY_RECOVERED * (v->slope * v->depth * (v->per_gamma * v->per_force)));
+    highest = asperity_pressed_cap(v, share * c, f_t, &root);
+    /* The yield curve's normal, and with it and the elastic stiffnesses how F_T answers there. */
+    r = f_t / p->f_n;
+    normal = asperity_most(one - c * (r * r), ASPERITY_LEAST_NORMAL);
+    tangential = ASPERITY_R(2.0) * c * r;
+    sticking = r < t->friction ? asperity_power(one - r / t->friction, one - v->per_backbone) : zero;
+    k_t = v->k_t * sticking;
+    normal_part = normal * normal * elastic_stiffness;
+    yielding = normal_part * k_t / (normal_part + tangential * tangential * k_t);
+    rises = slip_force * asperity_tangential_slope(t->form, v, &place) * v->per_slip;
+    rises = asperity_least(asperity_most(rises, zero), v->k_t);
+    /* Between the virgin curve and the yield curve the contact yields in part. */
+    part = highest > cap ? asperity_least((trial - cap) / (highest - cap), one) : one;
+    softer = grown ? one - v->slope * p->f_n / (v->f_n0 * elastic_stiffness) : one;
+    plastic = softer > zero ? softer * dh : zero;
+    most = (trial - cap) / elastic_stiffness;
+    plastic = plastic < most ? plastic : most;
+    flow = ASPERITY_R(2.0) * c / normal * (rises + ASPERITY_BETWEEN * (yielding - rises)) * part * plastic / p->f_n;
     p->flow = flow;
-    keep = slip_force * place.f_t < f_t ? slip_force * place.f_t / f_t : ASPERITY_R(1.0);
-    keep *= asperity_exponential_near(-flow);
-    asperity_back(t->form, v, keep * f_t * per_slip_force, &place);
+    p->carried = yielding > rises ? ASPERITY_CARRIED * part * (yielding - rises) : zero;
+    keep = asperity_exponential_near(-flow);
+    left = keep * f_t * per_slip_force;
+    if (left < place.f_t) { /* a force beyond the peak of the virgin curve stays at its place */
+        asperity_back(t->form, v, left, &place);
+    }
     p->x = place.x;
+    s->sheared = place.x;
     p->shape = place.f_t;
-    raised = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
+    pressed = asperity_pressed_cap(v, share * c, keep * f_t, &root);
+    on_curve = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
+    raised = pressed > on_curve ? pressed : on_curve;
     if (derivatives) {
-        asperity_slopes(t->form, v, p->x, slope);
-        falls = (v->f_n0 - v->f_n_slip) * slope[1];
-        gain = slope[0] > zero ? falls * keep * f_t / (v->f_n0 * slip_force * slope[0]) : zero;
-        along = v->slope * (raised / v->f_n0 + gain);
-        along += rate * gain * (stiffness - along);
+        if (pressed > on_curve) {
+            turns = root > zero ? ASPERITY_R(0.5) * (one - root * root) / root : zero;
+            along = v->slope * (ASPERITY_R(0.5) * (one + root) + turns) + v->f_n0 * turns * (flow / dh);
+        } else {
+            asperity_slopes(t->form, v, p->x, slope);
+            falls = (v->f_n0 - v->f_n_slip) * slope[1];
+            gain = slope[0] > zero ? falls * keep * f_t / (v->f_n0 * slip_force * slope[0]) : zero;
+            along = v->slope * (raised / v->f_n0 + gain) + v->f_n0 * gain * (flow / dh);
+        }
         p->df_n_dh = raised < p->f_n && along < stiffness ? along : stiffness;
     }
     asperity_scale(s->deflection, keep);
     p->force[0] *= keep;
     p->force[1] *= keep;
+    p->f_t = keep * f_t;
+    p->place = place;
     if (raised < p->f_n) {
         change = asperity_log_ratio(raised, p->f_n);
         p->f_n = raised;
@@ -1051,15 +1140,73 @@ ASPERITY_FN asperity_real asperity_excess(
     return plain;
 }
 
+/* F_N falls to f_n: eta, approach and the sliders' limits with it. */
+ASPERITY_FN void asperity_lower(const asperity_table *t, const asperity_curve *v, asperity_real f_n, asperity_pressed *p) {
+    asperity_real change = asperity_log_ratio(f_n, p->f_n);
+    p->f_n = f_n;
+    p->approach *= asperity_exponential_near(change * v->per_gamma);
+    p->eta *= asperity_exponential_near(change * v->per_backbone);
+    asperity_limits(t->friction, v, f_n, p->eta, p->limit);
+}
+
+/* The sliders slip and stick while F_N is at that of full slip, or the contact was released: it loses what a reversal of the slip costs besides. Returns what the sliders dissipate. */
+ASPERITY_FN asperity_real asperity_reverse(
+    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p, asperity_moved *moved, int measured,
+    asperity_real d0, asperity_real d1, asperity_real slip) {
+    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
+    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, rate, x, cap, loss, stiffer, falls;
+    int i, j;
+    if (s->x >= ASPERITY_ALL_LOST || !(size > zero) || p->force[0] * p->force[0] + p->force[1] * p->force[1] > most * most) {
+        return slip;
+    }
+    rise[0] = out->f_t[0] - p->force[0];
+    rise[1] = out->f_t[1] - p->force[1];
+    risen = ASPERITY_SQRT(rise[0] * rise[0] + rise[1] * rise[1]);
+    stick = risen / (v->k_t * size);
+    if (!(stick > zero && stick < one)) {
+        return slip;
+    }
+    rate = ASPERITY_R(4.0) * ASPERITY_GATHERED * (ASPERITY_ALL_LOST - s->x) * (v->k_t / (t->friction * v->f_n_slip));
+    x = s->x + rate * (stick * (one - stick)) * size;
+    s->x = x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
+    cap = v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one));
+    if (!(cap < out->f_n)) {
+        return slip;
+    }
+    out->f_n = cap;
+    asperity_lower(t, v, cap, p);
+    if (!measured) {
+        asperity_measure(moved);
+    }
+    slip = v->k_t * asperity_hold(moved, p->limit, s->deflection);
+    asperity_slider_force(v, s->deflection, out->f_t);
+    if (tangent) {
+        loss = s->x < ASPERITY_ALL_LOST ? ASPERITY_REVERSED * v->f_n_slip * rate : zero;
+        for (j = 0; j < 2; j++) {
+            stiffer = (rise[0] * tangent->df_t_ddelta[0][j] + rise[1] * tangent->df_t_ddelta[1][j]) / (risen * v->k_t);
+            tangent->df_n_ddelta[j] = -loss * ((one - ASPERITY_R(2.0) * stick) * stiffer + stick * stick * (j ? d1 : d0) / size);
+        }
+        asperity_slider_stiffness(v, moved, p->limit, tangent->df_t_ddelta);
+        for (j = 0; j < 2; j++) {
+            falls = (one - stick) * tangent->df_n_ddelta[j] / cap; /* the limits of what slips fall with F_N */
+            for (i = 0; i < 2; i++) {
+                tangent->df_t_ddelta[i][j] += falls * out->f_t[i];
+            }
+        }
+    }
+    return slip;
+}
+
 /* Moves delta_T with h held; returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_shear(
     const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
     asperity_real d0, asperity_real d1) {
-    asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = ASPERITY_R(0.0);
-    asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, x, cap, size, per_x, loss, keep, rate, radial, change, f_n = p->f_n;
+    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
+    asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, first_shape;
+    asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, at, dx, cap, above, lowered, size, per_x, loss, keep, rate, radial;
     asperity_moved moved;
-    asperity_place place;
-    int i, j, measured;
+    asperity_place place, from;
+    int i, j, measured, beyond_peak;
     asperity_move(s->deflection, d0, d1, &moved);
     measured = asperity_exceeds(&moved, p->limit);
     if (measured) {
@@ -1073,34 +1220,57 @@ ASPERITY_FN asperity_real asperity_shear(
     if (tangent) {
         asperity_slider_stiffness(v, &moved, p->limit, tangent->df_t_ddelta);
     }
-    if (s->x >= ASPERITY_R(1.0) || v->elastic) {
+    if (v->elastic) {
         return slip;
     }
+    if (s->x >= one && p->carried == zero) {
+        return asperity_reverse(t, s, out, tangent, v, p, &moved, measured, d0, d1, slip);
+    }
     slip_force = t->friction * v->f_n_slip;
-    bound = slip_force * (p->shape >= ASPERITY_R(0.0) ? p->shape : asperity_tangential_shape(t->form, v, s->x));
+    at = s->x < one ? s->x : one;
+    first_shape = p->shape >= zero ? p->shape : asperity_tangential_shape(t->form, v, at);
+    bound = slip_force * first_shape;
     trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
+    if (trial <= ASPERITY_AT_BOUND * bound) {
+        return slip;
+    }
+    /* A press raises F_N above the virgin curve: there the place on it is that of F_T. */
+    if (!p->placed) {
+        p->f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
+        asperity_place_of(t->form, v, p->f_t / slip_force, &p->place);
+    }
+    if (p->place.x > at) {
+        at = p->place.x;
+        from = p->place;
+        bound = slip_force * from.f_t;
+    } else {
+        asperity_shapes(t->form, v, at, &from);
+    }
+    beyond_peak = p->f_t > ASPERITY_AT_BOUND * bound;
+    bound = beyond_peak ? p->f_t : bound;
     if (trial <= ASPERITY_AT_BOUND * bound) {
         return slip;
     }
     direction[0] = out->f_t[0] / trial;
     direction[1] = out->f_t[1] / trial;
     along = direction[0] * p->force[0] + direction[1] * p->force[1];
-    excess = asperity_excess(t->form, v, s->deflection, slip_force, s->x, trial - bound);
-    excess = excess > ASPERITY_R(0.0) ? excess : ASPERITY_R(0.0);
+    excess = beyond_peak ? trial - bound : asperity_excess(t->form, v, s->deflection, slip_force, at, trial - bound);
+    excess = excess > zero ? excess : zero;
     travel = trial - along;
-    beyond = excess < travel ? excess / travel : ASPERITY_R(1.0); /* share of the increment that is beyond the curve */
+    beyond = excess < travel ? excess / travel : one; /* share of the increment that is beyond the curve */
     forward = direction[0] * d0 + direction[1] * d1;
-    forward = forward > ASPERITY_R(0.0) ? forward : ASPERITY_R(0.0);
-    x = s->x + beyond * forward * v->per_slip;
-    s->x = x < ASPERITY_R(1.0) ? x : ASPERITY_R(1.0);
-    asperity_shapes(t->form, v, s->x, &place);
+    forward = forward > zero ? forward : zero;
+    dx = beyond * forward * v->per_slip;
+    asperity_shapes(t->form, v, asperity_least(at + dx, one), &place);
     cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
-    out->f_n = cap < f_n ? cap : f_n;
+    above = f_n - (v->f_n0 - (v->f_n0 - v->f_n_slip) * from.f_n);
+    above = above > zero ? above * asperity_exponential_near(-dx / ASPERITY_RELAXATION) : zero;
+    lowered = cap + above;
+    out->f_n = lowered < f_n ? lowered : f_n;
+    s->x = out->f_n > cap ? asperity_mobilisation(t->form, v, out->f_n) : (out->f_n <= v->f_n_slip ? one : place.x);
+    s->sheared = place.x;
     if (out->f_n != f_n) {
-        change = asperity_log_ratio(out->f_n, f_n);
-        p->approach *= asperity_exponential_near(change * v->per_gamma);
-        p->eta *= asperity_exponential_near(change * v->per_backbone);
-        asperity_limits(t->friction, v, out->f_n, p->eta, p->limit);
+        asperity_lower(t, v, out->f_n, p);
         if (measured || asperity_exceeds(&moved, p->limit)) {
             if (!measured) {
                 asperity_measure(&moved);
@@ -1110,18 +1280,20 @@ ASPERITY_FN asperity_real asperity_shear(
     }
     asperity_slider_force(v, s->deflection, held);
     bound = slip_force * place.f_t;
+    beyond_peak = beyond_peak && p->f_t > bound;
+    bound = (beyond_peak ? p->f_t : bound) + p->carried * (beyond * forward);
     size = ASPERITY_SQRT(held[0] * held[0] + held[1] * held[1]);
     out->f_t[0] = held[0];
     out->f_t[1] = held[1];
-    keep = size > bound ? bound / size : ASPERITY_R(1.0);
+    keep = size > bound ? bound / size : one;
     if (tangent) {
-        asperity_slopes(t->form, v, s->x, slope);
+        asperity_slopes(t->form, v, place.x, slope);
         per_x = beyond * v->per_slip;
-        loss = (v->f_n0 - v->f_n_slip) * slope[1];
+        loss = (v->f_n0 - v->f_n_slip) * slope[1] + above / ASPERITY_RELAXATION;
         asperity_slider_stiffness(v, &moved, p->limit, stiffness);
         m[0] = held[0] / size;
         m[1] = held[1] / size;
-        rate = slip_force * slope[0] * per_x;
+        rate = ((beyond_peak ? zero : slip_force * slope[0] * v->per_slip) + p->carried) * beyond;
         for (j = 0; j < 2; j++) {
             tangent->df_n_ddelta[j] = -loss * per_x * direction[j];
             radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j];
@@ -1161,6 +1333,7 @@ ASPERITY_FN void asperity_begin(const asperity_state *from, asperity_work *to) {
     to->h_max = from->h_max;
     to->approach = from->approach;
     to->x = from->x;
+    to->sheared = from->sheared;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         to->deflection[0][i] = from->deflection[0][i];
@@ -1174,6 +1347,7 @@ ASPERITY_FN void asperity_end(const asperity_work *from, asperity_state *to) {
     to->h_max = from->h_max;
     to->approach = from->approach;
     to->x = from->x;
+    to->sheared = from->sheared;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         to->deflection[0][i] = from->deflection[0][i];
@@ -1193,7 +1367,7 @@ ASPERITY_FN void asperity_update(
     const asperity_curve *before = &v;
     asperity_pressed p;
     asperity_real inverse = one / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, e, log_h, exponential[4] ASPERITY_ALIGNED, old_exponential[4] ASPERITY_ALIGNED;
-    asperity_real level, at_trial, trial, stiffness, old_n, old_t[2], stored, total, slip, keep, share;
+    asperity_real level, at_trial, trial, stiffness, elastic_stiffness, old_n, old_t[2], stored, total, slip, keep, share;
     int grown, touched, first;
     memset(out, 0, sizeof *out);
     if (tangent) {
@@ -1225,12 +1399,13 @@ ASPERITY_FN void asperity_update(
         /* An open gap, before the first contact or over a dent: no slider is deflected. */
         asperity_real h_max = state->h_max, approach = state->approach, place = state->x;
         if (greatest > zero) {
-            place = dh == zero ? place : one;
+            place = dh == zero ? place : ASPERITY_ALL_LOST;
             approach += dh;
         }
         if (next != state) {
             memset(next->deflection, 0, sizeof next->deflection);
         }
+        next->sheared = state->sheared;
         next->h = h;
         next->h_max = h_max;
         next->approach = approach;
@@ -1245,15 +1420,15 @@ ASPERITY_FN void asperity_update(
         asperity_read_row(t, log_h + asperity_log_ratio(state->h_max, h), &old_row, old_exponential);
         asperity_exponentials(exponential, 4);
         asperity_exponentials(old_exponential, 4);
-        asperity_make_curve(t, greatest, &row, exponential, 1, &v);
-        asperity_make_curve(t, state->h_max, &old_row, old_exponential, 0, &old);
+        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, &v);
+        asperity_make_curve(t, state->h_max, &old_row, old_exponential, 0, one, &old);
         before = &old;
         /* The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it. */
         keep = old.k_t / v.k_t;
         keep = keep < one ? keep : one;
     } else {
         asperity_exponentials(exponential, 4);
-        asperity_make_curve(t, greatest, &row, exponential, 1, &v);
+        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, &v);
     }
     asperity_begin(state, &s);
     asperity_slider_force(before, s.deflection, old_t);
@@ -1272,6 +1447,7 @@ ASPERITY_FN void asperity_update(
     old_n = zero;
     trial = v.f_n0;
     stiffness = v.slope;
+    elastic_stiffness = v.gamma * v.f_n0 / v.depth;
     p.eta = one;
     p.approach = v.depth;
     if (touched && state->approach > zero) {
@@ -1288,6 +1464,7 @@ ASPERITY_FN void asperity_update(
         old_n *= asperity_exponential(level);
         trial = e > zero ? before->f_n0 * asperity_exponential(at_trial) : zero;
         stiffness = e > zero ? before->gamma * trial / e : zero;
+        elastic_stiffness = stiffness;
         if (trial < v.f_n0) {
             at_trial += grown ? asperity_log_ratio(before->f_n0, v.f_n0) : zero;
             p.eta = e > zero ? asperity_exponential(at_trial * v.per_backbone) : zero;
@@ -1305,12 +1482,13 @@ ASPERITY_FN void asperity_update(
         out->friction = total > zero ? work * total : zero;
         next->h = h;
         next->h_max = s.h_max;
-        next->x = dh == zero ? s.x : one;
+        next->x = dh == zero ? s.x : ASPERITY_ALL_LOST;
+        next->sheared = s.sheared;
         next->approach = e;
         memset(next->deflection, 0, sizeof next->deflection);
         return;
     }
-    asperity_press(t, &s, &v, trial, stiffness, h, tangent != NULL, &p);
+    asperity_press(t, &s, &v, trial, stiffness, elastic_stiffness, h, tangent != NULL, &p);
     s.h = h;
     s.h_max = greatest;
     s.x = p.x;

@@ -61,29 +61,30 @@ class Parameters:
 class State:
     """The memory of a contact; as constructed, that before first contact."""
 
-    __slots__ = ("h", "h_max", "approach", "x", "deflection")
-    _LAYOUT = struct.Struct("<%dd" % (4 + 2 * SLIDERS))
+    __slots__ = ("h", "h_max", "approach", "x", "sheared", "deflection")
+    _LAYOUT = struct.Struct("<%dd" % (5 + 2 * SLIDERS))
 
-    def __init__(self, h=0.0, h_max=0.0, approach=0.0, x=0.0, deflection=None):
+    def __init__(self, h=0.0, h_max=0.0, approach=0.0, x=0.0, sheared=0.0, deflection=None):
         self.h = h
         self.h_max = h_max
         self.approach = approach
         self.x = x
+        self.sheared = sheared
         self.deflection = [[0.0, 0.0] for _ in range(SLIDERS)] if deflection is None else deflection
 
     def copy(self):
         """An independent copy."""
-        return State(self.h, self.h_max, self.approach, self.x, [list(q) for q in self.deflection])
+        return State(self.h, self.h_max, self.approach, self.x, self.sheared, [list(q) for q in self.deflection])
 
     def to_bytes(self):
         """The memory as bytes."""
-        return self._LAYOUT.pack(self.h, self.h_max, self.approach, self.x, *(v for q in self.deflection for v in q))
+        return self._LAYOUT.pack(self.h, self.h_max, self.approach, self.x, self.sheared, *(v for q in self.deflection for v in q))
 
     @classmethod
     def from_bytes(cls, data):
         """The memory from its bytes."""
         v = cls._LAYOUT.unpack(data)
-        return cls(v[0], v[1], v[2], v[3], [[v[4 + 2 * i], v[5 + 2 * i]] for i in range(SLIDERS)])
+        return cls(v[0], v[1], v[2], v[3], v[4], [[v[5 + 2 * i], v[6 + 2 * i]] for i in range(SLIDERS)])
 
 
 class Response:
@@ -486,8 +487,8 @@ def shapes_at(p, position):
     return [[low + u * (high - low) for low, high in zip(p.shapes[i][kind], p.shapes[i + 1][kind])] for kind in range(2)]
 
 
-def virgin(p, h):
-    """First loading at the indentation h > 0."""
+def virgin(p, h, sheared=1.0):
+    """First loading at the indentation h > 0, with the sliders of a contact that has yielded to shear at the place `sheared`."""
     v = Virgin()
     position = (math.log(h) - p.log_first) / p.log_step
     log_f, log_slope = column_at(p, 0, position)
@@ -510,6 +511,11 @@ def virgin(p, h):
         v.k_t = start
     if v.k_t < end:
         v.k_t = end
+    if v.backbone < UNSHEARED and not is_elastic(v):
+        rest = 1.0 - sheared if sheared < 1.0 else 0.0
+        rest = rest * rest
+        rest = rest * rest
+        v.backbone += (UNSHEARED - v.backbone) * (rest * rest)
     v.weight, v.lost = sliders(v.backbone)
     v.slope = v.f_n0 * log_slope / (p.log_step * h)
     v.depth = v.gamma * v.f_n0 / (2.0 * p.effective_modulus * v.a)
@@ -519,6 +525,20 @@ def virgin(p, h):
 
 
 # ---- update ----
+
+# Of simulated oblique presses, rebounds and reversals; asperity's model of the update says what they are.
+PRESSED = 0.8
+RECOVERED = 0.8
+LEAST_NORMAL = 0.25
+BETWEEN = 0.5
+CARRIED = 0.2
+RELAXATION = 0.1
+REVERSED = 0.06
+SLIDING = 0.98
+GATHERED = 2.0
+MOST = 2.0  # x after all of what reversed slip costs
+UNSHEARED = 1.8
+AT_BOUND = 1.0 + 1e-10
 
 
 def point_x(j):
@@ -575,6 +595,14 @@ def tangential_shape(v, x):
         return 1.0, 0.0
     power = rest ** (v.n - 1.0)
     return 1.0 - power * rest, v.n * power
+
+
+def tangential_slope(v, x, j):
+    """The derivative of f_T at x, which is after point j."""
+    if NORMAL_CURVE == 2:
+        shape = v.shapes[0]
+        return (shape[j] - (0.0 if j == 0 else shape[j - 1])) / (point_x(j + 1) - point_x(j))
+    return tangential_shape(v, x)[1]
 
 
 def tangential_shape_inverse(v, f):
@@ -634,12 +662,34 @@ def is_elastic(v):
     return v.f_n_slip >= (1.0 - 1e-6) * v.f_n0
 
 
+def yield_coefficient(p, v):
+    """c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows."""
+    if not p.friction > 0.0:
+        return 0.0
+    loss = v.f_n0 - v.f_n_slip
+    at_slip = loss / (v.f_n_slip * p.friction)
+    x, _ = tangential_shape_inverse(v, 0.4)
+    lost = loss * normal_shape(v, x)[0]
+    f_n = v.f_n0 - lost
+    r = 0.4 * p.friction * v.f_n_slip / f_n
+    before = lost / (f_n * r)
+    return max((at_slip - before) / (p.friction - r), 0.5 * at_slip / p.friction)
+
+
+def pressed_cap(v, c, f_t):
+    """Greatest F_N of a contact that is pressed with the tangential force f_t, and the square of its root."""
+    share = PRESSED * (1.0 - RECOVERED * (v.slope * v.depth / (v.gamma * v.f_n0)))
+    force = f_t / v.f_n0
+    q = 1.0 - 4.0 * share * c * (force * force)
+    return (0.5 * v.f_n0 * (1.0 + math.sqrt(q)), q) if q > 0.0 else (0.5 * v.f_n0, 0.0)
+
+
 def mobilisation(v, f_n):
     """The x of the virgin curve that has the normal force f_n."""
     if f_n >= (1.0 - 1e-9) * v.f_n0:
         return 0.0
     if f_n <= v.f_n_slip:
-        return 1.0
+        return min(MOST, 1.0 + (1.0 - f_n / v.f_n_slip) / REVERSED)
     return normal_shape_inverse(v, (v.f_n0 - f_n) / (v.f_n0 - v.f_n_slip))
 
 
@@ -730,12 +780,13 @@ def taken(flow):
 
 
 def press(p, s, v, h):
-    """Moves h with delta_T held: the normal force, x, dF_N/dh, and by how many e-folds F_T has flowed."""
+    """Moves h with delta_T held: F_N, x, dF_N/dh, by how many e-folds F_T has flowed, and the stiffness by which it may rise beyond the virgin curve."""
     dh = h - s.h
     grown = h > s.h_max
     first = grown and (s.x == 0.0 or not s.h_max > 0.0)
     trial = v.f_n0
     stiffness = v.slope
+    elastic_stiffness = v.gamma * v.f_n0 / v.depth
     e = s.approach + dh
     if grown and s.h_max > 0.0:
         old = virgin(p, s.h_max)
@@ -744,47 +795,101 @@ def press(p, s, v, h):
             s.deflection = [[keep * q[0], keep * q[1]] for q in s.deflection]
         if not first:
             trial = force_at(old, e)
-            stiffness = old.gamma * trial / e if e > 0.0 else 0.0
+            stiffness = elastic_stiffness = old.gamma * trial / e if e > 0.0 else 0.0
     elif not grown:
         trial = force_at(v, e)
-        stiffness = v.gamma * trial / e if e > 0.0 else 0.0
+        stiffness = elastic_stiffness = v.gamma * trial / e if e > 0.0 else 0.0
     f_n = trial if trial < v.f_n0 else v.f_n0
     if dh == 0.0:
-        return f_n, s.x, v.slope if s.x == 0.0 and s.h == s.h_max else stiffness, 0.0
+        return f_n, s.x, v.slope if s.x == 0.0 and s.h == s.h_max else stiffness, 0.0, 0.0
     elastic = mobilisation(v, f_n)
     if dh < 0.0:
-        return f_n, elastic if elastic > s.x else s.x, stiffness, 0.0
+        return f_n, elastic if elastic > s.x else s.x, stiffness, 0.0, 0.0
     if trial >= v.f_n0 and grown:
         stiffness = v.slope
     s.deflection = slide(s.deflection, slider_limits(p, v, f_n), (0.0, 0.0))
     force = slider_force(v, s.deflection)
     f_t = math.sqrt(force[0] * force[0] + force[1] * force[1])
+    if is_elastic(v):
+        return f_n, elastic, stiffness, 0.0, 0.0
     slip_force = p.friction * v.f_n_slip
-    if f_t <= slip_force * tangential_shape(v, elastic)[0] or is_elastic(v):
-        return f_n, elastic, stiffness, 0.0
-    bound, before = tangential_shape_inverse(v, f_t / slip_force)
-    cap = normal_cap(v, bound)
-    share = f_t / slip_force if f_t < slip_force else 1.0
-    soft = 1.0 - v.slope * v.depth / (v.gamma * v.f_n0)
-    soft = soft * soft if soft > 0.0 else 0.0
-    rate = 2.6 * (soft * soft) * (1.0 - 0.5 * (share * share))
-    flow = rate * (trial - cap) / v.f_n0 if trial > cap else 0.0
-    most = slip_force * tangential_shape(v, bound)[0]
-    keep = math.exp(-flow) * (most / f_t if most < f_t else 1.0)
-    x = tangential_shape_back(v, keep * f_t / slip_force, before)
-    raised = normal_cap(v, x)
-    rises = slip_force * tangential_shape(v, x)[1]
-    falls = (v.f_n0 - v.f_n_slip) * normal_shape(v, x)[1]
-    gain = falls * keep * f_t / (v.f_n0 * rises) if rises > 0.0 else 0.0
-    along = v.slope * (raised / v.f_n0 + gain)
-    slope = along + rate * gain * (stiffness - along)
+    place, before = tangential_shape_inverse(v, f_t / slip_force)
+    cap = normal_cap(v, place)
+    if trial <= cap or f_t == 0.0:
+        if f_n >= (1.0 - 1e-9) * v.f_n0:
+            s.sheared = 0.0
+        return f_n, elastic, stiffness, 0.0, 0.0
+    c = yield_coefficient(p, v)
+    highest = pressed_cap(v, c, f_t)[0]
+    r = f_t / f_n
+    normal = max(1.0 - c * (r * r), LEAST_NORMAL)
+    tangential = 2.0 * c * r
+    sticking = (1.0 - r / p.friction) ** ((v.backbone - 1.0) / v.backbone) if r < p.friction else 0.0
+    k_t = v.k_t * sticking
+    normal_part = normal * normal * elastic_stiffness
+    yielding = normal_part * k_t / (normal_part + tangential * tangential * k_t)
+    rises = slip_force * tangential_slope(v, place, before) / v.delta_t_slip
+    rises = min(max(rises, 0.0), v.k_t)
+    part = min((trial - cap) / (highest - cap), 1.0) if highest > cap else 1.0
+    softer = 1.0 - v.slope * f_n / (v.f_n0 * elastic_stiffness) if grown else 1.0
+    plastic = min(softer * dh if softer > 0.0 else 0.0, (trial - cap) / elastic_stiffness)
+    flow = 2.0 * c / normal * (rises + BETWEEN * (yielding - rises)) * part * plastic / f_n
+    keep = math.exp(-flow)
+    left = keep * f_t / slip_force
+    x = tangential_shape_back(v, left, before) if left < tangential_shape(v, place)[0] else place
+    pressed, q = pressed_cap(v, c, keep * f_t)
+    on_curve = normal_cap(v, x)
+    raised = pressed if pressed > on_curve else on_curve
+    rate = flow / dh
+    if pressed > on_curve:
+        root = math.sqrt(q)
+        turns = 0.5 * (1.0 - q) / root if root > 0.0 else 0.0
+        slope = v.slope * (0.5 * (1.0 + root) + turns) + v.f_n0 * turns * rate
+    else:
+        steep = slip_force * tangential_shape(v, x)[1]
+        falls = (v.f_n0 - v.f_n_slip) * normal_shape(v, x)[1]
+        gain = falls * keep * f_t / (v.f_n0 * steep) if steep > 0.0 else 0.0
+        slope = v.slope * (raised / v.f_n0 + gain) + v.f_n0 * gain * rate
     slope = slope if raised < f_n and slope < stiffness else stiffness
     f_n = raised if raised < f_n else f_n
     s.deflection = scale(s.deflection, keep)
-    return f_n, x, slope, flow
+    s.sheared = x
+    return f_n, x, slope, flow, CARRIED * part * (yielding - rises) if yielding > rises else 0.0
 
 
-def shear(p, s, out, v, f_n, increment):
+def reverse(p, s, out, v, before, force_before, increment):
+    """The sliders slip and stick at the F_N of full slip, or the contact was released: it loses what a reversal of the slip costs besides."""
+    size = math.sqrt(increment[0] * increment[0] + increment[1] * increment[1])
+    held = math.sqrt(force_before[0] * force_before[0] + force_before[1] * force_before[1])
+    if s.x >= MOST or not size > 0.0 or held > SLIDING * (p.friction * out.f_n):
+        return
+    rise = [out.f_t[0] - force_before[0], out.f_t[1] - force_before[1]]
+    risen = math.sqrt(rise[0] * rise[0] + rise[1] * rise[1])
+    stick = risen / (v.k_t * size)
+    if not 0.0 < stick < 1.0:
+        return
+    rate = 4.0 * GATHERED * (MOST - s.x) * (v.k_t / (p.friction * v.f_n_slip))
+    s.x = min(s.x + rate * (stick * (1.0 - stick)) * size, MOST)
+    cap = v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0))
+    if not cap < out.f_n:
+        return
+    out.f_n = cap
+    s.approach = approach_at(v, cap)
+    limit = slider_limits(p, v, cap)
+    s.deflection = slide(before, limit, increment)
+    out.f_t = slider_force(v, s.deflection)
+    loss = REVERSED * v.f_n_slip * rate if s.x < MOST else 0.0
+    for j in range(2):
+        stiffer = (rise[0] * out.df_t_ddelta[0][j] + rise[1] * out.df_t_ddelta[1][j]) / (risen * v.k_t)
+        out.df_n_ddelta[j] = -loss * ((1.0 - 2.0 * stick) * stiffer + stick * stick * increment[j] / size)
+    out.df_t_ddelta = slider_stiffness(v, before, limit, increment)
+    for j in range(2):
+        falls = (1.0 - stick) * out.df_n_ddelta[j] / cap
+        for i in range(2):
+            out.df_t_ddelta[i][j] += falls * out.f_t[i]
+
+
+def shear(p, s, out, v, f_n, carried, increment):
     """Moves delta_T with h held."""
     before = s.deflection
     force_before = slider_force(v, before)
@@ -793,10 +898,26 @@ def shear(p, s, out, v, f_n, increment):
     out.f_n = f_n
     out.f_t = slider_force(v, s.deflection)
     out.df_t_ddelta = slider_stiffness(v, before, limit, increment)
+    if is_elastic(v):
+        return
+    if s.x >= 1.0 and carried == 0.0:
+        reverse(p, s, out, v, before, force_before, increment)
+        return
     slip_force = p.friction * v.f_n_slip
-    bound = slip_force * tangential_shape(v, s.x)[0]
+    at = s.x if s.x < 1.0 else 1.0
+    bound = slip_force * tangential_shape(v, at)[0]
     trial = math.sqrt(out.f_t[0] * out.f_t[0] + out.f_t[1] * out.f_t[1])
-    if s.x >= 1.0 or trial <= (1.0 + 1e-10) * bound or is_elastic(v):
+    if trial <= AT_BOUND * bound:
+        return
+    held_before = math.sqrt(force_before[0] * force_before[0] + force_before[1] * force_before[1])
+    place, _ = tangential_shape_inverse(v, held_before / slip_force)
+    if place > at:
+        at = place
+        bound = slip_force * tangential_shape(v, at)[0]
+    beyond_peak = held_before > AT_BOUND * bound
+    if beyond_peak:
+        bound = held_before
+    if trial <= AT_BOUND * bound:
         return
     direction = [out.f_t[0] / trial, out.f_t[1] / trial]
     along = direction[0] * force_before[0] + direction[1] * force_before[1]
@@ -805,20 +926,31 @@ def shear(p, s, out, v, f_n, increment):
     beyond = excess / travel if excess < travel else 1.0
     forward = direction[0] * increment[0] + direction[1] * increment[1]
     forward = forward if forward > 0.0 else 0.0
-    x = s.x + beyond * forward / v.delta_t_slip
-    s.x = x if x < 1.0 else 1.0
-    cap = normal_cap(v, s.x)
-    out.f_n = cap if cap < f_n else f_n
+    dx = beyond * forward / v.delta_t_slip
+    x = at + dx if at + dx < 1.0 else 1.0
+    cap = normal_cap(v, x)
+    above = f_n - normal_cap(v, at)
+    above = above * math.exp(-dx / RELAXATION) if above > 0.0 else 0.0
+    lowered = cap + above
+    out.f_n = lowered if lowered < f_n else f_n
+    s.x = mobilisation(v, out.f_n) if out.f_n > cap else 1.0 if out.f_n <= v.f_n_slip else x
+    s.sheared = x
     s.approach = approach_at(v, out.f_n)
     limit = slider_limits(p, v, out.f_n)
     s.deflection = slide(before, limit, increment)
     held = slider_force(v, s.deflection)
     stiffness = slider_stiffness(v, before, limit, increment)
-    shape, shape_slope = tangential_shape(v, s.x)
+    shape, shape_slope = tangential_shape(v, x)
+    rate = slip_force * shape_slope / v.delta_t_slip
     bound = slip_force * shape
+    if beyond_peak and held_before > bound:
+        bound = held_before
+        rate = 0.0
+    bound += carried * (beyond * forward)
+    rate = (rate + carried) * beyond
     size = math.sqrt(held[0] * held[0] + held[1] * held[1])
     per_x = beyond / v.delta_t_slip
-    loss = (v.f_n0 - v.f_n_slip) * normal_shape(v, s.x)[1]
+    loss = (v.f_n0 - v.f_n_slip) * normal_shape(v, x)[1] + above / RELAXATION
     out.f_t = held
     out.df_n_ddelta = [-loss * per_x * direction[0], -loss * per_x * direction[1]]
     out.df_t_ddelta = stiffness
@@ -828,7 +960,6 @@ def shear(p, s, out, v, f_n, increment):
     s.deflection = scale(s.deflection, keep)
     m = [held[0] / size, held[1] / size]
     out.f_t = [bound * m[0], bound * m[1]]
-    rate = slip_force * shape_slope * per_x
     out.df_t_ddelta = [[0.0, 0.0], [0.0, 0.0]]
     for j in range(2):
         radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j]
@@ -859,8 +990,8 @@ def update(p, state, h, increment):
     if not greatest > 0.0:
         s.h = h
         return s, out
-    v = virgin(p, greatest)
-    f_n, x, df_n_dh, flow = press(p, s, v, h)
+    v = virgin(p, greatest, state.sheared)
+    f_n, x, df_n_dh, flow, carried = press(p, s, v, h)
     if h != state.h:
         s.approach = approach_at(v, f_n) if f_n > 0.0 else state.approach + (h - state.h)
     s.h = h
@@ -871,7 +1002,7 @@ def update(p, state, h, increment):
         return s, out
     out.df_n_dh = df_n_dh
     share = taken(flow)
-    shear(p, s, out, v, f_n, (share * increment[0], share * increment[1]))
+    shear(p, s, out, v, f_n, carried, (share * increment[0], share * increment[1]))
     out.df_t_ddelta = [[share * k for k in row] for row in out.df_t_ddelta]
     out.df_n_ddelta = [share * k for k in out.df_n_ddelta]
     out.a = v.a * (s.approach / v.depth) ** (v.gamma - 1.0)
