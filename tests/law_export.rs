@@ -538,7 +538,7 @@ fn the_vectors_go_where_a_contact_can_go() {
         assert!(count(&|row| at(row, "hardening") == f64::from(kind)) >= 300, "{kind}");
     }
     assert!(count(&|row| at(row, "f_n") == 0.0) > 10);
-    assert!(count(&|row| at(row, "x") == 1.0 && at(row, "f_n") > 0.0) > 100);
+    assert!(count(&|row| at(row, "x") >= 1.0 && at(row, "f_n") > 0.0) > 100);
     assert!(count(&|row| at(row, "x") > 0.0 && at(row, "x") < 1.0) > 100);
     let force = |row: &[f64]| at(row, "f_t0").hypot(at(row, "f_t1"));
     let slips = |row: &[f64]| at(row, "f_n") > 0.0 && force(row) > 0.999999 * at(row, "mu") * at(row, "f_n");

@@ -47,6 +47,10 @@ pub struct ContactResponse {
 /// Share of F_N0 from which a force counts as F_N0, so that rounding is not taken for unloading.
 const AT_CAP: f64 = 1.0 - 1e-9;
 
+/// Share of F_N that is compared with F_N_slip, so that rounding does not decide whether a contact
+/// slips as a whole.
+const AT_SLIP: f64 = 1.0 - 1e-13;
+
 /// Share of a bound up to which a force counts as within it, so that a contact at rest answers with
 /// its elastic stiffness.
 const AT_BOUND: f64 = 1.0 + 1e-10;
@@ -69,17 +73,17 @@ const BETWEEN: f64 = 0.5;
 
 /// Share of the difference of those two by which F_T rises beyond the virgin curve while the
 /// contact is pressed. Of simulated oblique presses.
-const CARRIED: f64 = 0.2;
+const CARRIED: f64 = 0.3;
 
 /// x over which a sudden shear takes F_N from the yield curve of a press down to the virgin one.
 const RELAXATION: f64 = 0.1;
 
 /// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
-const REVERSED: f64 = 0.06;
+const REVERSED: f64 = 0.05;
 
 /// The measure of that loss: x gathers this many times the share of the sliders that slip, times
 /// that of those that stick, over the displacement that mu F_N_slip takes at k_T.
-const GATHERED: f64 = 2.0;
+const GATHERED: f64 = 0.7;
 
 /// Share of mu F_N from which a contact slides on as it did: nothing is lost then.
 const SLIDING: f64 = 0.98;
@@ -266,8 +270,9 @@ fn mobilisation(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> f64 {
     if f_n >= AT_CAP * virgin.point.f_n0 {
         return 0.0;
     }
-    if f_n <= virgin.point.f_n_slip {
-        let x = 1.0 + (1.0 - f_n / virgin.point.f_n_slip) / REVERSED;
+    if AT_SLIP * f_n <= virgin.point.f_n_slip {
+        let lost = 1.0 - f_n / virgin.point.f_n_slip;
+        let x = if lost > 0.0 { 1.0 + lost / REVERSED } else { 1.0 };
         return if x < MOST { x } else { MOST };
     }
     normal_shape_inverse(p, virgin, (virgin.point.f_n0 - f_n) / (virgin.point.f_n0 - virgin.point.f_n_slip))
@@ -650,9 +655,9 @@ fn shear(
     }
     // A press raises F_N above the virgin curve: there the place on it is that of F_T.
     let carried = length(force_before);
-    let (place, _) = tangential_shape_inverse(p, virgin, carried / slip_force);
-    if place > at {
-        at = place;
+    if carried > AT_BOUND * bound {
+        let (place, _) = tangential_shape_inverse(p, virgin, carried / slip_force);
+        at = if place > at { place } else { at };
         bound = slip_force * tangential_shape(p, virgin, at)[0];
     }
     let beyond_peak = carried > AT_BOUND * bound;
@@ -676,13 +681,7 @@ fn shear(
     let above = if above > 0.0 { above * (-dx / RELAXATION).exp() } else { 0.0 };
     let relaxed = cap + above;
     out.f_n = if relaxed < f_n { relaxed } else { f_n };
-    next.x = if out.f_n > cap {
-        mobilisation(p, virgin, out.f_n)
-    } else if out.f_n <= virgin.point.f_n_slip {
-        1.0
-    } else {
-        x
-    };
+    next.x = if AT_SLIP * out.f_n <= virgin.point.f_n_slip { 1.0 } else { x };
     next.sheared = x;
     next.approach = approach_at(virgin, out.f_n);
     let limit = slider_limits(p, virgin, out.f_n);

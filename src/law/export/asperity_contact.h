@@ -68,6 +68,7 @@ typedef uint32_t asperity_bits;
 #define ASPERITY_ROOT_BITS 0x5f375a86u
 #define ASPERITY_MOST 1e15f      /* its square is still finite */
 #define ASPERITY_AT_CAP (1.0f - 1e-6f)
+#define ASPERITY_AT_SLIP (1.0f - 2e-7f)
 #define ASPERITY_AT_BOUND (1.0f + 2.4e-7f) /* two roundings: a wider one lets a contact that begins to slip wait for a step */
 #else
 typedef double asperity_real;
@@ -81,6 +82,7 @@ typedef uint64_t asperity_bits;
 #define ASPERITY_INFINITE_BITS 0x7ff0000000000000ull
 #define ASPERITY_ROOT_BITS 0x5fe6eb50c7b537a9ull
 #define ASPERITY_MOST 1e150
+#define ASPERITY_AT_SLIP (1.0 - 1e-13)
 #define ASPERITY_AT_CAP (1.0 - 1e-9) /* rounding is not taken for unloading */
 #define ASPERITY_AT_BOUND (1.0 + 1e-10)
 #endif
@@ -152,11 +154,11 @@ typedef struct asperity_tangent {
 #define ASPERITY_RECOVERED ASPERITY_R(0.8)
 #define ASPERITY_LEAST_NORMAL ASPERITY_R(0.25)
 #define ASPERITY_BETWEEN ASPERITY_R(0.5)
-#define ASPERITY_CARRIED ASPERITY_R(0.2)
+#define ASPERITY_CARRIED ASPERITY_R(0.3)
 #define ASPERITY_RELAXATION ASPERITY_R(0.1)
-#define ASPERITY_REVERSED ASPERITY_R(0.06)
+#define ASPERITY_REVERSED ASPERITY_R(0.05)
 #define ASPERITY_SLIDING ASPERITY_R(0.98)
-#define ASPERITY_GATHERED ASPERITY_R(2.0)
+#define ASPERITY_GATHERED ASPERITY_R(0.7)
 #define ASPERITY_ALL_LOST ASPERITY_R(2.0) /* x after all of what reversed slip costs */
 #define ASPERITY_UNSHEARED ASPERITY_R(1.8)
 
@@ -578,6 +580,12 @@ ASPERITY_FN asperity_real asperity_point(const asperity_curve *v, int kind, int 
     return low + v->between * (v->deep[kind][j - 1] - low);
 }
 
+/* x at point j > 0, of the last one exactly 1: whether a contact slips as a whole is asked by it. */
+ASPERITY_FN asperity_real asperity_peak_x(int j) {
+    asperity_real share = ASPERITY_R(j) / ASPERITY_R(ASPERITY_POINTS);
+    return share * share;
+}
+
 /* The last point that is not beyond x, of those that have one after them. */
 ASPERITY_FN int asperity_point_before(asperity_real x) {
     int j = (int)(ASPERITY_R(ASPERITY_POINTS) * ASPERITY_SQRT(x));
@@ -743,7 +751,7 @@ ASPERITY_FN void asperity_place_of(int form, const asperity_curve *v, asperity_r
             place->f_t = asperity_point(v, 0, j + 1);
         }
         place->after = j;
-        place->x = asperity_given_between(v, 0, place->f_t, j);
+        place->x = f > place->f_t ? asperity_peak_x(j + 1) : asperity_given_between(v, 0, place->f_t, j);
         place->f_n = asperity_given(v, 1, place->x, j);
     } else if (f >= one) {
         place->x = place->f_t = place->f_n = one;
@@ -781,7 +789,7 @@ ASPERITY_FN asperity_real asperity_normal_inverse(int form, const asperity_curve
     }
     if (form == 2) {
         int j = asperity_given_search(v, 1, f);
-        return j < ASPERITY_POINTS ? asperity_given_between(v, 1, f, j) : asperity_point_x(asperity_given_peak(v, 1) + 1);
+        return j < ASPERITY_POINTS ? asperity_given_between(v, 1, f, j) : asperity_peak_x(asperity_given_peak(v, 1) + 1);
     }
     if (form == 0) {
         inner = one - asperity_power(f, one / v->big_n);
@@ -796,8 +804,8 @@ ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *
     if (f_n >= ASPERITY_AT_CAP * v->f_n0) {
         return ASPERITY_R(0.0);
     }
-    if (f_n <= v->f_n_slip) {
-        asperity_real x = ASPERITY_R(1.0) + (ASPERITY_R(1.0) - f_n / v->f_n_slip) / ASPERITY_REVERSED;
+    if (ASPERITY_AT_SLIP * f_n <= v->f_n_slip) {
+        asperity_real x = ASPERITY_R(1.0) + asperity_most(ASPERITY_R(1.0) - f_n / v->f_n_slip, ASPERITY_R(0.0)) / ASPERITY_REVERSED;
         return x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
     }
     return asperity_normal_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
@@ -1237,15 +1245,13 @@ ASPERITY_FN asperity_real asperity_shear(
     /* A press raises F_N above the virgin curve: there the place on it is that of F_T. */
     if (!p->placed) {
         p->f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
-        asperity_place_of(t->form, v, p->f_t / slip_force, &p->place);
     }
-    if (p->place.x > at) {
-        at = p->place.x;
-        from = p->place;
-        bound = slip_force * from.f_t;
-    } else {
-        asperity_shapes(t->form, v, at, &from);
+    if (p->f_t > ASPERITY_AT_BOUND * bound) {
+        asperity_place_of(t->form, v, p->f_t / slip_force, &from);
+        at = asperity_most(from.x, at);
     }
+    asperity_shapes(t->form, v, at, &from);
+    bound = slip_force * from.f_t;
     beyond_peak = p->f_t > ASPERITY_AT_BOUND * bound;
     bound = beyond_peak ? p->f_t : bound;
     if (trial <= ASPERITY_AT_BOUND * bound) {
@@ -1267,7 +1273,7 @@ ASPERITY_FN asperity_real asperity_shear(
     above = above > zero ? above * asperity_exponential_near(-dx / ASPERITY_RELAXATION) : zero;
     lowered = cap + above;
     out->f_n = lowered < f_n ? lowered : f_n;
-    s->x = out->f_n > cap ? asperity_mobilisation(t->form, v, out->f_n) : (out->f_n <= v->f_n_slip ? one : place.x);
+    s->x = ASPERITY_AT_SLIP * out->f_n <= v->f_n_slip ? one : place.x;
     s->sheared = place.x;
     if (out->f_n != f_n) {
         asperity_lower(t, v, out->f_n, p);

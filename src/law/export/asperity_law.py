@@ -531,14 +531,16 @@ PRESSED = 0.8
 RECOVERED = 0.8
 LEAST_NORMAL = 0.25
 BETWEEN = 0.5
-CARRIED = 0.2
+CARRIED = 0.3
 RELAXATION = 0.1
-REVERSED = 0.06
+REVERSED = 0.05
 SLIDING = 0.98
-GATHERED = 2.0
+GATHERED = 0.7
 MOST = 2.0  # x after all of what reversed slip costs
 UNSHEARED = 1.8
 AT_BOUND = 1.0 + 1e-10
+AT_CAP = 1.0 - 1e-9
+AT_SLIP = 1.0 - 1e-13
 
 
 def point_x(j):
@@ -686,10 +688,10 @@ def pressed_cap(v, c, f_t):
 
 def mobilisation(v, f_n):
     """The x of the virgin curve that has the normal force f_n."""
-    if f_n >= (1.0 - 1e-9) * v.f_n0:
+    if f_n >= AT_CAP * v.f_n0:
         return 0.0
-    if f_n <= v.f_n_slip:
-        return min(MOST, 1.0 + (1.0 - f_n / v.f_n_slip) / REVERSED)
+    if AT_SLIP * f_n <= v.f_n_slip:
+        return min(MOST, 1.0 + max(0.0, 1.0 - f_n / v.f_n_slip) / REVERSED)
     return normal_shape_inverse(v, (v.f_n0 - f_n) / (v.f_n0 - v.f_n_slip))
 
 
@@ -816,7 +818,7 @@ def press(p, s, v, h):
     place, before = tangential_shape_inverse(v, f_t / slip_force)
     cap = normal_cap(v, place)
     if trial <= cap or f_t == 0.0:
-        if f_n >= (1.0 - 1e-9) * v.f_n0:
+        if f_n >= AT_CAP * v.f_n0:
             s.sheared = 0.0
         return f_n, elastic, stiffness, 0.0, 0.0
     c = yield_coefficient(p, v)
@@ -910,9 +912,8 @@ def shear(p, s, out, v, f_n, carried, increment):
     if trial <= AT_BOUND * bound:
         return
     held_before = math.sqrt(force_before[0] * force_before[0] + force_before[1] * force_before[1])
-    place, _ = tangential_shape_inverse(v, held_before / slip_force)
-    if place > at:
-        at = place
+    if held_before > AT_BOUND * bound:
+        at = max(at, tangential_shape_inverse(v, held_before / slip_force)[0])
         bound = slip_force * tangential_shape(v, at)[0]
     beyond_peak = held_before > AT_BOUND * bound
     if beyond_peak:
@@ -933,7 +934,7 @@ def shear(p, s, out, v, f_n, carried, increment):
     above = above * math.exp(-dx / RELAXATION) if above > 0.0 else 0.0
     lowered = cap + above
     out.f_n = lowered if lowered < f_n else f_n
-    s.x = mobilisation(v, out.f_n) if out.f_n > cap else 1.0 if out.f_n <= v.f_n_slip else x
+    s.x = 1.0 if AT_SLIP * out.f_n <= v.f_n_slip else x
     s.sheared = x
     s.approach = approach_at(v, out.f_n)
     limit = slider_limits(p, v, out.f_n)
