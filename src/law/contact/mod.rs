@@ -33,6 +33,7 @@
 
 mod material;
 pub mod path;
+mod shapes;
 mod update;
 mod virgin;
 
