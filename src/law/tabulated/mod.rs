@@ -11,6 +11,7 @@ mod build;
 mod measure;
 #[cfg(feature = "plots")]
 mod picture;
+mod series;
 pub mod spline;
 
 use std::path::Path;
@@ -30,6 +31,7 @@ pub use build::{Built, build, case_of, depths, study_text};
 pub use measure::Missing;
 #[cfg(feature = "plots")]
 pub use picture::picture;
+pub use series::compose;
 
 /// The first key of a table, by which it is recognised.
 pub const FORMAT: &str = "asperity-law-table";
@@ -424,6 +426,11 @@ impl Curves {
         let rows: Vec<Vec<f64>> = levels.iter().map(columns_of).collect();
         let column = |c: usize| rows.iter().map(|row| row[c]).collect::<Vec<f64>>();
         Self { columns: (0..NUMBERS + 2 * POINTS).map(|c| Spline::through(&x, &column(c))).collect() }
+    }
+
+    /// F_N0 alone.
+    fn force(&self, h: f64) -> f64 {
+        (self.columns[0].at(h.ln()) + 1.5 * h.ln()).exp()
     }
 
     fn at(&self, h: f64) -> Level {
