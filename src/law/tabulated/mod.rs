@@ -428,9 +428,10 @@ impl Curves {
         Self { columns: (0..NUMBERS + 2 * POINTS).map(|c| Spline::through(&x, &column(c))).collect() }
     }
 
-    /// F_N0 alone.
-    fn force(&self, h: f64) -> f64 {
-        (self.columns[0].at(h.ln()) + 1.5 * h.ln()).exp()
+    /// F_N0 and a0 alone.
+    fn normal(&self, h: f64) -> [f64; 2] {
+        let ln_h = h.ln();
+        [(self.columns[0].at(ln_h) + 1.5 * ln_h).exp(), (self.columns[1].at(ln_h) + 0.5 * ln_h).exp()]
     }
 
     fn at(&self, h: f64) -> Level {
