@@ -2,6 +2,8 @@
 //! where formulas for all materials are not. It is of one pair of bodies, and says which: a sphere
 //! on a rigid plane, two equal spheres, or any two that a case can describe.
 //!
+//! `series` makes the table of two unlike bodies from one of each.
+//!
 //! Lengths are over R and forces over E R^2, so that one table serves every radius.
 //! [`Tabulated::contact_parameters`] hands the curves to the contact update, and everything that
 //! uses a table goes through it: what is checked is what is exported.
