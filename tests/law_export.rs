@@ -449,6 +449,55 @@ fn a_table_agrees_in_every_language() {
     }
 }
 
+/// Copper on steel, made of the tables of the two by the program: exported as any table is, and
+/// followed by every language.
+#[test]
+fn a_table_of_two_bodies_in_series_agrees_in_every_language() {
+    let test = "a_table_of_two_bodies_in_series_agrees_in_every_language";
+    let dir = tempfile::tempdir().unwrap();
+    let tables = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/law/pairs");
+    let [copper, steel] = ["copper.json", "steel.json"].map(|name| Path::new(tables).join(name));
+    let pair = "opponent = { radius = 4.0, material = { youngs_modulus = 210e3, poissons_ratio = 0.28, hardening = { law = \"linear\", \
+                yield_stress = 300.0, modulus = 4000.0 } } }\n\
+                material = { youngs_modulus = 120e3, poissons_ratio = 0.34, hardening = { law = \"voce\", yield_stress = 60.0, \
+                saturation_stress = 300.0, rate = 10.0 } }\npath = [{ indentation = 0.03 }]\n[sphere]\nradius = 1.3333333333333333\n\
+                [contact]\nfriction = 0.3\n";
+    fs::write(dir.path().join("pair.toml"), pair).unwrap();
+    let asperity = |arguments: &[&std::ffi::OsStr]| {
+        Command::new(env!("CARGO_BIN_EXE_asperity")).arg("law").args(arguments).current_dir(dir.path()).output().unwrap()
+    };
+    let [compose, case, out, folder, force] = ["compose", "pair.toml", "--out", "made", "--force"].map(std::ffi::OsStr::new);
+    let run = asperity(&[compose, case, copper.as_ref(), steel.as_ref(), out, folder]);
+    assert!(run.status.success() && text(&run).contains("against another sphere"), "{}", text(&run));
+    let law = dir.path().join("made/law.json");
+    let made = fs::read(&law).unwrap();
+    // A table that is there may have cost minutes.
+    let again = asperity(&[compose, case, copper.as_ref(), steel.as_ref(), out, folder]);
+    assert!(again.status.code() == Some(2) && text(&again).contains("is there already"), "{}", text(&again));
+    let wrong = asperity(&[compose, case, steel.as_ref(), copper.as_ref(), out, folder, force]);
+    assert!(wrong.status.code() == Some(2) && text(&wrong).contains("of the sphere, nu = 0.34"), "{}", text(&wrong));
+    assert_eq!(fs::read(&law).unwrap(), made);
+    let predicted = asperity(&["predict".as_ref(), law.as_ref(), case]);
+    assert!(predicted.status.success() && text(&predicted).lines().count() > 50, "{}", text(&predicted));
+    for (compiler, format) in [(Some("gcc"), "c"), (None, "python")] {
+        if !has(compiler.unwrap_or("python3"), test) {
+            continue;
+        }
+        let run = asperity(&["export".as_ref(), law.as_ref(), "--format".as_ref(), format.as_ref(), out, format.as_ref()]);
+        assert!(run.status.success(), "{}", text(&run));
+        let files = dir.path().join(format);
+        let run = match compiler {
+            Some(compiler) => compile_and_run(&files, CHECK, &[compiler, "-std=c99"], &["asperity_law_vectors.csv"]),
+            None => Command::new("python3")
+                .args(["-W", "error", "asperity_law.py", "asperity_law_vectors.csv"])
+                .current_dir(&files)
+                .output()
+                .unwrap(),
+        };
+        assert!(run.status.success(), "{}", text(&run));
+    }
+}
+
 #[test]
 fn a_table_refuses_another_material_in_every_language() {
     let law = table("law = \"ideal\"\nyield_stress = 0.002");

@@ -166,7 +166,7 @@ pub enum CliError {
         /// The key that it resembles.
         nearest: Option<String>,
     },
-    /// A file that `init` would replace.
+    /// A file that `init` or `law compose` would replace.
     #[error("{}: is there already. Give another name, or --force to replace it (nothing was changed)", .file.display())]
     FileThere {
         /// The file.

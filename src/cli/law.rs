@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::input::Input;
 use super::law_check::{CheckArgs, check_law};
+use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print, print_json};
 use crate::case::Case;
@@ -40,6 +41,9 @@ pub enum LawCommand {
     /// depths up to that of the case as a study, writes DIR/law.json and prints the errors in
     /// between.
     Tabulate(TabulateArgs),
+    /// Make the table of two bodies, of any sizes, from one table of each, without simulating
+    /// anything.
+    Compose(ComposeArgs),
     /// Predict F_N and F_T along the path of a case without simulating it; prints CSV.
     Predict(PredictArgs),
     /// Simulate a protocol of paths and print how far the law is from each.
@@ -129,6 +133,7 @@ pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
     match &args.command {
         LawCommand::Fit(args) => fit_law(args),
         LawCommand::Tabulate(args) => tabulate(args),
+        LawCommand::Compose(args) => compose_tables(args),
         LawCommand::Predict(args) => predict_case(args),
         LawCommand::Check(args) => check_law(args),
         LawCommand::Export(args) => export_law(args),

@@ -13,6 +13,7 @@ pub mod init;
 pub mod input;
 pub mod law;
 mod law_check;
+mod law_compose;
 mod law_tabulate;
 pub mod options;
 pub mod plot;

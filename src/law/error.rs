@@ -99,6 +99,18 @@ pub enum LawError {
         /// Why another is missing, after a semicolon; or nothing.
         reason: String,
     },
+    /// A table of a body that ends before the pair that it is to make.
+    #[error(
+        "the table of the {body} ends at h/R = {has:.3e}, and in this pair that body is pressed to {needs:.3e}. Tabulate it deeper, or the pair less deep"
+    )]
+    Shallow {
+        /// Which.
+        body: &'static str,
+        /// h/R at its end.
+        has: f64,
+        /// h/R that the pair needs, of the table's contact.
+        needs: f64,
+    },
     /// The contact update has no numbers for a material.
     #[error(transparent)]
     Contact(#[from] ContactError),

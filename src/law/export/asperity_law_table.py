@@ -3,6 +3,7 @@
 TABLE_NU = @NU@
 TABLE_FRICTION = @FRICTION@
 TABLE_MODULUS = @MODULUS@  # E*, over E
+TABLE_RADIUS = @RADIUS@  # R*, over R
 TABLE_LOG_FIRST = @LOG_FIRST@
 TABLE_LOG_STEP = @LOG_STEP@
 TABLE_DEEPEST = @DEEPEST@  # h/R
@@ -50,7 +51,7 @@ def setup(m, radius, friction):
     force = math.log(e * radius * radius)
     stiffness = math.log(e * radius)
     p = Parameters()
-    p.radius = radius
+    p.radius = TABLE_RADIUS * radius
     p.effective_modulus = TABLE_MODULUS * e
     p.friction = TABLE_FRICTION
     p.log_first = TABLE_LOG_FIRST + length

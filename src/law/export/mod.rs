@@ -177,7 +177,7 @@ fn fill<'a>(template: &str, values: impl IntoIterator<Item = (&'a str, String)>)
 
 /// A table as a Python module.
 fn table_source(table: &Tabulated) -> Result<String, LawError> {
-    let ContactParameters { effective_modulus, friction, log_first, log_step, table: rows, shapes, .. } =
+    let ContactParameters { radius, effective_modulus, friction, log_first, log_step, table: rows, shapes, .. } =
         table.unit_parameters()?;
     let material = table.material()?;
     let number = |x: f64| format!("{x:.16e}");
@@ -200,6 +200,7 @@ fn table_source(table: &Tabulated) -> Result<String, LawError> {
             ("NU", number(material.poissons_ratio)),
             ("FRICTION", number(friction)),
             ("MODULUS", number(effective_modulus)),
+            ("RADIUS", number(radius)),
             ("LOG_FIRST", number(log_first)),
             ("LOG_STEP", number(log_step)),
             ("DEEPEST", number(table.range.to)),

@@ -27,11 +27,11 @@ const RATIO: f64 = 2.2;
 /// Fewest depths without those between.
 const FEWEST: usize = 5;
 /// The curves of the shear end at so many times the displacement at which F_T/F_N is 0.99 mu.
-const LENGTH: f64 = 2.0;
+pub(super) const LENGTH: f64 = 2.0;
 /// Share of F_N that the release at the end leaves.
 const LEFT: f64 = 0.5;
 /// F_T/F_N there over mu.
-const NEARLY_SLIPPING: f64 = SLIP_DISPLACEMENT_RATIO;
+pub(super) const NEARLY_SLIPPING: f64 = SLIP_DISPLACEMENT_RATIO;
 /// A depth nearer than this share of its size to first yield needs no Hertz contact below it.
 const NEAR: f64 = 1.3;
 
@@ -172,7 +172,7 @@ fn smoothed(levels: &mut [Level]) {
 }
 
 /// x at the points of the shapes.
-fn points() -> impl Iterator<Item = f64> {
+pub(super) fn points() -> impl Iterator<Item = f64> {
     (1..=POINTS).map(|j| (j as f64 / POINTS as f64).powi(2))
 }
 
@@ -289,7 +289,7 @@ const NEARLY_MINDLIN: f64 = 0.953_584_1;
 
 /// The level of an elastic contact on a half-space, Hertz's sheared as Cattaneo and Mindlin have
 /// it.
-fn hertzian(sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
+pub(super) fn hertzian(sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
     // Without friction there is no displacement at full slip, and none is asked for.
     let contact = CattaneoMindlin::at_indentation(*sphere, friction.max(1e-6), h);
     let end = LENGTH * NEARLY_MINDLIN * contact.slip_displacement();

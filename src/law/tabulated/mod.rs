@@ -2,6 +2,8 @@
 //! where formulas for all materials are not. It is of one pair of bodies, and says which: a sphere
 //! on a rigid plane, two equal spheres, or any two that a case can describe.
 //!
+//! `series` makes the table of two unlike bodies from one of each.
+//!
 //! Lengths are over R and forces over E R^2, so that one table serves every radius.
 //! [`Tabulated::contact_parameters`] hands the curves to the contact update, and everything that
 //! uses a table goes through it: what is checked is what is exported.
@@ -11,6 +13,7 @@ mod build;
 mod measure;
 #[cfg(feature = "plots")]
 mod picture;
+mod series;
 pub mod spline;
 
 use std::path::Path;
@@ -30,6 +33,7 @@ pub use build::{Built, build, case_of, depths, study_text};
 pub use measure::Missing;
 #[cfg(feature = "plots")]
 pub use picture::picture;
+pub use series::compose;
 
 /// The first key of a table, by which it is recognised.
 pub const FORMAT: &str = "asperity-law-table";
@@ -424,6 +428,12 @@ impl Curves {
         let rows: Vec<Vec<f64>> = levels.iter().map(columns_of).collect();
         let column = |c: usize| rows.iter().map(|row| row[c]).collect::<Vec<f64>>();
         Self { columns: (0..NUMBERS + 2 * POINTS).map(|c| Spline::through(&x, &column(c))).collect() }
+    }
+
+    /// F_N0 and a0 alone.
+    fn normal(&self, h: f64) -> [f64; 2] {
+        let ln_h = h.ln();
+        [(self.columns[0].at(ln_h) + 1.5 * ln_h).exp(), (self.columns[1].at(ln_h) + 0.5 * ln_h).exp()]
     }
 
     fn at(&self, h: f64) -> Level {

@@ -146,22 +146,42 @@ pub fn weights_between(slave: Surface<'_>, master: Surface<'_>) -> Vec<Weights> 
     let mut faced: Vec<Vec<(usize, f64)>> = vec![Vec::new(); slave.points.len()];
     for face in facing(slave) {
         face.nodes.iter().for_each(|&n| touched[n] = true);
-        // Every point of the rule: weight, shape functions of both faces, the other's index.
-        let mut rule: Vec<(f64, [f64; 4], [f64; 4], usize)> = Vec::new();
+        // Integrals of the shape functions by each other: of this face, and with those of each
+        // that it meets.
+        let mut mass = [[0.0; 4]; 4];
+        let mut mixed: Vec<(usize, [[f64; 4]; 4])> = Vec::new();
         for &m in &grid.near(&face) {
             let polygon = clip(&face.corners, &others[m].corners);
-            exactly(&polygon, SLIVER * face.area, [&face, &others[m]], |weight, [own, other]| rule.push((weight, own, other, m)));
+            let mut with = [[0.0; 4]; 4];
+            let mut met = false;
+            exactly(&polygon, SLIVER * face.area, [&face, &others[m]], |weight, [own, other]| {
+                met = true;
+                for a in 0..4 {
+                    let value = weight * own[a];
+                    for b in 0..4 {
+                        mass[a][b] += value * own[b];
+                        with[a][b] += value * other[b];
+                    }
+                }
+            });
+            if met {
+                mixed.push((m, with));
+            }
         }
-        if !(rule.iter().map(|p| p.0).sum::<f64>() > COVERED * face.area) {
+        // Shape functions add up to one.
+        let integrals = mass.map(|row| row.iter().sum::<f64>());
+        if !(integrals.iter().sum::<f64>() > COVERED * face.area) {
             face.nodes.iter().for_each(|&n| covered[n] = false);
             continue;
         }
-        let psi = dual_functions(|f| rule.iter().for_each(|p| f(p.1, p.0)));
-        for (weight, n, other, m) in &rule {
-            for a in 0..4 {
-                area[face.nodes[a]] += weight * n[a];
-                let value = weight * (0..4).map(|b| psi[a][b] * n[b]).sum::<f64>();
-                (0..4).for_each(|b| add(&mut faced[face.nodes[a]], others[*m].nodes[b], value * other[b]));
+        let psi = dual_of(mass);
+        for a in 0..4 {
+            area[face.nodes[a]] += integrals[a];
+            for (m, with) in &mixed {
+                for b in 0..4 {
+                    let value = (0..4).map(|c| psi[a][c] * with[c][b]).sum();
+                    add(&mut faced[face.nodes[a]], others[*m].nodes[b], value);
+                }
             }
         }
     }
@@ -245,6 +265,12 @@ impl Face {
         local
     }
 
+    /// The bilinear map from [-1, 1]^2 by its coefficients of 1, xi, eta and xi eta.
+    fn map(&self) -> Map {
+        let signs = [[1.0; 4], [-1.0, 1.0, 1.0, -1.0], [-1.0, -1.0, 1.0, 1.0], [1.0, -1.0, 1.0, -1.0]];
+        Map(signs.map(|by| [0, 1].map(|i| (0..4).map(|a| 0.25 * by[a] * self.corners[a][i]).sum())))
+    }
+
     /// How many times larger the bilinear map is at one place than at another.
     fn stretch(&self, local: Point) -> f64 {
         let (_, [a, b]) = self.at(local);
@@ -275,15 +301,51 @@ impl Face {
     }
 }
 
+/// See [`Face::map`].
+struct Map([Point; 4]);
+
+impl Map {
+    /// Shape functions at a point of the plane, from a guess of its coordinates on the face. Of
+    /// Newton's steps each is off by the square of the one before.
+    #[inline]
+    fn shape(&self, x: Point, [mut xi, mut eta]: Point) -> [f64; 4] {
+        let Self([middle, along, across, twist]) = self;
+        for _ in 0..20 {
+            let a = [along[0] + twist[0] * eta, along[1] + twist[1] * eta];
+            let b = [across[0] + twist[0] * xi, across[1] + twist[1] * xi];
+            let r = [x[0] - middle[0] - a[0] * xi - across[0] * eta, x[1] - middle[1] - a[1] * xi - across[1] * eta];
+            let inverse = 1.0 / (a[0] * b[1] - a[1] * b[0]);
+            let step = [inverse * (r[0] * b[1] - r[1] * b[0]), inverse * (a[0] * r[1] - a[1] * r[0])];
+            if !(step[0].is_finite() && step[1].is_finite()) {
+                break;
+            }
+            xi += step[0];
+            eta += step[1];
+            if step[0].abs() + step[1].abs() < NEARLY {
+                break;
+            }
+        }
+        let (p, q) = ([0.5 * (1.0 - xi), 0.5 * (1.0 + xi)], [0.5 * (1.0 - eta), 0.5 * (1.0 + eta)]);
+        [p[0] * q[0], p[1] * q[0], p[1] * q[1], p[0] * q[1]]
+    }
+}
+
 /// Coefficients A of the dual functions psi_a = sum_b A_ab N_b of a face: A = D M^-1 with M the
 /// mass matrix that `integrate` gives and D its row sums.
 fn dual_functions(integrate: impl FnOnce(&mut dyn FnMut([f64; 4], f64))) -> [[f64; 4]; 4] {
-    let mut m = [[0.0; 8]; 4];
+    let mut mass = [[0.0; 4]; 4];
     integrate(&mut |n, w| {
         for a in 0..4 {
-            (0..4).for_each(|b| m[a][b] += w * n[a] * n[b]);
+            (0..4).for_each(|b| mass[a][b] += w * n[a] * n[b]);
         }
     });
+    dual_of(mass)
+}
+
+/// The same of a mass matrix.
+fn dual_of(mass: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
+    let mut m = [[0.0; 8]; 4];
+    m.iter_mut().zip(mass).for_each(|(row, of)| row[..4].copy_from_slice(&of));
     let d: [f64; 4] = std::array::from_fn(|a| m[a][..4].iter().sum());
     (0..4).for_each(|a| m[a][4 + a] = 1.0);
     // Gauss and Jordan; a mass matrix needs no pivoting.
@@ -353,6 +415,8 @@ fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
 
 /// What integrals over a polygon may be off by, of their value.
 const EXACT: f64 = 1e-12;
+/// A step of Newton's iteration after which the next would be rounding.
+const NEARLY: f64 = 1e-7;
 /// Points of the largest rule along an edge.
 const MOST_POINTS: usize = 16;
 
@@ -367,6 +431,7 @@ fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMu
     if polygon.len() < 3 || area(polygon) <= smallest {
         return;
     }
+    let maps = faces.map(Face::map);
     let locals: Vec<[Point; 2]> = polygon.iter().map(|&x| faces.map(|face| face.local(x, [0.0; 2]))).collect();
     for i in 1..polygon.len() - 1 {
         let triangle = [0, i, i + 1];
@@ -385,15 +450,13 @@ fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMu
         // One more for the polynomials that are multiplied with them.
         let n = (-0.5 * EXACT.ln() / rho.ln()).ceil() as usize + 2;
         let rule = &gauss_rules()[n.min(MOST_POINTS)];
+        let guesses = [0, 1].map(|side| triangle.map(|k| locals[k][side]));
         for &(u, wu) in rule {
             for &(v, wv) in rule {
                 let l = [1.0 - u, u * (1.0 - v), u * v];
-                let mean = |of: &dyn Fn(usize) -> Point| [0, 1].map(|c| (0..3).map(|k| l[k] * of(k)[c]).sum::<f64>());
-                let x = mean(&|k| corners[k]);
-                let shapes = [0, 1].map(|side| {
-                    let guess = mean(&|k| locals[triangle[k]][side]);
-                    faces[side].at(faces[side].local(x, guess)).0
-                });
+                let mean = |p: &[Point; 3]| [0, 1].map(|c| l[0] * p[0][c] + l[1] * p[1][c] + l[2] * p[2][c]);
+                let x = mean(&corners);
+                let shapes = [maps[0].shape(x, mean(&guesses[0])), maps[1].shape(x, mean(&guesses[1]))];
                 f(2.0 * size * u * wu * wv, shapes);
             }
         }

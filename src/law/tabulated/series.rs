@@ -1,0 +1,492 @@
+//! The table of two unlike bodies from one table of each: the bodies in series.
+//!
+//! *Pressed* (Olsson & Larsson 2016; Storakers, Biwa & Larsson 1997): the pair meets as closely as
+//! two bodies of radii R_1' and R_2' on the plane between them, 1/R_1' + 1/R_2' = 1/R*, that have
+//! the same F_N and the same a; h = h_1 + h_2. So one table serves all radii, scaled by R*.
+//!
+//! *Sheared at constant h*: both carry the same F_T and F_N, delta_T is the sum, and F_N falls as
+//! the body that flows creeps into the other, which unloads. At a ratio F_T/F_N a body that stands
+//! on its limit curve has a share g of its F_N0; a stronger one is below its curve and elastic. By
+//! itself a body at constant h creeps by what its own approach loses; in the pair by what those of
+//! both lose. The plastic part of its delta_T is that of its own curve times the quotient: with a
+//! stiff opponent the weak body has nearly all of the flow to do. Stiffnesses of unloading and of
+//! reversal are in series.
+//!
+//! What hangs on the true radii is the constraint of a deep plastic contact: a slender body gives
+//! way at less pressure. That is one number, of simulated pairs at other ratios of their radii.
+//!
+//! Exact for two equal bodies and in Hertz's limit.
+
+use super::against::{Against, equivalent};
+use super::build::{LENGTH, NEARLY_SLIPPING, depths, hertzian, points};
+use super::{Curves, FORMAT, Level, Tabulated, VERSION};
+use crate::analytical::ElasticSphere;
+use crate::case::{Case, Friction, Material, Opponent, Sphere};
+use crate::law::LawError;
+use crate::law::contact::{POINTS, unloading_exponent};
+use crate::law::model::Interval;
+
+/// Least power of a/R with which the mean pressure counts as rising where the two radii are shared
+/// out. Of a fully plastic body it stands still or falls, and any radius would do: by this the
+/// weaker body has the curvature, and equal ones half of it each.
+const RISING: f64 = 0.1;
+/// Share of its mean pressure that a plastic contact loses for a/R, at the same R'. Of simulated
+/// pairs at several ratios of the radii (fixtures/studies/ratios.toml): 0.45 to 0.67.
+const CONSTRAINT: f64 = 0.6;
+/// Of that at most so much, whatever the radii.
+const LEAST: f64 = 0.5;
+/// Places of the mean pressure, even in ln h.
+const PLACES: usize = 200;
+/// Halvings of a bracket.
+const HALVINGS: usize = 60;
+/// Rounds in which the contact radius and the two curvatures settle.
+const ROUNDS: usize = 20;
+/// Steps of F_T/F_N along a shear.
+const RATIOS: usize = 240;
+/// Places of a limit curve.
+const FINE: usize = 4 * POINTS;
+/// A body creeps at most so many times as far as by itself.
+const MOST_CREEP: f64 = 6.0;
+/// Share of the limit curve from which a body stands on it.
+const ON_CURVE: f64 = 1.0 - 1e-6;
+/// What the two are called.
+const NAMES: [&str; 2] = ["sphere", "opponent"];
+/// Share of the approach below which a creep is none.
+const NO_CREEP: f64 = 1e-4;
+
+/// Where a rising function becomes positive.
+fn root(mut low: f64, mut high: f64, rising: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if rising(middle) > 0.0 { high = middle } else { low = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// One of the two bodies, by what its table says of the half that is its own.
+struct Body {
+    curves: Curves,
+    range: Interval,
+    /// Its part of the table's h and delta_T: half of an equal pair's.
+    share: f64,
+    /// E.
+    modulus: f64,
+    /// E* of the table's contact.
+    effective_modulus: f64,
+    /// 1/R, 0 of a flat, where the constraint is to hang on it.
+    curvature: Option<f64>,
+    /// ln a and ln of the mean pressure, over R and in absolute units, both rising; and what it
+    /// would lose to a constraint without R.
+    pressures: Vec<[f64; 3]>,
+}
+
+/// A body pressed on the plane between the two: R' and what it has there, as a force or a length.
+#[derive(Clone)]
+struct Pressed {
+    radius: f64,
+    /// By how much it gives way.
+    h: f64,
+    force: f64,
+    a: f64,
+    /// Stiffness of an unloading; exponent and elastic approach of it.
+    stiffness: f64,
+    gamma: f64,
+    depth: f64,
+    k_t: f64,
+    slip: f64,
+    level: Level,
+}
+
+impl Body {
+    fn new(table: &Tabulated, material: &Material, share: f64, curvature: Option<f64>) -> Self {
+        let (e, nu) = (material.youngs_modulus, material.poissons_ratio);
+        let mut body = Self {
+            curves: Curves::new(&table.levels),
+            range: table.range,
+            share,
+            modulus: e,
+            effective_modulus: share * e / (1.0 - nu * nu),
+            curvature,
+            pressures: Vec::new(),
+        };
+        let (from, to) = (body.range.from.ln(), body.range.to.ln());
+        let mut before = [f64::NEG_INFINITY; 3];
+        for i in 0..PLACES {
+            let place = (from + (to - from) * i as f64 / (PLACES as f64 - 1.0)).exp();
+            let [f_n0, a0] = body.curves.normal(place);
+            let ln_a = a0.ln().max(before[0]);
+            let pressure = (e * f_n0).ln() - 2.0 * a0.ln();
+            let rising = if i == 0 { pressure } else { pressure.max(before[1] + RISING * (ln_a - before[0])) };
+            before = [ln_a, rising, body.slender(f_n0, a0)];
+            body.pressures.push(before);
+        }
+        body
+    }
+
+    /// What the table says at h over R; below its first level the contact is Hertz's.
+    fn level(&self, h: f64) -> Level {
+        let first = self.range.from;
+        let mut level = self.curves.at(h.max(first));
+        if h < first {
+            let ratio = h / first;
+            level.h = h;
+            level.f_n0 *= ratio.powf(1.5);
+            level.delta_t_slip *= ratio;
+            for length in [&mut level.a0, &mut level.unloading_radius, &mut level.k_t] {
+                *length *= ratio.sqrt();
+            }
+        }
+        level
+    }
+
+    /// What F_N0 of the table loses where the body is more curved than R' by 1/R', as a share: of
+    /// a/R' the part that is plastic, by how far F_N0 is below Hertz's at the same a.
+    fn slender(&self, f_n0: f64, a0: f64) -> f64 {
+        let hertz = 4.0 * self.effective_modulus * a0 * a0 * a0 / (3.0 * self.share * self.modulus);
+        CONSTRAINT * a0 * (1.0 - f_n0 / hertz).max(0.0)
+    }
+
+    /// Share of the table's F_N0 that a body of this R' has for its true radius.
+    fn constraint(&self, radius: f64, slender: f64) -> f64 {
+        self.curvature.map_or(1.0, |own| (1.0 + slender * (1.0 - radius * own)).max(LEAST))
+    }
+
+    /// F_N0 of a body of this R' that gives way by `h`.
+    fn force(&self, radius: f64, h: f64) -> f64 {
+        let place = h / (self.share * radius);
+        let first = self.range.from;
+        let [f_n0, a0] = self.curves.normal(place.max(first));
+        let scale = if place < first { (place / first).powf(1.5) } else { self.constraint(radius, self.slender(f_n0, a0)) };
+        scale * f_n0 * self.modulus * radius * radius
+    }
+
+    fn pressed(&self, radius: f64, h: f64) -> Pressed {
+        let level = self.level(h / (self.share * radius));
+        let force = self.force(radius, h);
+        let unloading = level.unloading_radius * radius;
+        let stiffness = 2.0 * self.effective_modulus * unloading / self.share;
+        let gamma = unloading_exponent(self.share * radius, self.effective_modulus, unloading, force);
+        Pressed {
+            radius,
+            h,
+            force,
+            a: level.a0 * radius,
+            stiffness,
+            gamma,
+            depth: gamma * force / stiffness,
+            k_t: level.k_t * self.modulus * radius / self.share,
+            slip: level.delta_t_slip * radius * self.share,
+            level,
+        }
+    }
+
+    /// Logarithm of the mean pressure of a body of this R' at the contact radius a, rising with
+    /// a/R'.
+    fn pressure(&self, a: f64, radius: f64) -> f64 {
+        let ln_a = (a / radius).ln();
+        let constrained = |slender: f64| self.constraint(radius, slender).ln();
+        let [first, last] = [self.pressures[0], self.pressures[PLACES - 1]];
+        if ln_a <= first[0] {
+            return first[1] + (ln_a - first[0]);
+        }
+        if ln_a >= last[0] {
+            return last[1] + RISING * (ln_a - last[0]) + constrained(last[2]);
+        }
+        let i = self.pressures.partition_point(|place| place[0] <= ln_a);
+        let ([x0, y0, s0], [x1, y1, s1]) = (self.pressures[i - 1], self.pressures[i]);
+        let u = (ln_a - x0) / (x1 - x0);
+        y0 + u * (y1 - y0) + constrained(s0 + u * (s1 - s0))
+    }
+}
+
+impl Pressed {
+    /// By how much its elastic approach is less at the normal force `force` than at F_N0.
+    fn recovered(&self, force: f64) -> f64 {
+        self.depth * (1.0 - (force / self.force).powf(1.0 / self.gamma))
+    }
+
+    /// Its deflection at F_T = `ratio` F_N without plastic flow, as on a reversal's curve.
+    fn elastic(&self, friction: f64, force: f64, ratio: f64) -> f64 {
+        let n = self.level.backbone;
+        n * friction * force / self.k_t * (1.0 - (1.0 - (ratio / friction).min(1.0)).powf(1.0 / n))
+    }
+}
+
+/// The contact radius of the two: they have the same but for what [`RISING`] bends.
+fn mean_radius(pressed: &[Pressed; 2]) -> f64 {
+    0.5 * (pressed[0].a + pressed[1].a)
+}
+
+/// The limit curve of a body at constant h, over its F_N0.
+struct Limit {
+    /// x, F_T and F_N, from x = 0 on.
+    points: Vec<[f64; 3]>,
+    /// The greatest F_T/F_N up to there.
+    ratios: Vec<f64>,
+}
+
+impl Limit {
+    fn new(level: &Level, friction: f64) -> Self {
+        let at = |shape: &[f64], x: f64| {
+            let j = ((POINTS as f64 * x.sqrt()) as usize).min(POINTS - 1);
+            let place = |j: usize| (j as f64 / POINTS as f64).powi(2);
+            let below = if j == 0 { 0.0 } else { shape[j - 1] };
+            below + (shape[j] - below) * (x - place(j)) / (place(j + 1) - place(j))
+        };
+        let left = level.slip_share;
+        let points: Vec<[f64; 3]> = (0..=FINE)
+            .map(|i| (i as f64 / FINE as f64).powi(2))
+            .map(|x| [x, friction * left * at(&level.tangential, x), 1.0 - (1.0 - left) * at(&level.normal, x)])
+            .collect();
+        let mut greatest = 0.0f64;
+        let ratio = |point: &[f64; 3]| {
+            greatest = greatest.max(point[1] / point[2]);
+            greatest
+        };
+        let ratios = points.iter().map(ratio).collect();
+        Self { points, ratios }
+    }
+
+    fn last_ratio(&self) -> f64 {
+        self.ratios[FINE]
+    }
+
+    /// x and F_N where F_T/F_N first is `ratio`.
+    fn at_ratio(&self, ratio: f64) -> [f64; 2] {
+        let i = self.ratios.partition_point(|&known| known < ratio).clamp(1, FINE);
+        let (before, after) = (self.ratios[i - 1], self.ratios[i]);
+        let u = if after > before { ((ratio - before) / (after - before)).min(1.0) } else { 1.0 };
+        [0, 2].map(|k| self.points[i - 1][k] + u * (self.points[i][k] - self.points[i - 1][k]))
+    }
+
+    /// x where F_T first is `force`; 1 where it never is.
+    fn at_force(&self, force: f64) -> f64 {
+        let Some(i) = self.points.iter().position(|point| point[1] >= force) else { return 1.0 };
+        if i == 0 {
+            return 0.0;
+        }
+        let (before, after) = (self.points[i - 1], self.points[i]);
+        before[0] + (after[0] - before[0]) * (force - before[1]) / (after[1] - before[1])
+    }
+}
+
+/// The two bodies at an indentation.
+struct Series<'a> {
+    bodies: &'a [Body; 2],
+    pressed: [Pressed; 2],
+    friction: f64,
+    h: f64,
+}
+
+impl<'a> Series<'a> {
+    /// Presses the bodies together by `h`, the radii being shared out of `radius`, R*.
+    fn new(bodies: &'a [Body; 2], radius: f64, friction: f64, h: f64) -> Self {
+        let at = |a: f64| {
+            // Of the curvature 1/R* the first body has the share k.
+            let k = root(1e-9, 1.0 - 1e-9, |k| bodies[0].pressure(a, radius / k) - bodies[1].pressure(a, radius / (1.0 - k)));
+            let radii = [radius / k, radius / (1.0 - k)];
+            let own = root(0.0, h, |own| bodies[0].force(radii[0], own) - bodies[1].force(radii[1], h - own));
+            [bodies[0].pressed(radii[0], own), bodies[1].pressed(radii[1], h - own)]
+        };
+        let mut pressed = at((h * radius).sqrt());
+        for _ in 0..ROUNDS {
+            pressed = at(mean_radius(&pressed));
+        }
+        Self { bodies, pressed, friction, h }
+    }
+
+    /// By how much body `i` gives way under F_N = `force` where its limit curve is at `cap` times
+    /// its F_N0: less than before the shear where it is below the curve.
+    fn gives_way(&self, i: usize, force: f64, cap: f64) -> f64 {
+        let body = &self.pressed[i];
+        if force < cap * body.force * (1.0 - 1e-12) {
+            return body.h - body.recovered(force);
+        }
+        body.h.max(root(body.h, body.h + self.h, |h| cap * self.bodies[i].force(body.radius, h) - force))
+    }
+
+    /// The shear at constant h: delta_T, F_T and F_N from its start on.
+    fn shear(&self) -> Vec<[f64; 3]> {
+        let (mu, both) = (self.friction, &self.pressed);
+        let limits = [0, 1].map(|i| Limit::new(&both[i].level, mu));
+        let end = limits[0].last_ratio().min(limits[1].last_ratio()).min(mu * (1.0 - 1e-9));
+        let mut curve = vec![[0.0, 0.0, both[0].force]];
+        let mut reached = [0.0f64; 2];
+        for n in 1..=RATIOS {
+            let ratio = end * (1.0 - (1.0 - n as f64 / RATIOS as f64).powf(1.5));
+            let places = [0, 1].map(|i| limits[i].at_ratio(ratio));
+            let gap = |force: f64| (0..2).map(|i| self.gives_way(i, force, places[i][1])).sum::<f64>() - self.h;
+            let force = root(0.0, both[0].force, gap);
+            let flows = [0, 1].map(|i| force >= ON_CURVE * places[i][1] * both[i].force);
+            let way: [f64; 2] = [0, 1].map(|i: usize| match (flows[i], flows[1 - i]) {
+                // Where the other is elastic, this one takes what that gives back.
+                (true, false) => self.h - self.gives_way(1 - i, force, places[1 - i][1]),
+                _ => both[i].h,
+            });
+            for i in 0..2 {
+                let deflection = if flows[i] {
+                    self.flowing(i, way[i], force, ratio, places[i])
+                } else {
+                    let along = limits[i].at_force(ratio * force / both[i].force) * both[i].slip;
+                    along.max(both[i].elastic(mu, force, ratio))
+                };
+                reached[i] = reached[i].max(deflection);
+            }
+            curve.push([reached[0] + reached[1], ratio * force, force]);
+        }
+        curve
+    }
+
+    /// delta_T of body `i` on its limit curve, at x and F_N over F_N0 of `place`, where it gives
+    /// way by `way`.
+    fn flowing(&self, i: usize, way: f64, force: f64, ratio: f64, place: [f64; 2]) -> f64 {
+        let before = &self.pressed[i];
+        let now = self.bodies[i].pressed(before.radius, way.max(before.h));
+        let [x, left] = place;
+        let whole = x * now.slip;
+        let by_itself = now.recovered(left * now.force);
+        if by_itself <= NO_CREEP * now.depth {
+            return whole;
+        }
+        let creep = way - before.h + before.recovered(force);
+        let elastic = now.elastic(self.friction, left * now.force, ratio).min(whole);
+        elastic + (whole - elastic) * (creep / by_itself).clamp(0.0, MOST_CREEP)
+    }
+
+    /// The level of the pair, in units of the sphere's R and E.
+    fn level(&self, sphere: &ElasticSphere) -> Level {
+        let both = &self.pressed;
+        let series = |of: fn(&Pressed) -> f64| 1.0 / (1.0 / of(&both[0]) + 1.0 / of(&both[1]));
+        let (f_n0, a0, k_t) = (both[0].force, mean_radius(both), series(|body| body.k_t));
+        let unloading_radius = series(|body| body.stiffness) / (2.0 * sphere.effective_modulus());
+        if self.friction <= 0.0 {
+            // There is nothing to shear.
+            return Level { f_n0, a0, unloading_radius, k_t, ..hertzian(sphere, self.friction, self.h) };
+        }
+        // The bend of delta_T over F_T at the start of a reversal, (1 - 1/n)/k_T, adds up.
+        let bend: f64 = both.iter().map(|body| (1.0 - 1.0 / body.level.backbone) / body.k_t).sum();
+        let curve = self.shear();
+        // As in a table that is simulated, x = 1 is beyond what the eye calls full slip.
+        let slipping = NEARLY_SLIPPING * self.friction;
+        let place = |i: usize| curve[i][1] / curve[i][2];
+        let nearly = curve.partition_point(|point| point[1] < slipping * point[2]).clamp(1, RATIOS);
+        let share = ((slipping - place(nearly - 1)) / (place(nearly) - place(nearly - 1))).clamp(0.0, 1.0);
+        let end = LENGTH * (curve[nearly - 1][0] + share * (curve[nearly][0] - curve[nearly - 1][0]));
+        let at = |x: f64, k: usize| {
+            let delta = x * end;
+            let i = curve.partition_point(|point| point[0] < delta).clamp(1, RATIOS);
+            let (before, after) = (curve[i - 1], curve[i]);
+            let step = after[0] - before[0];
+            if step > 0.0 { before[k] + (after[k] - before[k]) * ((delta - before[0]) / step).min(1.0) } else { after[k] }
+        };
+        let f_n_slip = at(1.0, 2);
+        let lost = f_n0 - f_n_slip;
+        let normal = |x: f64| if lost > 1e-3 * f_n0 { ((f_n0 - at(x, 2)) / lost).clamp(0.0, 1.0) } else { x };
+        let tangential = |x: f64| at(x, 1) / (self.friction * f_n_slip);
+        Level {
+            h: self.h,
+            f_n0,
+            a0,
+            slip_share: (f_n_slip / f_n0).min(1.0),
+            delta_t_slip: end,
+            unloading_radius,
+            k_t,
+            backbone: 1.0 / (1.0 - bend * k_t),
+            tangential: points().map(tangential).collect(),
+            normal: points().map(normal).collect(),
+        }
+    }
+}
+
+impl Level {
+    /// The same shear in units of what another series has when it is pressed.
+    fn pressed_as(self, series: &Series<'_>) -> Self {
+        let (f_n0, a0) = (series.pressed[0].force, mean_radius(&series.pressed));
+        let wider = a0 / self.a0;
+        Self {
+            f_n0,
+            a0,
+            delta_t_slip: self.delta_t_slip * f_n0 / self.f_n0 / wider,
+            unloading_radius: self.unloading_radius * wider,
+            k_t: self.k_t * wider,
+            ..self
+        }
+    }
+}
+
+/// What a table is of: the part of h that is one body's.
+fn share_of(table: &Tabulated) -> Result<f64, LawError> {
+    match table.body {
+        Against::EqualSphere => Ok(0.5),
+        Against::Plane => Ok(1.0),
+        _ => Err(LawError::NotCovered {
+            problem: "a table of two unlike bodies says nothing of one of them",
+            remedy: "Tabulate each body against its equal: [opponent] equal = true",
+        }),
+    }
+}
+
+/// The table of the pair of `case`, from one of the sphere and one of its opponent, each of that
+/// body against its equal (or, less near, on a rigid plane), at the depths that a table of the
+/// pair would simulate.
+///
+/// # Errors
+/// [`LawError::NotCovered`] for a case without an opponent that deforms, or with full stick;
+/// [`LawError::OtherMaterial`] where a table is not of its body or of another friction;
+/// [`LawError::Shallow`] where one ends before the pair does.
+pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawError> {
+    let scaled = case.scaled().0;
+    let (Some(Opponent::Deforming { material: other, radius: other_radius }), Friction::Coefficient(friction)) =
+        (&scaled.opponent, scaled.contact.friction)
+    else {
+        return Err(LawError::NotCovered {
+            problem: "two bodies in series need an opponent that deforms, and a friction coefficient",
+            remedy: "Give the case an [opponent] with a radius or flat = true, and contact.friction a number",
+        });
+    };
+    let materials = [&scaled.material, other];
+    let of_sphere = if scaled.sphere.flat { 0.0 } else { 1.0 };
+    let curvatures = [of_sphere, other_radius.map_or(0.0, f64::recip)];
+    let body = |i: usize, curvature: Option<f64>| {
+        let (table, material, name) = (tables[i], materials[i], NAMES[i]);
+        let share = share_of(table)?;
+        let opponent = (table.body == Against::EqualSphere).then_some(Opponent::Equal);
+        let alone = Case { sphere: Sphere { radius: 1.0, flat: false }, material: material.clone(), opponent, ..scaled.clone() };
+        table.covers(&alone).map_err(|error| match error {
+            LawError::OtherMaterial { what } => LawError::OtherMaterial { what: format!("of the {name}, {what}") },
+            error => error,
+        })?;
+        Ok::<Body, LawError>(Body::new(table, material, share, curvature))
+    };
+    let bodies = [body(0, Some(curvatures[0]))?, body(1, Some(curvatures[1]))?];
+    let sheared = [body(0, None)?, body(1, None)?];
+    let radius = scaled.effective_radius();
+    let sphere = equivalent(&scaled);
+    let mut levels = Vec::new();
+    for h in depths(case)? {
+        let series = Series::new(&bodies, radius, friction, h);
+        for (i, body) in bodies.iter().enumerate() {
+            let place = series.pressed[i].h / (body.share * series.pressed[i].radius);
+            if place > body.range.to * (1.0 + 1e-6) {
+                return Err(LawError::Shallow { body: NAMES[i], has: body.range.to, needs: place });
+            }
+        }
+        levels.push(Series::new(&sheared, radius, friction, h).level(&sphere).pressed_as(&series));
+    }
+    let range = Interval { from: levels[0].h, to: levels[levels.len() - 1].h };
+    let elements = tables.map(|table| table.elements_per_contact_radius);
+    Ok(Tabulated {
+        format: FORMAT.to_owned(),
+        version: VERSION,
+        body: Against::of(&scaled),
+        program: format!("asperity {}, in series from the tables of its two bodies", env!("CARGO_PKG_VERSION")),
+        case: super::build::case_of(&scaled, elements[0].min(elements[1])).to_toml(),
+        range,
+        elements_per_contact_radius: elements[0].min(elements[1]),
+        levels,
+        errors: Vec::new(),
+    })
+}
+
+#[cfg(test)]
+mod tests;
