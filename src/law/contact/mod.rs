@@ -19,8 +19,12 @@
 //!   slider to its limit; together they reach mu F_N.
 //! - *On the curve* plastic flow in h and delta_T moves the contact along it: x grows with delta_T
 //!   / delta_T_slip, the normal part of the flow being an indentation, so that F_N is lost and does
-//!   not come back on reversal. Pressing on flows too: F_T falls exponentially with what the
-//!   elastic response exceeds the curve by, and F_N comes back along the curve.
+//!   not come back on reversal.
+//! - *Pressed while it is sheared* it yields where F_N (1 + c r^2) = F_N0, r = F_T/F_N, an ellipse
+//!   through the origin as in modified Cam clay (Roscoe & Burland 1968), and flows normal to it: F_T
+//!   falls as F_N comes back, and a steady oblique press has d(delta_T)/dh = 2 c r/(1 - c r^2). c is
+//!   that of the virgin curve, F_N0/F_N = 1 + b r + c r^2; the linear part is a sudden shear's.
+//! - *Reversed at full slip* it loses a little more F_N.
 //!
 //! So simulated contacts behave: after a reversal F_N stands still until |F_T| is back at its
 //! former height, then falls on; a press of some per cent in h restores F_N and takes F_T.
