@@ -22,8 +22,9 @@
 //!   not come back on reversal.
 //! - *Pressed while it is sheared* it yields where F_N (1 + c r^2) = F_N0, r = F_T/F_N, an ellipse
 //!   through the origin as in modified Cam clay (Roscoe & Burland 1968), and flows normal to it: F_T
-//!   falls as F_N comes back, and a steady oblique press has d(delta_T)/dh = 2 c r/(1 - c r^2). c is
-//!   that of the virgin curve, F_N0/F_N = 1 + b r + c r^2; the linear part is a sudden shear's.
+//!   falls as F_N comes back. Simulated steady oblique presses have d(delta_T)/dh = 2 c r/(1 - c
+//!   r^2); r of the update is up to a third lower. c is that of the virgin curve, F_N0/F_N = 1 + b r
+//!   + c r^2; the linear part is a sudden shear's.
 //! - *Reversed at full slip* it loses a little more F_N.
 //!
 //! So simulated contacts behave: after a reversal F_N stands still until |F_T| is back at its

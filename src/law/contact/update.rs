@@ -59,9 +59,9 @@ const AT_SLIP: f64 = 1.0 - 1e-13;
 const AT_BOUND: f64 = 1.0 + 1e-10;
 
 /// A contact that is pressed while F_T acts yields where F_N (1 + c r^2) = F_N0, r = F_T/F_N, and
-/// flows normal to that curve: a steady oblique press has d(delta_T)/dh = 2 c r/(1 - c r^2). c is
-/// that of the virgin curve, [`yield_coefficient`]. The indentation grows meanwhile, so that F_N
-/// falls less: by this share of c in a rigid-plastic contact, and
+/// flows normal to that curve: simulated steady oblique presses have d(delta_T)/dh = 2 c r/(1 - c
+/// r^2). c is that of the virgin curve, [`yield_coefficient`]. The indentation grows meanwhile, so
+/// that F_N falls less: by this share of c in a rigid-plastic contact, and
 const PRESSED: f64 = 0.8;
 
 /// by less where the recovered approach takes this share of the press.
