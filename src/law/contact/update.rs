@@ -547,8 +547,8 @@ fn shear(
     let dx = beyond * forward / virgin.point.delta_t_slip;
     let x = if at + dx < 1.0 { at + dx } else { 1.0 };
     let cap = normal_cap(p, virgin, x);
-    let above = f_n - normal_cap(p, virgin, at);
-    let above = if above > 0.0 { above * (-dx / RELAXATION).exp() } else { 0.0 };
+    let before_cap = normal_cap(p, virgin, at);
+    let above = if AT_CAP * f_n > before_cap { (f_n - before_cap) * (-dx / RELAXATION).exp() } else { 0.0 };
     let relaxed = cap + above;
     out.f_n = if relaxed < f_n { relaxed } else { f_n };
     next.x = if AT_SLIP * out.f_n <= virgin.point.f_n_slip { 1.0 } else { x };

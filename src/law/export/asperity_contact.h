@@ -1211,7 +1211,7 @@ ASPERITY_FN asperity_real asperity_shear(
     asperity_real d0, asperity_real d1) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
     asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, first_shape;
-    asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, at, dx, cap, above, lowered, size, per_x, loss, keep, rate, radial;
+    asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, at, dx, cap, before_cap, above, lowered, size, per_x, loss, keep, rate, radial;
     asperity_moved moved;
     asperity_place place, from;
     int i, j, measured, beyond_peak;
@@ -1269,8 +1269,8 @@ ASPERITY_FN asperity_real asperity_shear(
     dx = beyond * forward * v->per_slip;
     asperity_shapes(t->form, v, asperity_least(at + dx, one), &place);
     cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
-    above = f_n - (v->f_n0 - (v->f_n0 - v->f_n_slip) * from.f_n);
-    above = above > zero ? above * asperity_exponential_near(-dx / ASPERITY_RELAXATION) : zero;
+    before_cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * from.f_n;
+    above = ASPERITY_AT_CAP * f_n > before_cap ? (f_n - before_cap) * asperity_exponential_near(-dx / ASPERITY_RELAXATION) : zero;
     lowered = cap + above;
     out->f_n = lowered < f_n ? lowered : f_n;
     s->x = ASPERITY_AT_SLIP * out->f_n <= v->f_n_slip ? one : place.x;

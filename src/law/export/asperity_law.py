@@ -930,8 +930,8 @@ def shear(p, s, out, v, f_n, carried, increment):
     dx = beyond * forward / v.delta_t_slip
     x = at + dx if at + dx < 1.0 else 1.0
     cap = normal_cap(v, x)
-    above = f_n - normal_cap(v, at)
-    above = above * math.exp(-dx / RELAXATION) if above > 0.0 else 0.0
+    before_cap = normal_cap(v, at)
+    above = (f_n - before_cap) * math.exp(-dx / RELAXATION) if AT_CAP * f_n > before_cap else 0.0
     lowered = cap + above
     out.f_n = lowered if lowered < f_n else f_n
     s.x = 1.0 if AT_SLIP * out.f_n <= v.f_n_slip else x
