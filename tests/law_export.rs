@@ -4,6 +4,9 @@
 //! A missing gcc, g++ or python3 skips its test, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is
 //! a failure.
 
+#[path = "common/programs.rs"]
+mod programs;
+
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -20,6 +23,7 @@ use asperity::law::tabulated::{self, Level, Tabulated};
 use asperity::law::variables::Body;
 use asperity::law::{Axisymmetric, LawFile, Parameters};
 use asperity::material::hardening::Hardening;
+use programs::has;
 
 /// A made-up law of the given forms.
 fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurve, form: NormalForm) -> Law {
@@ -77,18 +81,6 @@ fn laws() -> Vec<Law> {
 }
 
 /// Whether `program` is there; if not, the test ends here.
-fn has(program: &str, test: &str) -> bool {
-    let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
-    if !found {
-        let required = std::env::var_os("ASPERITY_REQUIRE_COMPILERS").is_some_and(|value| value == "1");
-        assert!(!required, "{test}: no {program}, and ASPERITY_REQUIRE_COMPILERS=1");
-        // The print macros are captured for passing tests; the handle is not.
-        #[allow(clippy::explicit_write)]
-        writeln!(std::io::stderr(), "SKIPPED {test}: no {program}").expect("stderr");
-    }
-    found
-}
-
 fn text(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
@@ -457,11 +449,11 @@ fn a_table_of_two_bodies_in_series_agrees_in_every_language() {
     let dir = tempfile::tempdir().unwrap();
     let tables = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/law/pairs");
     let [copper, steel] = ["copper.json", "steel.json"].map(|name| Path::new(tables).join(name));
-    let pair = "opponent = { radius = 4.0, material = { youngs_modulus = 210e3, poissons_ratio = 0.28, hardening = { law = \"linear\", \
-                yield_stress = 300.0, modulus = 4000.0 } } }\n\
+    let pair = "opponent = { radius = 4.0, material = { youngs_modulus = 210e3, poissons_ratio = 0.28, hardening = { \
+                law = \"linear\", yield_stress = 300.0, modulus = 4000.0 } } }\n\
                 material = { youngs_modulus = 120e3, poissons_ratio = 0.34, hardening = { law = \"voce\", yield_stress = 60.0, \
-                saturation_stress = 300.0, rate = 10.0 } }\npath = [{ indentation = 0.03 }]\n[sphere]\nradius = 1.3333333333333333\n\
-                [contact]\nfriction = 0.3\n";
+                saturation_stress = 300.0, rate = 10.0 } }\npath = [{ indentation = 0.03 }]\n\
+                [sphere]\nradius = 1.3333333333333333\n[contact]\nfriction = 0.3\n";
     fs::write(dir.path().join("pair.toml"), pair).unwrap();
     let asperity = |arguments: &[&std::ffi::OsStr]| {
         Command::new(env!("CARGO_BIN_EXE_asperity")).arg("law").args(arguments).current_dir(dir.path()).output().unwrap()

@@ -4,17 +4,21 @@
 //! A missing gcc or python3 skips its part, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is a
 //! failure.
 
+#[path = "common/programs.rs"]
+mod programs;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use asperity::case::Case;
 use asperity::law::LawFile;
+use asperity::law::check::AIMS;
 use asperity::law::contact::path::drive;
 use asperity::law::export::{Language, law_files};
+use programs::has;
 
 const NAMES: [&str; 9] = [
     "ideal-200-mu-0.1",
@@ -30,9 +34,6 @@ const NAMES: [&str; 9] = [
 
 /// Increments of the update between two simulated places, as `law check` has them.
 const INCREMENTS: usize = 64;
-
-/// Aims, of a path's greatest force: root mean square and worst.
-const AIMS: [f64; 2] = [0.05, 0.12];
 
 /// Paths of the 99 that are within both aims in F_T and F_N, at least.
 const WITHIN: usize = 71;
@@ -102,18 +103,6 @@ fn the_update_follows_the_simulated_paths() {
     assert!(greatest[0] <= GREATEST[0] && greatest[1] <= GREATEST[1] && all <= GREATEST[2], "{greatest:?} {all}");
 }
 
-fn has(program: &str) -> bool {
-    let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
-    if !found {
-        let required = std::env::var_os("ASPERITY_REQUIRE_COMPILERS").is_some_and(|value| value == "1");
-        assert!(!required, "no {program}, and ASPERITY_REQUIRE_COMPILERS=1");
-        // The print macros are captured for passing tests; the handle is not.
-        #[allow(clippy::explicit_write)]
-        writeln!(std::io::stderr(), "SKIPPED a part of simulated paths: no {program}").expect("stderr");
-    }
-    found
-}
-
 /// A program that reads places, one path after the other, each headed by their number, and prints
 /// F_N and F_T at them.
 const IN_C: &str = r#"
@@ -177,7 +166,8 @@ fn answers(command: &mut Command, input: &Path) -> Vec<[f64; 2]> {
 
 #[test]
 fn every_language_takes_the_same_way() {
-    let (gcc, python) = (has("gcc"), has("python3"));
+    let test = "every_language_takes_the_same_way";
+    let (gcc, python) = (has("gcc", test), has("python3", test));
     for name in [NAMES[1], NAMES[3], NAMES[8]] {
         let (law, case) = law(name);
         let parameters = law.contact_parameters(&case).unwrap();

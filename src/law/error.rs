@@ -101,7 +101,8 @@ pub enum LawError {
     },
     /// A table of a body that ends before the pair that it is to make.
     #[error(
-        "the table of the {body} ends at h/R = {has:.3e}, and in this pair that body is pressed to {needs:.3e}. Tabulate it deeper, or the pair less deep"
+        "the table of the {body} ends at h/R = {has:.3e}, and in this pair that body is pressed to {needs:.3e}. \
+         Tabulate it deeper, or the pair less deep"
     )]
     Shallow {
         /// Which.

@@ -7,7 +7,8 @@ const MU: f64 = 0.3;
 
 fn case(radius: f64, material: &str, opponent: &str, h: f64) -> Case {
     let text = format!(
-        "material = {material}\n{opponent}\npath = [{{ indentation = {h} }}]\n[sphere]\nradius = {radius}\n[contact]\nfriction = {MU}\n"
+        "material = {material}\n{opponent}\npath = [{{ indentation = {h} }}]\n[sphere]\nradius = {radius}\n\
+         [contact]\nfriction = {MU}\n"
     );
     Case::parse(&text, "case.toml", &[]).unwrap()
 }
