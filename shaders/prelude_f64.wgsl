@@ -37,3 +37,8 @@ fn head(x: real) -> real {
 fn is_finite(x: real) -> bool {
     return abs(x) <= REAL_MAX && (bitcast<u32>(f32(x)) & 0x7fffffffu) <= 0x7f800000u;
 }
+
+// The bits of a number in single precision, in which linear systems are solved.
+fn single_bits(x: real) -> u32 {
+    return bitcast<u32>(f32(x));
+}

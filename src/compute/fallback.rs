@@ -2,6 +2,7 @@
 //! states.
 
 use super::cpu::Cpu;
+use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest, Outcome,
@@ -108,6 +109,10 @@ impl Compute for Fallback {
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
         self.call(|backend| backend.contact(requests))
+    }
+
+    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
+        self.call(|backend| backend.linear(requests))
     }
 
     /// The copies follow the device: where a state cannot be read back, the step is committed on

@@ -1,5 +1,6 @@
 //! One case of a batch, as its Newton iteration sees it.
 
+use super::linear::LinearRequest;
 use super::{CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest};
 use crate::contact::coulomb::Rows;
 
@@ -13,6 +14,9 @@ pub trait Evaluate {
     fn tangent(&mut self, displacement: &[f64], blocks: &mut [[f64; 9]]) -> Result<Outcome, ComputeError>;
     /// Contact conditions at a trial displacement with its internal forces.
     fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError>;
+    /// Linear systems with the tangent, where the backend solves them; the case is this one,
+    /// whatever the request says.
+    fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError>;
     /// Makes a trial displacement the committed state.
     fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError>;
 }
@@ -44,6 +48,11 @@ impl Evaluate for CaseHandle<'_> {
 
     fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError> {
         self.backend.contact(&mut [ContactRequest { case: self.case, displacement, force, rows }])
+    }
+
+    fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError> {
+        request.case = self.case;
+        self.backend.linear(std::slice::from_mut(request))
     }
 
     fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError> {

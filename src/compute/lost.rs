@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::gpu::GpuContext;
+use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest,
@@ -69,6 +70,11 @@ impl Compute for LostAfter {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         self.lose_if_due();
         self.backend.tangent(requests)
+    }
+
+    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
+        self.lose_if_due();
+        self.backend.linear(requests)
     }
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {

@@ -15,6 +15,7 @@ pub mod gather;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod handle;
+pub mod linear;
 #[cfg(feature = "gpu")]
 pub mod lost;
 pub mod select;
@@ -32,6 +33,7 @@ use crate::contact::coulomb::{Friction, Rows};
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
+use linear::LinearRequest;
 use traffic::Traffic;
 
 /// One case of a batch, scaled: lengths by R, stresses by E.
@@ -210,6 +212,12 @@ pub trait Compute: Send {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError>;
     /// Contact conditions.
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError>;
+    /// Tangents, and the solutions of linear systems with them, both staying where they are
+    /// computed. A backend that solves none leaves the requests as [`linear::Ended::NotTried`].
+    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
+        let _ = requests;
+        Ok(())
+    }
     /// Commits converged displacements.
     fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError>;
     /// Stresses and strains of a committed state.

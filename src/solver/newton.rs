@@ -2,13 +2,14 @@
 //! solves.
 
 mod line_search;
+mod linearise;
 
 use super::encounter::Encounter;
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::pair::mirror_nodes;
-use super::phases::{Lap, Phase, PhaseTimes};
-use super::rigid::{Against, turn};
-use super::system::{Boundary, Meeting, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
+use super::phases::PhaseTimes;
+use super::rigid::Against;
+use super::system::{Boundary, Meeting, Trial};
 use super::systems::Systems;
 use super::{Control, Settings, SolverError};
 use crate::compute::Outcome;
@@ -16,8 +17,8 @@ use crate::compute::handle::Evaluate;
 use crate::contact::coulomb::{Friction, Status};
 use crate::contact::pair::leave_even;
 use crate::contact::rigid::Rigid;
-use crate::linalg::LinalgError;
 use crate::mesh::Mesh;
+use linearise::Linearised;
 
 /// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance
 /// of the step asks for, and at the loosest to [`Settings::loosest_linear`]. Solving more tightly
@@ -32,9 +33,6 @@ const HELD_TOLERANCE: f64 = 5e-5;
 /// what is missing of the solution would change the indentation, and with it which points slide. To
 /// 0.1, the steps of a shear took four times the iterations.
 const TIGHT_LINEAR: f64 = 0.01;
-/// Share of the forces at the contact to which the response to a unit indentation is solved, which
-/// gives the change of h that a missing normal force asks for.
-const UNIT_RESPONSE: f64 = 0.01;
 /// Tangential residuals of points in contact against the friction that the normal force can bear.
 /// At mu = 0.3 the tolerance of the merit is the same.
 const TANGENTIAL: f64 = 10.0 / 3.0;
@@ -264,7 +262,7 @@ impl Newton {
                 break;
             }
             let eta = self.forcing(previous).min(if control.normal_force.is_some() { TIGHT_LINEAR } else { 1.0 });
-            let (krylov, fallback, delta_h) = self.linearise(case, &mesh, control, eta, iteration == 0)?;
+            let Linearised { krylov, fallback, delta_h } = self.linearise(case, &mesh, control, eta, iteration == 0)?;
             report.fallbacks += usize::from(fallback);
             highest = highest.max(self.current.merit);
             // An iteration that moves the plate has no merit before it to be compared with.
@@ -419,112 +417,6 @@ impl Newton {
         let floor = 0.3 * self.settings.tolerance * self.scale() / merit;
         let ratio = merit / previous;
         (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, loosest)
-    }
-
-    /// Forms and solves the linear system: the correction is in `self.delta`; returns Krylov
-    /// iterations, fallback and the change of h.
-    fn linearise(
-        &mut self,
-        case: &mut dyn Evaluate,
-        mesh: &Mesh,
-        control: &Control,
-        eta: f64,
-        first: bool,
-    ) -> Result<(usize, bool, f64), Halt> {
-        let mut lap = Lap::start();
-        let matrix = self.linear.matrix_mut();
-        if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut matrix.blocks)? {
-            return Err(StepFailure::Inverted { element, point }.into());
-        }
-        lap.end(&mut self.times, Phase::Tangent);
-        if control.normal_force.is_some() {
-            plate_functional(matrix, &self.boundary.plate, &mut self.functional);
-        }
-        fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
-        if self.boundary.against.is_some() {
-            turn(matrix, mesh, &self.current.frames);
-        }
-        if self.boundary.pair.is_none() && self.boundary.encounter.is_none() {
-            apply_contact(matrix, mesh, &self.current.rows);
-        }
-        right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
-        lap.end(&mut self.times, Phase::Contact);
-        match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
-            (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
-            (Systems::Pair(solver), Some(pair), None) => {
-                solver.refresh(&pair.interface, &self.current.rows, &self.fixed, &self.boundary.prescribed)?;
-            }
-            (Systems::Couple(solver), None, Some(encounter)) => {
-                solver.refresh(&encounter.interface, &self.current.rows, &self.fixed)?;
-            }
-            _ => return Err(StepFailure::Linear("the solver is made for another opponent".into()).into()),
-        }
-        lap.end(&mut self.times, Phase::LinearUpdate);
-        self.correction.fill(0.0);
-        let solved = match self.linear.solve(&self.rhs, eta, &mut self.correction, true) {
-            Ok(report) => report,
-            Err(error) => return Err(StepFailure::Linear(error.to_string()).into()),
-        };
-        let (mut krylov, fallback) = (solved.iterations, solved.fallback);
-        let mut delta_h = 0.0;
-        if let Some(target) = control.normal_force {
-            // Bordered system: the response to a unit indentation, then h from the force equation.
-            self.unit_rhs.fill(0.0);
-            for &n in &self.boundary.plate {
-                self.unit_rhs[3 * n as usize + 2] = -1.0;
-            }
-            let tolerance = self.unit_tolerance(mesh, eta, first)?;
-            // It only says how far to move the plate: an answer that is not quite so good is not
-            // worth a direct solution.
-            match self.linear.solve(&self.unit_rhs, tolerance, &mut self.unit_response, false) {
-                Ok(report) => krylov += report.iterations,
-                Err(LinalgError::Stalled { iterations, .. }) => krylov += iterations,
-                Err(error) => return Err(StepFailure::Linear(error.to_string()).into()),
-            }
-            let (current, boundary, delta) = (&self.current, &self.boundary, &mut self.delta);
-            let mut along = |x: &[f64]| {
-                delta.copy_from_slice(x);
-                current.expand(mesh, boundary, delta);
-                self.functional.iter().zip(&*delta).map(|(w, x)| w * x).sum::<f64>()
-            };
-            let (by_delta, by_unit) = (along(&self.correction), along(&self.unit_response));
-            delta_h = (target - self.current.plate_force + by_delta) / -by_unit;
-            if !delta_h.is_finite() {
-                return Err(StepFailure::Linear("no contact carries the normal force that is to be held".into()).into());
-            }
-            for (d, b) in self.correction.iter_mut().zip(&self.unit_response) {
-                *d += delta_h * b;
-            }
-        }
-        self.delta.copy_from_slice(&self.correction);
-        self.current.expand(mesh, &self.boundary, &mut self.delta);
-        if let Systems::Pair(solver) = &self.linear {
-            solver.symmetrise(&mut self.delta);
-        } else if self.boundary.is_even() {
-            leave_even(&self.boundary.mirror, &mut self.delta);
-            self.correction.copy_from_slice(&self.delta);
-            self.current.contract(mesh, &self.boundary, &mut self.correction);
-        }
-        lap.end(&mut self.times, Phase::LinearSolve);
-        Ok((krylov, fallback, delta_h))
-    }
-
-    /// The relative residual to which the response to a unit indentation is solved, and the guess
-    /// for it: the response of the iteration before, or at first a body that moves as one. What
-    /// that leaves at the contact is the measure: the forces of the large elements at a plate that
-    /// moves alone are R/a times as large, and a residual that is small beside those is not so
-    /// beside the contact's.
-    fn unit_tolerance(&mut self, mesh: &Mesh, eta: f64, first: bool) -> Result<f64, SolverError> {
-        if first {
-            let mut guess = vec![0.0; self.unit_rhs.len()];
-            let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
-            guess.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
-            self.current.contract(mesh, &self.boundary, &mut guess);
-            let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
-            self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };
-            self.unit_response.copy_from_slice(&guess);
-        }
-        Ok((eta.min(UNIT_RESPONSE) * self.unit_scale).clamp(1e-9, 0.1))
     }
 
     fn exhausted(&self, mesh: &Mesh, iterations: usize) -> StepFailure {

@@ -14,6 +14,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::compute::linear::{LinearRequest, Side, SideReport};
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
@@ -26,11 +27,62 @@ enum Ask {
     Force { displacement: Vec<f64>, force: Vec<f64>, outcome: Outcome },
     Contact { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>> },
     Tangent { displacement: Vec<f64>, blocks: Vec<[f64; 9]>, outcome: Outcome },
+    Linear(LinearAsk),
     Commit { displacement: Vec<f64>, energies: Energies, outcome: Outcome },
     Begin(f64),
     Fields(Option<CaseFields>),
     State(Option<CaseState>),
     Restore(CaseState),
+}
+
+/// A [`LinearRequest`] that owns what it is about.
+struct LinearAsk {
+    displacement: Vec<f64>,
+    rows: Vec<Rows<f64>>,
+    fixed: Vec<bool>,
+    sides: Vec<SideAsk>,
+    outcome: Outcome,
+}
+
+/// A [`Side`] that owns its vectors.
+struct SideAsk {
+    rhs: Vec<f64>,
+    tolerance: f64,
+    relative_to_guess: bool,
+    x: Vec<f64>,
+    report: SideReport,
+}
+
+impl LinearAsk {
+    fn new(request: &LinearRequest<'_>) -> Self {
+        let side = |side: &Side<'_>| SideAsk {
+            rhs: side.rhs.to_vec(),
+            tolerance: side.tolerance,
+            relative_to_guess: side.relative_to_guess,
+            x: side.x.to_vec(),
+            report: side.report,
+        };
+        Self {
+            displacement: request.displacement.to_vec(),
+            rows: request.rows.to_vec(),
+            fixed: request.fixed.to_vec(),
+            sides: request.sides.iter().map(side).collect(),
+            outcome: request.outcome,
+        }
+    }
+
+    fn request(&mut self, case: usize) -> LinearRequest<'_> {
+        let sides = self.sides.iter_mut().map(SideAsk::side).collect();
+        let (displacement, rows, fixed) = (&self.displacement, &self.rows, &self.fixed);
+        LinearRequest { case, displacement, rows, fixed, sides, outcome: self.outcome }
+    }
+}
+
+impl SideAsk {
+    fn side(&mut self) -> Side<'_> {
+        let Self { rhs, tolerance, relative_to_guess, x, report } = self;
+        Side { rhs, tolerance: *tolerance, relative_to_guess: *relative_to_guess, x, report: *report }
+    }
 }
 
 type Answer = Result<Ask, ComputeError>;
@@ -110,12 +162,14 @@ impl Host {
 
     /// Answers requests of different cases, those of a kind in one call.
     fn answer(&mut self, waiting: Vec<Request>) -> Vec<(Sender<Answer>, Answer)> {
-        let (mut forces, mut contacts, mut tangents, mut commits, mut others) = (vec![], vec![], vec![], vec![], vec![]);
+        let (mut forces, mut contacts, mut tangents, mut systems) = (vec![], vec![], vec![], vec![]);
+        let (mut commits, mut others) = (vec![], vec![]);
         for request in waiting {
             match request.ask {
                 Ask::Force { .. } => forces.push(request),
                 Ask::Contact { .. } => contacts.push(request),
                 Ask::Tangent { .. } => tangents.push(request),
+                Ask::Linear(_) => systems.push(request),
                 Ask::Commit { .. } => commits.push(request),
                 Ask::Begin(_) | Ask::Fields(_) | Ask::State(_) | Ask::Restore(_) => others.push(request),
             }
@@ -123,7 +177,7 @@ impl Host {
         let backend = self.backend.as_mut();
         let mut answers = Vec::new();
         for (call, mut requests) in
-            [(internal_force as Call, forces), (contact, contacts), (tangent, tangents), (commit, commits)]
+            [(internal_force as Call, forces), (contact, contacts), (tangent, tangents), (linear, systems), (commit, commits)]
         {
             if requests.is_empty() {
                 continue;
@@ -177,6 +231,24 @@ fn tangent(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), Co
     }
     backend.tangent(&mut calls)?;
     outcomes.into_iter().zip(&calls).for_each(|(out, call)| *out = call.outcome);
+    Ok(())
+}
+
+fn linear(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
+    let mut calls: Vec<LinearRequest<'_>> = Vec::new();
+    for Request { case, ask, .. } in requests.iter_mut() {
+        if let Ask::Linear(ask) = ask {
+            calls.push(ask.request(*case));
+        }
+    }
+    backend.linear(&mut calls)?;
+    let answers: Vec<(Outcome, Vec<SideReport>)> =
+        calls.iter().map(|call| (call.outcome, call.sides.iter().map(|side| side.report).collect())).collect();
+    let asks = requests.iter_mut().filter_map(|request| if let Ask::Linear(ask) = &mut request.ask { Some(ask) } else { None });
+    for (ask, (outcome, reports)) in asks.zip(answers) {
+        ask.outcome = outcome;
+        ask.sides.iter_mut().zip(reports).for_each(|(side, report)| side.report = report);
+    }
     Ok(())
 }
 
@@ -281,6 +353,19 @@ impl Compute for Guest {
                 request.blocks.copy_from_slice(&blocks);
                 request.outcome = outcome;
                 (self.displacement, self.blocks) = (displacement, blocks);
+            }
+        }
+        Ok(())
+    }
+
+    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
+        for request in requests {
+            if let Ask::Linear(answer) = self.ask(request.case, Ask::Linear(LinearAsk::new(request)))? {
+                request.outcome = answer.outcome;
+                for (side, answer) in request.sides.iter_mut().zip(answer.sides) {
+                    side.x.copy_from_slice(&answer.x);
+                    side.report = answer.report;
+                }
             }
         }
         Ok(())

@@ -8,7 +8,9 @@ use super::batch::{Batch, CONTACT_ANSWER, CONTACT_TRIAL, Dispatch, Evaluation};
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::linear::pack::Packed;
 use crate::compute::cpu::Cpu;
+use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
@@ -146,6 +148,22 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                         }
                     }
                 });
+            }
+        }
+        Ok(())
+    }
+
+    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
+        if !self.batch.as_ref().is_some_and(Batch::solves) {
+            return Ok(());
+        }
+        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let packed = Packed::<R>::new(dispatch.requests.iter().map(|&i| &requests[i]));
+            let (outcomes, answers) = self.batch()?.linear(&dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
+            for (slot, &i) in dispatch.requests.iter().enumerate() {
+                requests[i].outcome = outcomes[slot];
+                packed.unpack(slot, &answers, &mut requests[i].sides);
             }
         }
         Ok(())

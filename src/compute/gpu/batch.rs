@@ -4,12 +4,13 @@
 //! slot of the scratch arrays. What a slot gets does not depend on the others. Where scratch memory
 //! is short, a call takes several dispatches.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::linear::{Linear, Plan, Right};
 use super::pipelines::{Bound, Recorder};
 use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
 use super::shader_sources::{
@@ -17,6 +18,7 @@ use super::shader_sources::{
     HEX8_MODULI, HEX8_UPDATE, Kernel,
 };
 use crate::compute::gather::GatherPlan;
+use crate::compute::linear::SideReport;
 use crate::compute::{CaseModel, ComputeError, Outcome};
 use crate::contact::coulomb::CONTACT_WEIGHT;
 
@@ -117,6 +119,9 @@ pub struct Batch<R> {
     groups: Vec<(Resident<R>, Kernels)>,
     scratch: Scratch<R>,
     slots: usize,
+    /// How linear systems are solved, if the mesh has a hierarchy; made when the first is.
+    linear_plan: Option<Plan>,
+    linear: OnceLock<Result<Linear<R>, GpuError>>,
 }
 
 /// What a batch evaluates.
@@ -131,6 +136,9 @@ pub enum Evaluation {
     /// States at the end of a step and their energies, what a commit computes.
     Update,
 }
+
+/// Solutions `[slot][component][node]` of one side, and how they went by slot.
+pub type Answers = (Vec<f32>, Vec<SideReport>);
 
 /// Some of a call's requests, served by one dispatch.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -150,7 +158,9 @@ impl<R: DeviceReal> Batch<R> {
     /// and [`GpuError::TooLarge`].
     pub fn new(context: Arc<GpuContext>, models: &[CaseModel]) -> Result<Self, ComputeError> {
         let mesh = models[0].mesh.clone();
-        let plan = BlockPlan::new(&mesh, &GatherPlan::new(&mesh));
+        let gather = GatherPlan::new(&mesh);
+        let plan = BlockPlan::new(&mesh, &gather);
+        let linear_plan = Plan::new(&mesh, &gather.pattern, &plan.source, plan.blocks());
         let connectivity = Connectivity::new(&context, &mesh, &plan)?;
         let sizes = connectivity.sizes;
         let (widest, _) = sizes.resident_bytes::<R>();
@@ -159,7 +169,11 @@ impl<R: DeviceReal> Batch<R> {
             .iter()
             .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count], CONTACT_WEIGHT))
             .collect::<Result<Vec<_>, _>>()?;
-        let (widest, all) = Scratch::<R>::bytes(sizes);
+        let (mut widest, mut all) = Scratch::<R>::bytes(sizes);
+        if let Some(linear) = &linear_plan {
+            let (array, sum) = linear.bytes::<R>();
+            (widest, all) = (widest.max(array), all + sum);
+        }
         context.has_room("an evaluation of one case", all)?;
         let most = chunks.iter().map(|c| c.count).max().unwrap_or(1);
         let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
@@ -168,7 +182,7 @@ impl<R: DeviceReal> Batch<R> {
             .into_iter()
             .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
             .collect::<Result<_, GpuError>>()?;
-        Ok(Self { context, connectivity, plan, groups, scratch, slots })
+        Ok(Self { context, connectivity, plan, groups, scratch, slots, linear_plan, linear: OnceLock::new() })
     }
 
     /// The device.
@@ -213,15 +227,20 @@ impl<R: DeviceReal> Batch<R> {
         self.context.upload_at(&self.scratch.first_invalid, 0, &vec![u32::MAX; dispatch.cases.len()])
     }
 
-    /// How each slot went.
-    fn outcomes(&self, dispatch: &Dispatch) -> Result<Vec<Outcome>, GpuError> {
+    /// Runs the kernels of an evaluation and reads what they leave in `buffer`, and how each slot
+    /// went.
+    fn evaluate(
+        &self,
+        dispatch: &Dispatch,
+        evaluation: Evaluation,
+        buffer: &StorageBuffer<R>,
+        out: &mut [R],
+    ) -> Result<Vec<Outcome>, GpuError> {
+        let mut list = self.context.record();
+        self.append(dispatch, evaluation, &mut list)?;
         let mut first = vec![0u32; dispatch.cases.len()];
-        self.context.download_at(&self.scratch.first_invalid, 0, &mut first)?;
-        let outcome = |code: u32| match code {
-            u32::MAX => Outcome::Valid,
-            code => Outcome::Inverted { element: code as usize / 16, point: code as usize % 8 },
-        };
-        Ok(first.into_iter().map(outcome).collect())
+        list.submit_and_read(&mut [buffer.read(0, out)?, self.scratch.first_invalid.read(0, &mut first)?])?;
+        Ok(outcomes(&first))
     }
 
     /// Appends the kernels of an evaluation.
@@ -240,12 +259,6 @@ impl<R: DeviceReal> Batch<R> {
         list.dispatch(gathered, items, slots)
     }
 
-    fn submit(&self, dispatch: &Dispatch, evaluation: Evaluation) -> Result<(), GpuError> {
-        let mut list = self.context.record();
-        self.append(dispatch, evaluation, &mut list)?;
-        list.submit()
-    }
-
     /// Runs the kernels of an evaluation `times` times over the numbers that its last call left on
     /// the device, and waits for them: what they take without transfers.
     ///
@@ -257,8 +270,7 @@ impl<R: DeviceReal> Batch<R> {
         for _ in 0..times {
             self.append(dispatch, evaluation, &mut list)?;
         }
-        list.submit()?;
-        self.outcomes(dispatch).map(drop)
+        list.submit_and_read(&mut [self.scratch.first_invalid.read(0, &mut [0])?])
     }
 
     /// Internal forces `[slot][3 node + i]` at increments `[slot][3 node + i]`.
@@ -268,10 +280,8 @@ impl<R: DeviceReal> Batch<R> {
     pub fn internal_force(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
-        self.submit(dispatch, Evaluation::InternalForce)?;
         let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
-        self.context.download_at(&self.scratch.force, 0, &mut force)?;
-        Ok((self.outcomes(dispatch)?, force))
+        Ok((self.evaluate(dispatch, Evaluation::InternalForce, &self.scratch.force, &mut force)?, force))
     }
 
     /// Upper blocks of the tangents, `[slot][3 i + j][block]`.
@@ -281,10 +291,44 @@ impl<R: DeviceReal> Batch<R> {
     pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
-        self.submit(dispatch, Evaluation::Tangent)?;
         let mut blocks = vec![R::ZERO; slots * 9 * sizes.blocks];
-        self.context.download_at(&self.scratch.blocks, 0, &mut blocks)?;
-        Ok((self.outcomes(dispatch)?, blocks))
+        Ok((self.evaluate(dispatch, Evaluation::Tangent, &self.scratch.blocks, &mut blocks)?, blocks))
+    }
+
+    /// Whether linear systems are solved here: the mesh has a hierarchy.
+    pub fn solves(&self) -> bool {
+        self.linear_plan.is_some()
+    }
+
+    /// The tangents at increments, and the solutions of the systems of each side with them (see
+    /// [`Linear::update`] and [`Linear::solve`]), in one submission a side.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn linear(
+        &self,
+        dispatch: &Dispatch,
+        increments: &[R],
+        rows: &[R],
+        fixed: &[u32],
+        sides: &[Right],
+    ) -> Result<(Vec<Outcome>, Vec<Answers>), GpuError> {
+        let (context, slots) = (&self.context, dispatch.cases.len());
+        let nothing = || GpuError::Length { what: "the levels of the mesh's hierarchy".into(), expected: 1, given: 0 };
+        let plan = self.linear_plan.as_ref().ok_or_else(nothing)?;
+        let linear = self.linear.get_or_init(|| Linear::new(context, plan, self.slots, &self.scratch.blocks));
+        let linear = linear.as_ref().map_err(GpuError::clone)?;
+        self.begin_element(dispatch, increments)?;
+        let mut list = context.record();
+        self.append(dispatch, Evaluation::Tangent, &mut list)?;
+        linear.update(context, &mut list, rows, fixed, slots)?;
+        let mut first = vec![0u32; slots];
+        let mut answers = Vec::with_capacity(sides.len());
+        for (side, right) in sides.iter().enumerate() {
+            let list = std::mem::replace(&mut list, context.record());
+            answers.push(linear.solve(context, list, side, right, (&self.scratch.first_invalid, &mut first))?);
+        }
+        Ok((outcomes(&first), answers))
     }
 
     /// Contact rows `[slot][component][point]` and their status, from forces and increments
@@ -296,11 +340,12 @@ impl<R: DeviceReal> Batch<R> {
         self.begin(dispatch)?;
         self.context.upload_at(&self.scratch.contact_trial, 0, trial)?;
         let (points, slots) = (self.sizes().contact_points, dispatch.cases.len());
-        self.submit(dispatch, Evaluation::Contact)?;
+        let mut list = self.context.record();
+        self.append(dispatch, Evaluation::Contact, &mut list)?;
         let mut answer = vec![R::ZERO; slots * CONTACT_ANSWER * points];
-        self.context.download_at(&self.scratch.contact_answer, 0, &mut answer)?;
         let mut status = vec![0; slots * points];
-        self.context.download_at(&self.scratch.contact_status, 0, &mut status)?;
+        let scratch = &self.scratch;
+        list.submit_and_read(&mut [scratch.contact_answer.read(0, &mut answer)?, scratch.contact_status.read(0, &mut status)?])?;
         Ok((answer, status))
     }
 
@@ -312,10 +357,8 @@ impl<R: DeviceReal> Batch<R> {
     pub fn update(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
-        self.submit(dispatch, Evaluation::Update)?;
         let mut energies = vec![R::ZERO; slots * 3 * sizes.elements];
-        self.context.download_at(&self.scratch.energies, 0, &mut energies)?;
-        Ok((self.outcomes(dispatch)?, energies))
+        Ok((self.evaluate(dispatch, Evaluation::Update, &self.scratch.energies, &mut energies)?, energies))
     }
 
     /// Makes the state in `slot` of the last [`Batch::update`] the committed one of its case, at
@@ -360,8 +403,9 @@ impl<R: DeviceReal> Batch<R> {
         let (resident, index) = self.resident(case)?;
         let mut state = vec![R::ZERO; HISTORY * self.sizes().points()];
         let mut work = vec![R::ZERO; self.sizes().elements];
-        self.context.download_at(&resident.history, index * state.len(), &mut state)?;
-        self.context.download_at(&resident.plastic_work, index * work.len(), &mut work)?;
+        let (first, first_work) = (index * state.len(), index * work.len());
+        let mut reads = [resident.history.read(first, &mut state)?, resident.plastic_work.read(first_work, &mut work)?];
+        self.context.record().submit_and_read(&mut reads)?;
         Ok((state, work))
     }
 
@@ -385,6 +429,15 @@ impl<R: DeviceReal> Batch<R> {
         let missing = || GpuError::Length { what: "the cases of the batch".into(), expected, given: case + 1 };
         found.map(|r| (r, case - r.first)).ok_or_else(missing)
     }
+}
+
+/// How each slot went, from the first invalid point of each.
+fn outcomes(first: &[u32]) -> Vec<Outcome> {
+    let outcome = |&code: &u32| match code {
+        u32::MAX => Outcome::Valid,
+        code => Outcome::Inverted { element: code as usize / 16, point: code as usize % 8 },
+    };
+    first.iter().map(outcome).collect()
 }
 
 impl Kernels {

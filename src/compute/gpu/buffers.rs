@@ -75,6 +75,16 @@ pub struct StorageBuffer<T> {
     _type: PhantomData<T>,
 }
 
+/// A part of an array that is to be read back after a list of kernels.
+#[derive(Debug)]
+pub struct Read<'a> {
+    raw: &'a wgpu::Buffer,
+    what: &'a str,
+    /// First byte.
+    offset: u64,
+    out: &'a mut [u8],
+}
+
 impl<T> StorageBuffer<T> {
     /// Number of elements.
     pub fn len(&self) -> usize {
@@ -89,6 +99,21 @@ impl<T> StorageBuffer<T> {
     /// Its name in errors.
     pub fn what(&self) -> &str {
         &self.what
+    }
+
+    /// What is to be read back into `out`, from element `offset` on.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] if `out` reaches beyond the end.
+    pub fn read<'a>(&'a self, offset: usize, out: &'a mut [T]) -> Result<Read<'a>, GpuError>
+    where
+        T: Pod,
+    {
+        if offset.checked_add(out.len()).is_none_or(|end| end > self.len) {
+            return Err(GpuError::Length { what: self.what.clone(), expected: self.len, given: offset + out.len() });
+        }
+        let offset = (offset * size_of::<T>()) as u64;
+        Ok(Read { raw: &self.raw, what: &self.what, offset, out: bytemuck::cast_slice_mut(out) })
     }
 
     /// The whole array, as a kernel's argument.
@@ -219,50 +244,63 @@ impl GpuContext {
     /// # Errors
     /// As [`GpuContext::download`]; [`GpuError::Length`] if `out` reaches beyond the end.
     pub fn download_at<T: Pod>(&self, buffer: &StorageBuffer<T>, offset: usize, out: &mut [T]) -> Result<(), GpuError> {
-        if offset.checked_add(out.len()).is_none_or(|end| end > buffer.len) {
-            return Err(GpuError::Length { what: buffer.what.clone(), expected: buffer.len, given: offset + out.len() });
-        }
-        let what = buffer.what.as_str();
-        let bytes = size_of_val(out) as u64;
+        self.record().submit_and_read(&mut [buffer.read(offset, out)?])
+    }
+
+    /// Hands over the kernels and copies of a list together with copies of what is to be read back,
+    /// waits for them, and reads: one submission and one wait, however much there is to read.
+    pub(super) fn read_after(
+        &self,
+        mut encoder: wgpu::CommandEncoder,
+        dispatches: u64,
+        reads: &mut [Read<'_>],
+    ) -> Result<(), GpuError> {
+        let what = reads.first().map_or("nothing", |read| read.what).to_owned();
+        let padded = |read: &Read<'_>| (read.out.len() as u64).next_multiple_of(16);
+        let bytes = reads.iter().map(padded).sum::<u64>();
         let mut slot = self.staging();
         let staging = self.staging_for(&mut slot, bytes)?;
         staging.number += 1;
         let ticket = staging.number;
-        let ticket_at = bytes.next_multiple_of(16);
-        let submission = self.scoped(what, || {
+        let submission = self.scoped(&what, || {
             self.queue.write_buffer(&staging.ticket, 0, &ticket.to_le_bytes());
-            let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(what) });
-            if bytes > 0 {
-                encoder.copy_buffer_to_buffer(&buffer.raw, (offset * size_of::<T>()) as u64, &staging.mapped, 0, bytes);
+            let mut at = 0;
+            for read in reads.iter().filter(|read| !read.out.is_empty()) {
+                encoder.copy_buffer_to_buffer(read.raw, read.offset, &staging.mapped, at, read.out.len() as u64);
+                at += padded(read);
             }
-            encoder.copy_buffer_to_buffer(&staging.ticket, 0, &staging.mapped, ticket_at, 8);
+            encoder.copy_buffer_to_buffer(&staging.ticket, 0, &staging.mapped, bytes, 8);
             self.queue.submit([encoder.finish()])
         })?;
-        self.meter.submitted(0);
+        self.meter.submitted(dispatches);
         self.meter.went_up(size_of_val(&ticket) as u64);
-        self.meter.came_down(bytes + size_of_val(&ticket) as u64);
-        let slice = staging.mapped.slice(..ticket_at + TICKET_BYTES);
+        self.meter.came_down(reads.iter().map(|read| read.out.len() as u64).sum::<u64>() + size_of_val(&ticket) as u64);
+        let slice = staging.mapped.slice(..bytes + TICKET_BYTES);
         let outcome = Arc::new(std::sync::OnceLock::new());
         let report = Arc::clone(&outcome);
         slice.map_async(wgpu::MapMode::Read, move |result| {
             // set once by construction: a second value is dropped
             let _ = report.set(result.is_ok());
         });
-        let waited = self.wait(what, submission);
+        let waited = self.wait(&what, submission);
         if waited.is_err() || outcome.get() != Some(&true) {
             *slot = None; // its mapping is in an unknown state
             waited?;
             return Err(self.fault(GpuError::Lost { reason: format!("{what} cannot be mapped") }));
         }
         let fresh = slice.get_mapped_range().is_ok_and(|view| {
-            let (numbers, tail) = view.split_at(ticket_at as usize);
-            bytemuck::cast_slice_mut(out).copy_from_slice(&numbers[..bytes as usize]);
+            let (mut numbers, tail) = view.split_at(bytes as usize);
+            for read in &mut *reads {
+                let (mine, rest) = numbers.split_at(padded(read) as usize);
+                read.out.copy_from_slice(&mine[..read.out.len()]);
+                numbers = rest;
+            }
             tail[..8] == ticket.to_le_bytes()
         });
         staging.mapped.unmap();
         if !fresh {
-            out.fill(T::zeroed());
-            return Err(self.fault(GpuError::Stale { what: what.to_owned() }));
+            reads.iter_mut().for_each(|read| read.out.fill(0));
+            return Err(self.fault(GpuError::Stale { what }));
         }
         Ok(())
     }

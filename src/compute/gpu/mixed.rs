@@ -1,5 +1,5 @@
-//! A batch on a device without double precision: residuals from the CPU in f64, tangents from the
-//! device in f32.
+//! A batch on a device without double precision: residuals from the CPU in f64, tangents and linear
+//! systems on the device in f32.
 //!
 //! The residual decides what a converged step is, the tangent only how fast it is found: the answer
 //! does not depend on the device.
@@ -9,13 +9,14 @@ use std::sync::Arc;
 use super::backend::Gpu;
 use super::context::GpuContext;
 use crate::compute::cpu::Cpu;
+use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest, Outcome,
     TangentRequest,
 };
 
-/// Evaluates a batch in f64 on the CPU, and its tangents in f32 on a device.
+/// Evaluates a batch in f64 on the CPU, and its tangents and linear systems in f32 on a device.
 pub struct Mixed {
     residual: Cpu<f64>,
     tangent: Gpu<f32>,
@@ -68,6 +69,10 @@ impl Compute for Mixed {
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
         self.residual.contact(requests)
+    }
+
+    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
+        self.tangent.linear(requests)
     }
 
     /// The device takes over the state that the CPU has found.

@@ -6,7 +6,7 @@
 //! it, [`validate`](mod@validate) says where a source does not compile.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
-//! device; [`backend`] is the [`Compute`](super::Compute) of it in one precision, [`mixed`] that of
+//! device, [`linear`] solves their linear systems; [`backend`] is the [`Compute`](super::Compute) of it in one precision, [`mixed`] that of
 //! a device without double precision.
 //!
 //! A device fails quietly: a lost one ignores what is submitted and leaves old numbers in its
@@ -22,6 +22,7 @@ mod compiled;
 pub mod context;
 pub mod error;
 pub mod health;
+pub mod linear;
 pub mod material;
 pub mod memory;
 mod meter;

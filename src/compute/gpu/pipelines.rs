@@ -1,6 +1,6 @@
 //! Compiling kernels once, and running them.
 
-use super::buffers::StorageBuffer;
+use super::buffers::{Read, StorageBuffer};
 use super::compiled::Pipeline;
 use super::context::GpuContext;
 use super::error::GpuError;
@@ -169,6 +169,20 @@ impl Recorder<'_> {
         self.encoder.copy_buffer_to_buffer(&from.raw, first as u64 * size, &to.raw, to_first as u64 * size, count as u64 * size);
         self.commands += 1;
         Ok(())
+    }
+
+    /// Sends the list off, waits for it and reads arrays back as it leaves them: one submission, one
+    /// wait.
+    ///
+    /// The numbers come back together with a ticket, a number that was never used before. Only if
+    /// the ticket has arrived did this submission run, and only then are the numbers those that the
+    /// kernels left.
+    ///
+    /// # Errors
+    /// [`GpuError::Stale`], [`GpuError::Lost`], [`GpuError::Timeout`], [`GpuError::Rejected`]: then
+    /// no numbers come back at all.
+    pub fn submit_and_read(self, reads: &mut [Read<'_>]) -> Result<(), GpuError> {
+        self.context.read_after(self.encoder, self.dispatches, reads)
     }
 
     /// Sends the list off. Errors of the kernels themselves show at the next download.

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::linear::sources as linear;
+
 /// The precision in which a kernel is compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Precision {
@@ -43,9 +45,13 @@ pub struct Source {
 
 macro_rules! source {
     ($path:literal) => {
-        Source { path: concat!("shaders/", $path), text: include_str!(concat!("../../../shaders/", $path)) }
+        $crate::compute::gpu::shader_sources::Source {
+            path: concat!("shaders/", $path),
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)),
+        }
     };
 }
+pub(super) use source;
 
 const PRELUDE_F32: Source = source!("prelude_f32.wgsl");
 const PRELUDE_F64: Source = source!("prelude_f64.wgsl");
@@ -111,6 +117,26 @@ pub static KERNELS: &[&Kernel] = &[
     &GATHER_NODE_FORCE,
     &GATHER_TANGENT_BLOCKS,
     &CONTACT_POINTS,
+    &linear::ASSEMBLE,
+    &linear::INVERT_DIAGONAL,
+    &linear::GALERKIN_PRODUCT,
+    &linear::GALERKIN_COARSE,
+    &linear::SMOOTH_START,
+    &linear::SMOOTH_STEP,
+    &linear::SOLVE_COARSEST,
+    &linear::RESIDUAL,
+    &linear::RESTRICT,
+    &linear::PROLONG,
+    &linear::KRYLOV_PRODUCT,
+    &linear::KRYLOV_DOTS,
+    &linear::KRYLOV_ORTHOGONALISE,
+    &linear::KRYLOV_MEASURE,
+    &linear::KRYLOV_BEGIN,
+    &linear::KRYLOV_ADVANCE,
+    &linear::KRYLOV_NORMALISE,
+    &linear::KRYLOV_LEAST_SQUARES,
+    &linear::KRYLOV_COMBINE,
+    &linear::PLATE_FORCE,
 ];
 
 use Binding::{Read, ReadWrite, Uniform};

@@ -7,16 +7,17 @@ use super::kernel::{Inverse, Node, inverse_times, row_times};
 use super::parallel::{each, each_of_two};
 use crate::mesh::pattern::Pattern;
 
-/// The polynomial damps the eigenvalues of D^-1 A between these.
+/// The polynomial damps the eigenvalues of D^-1 A from a lower end to this.
 ///
 /// 8 is a bound that needs no estimate: for the sum of positive semidefinite matrices of elements
 /// with 8 nodes, D the block diagonal, x^T A x <= 8 x^T D x by Cauchy and Schwarz in each element
 /// (Fried, J. Sound Vib. 20, 1972; Wathen, IMA J. Numer. Anal. 7, 1987). Measured on the sphere:
 /// 5.4 elastic, 7.8 with a plastic core, 7.9 nearly incompressible; on coarse levels 4 to 5.6. An
 /// estimate from below does harm: with 0.95 of the largest eigenvalue iterations double.
-const HIGH: f32 = 8.0;
-/// Iteration counts do not change by more than one from 0.12 to 0.5.
-const LOW: f32 = 0.25;
+pub(super) const HIGH: f32 = 8.0;
+/// The lower end on all levels but the coarsest. Iteration counts do not change by more than one
+/// from 0.12 to 0.5.
+pub(super) const LOW: f32 = 0.25;
 
 /// A level's matrix, smoothed by Chebyshev acceleration of block Jacobi (Adams, Brezina, Hu and
 /// Tuminaro, J. Comput. Phys. 188, 2003): an error is multiplied by a polynomial of D^-1 A that is
@@ -25,6 +26,8 @@ const LOW: f32 = 0.25;
 pub(super) struct Smoother {
     pub matrix: BlockMatrix<f32>,
     degree: usize,
+    /// Lower end of the eigenvalues that are damped.
+    low: f32,
     /// Inverses of the diagonal blocks.
     inverse: Vec<Inverse>,
     /// Last step of the recurrence, and the next iterate.
@@ -33,11 +36,12 @@ pub(super) struct Smoother {
 }
 
 impl Smoother {
-    pub fn new(pattern: Pattern, degree: usize) -> Self {
+    pub fn new(pattern: Pattern, degree: usize, low: f32) -> Self {
         let rows = pattern.rows();
         Self {
             matrix: BlockMatrix::zeros(pattern),
             degree: degree.max(1),
+            low,
             inverse: vec![[[0.0; 4]; 3]; rows],
             step: vec![[0.0; 4]; rows],
             next: vec![[0.0; 4]; rows],
@@ -69,11 +73,8 @@ impl Smoother {
     /// The recurrence of Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003),
     /// Algorithm 12.1, for D^-1 A x = D^-1 b.
     fn smooth_with(&mut self, b: &[Node], x: &mut Vec<Node>, from_zero: bool) {
-        let (center, half) = ((HIGH + LOW) / 2.0, (HIGH - LOW) / 2.0);
-        let mut rho = half / center;
-        let (mut keep, mut add) = (0.0, 1.0 / center);
         let (matrix, inverse) = (&self.matrix, &self.inverse);
-        for k in 0..self.degree {
+        for (k, [keep, add]) in shares(HIGH, self.low).take(self.degree).enumerate() {
             let (keep4, add4) = (f32x4::splat(keep), f32x4::splat(add));
             if k > 0 || !from_zero {
                 let now: &[Node] = x;
@@ -93,11 +94,20 @@ impl Smoother {
                     *x = *d;
                 });
             }
-            let next = 1.0 / (2.0 * center / half - rho);
-            (keep, add) = (next * rho, 2.0 * next / half);
-            rho = next;
         }
     }
+}
+
+/// Shares of the step before and of D^-1 r in each step of the polynomial that damps eigenvalues
+/// from `low` to `high`.
+pub(super) fn shares(high: f32, low: f32) -> impl Iterator<Item = [f32; 2]> {
+    let (center, half) = ((high + low) / 2.0, (high - low) / 2.0);
+    let first = (half / center, [0.0, 1.0 / center]);
+    std::iter::successors(Some(first), move |(rho, _)| {
+        let next = 1.0 / (2.0 * center / half - rho);
+        Some((next, [next * rho, 2.0 * next / half]))
+    })
+    .map(|(_, shares)| shares)
 }
 
 /// The inverse of a 3x3 block. Components whose row and column vanish are left alone (their inverse

@@ -56,21 +56,21 @@ impl Weights {
 /// Prolongation P, restriction P^T and the plan for P^T A P between a fine and a coarse level.
 #[derive(Clone, Debug)]
 pub(super) struct Transfer {
-    prolongation: Weights,
-    restriction: Weights,
+    pub prolongation: Weights,
+    pub restriction: Weights,
     /// Row starts of A P.
-    product_start: Vec<u32>,
+    pub product_start: Vec<u32>,
     /// The rows of A P, computed before P^T (A P).
     product: Vec<[f32; 9]>,
     /// For each row of A where its places in `fine_place` begin.
-    fine_start: Vec<u32>,
+    pub fine_start: Vec<u32>,
     /// For each entry of A, for each coarse node of its column: the place in A P's row.
-    fine_place: Vec<u16>,
+    pub fine_place: Vec<u16>,
     /// For each row of P^T A P where its places in `coarse_place` begin.
-    coarse_start: Vec<u32>,
+    pub coarse_start: Vec<u32>,
     /// For each fine node of a coarse row, for each entry of A P's row: the place in the coarse
     /// row.
-    coarse_place: Vec<u16>,
+    pub coarse_place: Vec<u16>,
 }
 
 /// The sorted distinct columns that `collect` pushes for each of `rows` rows.

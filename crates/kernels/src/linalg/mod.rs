@@ -8,13 +8,13 @@
 
 pub mod bsr;
 mod chebyshev;
-mod coarsest;
 pub mod direct;
 mod dissection;
 pub mod fgmres;
 mod fixed;
 mod galerkin;
 mod kernel;
+pub mod layout;
 pub mod multigrid;
 mod parallel;
 #[cfg(test)]

@@ -1,0 +1,66 @@
+// The finest level's matrix: a thread a block. It is the tangent's upper triangle, or that
+// transposed; where a contact point slides, the rows of its node are their contact conditions.
+// Rows and columns of fixed unknowns are in it too: masks leave them out.
+
+@group(0) @binding(1) var<storage, read> source: array<u32>;        // [k][node]: 2 block, + 1 if transposed
+@group(0) @binding(2) var<storage, read> diagonal: array<u32>;      // [node]: k of its diagonal block
+@group(0) @binding(3) var<storage, read> point_of: array<u32>;      // [node]: its contact point
+@group(0) @binding(4) var<storage, read> blocks: array<real>;       // [slot][3 i + j][block]
+@group(0) @binding(5) var<storage, read> rows: array<real>;         // [slot][slides, force rows, displacement rows][point]
+@group(0) @binding(6) var<storage, read_write> matrix: array<u32>;  // [slot][3 i + j][k][node], bits of f32
+@group(0) @binding(7) var<uniform> counts: vec4<u32>;               // upper blocks, contact points
+
+const NOWHERE: u32 = 0xffffffffu;
+
+@compute @workgroup_size(64)
+fn assemble(@builtin(global_invocation_id) id: vec3<u32>) {
+    let count = level.width * level.nodes;
+    if id.x >= count {
+        return;
+    }
+    let slot = id.y;
+    let out = 9u * slot * count + id.x;
+    let origin = source[id.x];
+    if origin == NOWHERE {
+        for (var m = 0u; m < 9u; m++) {
+            matrix[out + m * count] = 0u;
+        }
+        return;
+    }
+    let first = 9u * slot * counts.x + origin / 2u;
+    // columns of the block
+    var a = mat3x3<real>(
+        blocks[first], blocks[first + 3u * counts.x], blocks[first + 6u * counts.x],
+        blocks[first + counts.x], blocks[first + 4u * counts.x], blocks[first + 7u * counts.x],
+        blocks[first + 2u * counts.x], blocks[first + 5u * counts.x], blocks[first + 8u * counts.x],
+    );
+    if origin % 2u == 1u {
+        a = transpose(a);
+    }
+    let node = id.x % level.nodes;
+    let point = point_of[node];
+    if point != NOWHERE {
+        let at = 19u * slot * counts.y + point;
+        if rows[at] > 0.0 {
+            a = transpose(row_block(at, 1u)) * a;
+            if id.x / level.nodes == diagonal[node] {
+                a += transpose(row_block(at, 10u));
+            }
+        }
+    }
+    for (var j = 0u; j < 3u; j++) {
+        for (var i = 0u; i < 3u; i++) {
+            matrix[out + (3u * i + j) * count] = single_bits(a[j][i]);
+        }
+    }
+}
+
+// Three rows of a contact condition, as columns.
+fn row_block(at: u32, first: u32) -> mat3x3<real> {
+    return mat3x3<real>(row(at, first), row(at, first + 3u), row(at, first + 6u));
+}
+
+fn row(at: u32, first: u32) -> vec3<real> {
+    let next = at + first * counts.y;
+    return vec3<real>(rows[next], rows[next + counts.y], rows[next + 2u * counts.y]);
+}

@@ -1,0 +1,21 @@
+// w = A z, nothing at fixed unknowns; z, which is x here, is kept for the solution.
+
+@group(0) @binding(4) var<storage, read> is_fixed: array<u32>;          // [slot][node]: a bit a component
+@group(0) @binding(5) var<storage, read> records: array<Record>;
+@group(0) @binding(6) var<storage, read_write> w: array<real>;          // [slot][component][node]
+@group(0) @binding(7) var<storage, read_write> preconditioned: array<real>; // [slot][step][component][node]
+
+@compute @workgroup_size(192)
+fn krylov_product(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let slot = group.y;
+    let node = NODES_IN_GROUP * group.x + local % NODES_IN_GROUP;
+    if records[slot].done != RUNNING || node >= level.nodes {
+        return;
+    }
+    let component = local / NODES_IN_GROUP;
+    let of_case = component * level.nodes + node;
+    let n = 3u * level.nodes;
+    let is_free = (is_fixed[slot * level.nodes + node] >> component) % 2u == 0u;
+    w[slot * n + of_case] = select(real(0.0), row_times(slot, component, node), is_free);
+    preconditioned[(slot * level.restart + records[slot].steps) * n + of_case] = x[slot * n + of_case];
+}

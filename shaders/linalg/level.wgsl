@@ -1,0 +1,20 @@
+// One level of the multigrid hierarchy: its matrix, and what every kernel on it knows. A dispatch
+// has a thread for each node and component, 64 nodes a workgroup, and runs along y over the slots.
+// Vectors are [slot][component][node]; all rows of a matrix have the same number of blocks, those
+// that are missing being zero, so that neighbouring threads read neighbouring numbers.
+struct Level {
+    nodes: u32,
+    width: u32,             // blocks in a row
+    coarse_nodes: u32,      // of the next level
+    products: u32,          // blocks of A P
+    coarse_width: u32,
+    restart: u32,           // most Krylov vectors kept
+    reserved_0: u32,
+    reserved_1: u32,
+}
+
+// A workgroup of rows: its nodes, three components of each.
+const NODES_IN_GROUP: u32 = 64;
+const ROWS_IN_GROUP: u32 = 192;
+
+@group(0) @binding(0) var<uniform> level: Level;

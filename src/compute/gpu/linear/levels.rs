@@ -1,0 +1,400 @@
+//! The levels of the multigrid hierarchy on a device, and the kernels that are bound to them.
+
+use super::super::buffers::StorageBuffer;
+use super::super::context::GpuContext;
+use super::super::error::GpuError;
+use super::super::pipelines::{Bound, Recorder};
+use super::super::shader_sources::{Kernel, Precision};
+use super::RESTART;
+use super::sources::{
+    GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESIDUAL, RESTRICT, SMOOTH_START, SMOOTH_STEP, SOLVE_COARSEST,
+};
+use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
+
+/// Nodes of which one workgroup has the rows, and its threads.
+const NODES_IN_GROUP: usize = 64;
+const ROWS_IN_GROUP: usize = 192;
+
+/// The block that `level.wgsl` calls Level.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct LevelBlock {
+    nodes: u32,
+    width: u32,
+    coarse_nodes: u32,
+    products: u32,
+    coarse_width: u32,
+    restart: u32,
+    reserved: [u32; 2],
+}
+
+/// What a slot solves, as `record.wgsl` has it.
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Record {
+    /// 0 while it goes on.
+    pub done: u32,
+    /// Basis vectors that are complete.
+    pub vectors: u32,
+    /// Steps of the present cycle.
+    pub steps: u32,
+    /// Krylov iterations in all.
+    pub iterations: u32,
+    /// The tolerance is of the first residual.
+    pub relative_to_start: u32,
+    /// Relative residual to be reached.
+    pub tolerance: f32,
+    /// Norm of the residual to be reached.
+    pub goal: f32,
+    /// Norm of the right-hand side.
+    pub rhs_norm: f32,
+    /// Norm of the residual at the guess.
+    pub start_norm: f32,
+    /// Norm of the residual.
+    pub residual: f32,
+    /// Factor of the next basis vector.
+    pub scale: f32,
+    /// Plate force along the solution.
+    pub along: f32,
+}
+
+/// A kernel with the threads that it takes.
+#[derive(Debug)]
+pub struct Call {
+    bound: Bound,
+    threads: usize,
+}
+
+impl Call {
+    /// Binds a kernel, in single precision.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn new(
+        context: &GpuContext,
+        kernel: &'static Kernel,
+        threads: usize,
+        arguments: Vec<wgpu::BindingResource<'_>>,
+    ) -> Result<Self, GpuError> {
+        let pipeline = context.pipeline(kernel, Precision::F32)?;
+        Ok(Self { bound: context.bind(&pipeline, arguments)?, threads })
+    }
+
+    /// One that takes its arguments in another precision.
+    pub fn of(bound: Bound, threads: usize) -> Self {
+        Self { bound, threads }
+    }
+
+    /// Appends it for so many slots.
+    ///
+    /// # Errors
+    /// As [`Recorder::dispatch`].
+    pub fn append(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+        list.dispatch(&self.bound, self.threads, slots)
+    }
+}
+
+/// Threads of the kernels with a thread for each row of so many nodes.
+pub fn row_threads(nodes: usize) -> usize {
+    nodes.div_ceil(NODES_IN_GROUP) * ROWS_IN_GROUP
+}
+
+/// One level's arrays.
+#[derive(Debug)]
+pub struct Level {
+    /// Its sizes.
+    pub block: StorageBuffer<LevelShape>,
+    /// Columns `[k][node]`.
+    pub column: StorageBuffer<u32>,
+    /// k of each diagonal block.
+    pub diagonal: StorageBuffer<u32>,
+    /// The matrix, `[slot][3 i + j][k][node]`.
+    pub matrix: StorageBuffer<f32>,
+    /// Fixed components `[slot][node]`; nothing is fixed but on the finest level.
+    pub fixed: StorageBuffer<u32>,
+    /// Right-hand side.
+    pub b: StorageBuffer<f32>,
+    /// Where the cycle leaves its solution.
+    pub x: StorageBuffer<f32>,
+    inverse: StorageBuffer<f32>,
+    other: StorageBuffer<f32>,
+    last_step: StorageBuffer<f32>,
+    residual: StorageBuffer<f32>,
+    transfer: Option<Transfer>,
+    nodes: usize,
+}
+
+/// The uniform block of a level, to be named by others.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub struct LevelShape(LevelBlock);
+
+#[derive(Debug)]
+struct Transfer {
+    product_lists: DeviceLists,
+    coarse_lists: DeviceLists,
+    prolongation: DeviceLists,
+    restriction: DeviceLists,
+    product: StorageBuffer<f32>,
+    products: usize,
+    coarse_blocks: usize,
+    coarse_nodes: usize,
+}
+
+#[derive(Debug)]
+struct DeviceLists {
+    start: StorageBuffer<u32>,
+    entry: StorageBuffer<u32>,
+    weight: StorageBuffer<f32>,
+}
+
+impl DeviceLists {
+    fn new(context: &GpuContext, what: &str, start: &[u32], entry: &[u32], weight: &[f32]) -> Result<Self, GpuError> {
+        Ok(Self {
+            start: context.array(&format!("{what}: starts"), start)?,
+            entry: context.array(what, entry)?,
+            weight: context.array(&format!("{what}: weights"), weight)?,
+        })
+    }
+
+    fn of_lists(context: &GpuContext, what: &str, lists: &Lists) -> Result<Self, GpuError> {
+        Self::new(context, what, &lists.start, &lists.entry, &lists.weight)
+    }
+
+    fn of_rows(context: &GpuContext, what: &str, rows: &Rows) -> Result<Self, GpuError> {
+        Self::new(context, what, &rows.start, &rows.column, &rows.weight)
+    }
+
+    fn bindings(&self) -> [wgpu::BindingResource<'_>; 3] {
+        [self.start.binding(), self.entry.binding(), self.weight.binding()]
+    }
+}
+
+/// Numbers that a slot takes on a level and on the way to the next: the widest array, and all.
+pub fn slot_numbers(level: &LevelLayout) -> (usize, usize) {
+    let products = level.transfer.as_ref().map_or(0, |t| 9 * (t.product.start.len() - 1));
+    ((9 * level.blocks()).max(products), 9 * level.blocks() + products + (9 + 1 + 5 * 3) * level.nodes)
+}
+
+impl Level {
+    /// The arrays of a level for so many slots.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn new(context: &GpuContext, layout: &LevelLayout, next: Option<&LevelLayout>, slots: usize) -> Result<Self, GpuError> {
+        let zeros = |what: &str, numbers: usize| context.zeros(what, slots * numbers);
+        let transfer = match (&layout.transfer, next) {
+            (Some(transfer), Some(next)) => Some(Transfer::new(context, transfer, next, slots)?),
+            _ => None,
+        };
+        let sizes = LevelBlock {
+            nodes: layout.nodes as u32,
+            width: layout.width as u32,
+            coarse_nodes: next.map_or(0, |next| next.nodes as u32),
+            products: transfer.as_ref().map_or(0, |t| t.products as u32),
+            coarse_width: next.map_or(0, |next| next.width as u32),
+            restart: RESTART as u32,
+            reserved: [0; 2],
+        };
+        let block = context.block("a level")?;
+        context.upload(&block, &[LevelShape(sizes)])?;
+        let vector = 3 * layout.nodes;
+        Ok(Self {
+            block,
+            column: context.array("columns of a level", &layout.column)?,
+            diagonal: context.array("diagonals of a level", &layout.diagonal)?,
+            matrix: zeros("matrices of a level", 9 * layout.blocks())?,
+            fixed: context.zeros("fixed unknowns", slots * layout.nodes)?,
+            b: zeros("right-hand sides of a level", vector)?,
+            x: zeros("solutions of a level", vector)?,
+            inverse: zeros("diagonal blocks of a level", 9 * layout.nodes)?,
+            other: zeros("iterates of a level", vector)?,
+            last_step: zeros("steps of a level", vector)?,
+            residual: zeros("residuals of a level", vector)?,
+            transfer,
+            nodes: layout.nodes,
+        })
+    }
+
+    /// Threads for its rows.
+    pub fn threads(&self) -> usize {
+        row_threads(self.nodes)
+    }
+
+    /// Its sizes, columns and matrix, and a vector to be multiplied.
+    pub fn product<'a>(&'a self, x: &'a StorageBuffer<f32>) -> Vec<wgpu::BindingResource<'a>> {
+        vec![self.block.binding(), self.column.binding(), self.matrix.binding(), x.binding()]
+    }
+}
+
+impl Transfer {
+    fn new(context: &GpuContext, layout: &TransferLayout, next: &LevelLayout, slots: usize) -> Result<Self, GpuError> {
+        let products = layout.product.start.len() - 1;
+        Ok(Self {
+            product_lists: DeviceLists::of_lists(context, "blocks of A P", &layout.product)?,
+            coarse_lists: DeviceLists::of_lists(context, "blocks of the next level", &layout.coarse)?,
+            prolongation: DeviceLists::of_rows(context, "prolongation", &layout.prolongation)?,
+            restriction: DeviceLists::of_rows(context, "restriction", &layout.restriction)?,
+            product: context.zeros("products A P", slots * 9 * products)?,
+            products,
+            coarse_blocks: next.blocks(),
+            coarse_nodes: next.nodes,
+        })
+    }
+}
+
+/// The hierarchy.
+#[derive(Debug)]
+pub struct Levels {
+    /// Finest first.
+    pub levels: Vec<Level>,
+    /// After the finest matrix has changed.
+    pub update: Vec<Call>,
+    /// One V-cycle on the finest level's b.
+    pub cycle: Vec<Call>,
+    _shares: Vec<StorageBuffer<[f32; 4]>>,
+    _coarsest: StorageBuffer<[f32; 2]>,
+}
+
+impl Levels {
+    /// The arrays of all levels for so many slots, and their kernels, which leave out slots that
+    /// `records` has as done.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn new(context: &GpuContext, layout: &Layout, slots: usize, records: &StorageBuffer<Record>) -> Result<Self, GpuError> {
+        let layouts = &layout.levels;
+        let levels = (0..layouts.len())
+            .map(|l| Level::new(context, &layouts[l], layouts.get(l + 1), slots))
+            .collect::<Result<Vec<_>, _>>()?;
+        let shares = layout
+            .smoother
+            .iter()
+            .map(|&[keep, add]| {
+                let block = context.block("shares of a smoothing step")?;
+                context.upload(&block, &[[keep, add, 0.0, 0.0]])?;
+                Ok(block)
+            })
+            .collect::<Result<Vec<_>, GpuError>>()?;
+        let coarsest = context.array("shares of the coarsest level's steps", &layout.coarsest)?;
+        let bind = Binder { context, records, shares: &shares };
+        let mut update = Vec::new();
+        let mut cycle = Vec::new();
+        for (l, level) in levels.iter().enumerate() {
+            update.push(bind.inverse(level)?);
+            match (&level.transfer, levels.get(l + 1)) {
+                (Some(transfer), Some(next)) => {
+                    update.extend(bind.galerkin(level, transfer, next)?);
+                    cycle.extend(bind.down(level, transfer, next)?);
+                }
+                _ => cycle.push(bind.coarsest(level, &coarsest)?),
+            }
+        }
+        for (l, level) in levels.iter().enumerate().rev() {
+            if let (Some(transfer), Some(next)) = (&level.transfer, levels.get(l + 1)) {
+                cycle.extend(bind.up(level, transfer, next)?);
+            }
+        }
+        Ok(Self { levels, update, cycle, _shares: shares, _coarsest: coarsest })
+    }
+}
+
+struct Binder<'a> {
+    context: &'a GpuContext,
+    records: &'a StorageBuffer<Record>,
+    shares: &'a [StorageBuffer<[f32; 4]>],
+}
+
+impl Binder<'_> {
+    fn inverse(&self, level: &Level) -> Result<Call, GpuError> {
+        let arguments = vec![
+            level.block.binding(),
+            level.matrix.binding(),
+            level.diagonal.binding(),
+            level.fixed.binding(),
+            level.inverse.binding(),
+        ];
+        Call::new(self.context, &INVERT_DIAGONAL, level.nodes, arguments)
+    }
+
+    fn galerkin(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<[Call; 2], GpuError> {
+        let lists = |lists| [vec![level.block.binding()], DeviceLists::bindings(lists).to_vec()].concat();
+        let mut product = lists(&transfer.product_lists);
+        product.extend([level.matrix.binding(), transfer.product.binding(), level.column.binding(), level.fixed.binding()]);
+        let mut coarse = lists(&transfer.coarse_lists);
+        coarse.extend([transfer.product.binding(), next.matrix.binding()]);
+        Ok([
+            Call::new(self.context, &GALERKIN_PRODUCT, transfer.products, product)?,
+            Call::new(self.context, &GALERKIN_COARSE, transfer.coarse_blocks, coarse)?,
+        ])
+    }
+
+    /// A step of the smoother from `x` to `next`.
+    fn smooth(&self, level: &Level, step: usize, x: &StorageBuffer<f32>, next: &StorageBuffer<f32>) -> Result<Call, GpuError> {
+        let mut arguments = level.product(x);
+        arguments.extend([
+            level.inverse.binding(),
+            level.b.binding(),
+            level.last_step.binding(),
+            next.binding(),
+            self.shares[step].binding(),
+            self.records.binding(),
+        ]);
+        Call::new(self.context, &SMOOTH_STEP, level.threads(), arguments)
+    }
+
+    /// Smoothing from zero, which leaves `other` where the number of steps is odd, and what is left
+    /// to the next level.
+    fn down(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Vec<Call>, GpuError> {
+        let start = vec![
+            level.block.binding(),
+            level.inverse.binding(),
+            level.b.binding(),
+            level.last_step.binding(),
+            level.other.binding(),
+            self.shares[0].binding(),
+            self.records.binding(),
+        ];
+        let mut out = vec![Call::new(self.context, &SMOOTH_START, level.threads(), start)?];
+        let (mut x, mut free) = (&level.other, &level.x);
+        for step in 1..self.shares.len() {
+            out.push(self.smooth(level, step, x, free)?);
+            std::mem::swap(&mut x, &mut free);
+        }
+        let mut residual = level.product(x);
+        residual.extend([level.b.binding(), level.fixed.binding(), level.residual.binding(), self.records.binding()]);
+        out.push(Call::new(self.context, &RESIDUAL, level.threads(), residual)?);
+        let mut restrict = vec![level.block.binding()];
+        restrict.extend(transfer.restriction.bindings());
+        restrict.extend([level.residual.binding(), next.b.binding(), self.records.binding()]);
+        out.push(Call::new(self.context, &RESTRICT, row_threads(transfer.coarse_nodes), restrict)?);
+        Ok(out)
+    }
+
+    /// The next level's correction, and smoothing, which ends in `x`.
+    fn up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Vec<Call>, GpuError> {
+        let odd = self.shares.len() % 2 == 1;
+        let (mut x, mut free) = if odd { (&level.other, &level.x) } else { (&level.x, &level.other) };
+        let mut prolong = vec![level.block.binding()];
+        prolong.extend(transfer.prolongation.bindings());
+        prolong.extend([next.x.binding(), x.binding(), self.records.binding(), level.fixed.binding()]);
+        let mut out = vec![Call::new(self.context, &PROLONG, level.threads(), prolong)?];
+        for step in 0..self.shares.len() {
+            out.push(self.smooth(level, step, x, free)?);
+            std::mem::swap(&mut x, &mut free);
+        }
+        Ok(out)
+    }
+
+    fn coarsest(&self, level: &Level, shares: &StorageBuffer<[f32; 2]>) -> Result<Call, GpuError> {
+        let mut arguments = level.product(&level.x);
+        arguments.extend([
+            level.inverse.binding(),
+            level.b.binding(),
+            level.last_step.binding(),
+            shares.binding(),
+            self.records.binding(),
+        ]);
+        Call::new(self.context, &SOLVE_COARSEST, 1, arguments)
+    }
+}

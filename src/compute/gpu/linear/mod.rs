@@ -1,0 +1,345 @@
+//! Linear systems on the device: the tangent as a matrix of the multigrid hierarchy, and FGMRES
+//! preconditioned by its V-cycle, for every slot of a dispatch at once.
+//!
+//! All of it is in single precision, as the preconditioner is on the CPU ([`crate::linalg`], whose
+//! algorithm this is): Newton's residual decides what is a solution, the linear system only how
+//! fast it is found. The list of a solve has as many Krylov iterations as the last one of its cases
+//! took, and one more; slots that have finished leave out what remains, and where some have not,
+//! more is sent.
+
+mod levels;
+pub mod pack;
+pub mod sources;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::buffers::{DeviceReal, StorageBuffer};
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::pipelines::Recorder;
+use crate::compute::linear::{Ended, SideReport};
+use crate::linalg::layout::{Layout, NOWHERE};
+use crate::mesh::Mesh;
+use levels::{Call, Levels, Record, row_threads, slot_numbers};
+use sources::{
+    ASSEMBLE, KRYLOV_ADVANCE, KRYLOV_BEGIN, KRYLOV_COMBINE, KRYLOV_DOTS, KRYLOV_LEAST_SQUARES, KRYLOV_MEASURE, KRYLOV_NORMALISE,
+    KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, RESIDUAL,
+};
+
+/// Krylov vectors after which a cycle starts over.
+const RESTART: usize = 30;
+/// Iterations after which a system is given up.
+const MOST: usize = 120;
+/// Krylov iterations of the first list of all.
+const FIRST_GUESS: usize = 4;
+/// Entries of a vector that one workgroup sums.
+const CHUNK: usize = 1024;
+/// Threads of the kernels that sum.
+const SUMMING: usize = 256;
+/// Numbers that a contact point has in `assemble.wgsl`: whether it slides, its rows.
+pub const POINT_ROWS: usize = 19;
+
+/// What `record.wgsl` calls them.
+const CONVERGED: u32 = 1;
+const FULL: u32 = 2;
+const NOT_FINITE: u32 = 4;
+
+/// What the linear solver of a connectivity needs to know, before anything is allocated.
+#[derive(Debug)]
+pub struct Plan {
+    layout: Layout,
+    /// Per block of the finest level: where it is in the tangent's upper triangle.
+    source: Vec<u32>,
+    point_of: Vec<u32>,
+    plate: Vec<u32>,
+    contact_points: usize,
+    upper_blocks: usize,
+}
+
+impl Plan {
+    /// The plan of a mesh; none if it has no hierarchy. `source` says for each block of the pattern
+    /// which block of the upper triangle it is.
+    pub fn new(mesh: &Mesh, pattern: &crate::linalg::Pattern, source: &[u32], upper_blocks: usize) -> Option<Self> {
+        if mesh.hierarchy.is_empty() || mesh.couple.is_some() {
+            return None;
+        }
+        let layout = Layout::new(pattern, &mesh.hierarchy).ok()?;
+        let finest = &layout.levels[0];
+        let of_block = |&at: &u32| if at == NOWHERE { NOWHERE } else { source[at as usize] };
+        let mut point_of = vec![NOWHERE; mesh.nodes.len()];
+        for (point, &node) in mesh.contact_nodes.iter().enumerate() {
+            point_of[node as usize] = point as u32;
+        }
+        Some(Self {
+            source: finest.source.iter().map(of_block).collect(),
+            point_of,
+            plate: mesh.plate_nodes.clone(),
+            contact_points: mesh.contact_nodes.len(),
+            upper_blocks,
+            layout,
+        })
+    }
+
+    /// Bytes of a slot: the widest array, and all together.
+    pub fn bytes<R>(&self) -> (u64, u64) {
+        let n = 3 * self.layout.levels[0].nodes;
+        let basis = (RESTART + 1) * n;
+        let (mut widest, mut all) = (basis, (2 * RESTART + 5) * n + small_numbers() + 2 * (RESTART + 3) * n.div_ceil(CHUNK));
+        for level in &self.layout.levels {
+            let (array, sum) = slot_numbers(level);
+            (widest, all) = (widest.max(array), all + sum);
+        }
+        let rows = POINT_ROWS * self.contact_points * size_of::<R>();
+        ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + rows) as u64)
+    }
+}
+
+/// Numbers of a slot's small arrays, as `krylov.wgsl` lays them out.
+fn small_numbers() -> usize {
+    5 * RESTART + 2 + RESTART * (RESTART + 1) / 2
+}
+
+/// One right-hand side of every slot, `[slot][component][node]`.
+#[derive(Debug, Default)]
+pub struct Right {
+    /// Right-hand sides; nothing at fixed unknowns.
+    pub rhs: Vec<f32>,
+    /// Nothing but the values of fixed unknowns.
+    pub values: Vec<f32>,
+    /// Guesses, the values of fixed unknowns in them; none if all are zero.
+    pub guess: Option<Vec<f32>>,
+    /// Relative residual to be reached, by slot.
+    pub tolerance: Vec<f32>,
+    /// Whether it is relative to the residual at the guess, by slot.
+    pub relative_to_guess: Vec<bool>,
+}
+
+/// The linear solver of a batch's slots.
+#[derive(Debug)]
+pub struct Linear<R> {
+    levels: Levels,
+    records: StorageBuffer<Record>,
+    rows: StorageBuffer<R>,
+    rhs: StorageBuffer<f32>,
+    solution: StorageBuffer<f32>,
+    guess: StorageBuffer<f32>,
+    answer: StorageBuffer<f32>,
+    update: Vec<Call>,
+    /// The residual at `solution` and its square; what tolerances are measured by; the first basis
+    /// vector; an iteration; the answer.
+    residual: Vec<Call>,
+    measure: Call,
+    begin: Vec<Call>,
+    iteration: Vec<Call>,
+    finish: Vec<Call>,
+    unknowns: usize,
+    /// Krylov iterations that the last solve took, a side.
+    last: [AtomicUsize; 2],
+}
+
+impl<R: DeviceReal> Linear<R> {
+    /// The arrays and kernels for so many slots; `blocks` are the tangents that the gathering
+    /// kernels leave.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn new(context: &GpuContext, plan: &Plan, slots: usize, blocks: &StorageBuffer<R>) -> Result<Self, GpuError> {
+        let finest = &plan.layout.levels[0];
+        let unknowns = 3 * finest.nodes;
+        let chunks = unknowns.div_ceil(CHUNK);
+        let zeros = |what: &str, numbers: usize| context.zeros::<f32>(what, slots * numbers);
+        let records = context.zeros("linear solves", slots)?;
+        let levels = Levels::new(context, &plan.layout, slots, &records)?;
+        let level = &levels.levels[0];
+        let rows = context.zeros("contact rows of the matrix", slots * POINT_ROWS * plan.contact_points)?;
+        let source = context.array("blocks of the matrix", &plan.source)?;
+        let point_of = context.array("contact points by node", &plan.point_of)?;
+        let plate = context.array("plate nodes", &plan.plate)?;
+        let counts = context.block("sizes of the tangent")?;
+        context.upload(&counts, &[[plan.upper_blocks as u32, plan.contact_points as u32, 0, 0]])?;
+        let (rhs, solution) = (zeros("right-hand sides", unknowns)?, zeros("solutions", unknowns)?);
+        let (guess, answer) = (zeros("guesses", unknowns)?, zeros("answers", unknowns)?);
+        let basis = zeros("Krylov vectors", (RESTART + 1) * unknowns)?;
+        let preconditioned = zeros("preconditioned vectors", RESTART * unknowns)?;
+        let sums = zeros("partial sums", (RESTART + 2) * chunks)?;
+        let squares = zeros("partial squares", chunks)?;
+        let small = zeros("least-squares problems", small_numbers())?;
+
+        let assemble = context.pipeline(&ASSEMBLE, R::PRECISION)?;
+        let arguments = vec![
+            level.block.binding(),
+            source.binding(),
+            level.diagonal.binding(),
+            point_of.binding(),
+            blocks.binding(),
+            rows.binding(),
+            level.matrix.binding(),
+            counts.binding(),
+        ];
+        let assemble = Call::of(context.bind(&assemble, arguments)?, finest.blocks());
+        let call = |kernel, threads, arguments: Vec<wgpu::BindingResource<'_>>| {
+            Call::new(context, kernel, threads, [vec![level.block.binding()], arguments].concat())
+        };
+        let with_product = |kernel, threads, x, arguments: Vec<wgpu::BindingResource<'_>>| {
+            Call::new(context, kernel, threads, [level.product(x), arguments].concat())
+        };
+        let (r, w) = (records.binding(), &level.b);
+        let by_rows = row_threads(finest.nodes);
+        let dots = || call(&KRYLOV_DOTS, chunks * SUMMING, vec![r.clone(), basis.binding(), w.binding(), sums.binding()]);
+        let orthogonalise = || {
+            let arguments = vec![r.clone(), basis.binding(), sums.binding(), w.binding(), small.binding(), squares.binding()];
+            call(&KRYLOV_ORTHOGONALISE, chunks * SUMMING, arguments)
+        };
+        let normalise = || call(&KRYLOV_NORMALISE, unknowns, vec![r.clone(), w.binding(), basis.binding()]);
+        let residual = vec![rhs.binding(), level.fixed.binding(), w.binding(), r.clone()];
+        let product = vec![level.fixed.binding(), r.clone(), w.binding(), preconditioned.binding()];
+        let combine = vec![r.clone(), small.binding(), preconditioned.binding(), solution.binding(), answer.binding()];
+        // Twice is enough (Giraud, Langou & Rozloznik, Comput. Math. Appl. 50, 2005).
+        let iteration = vec![
+            with_product(&KRYLOV_PRODUCT, by_rows, &level.x, product)?,
+            dots()?,
+            orthogonalise()?,
+            dots()?,
+            orthogonalise()?,
+            call(&KRYLOV_ADVANCE, 1, vec![r.clone(), squares.binding(), small.binding()])?,
+            normalise()?,
+        ];
+        let finish = vec![
+            call(&KRYLOV_LEAST_SQUARES, 1, vec![r.clone(), small.binding()])?,
+            call(&KRYLOV_COMBINE, unknowns, combine)?,
+            with_product(&PLATE_FORCE, 1, &answer, vec![plate.binding(), r.clone()])?,
+        ];
+        let begin = vec![call(&KRYLOV_BEGIN, 1, vec![r.clone(), sums.binding(), small.binding()])?, normalise()?];
+        let measure = call(&KRYLOV_MEASURE, 1, vec![r.clone(), sums.binding()])?;
+        let residual = vec![with_product(&RESIDUAL, by_rows, &solution, residual)?, dots()?];
+        Ok(Self {
+            update: vec![assemble],
+            residual,
+            measure,
+            begin,
+            iteration,
+            finish,
+            levels,
+            records,
+            rows,
+            rhs,
+            solution,
+            guess,
+            answer,
+            unknowns,
+            last: [FIRST_GUESS, FIRST_GUESS].map(AtomicUsize::new),
+        })
+    }
+
+    /// Appends what makes the hierarchy's matrices from the tangents that are on the device.
+    /// `rows` are the contact rows `[slot][slides, force rows, displacement rows][point]`, `fixed`
+    /// the fixed components `[slot][node]`, a bit each.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn update(
+        &self,
+        context: &GpuContext,
+        list: &mut Recorder<'_>,
+        rows: &[R],
+        fixed: &[u32],
+        slots: usize,
+    ) -> Result<(), GpuError> {
+        context.upload_at(&self.rows, 0, rows)?;
+        context.upload_at(&self.levels.levels[0].fixed, 0, fixed)?;
+        append(&self.update, list, slots)?;
+        append(&self.levels.update, list, slots)
+    }
+
+    /// Solves with right-hand side number `side` of each slot after the kernels of `list`; returns
+    /// the solutions `[slot][component][node]`. `and` are other arrays to be read at the first
+    /// chance.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn solve(
+        &self,
+        context: &GpuContext,
+        mut list: Recorder<'_>,
+        side: usize,
+        right: &Right,
+        and: (&StorageBuffer<u32>, &mut [u32]),
+    ) -> Result<(Vec<f32>, Vec<SideReport>), GpuError> {
+        let slots = right.tolerance.len();
+        let fresh = |(&tolerance, &relative): (&f32, &bool)| Record {
+            tolerance,
+            relative_to_start: relative.into(),
+            ..Record::default()
+        };
+        let mut records: Vec<Record> = right.tolerance.iter().zip(&right.relative_to_guess).map(fresh).collect();
+        context.upload_at(&self.records, 0, &records)?;
+        context.upload_at(&self.rhs, 0, &right.rhs)?;
+        context.upload_at(&self.solution, 0, &right.values)?;
+        append(&self.residual, &mut list, slots)?;
+        self.measure.append(&mut list, slots)?;
+        if let Some(guess) = &right.guess {
+            context.upload_at(&self.guess, 0, guess)?;
+            list.copy(&self.guess, 0, &self.solution, 0, slots * self.unknowns)?;
+            append(&self.residual, &mut list, slots)?;
+        }
+        append(&self.begin, &mut list, slots)?;
+        let mut answer = vec![0.0; slots * self.unknowns];
+        let expected = self.last[side].load(Ordering::Relaxed);
+        self.iterate(&mut list, expected + 1, slots)?;
+        let reads = &mut [self.records.read(0, &mut records)?, self.answer.read(0, &mut answer)?, and.0.read(0, and.1)?];
+        list.submit_and_read(reads)?;
+        while records.iter().any(|record| record.goes_on()) {
+            let mut list = context.record();
+            // All slots are in the same step of their cycles: those that go on are all full, or none.
+            let full: Vec<usize> = (0..slots).filter(|&slot| records[slot].done == FULL && records[slot].goes_on()).collect();
+            for &slot in &full {
+                // The next cycle begins at the answer of this one.
+                list.copy(&self.answer, slot * self.unknowns, &self.solution, slot * self.unknowns, self.unknowns)?;
+                (records[slot].done, records[slot].vectors, records[slot].steps) = (0, 0, 0);
+                context.upload_at(&self.records, slot, &[records[slot]])?;
+            }
+            if !full.is_empty() {
+                append(&self.residual, &mut list, slots)?;
+                append(&self.begin, &mut list, slots)?;
+            }
+            self.iterate(&mut list, FIRST_GUESS, slots)?;
+            list.submit_and_read(&mut [self.records.read(0, &mut records)?, self.answer.read(0, &mut answer)?])?;
+        }
+        let most = records.iter().map(|record| record.iterations as usize).max().unwrap_or(FIRST_GUESS);
+        self.last[side].store(most, Ordering::Relaxed);
+        Ok((answer, records.iter().map(Record::report).collect()))
+    }
+
+    fn iterate(&self, list: &mut Recorder<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
+        for _ in 0..times {
+            append(&self.levels.cycle, list, slots)?;
+            append(&self.iteration, list, slots)?;
+        }
+        append(&self.finish, list, slots)
+    }
+}
+
+impl Record {
+    fn goes_on(&self) -> bool {
+        (self.done == 0 || self.done == FULL) && (self.iterations as usize) < MOST
+    }
+
+    fn report(&self) -> SideReport {
+        SideReport {
+            ended: match self.done {
+                CONVERGED => Ended::Converged,
+                NOT_FINITE => Ended::NotFinite,
+                _ => Ended::Stalled,
+            },
+            iterations: self.iterations as usize,
+            rhs_norm: self.rhs_norm.into(),
+            start_norm: self.start_norm.into(),
+            residual: self.residual.into(),
+            along: self.along.into(),
+        }
+    }
+}
+
+fn append(calls: &[Call], list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+    calls.iter().try_for_each(|call| call.append(list, slots))
+}

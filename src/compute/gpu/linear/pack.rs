@@ -1,0 +1,103 @@
+//! Requests as the device takes them, and its answers as they are asked for.
+
+use super::super::buffers::DeviceReal;
+use super::{POINT_ROWS, Right};
+use crate::compute::linear::{LinearRequest, Side, SideReport};
+use crate::contact::coulomb::Status;
+
+/// The requests of a dispatch, slot by slot.
+#[derive(Debug, Default)]
+pub struct Packed<R> {
+    /// Contact rows `[slot][slides, force rows, displacement rows][point]`.
+    pub rows: Vec<R>,
+    /// Fixed components `[slot][node]`, a bit each.
+    pub fixed: Vec<u32>,
+    /// Right-hand sides; nothing for slots that have fewer than others.
+    pub sides: Vec<Right>,
+    /// What the numbers of each side of each slot were multiplied by: a power of two, so that no
+    /// digit is lost and squares stay within the range of f32.
+    factors: Vec<Vec<f64>>,
+}
+
+impl<R: DeviceReal> Packed<R> {
+    /// Packs requests in the order of their slots.
+    pub fn new<'a, 'b: 'a>(requests: impl Iterator<Item = &'a LinearRequest<'b>> + Clone) -> Self {
+        let mut out = Self { rows: Vec::new(), fixed: Vec::new(), sides: Vec::new(), factors: Vec::new() };
+        for request in requests.clone() {
+            out.pack_rows(request);
+            let bits = |f: &[bool; 3]| u32::from(f[0]) | u32::from(f[1]) << 1 | u32::from(f[2]) << 2;
+            out.fixed.extend(request.fixed.as_chunks::<3>().0.iter().map(bits));
+        }
+        let sides = requests.clone().map(|r| r.sides.len()).max().unwrap_or(0);
+        for side in 0..sides {
+            let (mut right, mut factors) = (Right::default(), Vec::new());
+            let has_guess = requests.clone().any(|r| r.sides.get(side).is_some_and(|s| s.x.iter().any(|x| *x != 0.0)));
+            for request in requests.clone() {
+                factors.push(pack_side(request, request.sides.get(side), has_guess, &mut right));
+            }
+            out.sides.push(right);
+            out.factors.push(factors);
+        }
+        out
+    }
+
+    fn pack_rows(&mut self, request: &LinearRequest<'_>) {
+        let (first, points) = (self.rows.len(), request.rows.len());
+        self.rows.resize(first + POINT_ROWS * points, R::ZERO);
+        for (k, rows) in request.rows.iter().enumerate().filter(|(_, rows)| rows.status == Status::Slip) {
+            let numbers =
+                std::iter::once(&1.0).chain(rows.force_rows.as_flattened()).chain(rows.displacement_rows.as_flattened());
+            for (c, &number) in numbers.enumerate() {
+                self.rows[first + c * points + k] = R::of(number);
+            }
+        }
+    }
+
+    /// Writes what the device answered for a slot.
+    pub fn unpack(&self, slot: usize, answers: &[super::super::batch::Answers], sides: &mut [Side<'_>]) {
+        for (number, side) in sides.iter_mut().enumerate() {
+            let (solutions, reports) = &answers[number];
+            let back = 1.0 / self.factors[number][slot];
+            let nodes = side.x.len() / 3;
+            let solution = &solutions[slot * 3 * nodes..][..3 * nodes];
+            for (node, x) in side.x.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+                for (c, x) in x.iter_mut().enumerate() {
+                    *x = f64::from(solution[c * nodes + node]) * back;
+                }
+            }
+            let report = reports[slot];
+            side.report = SideReport {
+                rhs_norm: report.rhs_norm * back,
+                start_norm: report.start_norm * back,
+                residual: report.residual * back,
+                along: report.along * back,
+                ..report
+            };
+        }
+    }
+}
+
+/// Appends a side of a slot; returns the factor of its numbers.
+fn pack_side(request: &LinearRequest<'_>, side: Option<&Side<'_>>, has_guess: bool, right: &mut Right) -> f64 {
+    let n = request.fixed.len();
+    let largest = side.map_or(0.0, |side| side.rhs.iter().fold(0.0_f64, |m, b| m.max(b.abs())));
+    let factor = if largest > 0.0 && largest.is_finite() { (-largest.log2().floor()).exp2() } else { 1.0 };
+    let number = |value: Option<f64>| value.map_or(0.0, |value| (value * factor) as f32);
+    let rhs = |i: usize| side.map(|side| side.rhs[i]);
+    for c in 0..3 {
+        for i in (c..n).step_by(3) {
+            let fixed = request.fixed[i];
+            right.rhs.push(if fixed { 0.0 } else { number(rhs(i)) });
+            right.values.push(if fixed { number(rhs(i)) } else { 0.0 });
+        }
+    }
+    if has_guess {
+        let guess = right.guess.get_or_insert_default();
+        for c in 0..3 {
+            guess.extend((c..n).step_by(3).map(|i| if request.fixed[i] { number(rhs(i)) } else { number(side.map(|s| s.x[i])) }));
+        }
+    }
+    right.tolerance.push(side.map_or(0.0, |side| side.tolerance as f32));
+    right.relative_to_guess.push(side.is_some_and(|side| side.relative_to_guess));
+    factor
+}

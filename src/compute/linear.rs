@@ -1,0 +1,69 @@
+//! Linear systems that are solved where the tangents are: what is asked, and how it went.
+
+use super::Outcome;
+use crate::contact::coulomb::Rows;
+
+/// Asks to form the tangent of one case and to solve linear systems with it, without bringing it to
+/// the host. Over a plane only: contact conditions are stated in the axes of space.
+#[derive(Debug)]
+pub struct LinearRequest<'a> {
+    /// Case index in the batch.
+    pub case: usize,
+    /// Trial displacement, three a node.
+    pub displacement: &'a [f64],
+    /// Contact conditions; those of points that slide replace the rows of their nodes.
+    pub rows: &'a [Rows<f64>],
+    /// Per unknown: its row is one of the identity, whatever the tangent holds.
+    pub fixed: &'a [bool],
+    /// The systems.
+    pub sides: Vec<Side<'a>>,
+    /// Receives how the tangent went.
+    pub outcome: Outcome,
+}
+
+/// One right-hand side.
+#[derive(Debug)]
+pub struct Side<'a> {
+    /// Right-hand side, three a node; at fixed unknowns their values.
+    pub rhs: &'a [f64],
+    /// Relative residual to be reached over the free unknowns, the fixed ones' part taken over to
+    /// the right-hand side. A device in single precision stops at 1.2e-5 of the first residual.
+    pub tolerance: f64,
+    /// The tolerance is of the residual at the guess, not of the right-hand side.
+    pub relative_to_guess: bool,
+    /// The guess (zeros are one), and the solution if it ended well.
+    pub x: &'a mut [f64],
+    /// Receives how it went.
+    pub report: SideReport,
+}
+
+/// How a solution ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ended {
+    /// Nobody tried: the backend solves no systems.
+    #[default]
+    NotTried,
+    /// The tolerance is met.
+    Converged,
+    /// It is not, and will not be; `x` is the best iterate.
+    Stalled,
+    /// A number of the system is not finite.
+    NotFinite,
+}
+
+/// What is known of a solution.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SideReport {
+    /// How it ended.
+    pub ended: Ended,
+    /// Krylov iterations.
+    pub iterations: usize,
+    /// Norm of the right-hand side over the free unknowns, the fixed ones' part taken over.
+    pub rhs_norm: f64,
+    /// Norm of the residual at the guess.
+    pub start_norm: f64,
+    /// Norm of the residual reached, by the recurrence.
+    pub residual: f64,
+    /// What the plate's summed f_z changes by along the solution.
+    pub along: f64,
+}

@@ -1,0 +1,228 @@
+//! The linear system of an iteration: formed and solved on the host, or where the tangents are
+//! computed.
+
+use super::Newton;
+use crate::compute::Outcome;
+use crate::compute::handle::Evaluate;
+use crate::compute::linear::{Ended, LinearRequest, Side, SideReport};
+use crate::contact::pair::leave_even;
+use crate::linalg::{LinalgError, SolverKind};
+use crate::mesh::Mesh;
+use crate::solver::outcome::{Halt, StepFailure};
+use crate::solver::phases::{Lap, Phase};
+use crate::solver::rigid::turn;
+use crate::solver::system::{apply_contact, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::systems::Systems;
+use crate::solver::{Control, SolverError};
+
+/// Share of the forces at the contact to which the response to a unit indentation is solved, which
+/// gives the change of h that a missing normal force asks for.
+const UNIT_RESPONSE: f64 = 0.01;
+
+/// What a linear system took.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Linearised {
+    /// Krylov iterations.
+    pub krylov: usize,
+    /// It was solved directly, because the iteration stalled.
+    pub fallback: bool,
+    /// Change of h, where the normal force is held.
+    pub delta_h: f64,
+}
+
+impl Newton {
+    /// Forms and solves the linear system: the correction is in `self.delta`.
+    pub(super) fn linearise(
+        &mut self,
+        case: &mut dyn Evaluate,
+        mesh: &Mesh,
+        control: &Control,
+        eta: f64,
+        first: bool,
+    ) -> Result<Linearised, Halt> {
+        let mut lap = Lap::start();
+        fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
+        right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
+        self.unit_rhs.fill(0.0);
+        for &n in &self.boundary.plate {
+            self.unit_rhs[3 * n as usize + 2] = -1.0;
+        }
+        lap.end(&mut self.times, Phase::Contact);
+        if let Some(done) = self.solve_there(case, mesh, control, eta, first)? {
+            return Ok(done);
+        }
+        self.solve_here(case, mesh, control, eta, first)
+    }
+
+    /// As [`Newton::linearise`], by the backend; `None` if it solves no such systems, or if it
+    /// stalled: the host has a direct solver to fall back on.
+    fn solve_there(
+        &mut self,
+        case: &mut dyn Evaluate,
+        mesh: &Mesh,
+        control: &Control,
+        eta: f64,
+        first: bool,
+    ) -> Result<Option<Linearised>, Halt> {
+        let Systems::Plane(solver) = &self.linear else { return Ok(None) };
+        if solver.kind() != SolverKind::Multigrid || self.boundary.against.is_some() {
+            return Ok(None);
+        }
+        let mut lap = Lap::start();
+        self.correction.fill(0.0);
+        let side =
+            |rhs, tolerance, relative_to_guess, x| Side { rhs, tolerance, relative_to_guess, x, report: SideReport::default() };
+        let mut sides = vec![side(&self.rhs, eta, false, &mut self.correction)];
+        if control.normal_force.is_some() {
+            if first {
+                self.unit_response.fill(0.0);
+                self.unit_response.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
+            }
+            // The guess of the first iteration is the measure: see `unit_tolerance`.
+            let share = eta.min(UNIT_RESPONSE);
+            let tolerance = if first { share } else { unit_share(share, self.unit_scale) };
+            sides.push(side(&self.unit_rhs, tolerance, first, &mut self.unit_response));
+        }
+        let (displacement, rows, fixed) = (&self.current.u, &self.current.rows, &self.fixed);
+        let mut request = LinearRequest { case: 0, displacement, rows, fixed, sides, outcome: Outcome::Valid };
+        case.linear(&mut request)?;
+        let outcome = request.outcome;
+        let reports: Vec<SideReport> = request.sides.iter().map(|side| side.report).collect();
+        if reports[0].ended == Ended::NotTried {
+            return Ok(None);
+        }
+        lap.end(&mut self.times, Phase::LinearSolve);
+        if let Outcome::Inverted { element, point } = outcome {
+            return Err(StepFailure::Inverted { element, point }.into());
+        }
+        if let Some(unit) = reports.get(1).filter(|_| first) {
+            self.unit_scale = if unit.rhs_norm > 0.0 { (unit.start_norm / unit.rhs_norm).min(1.0) } else { 1.0 };
+        }
+        let krylov = reports.iter().map(|report| report.iterations).sum();
+        // The response to a unit indentation only says how far to move the plate: the best iterate
+        // will do.
+        if reports[0].ended != Ended::Converged || reports.iter().any(|report| report.ended == Ended::NotFinite) {
+            log::debug!("  the device's linear solve ended {:?} after {krylov} iterations", reports[0].ended);
+            return Ok(None);
+        }
+        let mut delta_h = 0.0;
+        if let (Some(target), Some(unit)) = (control.normal_force, reports.get(1)) {
+            delta_h = self.move_plate(target, reports[0].along, unit.along)?;
+        }
+        self.delta.copy_from_slice(&self.correction);
+        self.current.expand(mesh, &self.boundary, &mut self.delta);
+        Ok(Some(Linearised { krylov, fallback: false, delta_h }))
+    }
+
+    /// The change of h by which the plate has the force that is to be held, given what its force
+    /// changes by along the correction and along the response to a unit indentation; adds that
+    /// response to the correction.
+    fn move_plate(&mut self, target: f64, by_correction: f64, by_unit: f64) -> Result<f64, Halt> {
+        let delta_h = (target - self.current.plate_force + by_correction) / -by_unit;
+        if !delta_h.is_finite() {
+            return Err(StepFailure::Linear("no contact carries the normal force that is to be held".into()).into());
+        }
+        for (d, b) in self.correction.iter_mut().zip(&self.unit_response) {
+            *d += delta_h * b;
+        }
+        Ok(delta_h)
+    }
+
+    /// As [`Newton::linearise`], on the host.
+    fn solve_here(
+        &mut self,
+        case: &mut dyn Evaluate,
+        mesh: &Mesh,
+        control: &Control,
+        eta: f64,
+        first: bool,
+    ) -> Result<Linearised, Halt> {
+        let mut lap = Lap::start();
+        let matrix = self.linear.matrix_mut();
+        if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut matrix.blocks)? {
+            return Err(StepFailure::Inverted { element, point }.into());
+        }
+        lap.end(&mut self.times, Phase::Tangent);
+        if control.normal_force.is_some() {
+            plate_functional(matrix, &self.boundary.plate, &mut self.functional);
+        }
+        if self.boundary.against.is_some() {
+            turn(matrix, mesh, &self.current.frames);
+        }
+        if self.boundary.pair.is_none() && self.boundary.encounter.is_none() {
+            apply_contact(matrix, mesh, &self.current.rows);
+        }
+        lap.end(&mut self.times, Phase::Contact);
+        match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
+            (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
+            (Systems::Pair(solver), Some(pair), None) => {
+                solver.refresh(&pair.interface, &self.current.rows, &self.fixed, &self.boundary.prescribed)?;
+            }
+            (Systems::Couple(solver), None, Some(encounter)) => {
+                solver.refresh(&encounter.interface, &self.current.rows, &self.fixed)?;
+            }
+            _ => return Err(StepFailure::Linear("the solver is made for another opponent".into()).into()),
+        }
+        lap.end(&mut self.times, Phase::LinearUpdate);
+        self.correction.fill(0.0);
+        let solved = match self.linear.solve(&self.rhs, eta, &mut self.correction, true) {
+            Ok(report) => report,
+            Err(error) => return Err(StepFailure::Linear(error.to_string()).into()),
+        };
+        let (mut krylov, fallback) = (solved.iterations, solved.fallback);
+        let mut delta_h = 0.0;
+        if let Some(target) = control.normal_force {
+            // Bordered system: the response to a unit indentation, then h from the force equation.
+            let tolerance = self.unit_tolerance(mesh, eta, first)?;
+            // It only says how far to move the plate: an answer that is not quite so good is not
+            // worth a direct solution.
+            match self.linear.solve(&self.unit_rhs, tolerance, &mut self.unit_response, false) {
+                Ok(report) => krylov += report.iterations,
+                Err(LinalgError::Stalled { iterations, .. }) => krylov += iterations,
+                Err(error) => return Err(StepFailure::Linear(error.to_string()).into()),
+            }
+            let (current, boundary, delta) = (&self.current, &self.boundary, &mut self.delta);
+            let mut along = |x: &[f64]| {
+                delta.copy_from_slice(x);
+                current.expand(mesh, boundary, delta);
+                self.functional.iter().zip(&*delta).map(|(w, x)| w * x).sum::<f64>()
+            };
+            let (by_delta, by_unit) = (along(&self.correction), along(&self.unit_response));
+            delta_h = self.move_plate(target, by_delta, by_unit)?;
+        }
+        self.delta.copy_from_slice(&self.correction);
+        self.current.expand(mesh, &self.boundary, &mut self.delta);
+        if let Systems::Pair(solver) = &self.linear {
+            solver.symmetrise(&mut self.delta);
+        } else if self.boundary.is_even() {
+            leave_even(&self.boundary.mirror, &mut self.delta);
+            self.correction.copy_from_slice(&self.delta);
+            self.current.contract(mesh, &self.boundary, &mut self.correction);
+        }
+        lap.end(&mut self.times, Phase::LinearSolve);
+        Ok(Linearised { krylov, fallback, delta_h })
+    }
+
+    /// The relative residual to which the response to a unit indentation is solved, and the guess
+    /// for it: the response of the iteration before, or at first a body that moves as one. What
+    /// that leaves at the contact is the measure: the forces of the large elements at a plate that
+    /// moves alone are R/a times as large, and a residual that is small beside those is not so
+    /// beside the contact's.
+    fn unit_tolerance(&mut self, mesh: &Mesh, eta: f64, first: bool) -> Result<f64, SolverError> {
+        if first {
+            let mut guess = vec![0.0; self.unit_rhs.len()];
+            let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
+            guess.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
+            self.current.contract(mesh, &self.boundary, &mut guess);
+            let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
+            self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };
+            self.unit_response.copy_from_slice(&guess);
+        }
+        Ok(unit_share(eta.min(UNIT_RESPONSE), self.unit_scale))
+    }
+}
+
+/// The relative residual at which that of the contact's forces is `share`.
+fn unit_share(share: f64, unit_scale: f64) -> f64 {
+    (share * unit_scale).clamp(1e-9, 0.1)
+}
