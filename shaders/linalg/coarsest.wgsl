@@ -16,7 +16,7 @@ fn solve_coarsest(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
         return;
     }
     let first = 3u * slot * level.nodes;
-    for (var k = 0u; k < arrayLength(&recurrence); k++) {
+    for (var k = 0u; k < level.coarsest_steps; k++) {
         let shares = recurrence[k];
         for (var node = local; node < level.nodes; node += 256u) {
             var r = vec3<real>(b[first + node], b[first + level.nodes + node], b[first + 2u * level.nodes + node]);

@@ -9,8 +9,8 @@ struct Level {
     products: u32,          // blocks of A P
     coarse_width: u32,
     restart: u32,           // most Krylov vectors kept
-    reserved_0: u32,
-    reserved_1: u32,
+    plate_nodes: u32,       // nodes of the plate
+    coarsest_steps: u32,    // of the coarsest level's polynomial
 }
 
 // A workgroup of rows: its nodes, three components of each.

@@ -10,7 +10,7 @@ var<workgroup> sums: array<real, THREADS>;
 @compute @workgroup_size(256)
 fn plate_force(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     var sum: real = 0.0;
-    for (var i = local; i < arrayLength(&plate); i += THREADS) {
+    for (var i = local; i < level.plate_nodes; i += THREADS) {
         sum += row_times(group.y, 2u, plate[i]);
     }
     sums[local] = sum;

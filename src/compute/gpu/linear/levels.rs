@@ -25,7 +25,8 @@ struct LevelBlock {
     products: u32,
     coarse_width: u32,
     restart: u32,
-    reserved: [u32; 2],
+    plate_nodes: u32,
+    coarsest_steps: u32,
 }
 
 /// What a slot solves, as `record.wgsl` has it.
@@ -97,6 +98,14 @@ impl Call {
 /// Threads of the kernels with a thread for each row of so many nodes.
 pub fn row_threads(nodes: usize) -> usize {
     nodes.div_ceil(NODES_IN_GROUP) * ROWS_IN_GROUP
+}
+
+/// What all levels share.
+#[derive(Clone, Copy, Debug)]
+pub struct Common {
+    slots: usize,
+    plate_nodes: usize,
+    coarsest_steps: usize,
 }
 
 /// One level's arrays.
@@ -181,7 +190,8 @@ impl Level {
     ///
     /// # Errors
     /// What the device says.
-    pub fn new(context: &GpuContext, layout: &LevelLayout, next: Option<&LevelLayout>, slots: usize) -> Result<Self, GpuError> {
+    pub fn new(context: &GpuContext, layout: &LevelLayout, next: Option<&LevelLayout>, common: Common) -> Result<Self, GpuError> {
+        let slots = common.slots;
         let zeros = |what: &str, numbers: usize| context.zeros(what, slots * numbers);
         let transfer = match (&layout.transfer, next) {
             (Some(transfer), Some(next)) => Some(Transfer::new(context, transfer, next, slots)?),
@@ -194,7 +204,8 @@ impl Level {
             products: transfer.as_ref().map_or(0, |t| t.products as u32),
             coarse_width: next.map_or(0, |next| next.width as u32),
             restart: RESTART as u32,
-            reserved: [0; 2],
+            plate_nodes: common.plate_nodes as u32,
+            coarsest_steps: common.coarsest_steps as u32,
         };
         let block = context.block("a level")?;
         context.upload(&block, &[LevelShape(sizes)])?;
@@ -262,10 +273,17 @@ impl Levels {
     ///
     /// # Errors
     /// What the device says.
-    pub fn new(context: &GpuContext, layout: &Layout, slots: usize, records: &StorageBuffer<Record>) -> Result<Self, GpuError> {
+    pub fn new(
+        context: &GpuContext,
+        layout: &Layout,
+        slots: usize,
+        plate_nodes: usize,
+        records: &StorageBuffer<Record>,
+    ) -> Result<Self, GpuError> {
         let layouts = &layout.levels;
+        let common = Common { slots, plate_nodes, coarsest_steps: layout.coarsest.len() };
         let levels = (0..layouts.len())
-            .map(|l| Level::new(context, &layouts[l], layouts.get(l + 1), slots))
+            .map(|l| Level::new(context, &layouts[l], layouts.get(l + 1), common))
             .collect::<Result<Vec<_>, _>>()?;
         let shares = layout
             .smoother

@@ -149,7 +149,7 @@ impl<R: DeviceReal> Linear<R> {
         let chunks = unknowns.div_ceil(CHUNK);
         let zeros = |what: &str, numbers: usize| context.zeros::<f32>(what, slots * numbers);
         let records = context.zeros("linear solves", slots)?;
-        let levels = Levels::new(context, &plan.layout, slots, &records)?;
+        let levels = Levels::new(context, &plan.layout, slots, plan.plate.len(), &records)?;
         let level = &levels.levels[0];
         let rows = context.zeros("contact rows of the matrix", slots * POINT_ROWS * plan.contact_points)?;
         let source = context.array("blocks of the matrix", &plan.source)?;
