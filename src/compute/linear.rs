@@ -31,6 +31,8 @@ pub struct Side<'a> {
     pub tolerance: f64,
     /// The tolerance is of the residual at the guess, not of the right-hand side.
     pub relative_to_guess: bool,
+    /// Krylov iterations that it will probably take: so many are sent off at once.
+    pub expected: usize,
     /// The guess (zeros are one), and the solution if it ended well.
     pub x: &'a mut [f64],
     /// Receives how it went.

@@ -81,6 +81,8 @@ pub struct Newton {
     /// Forces at the contact under a unit indentation of a body that moves as one, over those at a
     /// plate that moves alone.
     unit_scale: f64,
+    /// Krylov iterations of the step's last system and of its response to a unit indentation.
+    expected: [usize; 2],
     /// Time spent since the last converged step; whoever drives the iteration adds what else a step
     /// takes.
     pub times: PhaseTimes,
@@ -115,6 +117,7 @@ impl Newton {
             unit_rhs: vec![0.0; n],
             unit_response: vec![0.0; n],
             unit_scale: 1.0,
+            expected: [0; 2],
             times: PhaseTimes::default(),
         }
     }

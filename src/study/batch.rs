@@ -49,6 +49,7 @@ struct SideAsk {
     rhs: Vec<f64>,
     tolerance: f64,
     relative_to_guess: bool,
+    expected: usize,
     x: Vec<f64>,
     report: SideReport,
 }
@@ -59,6 +60,7 @@ impl LinearAsk {
             rhs: side.rhs.to_vec(),
             tolerance: side.tolerance,
             relative_to_guess: side.relative_to_guess,
+            expected: side.expected,
             x: side.x.to_vec(),
             report: side.report,
         };
@@ -80,8 +82,8 @@ impl LinearAsk {
 
 impl SideAsk {
     fn side(&mut self) -> Side<'_> {
-        let Self { rhs, tolerance, relative_to_guess, x, report } = self;
-        Side { rhs, tolerance: *tolerance, relative_to_guess: *relative_to_guess, x, report: *report }
+        let Self { rhs, tolerance, relative_to_guess, expected, x, report } = self;
+        Side { rhs, tolerance: *tolerance, relative_to_guess: *relative_to_guess, expected: *expected, x, report: *report }
     }
 }
 

@@ -104,7 +104,7 @@ impl System {
 }
 
 fn asked<'a>(case: usize, system: &'a System, tolerance: f64, relative_to_guess: bool, x: &'a mut [f64]) -> LinearRequest<'a> {
-    let sides = vec![Side { rhs: &system.rhs, tolerance, relative_to_guess, x, report: SideReport::default() }];
+    let sides = vec![Side { rhs: &system.rhs, tolerance, relative_to_guess, expected: 2, x, report: SideReport::default() }];
     let System { displacement, rows, fixed, .. } = system;
     LinearRequest { case, displacement, rows, fixed, sides, outcome: Outcome::Valid }
 }
@@ -226,7 +226,14 @@ fn a_hard_system_a_guess_and_what_cannot_be_solved() {
     let mut gpu = Gpu::<f32>::new(context, flat.clone()).unwrap();
     let n = 3 * flat[0].mesh.nodes.len();
     let (zeros, fixed, mut x) = (vec![0.0; n], vec![false; n], vec![0.0; n]);
-    let sides = vec![Side { rhs: &zeros, tolerance: 0.1, relative_to_guess: false, x: &mut x, report: SideReport::default() }];
+    let sides = vec![Side {
+        rhs: &zeros,
+        tolerance: 0.1,
+        relative_to_guess: false,
+        expected: 1,
+        x: &mut x,
+        report: SideReport::default(),
+    }];
     let mut request = LinearRequest { case: 0, displacement: &zeros, rows: &[], fixed: &fixed, sides, outcome: Outcome::Valid };
     gpu.linear(std::slice::from_mut(&mut request)).unwrap();
     assert_eq!(request.sides[0].report.ended, Ended::NotTried);

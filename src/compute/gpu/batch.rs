@@ -4,7 +4,7 @@
 //! slot of the scratch arrays. What a slot gets does not depend on the others. Where scratch memory
 //! is short, a call takes several dispatches.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
@@ -119,9 +119,8 @@ pub struct Batch<R> {
     groups: Vec<(Resident<R>, Kernels)>,
     scratch: Scratch<R>,
     slots: usize,
-    /// How linear systems are solved, if the mesh has a hierarchy; made when the first is.
-    linear_plan: Option<Plan>,
-    linear: OnceLock<Result<Linear<R>, GpuError>>,
+    /// How linear systems are solved, if the mesh has a hierarchy.
+    linear: Option<Linear<R>>,
 }
 
 /// What a batch evaluates.
@@ -178,11 +177,12 @@ impl<R: DeviceReal> Batch<R> {
         let most = chunks.iter().map(|c| c.count).max().unwrap_or(1);
         let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
         let scratch = Scratch::new(&context, sizes, slots)?;
+        let linear = linear_plan.map(|plan| Linear::new(&context, &plan, slots, &scratch.blocks)).transpose()?;
         let groups = residents
             .into_iter()
             .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
             .collect::<Result<_, GpuError>>()?;
-        Ok(Self { context, connectivity, plan, groups, scratch, slots, linear_plan, linear: OnceLock::new() })
+        Ok(Self { context, connectivity, plan, groups, scratch, slots, linear })
     }
 
     /// The device.
@@ -297,7 +297,7 @@ impl<R: DeviceReal> Batch<R> {
 
     /// Whether linear systems are solved here: the mesh has a hierarchy.
     pub fn solves(&self) -> bool {
-        self.linear_plan.is_some()
+        self.linear.is_some()
     }
 
     /// The tangents at increments, and the solutions of the systems of each side with them (see
@@ -315,18 +315,16 @@ impl<R: DeviceReal> Batch<R> {
     ) -> Result<(Vec<Outcome>, Vec<Answers>), GpuError> {
         let (context, slots) = (&self.context, dispatch.cases.len());
         let nothing = || GpuError::Length { what: "the levels of the mesh's hierarchy".into(), expected: 1, given: 0 };
-        let plan = self.linear_plan.as_ref().ok_or_else(nothing)?;
-        let linear = self.linear.get_or_init(|| Linear::new(context, plan, self.slots, &self.scratch.blocks));
-        let linear = linear.as_ref().map_err(GpuError::clone)?;
+        let linear = self.linear.as_ref().ok_or_else(nothing)?;
         self.begin_element(dispatch, increments)?;
         let mut list = context.record();
         self.append(dispatch, Evaluation::Tangent, &mut list)?;
         linear.update(context, &mut list, rows, fixed, slots)?;
         let mut first = vec![0u32; slots];
         let mut answers = Vec::with_capacity(sides.len());
-        for (side, right) in sides.iter().enumerate() {
+        for right in sides {
             let list = std::mem::replace(&mut list, context.record());
-            answers.push(linear.solve(context, list, side, right, (&self.scratch.first_invalid, &mut first))?);
+            answers.push(linear.solve(context, list, right, (&self.scratch.first_invalid, &mut first))?);
         }
         Ok((outcomes(&first), answers))
     }

@@ -19,6 +19,9 @@ use crate::solver::{Control, SolverError};
 /// gives the change of h that a missing normal force asks for.
 const UNIT_RESPONSE: f64 = 0.01;
 
+/// Krylov iterations that the first system of a step is expected to take.
+const EXPECTED: usize = 4;
+
 /// What a linear system took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Linearised {
@@ -70,9 +73,13 @@ impl Newton {
         }
         let mut lap = Lap::start();
         self.correction.fill(0.0);
+        if first {
+            self.expected = [EXPECTED; 2];
+        }
+        let report = SideReport::default();
         let side =
-            |rhs, tolerance, relative_to_guess, x| Side { rhs, tolerance, relative_to_guess, x, report: SideReport::default() };
-        let mut sides = vec![side(&self.rhs, eta, false, &mut self.correction)];
+            |rhs, tolerance, relative_to_guess, expected, x| Side { rhs, tolerance, relative_to_guess, expected, x, report };
+        let mut sides = vec![side(&self.rhs, eta, false, self.expected[0], &mut self.correction)];
         if control.normal_force.is_some() {
             if first {
                 self.unit_response.fill(0.0);
@@ -81,7 +88,7 @@ impl Newton {
             // The guess of the first iteration is the measure: see `unit_tolerance`.
             let share = eta.min(UNIT_RESPONSE);
             let tolerance = if first { share } else { unit_share(share, self.unit_scale) };
-            sides.push(side(&self.unit_rhs, tolerance, first, &mut self.unit_response));
+            sides.push(side(&self.unit_rhs, tolerance, first, self.expected[1], &mut self.unit_response));
         }
         let (displacement, rows, fixed) = (&self.current.u, &self.current.rows, &self.fixed);
         let mut request = LinearRequest { case: 0, displacement, rows, fixed, sides, outcome: Outcome::Valid };
@@ -98,6 +105,7 @@ impl Newton {
         if let Some(unit) = reports.get(1).filter(|_| first) {
             self.unit_scale = if unit.rhs_norm > 0.0 { (unit.start_norm / unit.rhs_norm).min(1.0) } else { 1.0 };
         }
+        self.expected.iter_mut().zip(&reports).for_each(|(expected, report)| *expected = report.iterations);
         let krylov = reports.iter().map(|report| report.iterations).sum();
         // The response to a unit indentation only says how far to move the plate: the best iterate
         // will do.

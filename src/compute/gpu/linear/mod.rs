@@ -3,15 +3,13 @@
 //!
 //! All of it is in single precision, as the preconditioner is on the CPU ([`crate::linalg`], whose
 //! algorithm this is): Newton's residual decides what is a solution, the linear system only how
-//! fast it is found. The list of a solve has as many Krylov iterations as the last one of its cases
-//! took, and one more; slots that have finished leave out what remains, and where some have not,
+//! fast it is found. The list of a solve has as many Krylov iterations as whoever asks expects it to
+//! take, and one more; slots that have finished leave out what remains, and where some have not,
 //! more is sent.
 
 mod levels;
 pub mod pack;
 pub mod sources;
-
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
@@ -30,8 +28,8 @@ use sources::{
 const RESTART: usize = 30;
 /// Iterations after which a system is given up.
 const MOST: usize = 120;
-/// Krylov iterations of the first list of all.
-const FIRST_GUESS: usize = 4;
+/// Krylov iterations of a list that goes on with those that have not finished.
+const MORE: usize = 4;
 /// Entries of a vector that one workgroup sums.
 const CHUNK: usize = 1024;
 /// Threads of the kernels that sum.
@@ -112,6 +110,8 @@ pub struct Right {
     pub tolerance: Vec<f32>,
     /// Whether it is relative to the residual at the guess, by slot.
     pub relative_to_guess: Vec<bool>,
+    /// Krylov iterations that the slot that takes most will probably take.
+    pub expected: usize,
 }
 
 /// The linear solver of a batch's slots.
@@ -133,8 +133,6 @@ pub struct Linear<R> {
     iteration: Vec<Call>,
     finish: Vec<Call>,
     unknowns: usize,
-    /// Krylov iterations that the last solve took, a side.
-    last: [AtomicUsize; 2],
 }
 
 impl<R: DeviceReal> Linear<R> {
@@ -227,7 +225,6 @@ impl<R: DeviceReal> Linear<R> {
             guess,
             answer,
             unknowns,
-            last: [FIRST_GUESS, FIRST_GUESS].map(AtomicUsize::new),
         })
     }
 
@@ -251,8 +248,8 @@ impl<R: DeviceReal> Linear<R> {
         append(&self.levels.update, list, slots)
     }
 
-    /// Solves with right-hand side number `side` of each slot after the kernels of `list`; returns
-    /// the solutions `[slot][component][node]`. `and` are other arrays to be read at the first
+    /// Solves with a right-hand side of each slot after the kernels of `list`; returns the solutions
+    /// `[slot][component][node]`. `and` are other arrays to be read at the first
     /// chance.
     ///
     /// # Errors
@@ -261,7 +258,6 @@ impl<R: DeviceReal> Linear<R> {
         &self,
         context: &GpuContext,
         mut list: Recorder<'_>,
-        side: usize,
         right: &Right,
         and: (&StorageBuffer<u32>, &mut [u32]),
     ) -> Result<(Vec<f32>, Vec<SideReport>), GpuError> {
@@ -284,8 +280,7 @@ impl<R: DeviceReal> Linear<R> {
         }
         append(&self.begin, &mut list, slots)?;
         let mut answer = vec![0.0; slots * self.unknowns];
-        let expected = self.last[side].load(Ordering::Relaxed);
-        self.iterate(&mut list, expected + 1, slots)?;
+        self.iterate(&mut list, right.expected + 1, slots)?;
         let reads = &mut [self.records.read(0, &mut records)?, self.answer.read(0, &mut answer)?, and.0.read(0, and.1)?];
         list.submit_and_read(reads)?;
         while records.iter().any(|record| record.goes_on()) {
@@ -302,11 +297,9 @@ impl<R: DeviceReal> Linear<R> {
                 append(&self.residual, &mut list, slots)?;
                 append(&self.begin, &mut list, slots)?;
             }
-            self.iterate(&mut list, FIRST_GUESS, slots)?;
+            self.iterate(&mut list, MORE, slots)?;
             list.submit_and_read(&mut [self.records.read(0, &mut records)?, self.answer.read(0, &mut answer)?])?;
         }
-        let most = records.iter().map(|record| record.iterations as usize).max().unwrap_or(FIRST_GUESS);
-        self.last[side].store(most, Ordering::Relaxed);
         Ok((answer, records.iter().map(Record::report).collect()))
     }
 

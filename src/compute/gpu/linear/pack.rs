@@ -97,6 +97,7 @@ fn pack_side(request: &LinearRequest<'_>, side: Option<&Side<'_>>, has_guess: bo
             guess.extend((c..n).step_by(3).map(|i| if request.fixed[i] { number(rhs(i)) } else { number(side.map(|s| s.x[i])) }));
         }
     }
+    right.expected = right.expected.max(side.map_or(0, |side| side.expected));
     right.tolerance.push(side.map_or(0.0, |side| side.tolerance as f32));
     right.relative_to_guess.push(side.is_some_and(|side| side.relative_to_guess));
     factor
