@@ -1,4 +1,5 @@
-//! The CPU backend, in f64 (the reference) or f32 (the twin of the single-precision device).
+//! The CPU backend, in f64 (the reference) or f32 (the twin of the single-precision device); or in
+//! f64 with tangents in f32, which is what runs use.
 
 use std::sync::Arc;
 
@@ -24,14 +25,18 @@ const CHUNK: usize = 64;
 /// them for many threads.
 const WAVE_CHUNK: usize = 16;
 
-/// One case as the CPU holds it.
-struct Case<R> {
+/// One case as the CPU holds it; its tangents are formed in `T`.
+struct Case<R, T> {
     material: Material<R>,
     /// Material of the elements from this one on.
     opponent: (usize, Material<R>),
     friction: Friction<R>,
     mesh: Arc<Mesh>,
     geometry: Vec<Geometry<R>>,
+    /// What tangents take of material and geometry.
+    tangent_material: Material<T>,
+    tangent_opponent: Material<T>,
+    tangent_geometry: Vec<Geometry<T>>,
     /// Committed state of each element.
     state: Vec<State<R>>,
     /// The states from which the present step starts.
@@ -43,22 +48,38 @@ struct Case<R> {
     on_symmetry_plane: Vec<bool>,
 }
 
-/// Evaluates a batch on the CPU's cores.
-pub struct Cpu<R> {
+/// Evaluates a batch on the CPU's cores, residuals and states in `R` and tangents in `T`.
+///
+/// A tangent in f32 costs two thirds of one in f64, and is as good: the multigrid levels are in f32
+/// anyway, and the residual alone decides what a converged step is.
+pub struct Cpu<R, T = R> {
     models: Vec<CaseModel>,
-    cases: Vec<Case<R>>,
+    cases: Vec<Case<R, T>>,
     plan: GatherPlan,
     element_force: Vec<Nodal<R>>,
     sweep: Sweep,
     /// Tangents of the elements within the sweep's front.
-    element_tangent: Vec<Tangent<R>>,
+    element_tangent: Vec<Tangent<T>>,
     /// State and elastic energy of each element at the end of a step, before it is committed.
     next: Vec<(State<R>, R)>,
 }
 
 impl<R: Real> Cpu<R> {
-    /// Takes a batch of cases in their undeformed, virgin state.
+    /// Takes a batch of cases in their undeformed, virgin state; everything is in `R`.
+    ///
+    /// # Errors
+    /// [`ComputeError::Connectivity`], [`ComputeError::InvertedMesh`].
     pub fn new(models: Vec<CaseModel>) -> Result<Self, ComputeError> {
+        Self::with_tangents(models)
+    }
+}
+
+impl<R: Real, T: Real> Cpu<R, T> {
+    /// As [`Cpu::new`], with tangents in `T`.
+    ///
+    /// # Errors
+    /// As [`Cpu::new`].
+    pub fn with_tangents(models: Vec<CaseModel>) -> Result<Self, ComputeError> {
         let Some(first) = models.first() else {
             return Ok(Self {
                 models,
@@ -84,32 +105,24 @@ impl<R: Real> Cpu<R> {
             cases,
             plan,
             element_force: vec![[[R::ZERO; 3]; NODES]; elements],
-            element_tangent: vec![[[R::ZERO; 9]; hex8::PAIRS]; sweep.slots()],
+            element_tangent: vec![[[T::ZERO; 9]; hex8::PAIRS]; sweep.slots()],
             sweep,
             next: Vec::new(),
         })
     }
 }
 
-impl<R: Real> Case<R> {
+impl<R: Real, T: Real> Case<R, T> {
     fn new(model: &CaseModel) -> Result<Self, ComputeError> {
         let mesh = model.mesh.clone();
-        let geometry = mesh
-            .elements
-            .iter()
-            .enumerate()
-            .map(|(element, nodes)| {
-                Geometry::new(&nodes.map(|n| mesh.nodes[n as usize])).map_err(|invalid| {
-                    let (Invalid::Inverted(point) | Invalid::Material(point)) = invalid;
-                    ComputeError::InvertedMesh { element, point }
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
+        let opponent = model.opponent.as_ref().unwrap_or(&model.material);
         let mut on_plane = vec![false; mesh.nodes.len()];
         mesh.symmetry_nodes.iter().for_each(|&n| on_plane[n as usize] = true);
         Ok(Self {
             material: model.material.cast(),
-            opponent: (model.opponent_from(), model.opponent.as_ref().unwrap_or(&model.material).cast()),
+            opponent: (model.opponent_from(), opponent.cast()),
+            tangent_material: model.material.cast(),
+            tangent_opponent: opponent.cast(),
             friction: match model.friction {
                 Friction::Coulomb(mu) => Friction::Coulomb(R::of(mu)),
                 Friction::Stick => Friction::Stick,
@@ -119,7 +132,8 @@ impl<R: Real> Case<R> {
             committed: vec![0.0; 3 * mesh.nodes.len()],
             weight: mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect(),
             on_symmetry_plane: mesh.contact_nodes.iter().map(|&n| on_plane[n as usize]).collect(),
-            geometry,
+            geometry: geometry_of(&mesh)?,
+            tangent_geometry: geometry_of(&mesh)?,
             mesh,
         })
     }
@@ -129,19 +143,24 @@ impl<R: Real> Case<R> {
         if element < self.opponent.0 { &self.material } else { &self.opponent.1 }
     }
 
+    #[inline(always)]
+    fn tangent_material(&self, element: usize) -> &Material<T> {
+        if element < self.opponent.0 { &self.tangent_material } else { &self.tangent_opponent }
+    }
+
     /// Committed displacement and increment of an element's nodes; the increment is formed in f64
     /// and rounded once.
     #[inline(always)]
-    fn nodal(&self, element: usize, displacement: &[f64]) -> (Nodal<R>, Nodal<R>) {
+    fn nodal<N: Real>(&self, element: usize, displacement: &[f64]) -> (Nodal<N>, Nodal<N>) {
         let nodes = &self.mesh.elements[element];
-        let mut committed = [[R::ZERO; 3]; NODES];
-        let mut increment = [[R::ZERO; 3]; NODES];
+        let mut committed = [[N::ZERO; 3]; NODES];
+        let mut increment = [[N::ZERO; 3]; NODES];
         for a in 0..NODES {
             let base = 3 * nodes[a] as usize;
             for i in 0..3 {
                 let u = self.committed[base + i];
-                committed[a][i] = R::of(u);
-                increment[a][i] = R::of(displacement[base + i] - u);
+                committed[a][i] = N::of(u);
+                increment[a][i] = N::of(displacement[base + i] - u);
             }
         }
         (committed, increment)
@@ -149,13 +168,13 @@ impl<R: Real> Case<R> {
 
     /// Evaluates `f` on the elements from `first` on into `out`, so many at a time in each thread;
     /// the first invalid element by index is reported.
-    fn each_element<T: Send>(
+    fn each_element<N: Real, O: Send>(
         &self,
         first: usize,
         at_a_time: usize,
         displacement: &[f64],
-        out: &mut [T],
-        f: impl Fn(&Self, usize, &Nodal<R>, &Nodal<R>, &mut T) -> Result<(), Invalid> + Sync,
+        out: &mut [O],
+        f: impl Fn(&Self, usize, &Nodal<N>, &Nodal<N>, &mut O) -> Result<(), Invalid> + Sync,
     ) -> Outcome {
         out.par_chunks_mut(at_a_time)
             .enumerate()
@@ -182,7 +201,7 @@ impl<R: Real> Case<R> {
     }
 }
 
-impl<R: Real> Compute for Cpu<R> {
+impl<R: Real, T: Real> Compute for Cpu<R, T> {
     fn description(&self) -> Description {
         let threads = rayon::current_num_threads();
         Description { device: format!("CPU ({threads} thread{})", if threads == 1 { "" } else { "s" }), precision: R::NAME }
@@ -247,7 +266,8 @@ impl<R: Real> Compute for Cpu<R> {
                     request.displacement,
                     out,
                     |case, e, committed, increment, out| {
-                        hex8::tangent(&case.geometry[e], case.material(e), &case.start[e], committed, increment, out)
+                        let start = &case.start[e].map(|p| PointState { be: p.be.map(convert), alpha: convert(p.alpha) });
+                        hex8::tangent(&case.tangent_geometry[e], case.tangent_material(e), start, committed, increment, out)
                     },
                 );
                 if request.outcome != Outcome::Valid {
@@ -373,6 +393,22 @@ impl<R: Real> Compute for Cpu<R> {
         }
         Ok(())
     }
+}
+
+/// A number in another precision, rounded once.
+#[inline(always)]
+fn convert<R: Real, T: Real>(x: R) -> T {
+    T::of(x.to_f64())
+}
+
+fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<Geometry<R>>, ComputeError> {
+    let of_element = |(element, nodes): (usize, &[u32; NODES])| {
+        Geometry::new(&nodes.map(|n| mesh.nodes[n as usize])).map_err(|invalid| {
+            let (Invalid::Inverted(point) | Invalid::Material(point)) = invalid;
+            ComputeError::InvertedMesh { element, point }
+        })
+    };
+    mesh.elements.iter().enumerate().map(of_element).collect()
 }
 
 /// The blocks of each node's row; `blocks` in the order of the plan's pattern.

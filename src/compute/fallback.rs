@@ -16,7 +16,7 @@ use super::{
 /// [`Compute::take_notes`] and, from then on, in [`Compute::description`].
 pub struct Fallback {
     device: Option<Box<dyn Compute>>,
-    cpu: Option<Cpu<f64>>,
+    cpu: Option<Cpu<f64, f32>>,
     models: Vec<CaseModel>,
     name: String,
     committed: Vec<Option<CaseState>>,
@@ -56,7 +56,7 @@ impl Fallback {
     fn give_up(&mut self, reason: &str) -> Result<(), ComputeError> {
         self.traffic = self.traffic();
         self.device = None;
-        let mut cpu = Cpu::new(self.models.clone())?;
+        let mut cpu = Cpu::with_tangents(self.models.clone())?;
         for (case, state) in self.committed.iter().enumerate() {
             if let Some(state) = state {
                 cpu.restore(case, state)?;

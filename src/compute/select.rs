@@ -74,7 +74,7 @@ pub fn is_there(device: DeviceChoice) -> Result<bool, ComputeError> {
 fn cpu(precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
     Ok(match precision {
         PrecisionChoice::F32 => Box::new(Cpu::<f32>::new(models)?),
-        PrecisionChoice::Auto | PrecisionChoice::F64 => Box::new(Cpu::<f64>::new(models)?),
+        PrecisionChoice::Auto | PrecisionChoice::F64 => Box::new(Cpu::<f64, f32>::with_tangents(models)?),
     })
 }
 

@@ -156,5 +156,5 @@ pub fn seats<'a>(
 /// # Errors
 /// [`SimulationError::Compute`].
 pub fn on_cpu<'a>(problem: &Problem) -> Result<Seat<'a>, SimulationError> {
-    Ok((Box::new(Cpu::<f64>::new(vec![problem.model.clone()])?), 0))
+    Ok((Box::new(Cpu::<f64, f32>::with_tangents(vec![problem.model.clone()])?), 0))
 }
