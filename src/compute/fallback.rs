@@ -6,7 +6,7 @@ use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest, Outcome,
-    TangentRequest,
+    TangentRequest, TrialRequest,
 };
 
 /// A device with a copy of every committed state on the host, and the CPU in waiting.
@@ -109,6 +109,10 @@ impl Compute for Fallback {
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
         self.call(|backend| backend.contact(requests))
+    }
+
+    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
+        self.call(|backend| backend.trial(requests))
     }
 
     fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {

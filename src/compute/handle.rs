@@ -1,7 +1,10 @@
 //! One case of a batch, as its Newton iteration sees it.
 
 use super::linear::LinearRequest;
-use super::{CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest};
+use super::{
+    CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
+    TrialRequest,
+};
 use crate::contact::coulomb::Rows;
 
 /// What the solver of one case may ask for.
@@ -14,6 +17,8 @@ pub trait Evaluate {
     fn tangent(&mut self, displacement: &[f64], blocks: &mut [[f64; 9]]) -> Result<Outcome, ComputeError>;
     /// Contact conditions at a trial displacement with its internal forces.
     fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError>;
+    /// Internal forces at a trial displacement, and the contact conditions with them.
+    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError>;
     /// Linear systems with the tangent, where the backend solves them; the case is this one,
     /// whatever the request says.
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError>;
@@ -48,6 +53,12 @@ impl Evaluate for CaseHandle<'_> {
 
     fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError> {
         self.backend.contact(&mut [ContactRequest { case: self.case, displacement, force, rows }])
+    }
+
+    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError> {
+        let mut request = [TrialRequest { case: self.case, displacement, force, rows, outcome: Outcome::Valid }];
+        self.backend.trial(&mut request)?;
+        Ok(request[0].outcome)
     }
 
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError> {

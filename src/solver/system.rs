@@ -184,13 +184,25 @@ impl Trial {
         times: &mut PhaseTimes,
     ) -> Result<Outcome, ComputeError> {
         let mut lap = Lap::start();
-        let outcome = case.internal_force(&self.u, &mut self.force)?;
+        let over_plane = boundary.pair.is_none() && boundary.encounter.is_none() && boundary.against.is_none();
+        let outcome = if over_plane {
+            case.trial(&self.u, &mut self.force, &mut self.rows)?
+        } else {
+            case.internal_force(&self.u, &mut self.force)?
+        };
         lap.end(times, Phase::Force);
         if outcome != Outcome::Valid {
             self.merit = f64::INFINITY;
             return Ok(outcome);
         }
-        self.assess(case, boundary, control, times)
+        if !over_plane {
+            return self.assess(case, boundary, control, times);
+        }
+        let mesh = case.model().mesh.clone();
+        self.meet_rows(&mesh, boundary);
+        self.finish(boundary, control);
+        lap.end(times, Phase::Contact);
+        Ok(self.finite())
     }
 
     /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces
@@ -215,12 +227,22 @@ impl Trial {
         }
         self.finish(boundary, control);
         lap.end(times, Phase::Contact);
-        Ok(if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } })
+        Ok(self.finite())
+    }
+
+    fn finite(&self) -> Outcome {
+        if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } }
     }
 
     /// Contact rows of the plane, and the residual with them in it.
     fn meet_plane(&mut self, case: &mut dyn Evaluate, mesh: &Mesh, boundary: &Boundary) -> Result<(), ComputeError> {
         case.contact(&self.u, &self.force, &mut self.rows)?;
+        self.meet_rows(mesh, boundary);
+        Ok(())
+    }
+
+    /// The rows of points that slide without friction, and the residual with all rows in it.
+    fn meet_rows(&mut self, mesh: &Mesh, boundary: &Boundary) {
         for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free) {
             let base = 3 * mesh.contact_nodes[i] as usize;
             let point = Point {
@@ -243,7 +265,6 @@ impl Trial {
             .filter(|(rows, _)| rows.status != Status::Open)
             .map(|(_, &n)| self.force[3 * n as usize + 2].abs())
             .sum();
-        Ok(())
     }
 
     /// Before the slaves of an interface are gone through: no point is in contact.

@@ -18,13 +18,14 @@ use crate::compute::linear::{LinearRequest, Side, SideReport};
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
-    Outcome, TangentRequest,
+    Outcome, TangentRequest, TrialRequest,
 };
 use crate::contact::coulomb::Rows;
 
 /// What a case asks for, and the answer when it comes back.
 enum Ask {
     Force { displacement: Vec<f64>, force: Vec<f64>, outcome: Outcome },
+    Trial { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>>, outcome: Outcome },
     Contact { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>> },
     Tangent { displacement: Vec<f64>, blocks: Vec<[f64; 9]>, outcome: Outcome },
     Linear(LinearAsk),
@@ -164,11 +165,13 @@ impl Host {
 
     /// Answers requests of different cases, those of a kind in one call.
     fn answer(&mut self, waiting: Vec<Request>) -> Vec<(Sender<Answer>, Answer)> {
-        let (mut forces, mut contacts, mut tangents, mut systems) = (vec![], vec![], vec![], vec![]);
+        let (mut forces, mut trials, mut contacts) = (vec![], vec![], vec![]);
+        let (mut tangents, mut systems) = (vec![], vec![]);
         let (mut commits, mut others) = (vec![], vec![]);
         for request in waiting {
             match request.ask {
                 Ask::Force { .. } => forces.push(request),
+                Ask::Trial { .. } => trials.push(request),
                 Ask::Contact { .. } => contacts.push(request),
                 Ask::Tangent { .. } => tangents.push(request),
                 Ask::Linear(_) => systems.push(request),
@@ -178,9 +181,15 @@ impl Host {
         }
         let backend = self.backend.as_mut();
         let mut answers = Vec::new();
-        for (call, mut requests) in
-            [(internal_force as Call, forces), (contact, contacts), (tangent, tangents), (linear, systems), (commit, commits)]
-        {
+        let kinds = [
+            (internal_force as Call, forces),
+            (trial, trials),
+            (contact, contacts),
+            (tangent, tangents),
+            (linear, systems),
+            (commit, commits),
+        ];
+        for (call, mut requests) in kinds {
             if requests.is_empty() {
                 continue;
             }
@@ -208,6 +217,20 @@ fn internal_force(backend: &mut dyn Compute, requests: &mut [Request]) -> Result
         }
     }
     backend.internal_force(&mut calls)?;
+    outcomes.into_iter().zip(&calls).for_each(|(out, call)| *out = call.outcome);
+    Ok(())
+}
+
+fn trial(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
+    let mut outcomes = Vec::new();
+    let mut calls: Vec<TrialRequest<'_>> = Vec::new();
+    for Request { case, ask, .. } in requests {
+        if let Ask::Trial { displacement, force, rows, outcome } = ask {
+            calls.push(TrialRequest { case: *case, displacement, force, rows, outcome: Outcome::Valid });
+            outcomes.push(outcome);
+        }
+    }
+    backend.trial(&mut calls)?;
     outcomes.into_iter().zip(&calls).for_each(|(out, call)| *out = call.outcome);
     Ok(())
 }
@@ -355,6 +378,22 @@ impl Compute for Guest {
                 request.blocks.copy_from_slice(&blocks);
                 request.outcome = outcome;
                 (self.displacement, self.blocks) = (displacement, blocks);
+            }
+        }
+        Ok(())
+    }
+
+    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
+        for request in requests {
+            let mut force = std::mem::take(&mut self.force);
+            force.resize(request.force.len(), 0.0);
+            let displacement = filled(&mut self.displacement, request.displacement);
+            let ask = Ask::Trial { displacement, force, rows: request.rows.to_vec(), outcome: Outcome::Valid };
+            if let Ask::Trial { displacement, force, rows, outcome } = self.ask(request.case, ask)? {
+                request.force.copy_from_slice(&force);
+                request.rows.copy_from_slice(&rows);
+                request.outcome = outcome;
+                (self.displacement, self.force) = (displacement, force);
             }
         }
         Ok(())

@@ -14,13 +14,14 @@ use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
-    Outcome, TangentRequest,
+    Outcome, TangentRequest, TrialRequest,
 };
-use crate::contact::coulomb::{Rows, Status};
+use crate::contact::coulomb::{CONTACT_WEIGHT, Rows, Status};
 use crate::contact::plane::slip;
 use crate::element::hex8::QUADRATURE_POINTS;
 use crate::material::PointState;
 use crate::material::multistep::Flow;
+use crate::mesh::Mesh;
 
 /// Evaluates a batch on a device in precision `R`: residuals, tangents, contact and state.
 ///
@@ -126,6 +127,21 @@ impl<R: DeviceReal> Compute for Gpu<R> {
         Ok(())
     }
 
+    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
+        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let answers = self.batch()?.trial(&dispatch, &increments)?;
+            for (slot, &i) in dispatch.requests.iter().enumerate() {
+                let request = &mut requests[i];
+                request.outcome = answers.outcomes[slot];
+                let n = request.force.len();
+                request.force.iter_mut().zip(&answers.force[slot * n..]).for_each(|(out, f)| *out = f.to_f64());
+                read_rows(slot, &answers.rows, &answers.status, &self.models[request.case].mesh, request.rows);
+            }
+        }
+        Ok(())
+    }
+
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
             let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
@@ -187,24 +203,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
             let (answer, status) = batch.contact(&dispatch, &trial)?;
             for (slot, &i) in dispatch.requests.iter().enumerate() {
                 let request = &mut requests[i];
-                let sizes = &self.models[request.case].mesh.contact_size;
-                let component = |c: usize, k: usize| answer[(slot * CONTACT_ANSWER + c) * points + k].to_f64();
-                for (k, rows) in request.rows.iter_mut().enumerate() {
-                    let code = status[slot * points + k];
-                    let row = |first: usize| std::array::from_fn(|j| component(first + j, k));
-                    *rows = Rows {
-                        status: match code % 4 {
-                            0 => Status::Open,
-                            1 => Status::Stick,
-                            _ => Status::Slip,
-                        },
-                        residual: row(0),
-                        force_rows: [row(3), row(6), row(9)],
-                        displacement_rows: [row(12), row(15), row(18)],
-                        fixed: [code & 4 != 0, code & 8 != 0, code & 16 != 0],
-                        weight: R::of(crate::contact::coulomb::CONTACT_WEIGHT * sizes[k]).to_f64(),
-                    };
-                }
+                read_rows(slot, &answer, &status, &self.models[request.case].mesh, request.rows);
             }
         }
         Ok(())
@@ -280,5 +279,27 @@ impl<R: DeviceReal> Compute for Gpu<R> {
         batch.restore(case, &self.models[case], &state.displacement, &rows, &work)?;
         self.committed[case].clone_from(&state.displacement);
         Ok(())
+    }
+}
+
+/// The contact rows of a slot, from components `[slot][component][point]` and codes `[slot][point]`.
+fn read_rows<R: DeviceReal>(slot: usize, answer: &[R], status: &[u32], mesh: &Mesh, rows: &mut [Rows<f64>]) {
+    let points = rows.len();
+    let component = |c: usize, k: usize| answer[(slot * CONTACT_ANSWER + c) * points + k].to_f64();
+    for (k, rows) in rows.iter_mut().enumerate() {
+        let code = status[slot * points + k];
+        let row = |first: usize| std::array::from_fn(|j| component(first + j, k));
+        *rows = Rows {
+            status: match code % 4 {
+                0 => Status::Open,
+                1 => Status::Stick,
+                _ => Status::Slip,
+            },
+            residual: row(0),
+            force_rows: [row(3), row(6), row(9)],
+            displacement_rows: [row(12), row(15), row(18)],
+            fixed: [code & 4 != 0, code & 8 != 0, code & 16 != 0],
+            weight: R::of(CONTACT_WEIGHT * mesh.contact_size[k]).to_f64(),
+        };
     }
 }

@@ -14,8 +14,8 @@ use super::linear::{Linear, Plan, Right};
 use super::pipelines::{Bound, Recorder};
 use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
 use super::shader_sources::{
-    CONTACT_POINTS, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN,
-    HEX8_MODULI, HEX8_UPDATE, Kernel,
+    CONTACT_POINTS, CONTACT_TRIAL as GATHER_CONTACT_TRIAL, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP,
+    HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_MODULI, HEX8_UPDATE, Kernel,
 };
 use crate::compute::gather::GatherPlan;
 use crate::compute::linear::SideReport;
@@ -106,6 +106,7 @@ struct Kernels {
     begin_step: Bound,
     update: Bound,
     energies: Bound,
+    contact_trial: Bound,
     contact: Bound,
 }
 
@@ -134,6 +135,19 @@ pub enum Evaluation {
     Contact,
     /// States at the end of a step and their energies, what a commit computes.
     Update,
+}
+
+/// What [`Batch::trial`] finds.
+#[derive(Clone, Debug)]
+pub struct TrialAnswers<R> {
+    /// How each slot went.
+    pub outcomes: Vec<Outcome>,
+    /// Internal forces `[slot][3 node + i]`.
+    pub force: Vec<R>,
+    /// Contact rows `[slot][component][point]`.
+    pub rows: Vec<R>,
+    /// Their status `[slot][point]`.
+    pub status: Vec<u32>,
 }
 
 /// Solutions `[slot][component][node]` of one side, and how they went by slot.
@@ -282,6 +296,31 @@ impl<R: DeviceReal> Batch<R> {
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
         let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
         Ok((self.evaluate(dispatch, Evaluation::InternalForce, &self.scratch.force, &mut force)?, force))
+    }
+
+    /// As [`Batch::internal_force`], and the contact rows there as [`Batch::contact`] has them, in one
+    /// submission.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn trial(&self, dispatch: &Dispatch, increments: &[R]) -> Result<TrialAnswers<R>, GpuError> {
+        self.begin_element(dispatch, increments)?;
+        let (sizes, slots, scratch) = (self.sizes(), dispatch.cases.len(), &self.scratch);
+        let mut list = self.context.record();
+        self.append(dispatch, Evaluation::InternalForce, &mut list)?;
+        list.dispatch(&self.groups[dispatch.group].1.contact_trial, sizes.contact_points, slots)?;
+        self.append(dispatch, Evaluation::Contact, &mut list)?;
+        let mut first = vec![0u32; slots];
+        let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
+        let mut rows = vec![R::ZERO; slots * CONTACT_ANSWER * sizes.contact_points];
+        let mut status = vec![0; slots * sizes.contact_points];
+        list.submit_and_read(&mut [
+            scratch.first_invalid.read(0, &mut first)?,
+            scratch.force.read(0, &mut force)?,
+            scratch.contact_answer.read(0, &mut rows)?,
+            scratch.contact_status.read(0, &mut status)?,
+        ])?;
+        Ok(TrialAnswers { outcomes: outcomes(&first), force, rows, status })
     }
 
     /// Upper blocks of the tangents, `[slot][3 i + j][block]`.
@@ -472,6 +511,7 @@ impl Kernels {
             s.contact_answer.binding(),
             s.contact_status.binding(),
         ];
+        let contact_trial = [mesh.contact_node.binding(), s.force.binding(), s.increment.binding(), s.contact_trial.binding()];
         let at =
             |kernel, outputs: &[wgpu::BindingResource<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
         Ok(Self {
@@ -483,6 +523,7 @@ impl Kernels {
             begin_step: bind(&HEX8_BEGIN_STEP, &[&shape, &[r.history.binding(), r.anticipated.binding(), r.state.binding()]])?,
             update: at(&HEX8_UPDATE, &[r.history.binding(), s.next_history.binding(), s.point_work.binding()])?,
             energies: bind(&HEX8_ENERGIES, &[&shape, &element, &material, &energies])?,
+            contact_trial: bind(&GATHER_CONTACT_TRIAL, &[&shape, &contact_trial])?,
             contact: bind(&CONTACT_POINTS, &[&shape, &contact])?,
         })
     }

@@ -64,6 +64,8 @@ pub struct Connectivity {
     pub block_start: StorageBuffer<u32>,
     /// The lists.
     pub block_entry: StorageBuffer<u32>,
+    /// Node of each contact point.
+    pub contact_node: StorageBuffer<u32>,
     /// Whether each contact point lies on the symmetry plane.
     pub on_symmetry_plane: StorageBuffer<u32>,
 }
@@ -90,6 +92,7 @@ impl Connectivity {
             node_entry: context.array("elements around nodes", &mesh.node_elements.entry)?,
             block_start: context.array("blocks of the tangent: starts", &plan.start)?,
             block_entry: context.array("blocks of the tangent", &plan.entry)?,
+            contact_node: context.array("contact nodes", &mesh.contact_nodes)?,
             on_symmetry_plane: context.array("contact points on the symmetry plane", &on_plane)?,
         })
     }
