@@ -195,7 +195,7 @@ fn a_run_killed_at_any_step_goes_on() {
     let dir = scratch.path("run");
     OutputDirectory::create(&dir).and_then(|out| out.write_case(&case.to_toml())).expect("a directory");
     let problem = Problem::new(&case).expect("a problem");
-    let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
+    let mut backend = Cpu::<f64, f32>::with_tangents(vec![problem.model.clone()]).expect("a backend");
     let newton = problem.newton().expect("a solver");
     let (elements, unknowns) = (problem.model.mesh.elements.len(), newton.free_unknowns());
     let setting = Setting { computed_on: backend.description(), elements, unknowns };

@@ -75,14 +75,22 @@ fn a_device_is_named_with_its_precision_and_gives_the_same_force() {
     }
 }
 
-/// Every Newton iteration asks for a tangent, which comes down whole, and for the forces and the
-/// contact at one trial or more.
+/// Every Newton iteration asks for a correction and for the forces and the contact at one trial or
+/// more, each in one submission and one wait; tangents stay where they are. `number` is the size of
+/// a number of the residual.
 fn check_traffic(summary: &Summary, number: u64) {
     let DeviceTraffic { total, steps } = summary.device_traffic.expect("the device's account");
-    let iterations = summary.newton_iterations as u64;
+    let (iterations, accepted) = (summary.newton_iterations as u64, summary.steps as u64);
     assert!(steps.dispatches >= 7 * iterations && steps.submissions >= steps.waits, "{steps:?}");
-    assert!(steps.bytes_up >= 2 * iterations * number * summary.unknowns as u64, "{steps:?}");
-    assert!(steps.bytes_down >= 9 * iterations * number * summary.unknowns as u64, "{steps:?}");
+    // Beside its iterations, a step is begun and committed, and its guess is evaluated.
+    assert!(steps.waits <= 2 * iterations + 3 * accepted && steps.submissions <= steps.waits + 3 * accepted, "{steps:?}");
+    // The trial and the tangent's place go up, and a right-hand side; the correction and the force
+    // come down. A tangent would be 30 numbers an unknown.
+    let unknowns = summary.unknowns as u64;
+    assert!(steps.bytes_up >= 2 * iterations * number * unknowns, "{steps:?}");
+    assert!(steps.bytes_up <= 6 * (iterations + accepted) * 8 * unknowns, "{steps:?}");
+    assert!(steps.bytes_down >= iterations * (number + 4) * unknowns, "{steps:?}");
+    assert!(steps.bytes_down <= 4 * (iterations + accepted) * 8 * unknowns, "{steps:?}");
     // The geometry goes up once.
     let beside = total - steps;
     assert!(beside.bytes_up >= 24 * 8 * number * summary.elements as u64 && beside.waits < steps.waits, "{total:?}");
