@@ -4,7 +4,7 @@
 //! slot of the scratch arrays. What a slot gets does not depend on the others. Where scratch memory
 //! is short, a call takes several dispatches.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
@@ -120,6 +120,8 @@ pub struct Batch<R> {
     groups: Vec<(Resident<R>, Kernels)>,
     scratch: Scratch<R>,
     slots: usize,
+    /// The increments that the slots have.
+    increments: Mutex<Vec<R>>,
     /// How linear systems are solved, if the mesh has a hierarchy.
     linear: Option<Linear<R>>,
 }
@@ -196,7 +198,7 @@ impl<R: DeviceReal> Batch<R> {
             .into_iter()
             .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
             .collect::<Result<_, GpuError>>()?;
-        Ok(Self { context, connectivity, plan, groups, scratch, slots, linear })
+        Ok(Self { context, connectivity, plan, groups, scratch, slots, increments: Mutex::default(), linear })
     }
 
     /// The device.
@@ -237,7 +239,14 @@ impl<R: DeviceReal> Batch<R> {
 
     fn begin_element(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(), GpuError> {
         self.begin(dispatch)?;
-        self.context.upload_at(&self.scratch.increment, 0, increments)?;
+        // An iterate is evaluated as a trial first, and then its tangent is asked for.
+        let mut known = self.increments.lock().unwrap_or_else(PoisonError::into_inner);
+        if !same_bits(&known, increments) {
+            known.clear();
+            self.context.upload_at(&self.scratch.increment, 0, increments)?;
+            known.extend_from_slice(increments);
+        }
+        drop(known);
         self.context.upload_at(&self.scratch.first_invalid, 0, &vec![u32::MAX; dispatch.cases.len()])
     }
 
@@ -466,6 +475,13 @@ impl<R: DeviceReal> Batch<R> {
         let missing = || GpuError::Length { what: "the cases of the batch".into(), expected, given: case + 1 };
         found.map(|r| (r, case - r.first)).ok_or_else(missing)
     }
+}
+
+/// Whether these begin with those.
+fn same_bits<R: DeviceReal>(known: &[R], increments: &[R]) -> bool {
+    known
+        .get(..increments.len())
+        .is_some_and(|known| bytemuck::cast_slice::<R, u8>(known) == bytemuck::cast_slice::<R, u8>(increments))
 }
 
 /// How each slot went, from the first invalid point of each.

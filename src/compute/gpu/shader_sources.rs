@@ -122,6 +122,7 @@ pub static KERNELS: &[&Kernel] = &[
     &linear::INVERT_DIAGONAL,
     &linear::GALERKIN_PRODUCT,
     &linear::GALERKIN_COARSE,
+    &linear::PRESCRIBE,
     &linear::SMOOTH_START,
     &linear::SMOOTH_STEP,
     &linear::SOLVE_COARSEST,

@@ -21,7 +21,7 @@ use crate::mesh::Mesh;
 use levels::{Call, Levels, Record, row_threads, slot_numbers};
 use sources::{
     ASSEMBLE, KRYLOV_ADVANCE, KRYLOV_BEGIN, KRYLOV_COMBINE, KRYLOV_DOTS, KRYLOV_LEAST_SQUARES, KRYLOV_MEASURE, KRYLOV_NORMALISE,
-    KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, RESIDUAL,
+    KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, PRESCRIBE, RESIDUAL,
 };
 
 /// Krylov vectors after which a cycle starts over.
@@ -100,10 +100,8 @@ fn small_numbers() -> usize {
 /// One right-hand side of every slot, `[slot][component][node]`.
 #[derive(Debug, Default)]
 pub struct Right {
-    /// Right-hand sides; nothing at fixed unknowns.
+    /// Right-hand sides; at fixed unknowns their values.
     pub rhs: Vec<f32>,
-    /// Nothing but the values of fixed unknowns.
-    pub values: Vec<f32>,
     /// Guesses, the values of fixed unknowns in them; none if all are zero.
     pub guess: Option<Vec<f32>>,
     /// Relative residual to be reached, by slot.
@@ -125,8 +123,9 @@ pub struct Linear<R> {
     guess: StorageBuffer<f32>,
     answer: StorageBuffer<f32>,
     update: Vec<Call>,
-    /// The residual at `solution` and its square; what tolerances are measured by; the first basis
+    /// What is fixed, in `solution`; the residual there and its square; what tolerances are measured by; the first basis
     /// vector; an iteration; the answer.
+    prescribe: Call,
     residual: Vec<Call>,
     measure: Call,
     begin: Vec<Call>,
@@ -208,10 +207,13 @@ impl<R: DeviceReal> Linear<R> {
             with_product(&PLATE_FORCE, 1, &answer, vec![plate.binding(), r.clone()])?,
         ];
         let begin = vec![call(&KRYLOV_BEGIN, 1, vec![r.clone(), sums.binding(), small.binding()])?, normalise()?];
+        let prescribe = vec![rhs.binding(), level.fixed.binding(), solution.binding()];
+        let prescribe = call(&PRESCRIBE, by_rows, prescribe)?;
         let measure = call(&KRYLOV_MEASURE, 1, vec![r.clone(), sums.binding()])?;
         let residual = vec![with_product(&RESIDUAL, by_rows, &solution, residual)?, dots()?];
         Ok(Self {
             update: vec![assemble],
+            prescribe,
             residual,
             measure,
             begin,
@@ -270,7 +272,7 @@ impl<R: DeviceReal> Linear<R> {
         let mut records: Vec<Record> = right.tolerance.iter().zip(&right.relative_to_guess).map(fresh).collect();
         context.upload_at(&self.records, 0, &records)?;
         context.upload_at(&self.rhs, 0, &right.rhs)?;
-        context.upload_at(&self.solution, 0, &right.values)?;
+        self.prescribe.append(&mut list, slots)?;
         append(&self.residual, &mut list, slots)?;
         self.measure.append(&mut list, slots)?;
         if let Some(guess) = &right.guess {

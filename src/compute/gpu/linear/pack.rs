@@ -86,9 +86,7 @@ fn pack_side(request: &LinearRequest<'_>, side: Option<&Side<'_>>, has_guess: bo
     let rhs = |i: usize| side.map(|side| side.rhs[i]);
     for c in 0..3 {
         for i in (c..n).step_by(3) {
-            let fixed = request.fixed[i];
-            right.rhs.push(if fixed { 0.0 } else { number(rhs(i)) });
-            right.values.push(if fixed { number(rhs(i)) } else { 0.0 });
+            right.rhs.push(number(rhs(i)));
         }
     }
     if has_guess {

@@ -42,6 +42,14 @@ pub static GALERKIN_COARSE: Kernel = Kernel {
     workgroup: 64,
 };
 
+/// What is fixed.
+pub static PRESCRIBE: Kernel = Kernel {
+    name: "prescribe",
+    sources: &[LEVEL, source!("linalg/prescribe.wgsl")],
+    bindings: &[Uniform, Read, Read, ReadWrite],
+    workgroup: 192,
+};
+
 /// The smoother's first step from zero.
 pub static SMOOTH_START: Kernel = Kernel {
     name: "smooth_start",
