@@ -5,7 +5,7 @@
 //! kernels alone beside that. A row is one evaluation in one precision at one batch size; its input
 //! is seeded and the same everywhere. [`element`] and [`material`] measure, [`traffic`] counts
 //! bytes, [`count`] operations, [`copy`] measures what memory could do, [`report`] holds the
-//! numbers and [`table`] shows them.
+//! numbers and [`table`] shows them. [`whole_job`] runs whole simulations instead.
 
 pub mod copy;
 pub mod count;
@@ -16,6 +16,7 @@ pub mod report;
 pub mod table;
 pub mod timing;
 pub mod traffic;
+pub mod whole_job;
 
 #[cfg(test)]
 mod tests;
@@ -45,6 +46,17 @@ pub enum BenchError {
     /// The bench's materials.
     #[error("the bench's own materials cannot be built: {0}")]
     Material(#[from] MaterialError),
+    /// A study of whole jobs.
+    #[error("{0}")]
+    Study(#[from] crate::study::StudyError),
+    /// A whole job did not end well.
+    #[error("the bench's own case {case} failed: {why}")]
+    Case {
+        /// Its number.
+        case: String,
+        /// Why.
+        why: String,
+    },
     /// A pool of threads.
     #[error("--threads {threads}: cannot start that many threads: {what}. Give fewer")]
     Threads {

@@ -60,27 +60,32 @@ pub fn table(report: &Report) -> String {
         }
         rows.next();
     }
-    let width: Vec<usize> =
-        (0..HEAD.len() + MORE.len()).map(|c| lines.iter().map(|l| l[c].chars().count()).max().unwrap_or(0)).collect();
     text.push('\n');
-    for (i, line) in lines.iter().enumerate() {
-        let cells: Vec<String> = line
-            .iter()
-            .zip(&width)
-            .enumerate()
-            .map(|(c, (cell, &w))| if c < 3 { format!("{cell:w$}") } else { format!("{cell:>w$}") })
-            .collect();
-        let _ = writeln!(text, "| {} |", cells.join(" | "));
-        if i == 0 {
-            let rule = |(c, w): (usize, &usize)| if c < 3 { "-".repeat(w + 2) } else { format!("{}:", "-".repeat(w + 1)) };
-            let _ = writeln!(text, "|{}|", width.iter().enumerate().map(rule).collect::<Vec<_>>().join("|"));
-        }
-    }
+    align(&mut text, &lines, 3);
     skipped.dedup();
     if !skipped.is_empty() {
         let _ = writeln!(text, "\nNot measured:\n{}", skipped.join("\n"));
     }
     text
+}
+
+/// Appends lines of cells, the first the head, as a table whose first columns are words.
+pub(super) fn align(text: &mut String, lines: &[Vec<String>], words: usize) {
+    let columns = lines.first().map_or(0, Vec::len);
+    let width: Vec<usize> = (0..columns).map(|c| lines.iter().map(|l| l[c].chars().count()).max().unwrap_or(0)).collect();
+    for (i, line) in lines.iter().enumerate() {
+        let cells: Vec<String> = line
+            .iter()
+            .zip(&width)
+            .enumerate()
+            .map(|(c, (cell, &w))| if c < words { format!("{cell:w$}") } else { format!("{cell:>w$}") })
+            .collect();
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
+        if i == 0 {
+            let rule = |(c, w): (usize, &usize)| if c < words { "-".repeat(w + 2) } else { format!("{}:", "-".repeat(w + 1)) };
+            let _ = writeln!(text, "|{}|", width.iter().enumerate().map(rule).collect::<Vec<_>>().join("|"));
+        }
+    }
 }
 
 fn header(h: &Header) -> String {

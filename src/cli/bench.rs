@@ -8,7 +8,9 @@ use clap::Args;
 
 use super::options::{Device, Verbosity};
 use super::{CliError, Outcome};
+use crate::bench::whole_job::{self, WholeJobs};
 use crate::bench::{self, BenchError, Options, table};
+use crate::compute::select::{self, DeviceChoice};
 use crate::output::write_atomically;
 
 /// Measure the kernels (return mapping, internal force, tangent, contact, commit) on a GPU and on
@@ -23,6 +25,10 @@ pub struct BenchArgs {
     /// Small meshes, small batches, few repetitions: a minute.
     #[arg(long)]
     pub quick: bool,
+    /// Run whole simulations (the press and shear of ideal plasticity) instead: on one core, on all
+    /// cores, and on the device in batches of 1 to 64, with --quick 1 and 4.
+    #[arg(long)]
+    pub whole_job: bool,
     /// Elements along the contact radius of the mesh, 2 to 32; by default 8, with --quick 4.
     #[arg(long, value_name = "N")]
     pub elements: Option<usize>,
@@ -62,6 +68,9 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
             let _ = writeln!(std::io::stderr(), "{text}");
         }
     };
+    if args.whole_job {
+        return whole_job(args, &options, &mut say);
+    }
     let report = bench::run(&options, &mut say).map_err(|error| match error {
         BenchError::Device(error) => CliError::Device { what: error.to_string() },
         error => CliError::Bench(error),
@@ -69,6 +78,29 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
     super::print(&if args.json { report.to_json() } else { table::table(&report) })?;
     if let Some(path) = &args.out {
         write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Runs whole jobs, prints their table and writes the numbers.
+fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> Result<Outcome, CliError> {
+    let device = match args.device {
+        // Without a device worth using there are the CPU's rows alone.
+        Device::Auto if !select::is_there(DeviceChoice::Auto).unwrap_or(false) => DeviceChoice::Cpu,
+        Device::Auto => DeviceChoice::Auto,
+        Device::Cpu => DeviceChoice::Cpu,
+        Device::Gpu => DeviceChoice::Gpu,
+    };
+    let batches = if args.quick { vec![1, 4] } else { vec![1, 4, 16, 64] };
+    let jobs = WholeJobs { device, threads: options.threads, batches, elements: options.elements };
+    let rows = whole_job::run(&jobs, say).map_err(|error| match error {
+        BenchError::Study(error) => CliError::from(error),
+        error => CliError::Bench(error),
+    })?;
+    let json = || serde_json::to_string_pretty(&rows).unwrap_or_default() + "\n";
+    super::print(&if args.json { json() } else { whole_job::table(&rows) })?;
+    if let Some(path) = &args.out {
+        write_atomically(path, |file| file.write_all(json().as_bytes()))?;
     }
     Ok(Outcome::Done)
 }

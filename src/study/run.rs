@@ -37,7 +37,8 @@ pub struct Options {
     pub device: DeviceChoice,
     /// Their precision.
     pub precision: PrecisionChoice,
-    /// Cores to use: that many cases side by side, and twice as many where a device serves them.
+    /// Cores to use: that many cases side by side. Where a device serves them it is twice as many, or
+    /// 64 where it solves their linear systems too.
     pub threads: usize,
     /// Only this share of the cases.
     pub shard: Option<Shard>,
@@ -93,7 +94,14 @@ pub fn run(
     stop: Arc<AtomicBool>,
 ) -> Result<Report, StudyError> {
     let device = is_there(options.device)?;
-    let slots = if device { (2 * options.threads).clamp(1, LARGEST_BATCH) } else { options.threads.max(1) };
+    // Over a plane the device does nearly all of the work, and the threads of the cases wait for it;
+    // linear systems of two bodies take the cores.
+    let alone = study.cases.iter().all(|case| case.case.opponent.is_none());
+    let slots = match (device, alone) {
+        (true, true) => LARGEST_BATCH,
+        (true, false) => (2 * options.threads).clamp(1, LARGEST_BATCH),
+        (false, _) => options.threads.max(1),
+    };
     let directory = &StudyDirectory::new(dir);
     let costs: Vec<f64> = study.cases.iter().map(|case| cost(&case.case)).collect();
     let share = options.shard.map_or_else(|| (0..study.cases.len()).collect(), |shard| shard.of(&costs));
