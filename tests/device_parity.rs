@@ -1,5 +1,5 @@
-//! A batch on a device in f64 against the CPU: eight cases of every hardening law, friction and path
-//! have the same history, step by step.
+//! A batch on a device in f64 against the CPU: eight cases of every hardening law, friction and
+//! path have the same history, step by step.
 
 mod device;
 
