@@ -35,13 +35,13 @@ fn cases(dir: &Path, tolerance: f64, device: &str) -> Vec<(Vec<StepRecord>, Summ
 fn difference(ours: &[StepRecord], theirs: &[StepRecord]) -> f64 {
     assert_eq!(ours.len(), theirs.len(), "another number of steps");
     let largest = |of: fn(&StepRecord) -> f64| theirs.iter().fold(0.0_f64, |m, r| m.max(of(r).abs()));
-    let columns: [(fn(&StepRecord) -> f64, f64); 3] =
-        [(|r| r.f_n, largest(|r| r.f_n)), (|r| r.f_t, largest(|r| r.f_n)), (|r| r.a, largest(|r| r.a))];
-    let gap = |(of, scale): (fn(&StepRecord) -> f64, f64)| {
-        ours.iter().zip(theirs).fold(0.0_f64, |m, (a, b)| m.max((of(a) - of(b)).abs())) / scale
-    };
+    let columns: [Column; 3] = [(|r| r.f_n, largest(|r| r.f_n)), (|r| r.f_t, largest(|r| r.f_n)), (|r| r.a, largest(|r| r.a))];
+    let gap = |(of, scale): Column| ours.iter().zip(theirs).fold(0.0_f64, |m, (a, b)| m.max((of(a) - of(b)).abs())) / scale;
     columns.into_iter().map(gap).fold(0.0, f64::max)
 }
+
+/// A column of the history, and what its differences are measured by.
+type Column = (fn(&StepRecord) -> f64, f64);
 
 /// Solved tightly, what is left is not which iterate was the first to be good enough.
 #[test]

@@ -136,8 +136,8 @@ fn one(options: &WholeJobs, device: DeviceChoice, batch: usize) -> Result<WholeJ
         row.newton_iterations += summary.newton_iterations;
         row.krylov_iterations += summary.krylov_iterations;
         if let Some(traffic) = summary.device_traffic {
-            // Each case has its own steps' account, in which those of the others are while they share
-            // the device: the largest is that of the batch.
+            // Each case has its own steps' account, in which those of the others are while they
+            // share the device: the largest is that of the batch.
             let most = row.traffic.get_or_insert_default();
             if traffic.steps.bytes_up > most.bytes_up {
                 *most = traffic.steps;

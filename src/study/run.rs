@@ -37,8 +37,8 @@ pub struct Options {
     pub device: DeviceChoice,
     /// Their precision.
     pub precision: PrecisionChoice,
-    /// Cores to use: that many cases side by side. Where a device serves them it is twice as many, or
-    /// 64 where it solves their linear systems too.
+    /// Cores to use: that many cases side by side. Where a device serves them it is twice as many,
+    /// or 64 where it solves their linear systems too.
     pub threads: usize,
     /// Only this share of the cases.
     pub shard: Option<Shard>,
@@ -94,8 +94,8 @@ pub fn run(
     stop: Arc<AtomicBool>,
 ) -> Result<Report, StudyError> {
     let device = is_there(options.device)?;
-    // Over a plane the device does nearly all of the work, and the threads of the cases wait for it;
-    // linear systems of two bodies take the cores.
+    // Over a plane the device does nearly all of the work, and the threads of the cases wait for
+    // it; linear systems of two bodies take the cores.
     let alone = study.cases.iter().all(|case| case.case.opponent.is_none());
     let slots = match (device, alone) {
         (true, true) => LARGEST_BATCH,

@@ -282,7 +282,8 @@ impl<R: DeviceReal> Compute for Gpu<R> {
     }
 }
 
-/// The contact rows of a slot, from components `[slot][component][point]` and codes `[slot][point]`.
+/// The contact rows of a slot, from components `[slot][component][point]` and codes
+/// `[slot][point]`.
 fn read_rows<R: DeviceReal>(slot: usize, answer: &[R], status: &[u32], mesh: &Mesh, rows: &mut [Rows<f64>]) {
     let points = rows.len();
     let component = |c: usize, k: usize| answer[(slot * CONTACT_ANSWER + c) * points + k].to_f64();

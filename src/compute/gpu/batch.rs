@@ -307,8 +307,8 @@ impl<R: DeviceReal> Batch<R> {
         Ok((self.evaluate(dispatch, Evaluation::InternalForce, &self.scratch.force, &mut force)?, force))
     }
 
-    /// As [`Batch::internal_force`], and the contact rows there as [`Batch::contact`] has them, in one
-    /// submission.
+    /// As [`Batch::internal_force`], and the contact rows there as [`Batch::contact`] has them, in
+    /// one submission.
     ///
     /// # Errors
     /// The device's fault.

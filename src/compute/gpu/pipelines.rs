@@ -171,8 +171,8 @@ impl Recorder<'_> {
         Ok(())
     }
 
-    /// Sends the list off, waits for it and reads arrays back as it leaves them: one submission, one
-    /// wait.
+    /// Sends the list off, waits for it and reads arrays back as it leaves them: one submission,
+    /// one wait.
     ///
     /// The numbers come back together with a ticket, a number that was never used before. Only if
     /// the ticket has arrived did this submission run, and only then are the numbers those that the

@@ -3,8 +3,8 @@
 //!
 //! All of it is in single precision, as the preconditioner is on the CPU ([`crate::linalg`], whose
 //! algorithm this is): Newton's residual decides what is a solution, the linear system only how
-//! fast it is found. The list of a solve has as many Krylov iterations as whoever asks expects it to
-//! take, and one more; slots that have finished leave out what remains, and where some have not,
+//! fast it is found. The list of a solve has as many Krylov iterations as whoever asks expects it
+//! to take, and one more; slots that have finished leave out what remains, and where some have not,
 //! more is sent.
 
 mod levels;
@@ -123,8 +123,8 @@ pub struct Linear<R> {
     guess: StorageBuffer<f32>,
     answer: StorageBuffer<f32>,
     update: Vec<Call>,
-    /// What is fixed, in `solution`; the residual there and its square; what tolerances are measured by; the first basis
-    /// vector; an iteration; the answer.
+    /// What is fixed, in `solution`; the residual there and its square; what tolerances are
+    /// measured by; the first basis vector; an iteration; the answer.
     prescribe: Call,
     residual: Vec<Call>,
     measure: Call,
@@ -250,9 +250,8 @@ impl<R: DeviceReal> Linear<R> {
         append(&self.levels.update, list, slots)
     }
 
-    /// Solves with a right-hand side of each slot after the kernels of `list`; returns the solutions
-    /// `[slot][component][node]`. `and` are other arrays to be read at the first
-    /// chance.
+    /// Solves with a right-hand side of each slot after the kernels of `list`; returns the
+    /// solutions `[slot][component][node]`. `and` are other arrays to be read at the first chance.
     ///
     /// # Errors
     /// The device's fault.
@@ -287,7 +286,8 @@ impl<R: DeviceReal> Linear<R> {
         list.submit_and_read(reads)?;
         while records.iter().any(|record| record.goes_on()) {
             let mut list = context.record();
-            // All slots are in the same step of their cycles: those that go on are all full, or none.
+            // All slots are in the same step of their cycles: those that go on are all full, or
+            // none.
             let full: Vec<usize> = (0..slots).filter(|&slot| records[slot].done == FULL && records[slot].goes_on()).collect();
             for &slot in &full {
                 // The next cycle begins at the answer of this one.
