@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Draws the study of the general law: materials of every hardening law at random, by a seed.
+
+    python3 benches/law/draw.py --out fixtures/studies              # general.toml, general-unseen.toml
+    python3 benches/law/draw.py --out fixtures/studies --equal      # the same on an equal sphere
+
+Every material meets CASES pairs of friction and indentation. Poisson's ratio, ln(E/sigma_Y), ln(mu)
+and ln(h/R) are each cut into as many strata as there are draws, one draw a stratum. A fifth of the
+materials goes into a study of its own, before anything is fitted to the rest. Standard library only,
+so that a seed means the same numbers anywhere.
+"""
+
+import argparse
+import math
+import random
+from pathlib import Path
+
+YOUNGS_MODULUS = 200e3
+SEED = 2014
+CASES = 4
+# How many materials of each hardening law, and how many of those are set aside.
+KINDS = {
+    "elastic": (4, 1),
+    "ideal": (8, 2),
+    "linear": (7, 1),
+    "power": (8, 2),
+    "hollomon": (8, 2),
+    "voce": (7, 1),
+    "table": (6, 1),
+}
+RATIO = (12.0, 5000.0)  # E/sigma_Y
+POISSON = (0.0, 0.49)
+FRICTION = (0.05, 1.0)
+INDENTATION = (0.001, 0.15)  # h/R
+
+
+def strata(rng, count, low, high):
+    """`count` numbers of [low, high], one in each of `count` equal parts, in random order."""
+    values = [low + (high - low) * (i + rng.random()) / count for i in range(count)]
+    rng.shuffle(values)
+    return values
+
+
+def log_strata(rng, count, low, high):
+    """As `strata`, in the logarithm."""
+    return [math.exp(v) for v in strata(rng, count, math.log(low), math.log(high))]
+
+
+def log_uniform(rng, low, high):
+    """One number, its logarithm uniform."""
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def number(value):
+    """Four digits, as TOML has a float."""
+    text = f"{value:.4g}"
+    return text if any(c in text for c in ".e") else text + ".0"
+
+
+def hardening(rng, law, yield_stress):
+    """The inline table of one material."""
+    if law == "elastic":
+        return '{ law = "elastic" }'
+    keys = {"yield_stress": yield_stress}
+    if law == "linear":
+        keys["modulus"] = YOUNGS_MODULUS * log_uniform(rng, 1e-3, 0.1)
+    elif law == "power":
+        keys["coefficient"] = yield_stress * log_uniform(rng, 0.5, 5.0)
+        keys["exponent"] = rng.uniform(0.1, 0.7)
+    elif law == "hollomon":
+        # sigma_Y lies where sigma_0 eps^(1/m) meets Hooke's line.
+        m = log_uniform(rng, 2.5, 10.0)
+        keys = {"coefficient": (yield_stress ** (m - 1.0) * YOUNGS_MODULUS) ** (1.0 / m), "exponent": m}
+    elif law == "voce":
+        keys["saturation_stress"] = yield_stress * rng.uniform(1.2, 4.0)
+        keys["rate"] = log_uniform(rng, 4.0, 100.0)
+    elif law == "table":
+        # Concave: each part is less steep than the one before.
+        strain, stress, points = 0.0, yield_stress, []
+        slope = yield_stress * log_uniform(rng, 5.0, 60.0)
+        for step in (0.02, 0.08, 0.3, 0.6):
+            points.append((strain, stress))
+            strain, stress = strain + step, stress + slope * step
+            slope *= rng.uniform(0.1, 0.5)
+        points.append((strain, stress))
+        body = ", ".join(f"[{number(x)}, {number(y)}]" for x, y in points)
+        return f'{{ law = "table", points = [{body}] }}'
+    body = ", ".join(f"{key} = {number(value)}" for key, value in keys.items())
+    return f'{{ law = "{law}", {body} }}'
+
+
+def draw(seed):
+    """(law, hardening, nu, mu, h, set aside) of every case: first one case of each material, then
+    a second of each, so that the first part of a study is a study too."""
+    rng = random.Random(seed)
+    laws = [(law, i < aside) for law, (count, aside) in KINDS.items() for i in range(count)]
+    rng.shuffle(laws)
+    count = len(laws)
+    ratios = log_strata(rng, count, *RATIO)
+    poisson = strata(rng, count, *POISSON)
+    materials = [
+        (law, hardening(rng, law, YOUNGS_MODULUS / ratio), nu, aside)
+        for (law, aside), ratio, nu in zip(laws, ratios, poisson)
+    ]
+    cases = []
+    for _ in range(CASES):
+        friction = log_strata(rng, count, *FRICTION)
+        depth = log_strata(rng, count, *INDENTATION)
+        cases += [(*m[:3], mu, h, m[3]) for m, mu, h in zip(materials, friction, depth)]
+    return cases
+
+
+def wrapped(key, values):
+    """A TOML list, ten numbers a line."""
+    lines = [", ".join(values[i : i + 10]) for i in range(0, len(values), 10)]
+    return f'"{key}" = [\n' + "".join(f"    {line},\n" for line in lines) + "]\n"
+
+
+def study(cases, equal, what):
+    """The text of the study file."""
+    text = (
+        f"# {what} Drawn by benches/law/draw.py, seed {SEED}; see there for the ranges.\n"
+        "[base.sphere]\nradius = 1.0\n\n"
+        f"[base.material]\nyoungs_modulus = {YOUNGS_MODULUS / 1e3:.0f}e3\n\n"
+        "[base.contact]\n\n"
+        "[base.mesh]\nelements_per_contact_radius = 6\n"
+        "# Sheared with high friction, a contact wanders; so coarse a mesh has few elements to spare.\n"
+        "fine_zone = 1.6\n\n"
+        + ("[base.opponent]\nequal = true\n\n" if equal else "")
+        + '[[base.path]]\n\n[[base.path]]\nshear = "full-slip"\nhold = "indentation"\n\n[zip]\n'
+    )
+    # Between equal spheres h is the approach of their centres, twice what each is pressed in.
+    depth = [(2.0 if equal else 1.0) * case[4] for case in cases]
+    text += '"material.hardening" = [\n' + "".join(f"    {case[1]},\n" for case in cases) + "]\n"
+    text += wrapped("material.poissons_ratio", [number(case[2]) for case in cases])
+    text += wrapped("contact.friction", [number(case[3]) for case in cases])
+    text += wrapped("path.0.indentation", [number(h) for h in depth])
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, required=True, help="where the two study files go")
+    parser.add_argument("--equal", action="store_true", help="on an equal sphere instead of the plane")
+    arguments = parser.parse_args()
+    cases = draw(SEED)
+    stem = "general-pair" if arguments.equal else "general"
+    against = "an equal sphere" if arguments.equal else "a plane"
+    for aside, name, what in [
+        (False, stem, f"The study of the general law on {against}: what is fitted."),
+        (True, f"{stem}-unseen", f"The materials set aside from the study of the general law on {against}."),
+    ]:
+        chosen = [case for case in cases if case[5] == aside]
+        (arguments.out / f"{name}.toml").write_text(study(chosen, arguments.equal, what))
+
+
+if __name__ == "__main__":
+    main()
