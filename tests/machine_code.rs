@@ -76,8 +76,8 @@ impl Radv {
             })
             .collect();
         let name = std::ffi::CString::new(kernel.name).unwrap();
-        // SAFETY: every handle is made by this device, used by it alone, and what it points to lives
-        // to the end of the call.
+        // SAFETY: every handle is made by this device, used by it alone, and what it points to
+        // lives to the end of the call.
         unsafe {
             let shader = self.device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&words), None).unwrap();
             let set = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);

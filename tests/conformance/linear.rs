@@ -238,3 +238,23 @@ fn a_hard_system_a_guess_and_what_cannot_be_solved() {
     gpu.linear(std::slice::from_mut(&mut request)).unwrap();
     assert_eq!(request.sides[0].report.ended, Ended::NotTried);
 }
+
+/// More iterations than a cycle has vectors: the next begins at the answer of the last. The other
+/// system of the list has long been done then, and keeps its bits.
+#[test]
+fn a_cycle_that_is_full_begins_anew() {
+    let name = "a_cycle_that_is_full_begins_anew";
+    let Some(context) = context(name, Precision::F32) else { return };
+    let mesh = mesh();
+    let mut models = models(&mesh);
+    models[1].material.elasticity = Elasticity::new(1.0, 0.497);
+    let systems: Vec<System> = (0..2).map(|case| system(case, &models, true)).collect();
+    let mut gpu = Gpu::<f32>::new(context, models).unwrap();
+    let alone = bits(&solve(&mut gpu, &[(0, &systems[0])], 2e-3));
+    let both = solve(&mut gpu, &[(0, &systems[0]), (1, &systems[1])], 2e-3);
+    eprintln!("{} and {} iterations", both[0].1.iterations, both[1].1.iterations);
+    assert!(both.iter().all(|(_, report)| report.ended == Ended::Converged));
+    assert!(both[0].1.iterations < 30 && both[1].1.iterations > 30);
+    assert!(systems[1].residual(&both[1].0) <= 2.05e-3);
+    assert!(bits(&both)[0] == alone[0]);
+}
