@@ -67,10 +67,11 @@ fn krylov_advance(@builtin(global_invocation_id) id: vec3<u32>) {
     records[slot].steps = j + 1u;
     records[slot].iterations += 1u;
     records[slot].scale = 1.0 / next;
-    if residual <= records[slot].goal {
-        records[slot].done = CONVERGED;
-    } else if !is_independent {
+    // Without a new direction the recurrence says 0, whatever is left: the host has to decide.
+    if !is_independent {
         records[slot].done = STALLED;
+    } else if residual <= records[slot].goal {
+        records[slot].done = CONVERGED;
     } else if j + 1u == level.restart {
         records[slot].done = FULL;
     } else {

@@ -281,7 +281,7 @@ impl<R: DeviceReal> Linear<R> {
         }
         append(&self.begin, &mut list, slots)?;
         let mut answer = vec![0.0; slots * self.unknowns];
-        self.iterate(&mut list, right.expected + 1, slots)?;
+        self.iterate(&mut list, (right.expected + 1).min(RESTART), slots)?;
         let reads = &mut [self.records.read(0, &mut records)?, self.answer.read(0, &mut answer)?, and.0.read(0, and.1)?];
         list.submit_and_read(reads)?;
         while records.iter().any(|record| record.goes_on()) {
