@@ -2,10 +2,10 @@
 // slot.
 
 @group(0) @binding(1) var<storage, read_write> records: array<Record>;
-@group(0) @binding(2) var<storage, read> partial_sums: array<real>;     // [slot][vector][chunk]
 @group(0) @binding(3) var<storage, read_write> small: array<real>;      // see krylov.wgsl
 
-// The tolerance cannot be met to less than this share of the cycle's first residual in f32.
+// What a cycle in f32 can take its first residual down to, as a share of it: a tolerance below that
+// needs another cycle.
 const REACH: real = 1.2e-5;
 
 @compute @workgroup_size(64)
@@ -14,11 +14,7 @@ fn krylov_begin(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x > 0u || records[slot].done != RUNNING {
         return;
     }
-    var square: real = 0.0;
-    for (var c = 0u; c < chunks(); c++) {
-        square += partial_sums[partial_place(slot, 0u) + c];
-    }
-    let norm = sqrt(square);
+    let norm = norm_of_sums(slot);
     if records[slot].iterations == 0u {
         records[slot].start_norm = norm;
     }

@@ -26,7 +26,9 @@ fn solve_coarsest(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
             let at = 9u * slot * level.nodes + node;
             for (var i = 0u; i < 3u; i++) {
                 let of_row = at + 3u * i * level.nodes;
-                var change = shares.y * (inverse[of_row] * r.x + inverse[of_row + level.nodes] * r.y + inverse[of_row + 2u * level.nodes] * r.z);
+                let of_inverse =
+                    vec3<real>(inverse[of_row], inverse[of_row + level.nodes], inverse[of_row + 2u * level.nodes]);
+                var change = shares.y * dot(of_inverse, r);
                 if k > 0u {
                     change += shares.x * last_step[first + i * level.nodes + node];
                 }

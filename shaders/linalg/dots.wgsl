@@ -5,8 +5,6 @@
 @group(0) @binding(3) var<storage, read> w: array<real>;                // [slot][component][node]
 @group(0) @binding(4) var<storage, read_write> partial_sums: array<real>;   // [slot][vector][chunk]
 
-var<workgroup> sums: array<real, THREADS>;
-
 @compute @workgroup_size(256)
 fn krylov_dots(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let slot = group.y;
@@ -26,17 +24,9 @@ fn krylov_dots(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
                 sum += entry * entry;
             }
         }
-        sums[local] = sum;
-        workgroupBarrier();
-        for (var half = THREADS / 2u; half > 0u; half /= 2u) {
-            if local < half {
-                sums[local] += sums[local + half];
-            }
-            workgroupBarrier();
-        }
+        let product = add_up(local, sum);
         if local == 0u {
-            partial_sums[partial_place(slot, i) + group.x] = sums[0];
+            partial_sums[partial_place(slot, i) + group.x] = product;
         }
-        workgroupBarrier();
     }
 }

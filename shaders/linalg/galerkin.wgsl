@@ -5,7 +5,7 @@
 @group(0) @binding(2) var<storage, read> list_entry: array<u32>;    // a block of the other factor
 @group(0) @binding(3) var<storage, read> list_weight: array<real>;  // its weight
 
-// The sum of a block's list in `given`, whose components are `stride` apart.
+// A block of `given` whose first component is at `at`, the others `stride` apart.
 fn load_block(at: u32, stride: u32) -> mat3x3<real> {
     return mat3x3<real>(
         given[at], given[at + 3u * stride], given[at + 6u * stride],

@@ -2,7 +2,6 @@
 // needs the sum adds up the chunks.
 
 const CHUNK: u32 = 1024u;
-const THREADS: u32 = 256u;
 
 fn chunks() -> u32 {
     return (3u * level.nodes + CHUNK - 1u) / CHUNK;

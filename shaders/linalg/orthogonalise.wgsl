@@ -9,7 +9,6 @@
 @group(0) @binding(6) var<storage, read_write> squares: array<real>;    // [slot][chunk], of what is left of w
 
 var<workgroup> coefficients: array<real, THREADS>;
-var<workgroup> sums: array<real, THREADS>;
 
 @compute @workgroup_size(256)
 fn krylov_orthogonalise(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
@@ -39,15 +38,8 @@ fn krylov_orthogonalise(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_
         w[slot * n + k] = left;
         square += left * left;
     }
-    sums[local] = square;
-    workgroupBarrier();
-    for (var half = THREADS / 2u; half > 0u; half /= 2u) {
-        if local < half {
-            sums[local] += sums[local + half];
-        }
-        workgroupBarrier();
-    }
+    let left_over = add_up(local, square);
     if local == 0u {
-        squares[slot * chunks() + group.x] = sums[0];
+        squares[slot * chunks() + group.x] = left_over;
     }
 }

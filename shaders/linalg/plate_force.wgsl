@@ -4,24 +4,14 @@
 @group(0) @binding(4) var<storage, read> plate: array<u32>;             // its nodes
 @group(0) @binding(5) var<storage, read_write> records: array<Record>;
 
-const THREADS: u32 = 256u;
-var<workgroup> sums: array<real, THREADS>;
-
 @compute @workgroup_size(256)
 fn plate_force(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     var sum: real = 0.0;
     for (var i = local; i < level.plate_nodes; i += THREADS) {
         sum += row_times(group.y, 2u, plate[i]);
     }
-    sums[local] = sum;
-    workgroupBarrier();
-    for (var half = THREADS / 2u; half > 0u; half /= 2u) {
-        if local < half {
-            sums[local] += sums[local + half];
-        }
-        workgroupBarrier();
-    }
+    let force = add_up(local, sum);
     if local == 0u {
-        records[group.y].along = sums[0];
+        records[group.y].along = force;
     }
 }

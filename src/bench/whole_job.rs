@@ -64,7 +64,8 @@ pub struct WholeJob {
     pub krylov_iterations: usize,
     /// Seconds on the wall for all of them, setting up included.
     pub wall_s: f64,
-    /// What passed to the device and back in the steps of all cases; none on the CPU.
+    /// What passed to the device and back in the steps; none on the CPU. Of a batch it is what was
+    /// counted while the case with the most of it ran: a lower bound of what all of them moved.
     pub traffic: Option<Traffic>,
 }
 
@@ -137,7 +138,7 @@ fn one(options: &WholeJobs, device: DeviceChoice, batch: usize) -> Result<WholeJ
         row.krylov_iterations += summary.krylov_iterations;
         if let Some(traffic) = summary.device_traffic {
             // Each case has its own steps' account, in which those of the others are while they
-            // share the device: the largest is that of the batch.
+            // share the device: the largest comes nearest to the batch's.
             let most = row.traffic.get_or_insert_default();
             if traffic.steps.bytes_up > most.bytes_up {
                 *most = traffic.steps;

@@ -27,13 +27,15 @@ pub struct Side<'a> {
     /// Right-hand side, three a node; at fixed unknowns their values.
     pub rhs: &'a [f64],
     /// Relative residual to be reached over the free unknowns, the fixed ones' part taken over to
-    /// the right-hand side. A device in single precision stops at 1.2e-5 of the first residual.
+    /// the right-hand side. In single precision a cycle of vectors comes down to 1.2e-5 of the
+    /// residual that it began with; less than that takes another cycle.
     pub tolerance: f64,
     /// The tolerance is of the residual at the guess, not of the right-hand side.
     pub relative_to_guess: bool,
-    /// Krylov iterations that it will probably take: so many are sent off at once.
+    /// Krylov iterations that it will probably take: so many are sent off at once. A wrong number
+    /// costs time, and nothing else.
     pub expected: usize,
-    /// The guess (zeros are one), and the solution if it ended well.
+    /// The guess (zeros are one); receives the last iterate, whatever the report says of it.
     pub x: &'a mut [f64],
     /// Receives how it went.
     pub report: SideReport,
@@ -45,9 +47,9 @@ pub enum Ended {
     /// Nobody tried: the backend solves no systems.
     #[default]
     NotTried,
-    /// The tolerance is met.
+    /// The tolerance is met, by the recurrence of the residual.
     Converged,
-    /// It is not, and will not be; `x` is the best iterate.
+    /// It is not, and will not be.
     Stalled,
     /// A number of the system is not finite.
     NotFinite,

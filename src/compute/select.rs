@@ -25,7 +25,8 @@ pub enum DeviceChoice {
 /// The precision wished for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PrecisionChoice {
-    /// f64, at the least for the residual: a device without f64 computes tangents only.
+    /// f64 for the residual, f32 for the linear systems. A device without f64 computes tangents and
+    /// solves with them; forces are the CPU's then.
     #[default]
     Auto,
     /// f32 for everything.

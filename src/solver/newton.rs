@@ -18,7 +18,7 @@ use crate::contact::coulomb::{Friction, Status};
 use crate::contact::pair::leave_even;
 use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
-use linearise::Linearised;
+use linearise::{Asked, Linearised};
 
 /// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance
 /// of the step asks for, and at the loosest to [`Settings::loosest_linear`]. Solving more tightly
@@ -265,7 +265,8 @@ impl Newton {
                 break;
             }
             let eta = self.forcing(previous).min(if control.normal_force.is_some() { TIGHT_LINEAR } else { 1.0 });
-            let Linearised { krylov, fallback, delta_h } = self.linearise(case, &mesh, control, eta, iteration == 0)?;
+            let asked = Asked { mesh: &mesh, control, eta, first: iteration == 0 };
+            let Linearised { krylov, fallback, delta_h } = self.linearise(case, asked)?;
             report.fallbacks += usize::from(fallback);
             highest = highest.max(self.current.merit);
             // An iteration that moves the plate has no merit before it to be compared with.

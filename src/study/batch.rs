@@ -7,9 +7,9 @@
 //! ```
 //! Whoever serves takes all requests that wait at that moment and makes one call of each kind out
 //! of them, so that one dispatch serves every case that is at that point. It does not wait for the
-//! others, whose linear systems take their own time on the cores: a device that is idle takes what
-//! there is, and one that is busy finds the larger a batch. What a case gets does not depend on the
-//! others of the call ([`Compute`]), so neither do results.
+//! others, who are busy on the cores with what the host does of an iteration: a device that is idle
+//! takes what there is, and one that is busy finds the larger a batch. What a case gets does not
+//! depend on the others of the call ([`Compute`]), so neither do results.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

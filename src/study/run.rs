@@ -23,6 +23,7 @@ use super::row::{Row, RowStatus, write_table};
 use super::schedule::{pools, side_by_side};
 use super::shard::{Shard, by_descending_cost, cost};
 use super::simulate::Simulator;
+use crate::case::{Case, Linear};
 use crate::compute::select::{DeviceChoice, PrecisionChoice, Selected, is_there, select};
 use crate::compute::{CaseModel, Compute, ComputeError};
 use crate::mesh::Mesh;
@@ -95,8 +96,10 @@ pub fn run(
 ) -> Result<Report, StudyError> {
     let device = is_there(options.device)?;
     // Over a plane the device does nearly all of the work, and the threads of the cases wait for
-    // it; linear systems of two bodies take the cores.
-    let alone = study.cases.iter().all(|case| case.case.opponent.is_none());
+    // it; the linear systems of two bodies, and those that are to be solved directly, take the
+    // cores.
+    let there = |case: &Case| case.opponent.is_none() && case.solver.linear == Linear::Multigrid;
+    let alone = study.cases.iter().all(|case| there(&case.case));
     let slots = match (device, alone) {
         (true, true) => LARGEST_BATCH,
         (true, false) => (2 * options.threads).clamp(1, LARGEST_BATCH),

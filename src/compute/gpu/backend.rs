@@ -1,4 +1,5 @@
-//! A batch of cases on a device, everything in one precision.
+//! A batch of cases on a device: forces, tangents, contact and states in one precision, linear
+//! systems in f32.
 
 use std::sync::Arc;
 
@@ -23,7 +24,8 @@ use crate::material::PointState;
 use crate::material::multistep::Flow;
 use crate::mesh::Mesh;
 
-/// Evaluates a batch on a device in precision `R`: residuals, tangents, contact and state.
+/// Evaluates a batch on a device in precision `R`: residuals, tangents, contact and state; and
+/// solves linear systems with the tangents, in f32 (see [`super::linear`]).
 ///
 /// Committed states live on the device. Trial displacements go there as increments from the
 /// committed displacement, formed in f64 and rounded once, so that f32 loses no digits of a small
@@ -179,7 +181,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
             let (outcomes, answers) = self.batch()?.linear(&dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
             for (slot, &i) in dispatch.requests.iter().enumerate() {
                 requests[i].outcome = outcomes[slot];
-                packed.unpack(slot, &answers, &mut requests[i].sides);
+                packed.unpack(slot, &answers, &mut requests[i]);
             }
         }
         Ok(())

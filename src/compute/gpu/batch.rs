@@ -185,13 +185,27 @@ impl<R: DeviceReal> Batch<R> {
             .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count], CONTACT_WEIGHT))
             .collect::<Result<Vec<_>, _>>()?;
         let (mut widest, mut all) = Scratch::<R>::bytes(sizes);
-        if let Some(linear) = &linear_plan {
-            let (array, sum) = linear.bytes::<R>();
-            (widest, all) = (widest.max(array), all + sum);
-        }
+        let mut shared = None;
+        let linear_plan = linear_plan.and_then(|linear| {
+            let ((array, sum), lists) = (linear.bytes::<R>(), linear.shared_bytes());
+            match context.has_room("the linear solver of one case", all + sum + lists) {
+                Ok(()) => {
+                    (widest, all) = (widest.max(array), all + sum);
+                    shared = Some(lists);
+                    Some(linear)
+                }
+                Err(error) => {
+                    log::warn!("the host solves the linear systems: {error}");
+                    None
+                }
+            }
+        });
         context.has_room("an evaluation of one case", all)?;
         let most = chunks.iter().map(|c| c.count).max().unwrap_or(1);
+        // What the slots share is set aside while their number is found.
+        let set_aside = shared.map(|bytes| context.budget.reserve("lists of the linear solver", bytes)).transpose()?;
         let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
+        drop(set_aside);
         let scratch = Scratch::new(&context, sizes, slots)?;
         let linear = linear_plan.map(|plan| Linear::new(&context, &plan, slots, &scratch.blocks)).transpose()?;
         let groups = residents
@@ -368,7 +382,7 @@ impl<R: DeviceReal> Batch<R> {
         let mut list = context.record();
         self.append(dispatch, Evaluation::Tangent, &mut list)?;
         linear.update(context, &mut list, rows, fixed, slots)?;
-        let mut first = vec![0u32; slots];
+        let mut first = vec![u32::MAX; slots];
         let mut answers = Vec::with_capacity(sides.len());
         for right in sides {
             let list = std::mem::replace(&mut list, context.record());

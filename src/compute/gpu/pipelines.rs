@@ -80,9 +80,10 @@ impl GpuContext {
             } else {
                 // SAFETY: the source is compiled into this program. Its kernels return at once
                 // beyond the dimensions in their uniform block, whose drivers size every bound
-                // array by those dimensions, and all their loops have fixed counts or run along
-                // lists built by this program; debug builds run the same kernels with the checks
-                // on.
+                // array by those dimensions. All their loops have fixed counts, or run along lists
+                // built by this program, or to the vectors and steps of a record, which only
+                // kernels raise, to the length of a cycle. Debug builds run the same kernels with
+                // the checks on.
                 #[allow(unsafe_code)]
                 unsafe {
                     self.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())

@@ -33,16 +33,30 @@ pub(super) struct Linearised {
     pub delta_h: f64,
 }
 
+/// What is asked of a linear system.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked<'a> {
+    pub mesh: &'a Mesh,
+    pub control: &'a Control,
+    /// Relative residual to be reached.
+    pub eta: f64,
+    /// It is the first of its step.
+    pub first: bool,
+}
+
+/// What came of a system that the backend was asked to solve.
+enum There {
+    Solved(Linearised),
+    /// It solves no such systems, or gave up after so many Krylov iterations.
+    NotSolved {
+        krylov: usize,
+    },
+}
+
 impl Newton {
     /// Forms and solves the linear system: the correction is in `self.delta`.
-    pub(super) fn linearise(
-        &mut self,
-        case: &mut dyn Evaluate,
-        mesh: &Mesh,
-        control: &Control,
-        eta: f64,
-        first: bool,
-    ) -> Result<Linearised, Halt> {
+    pub(super) fn linearise(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>) -> Result<Linearised, Halt> {
+        let mesh = asked.mesh;
         let mut lap = Lap::start();
         fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
         right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
@@ -51,25 +65,21 @@ impl Newton {
             self.unit_rhs[3 * n as usize + 2] = -1.0;
         }
         lap.end(&mut self.times, Phase::Contact);
-        if let Some(done) = self.solve_there(case, mesh, control, eta, first)? {
-            return Ok(done);
-        }
-        self.solve_here(case, mesh, control, eta, first)
+        let krylov = match self.solve_there(case, asked)? {
+            There::Solved(done) => return Ok(done),
+            There::NotSolved { krylov } => krylov,
+        };
+        let here = self.solve_here(case, asked)?;
+        Ok(Linearised { krylov: krylov + here.krylov, ..here })
     }
 
-    /// As [`Newton::linearise`], by the backend; `None` if it solves no such systems, or if it
-    /// stalled: the host has a direct solver to fall back on.
-    fn solve_there(
-        &mut self,
-        case: &mut dyn Evaluate,
-        mesh: &Mesh,
-        control: &Control,
-        eta: f64,
-        first: bool,
-    ) -> Result<Option<Linearised>, Halt> {
-        let Systems::Plane(solver) = &self.linear else { return Ok(None) };
+    /// As [`Newton::linearise`], by the backend. Where it stalls, the host has a direct solver to
+    /// fall back on.
+    fn solve_there(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>) -> Result<There, Halt> {
+        let Asked { mesh, control, eta, first } = asked;
+        let Systems::Plane(solver) = &self.linear else { return Ok(There::NotSolved { krylov: 0 }) };
         if solver.kind() != SolverKind::Multigrid || self.boundary.against.is_some() {
-            return Ok(None);
+            return Ok(There::NotSolved { krylov: 0 });
         }
         let mut lap = Lap::start();
         self.correction.fill(0.0);
@@ -96,7 +106,7 @@ impl Newton {
         let outcome = request.outcome;
         let reports: Vec<SideReport> = request.sides.iter().map(|side| side.report).collect();
         if reports[0].ended == Ended::NotTried {
-            return Ok(None);
+            return Ok(There::NotSolved { krylov: 0 });
         }
         lap.end(&mut self.times, Phase::LinearSolve);
         if let Outcome::Inverted { element, point } = outcome {
@@ -111,7 +121,7 @@ impl Newton {
         // will do.
         if reports[0].ended != Ended::Converged || reports.iter().any(|report| report.ended == Ended::NotFinite) {
             log::debug!("  the device's linear solve ended {:?} after {krylov} iterations", reports[0].ended);
-            return Ok(None);
+            return Ok(There::NotSolved { krylov });
         }
         let mut delta_h = 0.0;
         if let (Some(target), Some(unit)) = (control.normal_force, reports.get(1)) {
@@ -119,7 +129,7 @@ impl Newton {
         }
         self.delta.copy_from_slice(&self.correction);
         self.current.expand(mesh, &self.boundary, &mut self.delta);
-        Ok(Some(Linearised { krylov, fallback: false, delta_h }))
+        Ok(There::Solved(Linearised { krylov, fallback: false, delta_h }))
     }
 
     /// The change of h by which the plate has the force that is to be held, given what its force
@@ -137,14 +147,8 @@ impl Newton {
     }
 
     /// As [`Newton::linearise`], on the host.
-    fn solve_here(
-        &mut self,
-        case: &mut dyn Evaluate,
-        mesh: &Mesh,
-        control: &Control,
-        eta: f64,
-        first: bool,
-    ) -> Result<Linearised, Halt> {
+    fn solve_here(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>) -> Result<Linearised, Halt> {
+        let Asked { mesh, control, eta, first } = asked;
         let mut lap = Lap::start();
         let matrix = self.linear.matrix_mut();
         if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut matrix.blocks)? {

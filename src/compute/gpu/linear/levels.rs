@@ -185,6 +185,16 @@ pub fn slot_numbers(level: &LevelLayout) -> (usize, usize) {
     ((9 * level.blocks()).max(products), 9 * level.blocks() + products + (9 + 1 + 5 * 3) * level.nodes)
 }
 
+/// Numbers of a level that all slots share.
+pub fn shared_numbers(level: &LevelLayout) -> usize {
+    let transfer = level.transfer.as_ref().map_or(0, |t| {
+        let lists = |lists: &Lists| lists.start.len() + lists.entry.len() + lists.weight.len();
+        let rows = |rows: &Rows| rows.start.len() + rows.column.len() + rows.weight.len();
+        lists(&t.product) + lists(&t.coarse) + rows(&t.prolongation) + rows(&t.restriction)
+    });
+    level.column.len() + level.diagonal.len() + transfer
+}
+
 impl Level {
     /// The arrays of a level for so many slots.
     ///

@@ -2,10 +2,12 @@
 //! preconditioned by its V-cycle, for every slot of a dispatch at once.
 //!
 //! All of it is in single precision, as the preconditioner is on the CPU ([`crate::linalg`], whose
-//! algorithm this is): Newton's residual decides what is a solution, the linear system only how
-//! fast it is found. The list of a solve has as many Krylov iterations as whoever asks expects it
-//! to take, and one more; slots that have finished leave out what remains, and where some have not,
-//! more is sent.
+//! algorithm this is but for three things: a cycle has up to 30 vectors, two passes of classical
+//! Gram-Schmidt stand for the modified one, and that the tolerance is met is taken from the
+//! recurrence). Newton's residual decides what is a solution, the linear system only how fast it is
+//! found. The list of a solve has as many Krylov iterations as whoever asks expects it to take, and
+//! one more; slots that have finished leave out what remains, and where some have not, more is
+//! sent.
 
 mod levels;
 pub mod pack;
@@ -18,7 +20,7 @@ use super::pipelines::Recorder;
 use crate::compute::linear::{Ended, SideReport};
 use crate::linalg::layout::{Layout, NOWHERE};
 use crate::mesh::Mesh;
-use levels::{Call, Levels, Record, row_threads, slot_numbers};
+use levels::{Call, Levels, Record, row_threads, shared_numbers, slot_numbers};
 use sources::{
     ASSEMBLE, KRYLOV_ADVANCE, KRYLOV_BEGIN, KRYLOV_COMBINE, KRYLOV_DOTS, KRYLOV_LEAST_SQUARES, KRYLOV_MEASURE, KRYLOV_NORMALISE,
     KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, PRESCRIBE, RESIDUAL,
@@ -88,9 +90,19 @@ impl Plan {
             (widest, all) = (widest.max(array), all + sum);
         }
         let rows = POINT_ROWS * self.contact_points * size_of::<R>();
-        ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + rows) as u64)
+        ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + rows + size_of::<Record>()) as u64)
+    }
+
+    /// Bytes of what the slots share: columns, lists, prolongations.
+    pub fn shared_bytes(&self) -> u64 {
+        let levels: usize = self.layout.levels.iter().map(shared_numbers).sum();
+        let own = self.source.len() + self.point_of.len() + self.plate.len();
+        ((levels + own) * size_of::<u32>()) as u64 + SMALL_ARRAYS
     }
 }
+
+/// Bytes that uniform blocks and the padding of all shared arrays take at the most.
+const SMALL_ARRAYS: u64 = 4096;
 
 /// Numbers of a slot's small arrays, as `krylov.wgsl` lays them out.
 fn small_numbers() -> usize {
@@ -122,16 +134,25 @@ pub struct Linear<R> {
     solution: StorageBuffer<f32>,
     guess: StorageBuffer<f32>,
     answer: StorageBuffer<f32>,
-    update: Vec<Call>,
-    /// What is fixed, in `solution`; the residual there and its square; what tolerances are
-    /// measured by; the first basis vector; an iteration; the answer.
+    /// Forms the finest level's matrix.
+    assemble: Call,
+    /// Writes what is fixed into `solution`.
     prescribe: Call,
+    /// The residual there, and its square.
     residual: Vec<Call>,
+    /// What tolerances are measured by.
     measure: Call,
+    /// The first basis vector.
     begin: Vec<Call>,
+    /// A Krylov iteration after the V-cycle.
     iteration: Vec<Call>,
+    /// The answer, from the vectors of a cycle.
     finish: Vec<Call>,
     unknowns: usize,
+    /// Arrays that only kernels name: they stay in the memory account as long as the kernels do.
+    _vectors: [StorageBuffer<f32>; 5],
+    _lists: [StorageBuffer<u32>; 3],
+    _counts: StorageBuffer<[u32; 4]>,
 }
 
 impl<R: DeviceReal> Linear<R> {
@@ -212,7 +233,7 @@ impl<R: DeviceReal> Linear<R> {
         let measure = call(&KRYLOV_MEASURE, 1, vec![r.clone(), sums.binding()])?;
         let residual = vec![with_product(&RESIDUAL, by_rows, &solution, residual)?, dots()?];
         Ok(Self {
-            update: vec![assemble],
+            assemble,
             prescribe,
             residual,
             measure,
@@ -227,6 +248,9 @@ impl<R: DeviceReal> Linear<R> {
             guess,
             answer,
             unknowns,
+            _vectors: [basis, preconditioned, sums, squares, small],
+            _lists: [source, point_of, plate],
+            _counts: counts,
         })
     }
 
@@ -246,7 +270,7 @@ impl<R: DeviceReal> Linear<R> {
     ) -> Result<(), GpuError> {
         context.upload_at(&self.rows, 0, rows)?;
         context.upload_at(&self.levels.levels[0].fixed, 0, fixed)?;
-        append(&self.update, list, slots)?;
+        self.assemble.append(list, slots)?;
         append(&self.levels.update, list, slots)
     }
 

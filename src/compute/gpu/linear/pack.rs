@@ -53,16 +53,17 @@ impl<R: DeviceReal> Packed<R> {
         }
     }
 
-    /// Writes what the device answered for a slot.
-    pub fn unpack(&self, slot: usize, answers: &[super::super::batch::Answers], sides: &mut [Side<'_>]) {
-        for (number, side) in sides.iter_mut().enumerate() {
+    /// Writes what the device answered for a slot: fixed unknowns keep the values that were given.
+    pub fn unpack(&self, slot: usize, answers: &[super::super::batch::Answers], request: &mut LinearRequest<'_>) {
+        for (number, side) in request.sides.iter_mut().enumerate() {
             let (solutions, reports) = &answers[number];
             let back = 1.0 / self.factors[number][slot];
             let nodes = side.x.len() / 3;
             let solution = &solutions[slot * 3 * nodes..][..3 * nodes];
             for (node, x) in side.x.as_chunks_mut::<3>().0.iter_mut().enumerate() {
                 for (c, x) in x.iter_mut().enumerate() {
-                    *x = f64::from(solution[c * nodes + node]) * back;
+                    let i = 3 * node + c;
+                    *x = if request.fixed[i] { side.rhs[i] } else { f64::from(solution[c * nodes + node]) * back };
                 }
             }
             let report = reports[slot];

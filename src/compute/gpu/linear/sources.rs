@@ -9,6 +9,8 @@ const PRODUCT: Source = source!("linalg/product.wgsl");
 const GALERKIN: Source = source!("linalg/galerkin.wgsl");
 const TRANSFER: Source = source!("linalg/transfer.wgsl");
 const KRYLOV: Source = source!("linalg/krylov.wgsl");
+const SUMS: Source = source!("linalg/sums.wgsl");
+const NORM: Source = source!("linalg/norm.wgsl");
 
 /// The tangent as the finest level's matrix.
 pub static ASSEMBLE: Kernel = Kernel {
@@ -109,7 +111,7 @@ pub static KRYLOV_PRODUCT: Kernel = Kernel {
 /// Products of a vector with the basis.
 pub static KRYLOV_DOTS: Kernel = Kernel {
     name: "krylov_dots",
-    sources: &[LEVEL, RECORD, KRYLOV, source!("linalg/dots.wgsl")],
+    sources: &[LEVEL, RECORD, KRYLOV, SUMS, source!("linalg/dots.wgsl")],
     bindings: &[Uniform, Read, Read, Read, ReadWrite],
     workgroup: 256,
 };
@@ -117,7 +119,7 @@ pub static KRYLOV_DOTS: Kernel = Kernel {
 /// A pass of Gram-Schmidt.
 pub static KRYLOV_ORTHOGONALISE: Kernel = Kernel {
     name: "krylov_orthogonalise",
-    sources: &[LEVEL, RECORD, KRYLOV, source!("linalg/orthogonalise.wgsl")],
+    sources: &[LEVEL, RECORD, KRYLOV, SUMS, source!("linalg/orthogonalise.wgsl")],
     bindings: &[Uniform, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite],
     workgroup: 256,
 };
@@ -125,7 +127,7 @@ pub static KRYLOV_ORTHOGONALISE: Kernel = Kernel {
 /// The norm by which tolerances are measured.
 pub static KRYLOV_MEASURE: Kernel = Kernel {
     name: "krylov_measure",
-    sources: &[LEVEL, RECORD, KRYLOV, source!("linalg/measure.wgsl")],
+    sources: &[LEVEL, RECORD, KRYLOV, NORM, source!("linalg/measure.wgsl")],
     bindings: &[Uniform, ReadWrite, Read],
     workgroup: 64,
 };
@@ -133,7 +135,7 @@ pub static KRYLOV_MEASURE: Kernel = Kernel {
 /// The beginning of a cycle.
 pub static KRYLOV_BEGIN: Kernel = Kernel {
     name: "krylov_begin",
-    sources: &[LEVEL, RECORD, KRYLOV, source!("linalg/begin_cycle.wgsl")],
+    sources: &[LEVEL, RECORD, KRYLOV, NORM, source!("linalg/begin_cycle.wgsl")],
     bindings: &[Uniform, ReadWrite, Read, ReadWrite],
     workgroup: 64,
 };
@@ -173,7 +175,7 @@ pub static KRYLOV_COMBINE: Kernel = Kernel {
 /// The plate's force along the solution.
 pub static PLATE_FORCE: Kernel = Kernel {
     name: "plate_force",
-    sources: &[LEVEL, RECORD, PRODUCT, source!("linalg/plate_force.wgsl")],
+    sources: &[LEVEL, RECORD, PRODUCT, SUMS, source!("linalg/plate_force.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
     workgroup: 256,
 };
