@@ -284,7 +284,7 @@ fn a_damaged_table_is_refused() {
     let whole = fs::read_to_string(&file).unwrap();
     for (content, says) in [
         (whole[..whole.len() / 2].to_owned(), "is damaged"),
-        (whole.replacen("table 2", "table 1", 1), "no contact table of this version"),
+        (whole.replacen("table 3", "table 2", 1), "no contact table of this version"),
         (whole.replacen("friction", "fiction", 1), "is damaged"),
         (String::new(), "no contact table"),
     ] {

@@ -6,7 +6,7 @@ use crate::law::model::{Axisymmetric, Law};
 use crate::law::variables::{Body, yield_lambda};
 
 /// Greatest tabulated indentation over R.
-pub const LAST: f64 = 0.1;
+pub const LAST: f64 = 0.15;
 /// First tabulated indentation over R of a sphere that yields later or never. Below it the powers
 /// of h of a half-space hold, as a/R is 0.001.
 pub const ELASTIC_FIRST: f64 = 1e-6;

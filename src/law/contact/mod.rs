@@ -42,6 +42,7 @@ mod shapes;
 mod update;
 mod virgin;
 
+pub use material::LAST;
 pub use update::{ContactResponse, ContactState};
 pub use virgin::{
     Axial, BY_NUMBERS, COLUMNS, ContactError, ContactParameters, KNOTS, LEVELS, POINTS, SLIDERS, Shapes, Virgin, VirginPoint,

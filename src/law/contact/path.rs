@@ -132,7 +132,8 @@ impl<'a> Follower<'a> {
             return;
         }
         let from = self.state.h;
-        let end = from - self.state.approach;
+        // A little beyond where contact is lost, so that rounding leaves no force.
+        let end = from - (1.0 + 1e-12) * self.state.approach;
         let end = if share > 0.0 { self.meet(share * self.out.f_n, self.delta_t, end, from) } else { end };
         self.towards(end, self.delta_t, STEPS, 1.0);
     }

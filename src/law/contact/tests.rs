@@ -12,7 +12,7 @@ const FRICTION: f64 = 0.3;
 
 /// A made-up law with the features of a fitted one: elastic below Lambda = 4, and from there on
 /// gradually another.
-fn law(yield_stress: f64, h: f64) -> Axial {
+fn law(yield_stress: f64, form: NormalCurve, h: f64) -> Axial {
     let model = OlssonLarsson { sphere: SPHERE, hardening: Hardening::Ideal { yield_stress } };
     let a = model.contact_radius(h);
     let f_n0 = model.force(h);
@@ -21,14 +21,15 @@ fn law(yield_stress: f64, h: f64) -> Axial {
     let n = 1.5 + 1.8 * s;
     let f_n_slip = f_n0 * (1.0 - 0.45 * s);
     let delta_t_slip = 1.5 * FRICTION * f_n0 / k_t0 * (1.0 + 2.5 * s);
-    let law = Parameters { f_n0, f_n_slip, delta_t_slip, k_t0, n, m_exponent: 1.6 + s, n_exponent: 1.4 };
+    let (m_exponent, n_exponent) = form.exponents(1.6 + s, 1.4);
+    let law = Parameters { f_n0, f_n_slip, delta_t_slip, k_t0, n, m_exponent, n_exponent };
     Axial { a, k_t: k_t0, law }
 }
 
 fn pair(yield_stress: f64, form: NormalCurve) -> ContactParameters {
     let a = 3.0 * yield_stress * SPHERE.radius / SPHERE.effective_modulus();
     let range = [(a * a / SPHERE.radius).min(0.01 * SPHERE.radius), 0.1 * SPHERE.radius];
-    ContactParameters::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, form, range, |h| law(yield_stress, h))
+    ContactParameters::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, form, range, |h| law(yield_stress, form, h))
         .unwrap()
 }
 
@@ -126,7 +127,7 @@ fn the_table_gives_back_the_normal_model_it_was_made_from() {
     for (yield_stress, p) in [(400.0, pair(400.0, PowerOfComplement)), (1e5, pair(1e5, PowerOfComplement))] {
         for i in 0..500 {
             let h = SPHERE.radius * 10f64.powf(-6.5 + 5.4 * i as f64 / 500.0);
-            let Axial { a, law: expected, .. } = law(yield_stress, h);
+            let Axial { a, law: expected, .. } = law(yield_stress, PowerOfComplement, h);
             let v = p.virgin(h);
             assert!((v.point.f_n0 / expected.f_n0 - 1.0).abs() < 6e-3, "{h}: {} {}", v.point.f_n0, expected.f_n0);
             assert!((v.point.a / a - 1.0).abs() < 4e-3);

@@ -45,9 +45,11 @@ pub struct ContactParameters {
     pub log_first: f64,
     /// Step of ln h from knot to knot.
     pub log_step: f64,
-    /// Per knot: ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T. With form 2 a is
-    /// the radius with which 2 E* a is the stiffness of an unloading, M the contact radius over it,
-    /// N the exponent of the sliders' backbone.
+    /// The gentle exponent of f_N, N of form 0 and M of form 1: the same at every h.
+    pub gentle: f64,
+    /// Per knot: ln F_N0; ln a, the radius with which 2 E* a is the stiffness of an unloading;
+    /// F_N_slip/F_N0; ln delta_T_slip; n; the contact radius over a; the steep exponent of f_N, with
+    /// form 2 the exponent of the sliders' backbone; ln k_T.
     pub table: [[f64; COLUMNS]; KNOTS],
     /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero
     /// otherwise.
@@ -149,7 +151,7 @@ pub fn unloading_exponent(radius: f64, effective_modulus: f64, a: f64, f_n0: f64
 const PLASTIC_GAMMA: f64 = 1.2732395447351628;
 
 impl ContactParameters {
-    /// Tabulates `law` over the indentations `range` (both > 0), from first yield (below it the
+    /// Tabulates `law`, whose gentle exponent of f_N does not hang on h, over the indentations `range` (both > 0), from first yield (below it the
     /// contact must be Hertz's) to the greatest that will be met. `law` answers for an indentation.
     ///
     /// # Errors
@@ -169,6 +171,7 @@ impl ContactParameters {
         let log_first = range[0].ln();
         let log_step = (range[1].ln() - log_first) / (KNOTS as f64 - 1.0);
         let mut table = [[0.0; COLUMNS]; KNOTS];
+        let mut gentle = 1.0;
         for i in 0..KNOTS {
             let h = (log_first + log_step * i as f64).exp();
             let Axial { a, k_t, law: p } = law(h);
@@ -188,19 +191,21 @@ impl ContactParameters {
                 }
             }
             let ratio = p.f_n_slip / p.f_n0;
-            table[i] = [
-                p.f_n0.ln(),
-                a.ln(),
-                if ratio < 1.0 { ratio } else { 1.0 },
-                p.delta_t_slip.ln(),
-                p.n,
-                p.m_exponent,
-                p.n_exponent,
-                k_t.ln(),
-            ];
+            let steep = match curve {
+                NormalCurve::PowerOfComplement => {
+                    gentle = p.n_exponent;
+                    p.m_exponent
+                }
+                NormalCurve::ComplementOfPower => {
+                    gentle = p.m_exponent;
+                    p.n_exponent
+                }
+            };
+            table[i] =
+                [p.f_n0.ln(), a.ln(), if ratio < 1.0 { ratio } else { 1.0 }, p.delta_t_slip.ln(), p.n, 1.0, steep, k_t.ln()];
         }
         let shapes = [[[0.0; POINTS]; 2]; LEVELS];
-        let mut parameters = Self { radius, effective_modulus, friction, form, log_first, log_step, table, shapes };
+        let mut parameters = Self { radius, effective_modulus, friction, form, gentle, log_first, log_step, table, shapes };
         parameters.conserve();
         Ok(parameters)
     }
@@ -258,11 +263,13 @@ impl ContactParameters {
         shapes
     }
 
-    /// Widens the contact where the law's F_N0 and a would let a press store more energy than was
-    /// put in (a fit may be off by that much next to first yield): the stored energy of a knot is
-    /// at most that of the one before and the work between, F_N0 being a power of h there; and a
-    /// dent never rises above where the sphere began.
+    /// Stiffens the unloading where the law's F_N0 and a would let a press store more energy than
+    /// was put in (an elastic contact of a finite a/R is stiffer than Hertz's of its radius, and a
+    /// fit may be off next to first yield): the stored energy of a knot is at most that of the one
+    /// before and the work between, F_N0 being a power of h there; and a dent never rises above
+    /// where the sphere began. The contact radius stays the law's.
     fn conserve(&mut self) {
+        self.keep_below(0, self.log_first.exp());
         let mut before = self.stored_at(0);
         for i in 1..KNOTS {
             let (h0, h1) =
@@ -271,15 +278,26 @@ impl ContactParameters {
             let most = before + (self.table[i][0].exp() * h1 - self.table[i - 1][0].exp() * h0) / (power + 1.0);
             let stored = self.stored_at(i);
             if stored > most {
-                self.table[i][1] += (stored / most).ln();
+                self.stiffen(i, stored / most);
             }
-            let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
-            let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
-            let depth = gamma * f_n0 / (2.0 * self.effective_modulus * a);
-            if depth > h1 {
-                self.table[i][1] += (depth / h1).ln();
-            }
+            self.keep_below(i, h1);
             before = self.stored_at(i);
+        }
+    }
+
+    /// Makes the unloading of a knot stiffer by a factor.
+    fn stiffen(&mut self, i: usize, factor: f64) {
+        self.table[i][1] += factor.ln();
+        self.table[i][5] /= factor;
+    }
+
+    /// Lets no more than the indentation `h` be recovered at a knot.
+    fn keep_below(&mut self, i: usize, h: f64) {
+        let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
+        let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+        let depth = gamma * f_n0 / (2.0 * self.effective_modulus * a);
+        if depth > h {
+            self.stiffen(i, depth / h);
         }
     }
 
@@ -362,13 +380,12 @@ impl ContactParameters {
         let f_n_slip = self.column(2, position)[0] * f_n0;
         let delta_t_slip = self.column(3, position)[0].exp();
         let n = self.column(4, position)[0];
-        let m_exponent = self.column(5, position)[0];
-        let n_exponent = self.column(6, position)[0];
+        let contact_radius = self.column(5, position)[0] * a;
+        let steep = self.column(6, position)[0];
+        let (m_exponent, n_exponent) = if self.form == 0.0 { (steep, self.gentle) } else { (self.gentle, steep) };
         let mut backbone = if gamma < n { gamma } else { n };
-        let mut contact_radius = a;
         if self.form == BY_NUMBERS {
-            backbone = n_exponent;
-            contact_radius = m_exponent * a;
+            backbone = steep;
         }
         // The elastic sliders must be able to follow the virgin curve: neither softer at its start
         // nor slower to slip.

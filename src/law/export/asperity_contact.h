@@ -115,7 +115,9 @@ typedef struct asperity_table {
     asperity_real deepest;           /* h up to which the law was made */
     asperity_real first;             /* h of the first knot */
     asperity_real log_step;
-    /* F_N0, 1/a, 1/delta_T_slip, k_T, F_N_slip/F_N0, n, M, N at a knot; towards the next, of the logarithms of the first four and of the others, the
+    asperity_real gentle;            /* exponent of f_N: N of form 0, M of form 1 */
+    /* F_N0, 1/a (2 E* a is the stiffness of an unloading), 1/delta_T_slip, k_T, F_N_slip/F_N0, n, the contact radius over a, the steep exponent of f_N
+     * (with form 2 that of the sliders' backbone) at a knot; towards the next, of the logarithms of the first four and of the others, the
      * coefficients of u, u^2 and u^3, where u is the share of a step. So nothing is lost to the size of a logarithm in float. */
     asperity_real knots[ASPERITY_KNOTS][4][ASPERITY_COLUMNS];
     asperity_real shapes[ASPERITY_LEVELS][2][ASPERITY_POINTS];
@@ -165,6 +167,7 @@ typedef struct asperity_tangent {
 /* What a virgin contact answers at one indentation. */
 typedef struct asperity_curve {
     asperity_real f_n0, f_n_slip, n, m, big_n, k_t;
+    asperity_real radii;         /* contact radius over a */
     asperity_real per_slip;      /* 1/delta_T_slip, */
     asperity_real per_a;         /* 1/a, of F_N0 */
     asperity_real per_force, per_gamma, per_backbone, per_n; /* and 1/F_N0, ... */
@@ -510,8 +513,9 @@ ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, c
     v->f_n_slip = column[4] * v->f_n0;
     v->per_slip = column[2] * exponential[2];
     v->n = column[5];
-    v->m = column[6];
-    v->big_n = column[7];
+    v->radii = column[6];
+    v->m = t->form == 0 ? column[7] : t->gentle;
+    v->big_n = t->form == 0 ? t->gentle : column[7];
     v->k_t = column[3] * exponential[3];
     /* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
     share = v->f_n0 * (ASPERITY_R(1.5) * t->effective_radius * softness) * (v->per_a * v->per_a * v->per_a);
@@ -561,8 +565,8 @@ ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h
 }
 
 /* Radius of the contact of first loading. */
-ASPERITY_FN asperity_real asperity_radius(const asperity_table *t, const asperity_curve *v) {
-    return (t->form == 2 ? v->m : ASPERITY_R(1.0)) / v->per_a;
+ASPERITY_FN asperity_real asperity_radius(const asperity_curve *v) {
+    return v->radii / v->per_a;
 }
 
 /* x at point j of a shape that is given by numbers, */
@@ -1506,7 +1510,7 @@ ASPERITY_FN void asperity_update(
     }
     if (tangent) {
         tangent->df_n_dh = p.df_n_dh * modulus * radius;
-        tangent->a = asperity_radius(t, &v) * asperity_power(s.approach / v.depth, v.gamma - one) * radius;
+        tangent->a = asperity_radius(&v) * asperity_power(s.approach / v.depth, v.gamma - one) * radius;
         tangent->df_n_ddelta[0] *= share * modulus * radius;
         tangent->df_n_ddelta[1] *= share * modulus * radius;
         tangent->df_t_ddelta[0][0] *= share * modulus * radius;
@@ -1566,7 +1570,7 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
     if (!file) {
         return 1;
     }
-    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 2) {
+    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 3) {
         fclose(file);
         return 2;
     }
@@ -1575,7 +1579,8 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
            asperity_read_number(file, "friction", &t->friction) && asperity_read_number(file, "effective_modulus", &t->effective_modulus) &&
            asperity_read_number(file, "effective_radius", &t->effective_radius) &&
            asperity_read_number(file, "deepest", &t->deepest) && asperity_read_number(file, "form", &form) &&
-           asperity_read_number(file, "first", &t->first) && asperity_read_number(file, "log_step", &t->log_step);
+           asperity_read_number(file, "first", &t->first) && asperity_read_number(file, "log_step", &t->log_step) &&
+           asperity_read_number(file, "gentle", &t->gentle);
     t->form = good ? (int)form : 0;
     good = good && fscanf(file, " %31s", body) == 1 && strcmp(body, "knots") == 0;
     for (i = 0; good && i < ASPERITY_KNOTS; i++) {

@@ -286,7 +286,7 @@ static inline double asperity_product(double p, double q, double friction, doubl
 
 /* A row of the table: the law at the indentation h. */
 static inline void asperity_table_row(const asperity_material *m, double radius, double friction, double h, double row[ASPERITY_COLUMNS]) {
-    double a, f_n, stress, lambda, yield, ratio, ramp, z = 0.0, growth = 0.0, n, power, size, share, body, factor, steep, gentle, mindlin;
+    double a, f_n, stress, lambda, yield, ratio, ramp, z = 0.0, growth = 0.0, n, power, size, share, body, factor, steep, mindlin;
     asperity_normal(m, radius, h, &a, &f_n);
     stress = asperity_representative_stress(m, radius, a);
     lambda = asperity_effective_modulus(m) * a / (stress * radius);
@@ -321,7 +321,6 @@ static inline void asperity_table_row(const asperity_material *m, double radius,
         factor = n / 1.5 * share * (body + ASPERITY_SLIP_1 * pow(z, ASPERITY_SLIP_3));
     }
     steep = 1.0 + ASPERITY_CURVE_0 + ASPERITY_CURVE_1 * (n - 1.5);
-    gentle = 1.0 + ASPERITY_CURVE_2 * pow(friction, ASPERITY_CURVE_3);
     mindlin = 8.0 * (0.5 * m->youngs_modulus / (1.0 + m->poissons_ratio)) * a / (2.0 - m->poissons_ratio);
     row[0] = log(f_n);
     row[1] = log(a);
@@ -329,8 +328,8 @@ static inline void asperity_table_row(const asperity_material *m, double radius,
     row[2] = row[2] < 1.0 ? row[2] : 1.0;
     row[3] = log(factor * (1.5 * friction * f_n / mindlin));
     row[4] = n;
-    row[5] = ASPERITY_NORMAL_CURVE == 0 ? steep : gentle;
-    row[6] = ASPERITY_NORMAL_CURVE == 0 ? gentle : steep;
+    row[5] = 1.0;
+    row[6] = steep;
     row[7] = log(mindlin / body);
 }
 
@@ -341,11 +340,28 @@ static inline double asperity_stored_at(const asperity_draft *p, int i) {
     return gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * p->effective_modulus * a);
 }
 
-/* Widens the contact where F_N0 and a would let a press store more energy than was put in, or the
- * dent rise above where the sphere began. */
+/* Makes the unloading of a knot stiffer by a factor. */
+static inline void asperity_stiffen(asperity_draft *p, int i, double factor) {
+    p->table[i][1] += log(factor);
+    p->table[i][5] /= factor;
+}
+
+/* Lets no more than the indentation h be recovered at a knot. */
+static inline void asperity_keep_below(asperity_draft *p, int i, double h) {
+    double f_n0 = exp(p->table[i][0]), a = exp(p->table[i][1]);
+    double depth = asperity_unloading_exponent(p->radius, p->effective_modulus, a, f_n0) * f_n0 / (2.0 * p->effective_modulus * a);
+    if (depth > h) {
+        asperity_stiffen(p, i, depth / h);
+    }
+}
+
+/* Stiffens the unloading where F_N0 and a would let a press store more energy than was put in, or the
+ * dent rise above where the sphere began; the contact radius stays. */
 static inline void asperity_conserve(asperity_draft *p) {
-    double before = asperity_stored_at(p, 0), h0, h1, power, most, stored, f_n0, a, depth;
+    double before, h0, h1, power, most, stored;
     int i;
+    asperity_keep_below(p, 0, exp(p->log_first));
+    before = asperity_stored_at(p, 0);
     for (i = 1; i < ASPERITY_KNOTS; i++) {
         h0 = exp(p->log_first + p->log_step * (i - 1));
         h1 = exp(p->log_first + p->log_step * i);
@@ -353,14 +369,9 @@ static inline void asperity_conserve(asperity_draft *p) {
         most = before + (exp(p->table[i][0]) * h1 - exp(p->table[i - 1][0]) * h0) / (power + 1.0);
         stored = asperity_stored_at(p, i);
         if (stored > most) {
-            p->table[i][1] += log(stored / most);
+            asperity_stiffen(p, i, stored / most);
         }
-        f_n0 = exp(p->table[i][0]);
-        a = exp(p->table[i][1]);
-        depth = asperity_unloading_exponent(p->radius, p->effective_modulus, a, f_n0) * f_n0 / (2.0 * p->effective_modulus * a);
-        if (depth > h1) {
-            p->table[i][1] += log(depth / h1);
-        }
+        asperity_keep_below(p, i, h1);
         before = asperity_stored_at(p, i);
     }
 }
@@ -444,7 +455,7 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
     p->radius = 1.0;
     p->effective_modulus = asperity_effective_modulus(m);
     p->log_first = log(first);
-    p->log_step = (log(0.1) - p->log_first) / (ASPERITY_KNOTS - 1.0);
+    p->log_step = (log(@LAST@) - p->log_first) / (ASPERITY_KNOTS - 1.0);
     for (i = 0; i < ASPERITY_KNOTS; i++) {
         asperity_table_row(m, 1.0, friction > 0.0 ? friction : 1e-6, exp(p->log_first + p->log_step * i), p->table[i]);
         for (j = 0; j < ASPERITY_COLUMNS; j++) {
@@ -464,6 +475,7 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
     t->effective_radius = ASPERITY_R(1.0);
     t->first = ASPERITY_R(exp(p->log_first));
     t->log_step = ASPERITY_R(p->log_step);
+    t->gentle = ASPERITY_R(1.0 + ASPERITY_CURVE_2 * pow(friction > 0.0 ? friction : 1e-6, ASPERITY_CURVE_3));
     log_modulus = log(m->youngs_modulus);
     for (i = 0; i < ASPERITY_KNOTS; i++) {
         h = exp(p->log_first + p->log_step * i);

@@ -55,7 +55,7 @@ class Material:
 class Parameters:
     """A pair of materials, shared by its contacts."""
 
-    __slots__ = ("radius", "effective_modulus", "friction", "log_first", "log_step", "table", "shapes")
+    __slots__ = ("radius", "effective_modulus", "friction", "log_first", "log_step", "gentle", "table", "shapes")
 
 
 class State:
@@ -300,7 +300,6 @@ def row(m, radius, friction, h):
     else:
         factor = n / 1.5 * share * (body + SLIP_1 * z**SLIP_3)
     steep = 1.0 + CURVE_0 + CURVE_1 * (n - 1.5)
-    gentle = 1.0 + CURVE_2 * friction**CURVE_3
     mindlin = 8.0 * (0.5 * m.youngs_modulus / (1.0 + m.poissons_ratio)) * a / (2.0 - m.poissons_ratio)
     fall = share * f_n / f_n
     return [
@@ -309,8 +308,8 @@ def row(m, radius, friction, h):
         fall if fall < 1.0 else 1.0,
         math.log(factor * (1.5 * friction * f_n / mindlin)),
         n,
-        steep if NORMAL_CURVE == 0 else gentle,
-        gentle if NORMAL_CURVE == 0 else steep,
+        1.0,
+        steep,
         math.log(mindlin / body),
     ]
 
@@ -330,8 +329,25 @@ def stored_at(p, i):
     return gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * p.effective_modulus * a)
 
 
+def stiffen(p, i, factor):
+    """Makes the unloading of a knot stiffer by a factor."""
+    p.table[i][1] += math.log(factor)
+    p.table[i][5] /= factor
+
+
+def keep_below(p, i, h):
+    """Lets no more than the indentation h be recovered at a knot."""
+    f_n0 = math.exp(p.table[i][0])
+    a = math.exp(p.table[i][1])
+    depth = unloading_exponent(p.radius, p.effective_modulus, a, f_n0) * f_n0 / (2.0 * p.effective_modulus * a)
+    if depth > h:
+        stiffen(p, i, depth / h)
+
+
 def conserve(p):
-    """Widens the contact where F_N0 and a would let a press store more energy than was put in, or the dent rise above where the sphere began."""
+    """Stiffens the unloading where F_N0 and a would let a press store more energy than was put in, or the dent rise above where the sphere began; the contact radius
+    stays."""
+    keep_below(p, 0, math.exp(p.log_first))
     before = stored_at(p, 0)
     for i in range(1, KNOTS):
         h0 = math.exp(p.log_first + p.log_step * (i - 1))
@@ -340,12 +356,8 @@ def conserve(p):
         most = before + (math.exp(p.table[i][0]) * h1 - math.exp(p.table[i - 1][0]) * h0) / (power + 1.0)
         stored = stored_at(p, i)
         if stored > most:
-            p.table[i][1] += math.log(stored / most)
-        f_n0 = math.exp(p.table[i][0])
-        a = math.exp(p.table[i][1])
-        depth = unloading_exponent(p.radius, p.effective_modulus, a, f_n0) * f_n0 / (2.0 * p.effective_modulus * a)
-        if depth > h1:
-            p.table[i][1] += math.log(depth / h1)
+            stiffen(p, i, stored / most)
+        keep_below(p, i, h1)
         before = stored_at(p, i)
 
 
@@ -367,10 +379,11 @@ def setup(m, radius, friction):
     p.effective_modulus = effective_modulus(m)
     p.friction = friction
     p.log_first = math.log(first)
-    p.log_step = (math.log(0.1 * radius) - p.log_first) / (KNOTS - 1.0)
+    p.log_step = (math.log(@LAST@ * radius) - p.log_first) / (KNOTS - 1.0)
     p.table = [row(m, radius, friction if friction > 0.0 else 1e-6, math.exp(p.log_first + p.log_step * i)) for i in range(KNOTS)]
     if not all(math.isfinite(value) for line in p.table for value in line):
         raise ValueError("the law has no positive numbers for this material")
+    p.gentle = 1.0 + CURVE_2 * (friction if friction > 0.0 else 1e-6) ** CURVE_3
     conserve(p)
     return p
 
@@ -498,11 +511,12 @@ def virgin(p, h, sheared=1.0):
     v.f_n_slip = column_at(p, 2, position)[0] * v.f_n0
     v.delta_t_slip = math.exp(column_at(p, 3, position)[0])
     v.n = column_at(p, 4, position)[0]
-    v.m_exponent = column_at(p, 5, position)[0]
-    v.n_exponent = column_at(p, 6, position)[0]
+    radii = column_at(p, 5, position)[0]
+    steep = column_at(p, 6, position)[0]
+    v.m_exponent, v.n_exponent = (steep, p.gentle) if NORMAL_CURVE == 0 else (p.gentle, steep)
     v.backbone = v.gamma if v.gamma < v.n else v.n
     if NORMAL_CURVE == 2:
-        v.backbone = v.n_exponent
+        v.backbone = steep
         v.shapes = shapes_at(p, position)
     v.k_t = math.exp(column_at(p, 7, position)[0])
     start = v.n * p.friction * v.f_n_slip / v.delta_t_slip
@@ -519,8 +533,7 @@ def virgin(p, h, sheared=1.0):
     v.weight, v.lost = sliders(v.backbone)
     v.slope = v.f_n0 * log_slope / (p.log_step * h)
     v.depth = v.gamma * v.f_n0 / (2.0 * p.effective_modulus * v.a)
-    if NORMAL_CURVE == 2:
-        v.a = v.m_exponent * v.a
+    v.a = radii * v.a
     return v
 
 

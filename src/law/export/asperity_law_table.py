@@ -56,6 +56,7 @@ def setup(m, radius, friction):
     p.friction = TABLE_FRICTION
     p.log_first = TABLE_LOG_FIRST + length
     p.log_step = TABLE_LOG_STEP
+    p.gentle = 1.0
     shift = (force, length, 0.0, length, 0.0, 0.0, 0.0, stiffness)
     p.table = [[value + add for value, add in zip(line, shift)] for line in TABLE_ROWS]
     p.shapes = TABLE_SHAPES

@@ -15,7 +15,7 @@ pub(super) const CONTACT_3D: &str = include_str!("asperity_contact3d.h");
 const CHECK: &str = include_str!("asperity_contact_check.c");
 
 /// Version of the table's file.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Columns of the parameters' table in the order of the header's.
 const ORDER: [usize; COLUMNS] = [0, 1, 3, 7, 2, 4, 5, 6];
@@ -121,7 +121,7 @@ impl Unit {
     }
 
     /// The single numbers by the names that they have in the file.
-    fn numbers(&self) -> [(&'static str, f64); 9] {
+    fn numbers(&self) -> [(&'static str, f64); 10] {
         let p = &self.parameters;
         [
             ("share", self.share()),
@@ -133,6 +133,7 @@ impl Unit {
             ("form", p.form),
             ("first", p.log_first.exp()),
             ("log_step", p.log_step),
+            ("gentle", p.gentle),
         ]
     }
 
@@ -157,11 +158,11 @@ impl Unit {
         let number = |x: f64| format!("ASPERITY_R({x:?})");
         let row = |values: &[f64]| format!("{{{}}}", values.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "));
         let numbers = self.numbers().map(|(_, value)| number(value));
-        let [share, nu, friction, modulus, curvature, deepest, _, first, log_step] = numbers;
+        let [share, nu, friction, modulus, curvature, deepest, _, first, log_step, gentle] = numbers;
         let mut text = format!(
             "/* asperity_law.h: {}, h/R up to {}. Written by asperity {}. */\n#ifndef ASPERITY_LAW_H\n#define ASPERITY_LAW_H\n\n\
              #include \"asperity_contact.h\"\n\nstatic const asperity_table asperity_law = {{\n    {}, {}, {share}, {nu}, {friction}, {modulus}, {curvature}, \
-             {deepest}, {first}, {log_step},\n    {{\n",
+             {deepest}, {first}, {log_step}, {gentle},\n    {{\n",
             self.source,
             self.deepest,
             env!("CARGO_PKG_VERSION"),

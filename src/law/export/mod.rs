@@ -12,7 +12,7 @@ mod vectors;
 pub use contact::{contact_header, engine_files, engine_source};
 pub use vectors::{table_vectors, unit_vectors, vectors};
 
-use super::contact::{COLUMNS, ContactParameters, KNOTS, LEVELS, POINTS, SLIDERS};
+use super::contact::{COLUMNS, ContactParameters, KNOTS, LAST, LEVELS, POINTS, SLIDERS};
 use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
 use super::model::Law;
 use super::normal::NormalForm;
@@ -166,9 +166,11 @@ pub fn source(law: &Law, language: Language) -> String {
     fill(template, values.into_iter().chain(sizes()))
 }
 
-fn sizes() -> [(&'static str, String); 5] {
+fn sizes() -> impl Iterator<Item = (&'static str, String)> {
     [("KNOTS", KNOTS), ("COLUMNS", COLUMNS), ("SLIDERS", SLIDERS), ("POINTS", POINTS), ("LEVELS", LEVELS)]
         .map(|(name, size)| (name, size.to_string()))
+        .into_iter()
+        .chain([("LAST", format!("{LAST:?}"))])
 }
 
 fn fill<'a>(template: &str, values: impl IntoIterator<Item = (&'a str, String)>) -> String {

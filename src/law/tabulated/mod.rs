@@ -286,9 +286,9 @@ impl Tabulated {
                 delta_t_slip: level.delta_t_slip,
                 k_t0: level.k_t,
                 n: steepest(&level.tangential),
-                // Taken by the contact radius, below.
-                m_exponent: 1.0,
-                n_exponent: level.backbone,
+                // The steep exponent's place is the backbone's where the shapes are numbers.
+                m_exponent: level.backbone,
+                n_exponent: 1.0,
             };
             Axial { a: level.unloading_radius, k_t: level.k_t, law }
         };
