@@ -31,6 +31,7 @@ fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurv
         NormalForm::Published => (vec![], vec![]),
         NormalForm::Corrected => (vec![-0.031, 0.0123], vec![-0.017, 0.11, -0.052, 0.0037]),
         NormalForm::Smooth => (vec![0.97, 0.31, 1.03, 0.12], vec![0.29, 1.01, 0.93, 0.47, 0.11, 0.52]),
+        NormalForm::Composed => (vec![0.97, 0.31, 1.03, 0.12], vec![0.11, 0.86, 1.4, 0.5, 0.31, 0.83, 0.47, 0.61, 1.2]),
     };
     let interval = |from, to| Interval { from, to };
     Law {
@@ -75,7 +76,7 @@ fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurv
 fn laws() -> Vec<Law> {
     let mut laws = vec![];
     for (i, variable) in Variable::ALL.into_iter().enumerate() {
-        laws.push(law(variable, SlipForm::ALL[i % 2], NormalCurve::ALL[i / 2], NormalForm::ALL[(i + 2) % 3]));
+        laws.push(law(variable, SlipForm::ALL[i % 2], NormalCurve::ALL[i / 2], NormalForm::ALL[(i + 2) % NormalForm::ALL.len()]));
     }
     laws
 }
@@ -598,7 +599,7 @@ fn the_update_follows_the_law_it_is_made_of() {
             let friction = 0.25;
             let pair = ContactParameters::new(&law, &body, friction).unwrap();
             for h in [1e-5, 1e-3, 0.02].map(|h| h * sphere.radius) {
-                let normal = law.normal.state(&body, h);
+                let normal = law.normal.state(&body, friction, h);
                 let inputs = Axisymmetric {
                     youngs_modulus: sphere.youngs_modulus,
                     poissons_ratio: sphere.poissons_ratio,
@@ -717,7 +718,7 @@ fn the_module_warns_where_the_law_does() {
     for (answer, (yield_stress, nu, friction, h)) in answers.into_iter().zip(cases) {
         let sphere = ElasticSphere { radius: 2.0, youngs_modulus: 1e3, poissons_ratio: nu };
         let body = Body { sphere, hardening: Hardening::ideal(yield_stress).unwrap() };
-        let normal = law.normal.state(&body, 2.0 * h);
+        let normal = law.normal.state(&body, friction, 2.0 * h);
         let inputs = Axisymmetric {
             youngs_modulus: 1e3,
             poissons_ratio: nu,

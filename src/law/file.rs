@@ -100,7 +100,7 @@ impl LawFile {
 }
 
 fn out_of_formulas(law: &Law, body: &Body, friction: f64, h: f64) -> Vec<OutOfRange> {
-    let state = law.normal.state(body, h);
+    let state = law.normal.state(body, friction, h);
     let inputs = Axisymmetric {
         youngs_modulus: body.sphere.youngs_modulus,
         poissons_ratio: body.sphere.poissons_ratio,

@@ -185,7 +185,7 @@ fn fit_normal(form: NormalForm, (start, radius_pull): &NormalStart, samples: &[&
     .map_err(failed("a0(h)"))?;
     let radii: Vec<f64> = samples.iter().map(|s| normal::contact_radius(form, &radius, &s.body, s.h0)).collect();
     let force = minimize(form.sign(), &force_start, pull, |c| {
-        let force = |(s, &a): (&&Sample, &f64)| (normal::normal_force(form, c, &s.body, s.h0, a) / s.f_n0).ln();
+        let force = |(s, &a): (&&Sample, &f64)| (normal::normal_force(form, c, &s.body, s.friction, s.h0, a) / s.f_n0).ln();
         samples.iter().zip(&radii).map(force).collect()
     })
     .map_err(failed("F_N0(h)"))?;
@@ -227,7 +227,7 @@ fn choose_normal(
             let errors: Vec<CaseErrors> = samples
                 .iter()
                 .map(|s| {
-                    let state = models[fold_of[s.material]].state(&s.body, s.h0);
+                    let state = models[fold_of[s.material]].state(&s.body, s.friction, s.h0);
                     let (a, f_n) = ((state.a / s.a0 - 1.0).abs(), (state.f_n / s.f_n0 - 1.0).abs());
                     [a, a, f_n, f_n]
                 })
@@ -337,7 +337,7 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
         .iter()
         .map(|s| {
             let fold = fold_of[s.material];
-            let state = normal_models[fold].state(&s.body, s.h0);
+            let state = normal_models[fold].state(&s.body, s.friction, s.h0);
             law_errors(&forms, &by_fold[fold], s, &at(s, state.a, state.f_n))
         })
         .collect();

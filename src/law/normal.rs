@@ -1,5 +1,5 @@
-//! F_N0 and a0 from the indentation alone: closed forms with a fitted correction, exactly Hertz
-//! below first yield.
+//! F_N0 and a0 from the indentation: closed forms with a fitted correction. All but `composed` are
+//! exactly Hertz below first yield and know nothing of friction.
 //!
 //! With g = 1 - Lambda_Y/Lambda, u = ln(Lambda/Lambda_Y), e = d ln sigma/d ln eps_p at the
 //! representative strain, a_H = sqrt(R h), F_H Hertz's force and X = Lambda/Lambda_Y - 1, the
@@ -9,9 +9,18 @@
 //! corrected   a = a_OL exp(g (c1 + c2 u)),            F_N = F_OL exp(g (d1 + d2 a/R + d3 e + d4 u))
 //! smooth      a^2 = 2 R h {1/2 + (1.43 exp(-b1 e) - 1/2) [1 - exp(-(b2 u)^b3)]} exp(b4 g a_H/R)
 //!             F_N = F_H [1 + (k1 X^k2)^k3]^(-1/k3) exp(g [(k4 - k5 u) a_H/R - k6 e])
+//! composed    a of `smooth`,
+//!             F_N = F_el [1 + (k1 (Lambda - Lambda_Y)^k2)^k3]^(-1/k3) exp(-g [k4 u a_H/R + k5 e])
+//!             F_el = F_H exp(b1 exp(-b2 nu) a_H/R + b3 S tanh(b4 mu/beta))
 //! ```
-//! where Lambda, e are taken at the contact radius (published, corrected) or at Hertz's radius a_H
-//! (smooth, which is explicit in h).
+//! In `composed` the force of a fully plastic contact follows from Lambda and not from its ratio to
+//! first yield, so that it hardly depends on nu. F_el is the elastic sphere at a finite a/R, with
+//! what friction adds: beta is Dundurs' constant and 1 + S = (1 - nu) ln(3 - 4 nu)/(1 - 2 nu) the
+//! ratio of the stiffnesses of a punch that sticks and one that slides (Johnson 1985, eq. 3.104
+//! with Spence 1968). Below first yield F_N = F_el, which is Hertz's for a/R = 0 and mu = 0.
+//!
+//! Lambda, e are taken at the contact radius (published, corrected) or at Hertz's radius a_H (smooth,
+//! composed: explicit in h).
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -19,7 +28,7 @@ use std::f64::consts::PI;
 use super::least_squares::Sign;
 use super::variables::{Body, yield_lambda};
 use crate::analytical::olsson_larsson::{c_squared, large_deformation_factor, limited_hardness, plastic_c_squared};
-use crate::analytical::{bisect, hertz, johnson};
+use crate::analytical::{ElasticSphere, bisect, hertz, johnson};
 
 /// Which candidate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,11 +40,14 @@ pub enum NormalForm {
     Corrected,
     /// Curves of our own.
     Smooth,
+    /// The same radius; the force between the limits of an elastic sphere at a finite a/R, with
+    /// friction, and of full plasticity.
+    Composed,
 }
 
 impl NormalForm {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Published, Self::Corrected, Self::Smooth];
+    pub const ALL: [Self; 4] = [Self::Published, Self::Corrected, Self::Smooth, Self::Composed];
 
     /// How a table calls it.
     pub fn label(self) -> &'static str {
@@ -43,6 +55,7 @@ impl NormalForm {
             Self::Published => "Olsson & Larsson",
             Self::Corrected => "Olsson & Larsson, corrected",
             Self::Smooth => "smooth curves",
+            Self::Composed => "composed of limits",
         }
     }
 
@@ -51,7 +64,7 @@ impl NormalForm {
         match self {
             Self::Published => Vec::new(),
             Self::Corrected => vec![0.0; 2],
-            Self::Smooth => vec![1.0, 0.3, 1.0, 0.1],
+            Self::Smooth | Self::Composed => vec![1.0, 0.3, 1.0, 0.1],
         }
     }
 
@@ -61,16 +74,20 @@ impl NormalForm {
             Self::Published => Vec::new(),
             Self::Corrected => vec![0.0; 4],
             Self::Smooth => vec![0.3, 1.0, 1.0, 0.5, 0.1, 0.5],
+            Self::Composed => vec![0.12, 1.0, 1.0, 0.5, 0.5, 0.7, 0.5, 0.7, 1.0],
         }
     }
 
     /// What the constants may be.
     pub(super) fn sign(self) -> Sign {
-        if self == Self::Smooth { Sign::Positive } else { Sign::Any }
+        match self {
+            Self::Smooth | Self::Composed => Sign::Positive,
+            Self::Published | Self::Corrected => Sign::Any,
+        }
     }
 }
 
-/// The normal problem of a law: F_N0 and a0 as functions of h.
+/// The normal problem of a law: F_N0 and a0 as functions of h and, in the composed form, mu.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NormalModel {
@@ -116,13 +133,14 @@ impl NormalModel {
         self.radius.len() == self.form.radius_start().len() && self.force.len() == self.form.force_start().len()
     }
 
-    /// a0 and F_N0 at the indentation `h`; zero for h <= 0. Hertz below first yield.
-    pub fn state(&self, body: &Body, h: f64) -> NormalState {
+    /// a0 and F_N0 at the indentation `h`, pressed with Coulomb's coefficient `friction`; zero for
+    /// h <= 0. Hertz below first yield, but for F_N0 of the composed form.
+    pub fn state(&self, body: &Body, friction: f64, h: f64) -> NormalState {
         if !(h > 0.0) {
             return NormalState { a: 0.0, f_n: 0.0 };
         }
         let a = contact_radius(self.form, &self.radius, body, h);
-        NormalState { a, f_n: normal_force(self.form, &self.force, body, h, a) }
+        NormalState { a, f_n: normal_force(self.form, &self.force, body, friction, h, a) }
     }
 }
 
@@ -134,7 +152,7 @@ pub(super) fn contact_radius(form: NormalForm, constants: &[f64], body: &Body, h
         return hertz;
     }
     match (form, constants) {
-        (NormalForm::Smooth, &[b1, b2, b3, b4]) => {
+        (NormalForm::Smooth | NormalForm::Composed, &[b1, b2, b3, b4]) => {
             let Level { ramp, ratio, hardening } = Level::at(body, hertz);
             let growth = plastic_c_squared(0.0) * (-b1 * hardening).exp() - 0.5;
             let c_squared = 0.5 + growth * (1.0 - (-(b2 * ratio.ln()).powf(b3)).exp());
@@ -150,9 +168,23 @@ pub(super) fn contact_radius(form: NormalForm, constants: &[f64], body: &Body, h
 }
 
 /// F_N at the indentation `h` > 0, at which the contact radius is `a`.
-pub(super) fn normal_force(form: NormalForm, constants: &[f64], body: &Body, h: f64, a: f64) -> f64 {
+pub(super) fn normal_force(form: NormalForm, constants: &[f64], body: &Body, friction: f64, h: f64, a: f64) -> f64 {
     let sphere = &body.sphere;
     let (hertz_radius, hertz_force) = (hertz::contact_radius(sphere, h), hertz::force(sphere, h));
+    if let (NormalForm::Composed, &[k1, k2, k3, k4, k5, b1, b2, b3, b4]) = (form, constants) {
+        let nu = sphere.poissons_ratio;
+        let size = hertz_radius / sphere.radius;
+        let elastic = hertz_force * (b1 * (-b2 * nu).exp() * size + b3 * stick(sphere, b4 * friction)).exp();
+        let first = yield_lambda(nu);
+        let excess = body.lambda(hertz_radius) - first;
+        // Written so that a NaN goes on.
+        if excess <= 0.0 {
+            return elastic;
+        }
+        let Level { ramp, ratio, hardening } = Level::at(body, hertz_radius);
+        let plastic = (k1 * excess.powf(k2)).powf(k3);
+        return elastic * (1.0 + plastic).powf(-1.0 / k3) * (-ramp * (k4 * ratio.ln() * size + k5 * hardening)).exp();
+    }
     if body.lambda(hertz_radius) <= yield_lambda(sphere.poissons_ratio) {
         return hertz_force;
     }
@@ -173,6 +205,17 @@ pub(super) fn normal_force(form: NormalForm, constants: &[f64], body: &Body, h: 
     }
 }
 
+/// S tanh(mu/beta): the share by which friction stiffens an elastic contact. 1 + S = (1 - nu) ln(3 -
+/// 4 nu)/(1 - 2 nu), 1.0986 at nu = 0, is a punch's that sticks over one that slides; S vanishes
+/// with beta at nu = 1/2.
+fn stick(sphere: &ElasticSphere, friction: f64) -> f64 {
+    let (beta, nu) = (sphere.dundurs_beta(), sphere.poissons_ratio);
+    if beta < 1e-9 {
+        return 0.0 * friction;
+    }
+    ((1.0 - nu) * (3.0 - 4.0 * nu).ln() / (1.0 - 2.0 * nu) - 1.0) * (friction / beta).tanh()
+}
+
 /// Olsson & Larsson's contact radius for any hardening law, the 1/m of the closed form being the
 /// local hardening exponent.
 fn published_radius(body: &Body, h: f64) -> f64 {
@@ -188,4 +231,43 @@ fn published_force(body: &Body, a: f64) -> f64 {
     let maximum = if body.hardening_exponent(a) > 0.2 { 2.8 } else { 3.0 };
     let factor = large_deformation_factor(a / body.sphere.radius);
     limited_hardness(johnson::lambda(&body.sphere, stress, a), maximum, factor) * PI * a * a * stress
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Hardening, Material};
+
+    const CONSTANTS: [f64; 9] = [0.1, 0.85, 1.4, 0.5, 0.3, 0.8, 0.5, 0.6, 1.0];
+
+    fn force(hardening: Hardening, nu: f64, friction: f64, h: f64) -> f64 {
+        let material = Material { youngs_modulus: 200e3, poissons_ratio: nu, hardening };
+        let body = Body::new(2.0, &material).unwrap();
+        normal_force(NormalForm::Composed, &CONSTANTS, &body, friction, 2.0 * h, 0.0) / hertz::force(&body.sphere, 2.0 * h)
+    }
+
+    #[test]
+    fn the_composed_force_has_its_limits() {
+        for nu in [0.0, 0.2, 0.49, 0.5] {
+            // Hertz's half-space, then what a/R and friction add.
+            assert!((force(Hardening::Elastic, nu, 0.0, 1e-10) - 1.0).abs() < 1e-4, "nu = {nu}");
+            assert!(force(Hardening::Elastic, nu, 0.0, 0.05) > 1.05, "nu = {nu}");
+        }
+        // ln 3 of a punch that sticks, at nu = 0
+        let stuck = force(Hardening::Elastic, 0.0, 1e3, 1e-12);
+        assert!((stuck.ln() - CONSTANTS[7] * (3f64.ln() - 1.0)).abs() < 1e-5, "{stuck}");
+        assert!(force(Hardening::Elastic, 0.2, 0.3, 0.01) > force(Hardening::Elastic, 0.2, 0.1, 0.01));
+        assert!((force(Hardening::Elastic, 0.5, 0.3, 0.01) - force(Hardening::Elastic, 0.5, 0.0, 0.01)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_composed_force_is_continuous_at_first_yield() {
+        let yield_stress = 2000.0;
+        let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.2 };
+        let a = yield_lambda(0.2) * yield_stress / sphere.effective_modulus();
+        let at = |factor: f64| force(Hardening::Ideal { yield_stress }, 0.2, 0.3, factor * a * a);
+        assert!((at(1.0 + 1e-9) / at(1.0 - 1e-9) - 1.0).abs() < 1e-6);
+        assert!(at(2.0) < at(1.0));
+        assert!(force(Hardening::Ideal { yield_stress }, 0.2, f64::NAN, 0.01).is_nan());
+    }
 }

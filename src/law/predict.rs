@@ -47,7 +47,7 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
     let (indentation, target, friction) = covered(case)?;
     let body = Body::from_case(case)?;
     let normal = match source {
-        NormalSource::Formulas => law.normal.state(&body, indentation),
+        NormalSource::Formulas => law.normal.state(&body, friction, indentation),
         NormalSource::Press => press(case)?,
     };
     let inputs = Axisymmetric {

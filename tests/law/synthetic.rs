@@ -52,7 +52,7 @@ pub fn hardenings() -> Vec<String> {
 /// The normal data and the curve (delta_T, F_T, F_N) of a case that follows the law.
 pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>) {
     let body = Body::from_case(case).expect("a hardening law");
-    let state = normal().state(&body, h);
+    let state = normal().state(&body, friction, h);
     let inputs = Axisymmetric {
         youngs_modulus: body.sphere.youngs_modulus,
         poissons_ratio: body.sphere.poissons_ratio,

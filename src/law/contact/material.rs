@@ -39,7 +39,7 @@ impl ContactParameters {
         }
         let sphere = body.sphere;
         let contact = |h: f64| {
-            let state = law.normal.state(body, h);
+            let state = law.normal.state(body, friction, h);
             let inputs = Axisymmetric {
                 youngs_modulus: sphere.youngs_modulus,
                 poissons_ratio: sphere.poissons_ratio,
@@ -56,6 +56,6 @@ impl ContactParameters {
             Axial { a: state.a, k_t, law: law.contact(&inputs) }
         };
         let range = [first_indentation(body), LAST * sphere.radius];
-        Self::tabulate(sphere.radius, sphere.effective_modulus(), friction, law.forms.normal_curve, range, contact)
+        Self::tabulate(sphere.radius, sphere.effective_modulus(), friction, Some(law.forms.normal_curve), range, contact)
     }
 }

@@ -29,8 +29,10 @@ fn law(yield_stress: f64, form: NormalCurve, h: f64) -> Axial {
 fn pair(yield_stress: f64, form: NormalCurve) -> ContactParameters {
     let a = 3.0 * yield_stress * SPHERE.radius / SPHERE.effective_modulus();
     let range = [(a * a / SPHERE.radius).min(0.01 * SPHERE.radius), 0.1 * SPHERE.radius];
-    ContactParameters::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, form, range, |h| law(yield_stress, form, h))
-        .unwrap()
+    ContactParameters::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, Some(form), range, |h| {
+        law(yield_stress, form, h)
+    })
+    .unwrap()
 }
 
 fn pairs() -> [ContactParameters; 4] {
@@ -474,7 +476,7 @@ fn cycles_of_the_simulation_are_followed() {
         let law = Parameters { f_n0, f_n_slip, delta_t_slip, k_t0: mindlin, n, m_exponent: 2.6, n_exponent: 1.5 };
         Axial { a, k_t: mindlin / (1.0 + 1.9 * a * s), law }
     };
-    let p = ContactParameters::tabulate(1.0, sphere.effective_modulus(), 0.3, PowerOfComplement, [2e-5, 0.1], law).unwrap();
+    let p = ContactParameters::tabulate(1.0, sphere.effective_modulus(), 0.3, Some(PowerOfComplement), [2e-5, 0.1], law).unwrap();
     for (name, rows, allowed) in [("small", SMALL_CYCLE, 0.035), ("full", FULL_CYCLE, 0.035), ("pressed on", PRESSED_ON, 0.08)] {
         let (mut state, _) = pressed(&p, 0.02, 10);
         let (mut h, mut d) = (0.02, 0.0);
@@ -527,6 +529,49 @@ fn an_increment_beyond_all_bounds_is_full_slip_in_its_direction() {
             let size = (out.f_t[0].powi(2) + out.f_t[1].powi(2)).sqrt();
             assert!((size / (FRICTION * out.f_n) - 1.0).abs() < 1e-6);
             assert!(p.update(&next, 0.02, [0.0, 0.0]).1.f_n.is_finite());
+        }
+    }
+}
+
+/// A law whose F_N0 is above Hertz's, as an elastic sphere's of a finite a/R is.
+#[test]
+fn a_contact_stiffer_than_hertz_gains_nothing_and_keeps_its_law() {
+    let hertzian = |h: f64| {
+        let a = hertz::contact_radius(&SPHERE, h);
+        let f_n0 = hertz::force(&SPHERE, h) * (0.01 + 0.8 * a / SPHERE.radius).exp();
+        let k_t0 = 8.0 * SPHERE.shear_modulus() * a / (2.0 - SPHERE.poissons_ratio);
+        let slip = 1.5 * FRICTION * f_n0 / k_t0;
+        let law = Parameters { f_n0, f_n_slip: f_n0, delta_t_slip: slip, k_t0, n: 1.5, m_exponent: 1.6, n_exponent: 1.4 };
+        Axial { a, k_t: k_t0, law }
+    };
+    let range = [1e-6 * SPHERE.radius, 0.15 * SPHERE.radius];
+    let p = ContactParameters::tabulate(
+        SPHERE.radius,
+        SPHERE.effective_modulus(),
+        FRICTION,
+        Some(PowerOfComplement),
+        range,
+        hertzian,
+    )
+    .unwrap();
+    for end in [1e-5, 1e-3, 0.05, 0.28] {
+        let (mut now, mut work) = ((ContactState::default(), ContactResponse::default()), 0.0);
+        for i in 1..=4000 {
+            let next = p.update(&now.0, end * f64::from(i) / 4000.0, [0.0, 0.0]);
+            work += 0.5 * (now.1.f_n + next.1.f_n) * (next.0.h - now.0.h);
+            now = next;
+            assert!(p.stored_energy(&now.0) <= work * (1.0 + 1e-4) + 1e-7 * end * now.1.f_n, "{end} {i}");
+        }
+        let v = p.virgin(end);
+        let expected = hertzian(end);
+        assert!((now.1.f_n / expected.law.f_n0 - 1.0).abs() < 1e-4 && (now.1.a / expected.a - 1.0).abs() < 1e-4);
+        assert!(v.gamma == 1.5 && v.depth <= end * (1.0 + 1e-12));
+        let mut state = now.0;
+        for i in 1..=50 {
+            let (next, out) = p.update(&state, end, [0.024 * v.point.delta_t_slip, 0.0]);
+            state = next;
+            let size = FRICTION * v.point.f_n_slip * (1.0 - (1.0 - (0.024 * f64::from(i)).min(1.0)).powf(1.5));
+            assert!((out.f_t[0] - size).abs() < 3e-3 * FRICTION * out.f_n, "{end} {i}: {} for {size}", out.f_t[0]);
         }
     }
 }

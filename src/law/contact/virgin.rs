@@ -151,8 +151,11 @@ pub fn unloading_exponent(radius: f64, effective_modulus: f64, a: f64, f_n0: f64
 const PLASTIC_GAMMA: f64 = 1.2732395447351628;
 
 impl ContactParameters {
-    /// Tabulates `law`, whose gentle exponent of f_N does not hang on h, over the indentations `range` (both > 0), from first yield (below it the
-    /// contact must be Hertz's) to the greatest that will be met. `law` answers for an indentation.
+    /// Tabulates `law`, which answers for an indentation, over the indentations `range` (both > 0),
+    /// from first yield (below it the contact must be Hertz's) to the greatest that will be met. The
+    /// gentle exponent of f_N must not hang on h. Without a `curve` f_T and f_N are to be given [by
+    /// numbers](Self::with_shapes): then a is the radius whose 2 E* a is the stiffness of an
+    /// unloading, and M the exponent of the sliders' backbone.
     ///
     /// # Errors
     /// [`ContactError::Value`] where a quantity is not positive and finite.
@@ -160,13 +163,14 @@ impl ContactParameters {
         radius: f64,
         effective_modulus: f64,
         friction: f64,
-        curve: NormalCurve,
+        curve: Option<NormalCurve>,
         range: [f64; 2],
         law: impl Fn(f64) -> Axial,
     ) -> Result<Self, ContactError> {
         let form = match curve {
-            NormalCurve::PowerOfComplement => 0.0,
-            NormalCurve::ComplementOfPower => 1.0,
+            Some(NormalCurve::PowerOfComplement) => 0.0,
+            Some(NormalCurve::ComplementOfPower) => 1.0,
+            None => BY_NUMBERS,
         };
         let log_first = range[0].ln();
         let log_step = (range[1].ln() - log_first) / (KNOTS as f64 - 1.0);
@@ -192,13 +196,13 @@ impl ContactParameters {
             }
             let ratio = p.f_n_slip / p.f_n0;
             let steep = match curve {
-                NormalCurve::PowerOfComplement => {
-                    gentle = p.n_exponent;
-                    p.m_exponent
-                }
-                NormalCurve::ComplementOfPower => {
+                Some(NormalCurve::ComplementOfPower) => {
                     gentle = p.m_exponent;
                     p.n_exponent
+                }
+                Some(NormalCurve::PowerOfComplement) | None => {
+                    gentle = p.n_exponent;
+                    p.m_exponent
                 }
             };
             table[i] =
@@ -294,17 +298,24 @@ impl ContactParameters {
     /// Lets no more than the indentation `h` be recovered at a knot.
     fn keep_below(&mut self, i: usize, h: f64) {
         let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
-        let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+        let gamma = self.exponent_of(a, self.table[i][5], f_n0);
         let depth = gamma * f_n0 / (2.0 * self.effective_modulus * a);
         if depth > h {
             self.stiffen(i, depth / h);
         }
     }
 
+    /// gamma by the contact radius, which is `radii` times that of the stiffness; of shapes by
+    /// numbers by the latter, which the measured unloadings of a table were read with.
+    fn exponent_of(&self, a: f64, radii: f64, f_n0: f64) -> f64 {
+        let a = if self.form == BY_NUMBERS { a } else { radii * a };
+        unloading_exponent(self.radius, self.effective_modulus, a, f_n0)
+    }
+
     /// Elastic energy of the virgin contact at a knot.
     fn stored_at(&self, i: usize) -> f64 {
         let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
-        let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+        let gamma = self.exponent_of(a, self.table[i][5], f_n0);
         gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * self.effective_modulus * a)
     }
 
@@ -376,11 +387,12 @@ impl ContactParameters {
         let [log_f, log_f_slope] = self.column(0, position);
         let f_n0 = log_f.exp();
         let a = self.column(1, position)[0].exp();
-        let gamma = unloading_exponent(self.radius, self.effective_modulus, a, f_n0);
+        let radii = self.column(5, position)[0];
+        let gamma = self.exponent_of(a, radii, f_n0);
         let f_n_slip = self.column(2, position)[0] * f_n0;
         let delta_t_slip = self.column(3, position)[0].exp();
         let n = self.column(4, position)[0];
-        let contact_radius = self.column(5, position)[0] * a;
+        let contact_radius = radii * a;
         let steep = self.column(6, position)[0];
         let (m_exponent, n_exponent) = if self.form == 0.0 { (steep, self.gentle) } else { (self.gentle, steep) };
         let mut backbone = if gamma < n { gamma } else { n };

@@ -507,7 +507,7 @@ ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h,
  * The sliders of a contact that has yielded to shear at the place `sheared`: those of the table after full slip; where it was hardly sheared, tractions are lost sooner as it is released. */
 ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_real sheared, asperity_curve *v) {
     const asperity_real *column = row->column;
-    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share, rest;
+    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share, rest, per_contact;
     v->f_n0 = column[0] * exponential[0];
     v->per_a = column[1] * exponential[1];
     v->f_n_slip = column[4] * v->f_n0;
@@ -518,7 +518,8 @@ ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, c
     v->big_n = t->form == 0 ? t->gentle : column[7];
     v->k_t = column[3] * exponential[3];
     /* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
-    share = v->f_n0 * (ASPERITY_R(1.5) * t->effective_radius * softness) * (v->per_a * v->per_a * v->per_a);
+    per_contact = t->form == 2 ? v->per_a : v->per_a / v->radii;
+    share = v->f_n0 * (ASPERITY_R(1.5) * t->effective_radius * softness) * (per_contact * per_contact * per_contact);
     v->gamma = ASPERITY_R(1.2732395447351628) + ASPERITY_R(1.5 - 1.2732395447351628) * (share < ASPERITY_R(1.0) ? share : ASPERITY_R(1.0));
     v->depth = v->gamma * (v->f_n0 * v->per_a * softness);
     v->slope = v->f_n0 * row->slope / h;

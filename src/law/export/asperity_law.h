@@ -24,7 +24,7 @@
 #define ASPERITY_VARIABLE @VARIABLE@     /* z: 0 ln(Lambda/Lambda_Y), 1 ln(1 + mu (Lambda - Lambda_Y)), 2 stiffness, 3 area */
 #define ASPERITY_SLIP_FORM @SLIP_FORM@    /* 0 direct, 1 through the initial stiffness */
 #define ASPERITY_NORMAL_CURVE @NORMAL_CURVE@ /* f_N: 0 [1 - (1 - x)^M]^N, 1 1 - (1 - x^M)^N */
-#define ASPERITY_NORMAL_FORM @NORMAL_FORM@  /* F_N0(h), a(h): 0 Olsson & Larsson 2016, 1 the same corrected, 2 smooth curves */
+#define ASPERITY_NORMAL_FORM @NORMAL_FORM@  /* F_N0(h), a(h): 0 Olsson & Larsson 2016, 1 the same corrected, 2 smooth curves, 3 composed of limits */
 @CONSTANTS@
 #define ASPERITY_PI 3.141592653589793
 
@@ -237,17 +237,30 @@ static inline double asperity_published_force(const asperity_material *m, double
     return hardness * ASPERITY_PI * a * a * stress;
 }
 
-/* a and F_N0 at the indentation h > 0; Hertz below first yield. */
-static inline void asperity_normal(const asperity_material *m, double radius, double h, double *a, double *f_n) {
+/* The share by which friction stiffens an elastic contact; none at nu = 1/2. */
+static inline double asperity_stick(double nu, double friction) {
+    double beta = (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));
+    if (beta < 1e-9) {
+        return 0.0 * friction;
+    }
+    return ((1.0 - nu) * log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu) - 1.0) * tanh(friction / beta);
+}
+
+/* a and F_N0 at the indentation h > 0; Hertz below first yield, but for F_N0 of form 3. */
+static inline void asperity_normal(const asperity_material *m, double radius, double friction, double h, double *a, double *f_n) {
     double hertz = sqrt(radius * h);
     double force = 4.0 / 3.0 * asperity_effective_modulus(m) * sqrt(radius) * pow(h, 1.5);
     double yield = asperity_yield_lambda(m->poissons_ratio), published, ratio, ramp, hardening;
+    if (ASPERITY_NORMAL_FORM == 3) {
+        force *= exp(ASPERITY_NORMAL_FORCE_5 * exp(-ASPERITY_NORMAL_FORCE_6 * m->poissons_ratio) * (hertz / radius)
+                     + ASPERITY_NORMAL_FORCE_7 * asperity_stick(m->poissons_ratio, ASPERITY_NORMAL_FORCE_8 * friction));
+    }
     *a = hertz;
     *f_n = force;
     if (asperity_lambda(m, radius, hertz) <= yield) {
         return;
     }
-    if (ASPERITY_NORMAL_FORM == 2) {
+    if (ASPERITY_NORMAL_FORM >= 2) {
         double growth, c_squared, plastic, size;
         ratio = asperity_lambda(m, radius, hertz) / yield;
         ratio = ratio > 1.0 ? ratio : 1.0;
@@ -256,6 +269,13 @@ static inline void asperity_normal(const asperity_material *m, double radius, do
         growth = 1.43 * exp(-ASPERITY_NORMAL_RADIUS_0 * hardening) - 0.5;
         c_squared = 0.5 + growth * (1.0 - exp(-pow(ASPERITY_NORMAL_RADIUS_1 * log(ratio), ASPERITY_NORMAL_RADIUS_2)));
         *a = hertz * sqrt(2.0 * c_squared * exp(ASPERITY_NORMAL_RADIUS_3 * ramp * hertz / radius));
+        if (ASPERITY_NORMAL_FORM == 3) {
+            plastic = asperity_lambda(m, radius, hertz) - yield;
+            plastic = pow(ASPERITY_NORMAL_FORCE_0 * pow(plastic, ASPERITY_NORMAL_FORCE_1), ASPERITY_NORMAL_FORCE_2);
+            size = ASPERITY_NORMAL_FORCE_3 * log(ratio) * (hertz / radius) + ASPERITY_NORMAL_FORCE_4 * hardening;
+            *f_n = force * pow(1.0 + plastic, -1.0 / ASPERITY_NORMAL_FORCE_2) * exp(-ramp * size);
+            return;
+        }
         plastic = pow(ASPERITY_NORMAL_FORCE_0 * pow(ratio - 1.0, ASPERITY_NORMAL_FORCE_1), ASPERITY_NORMAL_FORCE_2);
         size = (ASPERITY_NORMAL_FORCE_3 - ASPERITY_NORMAL_FORCE_4 * log(ratio)) * hertz / radius;
         *f_n = force * pow(1.0 + plastic, -1.0 / ASPERITY_NORMAL_FORCE_2) * exp(ramp * (size - ASPERITY_NORMAL_FORCE_5 * hardening));
@@ -287,7 +307,7 @@ static inline double asperity_product(double p, double q, double friction, doubl
 /* A row of the table: the law at the indentation h. */
 static inline void asperity_table_row(const asperity_material *m, double radius, double friction, double h, double row[ASPERITY_COLUMNS]) {
     double a, f_n, stress, lambda, yield, ratio, ramp, z = 0.0, growth = 0.0, n, power, size, share, body, factor, steep, mindlin;
-    asperity_normal(m, radius, h, &a, &f_n);
+    asperity_normal(m, radius, friction, h, &a, &f_n);
     stress = asperity_representative_stress(m, radius, a);
     lambda = asperity_effective_modulus(m) * a / (stress * radius);
     yield = asperity_yield_lambda(m->poissons_ratio);
@@ -336,7 +356,7 @@ static inline void asperity_table_row(const asperity_material *m, double radius,
 /* Elastic energy of the virgin contact at a knot. */
 static inline double asperity_stored_at(const asperity_draft *p, int i) {
     double f_n0 = exp(p->table[i][0]), a = exp(p->table[i][1]);
-    double gamma = asperity_unloading_exponent(p->radius, p->effective_modulus, a, f_n0);
+    double gamma = asperity_unloading_exponent(p->radius, p->effective_modulus, p->table[i][5] * a, f_n0);
     return gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * p->effective_modulus * a);
 }
 
@@ -349,7 +369,7 @@ static inline void asperity_stiffen(asperity_draft *p, int i, double factor) {
 /* Lets no more than the indentation h be recovered at a knot. */
 static inline void asperity_keep_below(asperity_draft *p, int i, double h) {
     double f_n0 = exp(p->table[i][0]), a = exp(p->table[i][1]);
-    double depth = asperity_unloading_exponent(p->radius, p->effective_modulus, a, f_n0) * f_n0 / (2.0 * p->effective_modulus * a);
+    double depth = asperity_unloading_exponent(p->radius, p->effective_modulus, p->table[i][5] * a, f_n0) * f_n0 / (2.0 * p->effective_modulus * a);
     if (depth > h) {
         asperity_stiffen(p, i, depth / h);
     }
@@ -381,7 +401,7 @@ static inline void asperity_conserve(asperity_draft *p) {
 static inline int asperity_outside(const asperity_material *m, double radius, double friction, double h) {
     double a, f_n, lambda, yield = asperity_yield_lambda(m->poissons_ratio), c_squared, exponent, from;
     int outside = 0;
-    asperity_normal(m, radius, h, &a, &f_n);
+    asperity_normal(m, radius, friction, h, &a, &f_n);
     lambda = asperity_lambda(m, radius, a);
     if (a / radius > ASPERITY_RADIUS_TO * 1.02) {
         outside |= 4;

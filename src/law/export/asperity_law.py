@@ -230,14 +230,26 @@ def published_force(m, radius, a):
     return hardness * math.pi * a * a * stress
 
 
-def normal(m, radius, h):
-    """a and F_N0 at the indentation h > 0; Hertz below first yield."""
+def stick(nu, friction):
+    """The share by which friction stiffens an elastic contact; none at nu = 1/2."""
+    beta = (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu))
+    if beta < 1e-9:
+        return 0.0 * friction
+    return ((1.0 - nu) * math.log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu) - 1.0) * math.tanh(friction / beta)
+
+
+def normal(m, radius, friction, h):
+    """a and F_N0 at the indentation h > 0; Hertz below first yield, but for F_N0 of form 3."""
     hertz = math.sqrt(radius * h)
     force = 4.0 / 3.0 * effective_modulus(m) * math.sqrt(radius) * h**1.5
     first = yield_lambda(m.poissons_ratio)
+    if NORMAL_FORM == 3:
+        nu = m.poissons_ratio
+        size = NORMAL_FORCE_5 * math.exp(-NORMAL_FORCE_6 * nu) * (hertz / radius)
+        force *= math.exp(size + NORMAL_FORCE_7 * stick(nu, NORMAL_FORCE_8 * friction))
     if johnson_lambda(m, radius, hertz) <= first:
         return hertz, force
-    if NORMAL_FORM == 2:
+    if NORMAL_FORM >= 2:
         ratio = johnson_lambda(m, radius, hertz) / first
         ratio = ratio if ratio > 1.0 else 1.0
         ramp = 1.0 - 1.0 / ratio
@@ -245,6 +257,11 @@ def normal(m, radius, h):
         growth = 1.43 * math.exp(-NORMAL_RADIUS_0 * hardening) - 0.5
         area = 0.5 + growth * (1.0 - math.exp(-((NORMAL_RADIUS_1 * math.log(ratio)) ** NORMAL_RADIUS_2)))
         a = hertz * math.sqrt(2.0 * area * math.exp(NORMAL_RADIUS_3 * ramp * hertz / radius))
+        if NORMAL_FORM == 3:
+            excess = johnson_lambda(m, radius, hertz) - first
+            plastic = (NORMAL_FORCE_0 * excess**NORMAL_FORCE_1) ** NORMAL_FORCE_2
+            size = NORMAL_FORCE_3 * math.log(ratio) * (hertz / radius) + NORMAL_FORCE_4 * hardening
+            return a, force * (1.0 + plastic) ** (-1.0 / NORMAL_FORCE_2) * math.exp(-ramp * size)
         plastic = (NORMAL_FORCE_0 * (ratio - 1.0) ** NORMAL_FORCE_1) ** NORMAL_FORCE_2
         size = (NORMAL_FORCE_3 - NORMAL_FORCE_4 * math.log(ratio)) * hertz / radius
         f_n = force * (1.0 + plastic) ** (-1.0 / NORMAL_FORCE_2) * math.exp(ramp * (size - NORMAL_FORCE_5 * hardening))
@@ -270,7 +287,7 @@ def product(p, q, friction, z):
 
 def row(m, radius, friction, h):
     """A row of the table: the law at the indentation h."""
-    a, f_n = normal(m, radius, h)
+    a, f_n = normal(m, radius, friction, h)
     stress = representative_stress(m, radius, a)
     value = effective_modulus(m) * a / (stress * radius)
     first = yield_lambda(m.poissons_ratio)
@@ -325,7 +342,7 @@ def stored_at(p, i):
     """Elastic energy of the virgin contact at a knot."""
     f_n0 = math.exp(p.table[i][0])
     a = math.exp(p.table[i][1])
-    gamma = unloading_exponent(p.radius, p.effective_modulus, a, f_n0)
+    gamma = unloading_exponent(p.radius, p.effective_modulus, p.table[i][5] * a, f_n0)
     return gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * p.effective_modulus * a)
 
 
@@ -339,7 +356,7 @@ def keep_below(p, i, h):
     """Lets no more than the indentation h be recovered at a knot."""
     f_n0 = math.exp(p.table[i][0])
     a = math.exp(p.table[i][1])
-    depth = unloading_exponent(p.radius, p.effective_modulus, a, f_n0) * f_n0 / (2.0 * p.effective_modulus * a)
+    depth = unloading_exponent(p.radius, p.effective_modulus, p.table[i][5] * a, f_n0) * f_n0 / (2.0 * p.effective_modulus * a)
     if depth > h:
         stiffen(p, i, depth / h)
 
@@ -391,7 +408,7 @@ def setup(m, radius, friction):
 def out_of_range(m, radius, friction, h):
     """Which quantities lie outside of what the law was fitted to, at the indentation h > 0: a sum of 1 Lambda, 2 mu, 4 a/R, 8 c^2, 16 nu,
     32 hardening exponent at the representative strain."""
-    a, _ = normal(m, radius, h)
+    a, _ = normal(m, radius, friction, h)
     value = johnson_lambda(m, radius, a)
     first = yield_lambda(m.poissons_ratio)
     outside = 0
@@ -507,11 +524,11 @@ def virgin(p, h, sheared=1.0):
     log_f, log_slope = column_at(p, 0, position)
     v.f_n0 = math.exp(log_f)
     v.a = math.exp(column_at(p, 1, position)[0])
-    v.gamma = unloading_exponent(p.radius, p.effective_modulus, v.a, v.f_n0)
+    radii = column_at(p, 5, position)[0]
+    v.gamma = unloading_exponent(p.radius, p.effective_modulus, v.a if NORMAL_CURVE == 2 else radii * v.a, v.f_n0)
     v.f_n_slip = column_at(p, 2, position)[0] * v.f_n0
     v.delta_t_slip = math.exp(column_at(p, 3, position)[0])
     v.n = column_at(p, 4, position)[0]
-    radii = column_at(p, 5, position)[0]
     steep = column_at(p, 6, position)[0]
     v.m_exponent, v.n_exponent = (steep, p.gentle) if NORMAL_CURVE == 0 else (p.gentle, steep)
     v.backbone = v.gamma if v.gamma < v.n else v.n

@@ -120,7 +120,7 @@ pub fn source(law: &Law, language: Language) -> String {
     list("SLIP", &law.constants.slip, 4);
     list("CURVE", &law.constants.curve, 4);
     list("NORMAL_RADIUS", &law.normal.radius, 4);
-    list("NORMAL_FORCE", &law.normal.force, 6);
+    list("NORMAL_FORCE", &law.normal.force, 9);
     constant("EXPONENT_SPAN", EXPONENT_SPAN);
     let range = &law.validity;
     for (name, interval) in [
@@ -282,5 +282,6 @@ fn normal_form(form: NormalForm) -> u8 {
         NormalForm::Published => 0,
         NormalForm::Corrected => 1,
         NormalForm::Smooth => 2,
+        NormalForm::Composed => 3,
     }
 }

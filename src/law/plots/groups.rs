@@ -81,7 +81,7 @@ impl Reference {
     fn state(law: &Law, nu: f64, h: f64, stiffness: f64) -> Option<(Axisymmetric, Variables)> {
         let hardening = Hardening::Ideal { yield_stress: 1.0 / stiffness };
         let body = Body::new(1.0, &Material { youngs_modulus: 1.0, poissons_ratio: nu, hardening }).ok()?;
-        let state = law.normal.state(&body, h);
+        let state = law.normal.state(&body, 0.0, h);
         let inputs = Axisymmetric {
             youngs_modulus: 1.0,
             poissons_ratio: nu,

@@ -23,7 +23,6 @@ use serde::{Deserialize, Serialize};
 use self::spline::Spline;
 use super::LawError;
 use super::contact::{Axial, ContactParameters, KNOTS, LEVELS, POINTS, Shapes};
-use super::forms::NormalCurve;
 use super::json;
 use super::model::{Interval, OutOfRange, Parameters};
 use crate::case::{self, Case, Friction, Opponent};
@@ -294,8 +293,7 @@ impl Tabulated {
         };
         let sphere = equivalent(&self.scaled_case()?);
         let range = [self.range.from, self.range.to];
-        let curve = NormalCurve::PowerOfComplement;
-        let parameters = ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), mu, curve, range, contact)?;
+        let parameters = ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), mu, None, range, contact)?;
         let mut shapes: [Shapes; LEVELS] = [[[0.0; POINTS]; 2]; LEVELS];
         for (i, shape) in shapes.iter_mut().enumerate() {
             let position = i as f64 * (KNOTS as f64 - 1.0) / (LEVELS as f64 - 1.0);
