@@ -26,6 +26,9 @@ pub const SLIDERS: usize = 16;
 /// rebounds; fades with the eighth power of 1 - x.
 const UNSHEARED: f64 = 1.8;
 
+/// Pieces of a step of the table over which its work is summed.
+const PIECES: usize = 4;
+
 /// Powers of h in a Hertz contact of the quantities whose logarithms are tabulated.
 const ELASTIC_POWERS: [f64; COLUMNS] = [1.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5];
 
@@ -270,23 +273,36 @@ impl ContactParameters {
     /// Stiffens the unloading where the law's F_N0 and a would let a press store more energy than
     /// was put in (an elastic contact of a finite a/R is stiffer than Hertz's of its radius, and a
     /// fit may be off next to first yield): the stored energy of a knot is at most that of the one
-    /// before and the work between, F_N0 being a power of h there; and a dent never rises above
-    /// where the sphere began. The contact radius stays the law's.
+    /// before and the work between; and a dent never rises above where the sphere began. The contact
+    /// radius stays the law's.
     fn conserve(&mut self) {
         self.keep_below(0, self.log_first.exp());
         let mut before = self.stored_at(0);
         for i in 1..KNOTS {
-            let (h0, h1) =
-                ((self.log_first + self.log_step * (i - 1) as f64).exp(), (self.log_first + self.log_step * i as f64).exp());
-            let power = (self.table[i][0] - self.table[i - 1][0]) / self.log_step;
-            let most = before + (self.table[i][0].exp() * h1 - self.table[i - 1][0].exp() * h0) / (power + 1.0);
+            let most = before + self.work_between(i);
             let stored = self.stored_at(i);
             if stored > most {
                 self.stiffen(i, stored / most);
             }
-            self.keep_below(i, h1);
+            self.keep_below(i, (self.log_first + self.log_step * i as f64).exp());
             before = self.stored_at(i);
         }
+    }
+
+    /// Work of a press from the knot before to this one, F_N0 being a power of h on each of
+    /// [`PIECES`] pieces of the way.
+    fn work_between(&self, i: usize) -> f64 {
+        let mut work = 0.0;
+        let mut log_f = self.table[i - 1][0];
+        for k in 1..=PIECES {
+            let u = k as f64 / PIECES as f64;
+            let next = self.column(0, (i - 1) as f64 + u)[0];
+            let [h0, h1] = [u - 1.0 / PIECES as f64, u].map(|u| (self.log_first + self.log_step * ((i - 1) as f64 + u)).exp());
+            let power = (next - log_f) / (self.log_step / PIECES as f64);
+            work += (next.exp() * h1 - log_f.exp() * h0) / (power + 1.0);
+            log_f = next;
+        }
+        work
     }
 
     /// Makes the unloading of a knot stiffer by a factor.

@@ -346,6 +346,21 @@ def stored_at(p, i):
     return gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * p.effective_modulus * a)
 
 
+def work_between(p, i):
+    """Work of a press from the knot before to this one, F_N0 being a power of h on each of four pieces of the way."""
+    work = 0.0
+    log_f = p.table[i - 1][0]
+    for k in range(1, 5):
+        u = k / 4.0
+        log_next = column_at(p, 0, i - 1 + u)[0]
+        h0 = math.exp(p.log_first + p.log_step * (i - 1 + (u - 0.25)))
+        h1 = math.exp(p.log_first + p.log_step * (i - 1 + u))
+        power = (log_next - log_f) / (p.log_step / 4.0)
+        work += (math.exp(log_next) * h1 - math.exp(log_f) * h0) / (power + 1.0)
+        log_f = log_next
+    return work
+
+
 def stiffen(p, i, factor):
     """Makes the unloading of a knot stiffer by a factor."""
     p.table[i][1] += math.log(factor)
@@ -367,14 +382,11 @@ def conserve(p):
     keep_below(p, 0, math.exp(p.log_first))
     before = stored_at(p, 0)
     for i in range(1, KNOTS):
-        h0 = math.exp(p.log_first + p.log_step * (i - 1))
-        h1 = math.exp(p.log_first + p.log_step * i)
-        power = (p.table[i][0] - p.table[i - 1][0]) / p.log_step
-        most = before + (math.exp(p.table[i][0]) * h1 - math.exp(p.table[i - 1][0]) * h0) / (power + 1.0)
+        most = before + work_between(p, i)
         stored = stored_at(p, i)
         if stored > most:
             stiffen(p, i, stored / most)
-        keep_below(p, i, h1)
+        keep_below(p, i, math.exp(p.log_first + p.log_step * i))
         before = stored_at(p, i)
 
 
