@@ -31,7 +31,7 @@ fn law(variable: Variable, slip_displacement: SlipForm, normal_curve: NormalCurv
         NormalForm::Published => (vec![], vec![]),
         NormalForm::Corrected => (vec![-0.031, 0.0123], vec![-0.017, 0.11, -0.052, 0.0037]),
         NormalForm::Smooth => (vec![0.97, 0.31, 1.03, 0.12], vec![0.29, 1.01, 0.93, 0.47, 0.11, 0.52]),
-        NormalForm::Composed => (vec![0.97, 0.31, 1.03, 0.12], vec![0.11, 0.86, 1.4, 0.5, 0.31, 0.83, 0.47, 0.61, 1.2]),
+        NormalForm::Composed => (vec![0.97, 0.31, 1.03, 0.12], vec![0.11, 0.86, 1.4, 0.5, 0.31, 0.83]),
     };
     let interval = |from, to| Interval { from, to };
     Law {

@@ -3,6 +3,7 @@
 
     python3 benches/law/draw.py --out fixtures/studies              # general.toml, general-unseen.toml
     python3 benches/law/draw.py --out fixtures/studies --equal      # the same on an equal sphere
+    python3 benches/law/draw.py --out DIR --seed 1                  # other materials, that no law has seen
 
 Every material meets CASES pairs of friction and indentation. Poisson's ratio, ln(E/sigma_Y), ln(mu)
 and ln(h/R) are each cut into as many strata as there are draws, one draw a stratum. A fifth of the
@@ -116,10 +117,10 @@ def wrapped(key, values):
     return f'"{key}" = [\n' + "".join(f"    {line},\n" for line in lines) + "]\n"
 
 
-def study(cases, equal, what):
+def study(cases, equal, what, seed):
     """The text of the study file."""
     text = (
-        f"# {what} Drawn by benches/law/draw.py, seed {SEED}; see there for the ranges.\n"
+        f"# {what} Drawn by benches/law/draw.py, seed {seed}; see there for the ranges.\n"
         "[base.sphere]\nradius = 1.0\n\n"
         f"[base.material]\nyoungs_modulus = {YOUNGS_MODULUS / 1e3:.0f}e3\n\n"
         "[base.contact]\n\n"
@@ -141,9 +142,10 @@ def study(cases, equal, what):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="where the two study files go")
+    parser.add_argument("--seed", type=int, default=SEED, help=f"of the draw ({SEED} is that of fixtures/studies)")
     parser.add_argument("--equal", action="store_true", help="on an equal sphere instead of the plane")
     arguments = parser.parse_args()
-    cases = draw(SEED)
+    cases = draw(arguments.seed)
     stem = "general-pair" if arguments.equal else "general"
     against = "an equal sphere" if arguments.equal else "a plane"
     for aside, name, what in [
@@ -151,7 +153,7 @@ def main():
         (True, f"{stem}-unseen", f"The materials set aside from the study of the general law on {against}."),
     ]:
         chosen = [case for case in cases if case[5] == aside]
-        (arguments.out / f"{name}.toml").write_text(study(chosen, arguments.equal, what))
+        (arguments.out / f"{name}.toml").write_text(study(chosen, arguments.equal, what, arguments.seed))
 
 
 if __name__ == "__main__":

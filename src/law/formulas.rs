@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::Law;
+use super::elastic::BODY;
 use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
 use super::normal::NormalForm;
 
@@ -86,25 +87,22 @@ impl Law {
                     format!("{variables}, X = Lambda/Lambda_Y - 1; Lambda, e at Hertz's a_H = (R h)^(1/2), F_H Hertz's force"),
                 ),
             ],
-            (NormalForm::Composed, &[c1, c2, c3, c4], &[k1, k2, k3, k4, k5, b1, b2, b3, b4]) => vec![
-                (
-                    "a0^2",
-                    format!("2 R h {{1/2 + [1.43 exp(-{c1:.4} e) - 1/2] [1 - exp(-({c2:.4} U)^{c3:.4})]}} exp({c4:.4} G a_H/R)"),
-                ),
-                (
-                    "F_N0",
-                    format!(
-                        "F_el [1 + ({k1:.4} (Lambda - Lambda_Y)^{k2:.4})^{k3:.4}]^(-1/{k3:.4}) exp[-G ({k4:.4} U a_H/R + {k5:.4} e)]"
+            (NormalForm::Composed, &[c1, c2, c3, c4], &[k1, k2, k3, k4, k5, k6]) => {
+                let [b0, b1, b2, b3, b4] = BODY;
+                let area = format!("1/2 + [1.43 exp(-{c1:.4} e) - 1/2] [1 - exp(-({c2:.4} U)^{c3:.4})]");
+                let plastic = format!("[1 + ({k1:.4} (Lambda - Lambda_Y)^{k2:.4})^{k3:.4}]^(-1/{k3:.4})");
+                vec![
+                    ("a0^2", format!("2 R h {{{area}}} exp({c4:.4} G a_H/R)")),
+                    ("F_N0", format!("F_H {plastic} exp{{(1 - G) B + G [({k6:.4} - {k4:.4} U) a_H/R - {k5:.4} e]}}")),
+                    (
+                        "B",
+                        format!(
+                            "S tanh(mu/beta) ({b0} + {b1} a_H/R) + (a_H/R) ({b2} + {b3} a_H/R + {b4} nu), S = (1 - nu) ln(3 - 4 nu)/(1 - 2 nu) - 1, beta = (1 - 2 nu)/(2 - 2 nu)"
+                        ),
                     ),
-                ),
-                (
-                    "F_el",
-                    format!(
-                        "F_H exp[{b1:.4} exp(-{b2:.4} nu) a_H/R + {b3:.4} S tanh({b4:.4} mu/beta)], S = (1 - nu) ln(3 - 4 nu)/(1 - 2 nu) - 1, beta = (1 - 2 nu)/(2 - 2 nu)"
-                    ),
-                ),
-                ("with", format!("{variables}; Lambda, e at Hertz's a_H = (R h)^(1/2), F_H Hertz's force")),
-            ],
+                    ("with", format!("{variables}; Lambda, e at Hertz's a_H = (R h)^(1/2), F_H Hertz's force")),
+                ]
+            }
             _ => vec![("a0, F_N0", "Olsson & Larsson (2016)".to_owned())],
         }
     }

@@ -29,6 +29,7 @@ pub mod tabulated;
 pub mod variables;
 
 mod baseline;
+mod elastic;
 mod error;
 mod folds;
 mod formulas;

@@ -237,7 +237,7 @@ static inline double asperity_published_force(const asperity_material *m, double
     return hardness * ASPERITY_PI * a * a * stress;
 }
 
-/* The share by which friction stiffens an elastic contact; none at nu = 1/2. */
+/* S tanh(mu/beta); it vanishes with beta at nu = 1/2. */
 static inline double asperity_stick(double nu, double friction) {
     double beta = (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));
     if (beta < 1e-9) {
@@ -246,17 +246,20 @@ static inline double asperity_stick(double nu, double friction) {
     return ((1.0 - nu) * log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu) - 1.0) * tanh(friction / beta);
 }
 
+/* ln of an elastic sphere's force over Hertz's; size is a_H/R. */
+static inline double asperity_stiffening(double nu, double friction, double size) {
+    return asperity_stick(nu, friction) * (ASPERITY_BODY_0 + ASPERITY_BODY_1 * size)
+        + size * (ASPERITY_BODY_2 + ASPERITY_BODY_3 * size + ASPERITY_BODY_4 * nu);
+}
+
 /* a and F_N0 at the indentation h > 0; Hertz below first yield, but for F_N0 of form 3. */
 static inline void asperity_normal(const asperity_material *m, double radius, double friction, double h, double *a, double *f_n) {
     double hertz = sqrt(radius * h);
     double force = 4.0 / 3.0 * asperity_effective_modulus(m) * sqrt(radius) * pow(h, 1.5);
     double yield = asperity_yield_lambda(m->poissons_ratio), published, ratio, ramp, hardening;
-    if (ASPERITY_NORMAL_FORM == 3) {
-        force *= exp(ASPERITY_NORMAL_FORCE_5 * exp(-ASPERITY_NORMAL_FORCE_6 * m->poissons_ratio) * (hertz / radius)
-                     + ASPERITY_NORMAL_FORCE_7 * asperity_stick(m->poissons_ratio, ASPERITY_NORMAL_FORCE_8 * friction));
-    }
+    double elastic = ASPERITY_NORMAL_FORM == 3 ? asperity_stiffening(m->poissons_ratio, friction, hertz / radius) : 0.0;
     *a = hertz;
-    *f_n = force;
+    *f_n = ASPERITY_NORMAL_FORM == 3 ? force * exp(elastic) : force;
     if (asperity_lambda(m, radius, hertz) <= yield) {
         return;
     }
@@ -272,8 +275,9 @@ static inline void asperity_normal(const asperity_material *m, double radius, do
         if (ASPERITY_NORMAL_FORM == 3) {
             plastic = asperity_lambda(m, radius, hertz) - yield;
             plastic = pow(ASPERITY_NORMAL_FORCE_0 * pow(plastic, ASPERITY_NORMAL_FORCE_1), ASPERITY_NORMAL_FORCE_2);
-            size = ASPERITY_NORMAL_FORCE_3 * log(ratio) * (hertz / radius) + ASPERITY_NORMAL_FORCE_4 * hardening;
-            *f_n = force * pow(1.0 + plastic, -1.0 / ASPERITY_NORMAL_FORCE_2) * exp(-ramp * size);
+            size = (ASPERITY_NORMAL_FORCE_5 - ASPERITY_NORMAL_FORCE_3 * log(ratio)) * (hertz / radius);
+            size = (1.0 - ramp) * elastic + ramp * (size - ASPERITY_NORMAL_FORCE_4 * hardening);
+            *f_n = force * pow(1.0 + plastic, -1.0 / ASPERITY_NORMAL_FORCE_2) * exp(size);
             return;
         }
         plastic = pow(ASPERITY_NORMAL_FORCE_0 * pow(ratio - 1.0, ASPERITY_NORMAL_FORCE_1), ASPERITY_NORMAL_FORCE_2);

@@ -231,11 +231,16 @@ def published_force(m, radius, a):
 
 
 def stick(nu, friction):
-    """The share by which friction stiffens an elastic contact; none at nu = 1/2."""
+    """S tanh(mu/beta); it vanishes with beta at nu = 1/2."""
     beta = (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu))
     if beta < 1e-9:
         return 0.0 * friction
     return ((1.0 - nu) * math.log(3.0 - 4.0 * nu) / (1.0 - 2.0 * nu) - 1.0) * math.tanh(friction / beta)
+
+
+def stiffening(nu, friction, size):
+    """ln of an elastic sphere's force over Hertz's; size is a_H/R."""
+    return stick(nu, friction) * (BODY_0 + BODY_1 * size) + size * (BODY_2 + BODY_3 * size + BODY_4 * nu)
 
 
 def normal(m, radius, friction, h):
@@ -243,12 +248,9 @@ def normal(m, radius, friction, h):
     hertz = math.sqrt(radius * h)
     force = 4.0 / 3.0 * effective_modulus(m) * math.sqrt(radius) * h**1.5
     first = yield_lambda(m.poissons_ratio)
-    if NORMAL_FORM == 3:
-        nu = m.poissons_ratio
-        size = NORMAL_FORCE_5 * math.exp(-NORMAL_FORCE_6 * nu) * (hertz / radius)
-        force *= math.exp(size + NORMAL_FORCE_7 * stick(nu, NORMAL_FORCE_8 * friction))
+    elastic = stiffening(m.poissons_ratio, friction, hertz / radius) if NORMAL_FORM == 3 else 0.0
     if johnson_lambda(m, radius, hertz) <= first:
-        return hertz, force
+        return hertz, force * math.exp(elastic) if NORMAL_FORM == 3 else force
     if NORMAL_FORM >= 2:
         ratio = johnson_lambda(m, radius, hertz) / first
         ratio = ratio if ratio > 1.0 else 1.0
@@ -260,8 +262,9 @@ def normal(m, radius, friction, h):
         if NORMAL_FORM == 3:
             excess = johnson_lambda(m, radius, hertz) - first
             plastic = (NORMAL_FORCE_0 * excess**NORMAL_FORCE_1) ** NORMAL_FORCE_2
-            size = NORMAL_FORCE_3 * math.log(ratio) * (hertz / radius) + NORMAL_FORCE_4 * hardening
-            return a, force * (1.0 + plastic) ** (-1.0 / NORMAL_FORCE_2) * math.exp(-ramp * size)
+            size = (NORMAL_FORCE_5 - NORMAL_FORCE_3 * math.log(ratio)) * (hertz / radius)
+            size = (1.0 - ramp) * elastic + ramp * (size - NORMAL_FORCE_4 * hardening)
+            return a, force * (1.0 + plastic) ** (-1.0 / NORMAL_FORCE_2) * math.exp(size)
         plastic = (NORMAL_FORCE_0 * (ratio - 1.0) ** NORMAL_FORCE_1) ** NORMAL_FORCE_2
         size = (NORMAL_FORCE_3 - NORMAL_FORCE_4 * math.log(ratio)) * hertz / radius
         f_n = force * (1.0 + plastic) ** (-1.0 / NORMAL_FORCE_2) * math.exp(ramp * (size - NORMAL_FORCE_5 * hardening))

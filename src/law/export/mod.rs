@@ -13,6 +13,7 @@ pub use contact::{contact_header, engine_files, engine_source};
 pub use vectors::{table_vectors, unit_vectors, vectors};
 
 use super::contact::{COLUMNS, ContactParameters, KNOTS, LAST, LEVELS, POINTS, SLIDERS};
+use super::elastic::BODY;
 use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
 use super::model::Law;
 use super::normal::NormalForm;
@@ -120,7 +121,8 @@ pub fn source(law: &Law, language: Language) -> String {
     list("SLIP", &law.constants.slip, 4);
     list("CURVE", &law.constants.curve, 4);
     list("NORMAL_RADIUS", &law.normal.radius, 4);
-    list("NORMAL_FORCE", &law.normal.force, 9);
+    list("NORMAL_FORCE", &law.normal.force, 6);
+    list("BODY", &BODY, 5);
     constant("EXPONENT_SPAN", EXPONENT_SPAN);
     let range = &law.validity;
     for (name, interval) in [
