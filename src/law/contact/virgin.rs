@@ -29,6 +29,11 @@ const UNSHEARED: f64 = 1.8;
 /// Pieces of a step of the table over which its work is summed.
 const PIECES: usize = 4;
 
+/// Share of the work of a step that is spared where a contact would store too much, for what the
+/// cubics between the knots may gain; and by how much that must be for it to be no rounding.
+const SPARE: f64 = 5e-5;
+const ROUNDING: f64 = 1e-9;
+
 /// Powers of h in a Hertz contact of the quantities whose logarithms are tabulated.
 const ELASTIC_POWERS: [f64; COLUMNS] = [1.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5];
 
@@ -279,10 +284,14 @@ impl ContactParameters {
         self.keep_below(0, self.log_first.exp());
         let mut before = self.stored_at(0);
         for i in 1..KNOTS {
+            if self.form != BY_NUMBERS {
+                // What the body adds stays as the contact yields; a table has measured it.
+                self.stiffen(i, 1.0 / self.table[i - 1][5]);
+            }
             let most = before + self.work_between(i);
             let stored = self.stored_at(i);
-            if stored > most {
-                self.stiffen(i, stored / most);
+            if stored > (1.0 + ROUNDING) * most {
+                self.stiffen(i, stored / ((1.0 - SPARE) * most));
             }
             self.keep_below(i, (self.log_first + self.log_step * i as f64).exp());
             before = self.stored_at(i);

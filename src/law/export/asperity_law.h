@@ -430,10 +430,13 @@ static inline void asperity_conserve(asperity_draft *p) {
     asperity_keep_below(p, 0, exp(p->log_first));
     before = asperity_stored_at(p, 0);
     for (i = 1; i < ASPERITY_KNOTS; i++) {
+        /* What the body adds stays as the contact yields. */
+        asperity_stiffen(p, i, 1.0 / p->table[i - 1][5]);
         most = before + asperity_work_between(p, i);
         stored = asperity_stored_at(p, i);
-        if (stored > most) {
-            asperity_stiffen(p, i, stored / most);
+        /* A little is spared for what the cubics between the knots may gain. */
+        if (stored > (1.0 + 1e-9) * most) {
+            asperity_stiffen(p, i, stored / ((1.0 - 5e-5) * most));
         }
         asperity_keep_below(p, i, exp(p->log_first + p->log_step * i));
         before = asperity_stored_at(p, i);

@@ -385,10 +385,13 @@ def conserve(p):
     keep_below(p, 0, math.exp(p.log_first))
     before = stored_at(p, 0)
     for i in range(1, KNOTS):
+        # What the body adds stays as the contact yields.
+        stiffen(p, i, 1.0 / p.table[i - 1][5])
         most = before + work_between(p, i)
         stored = stored_at(p, i)
-        if stored > most:
-            stiffen(p, i, stored / most)
+        # A little is spared for what the cubics between the knots may gain.
+        if stored > (1.0 + 1e-9) * most:
+            stiffen(p, i, stored / ((1.0 - 5e-5) * most))
         keep_below(p, i, math.exp(p.log_first + p.log_step * i))
         before = stored_at(p, i)
 
