@@ -56,8 +56,8 @@ pub struct ContactParameters {
     /// The gentle exponent of f_N, N of form 0 and M of form 1: the same at every h.
     pub gentle: f64,
     /// Per knot: ln F_N0; ln a, the radius with which 2 E* a is the stiffness of an unloading;
-    /// F_N_slip/F_N0; ln delta_T_slip; n; the contact radius over a; the steep exponent of f_N, with
-    /// form 2 the exponent of the sliders' backbone; ln k_T.
+    /// F_N_slip/F_N0; ln delta_T_slip; n; the contact radius over a; the steep exponent of f_N (with
+    /// form 2 the exponent of the sliders' backbone); ln k_T.
     pub table: [[f64; COLUMNS]; KNOTS],
     /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero
     /// otherwise.
