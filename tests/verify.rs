@@ -50,6 +50,7 @@ fn every_check_passes_on_the_cpu() {
         "cattaneo-mindlin",
         "mindlin-deresiewicz",
         "nu = 0.3",
+        "spence",
         "olsson-larsson, jackson-green",
         "unloading",
         "plastic press",

@@ -1,0 +1,100 @@
+//! An equal pair and a rigid sphere on a device: the CPU's history step by step, and the same bits
+//! again, alone or in a study.
+
+mod device;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use asperity::internals::compute::gpu::Precision;
+use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
+
+/// Two cases of one mesh, the first with friction that slips, tightly solved.
+const STUDY: &str = r#"
+[base.sphere]
+radius = 1.0
+[base.material]
+youngs_modulus = 200e3
+poissons_ratio = 0.3
+[base.material.hardening]
+law = "ideal"
+yield_stress = 400.0
+[base.mesh]
+elements_per_contact_radius = 4
+contact_radius = 0.16
+[base.solver]
+tolerance = 1e-8
+press_steps = 4
+shear_steps = 4
+[base.output]
+plots = false
+[grid]
+"contact.friction" = [0.1, 0.3]
+"#;
+
+const EQUAL: &str = "[base.opponent]\nequal = true\n[[base.path]]\nindentation = 0.02\n[[base.path]]\nshear = 0.004\n";
+const RIGID: &str =
+    "[base.opponent]\nrigid = true\nradius = 0.8\n[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = 0.002\n";
+
+fn program(verb: &str, file: &Path, out: &Path, device: &str) {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
+    command.arg(verb).arg(file).arg("--out").arg(out).args(["--device", device, "--quiet"]);
+    let output = command.output().expect("the program runs");
+    assert_eq!(output.status.code(), Some(0), "{verb}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The history as it was written.
+fn history(dir: &Path) -> String {
+    fs::read_to_string(OutputDirectory::existing(dir).history()).expect("a history")
+}
+
+/// The largest difference of F_N, F_T and a over the steps; forces by the largest F_N.
+fn difference(ours: &[StepRecord], theirs: &[StepRecord]) -> f64 {
+    assert_eq!(ours.len(), theirs.len(), "another number of steps");
+    let largest = |of: fn(&StepRecord) -> f64| theirs.iter().fold(0.0_f64, |m, row| m.max(of(row)));
+    let (force, radius) = (largest(|row| row.f_n), largest(|row| row.a));
+    let pairs = ours.iter().zip(theirs);
+    pairs.fold(0.0_f64, |m, (ours, theirs)| {
+        let force = (ours.f_n - theirs.f_n).abs().max((ours.f_t - theirs.f_t).abs()) / force;
+        m.max(force).max((ours.a - theirs.a).abs() / radius)
+    })
+}
+
+fn check(test: &str, opponent: &str) {
+    let Some(context) = device::device(test, Precision::F64) else { return };
+    let dir = tempfile::tempdir().expect("a scratch directory");
+    let at = |name: &str| dir.path().join(name);
+    fs::write(at("study.toml"), format!("{STUDY}{opponent}")).expect("the study");
+    for device in ["cpu", "gpu"] {
+        program("study", &at("study.toml"), &at(device), device);
+    }
+    for case in ["c0001", "c0002"] {
+        let [theirs, ours] = ["cpu", "gpu"].map(|device| at(device).join("cases").join(case));
+        let out = OutputDirectory::existing(&ours);
+        let summary = Summary::read(&out.summary()).expect("a summary");
+        assert!(summary.device.contains(&context.adapter().name), "{}", summary.device);
+        assert_eq!((summary.status, summary.linear_fallbacks), (Status::Done, 0));
+        assert!(summary.messages.is_empty() && summary.device_traffic.is_some(), "{:?}", summary.messages);
+        let rows = [&ours, &theirs].map(|dir| read_history(&OutputDirectory::existing(dir).history()).expect("a history"));
+        assert!(rows[0].iter().any(|row| row.slipping_points > 0 && row.f_t > 0.0), "nothing slips");
+        let difference = difference(&rows[0], &rows[1]);
+        eprintln!("{test}, case {case}: {difference:.1e}");
+        assert!(difference <= 3e-7, "case {case}: {difference}");
+        // The second case alone, twice.
+        for again in ["alone", "again"].iter().filter(|_| case == "c0002") {
+            program("run", &out.case(), &at(again), "gpu");
+            assert!(history(&at(again)) == history(&ours), "{again}: other bits than in the study");
+        }
+    }
+}
+
+#[test]
+fn an_equal_pair_has_the_cpus_history() {
+    check("an_equal_pair_has_the_cpus_history", EQUAL);
+}
+
+#[test]
+fn a_rigid_sphere_has_the_cpus_history() {
+    check("a_rigid_sphere_has_the_cpus_history", RIGID);
+}
