@@ -56,8 +56,8 @@ pub struct ContactParameters {
     /// The gentle exponent of f_N, N of form 0 and M of form 1: the same at every h.
     pub gentle: f64,
     /// Per knot: ln F_N0; ln a, the radius with which 2 E* a is the stiffness of an unloading;
-    /// F_N_slip/F_N0; ln delta_T_slip; n; the contact radius over a; the steep exponent of f_N (with
-    /// form 2 the exponent of the sliders' backbone); ln k_T.
+    /// F_N_slip/F_N0; ln delta_T_slip; n; the contact radius over a; the steep exponent of f_N
+    /// (with form 2 the exponent of the sliders' backbone); ln k_T.
     pub table: [[f64; COLUMNS]; KNOTS],
     /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero
     /// otherwise.
@@ -159,11 +159,11 @@ pub fn unloading_exponent(radius: f64, effective_modulus: f64, a: f64, f_n0: f64
 const PLASTIC_GAMMA: f64 = 1.2732395447351628;
 
 impl ContactParameters {
-    /// Tabulates `law`, which answers for an indentation, over the indentations `range` (both > 0),
-    /// from first yield (below it the contact must be Hertz's) to the greatest that will be met. The
-    /// gentle exponent of f_N must not hang on h. Without a `curve` f_T and f_N are to be given [by
-    /// numbers](Self::with_shapes): then a is the radius whose 2 E* a is the stiffness of an
-    /// unloading, and M the exponent of the sliders' backbone.
+    /// Tabulates `law`, which answers for an indentation, over the indentations `range` (both >
+    /// 0), from first yield (below it the contact must be Hertz's) to the greatest that will be
+    /// met. The gentle exponent of f_N must not hang on h. Without a `curve` f_T and f_N are to be
+    /// given [by numbers](Self::with_shapes): then a is the radius whose 2 E* a is the stiffness
+    /// of an unloading, and M the exponent of the sliders' backbone.
     ///
     /// # Errors
     /// [`ContactError::Value`] where a quantity is not positive and finite.
@@ -278,8 +278,8 @@ impl ContactParameters {
     /// Stiffens the unloading where the law's F_N0 and a would let a press store more energy than
     /// was put in (an elastic contact of a finite a/R is stiffer than Hertz's of its radius, and a
     /// fit may be off next to first yield): the stored energy of a knot is at most that of the one
-    /// before and the work between; and a dent never rises above where the sphere began. The contact
-    /// radius stays the law's.
+    /// before and the work between; and a dent never rises above where the sphere began. The
+    /// contact radius stays the law's.
     fn conserve(&mut self) {
         self.keep_below(0, self.log_first.exp());
         let mut before = self.stored_at(0);
