@@ -13,6 +13,7 @@
 pub mod check;
 pub mod contact;
 pub mod data;
+pub mod elastic;
 pub mod export;
 pub mod file;
 pub mod fit;
@@ -29,7 +30,6 @@ pub mod tabulated;
 pub mod variables;
 
 mod baseline;
-mod elastic;
 mod error;
 mod folds;
 mod formulas;
