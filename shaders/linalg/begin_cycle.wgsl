@@ -4,8 +4,8 @@
 @group(0) @binding(1) var<storage, read_write> records: array<Record>;
 @group(0) @binding(3) var<storage, read_write> small: array<real>;      // see krylov.wgsl
 
-// What a cycle in f32 can take its first residual down to, as a share of it: a tolerance below that
-// needs another cycle.
+// A cycle in f32 takes its residual down to this share of the first one and no further: a lower
+// tolerance ends there.
 const REACH: real = 1.2e-5;
 
 @compute @workgroup_size(64)

@@ -27,8 +27,8 @@ pub struct Side<'a> {
     /// Right-hand side, three a node; at fixed unknowns their values.
     pub rhs: &'a [f64],
     /// Relative residual to be reached over the free unknowns, the fixed ones' part taken over to
-    /// the right-hand side. In single precision a cycle of vectors comes down to 1.2e-5 of the
-    /// residual that it began with; less than that takes another cycle.
+    /// the right-hand side. A device in single precision stops at 1.2e-5 of the residual that its
+    /// last cycle of vectors began with, whatever is asked.
     pub tolerance: f64,
     /// The tolerance is of the residual at the guess, not of the right-hand side.
     pub relative_to_guess: bool,
@@ -47,7 +47,7 @@ pub enum Ended {
     /// Nobody tried: the backend solves no systems.
     #[default]
     NotTried,
-    /// The tolerance is met, by the recurrence of the residual.
+    /// The tolerance is met, by the recurrence of the residual, or what can be reached of it.
     Converged,
     /// It is not, and will not be.
     Stalled,

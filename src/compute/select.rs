@@ -171,16 +171,22 @@ mod device {
         models: Vec<CaseModel>,
     ) -> Result<(Box<dyn Compute>, Vec<String>), ComputeError> {
         if precision == PrecisionChoice::F32 {
-            return Ok((hooked(Box::new(Gpu::<f32>::new(context.clone(), models)?), context), Vec::new()));
+            let gpu = Gpu::<f32>::new(context.clone(), models)?;
+            let notes = gpu.notes();
+            return Ok((hooked(Box::new(gpu), context), notes));
         }
         if context.supports(Precision::F64).is_ok() {
-            return Ok((hooked(Box::new(Gpu::<f64>::new(context.clone(), models)?), context), Vec::new()));
+            let gpu = Gpu::<f64>::new(context.clone(), models)?;
+            let notes = gpu.notes();
+            return Ok((hooked(Box::new(gpu), context), notes));
         }
         let note = format!(
             "{} has no double precision in shaders: it computes the tangents in f32, the CPU the residuals in f64",
             context.adapter().name
         );
         log::info!("{note}");
-        Ok((hooked(Box::new(Mixed::new(context.clone(), models)?), context), vec![note]))
+        let mixed = Mixed::new(context.clone(), models)?;
+        let notes = [vec![note], mixed.notes()].concat();
+        Ok((hooked(Box::new(mixed), context), notes))
     }
 }

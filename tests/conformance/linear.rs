@@ -199,7 +199,7 @@ fn a_dispatch_takes_different_numbers_of_sides_and_guesses() {
     let models = models(&mesh);
     let systems: Vec<System> = (0..CASES).map(|case| system(case, &models, false)).collect();
     let mut gpu = Gpu::<f32>::new(context, models).unwrap();
-    // By case: the sides' factors of the guess 1e-6; none begins at zero.
+    // By case: the sides' guesses, in 1e-6 everywhere; 0 is no guess.
     let guesses: [&[f64]; CASES] = [&[0.0, 1.0], &[0.0], &[-1.0]];
     let mut answers = |cases: &[usize]| -> Vec<Vec<Vec<u64>>> {
         let n = systems[0].rhs.len();
@@ -257,6 +257,7 @@ fn too_little_memory_leaves_the_systems_to_the_host() {
     assert!(used > 4 * 61 * 3 * nodes, "{used} bytes for {nodes} nodes");
     let context = device(name, Precision::F32).unwrap().with_budget(used - (1 << 20));
     let mut gpu = Gpu::<f32>::new(Arc::new(context), models.to_vec()).unwrap();
+    assert!(gpu.notes().len() == 1 && gpu.notes()[0].contains("solved on the CPU"), "{:?}", gpu.notes());
     let mut x = vec![0.0; system.rhs.len()];
     let mut request = asked(0, &system, 0.1, false, &mut x);
     gpu.linear(std::slice::from_mut(&mut request)).unwrap();

@@ -60,6 +60,11 @@ impl<R: DeviceReal> Gpu<R> {
         Ok(Self { models, committed, batch: Some(batch), name })
     }
 
+    /// What the user should know: what the device leaves to the host.
+    pub fn notes(&self) -> Vec<String> {
+        self.batch.as_ref().map_or_else(Vec::new, |batch| batch.notes.clone())
+    }
+
     /// The device; none for an empty batch.
     pub fn context(&self) -> Option<&Arc<GpuContext>> {
         self.batch.as_ref().map(Batch::context)

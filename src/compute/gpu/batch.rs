@@ -124,6 +124,8 @@ pub struct Batch<R> {
     increments: Mutex<Vec<R>>,
     /// How linear systems are solved, if the mesh has a hierarchy.
     linear: Option<Linear<R>>,
+    /// What the user should know of it.
+    pub(super) notes: Vec<String>,
 }
 
 /// What a batch evaluates.
@@ -185,17 +187,21 @@ impl<R: DeviceReal> Batch<R> {
             .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count], CONTACT_WEIGHT))
             .collect::<Result<Vec<_>, _>>()?;
         let (mut widest, mut all) = Scratch::<R>::bytes(sizes);
-        let mut shared = None;
+        let (mut shared, mut notes) = (None, Vec::new());
         let linear_plan = linear_plan.and_then(|linear| {
             let ((array, sum), lists) = (linear.bytes::<R>(), linear.shared_bytes());
-            match context.has_room("the linear solver of one case", all + sum + lists) {
+            let what = "the linear solver of one case";
+            let fits = context.has_room(what, all + sum + lists).and_then(|()| context.chunks(what, 1, array, 0).map(drop));
+            match fits {
                 Ok(()) => {
                     (widest, all) = (widest.max(array), all + sum);
                     shared = Some(lists);
                     Some(linear)
                 }
                 Err(error) => {
-                    log::warn!("the host solves the linear systems: {error}");
+                    let note = format!("the linear systems are solved on the CPU: {error}");
+                    log::info!("{note}");
+                    notes.push(note);
                     None
                 }
             }
@@ -212,7 +218,7 @@ impl<R: DeviceReal> Batch<R> {
             .into_iter()
             .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
             .collect::<Result<_, GpuError>>()?;
-        Ok(Self { context, connectivity, plan, groups, scratch, slots, increments: Mutex::default(), linear })
+        Ok(Self { context, connectivity, plan, groups, scratch, slots, increments: Mutex::default(), linear, notes })
     }
 
     /// The device.

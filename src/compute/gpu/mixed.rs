@@ -31,6 +31,11 @@ impl Mixed {
         Ok(Self { residual: Cpu::with_tangents(models.clone())?, tangent: Gpu::new(context, models)? })
     }
 
+    /// As [`Gpu::notes`].
+    pub fn notes(&self) -> Vec<String> {
+        self.tangent.notes()
+    }
+
     /// The device; none for an empty batch.
     pub fn context(&self) -> Option<&Arc<GpuContext>> {
         self.tangent.context()

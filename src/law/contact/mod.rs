@@ -6,12 +6,13 @@
 //! directions, and answers with the forces and tangents. The model, within which the law is exact
 //! on first loading:
 //!
-//! - *First loading* in h follows F_N0(h), a(h); in delta_T at constant h, with x =
+//! - *First loading* in h follows F_N0(h) and the contact radius; in delta_T at constant h, with x =
 //!   delta_T/delta_T_slip, F_T = mu F_N_slip f_T(x) and F_N = F_N0 - (F_N0 - F_N_slip) f_N(x)
 //!   (Olsson & Larsson 2014). In the plane of F_N and |F_T| this is a limit curve, from (F_N0, 0)
 //!   to full slip, and x is the place on it.
 //! - *Inside the curve* the contact is elastic with friction. F_N = F_N0 eta^gamma, eta the elastic
-//!   approach over its greatest value D = gamma F_N0/(2 E* a): it starts with 2 E* a, ends at the
+//!   approach over its greatest value D = gamma F_N0/(2 E* a): it starts with 2 E* a (a is the
+//!   contact radius, or a little more where the body is stiffer than a half-space), ends at the
 //!   residual dent, and is Hertz for gamma = 3/2. F_T is carried by [`SLIDERS`] sliders in parallel
 //!   (Iwan 1967), each an annulus that leaves contact at its own eta (Jaeger 1998, Ciavarella 1998;
 //!   Popov & Hess 2015): Masing's rule, nested loops, and shear while h changes (Mindlin &
@@ -45,8 +46,8 @@ mod virgin;
 pub use material::LAST;
 pub use update::{ContactResponse, ContactState};
 pub use virgin::{
-    Axial, BY_NUMBERS, COLUMNS, ContactError, ContactParameters, KNOTS, LEVELS, POINTS, SLIDERS, Shapes, Virgin, VirginPoint,
-    unloading_exponent,
+    Axial, BY_NUMBERS, COLUMNS, ContactError, ContactParameters, KNOTS, LEVELS, PIECES, POINTS, ROUNDING, SLIDERS, SPARE, Shapes,
+    Virgin, VirginPoint, unloading_exponent,
 };
 
 #[cfg(test)]

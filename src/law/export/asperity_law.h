@@ -308,10 +308,11 @@ static inline double asperity_product(double p, double q, double friction, doubl
     return (ASPERITY_VARIABLE == 1 ? 1.0 : pow(friction, p)) * pow(z, q);
 }
 
-/* A row of the table: the law at the indentation h. */
+/* A row of the table: the law at the indentation h. Without friction there is no displacement at full slip, and none is asked for. */
 static inline void asperity_table_row(const asperity_material *m, double radius, double friction, double h, double row[ASPERITY_COLUMNS]) {
     double a, f_n, stress, lambda, yield, ratio, ramp, z = 0.0, growth = 0.0, n, power, size, share, body, factor, steep, mindlin;
     asperity_normal(m, radius, friction, h, &a, &f_n);
+    friction = friction > 0.0 ? friction : 1e-6;
     stress = asperity_representative_stress(m, radius, a);
     lambda = asperity_effective_modulus(m) * a / (stress * radius);
     yield = asperity_yield_lambda(m->poissons_ratio);
@@ -391,16 +392,16 @@ static inline double asperity_log_force(const asperity_draft *p, int i, double u
     return start + u * (s0 + u * (quadratic + u * cubic));
 }
 
-/* Work of a press from the knot before to this one, F_N0 being a power of h on each of four pieces of the way. */
+/* Work of a press from the knot before to this one, F_N0 being a power of h on each of some pieces of the way. */
 static inline double asperity_work_between(const asperity_draft *p, int i) {
     double work = 0.0, log_f = p->table[i - 1][0], next, u, h0, h1, power;
     int k;
-    for (k = 1; k <= 4; k++) {
-        u = k / 4.0;
-        next = k < 4 ? asperity_log_force(p, i, u) : p->table[i][0];
-        h0 = exp(p->log_first + p->log_step * (i - 1 + (u - 0.25)));
+    for (k = 1; k <= @PIECES@; k++) {
+        u = k / @PIECES@.0;
+        next = k < @PIECES@ ? asperity_log_force(p, i, u) : p->table[i][0];
+        h0 = exp(p->log_first + p->log_step * (i - 1 + (u - 1.0 / @PIECES@.0)));
         h1 = exp(p->log_first + p->log_step * (i - 1 + u));
-        power = (next - log_f) / (p->log_step / 4.0);
+        power = (next - log_f) / (p->log_step / @PIECES@.0);
         work += (exp(next) * h1 - exp(log_f) * h0) / (power + 1.0);
         log_f = next;
     }
@@ -435,8 +436,8 @@ static inline void asperity_conserve(asperity_draft *p) {
         most = before + asperity_work_between(p, i);
         stored = asperity_stored_at(p, i);
         /* A little is spared for what the cubics between the knots may gain. */
-        if (stored > (1.0 + 1e-9) * most) {
-            asperity_stiffen(p, i, stored / ((1.0 - 5e-5) * most));
+        if (stored > (1.0 + @ROUNDING@) * most) {
+            asperity_stiffen(p, i, stored / ((1.0 - @SPARE@) * most));
         }
         asperity_keep_below(p, i, exp(p->log_first + p->log_step * i));
         before = asperity_stored_at(p, i);
@@ -504,7 +505,7 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
     p->log_first = log(first);
     p->log_step = (log(@LAST@) - p->log_first) / (ASPERITY_KNOTS - 1.0);
     for (i = 0; i < ASPERITY_KNOTS; i++) {
-        asperity_table_row(m, 1.0, friction > 0.0 ? friction : 1e-6, exp(p->log_first + p->log_step * i), p->table[i]);
+        asperity_table_row(m, 1.0, friction, exp(p->log_first + p->log_step * i), p->table[i]);
         for (j = 0; j < ASPERITY_COLUMNS; j++) {
             if (!(fabs(p->table[i][j]) < HUGE_VAL)) {
                 return 3;

@@ -291,6 +291,8 @@ def product(p, q, friction, z):
 def row(m, radius, friction, h):
     """A row of the table: the law at the indentation h."""
     a, f_n = normal(m, radius, friction, h)
+    # Without friction there is no displacement at full slip, and none is asked for.
+    friction = friction if friction > 0.0 else 1e-6
     stress = representative_stress(m, radius, a)
     value = effective_modulus(m) * a / (stress * radius)
     first = yield_lambda(m.poissons_ratio)
@@ -350,15 +352,15 @@ def stored_at(p, i):
 
 
 def work_between(p, i):
-    """Work of a press from the knot before to this one, F_N0 being a power of h on each of four pieces of the way."""
+    """Work of a press from the knot before to this one, F_N0 being a power of h on each of some pieces of the way."""
     work = 0.0
     log_f = p.table[i - 1][0]
-    for k in range(1, 5):
-        u = k / 4.0
+    for k in range(1, @PIECES@ + 1):
+        u = k / @PIECES@.0
         log_next = column_at(p, 0, i - 1 + u)[0]
-        h0 = math.exp(p.log_first + p.log_step * (i - 1 + (u - 0.25)))
+        h0 = math.exp(p.log_first + p.log_step * (i - 1 + (u - 1.0 / @PIECES@.0)))
         h1 = math.exp(p.log_first + p.log_step * (i - 1 + u))
-        power = (log_next - log_f) / (p.log_step / 4.0)
+        power = (log_next - log_f) / (p.log_step / @PIECES@.0)
         work += (math.exp(log_next) * h1 - math.exp(log_f) * h0) / (power + 1.0)
         log_f = log_next
     return work
@@ -390,8 +392,8 @@ def conserve(p):
         most = before + work_between(p, i)
         stored = stored_at(p, i)
         # A little is spared for what the cubics between the knots may gain.
-        if stored > (1.0 + 1e-9) * most:
-            stiffen(p, i, stored / ((1.0 - 5e-5) * most))
+        if stored > (1.0 + @ROUNDING@) * most:
+            stiffen(p, i, stored / ((1.0 - @SPARE@) * most))
         keep_below(p, i, math.exp(p.log_first + p.log_step * i))
         before = stored_at(p, i)
 
@@ -415,7 +417,7 @@ def setup(m, radius, friction):
     p.friction = friction
     p.log_first = math.log(first)
     p.log_step = (math.log(@LAST@ * radius) - p.log_first) / (KNOTS - 1.0)
-    p.table = [row(m, radius, friction if friction > 0.0 else 1e-6, math.exp(p.log_first + p.log_step * i)) for i in range(KNOTS)]
+    p.table = [row(m, radius, friction, math.exp(p.log_first + p.log_step * i)) for i in range(KNOTS)]
     if not all(math.isfinite(value) for line in p.table for value in line):
         raise ValueError("the law has no positive numbers for this material")
     p.gentle = 1.0 + CURVE_2 * (friction if friction > 0.0 else 1e-6) ** CURVE_3

@@ -12,7 +12,7 @@ mod vectors;
 pub use contact::{contact_header, engine_files, engine_source};
 pub use vectors::{table_vectors, unit_vectors, vectors};
 
-use super::contact::{COLUMNS, ContactParameters, KNOTS, LAST, LEVELS, POINTS, SLIDERS};
+use super::contact::{COLUMNS, ContactParameters, KNOTS, LAST, LEVELS, PIECES, POINTS, ROUNDING, SLIDERS, SPARE};
 use super::elastic::BODY;
 use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
 use super::model::Law;
@@ -172,7 +172,8 @@ fn sizes() -> impl Iterator<Item = (&'static str, String)> {
     [("KNOTS", KNOTS), ("COLUMNS", COLUMNS), ("SLIDERS", SLIDERS), ("POINTS", POINTS), ("LEVELS", LEVELS)]
         .map(|(name, size)| (name, size.to_string()))
         .into_iter()
-        .chain([("LAST", format!("{LAST:?}"))])
+        .chain([("PIECES", PIECES.to_string())])
+        .chain([("LAST", LAST), ("SPARE", SPARE), ("ROUNDING", ROUNDING)].map(|(name, value)| (name, format!("{value:?}"))))
 }
 
 fn fill<'a>(template: &str, values: impl IntoIterator<Item = (&'a str, String)>) -> String {

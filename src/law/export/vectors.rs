@@ -117,13 +117,20 @@ struct Contact {
 
 /// Writes one path; `None` if there is no contact for its numbers.
 fn write_path(law: &Law, path: usize, random: &mut Random, text: &mut String) -> Option<()> {
-    let (e, nu) = ((10f64).powf(random.between(0.0, 12.0)), random.between(0.2, 0.45));
-    let (radius, friction) = ((10f64).powf(random.between(-4.0, 1.0)), random.between(0.05, 0.5));
+    let (e, nu) = ((10f64).powf(random.between(0.0, 12.0)), random.between(0.0, 0.5));
+    let (radius, friction) = ((10f64).powf(random.between(-4.0, 1.0)), random.between(0.02, 1.0));
+    // The ends of both ranges too.
+    let (nu, friction) = match path % 10 {
+        3 => (0.5, friction),
+        5 => (0.0, friction),
+        7 => (nu, 0.0),
+        _ => (nu, friction),
+    };
     let kind = path % 6;
     let (hardening, numbers) = hardening(kind, e, random).ok()?;
     let body = Body { sphere: ElasticSphere { radius, youngs_modulus: e, poissons_ratio: nu }, hardening };
     let pair = ContactParameters::new(law, &body, friction).ok()?;
-    let deepest = radius * (10f64).powf(random.between(-4.0, -1.3));
+    let deepest = radius * (10f64).powf(random.between(-4.0, -0.8));
     write_steps(path, &Contact { e, nu, kind, numbers, radius, pair }, deepest, random, text);
     Some(())
 }
