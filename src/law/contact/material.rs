@@ -11,7 +11,8 @@ pub const LAST: f64 = 0.15;
 /// of h of a half-space hold, as a/R is 0.001.
 pub const ELASTIC_FIRST: f64 = 1e-6;
 
-/// First tabulated indentation: below first yield, where the contact goes with Hertz's powers of h.
+/// First tabulated indentation: below first yield, where the contact goes with Hertz's powers of
+/// h.
 fn first_indentation(body: &Body) -> f64 {
     let radius = body.sphere.radius;
     if body.is_elastic() {

@@ -6,8 +6,8 @@
 //! directions, and answers with the forces and tangents. The model, within which the law is exact
 //! on first loading:
 //!
-//! - *First loading* in h follows F_N0(h) and the contact radius; in delta_T at constant h, with x =
-//!   delta_T/delta_T_slip, F_T = mu F_N_slip f_T(x) and F_N = F_N0 - (F_N0 - F_N_slip) f_N(x)
+//! - *First loading* in h follows F_N0(h), and the contact radius a(h); in delta_T at constant h,
+//!   with x = delta_T/delta_T_slip, F_T = mu F_N_slip f_T(x) and F_N = F_N0 - (F_N0 - F_N_slip) f_N(x)
 //!   (Olsson & Larsson 2014). In the plane of F_N and |F_T| this is a limit curve, from (F_N0, 0)
 //!   to full slip, and x is the place on it.
 //! - *Inside the curve* the contact is elastic with friction. F_N = F_N0 eta^gamma, eta the elastic

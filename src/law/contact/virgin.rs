@@ -29,8 +29,8 @@ const UNSHEARED: f64 = 1.8;
 /// Pieces of a step of the table over which its work is summed.
 pub const PIECES: usize = 4;
 
-/// Share of the work of a step that is spared where a contact would store too much, for some of what
-/// the cubics between the knots gain: 2e-4 of the work at the most.
+/// Share of the work of a step that is spared where a contact would store too much, for some of
+/// what the cubics between the knots gain: 2e-4 of the work at the most.
 pub const SPARE: f64 = 5e-5;
 /// By how much a contact must store too much for it to be no rounding.
 pub const ROUNDING: f64 = 1e-9;
@@ -161,10 +161,10 @@ const PLASTIC_GAMMA: f64 = 1.2732395447351628;
 
 impl ContactParameters {
     /// Tabulates `law`, which answers for an indentation, over the indentations `range` (both >
-    /// 0), from first yield (below it it must go with Hertz's powers of h) to the greatest that will be
-    /// met. The gentle exponent of f_N must not hang on h. Without a `curve` f_T and f_N are to be
-    /// given [by numbers](Self::with_shapes): then a is the radius whose 2 E* a is the stiffness
-    /// of an unloading, and M the exponent of the sliders' backbone.
+    /// 0), from first yield (below it, it must go with Hertz's powers of h) to the greatest that
+    /// will be met. The gentle exponent of f_N must not hang on h. Without a `curve` f_T and f_N
+    /// are to be given [by numbers](Self::with_shapes): then a is the radius whose 2 E* a is the
+    /// stiffness of an unloading, and M the exponent of the sliders' backbone.
     ///
     /// # Errors
     /// [`ContactError::Value`] where a quantity is not positive and finite.
@@ -377,8 +377,9 @@ impl ContactParameters {
         }
     }
 
-    /// The table's column `column` and its slope in steps, cubic between the knots. Below the first
-    /// it goes with Hertz's powers of h; beyond the last logarithms go on straight and the others stay.
+    /// The table's column `column` and its slope in steps, cubic between the knots. Below the
+    /// first it goes with Hertz's powers of h; beyond the last logarithms go on straight and the
+    /// others stay.
     fn column(&self, column: usize, position: f64) -> [f64; 2] {
         let value = |i: usize| self.table[i][column];
         let last = (KNOTS - 1) as f64;
