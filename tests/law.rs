@@ -1,6 +1,8 @@
 //! The contact law from the outside: fitted to studies that follow a known law, and applied through
 //! the program.
 
+#[path = "law/interpolated.rs"]
+mod interpolated;
 #[path = "law/synthetic.rs"]
 mod synthetic;
 #[path = "law/unseen.rs"]

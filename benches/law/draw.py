@@ -1,9 +1,14 @@
 #!/usr/bin/env python3
-"""Draws the study of the general law: materials of every hardening law at random, by a seed.
+"""Draws the studies of the general laws: materials of every hardening law at random, by a seed.
 
     python3 benches/law/draw.py --out fixtures/studies              # general.toml, general-unseen.toml
+    python3 benches/law/draw.py --out fixtures/studies --wide       # wide.toml, wide-unseen.toml
     python3 benches/law/draw.py --out fixtures/studies --equal      # the same on an equal sphere
     python3 benches/law/draw.py --out DIR --seed 1                  # other materials, that no law has seen
+
+General is for formulas: 38 materials, pressed and sheared. Wide is for interpolation: five times as
+many, and twice as many again with mu above 0.5, where contacts differ most; it shears them back and
+releases them too.
 
 Every material meets CASES pairs of friction and indentation. Poisson's ratio, ln(E/sigma_Y), ln(mu)
 and ln(h/R) are each cut into as many strata as there are draws, one draw a stratum. A fifth of the
@@ -32,6 +37,10 @@ KINDS = {
 RATIO = (12.0, 5000.0)  # E/sigma_Y
 POISSON = (0.0, 0.49)
 FRICTION = (0.05, 1.0)
+STRONG = (0.5, 1.0)  # mu of the second part of a wide study
+WIDE_SEED = 2026
+TIMES = (5, 2)  # how many times as many materials its two parts have
+PAIR_TIMES = (3, 1)  # the same on an equal sphere
 INDENTATION = (0.001, 0.15)  # h/R
 
 
@@ -90,11 +99,11 @@ def hardening(rng, law, yield_stress):
     return f'{{ law = "{law}", {body} }}'
 
 
-def draw(seed):
+def draw(seed, times=1, frictions=FRICTION):
     """(law, hardening, nu, mu, h, set aside) of every case: first one case of each material, then
     a second of each, so that the first part of a study is a study too."""
     rng = random.Random(seed)
-    laws = [(law, i < aside) for law, (count, aside) in KINDS.items() for i in range(count)]
+    laws = [(law, i < times * aside) for law, (count, aside) in KINDS.items() for i in range(times * count)]
     rng.shuffle(laws)
     count = len(laws)
     ratios = log_strata(rng, count, *RATIO)
@@ -105,7 +114,7 @@ def draw(seed):
     ]
     cases = []
     for _ in range(CASES):
-        friction = log_strata(rng, count, *FRICTION)
+        friction = log_strata(rng, count, *frictions)
         depth = log_strata(rng, count, *INDENTATION)
         cases += [(*m[:3], mu, h, m[3]) for m, mu, h in zip(materials, friction, depth)]
     return cases
@@ -117,7 +126,7 @@ def wrapped(key, values):
     return f'"{key}" = [\n' + "".join(f"    {line},\n" for line in lines) + "]\n"
 
 
-def study(cases, equal, what, seed):
+def study(cases, equal, wide, what, seed):
     """The text of the study file."""
     text = (
         f"# {what} Drawn by benches/law/draw.py, seed {seed}; see there for the ranges.\n"
@@ -128,7 +137,9 @@ def study(cases, equal, what, seed):
         "# Sheared with high friction, a contact wanders; so coarse a mesh has few elements to spare.\n"
         "fine_zone = 1.6\n\n"
         + ("[base.opponent]\nequal = true\n\n" if equal else "")
-        + '[[base.path]]\n\n[[base.path]]\nshear = "full-slip"\nhold = "indentation"\n\n[zip]\n'
+        + '[[base.path]]\n\n[[base.path]]\nshear = "full-slip"\nhold = "indentation"\n\n'
+        + ('[[base.path]]\nshear = 0.0\nhold = "indentation"\n\n[[base.path]]\nrelease = 0.5\n\n' if wide else "")
+        + "[zip]\n"
     )
     # Between equal spheres h is the approach of their centres, twice what each is pressed in.
     depth = [(2.0 if equal else 1.0) * case[4] for case in cases]
@@ -142,18 +153,22 @@ def study(cases, equal, what, seed):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="where the two study files go")
-    parser.add_argument("--seed", type=int, default=SEED, help=f"of the draw ({SEED} is that of fixtures/studies)")
+    parser.add_argument("--seed", type=int, help=f"of the draw (those of fixtures/studies: {SEED}, wide {WIDE_SEED})")
+    parser.add_argument("--wide", action="store_true", help="the study for interpolation")
     parser.add_argument("--equal", action="store_true", help="on an equal sphere instead of the plane")
     arguments = parser.parse_args()
-    cases = draw(arguments.seed)
-    stem = "general-pair" if arguments.equal else "general"
+    wide = arguments.wide
+    seed = arguments.seed if arguments.seed is not None else (WIDE_SEED if wide else SEED)
+    times = PAIR_TIMES if arguments.equal else TIMES
+    cases = draw(seed, times[0]) + draw(seed + 1, times[1], STRONG) if wide else draw(seed)
+    stem = ("wide" if wide else "general") + ("-pair" if arguments.equal else "")
     against = "an equal sphere" if arguments.equal else "a plane"
     for aside, name, what in [
         (False, stem, f"The study of the general law on {against}: what is fitted."),
         (True, f"{stem}-unseen", f"The materials set aside from the study of the general law on {against}."),
     ]:
         chosen = [case for case in cases if case[5] == aside]
-        (arguments.out / f"{name}.toml").write_text(study(chosen, arguments.equal, what, arguments.seed))
+        (arguments.out / f"{name}.toml").write_text(study(chosen, arguments.equal, wide, what, seed))
 
 
 if __name__ == "__main__":

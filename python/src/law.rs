@@ -88,6 +88,7 @@ impl NativeLaw {
         match &self.law {
             LawFile::Formulas(law) => serde_json::to_string(law),
             LawFile::Table(table) => serde_json::to_string(table),
+            LawFile::Interpolated(law) => serde_json::to_string(law),
         }
         .map_err(failed)
     }
@@ -97,6 +98,7 @@ impl NativeLaw {
         match &self.law {
             LawFile::Formulas(law) => Ok(law.formulas()),
             LawFile::Table(_) => Err(failed("the law is a table of one material, which has no formulas. Fit a law to a study")),
+            LawFile::Interpolated(_) => Err(failed("the law interpolates between contacts, and has no formulas")),
         }
     }
 
@@ -129,7 +131,7 @@ impl NativeLaw {
         let case = match (case, &self.law) {
             (Some(case), _) => case.case.clone(),
             (None, LawFile::Table(table)) => table.deepest_case().map_err(failed)?,
-            (None, LawFile::Formulas(_)) => {
+            (None, LawFile::Formulas(_) | LawFile::Interpolated(_)) => {
                 return Err(refused("case: is missing, and the law is for all materials. Allowed: the case to check it for"));
             }
         };
@@ -178,7 +180,7 @@ impl NativeLaw {
 
     fn pressed(&self, case: &asperity::Case) -> PyResult<(Vec<PathPoint>, Vec<OutOfRange>)> {
         let LawFile::Formulas(law) = &self.law else {
-            return Err(refused("press: is True, and the law is a table, which has F_N0 and a0. Allowed: False"));
+            return Err(refused("press: is True, and the law has no formulas that take F_N0 and a0. Allowed: False"));
         };
         let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press).map_err(failed)?;
         let point = |p: &Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };

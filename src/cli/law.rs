@@ -18,6 +18,7 @@ use super::{CliError, Outcome, print, print_json};
 use crate::case::Case;
 use crate::law::contact::path::PathPoint;
 use crate::law::export::{Language, law_files, law_source};
+use crate::law::interpolated::{self, Interpolated};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
@@ -35,14 +36,15 @@ pub struct LawArgs {
 /// The subcommands of `asperity law`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum LawCommand {
-    /// Fit a law to a study: writes DIR/law.json and prints the candidate forms and their errors.
+    /// Fit a law to a study: writes DIR/law.json and prints the candidate forms and their errors, or
+    /// those of an interpolation.
     Fit(FitArgs),
     /// Tabulate the law of one material and one friction coefficient as curves in h: simulates
     /// depths up to that of the case as a study, writes DIR/law.json and prints the errors in
     /// between.
     Tabulate(TabulateArgs),
-    /// Make the table of two bodies, of any sizes, from one table of each, without simulating
-    /// anything.
+    /// Make the table of a contact without simulating anything: of two bodies, of any sizes, from
+    /// one table of each, or of any contact from a law by interpolation.
     Compose(ComposeArgs),
     /// Predict F_N and F_T along the path of a case without simulating it; prints CSV.
     Predict(PredictArgs),
@@ -63,6 +65,10 @@ pub struct FitArgs {
     /// than a quarter of its cases), none, or another law.json.
     #[arg(long, value_name = "PRIOR", default_value = "built-in")]
     pub prior: String,
+    /// Interpolate between the cases instead of fitting formulas: for a large study of many
+    /// materials, on a plane or of equal spheres.
+    #[arg(long, conflicts_with = "prior")]
+    pub interpolate: bool,
     /// Print the law as JSON, as in DIR/law.json, instead of the tables.
     #[arg(long)]
     pub json: bool,
@@ -141,6 +147,17 @@ pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
 }
 
 fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
+    if args.interpolate {
+        let law = interpolated::fit(&args.dir)?;
+        let path = args.dir.join("law.json");
+        law.write(&path)?;
+        if args.json {
+            print_json(&law)?;
+        } else {
+            print(&format!("{}\nlaw in {}\n", summary_of_interpolation(&law), path.display()))?;
+        }
+        return Ok(Outcome::Done);
+    }
     let law = fit::fit(&args.dir, &Prior::from_option(&args.prior)?)?;
     let path = args.dir.join("law.json");
     law.write(&path)?;
@@ -150,6 +167,25 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
         print(&format!("{}\nlaw in {}\n", summary(&law), path.display()))?;
     }
     Ok(Outcome::Done)
+}
+
+/// What `law fit --interpolate` prints.
+fn summary_of_interpolation(law: &Interpolated) -> String {
+    let source = &law.source;
+    let [f, f_max, a, a_max] =
+        [law.normal_errors.f_n0[0], law.normal_errors.f_n0[1], law.normal_errors.a0[0], law.normal_errors.a0[1]].map(|x| 100.0 * x);
+    let mut text = format!(
+        "{} cases of {} materials on {}, {} elements per contact radius, {} left out\n\n\
+         Errors from h alone, each material from the others, in per cent\n\
+         F_N0 rms     max   a0 rms     max\n{f:>8.2} {f_max:>7.2} {a:>8.2} {a_max:>7.2}\n\n",
+        source.cases,
+        source.materials,
+        law.body,
+        source.elements_per_contact_radius,
+        source.left_out.len()
+    );
+    text.push_str(&report::region_table("F_T of its peak, F_N of F_N0", &law.errors));
+    text
 }
 
 /// What `law fit` prints.
@@ -228,7 +264,7 @@ fn as_json(points: &[PathPoint], out_of_range: &[OutOfRange]) -> Value {
 /// One shear from a simulated press.
 fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
     let LawFile::Formulas(law) = law else {
-        return Err(LawError::IsTable { path: path.to_owned(), what: "--press" });
+        return Err(LawError::NoFormulas { path: path.to_owned(), what: "--press" });
     };
     let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press)?;
     let point = |p: &crate::law::data::Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };

@@ -54,7 +54,7 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
     let cases = match (&args.case, &law) {
         (Some(path), _) => vec![("the case", Case::load(path, &args.set)?)],
         (None, LawFile::Table(table)) => vec![("the table's material", table.deepest_case()?)],
-        (None, LawFile::Formulas(_)) => materials(&Case::parse(CASE, "case", &[])?),
+        (None, LawFile::Formulas(_) | LawFile::Interpolated(_)) => materials(&Case::parse(CASE, "case", &[])?),
     };
     let file = args.case.clone().unwrap_or_else(|| args.law.clone());
     let in_case = |source: LawError| CliError::LawCase { file: file.clone(), source: Box::new(source) };

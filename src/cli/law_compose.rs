@@ -1,4 +1,5 @@
-//! `asperity law compose`: the table of two bodies from one table of each.
+//! `asperity law compose`: the table of two bodies from one table of each, or of any contact from a
+//! law by interpolation.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -6,22 +7,25 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::law::warn_out_of_range;
 use super::{CliError, Outcome, print};
 use crate::case::Case;
+use crate::law::interpolated::Interpolated;
 use crate::law::tabulated::{Tabulated, compose};
+use crate::law::{LawError, LawFile};
 
 /// The arguments of `law compose`.
 #[derive(Clone, Debug, Args)]
 pub struct ComposeArgs {
-    /// The case of the pair: both materials, its friction, and its indentation, which is the
+    /// The case: its materials, its friction, its opponent, and its indentation, which is the
     /// deepest of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// The table of the sphere's material, of two equal spheres (or of a sphere on a plane, which
-    /// is less near).
-    #[arg(value_name = "SPHERE.json")]
+    /// A law by interpolation; or, for two bodies, the table of the sphere's material, of two equal
+    /// spheres (or of a sphere on a plane, which is less near).
+    #[arg(value_name = "LAW.json")]
     pub sphere: PathBuf,
-    /// That of the opponent's material [default: the sphere's].
+    /// The table of the opponent's material [default: the sphere's].
     #[arg(value_name = "OPPONENT.json")]
     pub opponent: Option<PathBuf>,
     /// Directory for the law.json.
@@ -35,17 +39,51 @@ pub struct ComposeArgs {
     pub force: bool,
 }
 
+/// What a table is composed from.
+enum Given {
+    Tables(Box<[Tabulated; 2]>),
+    Interpolated(Box<Interpolated>),
+}
+
+impl Given {
+    fn read(args: &ComposeArgs) -> Result<Self, CliError> {
+        match (LawFile::read(&args.sphere)?, &args.opponent) {
+            (LawFile::Interpolated(law), None) => Ok(Self::Interpolated(law)),
+            (LawFile::Table(sphere), opponent) => {
+                let opponent = opponent.as_deref().map(Tabulated::read).transpose()?.unwrap_or_else(|| (*sphere).clone());
+                Ok(Self::Tables(Box::new([*sphere, opponent])))
+            }
+            // Says what is wrong with it as a table.
+            _ => Err(Tabulated::read(&args.sphere).map_or_else(CliError::from, |_| {
+                CliError::from(LawError::NotCovered {
+                    problem: "a law by interpolation knows both bodies of a pair",
+                    remedy: "leave OPPONENT.json out",
+                })
+            })),
+        }
+    }
+
+    fn table(&self, case: &Case) -> Result<Tabulated, LawError> {
+        match self {
+            Self::Tables(tables) => compose(case, [&tables[0], &tables[1]]),
+            Self::Interpolated(law) => law.compose(case),
+        }
+    }
+}
+
 /// Makes the table and prints it.
 pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
     let case = Case::load(&args.case, &args.set)?;
-    let sphere = Tabulated::read(&args.sphere)?;
-    let opponent = args.opponent.as_deref().map(Tabulated::read).transpose()?;
+    let law = Given::read(args)?;
     let file = args.out.join("law.json");
     if file.exists() && !args.force {
         return Err(CliError::FileThere { file });
     }
-    let table = compose(&case, [&sphere, opponent.as_ref().unwrap_or(&sphere)])
-        .map_err(|source| CliError::LawCase { file: args.case.clone(), source: Box::new(source) })?;
+    let table = law.table(&case).map_err(|source| CliError::LawCase { file: args.case.clone(), source: Box::new(source) })?;
+    if let Given::Interpolated(law) = &law {
+        let deepest = table.range.to * case.sphere.radius;
+        warn_out_of_range(&args.case, &law.out_of_range(&case, deepest)?);
+    }
     fs::create_dir_all(&args.out).map_err(|source| CliError::Out { dir: args.out.clone(), what: "be created", source })?;
     table.write(&file)?;
     let mut text = format!(

@@ -77,7 +77,7 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
         Some(LawFile::Formulas(law)) => Some(law.as_ref()),
         // The table's own picture is drawn where the table is made; its study is drawn without
         // formulas.
-        Some(LawFile::Table(_)) | None => None,
+        Some(LawFile::Table(_) | LawFile::Interpolated(_)) | None => None,
     };
     let format = args.format.map_or(PictureFormat::Svg, PictureFormat::from);
     let written = report::write_report(study, formulas, Sheet { width: args.width }, format)?;
@@ -97,7 +97,7 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError>
             LawFile::Formulas(law) => {
                 law_beside_run(law, &case, &history, &view).map(|(picture, prediction)| (picture, prediction.out_of_range))
             }
-            LawFile::Table(_) => table_beside_run(law, &case, &history, &view),
+            LawFile::Table(_) | LawFile::Interpolated(_) => table_beside_run(law, &case, &history, &view),
         }
         .map_err(in_case)?;
         super::law::warn_out_of_range(&run.case(), &out_of_range);

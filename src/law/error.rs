@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use crate::case::CaseError;
 use crate::law::contact::ContactError;
+use crate::law::tabulated::Against;
 use crate::material::MaterialError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
@@ -79,9 +80,20 @@ pub enum LawError {
         /// What differs.
         what: String,
     },
-    /// A table for what takes formulas.
-    #[error("{}: is a tabulated law, and {what} takes formulas. Give a law.json that `asperity law fit` wrote", .path.display())]
-    IsTable {
+    /// A case against something that a law by interpolation is not of.
+    #[error(
+        "the contact is one with {case}, and the law's study is of spheres on {law}. Take a law that was fitted to a study with \
+         this opponent, or tabulate the case with `asperity law tabulate`"
+    )]
+    OtherOpponent {
+        /// That of the case.
+        case: Against,
+        /// That of the law.
+        law: Against,
+    },
+    /// Another kind of law for what takes formulas.
+    #[error("{}: is a law without formulas, and {what} takes them. Give a law.json that `asperity law fit` wrote", .path.display())]
+    NoFormulas {
         /// The file.
         path: PathBuf,
         /// What.

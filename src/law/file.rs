@@ -1,9 +1,11 @@
 //! A law file, whichever kind it is of.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::contact::ContactParameters;
 use super::contact::path::{PathPoint, follow};
+use super::interpolated::{self, Interpolated};
 use super::json;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
 use super::predict::over_a_plane;
@@ -19,20 +21,45 @@ pub enum LawFile {
     Formulas(Box<Law>),
     /// Curves in h of one material and one friction, as `law tabulate` writes them.
     Table(Box<Tabulated>),
+    /// A table for any material between those of a study, as `law fit --interpolate` writes it.
+    Interpolated(Box<Interpolated>),
 }
 
 impl LawFile {
-    /// Reads either kind.
+    /// Reads any kind.
     ///
     /// # Errors
     /// [`LawError::BadLaw`] with what the file is instead.
     pub fn read(path: &Path) -> Result<Self, LawError> {
         json::read(path, |text| {
-            if json::head(text)?.format == tabulated::FORMAT {
-                return Ok(Self::Table(Box::new(Tabulated::from_json(text)?)));
-            }
-            Ok(Self::Formulas(Box::new(Law::from_json(text)?)))
+            Ok(match json::head(text)?.format.as_str() {
+                tabulated::FORMAT => Self::Table(Box::new(Tabulated::from_json(text)?)),
+                interpolated::FORMAT => Self::Interpolated(Box::new(Interpolated::from_json(text)?)),
+                _ => Self::Formulas(Box::new(Law::from_json(text)?)),
+            })
         })
+    }
+
+    /// The same law where it is of one kind of contact already; the table of the case's contact
+    /// where it is to be interpolated.
+    ///
+    /// # Errors
+    /// Those of [`Interpolated::table`]; [`LawError::NotCovered`] if there is no case to make it
+    /// for.
+    pub fn of_case(&self, case: Option<&Case>) -> Result<Cow<'_, Self>, LawError> {
+        match (self, case) {
+            (Self::Interpolated(law), Some(case)) => Ok(Cow::Owned(Self::Table(Box::new(law.table(case)?)))),
+            (Self::Interpolated(_), None) => Err(Self::without_a_case()),
+            _ => Ok(Cow::Borrowed(self)),
+        }
+    }
+
+    /// What is missing where a law by interpolation is to be used without a case.
+    pub(super) fn without_a_case() -> LawError {
+        LawError::NotCovered {
+            problem: "a law by interpolation is a table for each material",
+            remedy: "Give the case too, with its material, its friction and its deepest indentation",
+        }
     }
 
     /// What the contact update needs for the sphere of a case, in the case's units.
@@ -56,6 +83,7 @@ impl LawFile {
                 table.covers(case)?;
                 table.contact_parameters(case.sphere.radius, case.material.youngs_modulus)
             }
+            Self::Interpolated(law) => law.table(case)?.contact_parameters(case.sphere.radius, case.material.youngs_modulus),
         }
     }
 
@@ -71,7 +99,7 @@ impl LawFile {
         Ok((points, out_of_range))
     }
 
-    /// Writes either kind.
+    /// Writes any kind.
     ///
     /// # Errors
     /// [`LawError`] with what the system says.
@@ -79,6 +107,7 @@ impl LawFile {
         match self {
             Self::Formulas(law) => law.write(path),
             Self::Table(table) => table.write(path),
+            Self::Interpolated(law) => law.write(path),
         }
     }
 
@@ -95,6 +124,7 @@ impl LawFile {
                 Ok(out_of_formulas(law, &body, friction, h))
             }
             Self::Table(table) => Ok(table.out_of_range(h / case.sphere.radius)),
+            Self::Interpolated(law) => law.out_of_range(case, h),
         }
     }
 }

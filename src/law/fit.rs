@@ -380,7 +380,7 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
 }
 
 /// Name of the directory, even if it was given as `.`.
-fn study_name(dir: &Path) -> String {
+pub(super) fn study_name(dir: &Path) -> String {
     let dir = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
     dir.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }

@@ -31,6 +31,14 @@ pub(super) fn write(path: &Path, law: &impl Serialize) -> Result<(), LawError> {
     })?)
 }
 
+/// As [`write`], a line in all: of what nobody reads number by number.
+pub(super) fn write_compact(path: &Path, law: &impl Serialize) -> Result<(), LawError> {
+    Ok(write_atomically(path, |out| {
+        serde_json::to_writer(&mut *out, law).map_err(io::Error::from)?;
+        out.write_all(b"\n")
+    })?)
+}
+
 /// Reads a file and makes of its text what `parse` does, whose error is what is wrong, in words.
 pub(super) fn read<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<T, LawError> {
     let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };

@@ -7,8 +7,8 @@
 //! `predict` applies it to a case; `contact` is the law as an incremental update of one contact,
 //! and `export` writes that for other programs. `least_squares` and `report` serve them.
 //!
-//! `tabulated` is the law of one material and one friction as curves in h; `file` takes either
-//! kind; `check` holds the update against simulated paths.
+//! `tabulated` is the law of one material and one friction as curves in h, `interpolated` makes
+//! such a table for any material between those of a study; `file` takes any kind; `check` holds the update against simulated paths.
 
 pub mod check;
 pub mod contact;
@@ -18,6 +18,7 @@ pub mod export;
 pub mod file;
 pub mod fit;
 pub mod forms;
+pub mod interpolated;
 pub mod model;
 pub mod normal;
 #[cfg(feature = "plots")]

@@ -77,6 +77,8 @@ impl Unit {
                     body: Against::Plane,
                 })
             }
+            (LawFile::Interpolated(law), Some(case)) => Self::new(&LawFile::Table(Box::new(law.table(case)?)), Some(case)),
+            (LawFile::Interpolated(_), None) => Err(LawFile::without_a_case()),
             (LawFile::Formulas(_), None) => Err(LawError::NotCovered {
                 problem: "an engine takes the law of one material and one friction, and this one is of all",
                 remedy: "name a case after it: asperity law export LAW.json CASE.toml --format c",

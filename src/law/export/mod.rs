@@ -56,10 +56,11 @@ pub fn files(law: &Law) -> Vec<ExportedFile> {
 /// # Errors
 /// A table without numbers; what [`engine_files`] has.
 pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
-    match (language, law) {
+    match (language, law.of_case(case)?.as_ref()) {
         (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(header_files(law)),
         (Language::C, law) => engine_files(law, case),
         (Language::Python, LawFile::Formulas(law)) => Ok(files(law)),
+        (Language::Python, LawFile::Interpolated(_)) => Err(LawFile::without_a_case()),
         (Language::Python, LawFile::Table(table)) => Ok(python_files(table_source(table)?, table_vectors(table, vectors::SEED)?)),
     }
 }
@@ -69,10 +70,11 @@ pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Resu
 /// # Errors
 /// As [`law_files`].
 pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Result<String, LawError> {
-    match (language, law) {
+    match (language, law.of_case(case)?.as_ref()) {
         (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(in_one_file(&source(law, Language::C))),
         (Language::C, law) => Ok(in_one_file(&engine_source(law, case)?)),
         (Language::Python, LawFile::Formulas(law)) => Ok(source(law, Language::Python)),
+        (Language::Python, LawFile::Interpolated(_)) => Err(LawFile::without_a_case()),
         (Language::Python, LawFile::Table(table)) => table_source(table),
     }
 }

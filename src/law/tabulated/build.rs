@@ -131,20 +131,26 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     Ok(Built { table, coarse, measured: all, missing })
 }
 
-pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
-    // In units of R and E, with what it meets, which an equal pair loses there.
+/// A case in units of R and E, with what it meets, which an equal pair loses there.
+pub fn scaled(case: &Case) -> Case {
     let in_units = case.scaled().0;
     let opponent = if case.opponent == Some(Opponent::Equal) { Some(Opponent::Equal) } else { in_units.opponent.clone() };
-    let scaled = Case { opponent, ..case_of(&in_units, elements) };
-    let friction = match scaled.contact.friction {
-        Friction::Coefficient(mu) => mu,
-        Friction::Stick => f64::NAN,
-    };
+    Case { opponent, ..in_units }
+}
+
+pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
+    let scaled = case_of(&scaled(case), elements);
     let sphere = equivalent(&scaled);
-    let mut levels: Vec<Level> = depths.iter().map(|one| level(&sphere, friction, one)).collect();
+    let mut levels: Vec<Level> = depths.iter().map(|one| level(&sphere, friction_of(&scaled), one)).collect();
     smoothed(&mut levels);
+    of_levels(scaled, levels, elements)
+}
+
+/// The table of a case in units of R and E, from its levels.
+pub(super) fn of_levels(scaled: Case, mut levels: Vec<Level>, elements: usize) -> Result<Tabulated, LawError> {
+    let scaled = case_of(&scaled, elements);
     if let Some(yielding) = first_yield(&scaled)?.filter(|&h| NEAR * h < levels[0].h) {
-        levels.insert(0, hertzian(&sphere, friction, yielding));
+        levels.insert(0, hertzian(&equivalent(&scaled), friction_of(&scaled), yielding));
     }
     let (from, to) = (levels[0].h, levels[levels.len() - 1].h);
     Ok(Tabulated {
@@ -158,6 +164,13 @@ pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result
         levels,
         errors: Vec::new(),
     })
+}
+
+fn friction_of(case: &Case) -> f64 {
+    match case.contact.friction {
+        Friction::Coefficient(mu) => mu,
+        Friction::Stick => f64::NAN,
+    }
 }
 
 /// Takes the ripple of the mesh out of the levels.
@@ -225,7 +238,7 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
 
 /// k_T and the exponent b with which Masing's rule, F_T = F - 2 F_s [1 - (1 - k_T delta/(2 b
 /// F_s))^b], is nearest to the simulated reversal, F and F_s = mu F_N being those where it begins.
-fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
+pub fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
     let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
     let Some(start) = one.back.first().filter(|_| one.back.len() > 4) else { return [mindlin, 1.5] };
     let slip = friction * start.f_n;
@@ -259,7 +272,7 @@ fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
 
 /// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from
 /// the first force F of the release to the last.
-fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
+pub fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
     let (Some(from), Some(to)) = (one.release.first(), one.release.last()) else { return one.a0 };
     let way = from[0] - to[0];
     if !(way > 0.0 && from[1] > to[1] && to[1] > 0.0) {

@@ -40,7 +40,8 @@ impl Measured {
         self.curve.iter().fold(0.0, |peak, point| point.f_t.max(peak))
     }
 
-    fn of(case: &Case, history: &[StepRecord]) -> Option<Self> {
+    /// Of a case that was pressed and perhaps sheared to and fro and released, and of its history.
+    pub fn of(case: &Case, history: &[StepRecord]) -> Option<Self> {
         let (radius, force) = (case.sphere.radius, case.material.youngs_modulus * case.sphere.radius * case.sphere.radius);
         let start = history.iter().rfind(|row| row.segment == 0)?;
         let mut curve = vec![Point { delta_t: 0.0, f_t: 0.0, f_n: start.f_n / force }];

@@ -29,9 +29,12 @@ use crate::case::{self, Case, Friction, Opponent};
 
 pub use against::{Against, equivalent, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
+pub(super) use build::{reversal, scaled, unloading_radius};
+pub(super) use measure::Measured;
 pub use measure::Missing;
 #[cfg(feature = "plots")]
 pub use picture::picture;
+pub(super) use series::alone;
 pub use series::compose;
 
 /// The first key of a table, by which it is recognised.
@@ -127,6 +130,14 @@ const BACKBONE: [f64; 2] = [1.02, 1.6];
 const SAME: f64 = 1e-9;
 
 impl Tabulated {
+    /// The table of levels that come from elsewhere than from simulated depths of `case`.
+    ///
+    /// # Errors
+    /// A hardening law whose numbers make no law.
+    pub(super) fn interpolated(case: &Case, levels: Vec<Level>, elements: usize) -> Result<Self, LawError> {
+        build::of_levels(build::scaled(case), levels, elements)
+    }
+
     /// Writes it, whole or not at all.
     ///
     /// # Errors
@@ -387,6 +398,11 @@ fn columns_of(level: &Level) -> Vec<f64> {
     ];
     columns.extend(level.tangential.iter().chain(&level.normal));
     columns
+}
+
+/// A level whose curves are what a contact can follow: F_N falls, and F_T stays within mu F_N.
+pub(super) fn cleaned(level: Level) -> Level {
+    level_of(level.h, &columns_of(&level))
 }
 
 /// The level of such columns.

@@ -21,7 +21,7 @@ use super::against::{Against, equivalent};
 use super::build::{LENGTH, NEARLY_SLIPPING, depths, hertzian, points};
 use super::{Curves, FORMAT, Level, Tabulated, VERSION};
 use crate::analytical::ElasticSphere;
-use crate::case::{Case, Friction, Material, Opponent, Sphere};
+use crate::case::{Case, Friction, Material, Opponent, Segment, Sphere};
 use crate::law::LawError;
 use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
@@ -486,6 +486,17 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
         levels,
         errors: Vec::new(),
     })
+}
+
+/// The two bodies of a pair as [`compose`] wants their tables: each by itself with the friction of
+/// the pair, against an equal sphere, pressed to `depth` over its radius; R = 1, E that of the
+/// sphere. `None` of a case whose opponent does not deform.
+pub fn alone(case: &Case, depth: f64) -> Option<[Case; 2]> {
+    let scaled = case.scaled().0;
+    let Some(Opponent::Deforming { material: other, .. }) = scaled.opponent.clone() else { return None };
+    let path = vec![Segment::Indentation { indentation: depth }];
+    let base = Case { sphere: Sphere { radius: 1.0, flat: false }, opponent: Some(Opponent::Equal), path, ..scaled };
+    Some([base.clone(), Case { material: other, ..base }])
 }
 
 #[cfg(test)]

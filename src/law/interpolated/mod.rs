@@ -1,0 +1,248 @@
+//! The law by interpolation between simulated contacts of many materials: for any material, any mu
+//! and any h between them, a table as of its own simulations.
+//!
+//! A contact is eight dimensionless numbers (`inputs`). What is wanted of it (`outputs`) are six
+//! numbers and two curves, the curves as five `components` each; every one of these is a Gaussian
+//! `process` over the eight. `fit` makes them from a study. [`Interpolated::table`] asks for the
+//! depths that `law tabulate` would simulate; what comes out is a [`Tabulated`], which update and
+//! exports take like one of simulations.
+
+mod components;
+mod fit;
+pub mod inputs;
+mod outputs;
+mod process;
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use self::components::{COMPONENTS, Components};
+use self::inputs::{FRICTION, INPUTS, LAMBDA, POISSON, SIZE, inputs};
+use self::outputs::{NUMBERS, Outputs};
+use self::process::{Place, Process};
+use super::LawError;
+use super::json;
+use super::model::{Interval, MARGIN, OutOfRange};
+use super::report::RegionError;
+use super::tabulated::{self, Against, Tabulated, equivalent};
+use super::variables::{Body, yield_lambda};
+use crate::analytical::ElasticSphere;
+use crate::case::{Case, Friction};
+
+pub use fit::fit;
+
+/// The first key of a law by interpolation, by which it is recognised.
+pub const FORMAT: &str = "asperity-law-interpolated";
+/// Version of its layout.
+pub const VERSION: u32 = 1;
+
+/// How much deeper than needed the tables of the two bodies of a pair are.
+const SPARE: f64 = 1.1;
+/// h/R of an equal pair beyond which no body of a pair is followed.
+const DEEPEST: f64 = 0.6;
+
+/// Number of functions.
+const PROCESSES: usize = NUMBERS + 2 * COMPONENTS;
+
+/// An input over the samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Input {
+    /// What it is.
+    pub name: String,
+    /// Its mean.
+    pub mean: f64,
+    /// Its deviation.
+    pub deviation: f64,
+    /// From the least to the greatest.
+    pub range: Interval,
+}
+
+/// What a law by interpolation was made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Source {
+    /// The program and its version.
+    pub program: String,
+    /// Name of the study's directory.
+    pub study: String,
+    /// Cases used.
+    pub cases: usize,
+    /// Different materials.
+    pub materials: usize,
+    /// Cases left out, with the reasons.
+    pub left_out: Vec<(String, String)>,
+    /// Most elements along the contact radius.
+    pub elements_per_contact_radius: usize,
+}
+
+/// Errors over a number of cases, as shares: rms and greatest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NormalErrors {
+    /// rms and greatest error of F_N0.
+    #[serde(rename = "F_N0")]
+    pub f_n0: [f64; 2],
+    /// rms and greatest error of a0.
+    pub a0: [f64; 2],
+}
+
+/// A law by interpolation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Interpolated {
+    /// [`FORMAT`].
+    pub format: String,
+    /// [`VERSION`].
+    pub version: u32,
+    /// What the sphere meets: a rigid plane, or an equal sphere.
+    pub body: Against,
+    /// Where it comes from.
+    pub source: Source,
+    /// Errors of F_T and F_N along the shear, from h alone, of materials that were left out.
+    pub errors: Vec<RegionError>,
+    /// Those of F_N0 and a0.
+    pub normal_errors: NormalErrors,
+    /// The inputs.
+    pub inputs: Vec<Input>,
+    /// F_T/F_N over mu as a curve.
+    pub ratio: Components,
+    /// F_N/F_N0 as a curve.
+    pub normal: Components,
+    /// The functions: the numbers, the components of F_T/F_N, those of F_N.
+    pub processes: Vec<Process>,
+    /// The samples' inputs, less their mean, over their deviation.
+    pub samples: Vec<Place>,
+}
+
+/// The sphere of a case by itself, and the one that makes the same elastic contact on a rigid
+/// plane; in units of its radius and its E.
+fn bodies(case: &Case) -> Result<(Body, ElasticSphere), LawError> {
+    let scaled = tabulated::scaled(case);
+    Ok((Body::new(1.0, &scaled.material)?, equivalent(&scaled)))
+}
+
+impl Interpolated {
+    /// Reads one and checks it.
+    ///
+    /// # Errors
+    /// [`LawError::BadLaw`]: no such file, another kind or version.
+    pub fn read(path: &Path) -> Result<Self, LawError> {
+        json::read(path, Self::from_json)
+    }
+
+    /// One from the text of its file; the error is what is wrong, in words.
+    pub(super) fn from_json(text: &str) -> Result<Self, String> {
+        let law: Self = json::parse(text, "law by interpolation", FORMAT, VERSION)?;
+        let complete = law.inputs.len() == INPUTS
+            && law.processes.len() == PROCESSES
+            && law.processes.iter().all(|process| process.weights.len() == law.samples.len());
+        if !complete || law.samples.is_empty() {
+            return Err("is a law by interpolation that lacks some of its numbers".to_owned());
+        }
+        let spreads = law.inputs.iter().map(|input| input.deviation).chain(law.processes.iter().flat_map(|p| p.lengths));
+        if !spreads.into_iter().all(|x| x > 0.0 && x.is_finite()) {
+            return Err("is a law by interpolation with a length that is no positive number".to_owned());
+        }
+        Ok(law)
+    }
+
+    /// Writes it, whole or not at all.
+    ///
+    /// # Errors
+    /// The place cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), LawError> {
+        json::write_compact(path, self)
+    }
+
+    /// What it tells of a contact.
+    fn outputs(&self, contact: &[f64; INPUTS]) -> Outputs {
+        let place = std::array::from_fn(|i| (contact[i] - self.inputs[i].mean) / self.inputs[i].deviation);
+        let values: Vec<f64> = self.processes.iter().map(|process| process.at(&self.samples, &place)).collect();
+        self.outputs_of(&values)
+    }
+
+    /// The outputs that belong to the values of the functions.
+    fn outputs_of(&self, values: &[f64]) -> Outputs {
+        let scores = |first: usize| std::array::from_fn(|k| values[first + k]);
+        Outputs {
+            numbers: std::array::from_fn(|i| values[i]),
+            ratio: self.ratio.curve(&scores(NUMBERS)),
+            normal: self.normal.curve(&scores(NUMBERS + COMPONENTS)),
+        }
+    }
+
+    /// The table of a case's material and friction, down to its indentation, without a simulation.
+    ///
+    /// # Errors
+    /// Full stick; another opponent than that of the law; no numbers for this material.
+    pub fn table(&self, case: &Case) -> Result<Tabulated, LawError> {
+        let against = Against::of(case);
+        if against != self.body || case.sphere.flat {
+            return Err(LawError::OtherOpponent { case: against, law: self.body });
+        }
+        let (body, sphere) = bodies(case)?;
+        let levels = tabulated::depths(case)?
+            .into_iter()
+            .map(|h| self.outputs(&inputs(&body, &sphere, friction(case), h)).level(&sphere, friction(case), h))
+            .collect();
+        Tabulated::interpolated(case, levels, self.source.elements_per_contact_radius)
+    }
+
+    /// The table of a case's contact, of two bodies that deform too: of these, each has its own
+    /// table as an equal pair, as deep as it is needed, and they are put in series.
+    ///
+    /// # Errors
+    /// Those of [`table`](Self::table) and of [`compose`](tabulated::compose).
+    pub fn compose(&self, case: &Case) -> Result<Tabulated, LawError> {
+        let deepest = *tabulated::depths(case)?.last().unwrap_or(&0.0) * case.sphere.radius / case.effective_radius();
+        let mut depth = 2.0 * SPARE * deepest;
+        loop {
+            let Some([sphere, other]) = tabulated::alone(case, depth) else { return self.table(case) };
+            match tabulated::compose(case, [&self.table(&sphere)?, &self.table(&other)?]) {
+                Err(LawError::Shallow { needs, .. }) if needs < DEEPEST => depth = (SPARE * needs).max(SPARE * depth),
+                composed => return composed,
+            }
+        }
+    }
+
+    /// What of a contact of the case at the indentation `h`, in the case's units, lies outside of
+    /// the samples.
+    ///
+    /// # Errors
+    /// The hardening law of the case.
+    pub fn out_of_range(&self, case: &Case, h: f64) -> Result<Vec<OutOfRange>, LawError> {
+        let (body, sphere) = bodies(case)?;
+        let contact = inputs(&body, &sphere, friction(case), h / case.sphere.radius);
+        let range = |i: usize| self.inputs[i].range;
+        let (mu, lambda) = (range(FRICTION), range(LAMBDA));
+        let first = yield_lambda(body.sphere.poissons_ratio);
+        // The numbers of a small contact, of one before first yield, and of little friction are
+        // those of contacts that are similar.
+        let checks = [
+            ("a/R", contact[SIZE], Interval { from: 0.0, ..range(SIZE) }),
+            ("nu", contact[POISSON], range(POISSON)),
+            ("Lambda", first * contact[LAMBDA].exp(), Interval { from: 0.0, to: first * lambda.to.exp() }),
+            ("mu", friction(case), Interval { from: 0.0, to: mu.to.exp() }),
+        ];
+        let hardening = (1..FRICTION).map(|i| ("hardening", contact[i], self.inputs[i].range));
+        Ok(checks
+            .into_iter()
+            .chain(hardening)
+            .filter(|(_, value, range)| (value - value.clamp(range.from, range.to)).abs() > MARGIN * (range.to - range.from))
+            .map(|(quantity, value, range)| OutOfRange { quantity, value, range })
+            .collect())
+    }
+}
+
+/// mu; full stick is refused before anything is asked.
+fn friction(case: &Case) -> f64 {
+    match case.contact.friction {
+        Friction::Coefficient(mu) => mu,
+        Friction::Stick => f64::NAN,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,109 @@
+//! What the interpolation tells of a contact: six numbers and the two curves of its shear, in
+//! units in which they change little from contact to contact.
+
+use crate::analytical::{ElasticSphere, cattaneo_mindlin, hertz};
+use crate::law::contact::POINTS;
+use crate::law::data::Point;
+use crate::law::tabulated::spline::Spline;
+use crate::law::tabulated::{Level, Measured, cleaned, reversal, unloading_radius};
+
+/// Number of outputs that are no curves.
+pub const NUMBERS: usize = 6;
+/// Their names in files.
+pub const NAMES: [&str; NUMBERS] = ["F_N0", "a0", "delta_T", "unloading radius", "k_T", "backbone"];
+
+/// The curves end where the square root of delta_T over the length of the slip is this: full slip
+/// is reached from 0.9 to 1.75.
+const END: f64 = 1.75;
+/// F_T/F_N over mu from which a contact has come to full slip.
+const SLIPPED: f64 = 0.99;
+/// Intervals of the integral that gives the length of the slip.
+const INTERVALS: usize = 400;
+/// Cattaneo and Mindlin's displacement at full slip is 5/2 of that integral; three keep the curves
+/// of plastic contacts, whose slip is more gradual, within END.
+const LENGTH: f64 = 3.0;
+
+/// The outputs of one contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outputs {
+    /// Logarithms of F_N0, a0, the length of the slip, the unloading radius and k_T over those of
+    /// the elastic contact at the same h; the backbone's exponent.
+    pub numbers: [f64; NUMBERS],
+    /// F_T/F_N over mu, at points that are even over the square root of delta_T.
+    pub ratio: [f64; POINTS],
+    /// F_N/F_N0 there.
+    pub normal: [f64; POINTS],
+}
+
+/// What the elastic contact at the indentation `h` has: F_N, a, and the stiffness of a shear.
+fn elastic(sphere: &ElasticSphere, h: f64) -> [f64; 3] {
+    let a = (sphere.radius * h).sqrt();
+    [hertz::force(sphere, h), a, cattaneo_mindlin::initial_stiffness(sphere, a)]
+}
+
+/// The outputs of a simulated contact; `None` if it was not sheared to full slip.
+pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Option<Outputs> {
+    let last = one.curve.last()?;
+    let slip = |point: &Point| if point.delta_t > 0.0 { (point.f_t / (friction * point.f_n)).min(1.0) } else { 0.0 };
+    if one.curve.len() < 5 || slip(last) < SLIPPED {
+        return None;
+    }
+    // Over the square root of delta_T the points of the curve are about even.
+    let root: Vec<f64> = one.curve.iter().map(|point| point.delta_t.sqrt()).collect();
+    let spline = |of: &dyn Fn(&Point) -> f64| Spline::through(&root, &one.curve.iter().map(of).collect::<Vec<f64>>());
+    let (ratio, normal) = (spline(&slip), spline(&|point| point.f_n / one.f_n0));
+    let end = root[root.len() - 1];
+    let integral: f64 = (0..INTERVALS)
+        .map(|i| {
+            let at = end * (i as f64 + 0.5) / INTERVALS as f64;
+            (1.0 - ratio.at(at)).max(0.0) * 2.0 * at * end / INTERVALS as f64
+        })
+        .sum();
+    let length = LENGTH * integral;
+    let [f_n, a, stiffness] = elastic(sphere, one.h);
+    let [k_t, backbone] = reversal(sphere, friction, one);
+    let places = std::array::from_fn::<f64, POINTS, _>(|j| (END * (j + 1) as f64 / POINTS as f64 * length.sqrt()).min(end));
+    let numbers = [
+        (one.f_n0 / f_n).ln(),
+        (one.a0 / a).ln(),
+        (length * stiffness / (friction * one.f_n0)).ln(),
+        (unloading_radius(sphere, one) / a).ln(),
+        (k_t / stiffness).ln(),
+        backbone,
+    ];
+    let outputs = Outputs {
+        numbers,
+        ratio: places.map(|at| ratio.at(at).clamp(0.0, 1.0)),
+        normal: places.map(|at| normal.at(at).clamp(0.0, 1.0)),
+    };
+    outputs.numbers.iter().all(|x| x.is_finite()).then_some(outputs)
+}
+
+impl Outputs {
+    /// The level of a table that has these at the indentation `h`.
+    pub fn level(&self, sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
+        let [f_n, a, stiffness] = elastic(sphere, h);
+        let [f_n0, a0, length, unloading, k_t, backbone] = self.numbers;
+        let f_n0 = f_n * f_n0.exp();
+        // Without friction there is no displacement at full slip, and none is asked for.
+        let length = length.exp() * friction.max(1e-6) * f_n0 / stiffness;
+        // F_N falls.
+        let mut kept = 1.0f64;
+        let normal = self.normal.map(|share| {
+            kept = share.clamp(0.01, kept);
+            kept
+        });
+        cleaned(Level {
+            h,
+            f_n0,
+            a0: a * a0.exp(),
+            slip_share: kept,
+            delta_t_slip: END * END * length,
+            unloading_radius: a * unloading.exp(),
+            k_t: stiffness * k_t.exp(),
+            backbone,
+            tangential: self.ratio.iter().zip(&normal).map(|(ratio, share)| ratio.clamp(0.0, 1.0) * share / kept).collect(),
+            normal: normal.iter().map(|share| if kept < 1.0 { (1.0 - share) / (1.0 - kept) } else { 0.0 }).collect(),
+        })
+    }
+}

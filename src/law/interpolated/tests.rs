@@ -1,0 +1,146 @@
+use super::*;
+use crate::law::LawFile;
+use crate::law::contact::path::follow;
+
+fn fixture(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/interpolated").join(name)
+}
+
+fn plane() -> Interpolated {
+    Interpolated::read(&fixture("plane.json")).unwrap()
+}
+
+fn case(hardening: &str, nu: f64, mu: f64, depth: f64, more: &str) -> Case {
+    let text = format!(
+        "[sphere]\nradius = 3.0\n[material]\nyoungs_modulus = 210.0\npoissons_ratio = {nu:?}\nhardening = {hardening}\n\
+         [contact]\nfriction = {mu:?}\n{more}\n[[path]]\nindentation = {:?}\n[[path]]\nshear = \"full-slip\"\n",
+        3.0 * depth
+    );
+    Case::parse(&text, "case.toml", &[]).unwrap()
+}
+
+/// Materials, frictions and depths over the whole range, none of which is a sample.
+fn cases(more: &str) -> Vec<Case> {
+    let mut all = Vec::new();
+    for hardening in [
+        "{ law = \"elastic\" }",
+        "{ law = \"ideal\", yield_stress = 0.1 }",
+        "{ law = \"ideal\", yield_stress = 12.0 }",
+        "{ law = \"linear\", yield_stress = 0.4, modulus = 4.0 }",
+        "{ law = \"power\", yield_stress = 0.3, coefficient = 0.8, exponent = 0.35 }",
+        "{ law = \"hollomon\", coefficient = 3.0, exponent = 5.0 }",
+        "{ law = \"voce\", yield_stress = 0.2, saturation_stress = 0.6, rate = 18.0 }",
+        "{ law = \"table\", points = [[0.0, 0.5], [0.02, 0.8], [0.2, 1.4]] }",
+    ] {
+        for (nu, mu, depth) in [(0.0, 1.0, 0.15), (0.21, 0.03, 0.01), (0.33, 0.45, 0.05), (0.49, 0.12, 0.1), (0.3, 0.0, 0.02)] {
+            all.push(case(hardening, nu, mu, depth, more));
+        }
+    }
+    all
+}
+
+#[test]
+fn a_file_comes_back_and_others_are_refused() {
+    let law = plane();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("law.json");
+    law.write(&path).unwrap();
+    assert_eq!(LawFile::read(&path).unwrap(), LawFile::Interpolated(Box::new(law.clone())));
+    let text = std::fs::read_to_string(&path).unwrap();
+    for (from, to, words) in [
+        ("\"version\":1", "\"version\":9", "version 9"),
+        ("\"weights\":[", "\"weights\":[0.0,", "lacks some of its numbers"),
+        ("asperity-law-interpolated", "asperity-law-other", "not a law"),
+    ] {
+        std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        let refused = LawFile::read(&path).unwrap_err().to_string();
+        assert!(refused.contains(words), "{refused}");
+    }
+}
+
+#[test]
+fn contacts_of_any_material_have_a_law_that_rises_and_stays_within_coulomb() {
+    let law = plane();
+    for case in cases("") {
+        let table = law.table(&case).unwrap();
+        let mu = friction(&case);
+        for pair in table.levels.windows(2) {
+            assert!(pair[1].f_n0 > pair[0].f_n0 && pair[1].a0 > pair[0].a0, "{case:?} at {}", pair[1].h);
+        }
+        let parameters = LawFile::Interpolated(Box::new(law.clone())).contact_parameters(&case).unwrap();
+        let (r, e) = (case.sphere.radius, case.material.youngs_modulus);
+        let points = follow(&parameters, &case.path);
+        assert!(points.len() > 20);
+        for point in &points {
+            assert!(point.f_t <= mu * point.f_n * (1.0 + 1e-9) && point.f_n >= 0.0 && point.f_n < e * r * r, "{point:?}");
+        }
+        let last = points[points.len() - 1];
+        assert!((last.f_t - mu * last.f_n).abs() <= 2e-3 * mu * last.f_n, "{case:?} does not slip: {last:?}");
+        let outside = law.out_of_range(&case, table.range.to * r).unwrap();
+        assert!(outside.is_empty(), "{outside:?} of {case:?}");
+    }
+}
+
+/// Tables of nine contacts that were simulated at other depths and with more elements.
+#[test]
+fn it_tells_what_law_tabulate_simulates() {
+    let law = plane();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/paths");
+    let mut compared = 0;
+    for name in ["ideal-200", "ideal-3200", "power-300"] {
+        for mu in ["0.1", "0.3", "0.6"] {
+            let simulated = Tabulated::read(&folder.join(format!("{name}-mu-{mu}.json"))).unwrap();
+            let own = law.table(&simulated.deepest_case().unwrap()).unwrap();
+            let [simulated, own] = [simulated, own].map(|table| table.contact_parameters(1.0, 1.0).unwrap());
+            for h in [2e-3, 5e-3, 0.012, 0.018] {
+                let [a, b] = [&simulated, &own].map(|parameters| parameters.virgin(h).point);
+                for (what, ours, theirs, most) in [
+                    ("F_N0", b.f_n0, a.f_n0, 0.015),
+                    ("F_N_slip", b.f_n_slip, a.f_n_slip, 0.06),
+                    ("a0", b.a, a.a, 0.03),
+                    // Of a reversal it is read to some per cent.
+                    ("k_T", b.k_t, a.k_t, 0.08),
+                ] {
+                    assert!((ours / theirs - 1.0).abs() < most, "{name}, mu = {mu}, h = {h}, {what}: {ours} and {theirs}");
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert_eq!(compared, 9 * 4 * 4);
+}
+
+#[test]
+fn what_it_was_not_made_for_is_said() {
+    let law = plane();
+    let names = |case: &Case, h: f64| law.out_of_range(case, 3.0 * h).unwrap().iter().map(|one| one.quantity).collect::<Vec<_>>();
+    let ideal = "{ law = \"ideal\", yield_stress = 0.4 }";
+    assert_eq!(names(&case(ideal, 0.3, 0.3, 0.02, ""), 0.2), ["a/R"]);
+    assert_eq!(names(&case(ideal, 0.3, 1.5, 0.02, ""), 0.02), ["mu"]);
+    assert_eq!(names(&case("{ law = \"ideal\", yield_stress = 1e-4 }", 0.3, 0.3, 0.02, ""), 0.02), ["Lambda"]);
+    assert!(law.table(&case(ideal, 0.3, 0.3, 0.02, "[opponent]\nequal = true")).unwrap_err().to_string().contains("equal sphere"));
+    assert!(law.table(&case(ideal, 0.3, 0.3, 0.02, "[opponent]\nrigid = true\nradius = 2.0")).is_err());
+    let refused = LawFile::Interpolated(Box::new(law)).of_case(None).unwrap_err().to_string();
+    assert!(refused.contains("Give the case too"), "{refused}");
+}
+
+/// F_N0, a0 and F_T of `fixtures/cases/unlike.toml`, simulated with 6 elements, and of an unlike
+/// pair on a flat.
+#[test]
+fn two_unlike_bodies_are_put_in_series() {
+    let law = Interpolated::read(&fixture("equal-pair.json")).unwrap();
+    for case in cases("[opponent]\nequal = true") {
+        assert_eq!(law.compose(&case).unwrap(), law.table(&case).unwrap());
+    }
+    let other = |radius: &str| {
+        format!(
+            "[opponent]\n{radius}\n[opponent.material]\nyoungs_modulus = 630.0\npoissons_ratio = 0.3\n\
+             hardening = {{ law = \"ideal\", yield_stress = 0.84 }}"
+        )
+    };
+    let ideal = "{ law = \"ideal\", yield_stress = 0.42 }";
+    let [pair, flat] = [other("radius = 6.0"), other("flat = true")].map(|more| law.compose(&case(ideal, 0.3, 0.3, 0.02, &more)).unwrap());
+    assert_eq!([pair.body, flat.body], [Against::OtherSphere, Against::Flat]);
+    let deepest = |table: &Tabulated| table.levels[table.levels.len() - 1].clone();
+    assert!(deepest(&flat).f_n0 > deepest(&pair).f_n0 && deepest(&flat).a0 > deepest(&pair).a0);
+}

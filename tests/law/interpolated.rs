@@ -1,0 +1,78 @@
+//! A law by interpolation from a study that follows a known law, and through the program.
+
+use std::fs;
+
+use asperity::case::Case;
+use asperity::law::LawFile;
+use asperity::law::interpolated::{Interpolated, fit};
+
+use super::{asperity, synthetic, text};
+
+#[test]
+fn a_known_law_is_interpolated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    synthetic::write_study(folder.path(), 0.0);
+    let study = text(folder.path());
+    let printed = asperity(&["law", "fit", study, "--interpolate"]).code(0).get_output().stdout.clone();
+    let printed = String::from_utf8(printed).expect("text");
+    assert!(printed.contains("36 cases of 8 materials on a rigid plane") && printed.contains("1 left out"), "{printed}");
+    let law = Interpolated::read(&folder.path().join("law.json")).expect("a law");
+    assert_eq!(law, fit(folder.path()).expect("a law"), "not the same twice");
+    // Whole materials left out of eight: most of them lie outside of the others.
+    let all = law.errors.last().expect("a row for all").errors;
+    assert!(all.cases == 36 && all.f_t_rms < 0.08 && law.normal_errors.f_n0[0] < 0.05, "{all:?} {:?}", law.normal_errors);
+
+    for (hardening, friction, h) in [(2, 0.15, 0.005), (2, 0.4, 0.02), (5, 0.2, 0.015), (6, 0.35, 0.006)] {
+        let case = synthetic::case_text(&synthetic::hardenings()[hardening], friction, h);
+        let file = folder.path().join("case.toml");
+        fs::write(&file, &case).expect("a file");
+        let case = Case::parse(&case, "case.toml", &[]).expect("a case");
+        let (inputs, curve) = synthetic::truth(&case, friction, 2.0 * h);
+        let peak = curve.iter().fold(0.0_f64, |peak, point| peak.max(point[1]));
+        let answer = asperity(&["law", "predict", text(&folder.path().join("law.json")), text(&file)]).code(0);
+        let answer = String::from_utf8(answer.get_output().stdout.clone()).expect("text");
+        let rows: Vec<Vec<f64>> =
+            answer.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
+        let shear: Vec<&Vec<f64>> = rows.iter().filter(|row| row[0] == 1.0).collect();
+        assert!(shear.len() > 20);
+        for [d, f_t, f_n] in curve {
+            let i = shear.partition_point(|row| row[2] < d).clamp(1, shear.len() - 1);
+            let (before, after) = (shear[i - 1], shear[i]);
+            let u = ((d - before[2]) / (after[2] - before[2])).clamp(0.0, 1.0);
+            let [ours_n, ours_t] = [3, 4].map(|column| before[column] + u * (after[column] - before[column]));
+            assert!((ours_t - f_t).abs() < 0.03 * peak, "{hardening} {friction} {h} at {d}: {ours_t} and {f_t}");
+            assert!((ours_n - f_n).abs() < 0.03 * inputs.f_n, "{hardening} {friction} {h} at {d}: {ours_n} and {f_n}");
+        }
+    }
+}
+
+#[test]
+fn it_is_used_with_a_case_and_refused_without() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (law, pair) = (root.join("fixtures/law/interpolated/plane.json"), root.join("fixtures/law/interpolated/equal-pair.json"));
+    let case = root.join("fixtures/cases/voce.toml");
+    let out = folder.path().join("table");
+    // A table of its own, which is what is exported.
+    asperity(&["law", "compose", text(&case), text(&law), "--out", text(&out)]).code(0);
+    let table = out.join("law.json");
+    assert!(matches!(LawFile::read(&table).expect("a law"), LawFile::Table(_)));
+    let source = |law: &str| asperity(&["law", "export", law, text(&case), "--format", "c"]).code(0).get_output().stdout.clone();
+    assert_eq!(source(text(&law)), source(text(&table)));
+    asperity(&["law", "export", text(&law), text(&case), "--format", "python", "--out", text(&folder.path().join("module"))]).code(0);
+    for (args, words) in [
+        (vec!["law", "export", text(&law), "--format", "c"], "Give the case too"),
+        (vec!["law", "predict", text(&pair), text(&case)], "the law's study is of spheres on an equal sphere"),
+        (vec!["law", "predict", text(&law), text(&case), "--press"], "--press"),
+        (vec!["law", "compose", text(&case), text(&law), text(&table), "--out", text(&folder.path().join("other"))], "leave OPPONENT.json out"),
+    ] {
+        let refused = asperity(&args).code(2).get_output().stderr.clone();
+        let refused = String::from_utf8(refused).expect("text");
+        assert!(refused.contains(words), "{args:?}: {refused}");
+    }
+    // Two unlike bodies, from the materials alone.
+    let unlike = root.join("fixtures/cases/unlike.toml");
+    let out = folder.path().join("pair");
+    asperity(&["law", "compose", text(&unlike), text(&pair), "--out", text(&out)]).code(0);
+    asperity(&["law", "predict", text(&out.join("law.json")), text(&unlike)]).code(0);
+}
