@@ -16,7 +16,7 @@ use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print, print_json};
 use crate::case::Case;
-use crate::law::contact::path::PathPoint;
+use crate::contact_law::path::PathPoint;
 use crate::law::export::{Language, law_files, law_source};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use super::contact::ContactParameters;
-use super::contact::path::{PathPoint, follow};
 use super::json;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
 use super::predict::over_a_plane;
@@ -11,6 +9,8 @@ use super::tabulated::{self, Tabulated};
 use super::variables::{Body, yield_lambda};
 use super::{Law, LawError};
 use crate::case::{Case, Friction};
+use crate::contact_law::ContactParameters;
+use crate::contact_law::path::{PathPoint, follow};
 
 /// What a `law.json` may be.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl LawFile {
         match self {
             Self::Formulas(law) => {
                 over_a_plane(case)?;
-                Ok(ContactParameters::new(law, &Body::from_case(case)?, friction)?)
+                Ok(law.contact_parameters(&Body::from_case(case)?, friction)?)
             }
             Self::Table(table) => {
                 table.covers(case)?;
