@@ -5,13 +5,13 @@
 //! the plane go in, forces come out, and the memory of the contact is one small struct.
 
 use asperity::Case;
-use asperity::law::contact::{ContactParameters, ContactState};
+use asperity::contact_law::ContactState;
 use asperity::law::prior::built_in;
 use asperity::law::variables::Body;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let case = Case::load("fixtures/cases/ideal.toml".as_ref(), &[])?;
-    let parameters = ContactParameters::new(&built_in()?, &Body::from_case(&case)?, 0.3)?;
+    let parameters = built_in()?.contact_parameters(&Body::from_case(&case)?, 0.3)?;
 
     // Units of the case: mm, N and s, and so tonnes. Rotation is left out.
     let mass = 4.0 / 3.0 * std::f64::consts::PI * 7.8e-9;

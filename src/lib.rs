@@ -35,7 +35,7 @@
 //! |---|---|
 //! | one run | [`Simulation`], [`Options`], [`Outcome`]; `examples/run.rs`, `examples/fields.rs` |
 //! | many runs | [`study`]; `examples/parallel_study.rs` |
-//! | a contact law in a discrete-element code | [`law::Law`], [`law::contact`]; `examples/law_in_time_loop.rs` |
+//! | a contact law in a discrete-element code | [`law::Law`], [`contact_law`]; `examples/law_in_time_loop.rs` |
 //! | closed forms | [`analytical`] |
 //! | one material point | [`material::point`] |
 //!
@@ -47,7 +47,7 @@
 //!
 //! | feature | adds |
 //! |---|---|
-//! | `law` | [`study`] and [`law`]: grids of cases, fits, tables, the update of a contact, exports |
+//! | `law` | [`study`], [`law`] and [`contact_law`]: grids of cases, fits, tables, exports, the update of a contact |
 //! | `plots` | pictures of runs, with `law` those of studies and laws, and their report |
 //! | `gpu` | Vulkan, Metal and DX12; the largest part of the time to compile |
 //! | `cli` | the program, with all of the others |
@@ -70,6 +70,8 @@
 pub mod analytical;
 pub mod case;
 #[cfg(feature = "law")]
+pub mod contact_law;
+#[cfg(feature = "law")]
 pub mod law;
 pub mod output;
 pub mod session;
@@ -78,6 +80,8 @@ pub mod study;
 
 #[doc(hidden)]
 pub mod internals;
+#[cfg(feature = "law")]
+mod random;
 
 #[doc(inline)]
 pub use asperity_kernels::material;

@@ -11,6 +11,8 @@ mod common;
 mod page;
 #[path = "documents/results.rs"]
 mod results;
+#[path = "documents/rooms.rs"]
+mod rooms;
 #[path = "documents/shell.rs"]
 mod shell;
 

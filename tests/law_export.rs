@@ -14,7 +14,7 @@ use std::process::{Command, Output};
 
 use asperity::analytical::ElasticSphere;
 use asperity::case::Case;
-use asperity::law::contact::{ContactParameters, POINTS};
+use asperity::contact_law::POINTS;
 use asperity::law::export::{Language, engine_files, files, law_files, law_source, source, vectors};
 use asperity::law::forms::{Constants, Forms, NormalCurve, SlipForm, Variable};
 use asperity::law::model::{FORMAT, Interval, Law, Provenance, VERSION, Validity};
@@ -596,7 +596,7 @@ fn the_update_follows_the_law_it_is_made_of() {
         for hardening in [Hardening::ideal(100.0).unwrap(), Hardening::hollomon(400.0, 4.0, 70e3).unwrap(), Hardening::Elastic] {
             let body = Body { sphere, hardening };
             let friction = 0.25;
-            let pair = ContactParameters::new(&law, &body, friction).unwrap();
+            let pair = law.contact_parameters(&body, friction).unwrap();
             for h in [1e-5, 1e-3, 0.02].map(|h| h * sphere.radius) {
                 let normal = law.normal.state(&body, friction, h);
                 let inputs = Axisymmetric {
@@ -640,8 +640,7 @@ fn no_path_extracts_work() {
     let mut worst: f64 = 0.0;
     for law in laws() {
         for (stress, friction) in [(20.0, 0.5), (400.0, 0.3), (2500.0, 0.1)] {
-            let pair =
-                ContactParameters::new(&law, &Body { sphere, hardening: Hardening::ideal(stress).unwrap() }, friction).unwrap();
+            let pair = law.contact_parameters(&Body { sphere, hardening: Hardening::ideal(stress).unwrap() }, friction).unwrap();
             for _ in 0..8 {
                 let deepest = 10f64.powf(random(-4.0, -1.2));
                 let virgin = pair.virgin(deepest);

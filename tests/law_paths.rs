@@ -14,9 +14,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use asperity::case::Case;
+use asperity::contact_law::path::drive;
 use asperity::law::LawFile;
 use asperity::law::check::AIMS;
-use asperity::law::contact::path::drive;
 use asperity::law::export::{Language, law_files};
 use programs::has;
 

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use asperity::Canceller;
+use asperity::contact_law::path::PathPoint;
+use asperity::contact_law::{ContactParameters, ContactState};
 use asperity::law::check::{Checked, check_until};
-use asperity::law::contact::path::PathPoint;
-use asperity::law::contact::{ContactParameters, ContactState};
 use asperity::law::data::Point;
 use asperity::law::export::{Language, law_files, law_source};
 use asperity::law::model::OutOfRange;

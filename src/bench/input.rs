@@ -9,28 +9,8 @@ use crate::lanes::Lanes;
 use crate::material::{Elasticity, Hardening, Material, MaterialError, PointState, return_mapping};
 use crate::mesh::sphere::{SphereSpec, sphere_mesh};
 use crate::mesh::{Mesh, MeshError};
+use crate::random::Seeded;
 use crate::real::Real;
-
-/// Pseudo-random numbers: SplitMix64 (Steele, Lea & Flood 2014).
-#[derive(Clone, Debug)]
-pub struct Seeded(u64);
-
-impl Seeded {
-    /// The sequence of a seed.
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// The next number, even in [low, high).
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^= z >> 31;
-        low + (high - low) * (z >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// The hardening laws by name, at stresses of metals over E.
 ///

@@ -16,7 +16,7 @@ use super::law_compose::{ComposeArgs, compose_tables};
 use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print, print_json};
 use crate::case::Case;
-use crate::law::contact::path::PathPoint;
+use crate::contact_law::path::PathPoint;
 use crate::law::export::{Language, law_files, law_source};
 use crate::law::interpolated::{self, Interpolated};
 use crate::law::model::OutOfRange;
@@ -173,7 +173,8 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
 fn summary_of_interpolation(law: &Interpolated) -> String {
     let source = &law.source;
     let [f, f_max, a, a_max] =
-        [law.normal_errors.f_n0[0], law.normal_errors.f_n0[1], law.normal_errors.a0[0], law.normal_errors.a0[1]].map(|x| 100.0 * x);
+        [law.normal_errors.f_n0[0], law.normal_errors.f_n0[1], law.normal_errors.a0[0], law.normal_errors.a0[1]]
+            .map(|x| 100.0 * x);
     let mut text = format!(
         "{} cases of {} materials on {}, {} elements per contact radius, {} left out\n\n\
          Errors from h alone, each material from the others, in per cent\n\

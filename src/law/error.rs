@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::case::CaseError;
-use crate::law::contact::ContactError;
+use crate::contact_law::ContactError;
 use crate::law::tabulated::Against;
 use crate::material::MaterialError;
 use crate::output::OutputError;

@@ -3,8 +3,6 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::contact::ContactParameters;
-use super::contact::path::{PathPoint, follow};
 use super::interpolated::{self, Interpolated};
 use super::json;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
@@ -13,6 +11,8 @@ use super::tabulated::{self, Tabulated};
 use super::variables::{Body, yield_lambda};
 use super::{Law, LawError};
 use crate::case::{Case, Friction};
+use crate::contact_law::ContactParameters;
+use crate::contact_law::path::{PathPoint, follow};
 
 /// What a `law.json` may be.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,7 @@ impl LawFile {
         match self {
             Self::Formulas(law) => {
                 over_a_plane(case)?;
-                Ok(ContactParameters::new(law, &Body::from_case(case)?, friction)?)
+                Ok(law.contact_parameters(&Body::from_case(case)?, friction)?)
             }
             Self::Table(table) => {
                 table.covers(case)?;

@@ -4,14 +4,14 @@
 //! together; `data` reads a study back; `forms` and `normal` are the candidate correlations;
 //! `prior` is what a small study may take from a bigger one; `fit` determines their constants,
 //! compares them by cross-validation and keeps the best as a [`Law`] (`model`, `law.json`);
-//! `predict` applies it to a case; `contact` is the law as an incremental update of one contact,
-//! and `export` writes that for other programs. `least_squares` and `report` serve them.
+//! `predict` applies it to a case; `contact_parameters` makes of it what the update of
+//! [`contact_law`](crate::contact_law) needs, and `export` writes both for other programs.
+//! `least_squares` and `report` serve them.
 //!
 //! `tabulated` is the law of one material and one friction as curves in h, `interpolated` makes
 //! such a table for any material between those of a study; `file` takes any kind; `check` holds the update against simulated paths.
 
 pub mod check;
-pub mod contact;
 pub mod data;
 pub mod elastic;
 pub mod export;
@@ -31,6 +31,7 @@ pub mod tabulated;
 pub mod variables;
 
 mod baseline;
+mod contact_parameters;
 mod error;
 mod folds;
 mod formulas;

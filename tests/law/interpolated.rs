@@ -59,12 +59,16 @@ fn it_is_used_with_a_case_and_refused_without() {
     assert!(matches!(LawFile::read(&table).expect("a law"), LawFile::Table(_)));
     let source = |law: &str| asperity(&["law", "export", law, text(&case), "--format", "c"]).code(0).get_output().stdout.clone();
     assert_eq!(source(text(&law)), source(text(&table)));
-    asperity(&["law", "export", text(&law), text(&case), "--format", "python", "--out", text(&folder.path().join("module"))]).code(0);
+    asperity(&["law", "export", text(&law), text(&case), "--format", "python", "--out", text(&folder.path().join("module"))])
+        .code(0);
     for (args, words) in [
         (vec!["law", "export", text(&law), "--format", "c"], "Give the case too"),
         (vec!["law", "predict", text(&pair), text(&case)], "the law's study is of spheres on an equal sphere"),
         (vec!["law", "predict", text(&law), text(&case), "--press"], "--press"),
-        (vec!["law", "compose", text(&case), text(&law), text(&table), "--out", text(&folder.path().join("other"))], "leave OPPONENT.json out"),
+        (
+            vec!["law", "compose", text(&case), text(&law), text(&table), "--out", text(&folder.path().join("other"))],
+            "leave OPPONENT.json out",
+        ),
     ] {
         let refused = asperity(&args).code(2).get_output().stderr.clone();
         let refused = String::from_utf8(refused).expect("text");

@@ -8,10 +8,10 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
-use super::contact::path::drive;
-use super::contact::{ContactParameters, ContactState};
 use super::{LawError, LawFile};
 use crate::case::Case;
+use crate::contact_law::path::drive;
+use crate::contact_law::{ContactParameters, ContactState};
 use crate::output::{Recorder, StepRecord};
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};

@@ -2,8 +2,8 @@
 //! once.
 
 use crate::case::{Case, Fields, Friction, Hardening, Hold, Segment, ShearTarget};
-use crate::law::contact::ContactParameters;
-use crate::law::contact::path::follow;
+use crate::contact_law::ContactParameters;
+use crate::contact_law::path::follow;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// A path of the protocol.

@@ -1,18 +1,18 @@
 //! The law for other programs: C headers and a table for engines, a Python module with the
 //! incremental contact update, and test vectors for both.
 //!
-//! Headers, module and [`ContactParameters`] are triplets: the same functions with the same
-//! operations. The Python module fills in the constants of the law, and makes its tables itself. In
-//! C the update is one header; it gets the tables of one material and one friction, or a second
-//! header of the whole law makes them.
+//! What of them is the update comes from [`contact_law::export`](crate::contact_law::export). The
+//! Python module has the constants of the law besides, and makes its tables itself. In C the update
+//! is one header; it gets the tables of one material and one friction, or a second header of the
+//! whole law makes them.
 
-mod contact;
+mod engine;
 mod vectors;
 
-pub use contact::{contact_header, engine_files, engine_source};
+pub use engine::{engine_files, engine_source};
 pub use vectors::{table_vectors, unit_vectors, vectors};
 
-use super::contact::{COLUMNS, ContactParameters, KNOTS, LAST, LEVELS, PIECES, POINTS, ROUNDING, SLIDERS, SPARE};
+use super::contact_parameters::LAST;
 use super::elastic::BODY;
 use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
 use super::model::Law;
@@ -20,6 +20,8 @@ use super::normal::NormalForm;
 use super::tabulated::Tabulated;
 use super::{LawError, LawFile};
 use crate::case::{Case, Hardening};
+use crate::contact_law::export::{HEADER_NAME, check_program, fill, header, header_3d, header_parts, module_parts};
+use crate::contact_law::{ContactParameters, POINTS};
 
 const HEADER: &str = include_str!("asperity_law.h");
 const MODULE: &str = include_str!("asperity_law.py");
@@ -80,8 +82,8 @@ pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Res
 }
 
 /// A header with the update in place of the line that includes it.
-fn in_one_file(header: &str) -> String {
-    header.replacen("#include \"asperity_contact.h\"\n", &contact_header(), 1)
+fn in_one_file(text: &str) -> String {
+    text.replacen(&format!("#include \"{HEADER_NAME}\"\n"), &header(), 1)
 }
 
 /// The header for all materials, the update that it includes, test vectors, and the program that
@@ -89,10 +91,10 @@ fn in_one_file(header: &str) -> String {
 fn header_files(law: &Law) -> Vec<ExportedFile> {
     vec![
         ExportedFile { name: "asperity_law.h", content: source(law, Language::C) },
-        ExportedFile { name: "asperity_contact.h", content: contact_header() },
-        ExportedFile { name: "asperity_contact3d.h", content: contact::CONTACT_3D.to_owned() },
+        ExportedFile { name: HEADER_NAME, content: header() },
+        ExportedFile { name: "asperity_contact3d.h", content: header_3d() },
         ExportedFile { name: "asperity_law_vectors.csv", content: vectors(law, vectors::SEED) },
-        ExportedFile { name: "asperity_law_check.c", content: contact::check_program("asperity_law_check.c") },
+        ExportedFile { name: "asperity_law_check.c", content: check_program("asperity_law_check.c") },
     ]
 }
 
@@ -162,24 +164,12 @@ pub fn source(law: &Law, language: Language) -> String {
         ("NORMAL_CURVE", normal_curve(law.forms.normal_curve).to_string()),
         ("NORMAL_FORM", normal_form(law.normal.form).to_string()),
         ("CONSTANTS", constants.trim_end().to_owned()),
+        ("LAST", format!("{LAST:?}")),
     ];
-    let template = match language {
-        Language::C => HEADER,
-        Language::Python => MODULE,
-    };
-    fill(template, values.into_iter().chain(sizes()))
-}
-
-fn sizes() -> impl Iterator<Item = (&'static str, String)> {
-    [("KNOTS", KNOTS), ("COLUMNS", COLUMNS), ("SLIDERS", SLIDERS), ("POINTS", POINTS), ("LEVELS", LEVELS)]
-        .map(|(name, size)| (name, size.to_string()))
-        .into_iter()
-        .chain([("PIECES", PIECES.to_string())])
-        .chain([("LAST", LAST), ("SPARE", SPARE), ("ROUNDING", ROUNDING)].map(|(name, value)| (name, format!("{value:?}"))))
-}
-
-fn fill<'a>(template: &str, values: impl IntoIterator<Item = (&'a str, String)>) -> String {
-    values.into_iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), &value))
+    match language {
+        Language::C => fill(HEADER, values.into_iter().chain(header_parts())),
+        Language::Python => fill(MODULE, values.into_iter().chain(module_parts())),
+    }
 }
 
 /// A table as a Python module.
@@ -231,9 +221,10 @@ fn table_source(table: &Tabulated) -> Result<String, LawError> {
         ("NORMAL_CURVE", "2".to_owned()),
         ("NORMAL_FORM", "0".to_owned()),
         ("CONSTANTS", String::new()),
+        ("LAST", format!("{LAST:?}")),
         ("TABLE", fragment),
     ];
-    Ok(fill(MODULE, values.into_iter().chain(sizes())))
+    Ok(fill(MODULE, values.into_iter().chain(module_parts())))
 }
 
 /// The number that a hardening law has in the exports, its numbers there, and which of them are

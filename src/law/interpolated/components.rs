@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::contact::POINTS;
+use crate::contact_law::POINTS;
 
 /// Number of components: what is left out is below 0.3 % of the curves.
 pub const COMPONENTS: usize = 5;

@@ -11,8 +11,8 @@ use super::process::{Place, Process};
 use super::{FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
+use crate::contact_law::POINTS;
 use crate::law::LawError;
-use crate::law::contact::POINTS;
 use crate::law::fit::study_name;
 use crate::law::model::Interval;
 use crate::law::report::{CaseErrors, by_region};
@@ -73,9 +73,8 @@ pub fn fit(dir: &Path) -> Result<Interpolated, LawError> {
         samples.iter().map(|s| std::array::from_fn(|i| (s.inputs[i] - spread[i].mean) / spread[i].deviation)).collect();
     let curves = |of: fn(&Outputs) -> Curve| Components::of(&samples.iter().map(|s| of(&s.outputs)).collect::<Vec<_>>());
     let ((ratio, of_ratio), (normal, of_normal)) = (curves(|o| o.ratio), curves(|o| o.normal));
-    let mut columns: Vec<(String, Vec<f64>)> = (0..NUMBERS)
-        .map(|i| (outputs::NAMES[i].to_owned(), samples.iter().map(|s| s.outputs.numbers[i]).collect()))
-        .collect();
+    let mut columns: Vec<(String, Vec<f64>)> =
+        (0..NUMBERS).map(|i| (outputs::NAMES[i].to_owned(), samples.iter().map(|s| s.outputs.numbers[i]).collect())).collect();
     for (name, scores) in [("F_T/F_N", of_ratio), ("F_N", of_normal)] {
         columns.extend((0..COMPONENTS).map(|k| (format!("{name} {}", k + 1), scores.iter().map(|s| s[k]).collect())));
     }
@@ -198,7 +197,10 @@ fn read(dir: &Path) -> Result<Data, LawError> {
         }
         let body = Against::of(&case);
         if *data.body.get_or_insert(body) != body {
-            return Err(LawError::Fit { what: "a study on a plane and on equal spheres together", problem: format!("{} is on {body}", row.id) });
+            return Err(LawError::Fit {
+                what: "a study on a plane and on equal spheres together",
+                problem: format!("{} is on {body}", row.id),
+            });
         }
         match sample(&case, &directory, &mut data.materials)? {
             Some(sample) => data.samples.push(sample),

@@ -88,6 +88,13 @@ mod tests {
             assert!((a - b).abs() < 1e-12, "{a} and {b}");
         }
         let [lambda, to_yield, .., strong, mu, nu, size] = of(1.0, 1.0);
-        assert!(lambda > 0.0 && to_yield > 0.0 && strong < 0.0 && mu == 0.1f64.ln() && nu == 0.2 && (size - 0.02f64.sqrt()).abs() < 1e-15);
+        assert!(
+            lambda > 0.0
+                && to_yield > 0.0
+                && strong < 0.0
+                && mu == 0.1f64.ln()
+                && nu == 0.2
+                && (size - 0.02f64.sqrt()).abs() < 1e-15
+        );
     }
 }

@@ -2,7 +2,7 @@
 //! units in which they change little from contact to contact.
 
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, hertz};
-use crate::law::contact::POINTS;
+use crate::contact_law::POINTS;
 use crate::law::data::Point;
 use crate::law::tabulated::spline::Spline;
 use crate::law::tabulated::{Level, Measured, cleaned, reversal, unloading_radius};

@@ -1,6 +1,6 @@
 use super::*;
+use crate::contact_law::path::follow;
 use crate::law::LawFile;
-use crate::law::contact::path::follow;
 
 fn fixture(name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/interpolated").join(name)
@@ -118,7 +118,9 @@ fn what_it_was_not_made_for_is_said() {
     assert_eq!(names(&case(ideal, 0.3, 0.3, 0.02, ""), 0.2), ["a/R"]);
     assert_eq!(names(&case(ideal, 0.3, 1.5, 0.02, ""), 0.02), ["mu"]);
     assert_eq!(names(&case("{ law = \"ideal\", yield_stress = 1e-4 }", 0.3, 0.3, 0.02, ""), 0.02), ["Lambda"]);
-    assert!(law.table(&case(ideal, 0.3, 0.3, 0.02, "[opponent]\nequal = true")).unwrap_err().to_string().contains("equal sphere"));
+    assert!(
+        law.table(&case(ideal, 0.3, 0.3, 0.02, "[opponent]\nequal = true")).unwrap_err().to_string().contains("equal sphere")
+    );
     assert!(law.table(&case(ideal, 0.3, 0.3, 0.02, "[opponent]\nrigid = true\nradius = 2.0")).is_err());
     let refused = LawFile::Interpolated(Box::new(law)).of_case(None).unwrap_err().to_string();
     assert!(refused.contains("Give the case too"), "{refused}");
@@ -139,7 +141,8 @@ fn two_unlike_bodies_are_put_in_series() {
         )
     };
     let ideal = "{ law = \"ideal\", yield_stress = 0.42 }";
-    let [pair, flat] = [other("radius = 6.0"), other("flat = true")].map(|more| law.compose(&case(ideal, 0.3, 0.3, 0.02, &more)).unwrap());
+    let [pair, flat] =
+        [other("radius = 6.0"), other("flat = true")].map(|more| law.compose(&case(ideal, 0.3, 0.3, 0.02, &more)).unwrap());
     assert_eq!([pair.body, flat.body], [Against::OtherSphere, Against::Flat]);
     let deepest = |table: &Tabulated| table.levels[table.levels.len() - 1].clone();
     assert!(deepest(&flat).f_n0 > deepest(&pair).f_n0 && deepest(&flat).a0 > deepest(&pair).a0);

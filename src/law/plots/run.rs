@@ -1,7 +1,7 @@
 //! A law beside the simulation of one case.
 
 use crate::case::Case;
-use crate::law::contact::path::drive;
+use crate::contact_law::path::drive;
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::variables::Body;

@@ -9,9 +9,9 @@ use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, c
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
+use crate::contact_law::path::drive;
+use crate::contact_law::{POINTS, unloading_exponent};
 use crate::law::LawError;
-use crate::law::contact::path::drive;
-use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 

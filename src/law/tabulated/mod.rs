@@ -22,10 +22,10 @@ use serde::{Deserialize, Serialize};
 
 use self::spline::Spline;
 use super::LawError;
-use super::contact::{Axial, ContactParameters, KNOTS, LEVELS, POINTS, Shapes};
 use super::json;
-use super::model::{Interval, OutOfRange, Parameters};
+use super::model::{Interval, OutOfRange};
 use crate::case::{self, Case, Friction, Opponent};
+use crate::contact_law::{ContactParameters, KNOTS, LEVELS, POINTS, Shapes, VirginPoint};
 
 pub use against::{Against, equivalent, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
@@ -290,17 +290,17 @@ impl Tabulated {
         let level_at = |h: f64| curves.at(h.clamp(self.range.from, self.range.to));
         let contact = |h: f64| {
             let level = level_at(h);
-            let law = Parameters {
+            VirginPoint {
+                a: level.unloading_radius,
                 f_n0: level.f_n0,
                 f_n_slip: level.slip_share * level.f_n0,
                 delta_t_slip: level.delta_t_slip,
-                k_t0: level.k_t,
+                k_t: level.k_t,
                 n: steepest(&level.tangential),
                 // The steep exponent's place is the backbone's where the shapes are numbers.
                 m_exponent: level.backbone,
                 n_exponent: 1.0,
-            };
-            Axial { a: level.unloading_radius, k_t: level.k_t, law }
+            }
         };
         let sphere = equivalent(&self.scaled_case()?);
         let range = [self.range.from, self.range.to];

@@ -22,8 +22,8 @@ use super::build::{LENGTH, NEARLY_SLIPPING, depths, hertzian, points};
 use super::{Curves, FORMAT, Level, Tabulated, VERSION};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Material, Opponent, Segment, Sphere};
+use crate::contact_law::{POINTS, unloading_exponent};
 use crate::law::LawError;
-use crate::law::contact::{POINTS, unloading_exponent};
 use crate::law::model::Interval;
 
 /// Least power of a/R with which the mean pressure counts as rising where the two radii are shared

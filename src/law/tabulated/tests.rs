@@ -1,7 +1,7 @@
 use super::build::table;
 use super::measure::Measured;
 use super::*;
-use crate::law::contact::path::{drive, follow};
+use crate::contact_law::path::{drive, follow};
 use crate::law::data::Point;
 use crate::law::file::LawFile;
 

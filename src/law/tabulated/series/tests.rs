@@ -1,7 +1,7 @@
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::analytical::hertz;
-use crate::law::contact::path::drive;
+use crate::contact_law::path::drive;
 
 const MU: f64 = 0.3;
 

@@ -37,16 +37,18 @@
 //! Every flow dissipates: with [`ContactParameters::stored_energy`], no path returns more than was
 //! stored.
 
-mod material;
+pub mod export;
 pub mod path;
+
+mod curve;
 mod shapes;
 mod update;
 mod virgin;
 
-pub use material::LAST;
+pub use curve::NormalCurve;
 pub use update::{ContactResponse, ContactState};
 pub use virgin::{
-    Axial, BY_NUMBERS, COLUMNS, ContactError, ContactParameters, KNOTS, LEVELS, PIECES, POINTS, ROUNDING, SLIDERS, SPARE, Shapes,
+    BY_NUMBERS, COLUMNS, ContactError, ContactParameters, KNOTS, LEVELS, PIECES, POINTS, ROUNDING, SLIDERS, SPARE, Shapes,
     Virgin, VirginPoint, unloading_exponent,
 };
 

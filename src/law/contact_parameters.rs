@@ -1,15 +1,15 @@
 //! Contact parameters from a fitted law and a material.
 
-use super::virgin::{Axial, ContactError, ContactParameters};
+use super::model::{Axisymmetric, Law, Parameters};
+use super::variables::{Body, yield_lambda};
 use crate::analytical::cattaneo_mindlin;
-use crate::law::model::{Axisymmetric, Law};
-use crate::law::variables::{Body, yield_lambda};
+use crate::contact_law::{ContactError, ContactParameters, VirginPoint};
 
 /// Greatest tabulated indentation over R.
 pub const LAST: f64 = 0.15;
 /// First tabulated indentation over R of a sphere that yields later or never. Below it the powers
 /// of h of a half-space hold, as a/R is 0.001.
-pub const ELASTIC_FIRST: f64 = 1e-6;
+const ELASTIC_FIRST: f64 = 1e-6;
 
 /// First tabulated indentation: below first yield, where the contact goes with Hertz's powers of
 /// h.
@@ -23,9 +23,9 @@ fn first_indentation(body: &Body) -> f64 {
     if h < ELASTIC_FIRST * radius { h } else { ELASTIC_FIRST * radius }
 }
 
-impl ContactParameters {
-    /// The parameters of a sphere on a rigid plane with Coulomb friction `friction` >= 0: F_N0 and
-    /// a from the law's normal model.
+impl Law {
+    /// What the contact update needs of a sphere on a rigid plane with Coulomb friction `friction`
+    /// >= 0: F_N0 and a from the law's normal model.
     ///
     /// The stiffness of a reversal is Mindlin's (1949), 8 G a/(2 - nu), in series with the
     /// compliance b a/R of the body up to its equator, where delta_T is measured; b is the law's
@@ -34,13 +34,13 @@ impl ContactParameters {
     /// # Errors
     /// [`ContactError`]: `friction` is negative or not finite, or the law gives no positive numbers
     /// for this material.
-    pub fn new(law: &Law, body: &Body, friction: f64) -> Result<Self, ContactError> {
+    pub fn contact_parameters(&self, body: &Body, friction: f64) -> Result<ContactParameters, ContactError> {
         if !(friction >= 0.0 && friction.is_finite()) {
             return Err(ContactError::Friction { value: friction });
         }
         let sphere = body.sphere;
         let contact = |h: f64| {
-            let state = law.normal.state(body, friction, h);
+            let state = self.normal.state(body, friction, h);
             let inputs = Axisymmetric {
                 youngs_modulus: sphere.youngs_modulus,
                 poissons_ratio: sphere.poissons_ratio,
@@ -52,11 +52,19 @@ impl ContactParameters {
                 a: state.a,
                 f_n: state.f_n,
             };
-            let compliance = 1.0 + law.constants.slip[0] * (state.a / sphere.radius);
+            let compliance = 1.0 + self.constants.slip[0] * (state.a / sphere.radius);
             let k_t = cattaneo_mindlin::initial_stiffness(&sphere, state.a) / compliance;
-            Axial { a: state.a, k_t, law: law.contact(&inputs) }
+            let Parameters { f_n0, f_n_slip, delta_t_slip, n, m_exponent, n_exponent, .. } = self.contact(&inputs);
+            VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent }
         };
         let range = [first_indentation(body), LAST * sphere.radius];
-        Self::tabulate(sphere.radius, sphere.effective_modulus(), friction, Some(law.forms.normal_curve), range, contact)
+        ContactParameters::tabulate(
+            sphere.radius,
+            sphere.effective_modulus(),
+            friction,
+            Some(self.forms.normal_curve),
+            range,
+            contact,
+        )
     }
 }

@@ -5,9 +5,8 @@
 //! search. Its last digits differ from the formulas that filled it by some 1e-4; what counts is
 //! that every language fills and reads it by the same operations.
 
+use super::curve::NormalCurve;
 use super::update::is_elastic;
-use crate::law::forms::NormalCurve;
-use crate::law::model::Parameters;
 
 /// Number of knots over ln h.
 pub const KNOTS: usize = 128;
@@ -68,17 +67,6 @@ pub struct ContactParameters {
 /// f_T and f_N at x = (j/POINTS)^2, j = 1 and on.
 pub type Shapes = [[f64; POINTS]; 2];
 
-/// What a pair of materials answers for one indentation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axial {
-    /// Contact radius a, length.
-    pub a: f64,
-    /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
-    pub k_t: f64,
-    /// The law.
-    pub law: Parameters,
-}
-
 /// Why there are no contact parameters.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
@@ -115,7 +103,7 @@ pub struct VirginPoint {
     pub f_n_slip: f64,
     /// Displacement at full slip delta_T_slip, length.
     pub delta_t_slip: f64,
-    /// Elastic tangential stiffness, force over length.
+    /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
     pub k_t: f64,
     /// Exponent n of f_T.
     pub n: f64,
@@ -174,7 +162,7 @@ impl ContactParameters {
         friction: f64,
         curve: Option<NormalCurve>,
         range: [f64; 2],
-        law: impl Fn(f64) -> Axial,
+        law: impl Fn(f64) -> VirginPoint,
     ) -> Result<Self, ContactError> {
         let form = match curve {
             Some(NormalCurve::PowerOfComplement) => 0.0,
@@ -187,13 +175,13 @@ impl ContactParameters {
         let mut gentle = 1.0;
         for i in 0..KNOTS {
             let h = (log_first + log_step * i as f64).exp();
-            let Axial { a, k_t, law: p } = law(h);
+            let p = law(h);
             let positive = [
-                ("a", a),
+                ("a", p.a),
                 ("F_N0", p.f_n0),
                 ("F_N_slip", p.f_n_slip),
                 ("delta_T_slip", p.delta_t_slip),
-                ("k_T", k_t),
+                ("k_T", p.k_t),
                 ("n", p.n),
                 ("M", p.m_exponent),
                 ("N", p.n_exponent),
@@ -215,7 +203,7 @@ impl ContactParameters {
                 }
             };
             table[i] =
-                [p.f_n0.ln(), a.ln(), if ratio < 1.0 { ratio } else { 1.0 }, p.delta_t_slip.ln(), p.n, 1.0, steep, k_t.ln()];
+                [p.f_n0.ln(), p.a.ln(), if ratio < 1.0 { ratio } else { 1.0 }, p.delta_t_slip.ln(), p.n, 1.0, steep, p.k_t.ln()];
         }
         let shapes = [[[0.0; POINTS]; 2]; LEVELS];
         let mut parameters = Self { radius, effective_modulus, friction, form, gentle, log_first, log_step, table, shapes };
@@ -348,7 +336,7 @@ impl ContactParameters {
     /// Slope of a column at a knot, per step. The steeper secant for the force and the flatter one
     /// for the radius: so neither kink at yield makes a virgin contact store more energy than was
     /// put in. The mean for the others.
-    pub(in crate::law) fn knot_slope(&self, column: usize, i: usize) -> f64 {
+    pub(super) fn knot_slope(&self, column: usize, i: usize) -> f64 {
         let value = |i: usize| self.table[i][column];
         if i == 0 {
             return value(1) - value(0);

@@ -1,0 +1,96 @@
+//! The law of one material and one friction for engines, beside the update that uses it.
+
+use super::vectors::{SEED, unit_vectors};
+use super::{ExportedFile, plain};
+use crate::case::Case;
+use crate::contact_law::KNOTS;
+use crate::contact_law::export::{EngineTable, HEADER_NAME, check_program, header, header_3d};
+use crate::law::tabulated::{Against, is_on_a_flat};
+use crate::law::{LawError, LawFile};
+
+/// What an engine gets.
+struct Unit {
+    /// The table of a sphere with R = 1 and E = 1.
+    table: EngineTable,
+    /// Its case, in those units.
+    case: Case,
+}
+
+impl Unit {
+    /// Of a law, for the material and the friction of `case`; a table needs no case.
+    fn new(law: &LawFile, case: Option<&Case>) -> Result<Self, LawError> {
+        if let (Some(case), LawFile::Table(table)) = (case, law) {
+            table.covers(case)?;
+        }
+        let (parameters, deepest, source, case, against) = match (law, case) {
+            (LawFile::Table(table), _) => {
+                let case = table.deepest_case()?;
+                let nu = case.material.poissons_ratio;
+                let source = format!("a table of one material (nu = {nu}), mu = {}, on: {}", table.friction(), table.body);
+                (table.unit_parameters()?, table.range.to, source, case, table.body)
+            }
+            (LawFile::Formulas(formulas), Some(case)) => {
+                // Refuses what the law does not cover before the numbers lose their units.
+                law.contact_parameters(case)?;
+                let unit = case.scaled().0;
+                let parameters = law.contact_parameters(&unit)?;
+                let mut deepest: f64 = 0.0;
+                for i in 0..KNOTS {
+                    let h = (parameters.log_first + parameters.log_step * i as f64).exp();
+                    if law.out_of_range(&unit, h)?.is_empty() {
+                        deepest = deepest.max(h);
+                    }
+                }
+                let source = format!(
+                    "the law of study {} for one material (nu = {}), mu = {}",
+                    plain(&formulas.provenance.study),
+                    unit.material.poissons_ratio,
+                    parameters.friction
+                );
+                (parameters, deepest, source, unit, Against::Plane)
+            }
+            (LawFile::Interpolated(law), Some(case)) => {
+                return Self::new(&LawFile::Table(Box::new(law.table(case)?)), Some(case));
+            }
+            (LawFile::Interpolated(_), None) => return Err(LawFile::without_a_case()),
+            (LawFile::Formulas(_), None) => {
+                return Err(LawError::NotCovered {
+                    problem: "an engine takes the law of one material and one friction, and this one is of all",
+                    remedy: "name a case after it: asperity law export LAW.json CASE.toml --format c",
+                });
+            }
+        };
+        let plane = is_on_a_flat(&case);
+        let body = if plane { Against::Plane.word() } else { against.word() };
+        let poissons_ratio = case.material.poissons_ratio;
+        Ok(Self { table: EngineTable { parameters, poissons_ratio, body, plane, deepest, source }, case })
+    }
+}
+
+/// The law as a C constant. A law of formulas needs the case of a material and a friction.
+///
+/// # Errors
+/// The law says nothing of the case; no case; a table of another material.
+pub fn engine_source(law: &LawFile, case: Option<&Case>) -> Result<String, LawError> {
+    Ok(Unit::new(law, case)?.table.header())
+}
+
+/// All files for engines: the law as a constant and as a file, the update, its use in three
+/// dimensions, test vectors, and the program that checks them.
+///
+/// # Errors
+/// As [`engine_source`].
+pub fn engine_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
+    let Unit { table, case } = Unit::new(law, case)?;
+    let vectors = unit_vectors(&table.parameters, &case.material, table.deepest.max(1e-3), SEED);
+    Ok([
+        ("asperity_law.h", table.header()),
+        ("law.asperity", table.file()),
+        (HEADER_NAME, header()),
+        ("asperity_contact3d.h", header_3d()),
+        ("asperity_law_vectors.csv", vectors),
+        ("asperity_contact_check.c", check_program("asperity_contact_check.c")),
+    ]
+    .map(|(name, content)| ExportedFile { name, content })
+    .into())
+}
