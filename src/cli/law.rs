@@ -77,7 +77,8 @@ pub struct FitArgs {
 /// The arguments of `law predict`.
 #[derive(Clone, Debug, Args)]
 pub struct PredictArgs {
-    /// A law file that `law fit` or `law tabulate` wrote.
+    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`, the law by
+    /// interpolation that comes with the program.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The case, with any path; `-` for standard input.
@@ -98,7 +99,8 @@ pub struct PredictArgs {
 /// The arguments of `law export`.
 #[derive(Clone, Debug, Args)]
 pub struct ExportArgs {
-    /// A law file that `law fit` or `law tabulate` wrote.
+    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`, the law by
+    /// interpolation that comes with the program.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The material and the friction, for C: with them a law of formulas is written for an engine,
@@ -227,9 +229,9 @@ fn summary(law: &Law) -> String {
 }
 
 fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
-    let law = LawFile::read(&args.law)?;
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
+    let law = LawFile::read_for(&args.law, Some(&case))?;
     let in_case = |source: LawError| CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) };
     let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { law.follow(&case) }.map_err(in_case)?;
     warn_out_of_range(Path::new(&input.name), &out_of_range);
@@ -273,9 +275,9 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
 }
 
 fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
-    let law = LawFile::read(&args.law)?;
     let input = args.case.as_deref().map(Input::read).transpose()?;
     let case = input.as_ref().map(|input| input.case(&args.set)).transpose()?;
+    let law = LawFile::read_for(&args.law, case.as_ref())?;
     let in_case = |source: LawError| match &input {
         Some(input) => CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) },
         None => source.into(),

@@ -17,7 +17,7 @@ use crate::output::write_atomically;
 /// The arguments of `law check`.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArgs {
-    /// A law file that `law fit` or `law tabulate` wrote.
+    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// Material, friction and depth to check [default: those of the table; for formulas, three
@@ -50,9 +50,10 @@ const CASE: &str = "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1.0\npo
 pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
-    let law = LawFile::read(&args.law)?;
-    let cases = match (&args.case, &law) {
-        (Some(path), _) => vec![("the case", Case::load(path, &args.set)?)],
+    let case = args.case.as_ref().map(|path| Case::load(path, &args.set)).transpose()?;
+    let law = LawFile::read_for(&args.law, case.as_ref())?;
+    let cases = match (case, &law) {
+        (Some(case), _) => vec![("the case", case)],
         (None, LawFile::Table(table)) => vec![("the table's material", table.deepest_case()?)],
         (None, LawFile::Formulas(_) | LawFile::Interpolated(_)) => materials(&Case::parse(CASE, "case", &[])?),
     };

@@ -21,7 +21,7 @@ pub struct ComposeArgs {
     /// deepest of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// A law by interpolation; or, for two bodies, the table of the sphere's material, of two equal
+    /// A law by interpolation, or `built-in`, that which comes with the program; or, for two bodies, the table of the sphere's material, of two equal
     /// spheres (or of a sphere on a plane, which is less near).
     #[arg(value_name = "LAW.json")]
     pub sphere: PathBuf,
@@ -46,8 +46,8 @@ enum Given {
 }
 
 impl Given {
-    fn read(args: &ComposeArgs) -> Result<Self, CliError> {
-        match (LawFile::read(&args.sphere)?, &args.opponent) {
+    fn read(args: &ComposeArgs, case: &Case) -> Result<Self, CliError> {
+        match (LawFile::read_for(&args.sphere, Some(case))?, &args.opponent) {
             (LawFile::Interpolated(law), None) => Ok(Self::Interpolated(law)),
             (LawFile::Table(sphere), opponent) => {
                 let opponent = opponent.as_deref().map(Tabulated::read).transpose()?.unwrap_or_else(|| (*sphere).clone());
@@ -74,7 +74,7 @@ impl Given {
 /// Makes the table and prints it.
 pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
     let case = Case::load(&args.case, &args.set)?;
-    let law = Given::read(args)?;
+    let law = Given::read(args, &case)?;
     let file = args.out.join("law.json");
     if file.exists() && !args.force {
         return Err(CliError::FileThere { file });

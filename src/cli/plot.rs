@@ -85,8 +85,8 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
 }
 
 fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
-    let law = args.law.as_deref().map(LawFile::read).transpose()?;
     let case = Case::load(&run.case(), &[])?;
+    let law = args.law.as_deref().map(|law| LawFile::read_for(law, Some(&case))).transpose()?;
     let history = read_history(&run.history())?;
     let width = args.width.or(case.output.plot_width);
     let view = View { axes: Axes::of(&case, args.units.into()), sheet: Sheet { width } };

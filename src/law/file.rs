@@ -7,12 +7,15 @@ use super::interpolated::{self, Interpolated};
 use super::json;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
 use super::predict::over_a_plane;
-use super::tabulated::{self, Tabulated};
+use super::tabulated::{self, Against, Tabulated};
 use super::variables::{Body, yield_lambda};
 use super::{Law, LawError};
 use crate::case::{Case, Friction};
 use crate::contact_law::ContactParameters;
 use crate::contact_law::path::{PathPoint, follow};
+
+/// The name under which a law comes with the program.
+pub const BUILT_IN: &str = "built-in";
 
 /// What a `law.json` may be.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,15 +43,28 @@ impl LawFile {
         })
     }
 
+    /// Reads any kind; of the name `built-in` it is the law by interpolation that comes with the
+    /// program, for the contact of the case, or of a sphere on a plane if there is none.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_for(path: &Path, case: Option<&Case>) -> Result<Self, LawError> {
+        if path != Path::new(BUILT_IN) {
+            return Self::read(path);
+        }
+        let against = case.map_or(Against::Plane, Against::of);
+        Ok(Self::Interpolated(Box::new(Interpolated::built_in(against)?)))
+    }
+
     /// The same law where it is of one kind of contact already; the table of the case's contact
     /// where it is to be interpolated.
     ///
     /// # Errors
-    /// Those of [`Interpolated::table`]; [`LawError::NotCovered`] if there is no case to make it
+    /// Those of [`Interpolated::compose`]; [`LawError::NotCovered`] if there is no case to make it
     /// for.
     pub fn of_case(&self, case: Option<&Case>) -> Result<Cow<'_, Self>, LawError> {
         match (self, case) {
-            (Self::Interpolated(law), Some(case)) => Ok(Cow::Owned(Self::Table(Box::new(law.table(case)?)))),
+            (Self::Interpolated(law), Some(case)) => Ok(Cow::Owned(Self::Table(Box::new(law.compose(case)?)))),
             (Self::Interpolated(_), None) => Err(Self::without_a_case()),
             _ => Ok(Cow::Borrowed(self)),
         }
@@ -83,7 +99,7 @@ impl LawFile {
                 table.covers(case)?;
                 table.contact_parameters(case.sphere.radius, case.material.youngs_modulus)
             }
-            Self::Interpolated(law) => law.table(case)?.contact_parameters(case.sphere.radius, case.material.youngs_modulus),
+            Self::Interpolated(law) => law.compose(case)?.contact_parameters(case.sphere.radius, case.material.youngs_modulus),
         }
     }
 

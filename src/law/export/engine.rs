@@ -50,7 +50,7 @@ impl Unit {
                 (parameters, deepest, source, unit, Against::Plane)
             }
             (LawFile::Interpolated(law), Some(case)) => {
-                return Self::new(&LawFile::Table(Box::new(law.table(case)?)), Some(case));
+                return Self::new(&LawFile::Table(Box::new(law.compose(case)?)), Some(case));
             }
             (LawFile::Interpolated(_), None) => return Err(LawFile::without_a_case()),
             (LawFile::Formulas(_), None) => {

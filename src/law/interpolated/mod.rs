@@ -123,7 +123,24 @@ fn bodies(case: &Case) -> Result<(Body, ElasticSphere), LawError> {
     Ok((Body::new(1.0, &scaled.material)?, equivalent(&scaled)))
 }
 
+/// The laws that come with the program.
+const BUILT_IN: [(Against, &str); 2] = [
+    (Against::Plane, include_str!("../../../fixtures/law/interpolated/plane.json")),
+    (Against::EqualSphere, include_str!("../../../fixtures/law/interpolated/equal-pair.json")),
+];
+
 impl Interpolated {
+    /// The law that comes with the program for the contact of a case: that of a rigid plane, or of
+    /// equal spheres, from which unlike ones are made.
+    ///
+    /// # Errors
+    /// A file that was no law when the program was built.
+    pub fn built_in(against: Against) -> Result<Self, LawError> {
+        let [plane, pair] = BUILT_IN;
+        let (_, text) = if against == plane.0 { plane } else { pair };
+        Self::from_json(text).map_err(|problem| LawError::BadLaw { path: "fixtures/law/interpolated".into(), problem })
+    }
+
     /// Reads one and checks it.
     ///
     /// # Errors
@@ -213,6 +230,12 @@ impl Interpolated {
     /// # Errors
     /// The hardening law of the case.
     pub fn out_of_range(&self, case: &Case, h: f64) -> Result<Vec<OutOfRange>, LawError> {
+        // Of two bodies that are put in series each is asked as an equal pair.
+        if let Some(bodies) = tabulated::alone(case, 2.0 * h / case.effective_radius()) {
+            let depth = 2.0 * h / case.effective_radius();
+            let each = bodies.iter().map(|body| self.out_of_range(body, depth)).collect::<Result<Vec<_>, _>>()?;
+            return Ok(each.concat());
+        }
         let (body, sphere) = bodies(case)?;
         let contact = inputs(&body, &sphere, friction(case), h / case.sphere.radius);
         let range = |i: usize| self.inputs[i].range;
