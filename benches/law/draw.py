@@ -7,8 +7,8 @@
     python3 benches/law/draw.py --out DIR --seed 1                  # other materials, that no law has seen
 
 General is for formulas: 38 materials, pressed and sheared. Wide is for interpolation: five times as
-many, and twice as many again with mu above 0.5, where contacts differ most; it shears them back and
-releases them too.
+many, and twice as many again with mu above 0.5, where contacts differ most; it shears them back (on a
+plane) and releases them too.
 
 Every material meets CASES pairs of friction and indentation. Poisson's ratio, ln(E/sigma_Y), ln(mu)
 and ln(h/R) are each cut into as many strata as there are draws, one draw a stratum. A fifth of the
@@ -138,7 +138,8 @@ def study(cases, equal, wide, what, seed):
         "fine_zone = 1.6\n\n"
         + ("[base.opponent]\nequal = true\n\n" if equal else "")
         + '[[base.path]]\n\n[[base.path]]\nshear = "full-slip"\nhold = "indentation"\n\n'
-        + ('[[base.path]]\nshear = 0.0\nhold = "indentation"\n\n[[base.path]]\nrelease = 0.5\n\n' if wide else "")
+        + ('[[base.path]]\nshear = 0.0\nhold = "indentation"\n\n' if wide and not equal else "")
+        + ("[[base.path]]\nrelease = 0.5\n\n" if wide else "")
         + "[zip]\n"
     )
     # Between equal spheres h is the approach of their centres, twice what each is pressed in.

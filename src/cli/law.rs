@@ -18,10 +18,12 @@ use super::{CliError, Outcome, print, print_json};
 use crate::case::Case;
 use crate::contact_law::path::PathPoint;
 use crate::law::export::{Language, law_files, law_source};
+use crate::law::file::BUILT_IN;
 use crate::law::interpolated::{self, Interpolated};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
+use crate::law::tabulated::Against;
 use crate::law::{Law, LawError, LawFile, fit, report};
 use crate::output::write_atomically;
 
@@ -69,6 +71,10 @@ pub struct FitArgs {
     /// materials, on a plane or of equal spheres.
     #[arg(long, conflicts_with = "prior")]
     pub interpolate: bool,
+    /// With --interpolate: where cases were not sheared back, take the stiffness and the sharpness of
+    /// a reversal from this law by interpolation; `built-in` is that on a plane.
+    #[arg(long, value_name = "LAW.json", requires = "interpolate")]
+    pub reversal: Option<PathBuf>,
     /// Print the law as JSON, as in DIR/law.json, instead of the tables.
     #[arg(long)]
     pub json: bool,
@@ -150,7 +156,12 @@ pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
 
 fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
     if args.interpolate {
-        let law = interpolated::fit(&args.dir)?;
+        let reversal = match &args.reversal {
+            Some(path) if path == Path::new(BUILT_IN) => Some(Interpolated::built_in(Against::Plane)?),
+            Some(path) => Some(Interpolated::read(path)?),
+            None => None,
+        };
+        let law = interpolated::fit(&args.dir, reversal.as_ref())?;
         let path = args.dir.join("law.json");
         law.write(&path)?;
         if args.json {

@@ -17,7 +17,7 @@ fn a_known_law_is_interpolated() {
     let printed = String::from_utf8(printed).expect("text");
     assert!(printed.contains("36 cases of 8 materials on a rigid plane") && printed.contains("1 left out"), "{printed}");
     let law = Interpolated::read(&folder.path().join("law.json")).expect("a law");
-    assert_eq!(law, fit(folder.path()).expect("a law"), "not the same twice");
+    assert_eq!(law, fit(folder.path(), None).expect("a law"), "not the same twice");
     // Whole materials left out of eight: most of them lie outside of the others.
     let all = law.errors.last().expect("a row for all").errors;
     assert!(all.cases == 36 && all.f_t_rms < 0.08 && law.normal_errors.f_n0[0] < 0.05, "{all:?} {:?}", law.normal_errors);

@@ -56,8 +56,8 @@ struct Data {
 /// # Errors
 /// No study there, results that cannot be read, cases on a plane and on equal spheres together,
 /// too few cases, values that no process can be made of.
-pub fn fit(dir: &Path) -> Result<Interpolated, LawError> {
-    let Data { body, samples, materials, left_out } = read(dir)?;
+pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, LawError> {
+    let Data { body, samples, materials, left_out } = read(dir, reversal)?;
     let Some(body) = body.filter(|_| samples.len() >= FEWEST_CASES && materials.len() >= FEWEST_MATERIALS) else {
         return Err(LawError::TooFewCases {
             path: dir.to_owned(),
@@ -98,6 +98,7 @@ pub fn fit(dir: &Path) -> Result<Interpolated, LawError> {
             study: study_name(dir),
             cases: samples.len(),
             materials: materials.len(),
+            reversal: reversal.map(|law| law.source.study.clone()),
             left_out,
             elements_per_contact_radius: samples.iter().map(|s| s.elements).max().unwrap_or(0),
         },
@@ -182,7 +183,7 @@ fn straight(shape: &[f64], x: f64) -> f64 {
     below + (shape[j] - below) * (x - place(j)) / (place(j + 1) - place(j))
 }
 
-fn read(dir: &Path) -> Result<Data, LawError> {
+fn read(dir: &Path, reversal: Option<&Interpolated>) -> Result<Data, LawError> {
     let mut data = Data { body: None, samples: Vec::new(), materials: Vec::new(), left_out: Vec::new() };
     for row in StudyTable::read(&dir.join("study.csv"))?.rows {
         if !row.is_done() {
@@ -202,7 +203,7 @@ fn read(dir: &Path) -> Result<Data, LawError> {
                 problem: format!("{} is on {body}", row.id),
             });
         }
-        match sample(&case, &directory, &mut data.materials)? {
+        match sample(&case, &directory, reversal, &mut data.materials)? {
             Some(sample) => data.samples.push(sample),
             None => data.left_out.push((row.id, "without full slip".to_owned())),
         }
@@ -226,11 +227,20 @@ fn unusable(case: &Case) -> Option<&'static str> {
     }
 }
 
-fn sample(case: &Case, directory: &OutputDirectory, materials: &mut Vec<Material>) -> Result<Option<Sample>, LawError> {
+fn sample(
+    case: &Case,
+    directory: &OutputDirectory,
+    reversal: Option<&Interpolated>,
+    materials: &mut Vec<Material>,
+) -> Result<Option<Sample>, LawError> {
     let friction = super::friction(case);
     let Some(measured) = Measured::of(case, &read_history(&directory.history())?) else { return Ok(None) };
     let (body, sphere) = bodies(case)?;
-    let Some(outputs) = outputs(&sphere, friction, &measured) else { return Ok(None) };
+    let Some(mut outputs) = outputs(&sphere, friction, &measured) else { return Ok(None) };
+    let inputs = inputs(&body, &sphere, friction, measured.h);
+    if let Some(law) = reversal.filter(|_| measured.back.is_empty()) {
+        outputs.reverse_as(&law.outputs(&inputs));
+    }
     let own = scaled(case).material;
     let material = materials.iter().position(|known| *known == own).unwrap_or_else(|| {
         materials.push(own);
@@ -241,7 +251,7 @@ fn sample(case: &Case, directory: &OutputDirectory, materials: &mut Vec<Material
         sphere,
         friction,
         lambda: [body.lambda(measured.a0), yield_lambda(body.sphere.poissons_ratio)],
-        inputs: inputs(&body, &sphere, friction, measured.h),
+        inputs,
         measured,
         outputs,
         elements: case.mesh.elements_per_contact_radius,

@@ -71,6 +71,9 @@ pub struct Source {
     pub cases: usize,
     /// Different materials.
     pub materials: usize,
+    /// Study of the law that the reversals of cases without one are taken from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reversal: Option<String>,
     /// Cases left out, with the reasons.
     pub left_out: Vec<(String, String)>,
     /// Most elements along the contact radius.

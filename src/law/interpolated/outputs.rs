@@ -12,6 +12,9 @@ pub const NUMBERS: usize = 6;
 /// Their names in files.
 pub const NAMES: [&str; NUMBERS] = ["F_N0", "a0", "delta_T", "unloading radius", "k_T", "backbone"];
 
+/// The first of the numbers of a reversal.
+const REVERSAL: usize = 4;
+
 /// The curves end where the square root of delta_T over the length of the slip is this: full slip
 /// is reached from 0.9 to 1.75.
 const END: f64 = 1.75;
@@ -80,6 +83,11 @@ pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Option<
 }
 
 impl Outputs {
+    /// Takes the stiffness and the exponent of a reversal from another contact.
+    pub fn reverse_as(&mut self, other: &Self) {
+        self.numbers[REVERSAL..].copy_from_slice(&other.numbers[REVERSAL..]);
+    }
+
     /// The level of a table that has these at the indentation `h`.
     pub fn level(&self, sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
         let [f_n, a, stiffness] = elastic(sphere, h);

@@ -28,7 +28,7 @@ pub struct Measured {
     pub a0: f64,
     /// The shear from its start on, as sizes; the start alone without friction.
     pub curve: Vec<Point>,
-    /// The shear back, from the end of the first on; empty without friction.
+    /// The shear back, from the end of the first on; empty if there is none.
     pub back: Vec<Point>,
     /// (h, F_N) of the release at the end, from its start on.
     pub release: Vec<[f64; 2]>,
@@ -51,9 +51,12 @@ impl Measured {
         let mut back = Vec::new();
         if shears {
             curve.extend(of(1).map(point));
+        }
+        let returns = shears && matches!(case.path.get(2), Some(Segment::Shear { .. }));
+        if returns {
             back.extend(of(1).next_back().into_iter().chain(of(2)).map(point));
         }
-        let last = if shears { 3 } else { 1 };
+        let last = 1 + usize::from(shears) + usize::from(returns);
         let release = history.iter().rfind(|row| row.segment + 1 == last).into_iter().chain(of(last));
         let release = release.map(|row| [row.h / radius, row.f_n / force]).collect();
         Some(Self { h: start.h / radius, f_n0: start.f_n / force, a0: start.a / radius, curve, back, release })
