@@ -3,11 +3,12 @@
 mod device;
 
 use asperity::internals::compute::gpu::Precision;
+use asperity::material::HardeningLaw;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::process::{Command, Output};
 
-const LAWS: [&str; 7] = ["elastic", "ideal", "linear", "power", "hollomon", "voce", "table"];
+const LAWS: [&str; 7] = HardeningLaw::WORDS;
 const EVALUATIONS: [&str; 4] = ["internal force", "tangent", "contact", "commit"];
 const BATCHES: [u64; 3] = [1, 4, 8];
 

@@ -4,6 +4,8 @@
 //! A missing gcc, g++ or python3 skips its test, aloud; with `ASPERITY_REQUIRE_COMPILERS=1` that is
 //! a failure.
 
+#[path = "law/flow_stress.rs"]
+mod flow_stress;
 #[path = "common/programs.rs"]
 mod programs;
 

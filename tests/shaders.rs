@@ -6,6 +6,7 @@ mod lint;
 
 use asperity::internals::compute::gpu::shader_sources::{Assembled, Binding, KERNELS, Kernel, MATH, Precision, Source, TENSOR};
 use asperity::internals::compute::gpu::validate::{Checked, validate};
+use asperity::material::HardeningLaw;
 use lint::Rule;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -45,6 +46,17 @@ fn every_shader_file_is_in_some_kernel() {
     for path in found {
         let path = path.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/");
         assert!(path.starts_with("shaders/prelude_") || listed.contains(&path.as_str()), "{path} is in no kernel");
+    }
+}
+
+/// The codes by which a material's parameters name its hardening law.
+#[test]
+fn hardening_laws_have_the_codes_of_the_program() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/material/hardening.wgsl");
+    let text = std::fs::read_to_string(path).unwrap();
+    for law in HardeningLaw::ALL {
+        let line = format!("const {}: u32 = {}u;", law.word().to_uppercase(), law.code());
+        assert!(text.lines().any(|found| found == line), "hardening.wgsl lacks `{line}`");
     }
 }
 

@@ -67,7 +67,7 @@ def yield_stress(material):
         return math.inf
     if hardening["law"] == "hollomon":
         m = hardening["exponent"]
-        return (hardening["coefficient"] ** m / e) ** (1 / (m - 1))
+        return e * (hardening["coefficient"] / e) ** (m / (m - 1))
     return hardening["yield_stress"]
 
 

@@ -8,6 +8,7 @@
 //! finite elements (ideal plastic, h/R = 0.005 to 0.02) F is 2-6 % high and a 4-6 %.
 
 use super::{ElasticSphere, bisect, johnson};
+use crate::material::hollomon_yield_stress;
 use std::f64::consts::PI;
 
 /// Lambda from which Hbar is constant.
@@ -52,10 +53,7 @@ impl Hardening {
     pub fn yield_stress(&self, youngs_modulus: f64) -> f64 {
         match *self {
             Self::Ideal { yield_stress } | Self::ThreeParameter { yield_stress, .. } => yield_stress,
-            Self::TwoParameter { coefficient, exponent } => {
-                // (sigma_0^m / E)^(1/(m-1)) without overflow for a large m.
-                coefficient * (coefficient / youngs_modulus).powf(1.0 / (exponent - 1.0))
-            }
+            Self::TwoParameter { coefficient, exponent } => hollomon_yield_stress(coefficient, exponent, youngs_modulus),
         }
     }
 

@@ -18,15 +18,15 @@ use crate::real::Real;
 /// None, unless the constants here are no law.
 pub fn laws<R: Real>() -> Result<Vec<(&'static str, Material<R>)>, MaterialError> {
     let laws = [
-        ("elastic", Hardening::Elastic),
-        ("ideal", Hardening::ideal(2e-3)?),
-        ("linear", Hardening::linear(2e-3, 0.05)?),
-        ("power", Hardening::power(2e-3, 5e-3, 0.3)?),
-        ("hollomon", Hardening::hollomon(0.02, 3.0, 1.0)?),
-        ("voce", Hardening::voce(2e-3, 5e-3, 20.0)?),
-        ("table", Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]])?),
+        Hardening::Elastic,
+        Hardening::ideal(2e-3)?,
+        Hardening::linear(2e-3, 0.05)?,
+        Hardening::power(2e-3, 5e-3, 0.3)?,
+        Hardening::hollomon(0.02, 3.0, 1.0)?,
+        Hardening::voce(2e-3, 5e-3, 20.0)?,
+        Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.05, 3.5e-3], [0.3, 5e-3]])?,
     ];
-    Ok(laws.map(|(name, hardening)| (name, Material { elasticity: Elasticity::new(1.0, 0.3), hardening })).into())
+    Ok(laws.map(|hardening| (hardening.law().word(), Material { elasticity: Elasticity::new(1.0, 0.3), hardening })).into())
 }
 
 /// A material point before a step.

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::error::CaseError;
 use super::reader::Reader;
+use crate::material::{HardeningLaw, hollomon_yield_stress};
 
 /// Yield stress sigma_y(alpha) over the equivalent plastic strain alpha >= 0. Every law but
 /// `Elastic` is isotropic J2 hardening that never softens.
@@ -67,9 +68,7 @@ const MIN_YIELD_STRAIN: f64 = 1e-7;
 impl Hardening {
     /// The stress at first yield, a stress > 0; `None` for a law that never yields.
     ///
-    /// For Hollomon's law it is where sigma_0 eps^(1/m) meets E eps: sigma_Y = (sigma_0^m /
-    /// E)^(1/(m-1)) (Olsson and Larsson 2016), evaluated as sigma_0 (sigma_0/E)^(1/(m-1)), which
-    /// does not overflow.
+    /// For Hollomon's law it is where sigma_0 eps^(1/m) meets E eps (Olsson and Larsson 2016).
     pub fn yield_stress(&self, youngs_modulus: f64) -> Option<f64> {
         match self {
             Hardening::Elastic => None,
@@ -77,63 +76,76 @@ impl Hardening {
             | Hardening::Linear { yield_stress, .. }
             | Hardening::Power { yield_stress, .. }
             | Hardening::Voce { yield_stress, .. } => Some(*yield_stress),
-            Hardening::Hollomon { coefficient, exponent } => {
-                Some(coefficient * (coefficient / youngs_modulus).powf(1.0 / (exponent - 1.0)))
-            }
+            Hardening::Hollomon { coefficient, exponent } => Some(hollomon_yield_stress(*coefficient, *exponent, youngs_modulus)),
             Hardening::Table { points } => points.first().map(|point| point[1]),
         }
     }
 
+    /// Which law it is.
+    pub fn kind(&self) -> HardeningLaw {
+        match self {
+            Hardening::Elastic => HardeningLaw::Elastic,
+            Hardening::Ideal { .. } => HardeningLaw::Ideal,
+            Hardening::Linear { .. } => HardeningLaw::Linear,
+            Hardening::Power { .. } => HardeningLaw::Power,
+            Hardening::Hollomon { .. } => HardeningLaw::Hollomon,
+            Hardening::Voce { .. } => HardeningLaw::Voce,
+            Hardening::Table { .. } => HardeningLaw::Table,
+        }
+    }
+
+    /// Its numbers, in the order of [`HardeningLaw::parameters`]; a table has none.
+    pub fn numbers(&self) -> Vec<f64> {
+        self.clone().numbers_mut().into_iter().map(|number| *number).collect()
+    }
+
+    fn numbers_mut(&mut self) -> Vec<&mut f64> {
+        match self {
+            Hardening::Elastic | Hardening::Table { .. } => Vec::new(),
+            Hardening::Ideal { yield_stress } => vec![yield_stress],
+            Hardening::Linear { yield_stress, modulus } => vec![yield_stress, modulus],
+            Hardening::Power { yield_stress, coefficient, exponent } => vec![yield_stress, coefficient, exponent],
+            Hardening::Hollomon { coefficient, exponent } => vec![coefficient, exponent],
+            Hardening::Voce { yield_stress, saturation_stress, rate } => vec![yield_stress, saturation_stress, rate],
+        }
+    }
+
     /// The law with stresses divided by `stress` (Young's modulus makes E = 1).
+    #[must_use]
     pub fn scaled(&self, stress: f64) -> Self {
-        match *self {
-            Hardening::Elastic => Hardening::Elastic,
-            Hardening::Ideal { yield_stress } => Hardening::Ideal { yield_stress: yield_stress / stress },
-            Hardening::Linear { yield_stress, modulus } => {
-                Hardening::Linear { yield_stress: yield_stress / stress, modulus: modulus / stress }
-            }
-            Hardening::Power { yield_stress, coefficient, exponent } => {
-                Hardening::Power { yield_stress: yield_stress / stress, coefficient: coefficient / stress, exponent }
-            }
-            Hardening::Hollomon { coefficient, exponent } => Hardening::Hollomon { coefficient: coefficient / stress, exponent },
-            Hardening::Voce { yield_stress, saturation_stress, rate } => {
-                Hardening::Voce { yield_stress: yield_stress / stress, saturation_stress: saturation_stress / stress, rate }
-            }
-            Hardening::Table { ref points } => {
-                Hardening::Table { points: points.iter().map(|[alpha, value]| [*alpha, value / stress]).collect() }
+        let mut scaled = self.clone();
+        for (number, parameter) in scaled.numbers_mut().into_iter().zip(self.kind().parameters()) {
+            if parameter.is_stress {
+                *number /= stress;
             }
         }
+        if let Hardening::Table { points } = &mut scaled {
+            points.iter_mut().for_each(|[_, value]| *value /= stress);
+        }
+        scaled
     }
 
     /// Reads `[material.hardening]`.
     pub(super) fn read(table: &Reader<'_>, youngs_modulus: f64) -> Result<Self, CaseError> {
-        let laws = [
-            ("elastic", Law::Elastic),
-            ("ideal", Law::Ideal),
-            ("linear", Law::Linear),
-            ("power", Law::Power),
-            ("hollomon", Law::Hollomon),
-            ("voce", Law::Voce),
-            ("table", Law::Table),
-        ];
+        let laws = HardeningLaw::ALL.map(|law| (law.word(), law));
         let law = table.require("law", &laws.map(|(word, _)| format!("{word:?}")).join(", "))?.choice(&laws)?;
-        table.only(law.keys())?;
+        table.only(&keys(law))?;
         let number =
             |name: &str, allowed: &str, accept: &dyn Fn(f64) -> bool| table.require(name, allowed)?.number(allowed, accept);
         let yield_stress = || number("yield_stress", &yield_range(youngs_modulus), &|stress| yields(stress, youngs_modulus));
         let no_softening = "a stress >= 0 (no softening)";
         Ok(match law {
-            Law::Elastic => Hardening::Elastic,
-            Law::Ideal => Hardening::Ideal { yield_stress: yield_stress()? },
-            Law::Linear => {
+            HardeningLaw::Elastic => Hardening::Elastic,
+            HardeningLaw::Ideal => Hardening::Ideal { yield_stress: yield_stress()? },
+            HardeningLaw::Linear => {
                 Hardening::Linear { yield_stress: yield_stress()?, modulus: number("modulus", no_softening, &|x| x >= 0.0)? }
             }
-            Law::Power => Hardening::Power {
+            HardeningLaw::Power => Hardening::Power {
                 yield_stress: yield_stress()?,
                 coefficient: number("coefficient", no_softening, &|x| x >= 0.0)?,
                 exponent: number("exponent", "n in (0, 1], in sigma_Y + K alpha^n", &|n| n > 0.0 && n <= 1.0)?,
             },
-            Law::Hollomon => {
+            HardeningLaw::Hollomon => {
                 let coefficient = number("coefficient", "a stress > 0", &|x| x > 0.0)?;
                 let exponent = number("exponent", "m > 1, in sigma_0 eps^(1/m)", &|m| m > 1.0)?;
                 let law = Hardening::Hollomon { coefficient, exponent };
@@ -145,7 +157,7 @@ impl Hardening {
                 }
                 law
             }
-            Law::Voce => {
+            HardeningLaw::Voce => {
                 let yield_stress = yield_stress()?;
                 let allowed = format!("a stress >= yield_stress = {yield_stress:?} (no softening)");
                 Hardening::Voce {
@@ -154,35 +166,15 @@ impl Hardening {
                     rate: number("rate", "a number > 0", &|rate| rate > 0.0)?,
                 }
             }
-            Law::Table => Hardening::Table { points: read_points(table, youngs_modulus)? },
+            HardeningLaw::Table => Hardening::Table { points: read_points(table, youngs_modulus)? },
         })
     }
 }
 
-/// The words of the key `law`.
-#[derive(Clone, Copy)]
-enum Law {
-    Elastic,
-    Ideal,
-    Linear,
-    Power,
-    Hollomon,
-    Voce,
-    Table,
-}
-
-impl Law {
-    fn keys(self) -> &'static [&'static str] {
-        match self {
-            Law::Elastic => &["law"],
-            Law::Ideal => &["law", "yield_stress"],
-            Law::Linear => &["law", "yield_stress", "modulus"],
-            Law::Power => &["law", "yield_stress", "coefficient", "exponent"],
-            Law::Hollomon => &["law", "coefficient", "exponent"],
-            Law::Voce => &["law", "yield_stress", "saturation_stress", "rate"],
-            Law::Table => &["law", "yield_stress", "points"],
-        }
-    }
+/// The keys of `[material.hardening]` under a law.
+fn keys(law: HardeningLaw) -> Vec<&'static str> {
+    let others: &[&str] = if law == HardeningLaw::Table { &["yield_stress", "points"] } else { &[] };
+    ["law"].into_iter().chain(law.parameters().iter().map(|parameter| parameter.key)).chain(others.iter().copied()).collect()
 }
 
 fn yields(stress: f64, youngs_modulus: f64) -> bool {

@@ -7,6 +7,7 @@ use Kind::{Material, Number, Points, ShareOrTrue, Text, Truth, Whole, Word};
 use Limit::{Above, AtLeast, AtMost, Free};
 use Presence::{Defaults, Optional, Required};
 
+use crate::material::HardeningLaw;
 use crate::mesh::FINE_ZONES;
 
 /// One key of a case file.
@@ -105,7 +106,7 @@ pub const TABLES: [(&str, &str); 10] = [
 ];
 
 /// The words of `material.hardening.law`.
-pub const LAWS: [&str; 7] = ["elastic", "ideal", "linear", "power", "hollomon", "voce", "table"];
+pub const LAWS: [&str; 7] = HardeningLaw::WORDS;
 
 const UNIT_LABEL: &str = "1 to 16 letters";
 const UNIT_OMITTED: &str = "the axes are normalised, or named after the case if another label is there";

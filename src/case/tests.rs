@@ -2,6 +2,7 @@
 //! program, in `tests/case_errors.rs`.
 
 use super::*;
+use crate::material::HardeningLaw;
 
 const IDEAL: &str = include_str!("../../fixtures/cases/ideal.toml");
 
@@ -147,6 +148,26 @@ fn scaling_divides_stresses_and_leaves_numbers() {
         scaled(Hardening::Table { points: vec![[0.0, 1.0], [0.5, 2.0]] }),
         Hardening::Table { points: vec![[0.0, 0.005], [0.5, 0.01]] }
     );
+}
+
+#[test]
+fn a_law_is_written_by_its_word_with_its_numbers_in_order() {
+    let laws = [
+        Hardening::Elastic,
+        Hardening::Ideal { yield_stress: 1.0 },
+        Hardening::Linear { yield_stress: 1.0, modulus: 2.0 },
+        Hardening::Power { yield_stress: 1.0, coefficient: 2.0, exponent: 3.0 },
+        Hardening::Hollomon { coefficient: 1.0, exponent: 2.0 },
+        Hardening::Voce { yield_stress: 1.0, saturation_stress: 2.0, rate: 3.0 },
+        Hardening::Table { points: vec![[0.0, 1.0]] },
+    ];
+    for (law, kind) in laws.into_iter().zip(HardeningLaw::ALL) {
+        let written = serde_json::to_value(&law).unwrap();
+        assert_eq!((law.kind(), &written["law"]), (kind, &kind.word().into()));
+        let numbers: Vec<f64> = kind.parameters().iter().map(|parameter| written[parameter.key].as_f64().unwrap()).collect();
+        assert_eq!(law.numbers(), numbers, "{kind:?}");
+        assert_eq!(numbers, [1.0, 2.0, 3.0][..numbers.len()]);
+    }
 }
 
 #[test]

@@ -44,6 +44,18 @@ fn the_table_has_every_key_of_the_parser_and_no_other() {
     assert_eq!(named, TABLES.iter().map(|(table, _)| *table).collect());
 }
 
+#[test]
+fn the_keys_of_hardening_are_those_of_its_laws() {
+    for law in HardeningLaw::ALL.into_iter().filter(|law| *law != HardeningLaw::Table) {
+        let of_law = |key: &&Key| key.table == "material.hardening" && key.laws.contains(&law.word());
+        let keys: BTreeSet<_> = KEYS.iter().filter(of_law).map(|key| (key.name, key.unit == STRESS)).collect();
+        assert_eq!(keys, law.parameters().iter().map(|parameter| (parameter.key, parameter.is_stress)).collect(), "{law:?}");
+    }
+    let range = KEYS.iter().find(|key| key.dotted() == "material.hardening.law").map(|key| key.range).unwrap();
+    let words = range.replace(" or ", ", ").replace('"', "");
+    assert_eq!(words.split(", ").collect::<Vec<_>>(), LAWS);
+}
+
 /// The segment, or the table, to which a key belongs.
 fn place(key: &Key) -> String {
     match key.name {

@@ -57,19 +57,19 @@ pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
         let zero = R::ZERO;
         let mut points = 0;
         let first = table.len() / 3;
-        let (law, yield_stress, coefficient, exponent, youngs_modulus) = match &material.hardening {
-            Hardening::Elastic => (0, zero, zero, zero, zero),
-            Hardening::Ideal { yield_stress } => (1, *yield_stress, zero, zero, zero),
-            Hardening::Linear { yield_stress, modulus } => (2, *yield_stress, *modulus, zero, zero),
-            Hardening::Power { yield_stress, coefficient, exponent } => (3, *yield_stress, *coefficient, *exponent, zero),
+        let (yield_stress, coefficient, exponent, youngs_modulus) = match &material.hardening {
+            Hardening::Elastic => (zero, zero, zero, zero),
+            Hardening::Ideal { yield_stress } => (*yield_stress, zero, zero, zero),
+            Hardening::Linear { yield_stress, modulus } => (*yield_stress, *modulus, zero, zero),
+            Hardening::Power { yield_stress, coefficient, exponent } => (*yield_stress, *coefficient, *exponent, zero),
             Hardening::Hollomon { coefficient, exponent, youngs_modulus, yield_stress } => {
-                (4, *yield_stress, *coefficient, *exponent, *youngs_modulus)
+                (*yield_stress, *coefficient, *exponent, *youngs_modulus)
             }
-            Hardening::Voce { yield_stress, saturation_stress, rate } => (5, *yield_stress, *saturation_stress, *rate, zero),
+            Hardening::Voce { yield_stress, saturation_stress, rate } => (*yield_stress, *saturation_stress, *rate, zero),
             Hardening::Table { points: rows } => {
                 points = rows.len();
                 table.extend(rows.iter().flatten());
-                (6, rows.first().map_or(zero, |row| row[1]), zero, zero, zero)
+                (rows.first().map_or(zero, |row| row[1]), zero, zero, zero)
             }
         };
         let whole = |n: usize| R::of(n as f64);
@@ -77,7 +77,7 @@ pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
         let row: [R; PARAMETERS] = [
             elasticity.bulk,
             elasticity.shear,
-            whole(law),
+            whole(material.hardening.law().code().into()),
             yield_stress,
             coefficient,
             exponent,

@@ -30,13 +30,7 @@
 
 /* Hardening laws: the stresses and numbers of asperity_material.hardening_numbers. */
 enum {
-    ASPERITY_ELASTIC = 0,
-    ASPERITY_IDEAL = 1,    /* yield stress */
-    ASPERITY_LINEAR = 2,   /* yield stress, modulus: sigma_Y + H alpha */
-    ASPERITY_POWER = 3,    /* yield stress, coefficient, exponent: sigma_Y + K alpha^n */
-    ASPERITY_HOLLOMON = 4, /* coefficient, exponent: sigma_0 eps^(1/m), eps the total strain */
-    ASPERITY_VOCE = 5,     /* yield stress, saturation stress, rate */
-    ASPERITY_TABLE = 6     /* none; pairs of plastic strain and stress in `points` */
+@HARDENING_CODES@
 };
 
 /* A sphere's material. */

@@ -30,13 +30,7 @@ POINTS = @POINTS@  # of a shape that is given by numbers, x = (j/POINTS)^2
 LEVELS = @LEVELS@
 
 # Hardening laws, with their numbers.
-ELASTIC = 0
-IDEAL = 1  # yield stress
-LINEAR = 2  # yield stress, modulus: sigma_Y + H alpha
-POWER = 3  # yield stress, coefficient, exponent: sigma_Y + K alpha^n
-HOLLOMON = 4  # coefficient, exponent: sigma_0 eps^(1/m), eps the total strain
-VOCE = 5  # yield stress, saturation stress, rate
-TABLE = 6  # none; pairs of plastic strain and stress in points
+@HARDENING_CODES@
 
 
 class Material:

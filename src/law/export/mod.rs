@@ -22,6 +22,7 @@ use super::{LawError, LawFile};
 use crate::case::{Case, Hardening};
 use crate::contact_law::export::{HEADER_NAME, check_program, fill, header, header_3d, header_parts, module_parts};
 use crate::contact_law::{ContactParameters, POINTS};
+use crate::material::HardeningLaw;
 
 const HEADER: &str = include_str!("asperity_law.h");
 const MODULE: &str = include_str!("asperity_law.py");
@@ -165,6 +166,7 @@ pub fn source(law: &Law, language: Language) -> String {
         ("NORMAL_FORM", normal_form(law.normal.form).to_string()),
         ("CONSTANTS", constants.trim_end().to_owned()),
         ("LAST", format!("{LAST:?}")),
+        ("HARDENING_CODES", hardening_codes(language)),
     ];
     match language {
         Language::C => fill(HEADER, values.into_iter().chain(header_parts())),
@@ -222,27 +224,44 @@ fn table_source(table: &Tabulated) -> Result<String, LawError> {
         ("NORMAL_FORM", "0".to_owned()),
         ("CONSTANTS", String::new()),
         ("LAST", format!("{LAST:?}")),
+        ("HARDENING_CODES", hardening_codes(Language::Python)),
         ("TABLE", fragment),
     ];
     Ok(fill(MODULE, values.into_iter().chain(module_parts())))
 }
 
-/// The number that a hardening law has in the exports, its numbers there, and which of them are
-/// stresses.
+/// The code of a hardening law, its numbers in the exports, and which of them are stresses.
 fn hardening_numbers(hardening: &Hardening) -> (u8, [f64; 3], [bool; 3]) {
-    match *hardening {
-        Hardening::Elastic => (0, [0.0; 3], [false; 3]),
-        Hardening::Ideal { yield_stress } => (1, [yield_stress, 0.0, 0.0], [true, false, false]),
-        Hardening::Linear { yield_stress, modulus } => (2, [yield_stress, modulus, 0.0], [true, true, false]),
-        Hardening::Power { yield_stress, coefficient, exponent } => {
-            (3, [yield_stress, coefficient, exponent], [true, true, false])
+    let (law, numbers) = (hardening.kind(), hardening.numbers());
+    let parameters = law.parameters();
+    (
+        law.code(),
+        std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0)),
+        std::array::from_fn(|i| parameters.get(i).is_some_and(|parameter| parameter.is_stress)),
+    )
+}
+
+/// The codes of the hardening laws by their names, a line each, with their numbers in a comment.
+fn hardening_codes(language: Language) -> String {
+    let lines = HardeningLaw::ALL.map(|law| {
+        let names: Vec<String> = law.parameters().iter().map(|parameter| parameter.key.replace('_', " ")).collect();
+        let about = match law {
+            HardeningLaw::Table => "none; pairs of plastic strain and stress in `points`".to_owned(),
+            _ if law.formula().is_empty() => names.join(", "),
+            _ => format!("{}: {}", names.join(", "), law.formula()),
+        };
+        let code = format!("{} = {}", law.word().to_uppercase(), law.code());
+        match language {
+            Language::C => {
+                let comma = if law == HardeningLaw::Table { "" } else { "," };
+                let comment = if about.is_empty() { about } else { format!("/* {about} */") };
+                format!("    {:<22} {comment}", format!("ASPERITY_{code}{comma}"))
+            }
+            Language::Python if about.is_empty() => code,
+            Language::Python => format!("{code}  # {}", about.replace('`', "")),
         }
-        Hardening::Hollomon { coefficient, exponent } => (4, [coefficient, exponent, 0.0], [true, false, false]),
-        Hardening::Voce { yield_stress, saturation_stress, rate } => {
-            (5, [yield_stress, saturation_stress, rate], [true, true, false])
-        }
-        Hardening::Table { .. } => (6, [0.0; 3], [false; 3]),
-    }
+    });
+    lines.map(|line| line.trim_end().to_owned()).join("\n")
 }
 
 /// A name that can stand in a comment of any language.

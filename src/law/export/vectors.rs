@@ -8,7 +8,7 @@ use crate::law::LawError;
 use crate::law::model::Law;
 use crate::law::tabulated::Tabulated;
 use crate::law::variables::Body;
-use crate::material::{Hardening, MaterialError};
+use crate::material::{Hardening, HardeningLaw, MaterialError};
 use crate::random::Seeded;
 
 /// Seed of the vectors that are exported.
@@ -16,28 +16,28 @@ pub const SEED: u64 = 2014;
 /// Paths of every hardening law.
 const PATHS: usize = 2;
 
-/// A hardening law by the number it has in the exports, and its numbers there.
-fn hardening(kind: usize, e: f64, random: &mut Seeded) -> Result<(Hardening<f64>, [f64; 3]), MaterialError> {
+/// A hardening law and its numbers in the exports.
+fn hardening(law: HardeningLaw, e: f64, random: &mut Seeded) -> Result<(Hardening<f64>, [f64; 3]), MaterialError> {
     let stress = e * (10f64).powf(random.between(-4.0, -1.8));
-    Ok(match kind {
-        1 => (Hardening::ideal(stress)?, [stress, 0.0, 0.0]),
-        2 => {
+    Ok(match law {
+        HardeningLaw::Ideal => (Hardening::ideal(stress)?, [stress, 0.0, 0.0]),
+        HardeningLaw::Linear => {
             let modulus = e * random.between(0.0, 0.1);
             (Hardening::linear(stress, modulus)?, [stress, modulus, 0.0])
         }
-        3 => {
+        HardeningLaw::Power => {
             let (coefficient, exponent) = (stress * random.between(0.5, 5.0), random.between(0.1, 0.9));
             (Hardening::power(stress, coefficient, exponent)?, [stress, coefficient, exponent])
         }
-        4 => {
+        HardeningLaw::Hollomon => {
             let (coefficient, exponent) = (4.0 * stress, random.between(2.0, 10.0));
             (Hardening::hollomon(coefficient, exponent, e)?, [coefficient, exponent, 0.0])
         }
-        5 => {
+        HardeningLaw::Voce => {
             let (saturation, rate) = (stress * random.between(1.0, 3.0), random.between(1.0, 30.0));
             (Hardening::voce(stress, saturation, rate)?, [stress, saturation, rate])
         }
-        _ => (Hardening::Elastic, [0.0; 3]),
+        HardeningLaw::Elastic | HardeningLaw::Table => (Hardening::Elastic, [0.0; 3]),
     })
 }
 
@@ -92,8 +92,10 @@ fn write_path(law: &Law, path: usize, random: &mut Seeded, text: &mut String) ->
         7 => (nu, 0.0),
         _ => (nu, friction),
     };
-    let kind = path % 6;
-    let (hardening, numbers) = hardening(kind, e, random).ok()?;
+    // All but the table.
+    let law_of_path = HardeningLaw::ALL[path % 6];
+    let (hardening, numbers) = hardening(law_of_path, e, random).ok()?;
+    let kind = law_of_path.code().into();
     let body = Body { sphere: ElasticSphere { radius, youngs_modulus: e, poissons_ratio: nu }, hardening };
     let pair = law.contact_parameters(&body, friction).ok()?;
     let deepest = radius * (10f64).powf(random.between(-4.0, -0.8));

@@ -15,7 +15,7 @@
 
 // `!(x > 0)` is true for a NaN, which is what it is written for.
 
-use super::MaterialError;
+use super::{HardeningLaw, MaterialError, hollomon_yield_stress};
 use crate::lanes::Number;
 use crate::real::Real;
 
@@ -163,8 +163,7 @@ impl<R: Real> Hardening<R> {
             let remedy = "give m of sigma = sigma_0 eps^(1/m), a finite number above 1";
             return Err(MaterialError::Parameter { law, parameter: "exponent", value: exponent, remedy });
         }
-        // (sigma_0^m / E)^(1/(m-1)) = E (sigma_0/E)^(m/(m-1)), which does not overflow.
-        let yield_stress = youngs_modulus * (coefficient / youngs_modulus).powf(exponent / (exponent - 1.0));
+        let yield_stress = hollomon_yield_stress(coefficient, exponent, youngs_modulus);
         let yield_stress = positive(law, "yield stress that follows from coefficient and exponent", yield_stress)?;
         Ok(Self::Hollomon {
             coefficient: R::of(coefficient),
@@ -219,6 +218,19 @@ impl<R: Real> Hardening<R> {
             rows.push([R::of(alpha), R::of(stress), R::of(work)]);
         }
         Ok(Self::Table { points: rows })
+    }
+
+    /// Which law it is.
+    pub fn law(&self) -> HardeningLaw {
+        match self {
+            Self::Elastic => HardeningLaw::Elastic,
+            Self::Ideal { .. } => HardeningLaw::Ideal,
+            Self::Linear { .. } => HardeningLaw::Linear,
+            Self::Power { .. } => HardeningLaw::Power,
+            Self::Hollomon { .. } => HardeningLaw::Hollomon,
+            Self::Voce { .. } => HardeningLaw::Voce,
+            Self::Table { .. } => HardeningLaw::Table,
+        }
     }
 
     /// sigma(alpha), stress; infinite for the elastic law.

@@ -21,12 +21,14 @@
 mod error;
 pub mod hardening;
 pub mod j2;
+mod laws;
 pub mod multistep;
 pub mod point;
 
 pub use error::MaterialError;
 pub use hardening::Hardening;
 pub use j2::{Response, deviatoric_tangent, return_mapping, return_mapping_of_eight};
+pub use laws::{HardeningLaw, HardeningParameter, hollomon_yield_stress};
 
 use serde::{Deserialize, Serialize};
 
