@@ -23,7 +23,6 @@ use crate::law::interpolated::{self, Interpolated};
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
-use crate::law::tabulated::Against;
 use crate::law::{Law, LawError, LawFile, fit, report};
 use crate::output::write_atomically;
 
@@ -71,8 +70,8 @@ pub struct FitArgs {
     /// materials, on a plane or of equal spheres.
     #[arg(long, conflicts_with = "prior")]
     pub interpolate: bool,
-    /// With --interpolate: where cases were not sheared back, take the stiffness and the sharpness of
-    /// a reversal from this law by interpolation; `built-in` is that on a plane.
+    /// With --interpolate: where cases were not sheared back or released, take the stiffness of a
+    /// reversal and of an unloading from this law by interpolation; `built-in` is that on a plane.
     #[arg(long, value_name = "LAW.json", requires = "interpolate")]
     pub reversal: Option<PathBuf>,
     /// Print the law as JSON, as in DIR/law.json, instead of the tables.
@@ -157,7 +156,7 @@ pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
 fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
     if args.interpolate {
         let reversal = match &args.reversal {
-            Some(path) if path == Path::new(BUILT_IN) => Some(Interpolated::built_in(Against::Plane)?),
+            Some(path) if path == Path::new(BUILT_IN) => Some(Interpolated::built_in()?),
             Some(path) => Some(Interpolated::read(path)?),
             None => None,
         };
@@ -242,7 +241,7 @@ fn summary(law: &Law) -> String {
 fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
-    let law = LawFile::read_for(&args.law, Some(&case))?;
+    let law = LawFile::read_or_built_in(&args.law)?;
     let in_case = |source: LawError| CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) };
     let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { law.follow(&case) }.map_err(in_case)?;
     warn_out_of_range(Path::new(&input.name), &out_of_range);
@@ -288,7 +287,7 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
 fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
     let input = args.case.as_deref().map(Input::read).transpose()?;
     let case = input.as_ref().map(|input| input.case(&args.set)).transpose()?;
-    let law = LawFile::read_for(&args.law, case.as_ref())?;
+    let law = LawFile::read_or_built_in(&args.law)?;
     let in_case = |source: LawError| match &input {
         Some(input) => CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) },
         None => source.into(),

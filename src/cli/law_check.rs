@@ -51,7 +51,7 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
     args.device.start_threads()?;
     let case = args.case.as_ref().map(|path| Case::load(path, &args.set)).transpose()?;
-    let law = LawFile::read_for(&args.law, case.as_ref())?;
+    let law = LawFile::read_or_built_in(&args.law)?;
     let cases = match (case, &law) {
         (Some(case), _) => vec![("the case", case)],
         (None, LawFile::Table(table)) => vec![("the table's material", table.deepest_case()?)],

@@ -46,8 +46,8 @@ enum Given {
 }
 
 impl Given {
-    fn read(args: &ComposeArgs, case: &Case) -> Result<Self, CliError> {
-        match (LawFile::read_for(&args.sphere, Some(case))?, &args.opponent) {
+    fn read(args: &ComposeArgs) -> Result<Self, CliError> {
+        match (LawFile::read_or_built_in(&args.sphere)?, &args.opponent) {
             (LawFile::Interpolated(law), None) => Ok(Self::Interpolated(law)),
             (LawFile::Table(sphere), opponent) => {
                 let opponent = opponent.as_deref().map(Tabulated::read).transpose()?.unwrap_or_else(|| (*sphere).clone());
@@ -74,7 +74,7 @@ impl Given {
 /// Makes the table and prints it.
 pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
     let case = Case::load(&args.case, &args.set)?;
-    let law = Given::read(args, &case)?;
+    let law = Given::read(args)?;
     let file = args.out.join("law.json");
     if file.exists() && !args.force {
         return Err(CliError::FileThere { file });

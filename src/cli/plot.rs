@@ -86,7 +86,7 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
 
 fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
     let case = Case::load(&run.case(), &[])?;
-    let law = args.law.as_deref().map(|law| LawFile::read_for(law, Some(&case))).transpose()?;
+    let law = args.law.as_deref().map(LawFile::read_or_built_in).transpose()?;
     let history = read_history(&run.history())?;
     let width = args.width.or(case.output.plot_width);
     let view = View { axes: Axes::of(&case, args.units.into()), sheet: Sheet { width } };

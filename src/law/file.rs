@@ -7,7 +7,7 @@ use super::interpolated::{self, Interpolated};
 use super::json;
 use super::model::{Axisymmetric, MARGIN, OutOfRange};
 use super::predict::over_a_plane;
-use super::tabulated::{self, Against, Tabulated};
+use super::tabulated::{self, Tabulated};
 use super::variables::{Body, yield_lambda};
 use super::{Law, LawError};
 use crate::case::{Case, Friction};
@@ -44,16 +44,15 @@ impl LawFile {
     }
 
     /// Reads any kind; of the name `built-in` it is the law by interpolation that comes with the
-    /// program, for the contact of the case, or of a sphere on a plane if there is none.
+    /// program.
     ///
     /// # Errors
     /// As [`read`](Self::read).
-    pub fn read_for(path: &Path, case: Option<&Case>) -> Result<Self, LawError> {
-        if path != Path::new(BUILT_IN) {
-            return Self::read(path);
+    pub fn read_or_built_in(path: &Path) -> Result<Self, LawError> {
+        if path == Path::new(BUILT_IN) {
+            return Ok(Self::Interpolated(Box::new(Interpolated::built_in()?)));
         }
-        let against = case.map_or(Against::Plane, Against::of);
-        Ok(Self::Interpolated(Box::new(Interpolated::built_in(against)?)))
+        Self::read(path)
     }
 
     /// The same law where it is of one kind of contact already; the table of the case's contact

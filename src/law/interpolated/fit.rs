@@ -238,8 +238,13 @@ fn sample(
     let (body, sphere) = bodies(case)?;
     let Some(mut outputs) = outputs(&sphere, friction, &measured) else { return Ok(None) };
     let inputs = inputs(&body, &sphere, friction, measured.h);
-    if let Some(law) = reversal.filter(|_| measured.back.is_empty()) {
-        outputs.reverse_as(&law.outputs(&inputs));
+    if let Some(other) = reversal.map(|law| law.outputs(&inputs)) {
+        if measured.back.is_empty() {
+            outputs.reverse_as(&other);
+        }
+        if measured.release.len() < 2 {
+            outputs.unload_as(&other);
+        }
     }
     let own = scaled(case).material;
     let material = materials.iter().position(|known| *known == own).unwrap_or_else(|| {

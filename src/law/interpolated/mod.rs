@@ -28,7 +28,7 @@ use super::report::RegionError;
 use super::tabulated::{self, Against, Tabulated, equivalent};
 use super::variables::{Body, yield_lambda};
 use crate::analytical::ElasticSphere;
-use crate::case::{Case, Friction};
+use crate::case::{Case, Friction, Opponent};
 
 pub use fit::fit;
 
@@ -37,10 +37,11 @@ pub const FORMAT: &str = "asperity-law-interpolated";
 /// Version of its layout.
 pub const VERSION: u32 = 1;
 
-/// How much deeper than needed the tables of the two bodies of a pair are.
+/// How much deeper than needed the tables of the two bodies of a pair are, and are made if that
+/// was not enough,
 const SPARE: f64 = 1.1;
-/// h/R of an equal pair beyond which no body of a pair is followed.
-const DEEPEST: f64 = 0.6;
+/// up to so many times.
+const DEEPEST: f64 = 3.0;
 
 /// Number of functions.
 const PROCESSES: usize = NUMBERS + 2 * COMPONENTS;
@@ -71,7 +72,7 @@ pub struct Source {
     pub cases: usize,
     /// Different materials.
     pub materials: usize,
-    /// Study of the law that the reversals of cases without one are taken from.
+    /// Study of the law that reversals and unloadings are taken from where cases have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reversal: Option<String>,
     /// Cases left out, with the reasons.
@@ -126,22 +127,17 @@ fn bodies(case: &Case) -> Result<(Body, ElasticSphere), LawError> {
     Ok((Body::new(1.0, &scaled.material)?, equivalent(&scaled)))
 }
 
-/// The laws that come with the program.
-const BUILT_IN: [(Against, &str); 2] = [
-    (Against::Plane, include_str!("../../../fixtures/law/interpolated/plane.json")),
-    (Against::EqualSphere, include_str!("../../../fixtures/law/interpolated/equal-pair.json")),
-];
+/// The law that comes with the program.
+const BUILT_IN: &str = include_str!("../../../fixtures/law/interpolated/plane.json");
 
 impl Interpolated {
-    /// The law that comes with the program for the contact of a case: that of a rigid plane, or of
-    /// equal spheres, from which unlike ones are made.
+    /// The law that comes with the program, of spheres on a rigid plane.
     ///
     /// # Errors
     /// A file that was no law when the program was built.
-    pub fn built_in(against: Against) -> Result<Self, LawError> {
-        let [plane, pair] = BUILT_IN;
-        let (_, text) = if against == plane.0 { plane } else { pair };
-        Self::from_json(text).map_err(|problem| LawError::BadLaw { path: "fixtures/law/interpolated".into(), problem })
+    pub fn built_in() -> Result<Self, LawError> {
+        let path = "fixtures/law/interpolated/plane.json".into();
+        Self::from_json(BUILT_IN).map_err(|problem| LawError::BadLaw { path, problem })
     }
 
     /// Reads one and checks it.
@@ -210,18 +206,20 @@ impl Interpolated {
         Tabulated::interpolated(case, levels, self.source.elements_per_contact_radius)
     }
 
-    /// The table of a case's contact, of two bodies that deform too: of these, each has its own
-    /// table as an equal pair, as deep as it is needed, and they are put in series.
+    /// The table of a case's contact, of two bodies that deform too: of these each has its own table
+    /// against what the law is of, and they are put in series.
     ///
     /// # Errors
     /// Those of [`table`](Self::table) and of [`compose`](tabulated::compose).
     pub fn compose(&self, case: &Case) -> Result<Tabulated, LawError> {
-        let deepest = *tabulated::depths(case)?.last().unwrap_or(&0.0) * case.sphere.radius / case.effective_radius();
-        let mut depth = 2.0 * SPARE * deepest;
+        if Against::of(case) == Against::EqualSphere && self.body == Against::Plane {
+            return self.compose(&like_itself(case)).map(|table| table.of_an_equal_pair(case));
+        }
+        let mut spare = SPARE;
         loop {
-            let Some([sphere, other]) = tabulated::alone(case, depth) else { return self.table(case) };
+            let Some([sphere, other]) = tabulated::alone(case, self.body, spare) else { return self.table(case) };
             match tabulated::compose(case, [&self.table(&sphere)?, &self.table(&other)?]) {
-                Err(LawError::Shallow { needs, .. }) if needs < DEEPEST => depth = (SPARE * needs).max(SPARE * depth),
+                Err(LawError::Shallow { .. }) if spare < DEEPEST => spare *= SPARE,
                 composed => return composed,
             }
         }
@@ -233,10 +231,12 @@ impl Interpolated {
     /// # Errors
     /// The hardening law of the case.
     pub fn out_of_range(&self, case: &Case, h: f64) -> Result<Vec<OutOfRange>, LawError> {
-        // Of two bodies that are put in series each is asked as an equal pair.
-        if let Some(bodies) = tabulated::alone(case, 2.0 * h / case.effective_radius()) {
-            let depth = 2.0 * h / case.effective_radius();
-            let each = bodies.iter().map(|body| self.out_of_range(body, depth)).collect::<Result<Vec<_>, _>>()?;
+        // Of two bodies that are put in series each is asked by itself.
+        let equal = Against::of(case) == Against::EqualSphere && self.body == Against::Plane;
+        let pair = if equal { &like_itself(case) } else { case };
+        if let Some(bodies) = tabulated::alone(pair, self.body, 1.0) {
+            let depth = |body: &Case| h / case.effective_radius() * if body.opponent.is_some() { 2.0 } else { 1.0 };
+            let each = bodies.iter().map(|body| self.out_of_range(body, depth(body))).collect::<Result<Vec<_>, _>>()?;
             return Ok(each.concat());
         }
         let (body, sphere) = bodies(case)?;
@@ -260,6 +260,12 @@ impl Interpolated {
             .map(|(quantity, value, range)| OutOfRange { quantity, value, range })
             .collect())
     }
+}
+
+/// The case of an equal pair as one of two bodies.
+fn like_itself(case: &Case) -> Case {
+    let opponent = Opponent::Deforming { radius: Some(case.sphere.radius), material: case.material.clone() };
+    Case { opponent: Some(opponent), ..case.clone() }
 }
 
 /// mu; full stick is refused before anything is asked.

@@ -12,7 +12,8 @@ pub const NUMBERS: usize = 6;
 /// Their names in files.
 pub const NAMES: [&str; NUMBERS] = ["F_N0", "a0", "delta_T", "unloading radius", "k_T", "backbone"];
 
-/// The first of the numbers of a reversal.
+/// Place of the unloading radius among the numbers, and the first of those of a reversal.
+const UNLOADING: usize = 3;
 const REVERSAL: usize = 4;
 
 /// The curves end where the square root of delta_T over the length of the slip is this: full slip
@@ -86,6 +87,11 @@ impl Outputs {
     /// Takes the stiffness and the exponent of a reversal from another contact.
     pub fn reverse_as(&mut self, other: &Self) {
         self.numbers[REVERSAL..].copy_from_slice(&other.numbers[REVERSAL..]);
+    }
+
+    /// Takes the stiffness of an unloading from another contact.
+    pub fn unload_as(&mut self, other: &Self) {
+        self.numbers[UNLOADING] = other.numbers[UNLOADING];
     }
 
     /// The level of a table that has these at the indentation `h`.

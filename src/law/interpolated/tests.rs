@@ -126,24 +126,31 @@ fn what_it_was_not_made_for_is_said() {
     assert!(refused.contains("Give the case too"), "{refused}");
 }
 
-/// F_N0, a0 and F_T of `fixtures/cases/unlike.toml`, simulated with 6 elements, and of an unlike
-/// pair on a flat.
 #[test]
-fn two_unlike_bodies_are_put_in_series() {
-    let law = Interpolated::read(&fixture("equal-pair.json")).unwrap();
-    for case in cases("[opponent]\nequal = true") {
-        assert_eq!(law.compose(&case).unwrap(), law.table(&case).unwrap());
-    }
-    let other = |radius: &str| {
+fn two_bodies_are_put_in_series() {
+    let law = plane();
+    let other = |radius: &str, times: f64| {
         format!(
-            "[opponent]\n{radius}\n[opponent.material]\nyoungs_modulus = 630.0\npoissons_ratio = 0.3\n\
-             hardening = {{ law = \"ideal\", yield_stress = 0.84 }}"
+            "[opponent]\n{radius}\n[opponent.material]\nyoungs_modulus = {:?}\npoissons_ratio = 0.3\n\
+             hardening = {{ law = \"ideal\", yield_stress = {:?} }}",
+            210.0 * times,
+            0.42 * times
         )
     };
     let ideal = "{ law = \"ideal\", yield_stress = 0.42 }";
-    let [pair, flat] =
-        [other("radius = 6.0"), other("flat = true")].map(|more| law.compose(&case(ideal, 0.3, 0.3, 0.02, &more)).unwrap());
-    assert_eq!([pair.body, flat.body], [Against::OtherSphere, Against::Flat]);
+    let of = |more: &str| law.compose(&case(ideal, 0.3, 0.3, 0.02, more)).unwrap();
     let deepest = |table: &Tabulated| table.levels[table.levels.len() - 1].clone();
-    assert!(deepest(&flat).f_n0 > deepest(&pair).f_n0 && deepest(&flat).a0 > deepest(&pair).a0);
+    let [equal, alike, rigid, flat] =
+        ["[opponent]\nequal = true", &other("radius = 3.0", 1.0), &other("flat = true", 1e5), &other("flat = true", 1.0)].map(of);
+    assert_eq!([equal.body, alike.body], [Against::EqualSphere, Against::OtherSphere]);
+    assert_eq!(equal.levels, alike.levels);
+    // On a flat 1e5 times as stiff it is the law itself.
+    let (own, there) = (deepest(&of("")), deepest(&rigid));
+    for (ours, theirs) in [(there.f_n0, own.f_n0), (there.a0, own.a0), (there.slip_share, own.slip_share)] {
+        assert!((ours / theirs - 1.0).abs() < 0.005, "{there:?} {own:?}");
+    }
+    // An equal pair is pressed as each of the two is on the plane between them.
+    let half = deepest(&law.table(&case(ideal, 0.3, 0.3, 0.01, "")).unwrap());
+    assert!((deepest(&equal).f_n0 / half.f_n0 - 1.0).abs() < 0.03, "{} {}", deepest(&equal).f_n0, half.f_n0);
+    assert!(deepest(&flat).f_n0 > deepest(&equal).f_n0 && deepest(&flat).a0 > deepest(&equal).a0);
 }

@@ -138,6 +138,12 @@ impl Tabulated {
         build::of_levels(build::scaled(case), levels, elements)
     }
 
+    /// The table of two bodies that are alike as that of an equal pair, which `case` is of.
+    pub(super) fn of_an_equal_pair(self, case: &Case) -> Self {
+        let case = build::case_of(&build::scaled(case), self.elements_per_contact_radius);
+        Self { body: Against::of(&case), case: case.to_toml(), ..self }
+    }
+
     /// Writes it, whole or not at all.
     ///
     /// # Errors

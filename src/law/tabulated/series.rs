@@ -489,13 +489,22 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
 }
 
 /// The two bodies of a pair as [`compose`] wants their tables: each by itself with the friction of
-/// the pair, against an equal sphere, pressed to `depth` over its radius; R = 1, E that of the
-/// sphere. `None` of a case whose opponent does not deform.
-pub fn alone(case: &Case, depth: f64) -> Option<[Case; 2]> {
+/// the pair, on a rigid plane or against an equal sphere, pressed as deep as the pair may need, with
+/// `spare` to multiply it; R = 1, E that of the sphere. `None` of a case whose opponent does not
+/// deform.
+pub fn alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
     let scaled = case.scaled().0;
     let Some(Opponent::Deforming { material: other, .. }) = scaled.opponent.clone() else { return None };
-    let path = vec![Segment::Indentation { indentation: depth }];
-    let base = Case { sphere: Sphere { radius: 1.0, flat: false }, opponent: Some(Opponent::Equal), path, ..scaled };
+    let deepest = scaled.path.iter().fold(0.0, |deepest: f64, segment| match segment {
+        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
+        _ => deepest,
+    });
+    // One body may give way by all of h, and its R' is R* at the least; a table of an equal pair
+    // counts what both of its spheres give way.
+    let (opponent, share) = if opponent == Against::EqualSphere { (Some(Opponent::Equal), 2.0) } else { (None, 1.0) };
+    let indentation = spare * share * deepest / scaled.effective_radius();
+    let sphere = Sphere { radius: 1.0, flat: false };
+    let base = Case { sphere, opponent, path: vec![Segment::Indentation { indentation }], ..scaled };
     Some([base.clone(), Case { material: other, ..base }])
 }
 
