@@ -1,28 +1,39 @@
 //! Writes a case as an input deck for CalculiX: the same mesh, material and path, for the
 //! comparison in `benches/against_ccx`.
 //!
-//! `cargo run --release --example ccx_deck -- CASE.toml OUT.inp [--set KEY=VALUE]`
+//! `cargo run --release --example ccx_deck -- CASE.toml OUT.inp [--set KEY=VALUE]...
+//! [--overclosure N] [--stick-slope N] [--increment SHARE]`
 //!
 //! Contact is what CalculiX has: surface to surface, a linear pressure-overclosure law of slope 100
 //! E/R and a stick slope of 5 E/R, settings with which it is known to finish. The rigid plane is
-//! one large element whose nodes are all held.
+//! one large element whose nodes are all held. An opponent that deforms is meshed as Asperity does
+//! it, lies below as the mirror image of its own coordinates, and is held where the sphere is
+//! driven: at its equator, a flat on its dome. The surface of the softer body is the slave.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use asperity::case::{Case, Friction, Hold, Segment, ShearTarget};
+use asperity::case::{self, Case, Friction, Hold, Opponent, Segment, ShearTarget};
 use asperity::internals::mesh::Mesh;
 use asperity::internals::mesh::connectivity::FACES;
 use asperity::internals::simulation::problem::Problem;
 use asperity::material::Hardening;
 
-/// Slope of the pressure-overclosure law, in E/R.
-const OVERCLOSURE_SLOPE: f64 = 100.0;
-/// Slope of the traction-slip law of sticking points, in E/R.
-const STICK_SLOPE: f64 = 5.0;
-/// First and largest increment of a step: a tenth of it, with which CalculiX is known to finish.
-const LARGEST_INCREMENT: f64 = 0.1;
+/// What CalculiX can be told beside the case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Settings {
+    /// Slope of the pressure-overclosure law, in E/R.
+    overclosure_slope: f64,
+    /// Slope of the traction-slip law of sticking points, in E/R.
+    stick_slope: f64,
+    /// First and largest increment of a step, as a share of it.
+    largest_increment: f64,
+}
+
+/// Those with which CalculiX is known to finish.
+const KNOWN_TO_FINISH: Settings = Settings { overclosure_slope: 100.0, stick_slope: 5.0, largest_increment: 0.1 };
 /// Faces in CalculiX' numbering, S1 to S6, as positions in [`FACES`].
 const FACE_ORDER: [usize; 6] = [4, 5, 2, 1, 3, 0];
 /// Equivalent plastic strains at which a smooth hardening law is tabulated: from here to here, and
@@ -32,7 +43,7 @@ const TABLE: (f64, f64, usize) = (1e-5, 3.0, 80);
 type Failed = Box<dyn std::error::Error>;
 
 fn main() -> ExitCode {
-    match arguments().and_then(|(case, out, set)| write_deck(&case, &out, &set)) {
+    match arguments().and_then(|arguments| write_deck(&arguments)) {
         Ok(text) => {
             println!("{text}");
             ExitCode::SUCCESS
@@ -44,37 +55,57 @@ fn main() -> ExitCode {
     }
 }
 
-fn arguments() -> Result<(PathBuf, PathBuf, Vec<String>), Failed> {
-    let (mut files, mut set) = (Vec::new(), Vec::new());
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "--set" => set.push(arguments.next().ok_or("--set wants KEY=VALUE")?),
-            _ => files.push(PathBuf::from(argument)),
-        }
-    }
-    match <[PathBuf; 2]>::try_from(files) {
-        Ok([case, out]) => Ok((case, out, set)),
-        Err(_) => Err("usage: ccx_deck CASE.toml OUT.inp [--set KEY=VALUE]".into()),
-    }
+struct Arguments {
+    case: PathBuf,
+    out: PathBuf,
+    set: Vec<String>,
+    settings: Settings,
 }
 
-fn write_deck(case: &Path, out: &Path, set: &[String]) -> Result<String, Failed> {
+fn arguments() -> Result<Arguments, Failed> {
+    const USAGE: &str =
+        "usage: ccx_deck CASE.toml OUT.inp [--set KEY=VALUE]... [--overclosure N] [--stick-slope N] [--increment SHARE]";
+    let (mut files, mut set, mut settings) = (Vec::new(), Vec::new(), KNOWN_TO_FINISH);
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        let number = match argument.as_str() {
+            "--set" => {
+                set.push(arguments.next().ok_or("--set wants KEY=VALUE")?);
+                continue;
+            }
+            "--overclosure" => &mut settings.overclosure_slope,
+            "--stick-slope" => &mut settings.stick_slope,
+            "--increment" => &mut settings.largest_increment,
+            _ => {
+                files.push(PathBuf::from(argument));
+                continue;
+            }
+        };
+        let given = arguments.next().and_then(|word| word.parse().ok()).filter(|given| *given > 0.0);
+        *number = given.ok_or_else(|| format!("{argument} wants a number > 0"))?;
+    }
+    let [case, out] = <[PathBuf; 2]>::try_from(files).map_err(|_| USAGE)?;
+    Ok(Arguments { case, out, set, settings })
+}
+
+fn write_deck(Arguments { case, out, set, settings }: &Arguments) -> Result<String, Failed> {
     let case = Case::load(case, set)?;
     let problem = Problem::new(&case)?;
-    std::fs::write(out, deck(&case, &problem)?).map_err(|error| format!("{}: {error}", out.display()))?;
+    std::fs::write(out, deck(&case, &problem, settings)?).map_err(|error| format!("{}: {error}", out.display()))?;
     let mesh = &problem.model.mesh;
     Ok(format!("{}: {} nodes, {} elements", out.display(), mesh.nodes.len(), mesh.elements.len()))
 }
 
 /// The whole deck, in the case's units.
-fn deck(case: &Case, problem: &Problem) -> Result<String, Failed> {
+fn deck(case: &Case, problem: &Problem, settings: &Settings) -> Result<String, Failed> {
+    if problem.equal_pair || problem.rigid.is_some() {
+        return Err("a deck has a plane or a meshed opponent: give two equal spheres as opponent.radius".into());
+    }
     let mesh = &problem.model.mesh;
-    let mut text =
-        String::from("** Half of the lower half of a sphere on a rigid plane; symmetry plane y = 0, equator driven.\n");
+    let mut text = String::from("** Half of the lower half of a sphere; symmetry plane y = 0, equator driven.\n");
     geometry(&mut text, mesh, case.sphere.radius)?;
-    material(&mut text, case, &problem.model.material.hardening)?;
-    contact(&mut text, case)?;
+    materials(&mut text, case, problem)?;
+    contact(&mut text, case, problem, settings)?;
     let (mut h, mut delta_t) = (0.0, 0.0);
     for segment in &case.path {
         match segment {
@@ -89,43 +120,71 @@ fn deck(case: &Case, problem: &Problem) -> Result<String, Failed> {
                 return Err("a release has no end known in advance: give an indentation to go back to".into());
             }
         }
-        step(&mut text, h, delta_t)?;
+        step(&mut text, h, delta_t, settings.largest_increment)?;
     }
     Ok(text)
 }
 
-/// Nodes, elements, sets, surfaces and the plane.
+/// Nodes, elements, sets and surfaces of the sphere and what it is pressed against.
 fn geometry(text: &mut String, mesh: &Mesh, radius: f64) -> Result<(), Failed> {
-    let nodes = mesh.nodes.len();
+    let couple = mesh.couple.as_deref();
+    let first_below = couple.map_or(mesh.nodes.len(), |couple| couple.node);
+    let first_mirrored = couple.map_or(mesh.elements.len(), |couple| couple.element);
     text.push_str("*NODE, NSET=BODY\n");
     for (i, x) in mesh.nodes.iter().enumerate() {
-        writeln!(text, "{}, {:.12e}, {:.12e}, {:.12e}", i + 1, x[0] * radius, x[1] * radius, x[2] * radius)?;
+        // 0 - z, not -z, which would write -0.
+        let z = if i < first_below { x[2] } else { 0.0 - x[2] };
+        writeln!(text, "{}, {:.12e}, {:.12e}, {:.12e}", i + 1, x[0] * radius, x[1] * radius, z * radius)?;
     }
-    text.push_str("*ELEMENT, TYPE=C3D8, ELSET=SPHERE\n");
     for (e, element) in mesh.elements.iter().enumerate() {
-        let ids: Vec<String> = element.iter().map(|n| (n + 1).to_string()).collect();
+        let mut ids = element.map(|n| (n + 1).to_string());
+        if e == 0 {
+            text.push_str("*ELEMENT, TYPE=C3D8, ELSET=SPHERE\n");
+        } else if e == first_mirrored {
+            text.push_str("*ELEMENT, TYPE=C3D8, ELSET=OPPONENT\n");
+        }
+        if e >= first_mirrored {
+            // Bottom and top exchanged, which keeps the volume of a mirror image positive.
+            ids.rotate_left(4);
+        }
         writeln!(text, "{}, {}", e + 1, ids.join(", "))?;
     }
+    let (driven, held): (Vec<u32>, Vec<u32>) = mesh.plate_nodes.iter().partition(|n| (**n as usize) < first_below);
+    let prescribed: BTreeSet<u32> = mesh.plate_nodes.iter().copied().collect();
+    let symmetry: Vec<u32> = mesh.symmetry_nodes.iter().copied().filter(|n| !prescribed.contains(n)).collect();
+    set(text, "EQUATOR", &driven)?;
+    set(text, "SYMMETRY", &symmetry)?;
+    let (above, below): (Vec<_>, Vec<_>) = element_faces(mesh).into_iter().partition(|(e, _)| *e < first_mirrored);
+    surface(text, "BELOW", &above)?;
+    if couple.is_some() {
+        set(text, "HELD", &held)?;
+        // In elements that are turned, S1 and S2 have changed places.
+        let turned = |&(e, number): &(usize, usize)| (e, if number < 2 { 1 - number } else { number });
+        return surface(text, "ABOVE", &below.iter().map(turned).collect::<Vec<_>>());
+    }
+    plane(text, mesh, radius)
+}
+
+/// The rigid plane, one large element; its top is the surface ABOVE.
+fn plane(text: &mut String, mesh: &Mesh, radius: f64) -> Result<(), Failed> {
+    let (nodes, element) = (mesh.nodes.len(), mesh.elements.len());
     let (far, below) = (2.0 * radius, -0.5 * radius);
-    text.push_str("*NODE, NSET=PLANE_NODES\n");
+    text.push_str("*NODE, NSET=HELD\n");
     let square = [[-far, -far], [far, -far], [far, far], [-far, far]];
     for (i, (z, [x, y])) in [below, 0.0].iter().flat_map(|z| square.map(|p| (*z, p))).enumerate() {
         writeln!(text, "{}, {x:.6e}, {y:.6e}, {z:.6e}", nodes + 1 + i)?;
     }
-    let plane = mesh.elements.len() + 1;
     let ids: Vec<String> = (1..=8).map(|i| (nodes + i).to_string()).collect();
-    writeln!(text, "*ELEMENT, TYPE=C3D8, ELSET=PLANE\n{plane}, {}", ids.join(", "))?;
+    writeln!(text, "*ELEMENT, TYPE=C3D8, ELSET=OPPONENT\n{}, {}", element + 1, ids.join(", "))?;
+    surface(text, "ABOVE", &[(element, 1)])
+}
 
-    let driven: std::collections::BTreeSet<u32> = mesh.plate_nodes.iter().copied().collect();
-    let symmetry: Vec<u32> = mesh.symmetry_nodes.iter().copied().filter(|n| !driven.contains(n)).collect();
-    set(text, "EQUATOR", &mesh.plate_nodes)?;
-    set(text, "SYMMETRY", &symmetry)?;
-    text.push_str("*SURFACE, NAME=BELOW, TYPE=ELEMENT\n");
-    for (element, face) in element_faces(mesh) {
-        writeln!(text, "{}, S{}", element + 1, face + 1)?;
+/// A surface of faces: element and number, both counted from 0.
+fn surface(text: &mut String, name: &str, faces: &[(usize, usize)]) -> Result<(), Failed> {
+    writeln!(text, "*SURFACE, NAME={name}, TYPE=ELEMENT")?;
+    for (element, number) in faces {
+        writeln!(text, "{}, S{}", element + 1, number + 1)?;
     }
-    // The top of the plane's element.
-    writeln!(text, "*SURFACE, NAME=PLANE_TOP, TYPE=ELEMENT\n{plane}, S2")?;
     Ok(())
 }
 
@@ -144,7 +203,7 @@ fn element_faces(mesh: &Mesh) -> Vec<(usize, usize)> {
         face.sort_unstable();
         face
     };
-    let wanted: std::collections::BTreeSet<[u32; 4]> = mesh.contact_faces.iter().map(|&face| sorted(face)).collect();
+    let wanted: BTreeSet<[u32; 4]> = mesh.contact_faces.iter().map(|&face| sorted(face)).collect();
     let mut found = Vec::with_capacity(wanted.len());
     for (e, element) in mesh.elements.iter().enumerate() {
         for (number, at) in FACE_ORDER.iter().enumerate() {
@@ -156,51 +215,66 @@ fn element_faces(mesh: &Mesh) -> Vec<(usize, usize)> {
     found
 }
 
-/// Elasticity and the hardening curve; stresses in the case's units.
-fn material(text: &mut String, case: &Case, law: &Hardening<f64>) -> Result<(), Failed> {
+/// Materials of both bodies; a plane has the sphere's elasticity, which does not matter.
+fn materials(text: &mut String, case: &Case, problem: &Problem) -> Result<(), Failed> {
+    let model = &problem.model;
     let e = case.material.youngs_modulus;
-    writeln!(text, "*MATERIAL, NAME=METAL\n*ELASTIC\n{e:.12e}, {:.12e}", case.material.poissons_ratio)?;
-    if !matches!(law, Hardening::Elastic) {
-        text.push_str("*PLASTIC\n");
-        let (first, last, count) = TABLE;
-        let ratio = (last / first).powf(1.0 / (count - 1) as f64);
-        let strains = std::iter::once(0.0).chain((0..count).map(|i| first * ratio.powi(i as i32)));
-        let mut before = f64::NEG_INFINITY;
-        for strain in strains {
-            let stress = e * law.flow_stress(strain);
-            // Ideal plasticity is one line; CalculiX keeps the last stress beyond the last strain.
-            if stress != before {
-                writeln!(text, "{stress:.12e}, {strain:.12e}")?;
-            }
-            before = stress;
+    material(text, "METAL", &case.material, e, &model.material.hardening)?;
+    match (&case.opponent, &model.opponent) {
+        // Its law is in units of the sphere's E too.
+        (Some(Opponent::Deforming { material: given, .. }), Some(scaled)) => {
+            material(text, "OTHER", given, e, &scaled.hardening)?;
         }
+        _ => material(text, "OTHER", &case.material, e, &Hardening::Elastic)?,
     }
-    text.push_str("*MATERIAL, NAME=STIFF\n*ELASTIC\n");
-    writeln!(text, "{e:.12e}, 0.3")?;
-    text.push_str("*SOLID SECTION, ELSET=SPHERE, MATERIAL=METAL\n*SOLID SECTION, ELSET=PLANE, MATERIAL=STIFF\n");
+    text.push_str("*SOLID SECTION, ELSET=SPHERE, MATERIAL=METAL\n*SOLID SECTION, ELSET=OPPONENT, MATERIAL=OTHER\n");
     Ok(())
 }
 
-fn contact(text: &mut String, case: &Case) -> Result<(), Failed> {
+/// Elasticity and the hardening curve, the law's stress times `unit`; stresses in the case's units.
+fn material(text: &mut String, name: &str, given: &case::Material, unit: f64, law: &Hardening<f64>) -> Result<(), Failed> {
+    let (e, nu) = (given.youngs_modulus, given.poissons_ratio);
+    writeln!(text, "*MATERIAL, NAME={name}\n*ELASTIC\n{e:.12e}, {nu:.12e}")?;
+    if matches!(law, Hardening::Elastic) {
+        return Ok(());
+    }
+    text.push_str("*PLASTIC\n");
+    let (first, last, count) = TABLE;
+    let ratio = (last / first).powf(1.0 / (count - 1) as f64);
+    let strains = std::iter::once(0.0).chain((0..count).map(|i| first * ratio.powi(i as i32)));
+    let mut before = f64::NEG_INFINITY;
+    for strain in strains {
+        let stress = unit * law.flow_stress(strain);
+        // Ideal plasticity is one line; CalculiX keeps the last stress beyond the last strain.
+        if stress != before {
+            writeln!(text, "{stress:.12e}, {strain:.12e}")?;
+        }
+        before = stress;
+    }
+    Ok(())
+}
+
+fn contact(text: &mut String, case: &Case, problem: &Problem, settings: &Settings) -> Result<(), Failed> {
     let unit = case.material.youngs_modulus / case.sphere.radius;
     writeln!(
         text,
         "*SURFACE INTERACTION, NAME=TOUCH\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{:.12e}",
-        OVERCLOSURE_SLOPE * unit
+        settings.overclosure_slope * unit
     )?;
     match case.contact.friction {
         Friction::Coefficient(0.0) => {}
-        Friction::Coefficient(mu) => writeln!(text, "*FRICTION\n{mu:.12e}, {:.12e}", STICK_SLOPE * unit)?,
+        Friction::Coefficient(mu) => writeln!(text, "*FRICTION\n{mu:.12e}, {:.12e}", settings.stick_slope * unit)?,
         Friction::Stick => return Err("full stick is not written to decks: give a coefficient of friction".into()),
     }
-    text.push_str("*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE\nBELOW, PLANE_TOP\n");
-    text.push_str("*BOUNDARY\nPLANE_NODES, 1, 3\nSYMMETRY, 2, 2\n");
+    let slave_is_opponent = problem.couple.as_ref().is_some_and(|(slave, _)| *slave == 1);
+    let pair = if slave_is_opponent { "ABOVE, BELOW" } else { "BELOW, ABOVE" };
+    writeln!(text, "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE\n{pair}")?;
+    text.push_str("*BOUNDARY\nHELD, 1, 3\nSYMMETRY, 2, 2\n");
     Ok(())
 }
 
 /// One segment; the equator's reaction of every increment goes to the .dat file.
-fn step(text: &mut String, h: f64, delta_t: f64) -> Result<(), Failed> {
-    let largest = LARGEST_INCREMENT;
+fn step(text: &mut String, h: f64, delta_t: f64, largest: f64) -> Result<(), Failed> {
     writeln!(text, "*STEP, NLGEOM, INC=1000\n*STATIC\n{largest}, 1., 1e-6, {largest}")?;
     writeln!(text, "*BOUNDARY\nEQUATOR, 1, 1, {delta_t:.12e}\nEQUATOR, 2, 2\nEQUATOR, 3, 3, {:.12e}", -h)?;
     text.push_str("*NODE PRINT, NSET=EQUATOR, TOTALS=ONLY\nRF\n*END STEP\n");
@@ -209,7 +283,7 @@ fn step(text: &mut String, h: f64, delta_t: f64) -> Result<(), Failed> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
+    use std::path::Path;
 
     use super::*;
 
@@ -217,7 +291,11 @@ mod tests {
     const MANUAL: [[usize; 4]; 6] = [[1, 2, 3, 4], [5, 8, 7, 6], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 8, 4], [4, 8, 5, 1]];
 
     fn case(keys: &[&str]) -> (Case, Problem) {
-        let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/against_ccx/case.toml"));
+        case_of("case.toml", keys)
+    }
+
+    fn case_of(name: &str, keys: &[&str]) -> (Case, Problem) {
+        let file = &Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/against_ccx")).join(name);
         let keys: Vec<String> = ["mesh.elements_per_contact_radius=4", "mesh.fine_zone=1.3"]
             .iter()
             .chain(keys)
@@ -229,8 +307,12 @@ mod tests {
     }
 
     fn text(keys: &[&str]) -> Result<String, String> {
-        let (case, problem) = case(keys);
-        deck(&case, &problem).map_err(|error| error.to_string())
+        text_of("case.toml", keys)
+    }
+
+    fn text_of(name: &str, keys: &[&str]) -> Result<String, String> {
+        let (case, problem) = case_of(name, keys);
+        deck(&case, &problem, &KNOWN_TO_FINISH).map_err(|error| error.to_string())
     }
 
     /// Lines of data under the cards that begin with `card`.
@@ -269,7 +351,7 @@ mod tests {
             .collect();
         assert_eq!(found, wanted);
         // The plane's S2 is its top, z = 0, wide enough for the whole lower half.
-        let plane = data(&deck, "*NODE, NSET=PLANE_NODES");
+        let plane = data(&deck, "*NODE, NSET=HELD");
         for local in MANUAL[1] {
             assert!(number(plane[local - 1][3]) == 0.0 && number(plane[local - 1][1]).abs() == 2.0, "{plane:?}");
         }
@@ -277,7 +359,11 @@ mod tests {
 
     #[test]
     fn every_name_is_defined_and_every_node_held_once() {
-        let deck = text(&[]).expect("a deck");
+        ["case.toml", "pairs/unlike.toml", "pairs/larger.toml", "pairs/flat.toml"].into_iter().for_each(names_and_nodes);
+    }
+
+    fn names_and_nodes(name: &str) {
+        let deck = text_of(name, &[]).expect("a deck");
         let defined: BTreeSet<&str> = deck
             .lines()
             .filter(|l| l.starts_with('*'))
@@ -291,6 +377,92 @@ mod tests {
         let nodes = |set: &str| -> BTreeSet<String> { data(&deck, set).concat().iter().map(|n| n.to_string()).collect() };
         let (equator, symmetry) = (nodes("*NSET, NSET=EQUATOR"), nodes("*NSET, NSET=SYMMETRY"));
         assert!(!equator.is_empty() && !symmetry.is_empty() && equator.is_disjoint(&symmetry));
+        let held = nodes("*NSET, NSET=HELD");
+        assert_eq!(held.is_empty(), name == "case.toml");
+        assert!(held.is_disjoint(&symmetry) && held.is_disjoint(&equator));
+    }
+
+    /// Position of each node, and the nodes of each element from 0 on.
+    fn mesh_of(deck: &str) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
+        let nodes = data(deck, "*NODE, NSET=BODY").iter().map(|row| [1, 2, 3].map(|i| number(row[i]))).collect();
+        let element = |row: &Vec<&str>| row[1..].iter().map(|n| n.parse::<usize>().expect("a node") - 1).collect();
+        (nodes, data(deck, "*ELEMENT").iter().map(element).collect())
+    }
+
+    fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|i| a[i] - b[i])
+    }
+
+    fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    }
+
+    fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+        (0..3).map(|i| a[i] * b[i]).sum()
+    }
+
+    #[test]
+    fn an_opponent_lies_below_with_its_volume_and_its_surface() {
+        for name in ["pairs/unlike.toml", "pairs/larger.toml", "pairs/flat.toml"] {
+            let deck = text_of(name, &[]).expect("a deck");
+            let (nodes, elements) = mesh_of(&deck);
+            let above = data(&deck, "*ELEMENT, TYPE=C3D8, ELSET=SPHERE").len();
+            assert!(0 < above && above < elements.len());
+            for (e, element) in elements.iter().enumerate() {
+                let at = |i: usize| nodes[element[i]];
+                let edges = [1, 3, 4].map(|i| minus(at(i), at(0)));
+                assert!(dot(cross(edges[0], edges[1]), edges[2]) > 0.0, "{name}: element {e}");
+                assert!((0..8).all(|i| if e < above { at(i)[2] >= 0.0 } else { at(i)[2] <= 0.0 }), "{name}: element {e}");
+            }
+            // The manual has the nodes of all faces around the inward normal: up on the sphere, down
+            // in what lies below. Both surfaces have a node at the pole.
+            for (surface, inward) in [("BELOW", 1.0), ("ABOVE", -1.0)] {
+                let mut nearest = f64::INFINITY;
+                for row in data(&deck, &format!("*SURFACE, NAME={surface},")) {
+                    let element: usize = row[0].parse().expect("an element");
+                    let side: usize = row[1].strip_prefix('S').and_then(|s| s.parse().ok()).expect("a side");
+                    let corners = MANUAL[side - 1].map(|local| nodes[elements[element - 1][local - 1]]);
+                    let normal = cross(minus(corners[2], corners[0]), minus(corners[3], corners[1]));
+                    assert!((element - 1 < above) == (inward > 0.0), "{name}: {surface} has the other body");
+                    nearest = corners.iter().map(|x| dot(*x, *x)).fold(nearest, f64::min);
+                    let centre = [0, 1, 2].map(|i| corners.iter().map(|x| x[i]).sum::<f64>() / 4.0);
+                    if dot(centre, centre) < 0.01 {
+                        assert!(inward * normal[2] > 0.0, "{name}: {surface} {row:?}");
+                    }
+                }
+                assert!(nearest < 1e-20, "{name}: {surface} is {nearest} from the pole");
+            }
+        }
+    }
+
+    #[test]
+    fn each_body_has_its_material_and_the_softer_one_is_the_slave() {
+        let plastic = |deck: &str| data(deck, "*PLASTIC").iter().map(|row| number(row[0])).collect::<Vec<_>>();
+        let elastic = |deck: &str| data(deck, "*ELASTIC").iter().map(|row| [number(row[0]), number(row[1])]).collect::<Vec<_>>();
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
+        let unlike = text_of("pairs/unlike.toml", &[]).expect("a deck");
+        assert_eq!(elastic(&unlike), [[200e3, 0.3], [600e3, 0.3]]);
+        let yields = plastic(&unlike);
+        assert!(yields.len() == 2 && near(yields[0], 400.0) && near(yields[1], 800.0), "{yields:?}");
+        assert_eq!(data(&unlike, "*CONTACT PAIR"), [["BELOW", "ABOVE"]]);
+        let larger = text_of("pairs/larger.toml", &[]).expect("a deck");
+        assert_eq!(elastic(&larger), [[200e3, 0.3], [100e3, 0.33]]);
+        assert_eq!(data(&larger, "*CONTACT PAIR"), [["ABOVE", "BELOW"]]);
+        // 200 + 600 sqrt(alpha), after the sphere's 81 rows, of which the last is at alpha = 3.
+        let yields = plastic(&larger);
+        assert!(near(yields[81], 200.0) && near(yields[161], 200.0 + 600.0 * 3f64.sqrt()), "{yields:?}");
+        let bottom = |deck: &str| mesh_of(deck).0.iter().map(|x| x[2]).fold(0.0, f64::min);
+        assert!(near(bottom(&unlike), -1.0) && near(bottom(&larger), -2.0));
+    }
+
+    #[test]
+    fn settings_are_what_was_asked_for() {
+        let (case, problem) = case(&[]);
+        let settings = Settings { overclosure_slope: 200.0, stick_slope: 20.0, largest_increment: 0.05 };
+        let deck = deck(&case, &problem, &settings).expect("a deck");
+        assert_eq!(number(data(&deck, "*SURFACE BEHAVIOR")[0][0]), 200.0 * 200e3);
+        assert_eq!(number(data(&deck, "*FRICTION")[0][1]), 20.0 * 200e3);
+        assert!(data(&deck, "*STATIC").iter().all(|row| number(row[0]) == 0.05 && number(row[3]) == 0.05));
     }
 
     #[test]
@@ -322,6 +494,7 @@ mod tests {
             ("path.1.shear=\"full-slip\"", "path.1.shear=0.03"),
             ("path.1.hold=\"normal-force\"", "hold"),
             ("contact.friction=\"stick\"", "stick"),
+            ("opponent.equal=true", "opponent.radius"),
         ] {
             let error = text(&[key]).expect_err(key);
             assert!(error.contains(word), "{error}");

@@ -2,8 +2,11 @@
 """Runs one case with Asperity and with CalculiX on the same mesh and prints processor seconds, iterations and curves side by side.
 
     python3 benches/against_ccx/compare.py [CASE.toml] [--out DIR] [--set KEY=VALUE]... [--profile release|dev] [--threads N]
+        [--deck "--stick-slope 20"] [--finer N] [--kept]
 
 Needs cargo, and `ccx` (Debian and Ubuntu: apt-get install calculix-ccx). Without ccx it leaves the deck, says so and ends with 1.
+--deck has further words for the example ccx_deck; --finer runs Asperity with N elements along the contact radius too; --kept runs
+nothing and prints from what lies in DIR.
 """
 
 import argparse
@@ -80,28 +83,28 @@ def asperity_at(rows, segment, h, shear):
     return [float("nan")] * 2
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("case", nargs="?", type=Path, default=HERE / "case.toml")
-    parser.add_argument("--out", type=Path, default=ROOT / "target" / "against_ccx")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
-    parser.add_argument("--profile", choices=["release", "dev"], default="release")
-    parser.add_argument("--threads", type=int, default=1)
-    options = parser.parse_args()
-    out = options.out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
+def history(folder):
+    with open(folder / "history.csv") as file:
+        return list(csv.DictReader(file))
+
+
+def run(options, out):
+    """Both programs, with what they took in times.json."""
     sets = [word for value in options.set for word in ("--set", value)]
     asperity, deck = build(options.profile)
 
-    ours = [asperity, "run", options.case, "--out", out / "asperity", "--device", "cpu", "--threads", options.threads, *sets]
-    our_cpu, our_wall = measured(ours, out / "asperity.log")
-    measured([deck, options.case, out / "deck.inp", *sets], out / "deck.log")
-    summary = json.loads((out / "asperity" / "summary.json").read_text())
-    with open(out / "asperity" / "history.csv") as file:
-        rows = list(csv.DictReader(file))
+    def ours(folder, *more):
+        command = [asperity, "run", options.case, "--out", out / folder, "--force", "--device", "cpu", "--threads", options.threads]
+        return measured([*command, *sets, *more], out / f"{folder}.log")
 
+    times = {"asperity": ours("asperity")}
+    if options.finer:
+        times["finer"] = ours("finer", "--set", f"mesh.elements_per_contact_radius={options.finer}")
+    measured([deck, options.case, out / "deck.inp", *sets, *options.deck.split()], out / "deck.log")
     if shutil.which("ccx") is None:
-        print(f"asperity: {summary['unknowns']} unknowns, {summary['steps']} steps, {summary['newton_iterations']} iterations, {our_cpu:.1f} CPU s")
+        summary = json.loads((out / "asperity" / "summary.json").read_text())
+        took = f"{summary['steps']} steps, {summary['newton_iterations']} iterations, {times['asperity'][0]:.1f} CPU s"
+        print(f"asperity: {summary['unknowns']} unknowns, {took}")
         sys.exit(
             f"ccx is not installed, so there is nothing to compare with: the deck is {out / 'deck.inp'}. "
             "On Debian and Ubuntu: apt-get install --no-install-recommends calculix-ccx"
@@ -109,7 +112,29 @@ def main():
     for left in ("deck.dat", "deck.sta"):
         (out / left).unlink(missing_ok=True)
     environment = os.environ | {"OMP_NUM_THREADS": str(options.threads)}
-    ccx_cpu, ccx_wall = measured(["ccx", "-i", "deck"], out / "ccx.log", cwd=out, env=environment)
+    times["ccx"] = measured(["ccx", "-i", "deck"], out / "ccx.log", cwd=out, env=environment)
+    (out / "times.json").write_text(json.dumps(times))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", nargs="?", type=Path, default=HERE / "case.toml")
+    parser.add_argument("--out", type=Path, default=ROOT / "target" / "against_ccx")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--profile", choices=["release", "dev"], default="release")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--deck", default="", metavar="WORDS")
+    parser.add_argument("--finer", type=int, metavar="N")
+    parser.add_argument("--kept", action="store_true")
+    options = parser.parse_args()
+    out = options.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    if not options.kept:
+        run(options, out)
+    folder = out / "asperity"
+    summary, rows = json.loads((folder / "summary.json").read_text()), history(folder)
+    times = json.loads((out / "times.json").read_text())
+    (our_cpu, our_wall), (ccx_cpu, ccx_wall) = times["asperity"], times["ccx"]
     equations = int(re.search(r"number of equations\s+(\d+)", (out / "ccx.log").read_text()).group(1))
     increments, cuts, iterations = ccx_counts(out / "deck.sta")
     ends = segments(out / "asperity" / "case.toml")
@@ -124,8 +149,10 @@ def main():
     theirs = (equations, increments, cuts, iterations, ccx_cpu, ccx_wall)
     for name, (size, steps, cut, newton, cpu, wall) in ((f"Asperity {summary['version']}", ours), (f"CalculiX {version}", theirs)):
         print(f"| {name} | {size} | {steps} | {cut} | {newton} | {cpu:.1f} | {wall:.1f} | {cpu / newton:.3f} |")
-    print("\n| h | delta_T | F_N Asperity | F_N CalculiX | % | F_T Asperity | F_T CalculiX | % |")
-    print("|---|---|---|---|---|---|---|---|")
+    finer = history(out / "finer") if options.finer else None
+    beside = f" F_N Asperity, {options.finer} elements | F_T Asperity, {options.finer} elements |" if finer else ""
+    print("\n| h | delta_T | F_N Asperity | F_N CalculiX | % | F_T Asperity | F_T CalculiX | % |" + beside)
+    print("|---|---|---|---|---|---|---|---|" + ("---|---|" if finer else ""))
     for segment, h, shear, normal, tangential in curve:
         ours_normal, ours_tangential = asperity_at(rows, segment, h, shear)
         cells = [f"{ours_normal:.4g}", f"{normal:.4g}", f"{100 * (normal / ours_normal - 1):+.1f}"]
@@ -133,6 +160,9 @@ def main():
             cells += ["", "", ""]
         else:
             cells += [f"{ours_tangential:.4g}", f"{tangential:.4g}", f"{100 * (tangential / ours_tangential - 1):+.1f}"]
+        if finer:
+            fine_normal, fine_tangential = asperity_at(finer, segment, h, shear)
+            cells += [f"{fine_normal:.4g}", f"{fine_tangential:.4g}" if shear else ""]
         print(f"| {h:.4g} | {shear:.4g} | {' | '.join(cells)} |")
     peak = max((abs(tangential) for *_, tangential in curve), default=0.0)
     if summary["F_T_max"] and peak:
