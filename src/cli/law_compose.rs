@@ -53,12 +53,13 @@ impl Given {
                 let opponent = opponent.as_deref().map(Tabulated::read).transpose()?.unwrap_or_else(|| (*sphere).clone());
                 Ok(Self::Tables(Box::new([*sphere, opponent])))
             }
-            // Says what is wrong with it as a table.
-            _ => Err(Tabulated::read(&args.sphere).map_or_else(CliError::from, |_| {
-                CliError::from(LawError::NotCovered {
-                    problem: "a law by interpolation knows both bodies of a pair",
-                    remedy: "leave OPPONENT.json out",
-                })
+            (LawFile::Interpolated(_), Some(_)) => Err(CliError::from(LawError::NotCovered {
+                problem: "a law by interpolation knows both bodies of a pair",
+                remedy: "leave OPPONENT.json out",
+            })),
+            (LawFile::Formulas(_), _) => Err(CliError::from(LawError::NotCovered {
+                problem: "a law of formulas has no table of a body",
+                remedy: "Give a table that `asperity law tabulate` made, a law by interpolation, or built-in",
             })),
         }
     }

@@ -80,7 +80,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
     }
     let groups: Vec<usize> = samples.iter().map(|s| s.material).collect();
     let every = samples.len().div_ceil(TUNED);
-    let tuned: Vec<usize> = (0..samples.len()).filter(|&i| groups[i] % every == 0).collect();
+    let tuned: Vec<usize> = (0..samples.len()).filter(|&i| groups[i].is_multiple_of(every)).collect();
     let fitted: Vec<(Process, Vec<f64>)> = columns
         .into_par_iter()
         .map(|(name, values)| {

@@ -146,8 +146,11 @@ fn two_bodies_are_put_in_series() {
     assert_eq!(equal.levels, alike.levels);
     // On a flat 1e5 times as stiff it is the law itself.
     let (own, there) = (deepest(&of("")), deepest(&rigid));
-    for (ours, theirs) in [(there.f_n0, own.f_n0), (there.a0, own.a0), (there.slip_share, own.slip_share)] {
-        assert!((ours / theirs - 1.0).abs() < 0.005, "{there:?} {own:?}");
+    // The radius of a pair is a mean of two.
+    for (ours, theirs, most) in
+        [(there.f_n0, own.f_n0, 0.005), (there.a0, own.a0, 0.03), (there.slip_share, own.slip_share, 0.005)]
+    {
+        assert!((ours / theirs - 1.0).abs() < most, "{there:?} {own:?}");
     }
     // An equal pair is pressed as each of the two is on the plane between them.
     let half = deepest(&law.table(&case(ideal, 0.3, 0.3, 0.01, "")).unwrap());
