@@ -37,8 +37,8 @@ pub struct LawArgs {
 /// The subcommands of `asperity law`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum LawCommand {
-    /// Fit a law to a study: writes DIR/law.json and prints the candidate forms and their errors, or
-    /// those of an interpolation.
+    /// Fit a law to a study: writes DIR/law.json and prints the candidate forms and their errors,
+    /// or those of an interpolation.
     Fit(FitArgs),
     /// Tabulate the law of one material and one friction coefficient as curves in h: simulates
     /// depths up to that of the case as a study, writes DIR/law.json and prints the errors in

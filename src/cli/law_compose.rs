@@ -21,8 +21,9 @@ pub struct ComposeArgs {
     /// deepest of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// A law by interpolation, or `built-in`, that which comes with the program; or, for two bodies, the table of the sphere's material, of two equal
-    /// spheres (or of a sphere on a plane, which is less near).
+    /// A law by interpolation, or `built-in`, that which comes with the program; or, for two
+    /// bodies, the table of the sphere's material, of two equal spheres (or of a sphere on a plane,
+    /// which is less near).
     #[arg(value_name = "LAW.json")]
     pub sphere: PathBuf,
     /// The table of the opponent's material [default: the sphere's].

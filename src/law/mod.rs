@@ -9,7 +9,8 @@
 //! `least_squares` and `report` serve them.
 //!
 //! `tabulated` is the law of one material and one friction as curves in h, `interpolated` makes
-//! such a table for any material between those of a study; `file` takes any kind; `check` holds the update against simulated paths.
+//! such a table for any material between those of a study; `file` takes any kind; `check` holds the
+//! update against simulated paths.
 
 pub mod check;
 pub mod data;

@@ -25,8 +25,8 @@ use crate::output::{OutputDirectory, read_history};
 pub const FEWEST_CASES: usize = 4 * INPUTS;
 /// Fewest different materials among them.
 pub const FEWEST_MATERIALS: usize = 8;
-/// Most samples whose likelihood decides on lengths and variances; of more, every second, third, ...
-/// material is asked. All of them carry the law.
+/// Most samples whose likelihood decides on lengths and variances; of more, every second, third,
+/// ... material is asked. All of them carry the law.
 const TUNED: usize = 500;
 
 /// One contact of the study.

@@ -206,8 +206,8 @@ impl Interpolated {
         Tabulated::interpolated(case, levels, self.source.elements_per_contact_radius)
     }
 
-    /// The table of a case's contact, of two bodies that deform too: of these each has its own table
-    /// against what the law is of, and they are put in series.
+    /// The table of a case's contact, of two bodies that deform too: of these each has its own
+    /// table against what the law is of, and they are put in series.
     ///
     /// # Errors
     /// Those of [`table`](Self::table) and of [`compose`](tabulated::compose).

@@ -489,9 +489,9 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
 }
 
 /// The two bodies of a pair as [`compose`] wants their tables: each by itself with the friction of
-/// the pair, on a rigid plane or against an equal sphere, pressed as deep as the pair may need, with
-/// `spare` to multiply it; R = 1, E that of the sphere. `None` of a case whose opponent does not
-/// deform.
+/// the pair, on a rigid plane or against an equal sphere, pressed as deep as the pair may need,
+/// with `spare` to multiply it; R = 1, E that of the sphere. `None` of a case whose opponent does
+/// not deform.
 pub fn alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
     let scaled = case.scaled().0;
     let Some(Opponent::Deforming { material: other, .. }) = scaled.opponent.clone() else { return None };
