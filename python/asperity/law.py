@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._asperity import NativeContacts, NativeLaw, fit_law, table_law, table_study
+from ._asperity import NativeContacts, NativeLaw, fit_law, interpolate_law, table_law, table_study
 from ._table import Table
 from .case import Case, as_case
 from .errors import Interrupted
@@ -81,13 +81,20 @@ class Law:
         self._native = native
 
     @classmethod
-    def fit(cls, study: Study | str | os.PathLike[str], prior: str = "built-in") -> Law:
+    def fit(cls, study: Study | str | os.PathLike[str], prior: str = "built-in", *, interpolate: bool = False, reversal: Law | None = None) -> Law:
         """Fits a law to a study and writes ``law.json`` into its directory.
 
         :param prior: constants to start from: ``"built-in"``, ``"none"``, or the path of another ``law.json``.
+        :param interpolate: a law by interpolation between the contacts of the study, of many materials, instead of formulas.
+        :param reversal: with ``interpolate``, where cases were not sheared back or released: the law by interpolation that knows the stiffness of a reversal and
+            of an unloading, as :meth:`built_in` does.
         """
-        directory = study.directory if isinstance(study, Study) else study
-        return cls(fit_law(os.fspath(directory), prior))
+        if reversal is not None and not interpolate:
+            raise ValueError("reversal: is given, and interpolate is False. Allowed: None")
+        directory = os.fspath(study.directory if isinstance(study, Study) else study)
+        if interpolate:
+            return cls(interpolate_law(directory, None if reversal is None else reversal._native))
+        return cls(fit_law(directory, prior))
 
     @classmethod
     def tabulate(
@@ -128,9 +135,12 @@ class Law:
         return cls(NativeLaw.load(os.fspath(file)))
 
     @classmethod
-    def built_in(cls) -> Law:
-        """The law that comes with the program, fitted to 240 cases of 15 materials, Poisson's ratio 0.3."""
-        return cls(NativeLaw.built_in())
+    def built_in(cls, formulas: bool = False) -> Law:
+        """The law that comes with the program, for any material: it interpolates between simulated contacts, of a sphere with a plane and of two equal spheres.
+
+        :param formulas: the one with formulas instead, fitted to 240 cases of 15 materials, Poisson's ratio 0.3.
+        """
+        return cls(NativeLaw.built_in(formulas))
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes a ``law.json``."""
@@ -141,8 +151,12 @@ class Law:
         law: dict[str, Any] = json.loads(self._native.to_json())
         return law
 
+    def table(self, case: Case | Mapping[str, Any] | str | os.PathLike[str]) -> Law:
+        """The table of a case's contact, a plane's or a pair's, as a law by interpolation makes it; another law as it is."""
+        return Law(self._native.table(as_case(case)._native))
+
     def formulas(self) -> str:
-        """The formulas with their constants; a table has none."""
+        """The formulas with their constants; a table and a law by interpolation have none."""
         return self._native.formulas()
 
     def predict(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], press: bool = False) -> Table:
@@ -202,7 +216,9 @@ class Law:
 
     def __repr__(self) -> str:
         law = self.to_dict()
-        if "provenance" not in law:
+        if "levels" in law:
             return f"<Law: a table of {len(law['levels'])} depths>"
+        if "source" in law:
+            return f"<Law: by interpolation between {law['source']['cases']} contacts of {law['source']['materials']} materials>"
         provenance = law["provenance"]
         return f"<Law: fitted to {provenance['cases']} cases of {provenance['materials']} materials>"

@@ -10,9 +10,10 @@ use asperity::contact_law::{ContactParameters, ContactState};
 use asperity::law::check::{Checked, check_until};
 use asperity::law::data::Point;
 use asperity::law::export::{Language, law_files, law_source};
+use asperity::law::interpolated::{self, Interpolated};
 use asperity::law::model::OutOfRange;
 use asperity::law::predict::{NormalSource, Prediction, predict};
-use asperity::law::prior::{Prior, built_in};
+use asperity::law::prior::{self, Prior};
 use asperity::law::tabulated::{build, depths, study_text};
 use asperity::law::{Law, LawError, LawFile, fit};
 use asperity::output::{StepRecord, write_atomically};
@@ -31,7 +32,7 @@ pub struct NativeLaw {
     law: LawFile,
 }
 
-/// Fits a law to the study in a directory, and writes `law.json` there.
+/// Fits formulas to the study in a directory, and writes `law.json` there.
 #[pyfunction]
 pub fn fit_law(py: Python<'_>, dir: PathBuf, prior: &str) -> PyResult<NativeLaw> {
     let law = py.detach(|| -> Result<Law, LawError> {
@@ -40,6 +41,25 @@ pub fn fit_law(py: Python<'_>, dir: PathBuf, prior: &str) -> PyResult<NativeLaw>
         Ok(law)
     });
     law.map(NativeLaw::formulas_of).map_err(failed)
+}
+
+/// Makes a law by interpolation between the contacts of the study in a directory, and writes
+/// `law.json` there. `reversal`: the law that knows reversals and unloadings where the study has
+/// none.
+#[pyfunction]
+#[pyo3(signature = (dir, reversal=None))]
+pub fn interpolate_law(py: Python<'_>, dir: PathBuf, reversal: Option<&NativeLaw>) -> PyResult<NativeLaw> {
+    let reversal = match reversal.map(|law| &law.law) {
+        None => None,
+        Some(LawFile::Interpolated(law)) => Some(law.as_ref()),
+        Some(_) => return Err(refused("reversal: is no law by interpolation. Allowed: one, as Law.built_in() is")),
+    };
+    let law = py.detach(|| -> Result<Interpolated, LawError> {
+        let law = interpolated::fit(&dir, reversal)?;
+        law.write(&dir.join("law.json"))?;
+        Ok(law)
+    });
+    law.map(|law| NativeLaw { law: LawFile::Interpolated(Box::new(law)) }).map_err(failed)
 }
 
 /// The study file of a table of a case's material and friction, up to its depth.
@@ -72,10 +92,19 @@ impl NativeLaw {
         LawFile::read(&file).map(|law| Self { law }).map_err(failed)
     }
 
-    /// The law that comes with the program.
+    /// The law that comes with the program: by interpolation, or the formulas.
     #[staticmethod]
-    fn built_in() -> PyResult<Self> {
-        built_in().map(Self::formulas_of).map_err(failed)
+    fn built_in(formulas: bool) -> PyResult<Self> {
+        if formulas {
+            return prior::built_in().map(Self::formulas_of).map_err(failed);
+        }
+        Interpolated::built_in().map(|law| Self { law: LawFile::Interpolated(Box::new(law)) }).map_err(failed)
+    }
+
+    /// The table of a case's contact, of a law by interpolation; another law as it is.
+    fn table(&self, py: Python<'_>, case: &NativeCase) -> PyResult<Self> {
+        let law = py.detach(|| self.law.of_case(Some(&case.case)).map(std::borrow::Cow::into_owned));
+        law.map(|law| Self { law }).map_err(failed)
     }
 
     /// Writes a `law.json`.

@@ -17,7 +17,7 @@ mod _asperity {
     #[pymodule_export]
     use super::case::NativeCase;
     #[pymodule_export]
-    use super::law::{Contacts, NativeLaw, fit_law, table_law, table_study};
+    use super::law::{Contacts, NativeLaw, fit_law, interpolate_law, table_law, table_study};
     #[pymodule_export]
     use super::results::{history, resolved_case};
     #[pymodule_export]

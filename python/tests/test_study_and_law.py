@@ -76,7 +76,7 @@ def law() -> asperity.Law:
 
 
 def test_a_law_is_kept_and_told(law: asperity.Law, tmp_path: Path) -> None:
-    assert law.to_dict() == asperity.Law.built_in().to_dict()
+    assert law.to_dict() == asperity.Law.built_in(formulas=True).to_dict()
     law.save(tmp_path / "law.json")
     assert asperity.Law.load(tmp_path / "law.json").to_dict() == law.to_dict()
     assert "F_T" in law.formulas() and "240 cases of 15 materials" in repr(law)
@@ -87,6 +87,29 @@ def test_a_law_is_kept_and_told(law: asperity.Law, tmp_path: Path) -> None:
 def test_a_law_needs_enough_cases(study: asperity.Study) -> None:
     with pytest.raises(asperity.AsperityError, match="usable cases of"):
         asperity.Law.fit(study)
+    with pytest.raises(asperity.AsperityError, match="usable cases of"):
+        asperity.Law.fit(study, interpolate=True, reversal=asperity.Law.built_in())
+    with pytest.raises(asperity.CaseError, match="no law by interpolation"):
+        asperity.Law.fit(study, interpolate=True, reversal=asperity.Law.built_in(formulas=True))
+    with pytest.raises(ValueError, match="interpolate is False"):
+        asperity.Law.fit(study, reversal=asperity.Law.built_in())
+
+
+def test_the_built_in_law_is_of_any_material(case: asperity.Case, done: asperity.Run, tmp_path: Path) -> None:
+    law = asperity.Law.built_in()
+    assert "by interpolation between" in repr(law)
+    # The case is on four elements, on which F_T is some per cent low.
+    assert law.predict(case)["F_T"].max() == pytest.approx(done.summary["F_T_max"], rel=0.06)
+    table = law.table(case)
+    assert "a table of" in repr(table) and table.predict(case)["F_N"].max() == law.predict(case)["F_N"].max()
+    pair = case.replace({"opponent": {"equal": True}})
+    assert law.table(pair).to_dict()["body"] == "equal-sphere"
+    with pytest.raises(asperity.AsperityError, match="equal sphere"):
+        table.predict(pair)
+    with pytest.raises(asperity.AsperityError, match="no formulas"):
+        law.formulas()
+    law.save(tmp_path / "law.json")
+    assert asperity.Law.load(tmp_path / "law.json").predict(case)["F_T"][-1] == law.predict(case)["F_T"][-1]
 
 
 def test_a_law_predicts(law: asperity.Law, case: asperity.Case, done: asperity.Run) -> None:

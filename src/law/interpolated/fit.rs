@@ -109,6 +109,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
         normal,
         processes,
         samples: places,
+        pair: None,
     };
     let levels: Vec<Level> = samples
         .iter()
@@ -236,7 +237,7 @@ fn sample(
     let friction = super::friction(case);
     let Some(measured) = Measured::of(case, &read_history(&directory.history())?) else { return Ok(None) };
     let (body, sphere) = bodies(case)?;
-    let Some(mut outputs) = outputs(&sphere, friction, &measured) else { return Ok(None) };
+    let Some(mut outputs) = outputs(&sphere, friction, &measured, Against::of(case)) else { return Ok(None) };
     let inputs = inputs(&body, &sphere, friction, measured.h);
     if let Some(other) = reversal.map(|law| law.outputs(&inputs)) {
         if measured.back.is_empty() {

@@ -5,7 +5,7 @@ use crate::analytical::{ElasticSphere, cattaneo_mindlin, hertz};
 use crate::contact_law::POINTS;
 use crate::law::data::Point;
 use crate::law::tabulated::spline::Spline;
-use crate::law::tabulated::{Level, Measured, cleaned, reversal, unloading_radius};
+use crate::law::tabulated::{Against, Level, Measured, cleaned, reversal, unloading_radius};
 
 /// Number of outputs that are no curves.
 pub const NUMBERS: usize = 6;
@@ -19,8 +19,11 @@ const REVERSAL: usize = 4;
 /// The curves end where the square root of delta_T over the length of the slip is this: full slip
 /// is reached from 0.9 to 1.75.
 const END: f64 = 1.75;
-/// F_T/F_N over mu from which a contact has come to full slip.
+/// F_T/F_N over mu from which a contact with a plane has come to full slip,
 const SLIPPED: f64 = 0.99;
+/// and one of two spheres: as these pass each other, the plane of their contact turns, and the
+/// forces along h and delta_T are no longer those along its normal and its tangent.
+const SLIPPED_PAIR: f64 = 0.9;
 /// Intervals of the integral that gives the length of the slip.
 const INTERVALS: usize = 400;
 /// Cattaneo and Mindlin's displacement at full slip is 5/2 of that integral; three keep the curves
@@ -46,10 +49,10 @@ fn elastic(sphere: &ElasticSphere, h: f64) -> [f64; 3] {
 }
 
 /// The outputs of a simulated contact; `None` if it was not sheared to full slip.
-pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Option<Outputs> {
+pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured, body: Against) -> Option<Outputs> {
     let last = one.curve.last()?;
     let slip = |point: &Point| if point.delta_t > 0.0 { (point.f_t / (friction * point.f_n)).min(1.0) } else { 0.0 };
-    if one.curve.len() < 5 || slip(last) < SLIPPED {
+    if one.curve.len() < 5 || slip(last) < if body == Against::Plane { SLIPPED } else { SLIPPED_PAIR } {
         return None;
     }
     // Over the square root of delta_T the points of the curve are about even.

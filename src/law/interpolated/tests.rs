@@ -157,3 +157,27 @@ fn two_bodies_are_put_in_series() {
     assert!((deepest(&equal).f_n0 / half.f_n0 - 1.0).abs() < 0.03, "{} {}", deepest(&equal).f_n0, half.f_n0);
     assert!(deepest(&flat).f_n0 > deepest(&equal).f_n0 && deepest(&flat).a0 > deepest(&equal).a0);
 }
+
+#[test]
+fn the_built_in_law_knows_equal_spheres() {
+    let law = Interpolated::built_in().unwrap();
+    let pair = law.pair.as_deref().expect("the law of two equal spheres");
+    assert_eq!([law.body, pair.body], [Against::Plane, Against::EqualSphere]);
+    for case in cases("[opponent]\nequal = true").into_iter().step_by(6) {
+        let (table, own) = (law.compose(&case).unwrap(), pair.table(&case).unwrap());
+        assert_eq!(table, own);
+        assert_eq!(table.body, Against::EqualSphere);
+        assert_eq!(law.out_of_range(&case, 0.005).unwrap(), pair.out_of_range(&case, 0.005).unwrap());
+        // Two spheres in series from the plane's law are near it, and not it: a plane rubs in the
+        // press already, by which F_N is up to 10 % more at nu = 0 (bonded half-spaces, Spence
+        // 1968).
+        let series = plane().compose(&case).unwrap();
+        let (ours, theirs) = (table.levels.last().unwrap(), series.levels.last().unwrap());
+        let apart = (ours.f_n0 / theirs.f_n0 - 1.0).abs();
+        assert!(apart > 0.0 && apart < 0.14, "{} {}", ours.f_n0, theirs.f_n0);
+    }
+    // A law of equal spheres says nothing of a plane, which the built-in one asks another about.
+    let on_a_plane = &cases("")[0];
+    assert!(pair.table(on_a_plane).unwrap_err().to_string().contains("rigid plane"));
+    assert_eq!(law.compose(on_a_plane).unwrap(), plane().compose(on_a_plane).unwrap());
+}
