@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,12 +14,17 @@ __all__ = ["Case"]
 
 
 def _settings(settings: Mapping[str, Any] | None) -> list[str]:
-    def toml(value: Any) -> str:
+    def toml(value: Any, inner: bool = True) -> str:
         if isinstance(value, bool):
             return "true" if value else "false"
-        return str(value)
+        if isinstance(value, Mapping):
+            return "{" + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + "}"
+        if isinstance(value, (list, tuple)):
+            return "[" + ", ".join(toml(item) for item in value) + "]"
+        # What stands alone may be without quotes, as on the command line.
+        return json.dumps(value) if inner and isinstance(value, str) else str(value)
 
-    return [f"{key}={toml(value)}" for key, value in (settings or {}).items()]
+    return [f"{key}={toml(value, inner=False)}" for key, value in (settings or {}).items()]
 
 
 class Case:

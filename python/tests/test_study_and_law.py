@@ -103,7 +103,7 @@ def test_the_built_in_law_is_of_any_material(case: asperity.Case, done: asperity
     table = law.table(case)
     assert "a table of" in repr(table) and table.predict(case)["F_N"].max() == law.predict(case)["F_N"].max()
     pair = case.replace({"opponent": {"equal": True}})
-    assert law.table(pair).to_dict()["body"] == "equal-sphere"
+    assert law.table(pair).to_dict()["body"] == "equal pair"
     with pytest.raises(asperity.AsperityError, match="equal sphere"):
         table.predict(pair)
     with pytest.raises(asperity.AsperityError, match="no formulas"):
