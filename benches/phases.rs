@@ -41,7 +41,7 @@ struct Pressed {
 
 impl Observer for Pressed {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
-        self.before = std::mem::replace(&mut self.last, view.displacement.to_vec());
+        self.before = std::mem::replace(&mut self.last, view.displacement()?.to_vec());
         (self.h, self.steps) = (view.record.0.h, view.record.0.step);
         Ok(())
     }

@@ -42,3 +42,8 @@ fn is_finite(x: real) -> bool {
 fn single_bits(x: real) -> u32 {
     return bitcast<u32>(f32(x));
 }
+
+// The number that bits of single precision are.
+fn real_of_single(bits: u32) -> real {
+    return real(bitcast<f32>(bits));
+}

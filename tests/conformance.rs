@@ -12,6 +12,8 @@ mod batch;
 mod contact;
 #[path = "conformance/element.rs"]
 mod element;
+#[path = "conformance/iterate.rs"]
+mod iterate;
 #[path = "conformance/linear.rs"]
 mod linear;
 #[path = "conformance/material.rs"]

@@ -6,7 +6,7 @@
 @group(0) @binding(2) var<storage, read> diagonal: array<u32>;      // [node]: k of its diagonal block
 @group(0) @binding(3) var<storage, read> point_of: array<u32>;      // [node]: its contact point
 @group(0) @binding(4) var<storage, read> blocks: array<real>;       // [slot][3 i + j][block]
-@group(0) @binding(5) var<storage, read> rows: array<real>;         // [slot][slides, force rows, displacement rows][point]
+@group(0) @binding(5) var<storage, read> rows: array<u32>;          // [slot][slides, force rows, displacement rows][point], bits of f32
 @group(0) @binding(6) var<storage, read_write> matrix: array<u32>;  // [slot][3 i + j][k][node], bits of f32
 @group(0) @binding(7) var<uniform> counts: vec4<u32>;               // upper blocks, contact points
 
@@ -41,7 +41,7 @@ fn assemble(@builtin(global_invocation_id) id: vec3<u32>) {
     let point = point_of[node];
     if point != NOWHERE {
         let at = 19u * slot * counts.y + point;
-        if rows[at] > 0.0 {
+        if real_of_single(rows[at]) > 0.0 {
             a = transpose(row_block(at, 1u)) * a;
             if id.x / level.nodes == diagonal[node] {
                 a += transpose(row_block(at, 10u));
@@ -62,5 +62,9 @@ fn row_block(at: u32, first: u32) -> mat3x3<real> {
 
 fn row(at: u32, first: u32) -> vec3<real> {
     let next = at + first * counts.y;
-    return vec3<real>(rows[next], rows[next + counts.y], rows[next + 2u * counts.y]);
+    return vec3<real>(
+        real_of_single(rows[next]),
+        real_of_single(rows[next + counts.y]),
+        real_of_single(rows[next + 2u * counts.y]),
+    );
 }

@@ -11,6 +11,10 @@ struct Level {
     restart: u32,           // most Krylov vectors kept
     plate_nodes: u32,       // nodes of the plate
     coarsest_steps: u32,    // of the coarsest level's polynomial
+    smoothing_steps: u32,
+    reserved_0: u32,
+    reserved_1: u32,
+    reserved_2: u32,
 }
 
 // A workgroup of rows: its nodes, three components of each.

@@ -3,9 +3,9 @@
 //! like are left out.
 
 use crate::compute::gpu::Evaluation;
-use crate::compute::gpu::batch::{CONTACT_ANSWER, CONTACT_TRIAL, MODULI};
 use crate::compute::gpu::material::{ANSWER, RELATIVE, STATE, TANGENT};
 use crate::compute::gpu::resident::{GRADIENT, HISTORY};
+use crate::compute::gpu::scratch::{CONTACT_ANSWER, CONTACT_TRIAL, MODULI};
 use crate::contact::coulomb::Rows;
 use crate::element::hex8::{Geometry, NODES, Nodal, Points, State, Tangent};
 use crate::mesh::Mesh;

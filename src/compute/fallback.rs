@@ -2,6 +2,7 @@
 //! states.
 
 use super::cpu::Cpu;
+use super::iterate::{Ask, IterateRequest};
 use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
@@ -12,7 +13,9 @@ use super::{
 /// A device with a copy of every committed state on the host, and the CPU in waiting.
 ///
 /// The first failure of the device ends its use: the call that failed is made again on the CPU in
-/// f64, which starts from the copies, so that no accepted step is lost. What happened is in
+/// f64, which starts from the copies, so that no accepted step is lost. Where the device keeps
+/// Newton's iterates a copy of each step would cost more than the step: then the answer is
+/// [`ComputeError::Gone`], up to when a state is restored. What happened is in
 /// [`Compute::take_notes`] and, from then on, in [`Compute::description`].
 pub struct Fallback {
     device: Option<Box<dyn Compute>>,
@@ -20,6 +23,8 @@ pub struct Fallback {
     models: Vec<CaseModel>,
     name: String,
     committed: Vec<Option<CaseState>>,
+    /// By case: the device has committed a state of which there is no copy.
+    is_away: Vec<bool>,
     /// What the present step of each case anticipates.
     weights: Vec<f64>,
     commits: usize,
@@ -33,9 +38,21 @@ impl Fallback {
     pub fn new(device: Box<dyn Compute>) -> Self {
         let models = device.models().to_vec();
         let committed = models.iter().map(|_| None).collect();
+        let is_away = vec![false; models.len()];
         let weights = vec![0.0; models.len()];
         let name = device.description().device;
-        Self { device: Some(device), cpu: None, models, name, committed, weights, commits: 0, traffic: None, notes: Vec::new() }
+        Self {
+            device: Some(device),
+            cpu: None,
+            models,
+            name,
+            committed,
+            is_away,
+            weights,
+            commits: 0,
+            traffic: None,
+            notes: Vec::new(),
+        }
     }
 
     /// Calls `f` on the device; if that fails, on the CPU, now and ever after.
@@ -52,19 +69,24 @@ impl Fallback {
         }
     }
 
+    /// Whether the CPU has the states of these cases, if it is the CPU that is asked.
+    fn knows(&self, mut cases: impl Iterator<Item = usize>) -> Result<(), ComputeError> {
+        if self.device.is_none() && cases.any(|case| self.is_away[case]) { Err(ComputeError::Gone) } else { Ok(()) }
+    }
+
     /// Leaves the device for the CPU, which starts from the committed states.
     fn give_up(&mut self, reason: &str) -> Result<(), ComputeError> {
         self.traffic = self.traffic();
         self.device = None;
         let mut cpu = Cpu::with_tangents(self.models.clone())?;
         for (case, state) in self.committed.iter().enumerate() {
-            if let Some(state) = state {
+            if let Some(state) = state.as_ref().filter(|_| !self.is_away[case]) {
                 cpu.restore(case, state)?;
                 cpu.begin_step(case, self.weights[case])?;
             }
         }
         let note = format!(
-            "{} failed after {} accepted steps ({reason}); the CPU went on from there in f64, and no accepted step was lost",
+            "{} failed after {} accepted steps ({reason}); the CPU went on in f64, and no accepted step was lost",
             self.name, self.commits
         );
         log::info!("{note}");
@@ -96,27 +118,61 @@ impl Compute for Fallback {
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
         self.weights[case] = weight;
-        self.call(|backend| backend.begin_step(case, weight))
+        self.call(|backend| backend.begin_step(case, weight))?;
+        self.knows(std::iter::once(case))
     }
 
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
-        self.call(|backend| backend.internal_force(requests))
+        self.call(|backend| backend.internal_force(requests))?;
+        self.knows(requests.iter().map(|request| request.case))
     }
 
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        self.call(|backend| backend.tangent(requests))
+        self.call(|backend| backend.tangent(requests))?;
+        self.knows(requests.iter().map(|request| request.case))
     }
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
-        self.call(|backend| backend.contact(requests))
+        self.call(|backend| backend.contact(requests))?;
+        self.knows(requests.iter().map(|request| request.case))
     }
 
     fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        self.call(|backend| backend.trial(requests))
+        self.call(|backend| backend.trial(requests))?;
+        self.knows(requests.iter().map(|request| request.case))
     }
 
     fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
-        self.call(|backend| backend.linear(requests))
+        self.call(|backend| backend.linear(requests))?;
+        self.knows(requests.iter().map(|request| request.case))
+    }
+
+    fn keeps_iterates(&self) -> bool {
+        self.device.as_ref().is_some_and(|device| device.keeps_iterates())
+    }
+
+    /// Where the device fails its iterates are gone. No copy is taken at a commit: whoever follows
+    /// the path takes one from time to time, and goes back to it.
+    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        let Some(device) = &mut self.device else { return Err(ComputeError::Gone) };
+        match device.iterate(requests) {
+            Ok(()) => {
+                for request in requests.iter().filter(|request| request.ask == Ask::Commit) {
+                    self.commits += 1;
+                    (self.weights[request.case], self.is_away[request.case]) = (0.0, true);
+                }
+                Ok(())
+            }
+            Err(ComputeError::Device(reason)) => {
+                self.give_up(&reason)?;
+                Err(ComputeError::Gone)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn has_stand_in(&self) -> bool {
+        self.device.is_some()
     }
 
     /// The copies follow the device: where a state cannot be read back, the step is committed on
@@ -130,6 +186,7 @@ impl Compute for Fallback {
                 .map(|r| Ok((r.case, if on_device { Some(backend.state(r.case)?) } else { None })))
                 .collect::<Result<Vec<_>, _>>()
         })?;
+        self.knows(states.iter().map(|(case, _)| *case))?;
         for (case, state) in states {
             self.commits += 1;
             self.weights[case] = 0.0;
@@ -141,15 +198,18 @@ impl Compute for Fallback {
     }
 
     fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
-        self.call(|backend| backend.fields(case))
+        let fields = self.call(|backend| backend.fields(case))?;
+        self.knows(std::iter::once(case)).map(|()| fields)
     }
 
     fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
-        self.call(|backend| backend.state(case))
+        let state = self.call(|backend| backend.state(case))?;
+        self.knows(std::iter::once(case)).map(|()| state)
     }
 
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         self.call(|backend| backend.restore(case, state))?;
+        self.is_away[case] = false;
         if self.device.is_some() {
             self.committed[case] = Some(state.clone());
         }

@@ -1,5 +1,6 @@
 //! One case of a batch, as its Newton iteration sees it.
 
+use super::iterate::{Answer, Ask, IterateRequest, Plate};
 use super::linear::LinearRequest;
 use super::{
     CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
@@ -22,6 +23,11 @@ pub trait Evaluate {
     /// Linear systems with the tangent, where the backend solves them; the case is this one,
     /// whatever the request says.
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError>;
+    /// Whether the iterates stay where they are computed (see [`Compute::keeps_iterates`]).
+    fn keeps_iterates(&self) -> bool;
+    /// Asks something of the iterates there. `kept` says that what was tried last is the current
+    /// one from now on.
+    fn iterate(&mut self, kept: bool, plate: Plate, ask: Ask) -> Result<Answer, ComputeError>;
     /// Makes a trial displacement the committed state.
     fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError>;
 }
@@ -64,6 +70,17 @@ impl Evaluate for CaseHandle<'_> {
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError> {
         request.case = self.case;
         self.backend.linear(std::slice::from_mut(request))
+    }
+
+    fn keeps_iterates(&self) -> bool {
+        self.backend.keeps_iterates()
+    }
+
+    fn iterate(&mut self, kept: bool, plate: Plate, ask: Ask) -> Result<Answer, ComputeError> {
+        let mut request = [IterateRequest { case: self.case, kept, plate, ask, answer: Answer::Nothing }];
+        self.backend.iterate(&mut request)?;
+        let [IterateRequest { answer, .. }] = request;
+        Ok(answer)
     }
 
     fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError> {

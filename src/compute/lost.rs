@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::gpu::GpuContext;
+use super::iterate::{Ask, IterateRequest};
 use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
@@ -84,6 +85,24 @@ impl Compute for LostAfter {
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
         self.backend.contact(requests)
+    }
+
+    fn keeps_iterates(&self) -> bool {
+        self.backend.keeps_iterates()
+    }
+
+    fn has_stand_in(&self) -> bool {
+        self.backend.has_stand_in()
+    }
+
+    /// A commit counts; before anything else the device is lost where it is due.
+    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        self.lose_if_due();
+        self.backend.iterate(requests)?;
+        if requests.iter().any(|request| request.ask == Ask::Commit) {
+            self.commits = self.commits.saturating_sub(1);
+        }
+        Ok(())
     }
 
     fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {

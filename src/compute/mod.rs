@@ -15,6 +15,7 @@ pub mod gather;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod handle;
+pub mod iterate;
 pub mod linear;
 #[cfg(feature = "gpu")]
 pub mod lost;
@@ -33,6 +34,7 @@ use crate::contact::coulomb::{Friction, Rows};
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
+use iterate::IterateRequest;
 use linear::LinearRequest;
 use traffic::Traffic;
 
@@ -166,6 +168,19 @@ pub struct CaseState {
     pub plastic_work: Vec<f64>,
 }
 
+impl CaseState {
+    /// The undeformed state of a mesh.
+    pub fn virgin(mesh: &Mesh) -> Self {
+        let elements = mesh.elements.len();
+        Self {
+            displacement: vec![0.0; 3 * mesh.nodes.len()],
+            points: vec![Default::default(); elements],
+            flow: vec![Default::default(); elements],
+            plastic_work: vec![0.0; elements],
+        }
+    }
+}
+
 /// What a committed state shows, for output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseFields {
@@ -209,6 +224,10 @@ pub enum ComputeError {
     /// The device failed.
     #[error("the compute device failed: {0}")]
     Device(String),
+    /// The device that had the case's committed state failed. Another stands in for it, once it is
+    /// given a state to go on from ([`Compute::restore`]).
+    #[error("the device that had the state of the case failed, and nobody has given its stand-in an earlier one")]
+    Gone,
 }
 
 /// A batch of cases on some device.
@@ -254,6 +273,16 @@ pub trait Compute: Send {
         let _ = requests;
         Ok(())
     }
+    /// Whether Newton's iterates stay where they are computed: then [`Compute::iterate`] is asked,
+    /// and nothing else up to the commit.
+    fn keeps_iterates(&self) -> bool {
+        false
+    }
+    /// Newton's iterates, where they stay. All requests ask for the same.
+    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        let _ = requests;
+        Err(ComputeError::Device("this backend keeps no iterates".to_owned()))
+    }
     /// Commits converged displacements.
     fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError>;
     /// Stresses and strains of a committed state.
@@ -262,6 +291,11 @@ pub trait Compute: Send {
     fn state(&mut self, case: usize) -> Result<CaseState, ComputeError>;
     /// Replaces a committed state.
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError>;
+    /// Whether another backend would stand in if this one failed: then copies of states are worth
+    /// taking from time to time.
+    fn has_stand_in(&self) -> bool {
+        false
+    }
     /// What the user should know and has not been told yet, in whole sentences: a device that
     /// failed, say.
     fn take_notes(&mut self) -> Vec<String> {

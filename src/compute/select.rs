@@ -176,7 +176,7 @@ mod device {
             return Ok((hooked(Box::new(gpu), context), notes));
         }
         if context.supports(Precision::F64).is_ok() {
-            let gpu = Gpu::<f64>::new(context.clone(), models)?;
+            let gpu = Gpu::<f64>::with_tangents_in_single(context.clone(), models)?;
             let notes = gpu.notes();
             return Ok((hooked(Box::new(gpu), context), notes));
         }

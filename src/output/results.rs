@@ -345,7 +345,7 @@ impl ResultWriter {
         write_contact(&self.out.contact(step), contact)?;
         let other = view.opponent_points.iter().map(|point| ContactPoint::in_units(point, &self.units));
         let all: Vec<ContactPoint> = contact.iter().cloned().chain(other).collect();
-        write_fields(&path, view.mesh, view.displacement, &fields, &all, &self.units)?;
+        write_fields(&path, view.mesh, view.displacement()?, &fields, &all, &self.units)?;
         self.collection.push(self.ledger.path_length(step), &path)?;
         self.ledger.saved.push(step);
         Ok(())

@@ -1,7 +1,9 @@
 //! Takes the steps of a path: predicts, solves, bisects what fails, measures and records what is
 //! accepted.
 
+mod accept;
 mod paused;
+mod safe;
 mod segments;
 
 use std::ops::Range;
@@ -10,27 +12,29 @@ use std::sync::Arc;
 use super::SimulationError;
 use super::checkpoint::{Committed, Place, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
-use super::footprint::{bulge, footprint};
+use super::observer::Displacement;
 pub use super::observer::{Observer, StepView};
 use super::path::{Resolution, Start, Target, indentation_targets, oblique_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::{Scaled, Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
+use crate::compute::iterate::{Ask, Plate, Settled};
 use crate::compute::traffic::Traffic;
-use crate::compute::{Compute, ComputeError, Outcome};
+use crate::compute::{CaseState, Compute, ComputeError};
 use crate::contact::coulomb::{Friction, Status};
-use crate::contact::frame::to_frame;
 use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::encounter::Encounter;
+use crate::solver::iterate::{Guess, SetOut};
 use crate::solver::newton::Newton;
 use crate::solver::phases::{Lap, Phase};
 use crate::solver::rigid::position;
 use crate::solver::system::Meeting;
 use crate::solver::{Control, StepOutcome, StepReport};
 pub use paused::Paused;
+use safe::{Muted, Safe};
 
 /// Follows a path.
 pub struct Drive<'a> {
@@ -40,6 +44,12 @@ pub struct Drive<'a> {
     case: usize,
     newton: Newton,
     state: Committed,
+    /// The displacements of `state` are on the device; here they are known at contact nodes alone.
+    is_away: bool,
+    /// Where a run stood whose states are on a device that may fail: what it goes back to then.
+    safe: Safe,
+    /// What a step left whose iterates are on the device, until it is recorded.
+    settled: Option<Settled>,
     place: Place,
     /// Normal force that the present segment holds, of the meshed half.
     held_force: Option<f64>,
@@ -77,6 +87,9 @@ impl<'a> Drive<'a> {
             case,
             newton,
             state,
+            is_away: false,
+            safe: Safe::default(),
+            settled: None,
             place: Place::default(),
             held_force: None,
             last_report: StepReport::default(),
@@ -105,27 +118,86 @@ impl<'a> Drive<'a> {
     /// [`SimulationError::Snapshot`] if it is one of another mesh, [`SimulationError::Compute`].
     pub fn resume(&mut self, snapshot: Snapshot) -> Result<(), SimulationError> {
         snapshot.check(&self.mesh)?;
+        self.safe.keep(&snapshot);
         self.backend.restore(self.case, &snapshot.case)?;
+        if self.newton.stays_on(&CaseHandle { backend: &mut *self.backend, case: self.case }) {
+            self.handle().iterate(false, Plate::default(), Ask::SetEarlier(snapshot.state.u_before.clone()))?;
+        }
+        self.is_away = false;
         self.newton.set_force_scales(snapshot.force_scales);
         (self.state, self.place) = (snapshot.state, snapshot.place);
         self.state.place_points(&self.mesh);
         Ok(())
     }
 
-    /// Offers the observer a checkpoint of the last accepted step.
-    pub fn checkpoint(&mut self, last: bool, observer: &mut dyn Observer) {
-        observer.checkpoint(last, &mut || {
-            Ok(Snapshot {
-                state: self.state.clone(),
-                place: self.place.clone(),
-                force_scales: self.newton.force_scales(),
-                case: self.backend.state(self.case)?,
-            })
-        });
+    fn handle(&mut self) -> CaseHandle<'_> {
+        CaseHandle { backend: &mut *self.backend, case: self.case }
     }
 
-    /// Follows the whole path, or what is left of it.
+    /// Offers the observer a checkpoint of the last accepted step.
+    pub fn checkpoint(&mut self, last: bool, observer: &mut dyn Observer) {
+        let mut taken = None;
+        observer.checkpoint(last, &mut || Ok(taken.insert(self.snapshot()?).clone()));
+        if let Some(snapshot) = taken {
+            self.safe.keep(&snapshot);
+        } else if self.is_away && self.safe.is_due() && self.backend.has_stand_in() {
+            // Without a copy the run would begin anew: that is not worth an error.
+            match self.snapshot() {
+                Ok(snapshot) => self.safe.keep(&snapshot),
+                Err(error) => log::info!("no copy of the state could be taken: {error}"),
+            }
+        }
+    }
+
+    fn snapshot(&mut self) -> Result<Snapshot, ComputeError> {
+        self.fetch()?;
+        Ok(Snapshot {
+            state: self.state.clone(),
+            place: self.place.clone(),
+            force_scales: self.newton.force_scales(),
+            case: self.backend.state(self.case)?,
+        })
+    }
+
+    /// Brings the displacements of the committed state here, if they are on the device.
+    fn fetch(&mut self) -> Result<(), ComputeError> {
+        let Self { backend, case, state, is_away, .. } = self;
+        Displacement { u: &mut state.u, u_before: &mut state.u_before, is_away }.fetch(&mut **backend, *case)
+    }
+
+    /// Follows the whole path, or what is left of it. Where a device fails that had the state, it
+    /// goes back to the last copy of it: steps that were shown are made again and not shown again.
+    ///
+    /// # Errors
+    /// [`SimulationError`]: what ends a run before its path does.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
+        loop {
+            let mut muted = Muted::new(observer, self.safe.lost(), self.state.record.step);
+            match self.follow(&mut muted) {
+                Err(error) if error.is_gone() => self.go_back(observer)?,
+                ended => return ended,
+            }
+        }
+    }
+
+    /// Goes back to the last copy of the state, or to the beginning.
+    fn go_back(&mut self, observer: &mut dyn Observer) -> Result<(), SimulationError> {
+        self.backend.take_notes().iter().for_each(|note| observer.note(note));
+        let snapshot = self.safe.lose(self.state.record.step, self.place.segment);
+        (self.held_force, self.traffic_before, self.settled) = (None, None, None);
+        match snapshot {
+            Some(snapshot) => self.resume(*snapshot),
+            None => {
+                self.backend.restore(self.case, &CaseState::virgin(&self.mesh))?;
+                self.newton.set_force_scales([0.0; 2]);
+                (self.state, self.place) = (Committed::virgin(&self.mesh, self.problem.rigid), Place::default());
+                self.is_away = false;
+                Ok(())
+            }
+        }
+    }
+
+    fn follow(&mut self, observer: &mut dyn Observer) -> Result<Ending, SimulationError> {
         if !self.place.begun {
             observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
             self.place.begun = true;
@@ -318,14 +390,16 @@ impl<'a> Drive<'a> {
         self.attempt(target)
     }
 
-    /// One Newton solve towards a target; commits nothing.
+    /// One Newton solve towards a target; commits nothing, but where the iterates stay on a device.
     fn attempt(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         self.traffic_before = self.traffic_before.or_else(|| self.backend.traffic());
-        let mut guess = self.guess(target);
+        let stays = self.newton.stays_on(&CaseHandle { backend: &mut *self.backend, case: self.case });
+        let ratio = self.extrapolation(target);
+        let mut guess = if stays { None } else { ratio.map(|ratio| self.guess(ratio)) };
         let h = match (target.hold_force, self.state.last_increment) {
             // Where the force is held the indentation is an unknown, and goes on as the
             // displacements do.
-            (true, Some([last_h, last_delta_t])) if guess.is_some() && last_delta_t != 0.0 => {
+            (true, Some([last_h, last_delta_t])) if ratio.is_some() && last_delta_t != 0.0 => {
                 let r = &self.state.record;
                 r.h + last_h * (target.delta_t - r.delta_t) / last_delta_t
             }
@@ -363,11 +437,24 @@ impl<'a> Drive<'a> {
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;
         lap.end(&mut self.newton.times, Phase::Commit);
+        let first = match (ratio, &guess) {
+            (Some(ratio), None) => Some(Guess::Extrapolation { ratio, lift: !self.problem.fully_plastic }),
+            (_, guess) => guess.as_deref().map(Guess::At),
+        };
+        let StepRecord { h, delta_t, .. } = self.state.record;
+        let start = SetOut { displacement: &self.state.u, h, delta_t, guess: first };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
-        Ok(self.newton.solve(&mut handle, &self.state.u, self.state.record.h, guess.as_deref(), &control)?)
+        let outcome = self.newton.solve(&mut handle, &start, &control)?;
+        if let StepOutcome::Converged(_) = outcome {
+            let mut lap = Lap::start();
+            self.settled = self.newton.settle(&mut handle)?;
+            lap.end(&mut self.newton.times, Phase::Commit);
+        }
+        Ok(outcome)
     }
 
-    /// Extrapolates the last step of the segment: under shear, pressed at the same time or not, all
+    /// How many times the last step of the segment is added to the committed displacement, if any:
+    /// under shear, pressed at the same time or not, all
     /// of it; under pressing alone a part, so that points that are about to touch come down but are
     /// not pushed through the plane.
     ///
@@ -377,20 +464,24 @@ impl<'a> Drive<'a> {
     /// elements under them backwards. Without friction, at E/sigma_Y = 15,000 and h = 0.085 R, a
     /// press took 2,200 iterations and 37 cuts, and takes 150 and one; an oblique press at
     /// E/sigma_Y = 9000, mu = 0.5, took 19,800 and 472, and takes 300 and none.
-    fn guess(&self, target: &Target) -> Option<Vec<f64>> {
+    fn extrapolation(&self, target: &Target) -> Option<f64> {
         let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;
-        let ratio = if last_delta_t != 0.0 {
-            (target.delta_t - r.delta_t) / last_delta_t
+        if last_delta_t != 0.0 {
+            Some((target.delta_t - r.delta_t) / last_delta_t)
         } else if last_h != 0.0 {
             let share = if self.problem.fully_plastic { 1.0 } else { PRESS_EXTRAPOLATION };
-            share * (target.h - r.h) / last_h
+            Some(share * (target.h - r.h) / last_h)
         } else {
-            return None;
-        };
+            None
+        }
+    }
+
+    /// The displacements of such an extrapolation. A device that keeps iterates forms them itself.
+    fn guess(&self, ratio: f64) -> Vec<f64> {
         let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
         if self.problem.equal_pair || self.problem.couple.is_some() || self.problem.fully_plastic {
-            return Some(guess);
+            return guess;
         }
         if let Some(rigid) = self.problem.rigid {
             for &node in &self.mesh.contact_nodes {
@@ -398,154 +489,31 @@ impl<'a> Drive<'a> {
                 let reference = self.mesh.nodes[node as usize];
                 (0..3).for_each(|c| guess[3 * node as usize + c] = x[c] - reference[c]);
             }
-            return Some(guess);
+            return guess;
         }
         for &node in &self.mesh.contact_nodes {
             let z = 3 * node as usize + 2;
             guess[z] -= gap(self.mesh.nodes[node as usize][2], guess[z]).min(0.0);
         }
-        Some(guess)
-    }
-
-    /// Commits the accepted trial and records it.
-    fn accept(&mut self, target: &Target, mut report: StepReport, observer: &mut dyn Observer) -> Result<(), SimulationError> {
-        let before = self.state.record;
-        let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));
-        let accepted = self.newton.accepted();
-        let mut lap = Lap::start();
-        let (energies, outcome) = CaseHandle { backend: &mut *self.backend, case: self.case }.commit(&accepted.u)?;
-        lap.end(&mut report.times, Phase::Commit);
-        if let (Some(before), Some(after)) = (self.traffic_before.take(), self.backend.traffic()) {
-            report.traffic = after - before;
-        }
-        if let Outcome::Inverted { element, point } = outcome {
-            return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
-        }
-        let (forces, statuses, gaps) = self.newton.contact_state(&self.mesh);
-        let force: [f64; 3] = std::array::from_fn(|c| forces[..self.own_contacts()].iter().map(|f| f[c]).sum());
-        let slaves = self.slave_contacts();
-        let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
-        let (h, contact_points, slipping_points) = (accepted.h, count(Status::Stick) + count(Status::Slip), count(Status::Slip));
-        let length = self.state.length_to(target.h, target.delta_t);
-        let friction_work = match self.newton.interface_friction_work(&self.state.force) {
-            Some(work) => work,
-            None => self.friction_work(&accepted.u, &forces),
-        };
-        self.state.u_before.copy_from_slice(&self.state.u);
-        self.state.u.copy_from_slice(&accepted.u);
-        self.state.force.copy_from_slice(&accepted.force);
-        for (force, &node) in forces.iter().zip(&self.mesh.contact_nodes) {
-            self.state.force[3 * node as usize..][..3].copy_from_slice(force);
-        }
-        (self.state.statuses, self.state.gaps) = (statuses, gaps);
-        self.newton.committed();
-        self.state.last_increment = Some([h - before.h, target.delta_t - before.delta_t]);
-        self.state.last_length = length;
-        self.state.h_max = self.state.h_max.max(h);
-        self.state.place_points(&self.mesh);
-        let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing);
-        // A slave that is the opponent lies the other way round.
-        let side = if slaves.start == 0 { 1.0 } else { -1.0 };
-        let shape = self.problem.couple.and_then(|_| bulge(&self.state.points[slaves]));
-        let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
-        // 0 - x, not -x: no force is 0, not -0.
-        let (f_n, f_t) = (2.0 * force[2], 0.0 - 2.0 * force[0]);
-        self.state.record = StepRecord {
-            step: before.step + 1,
-            segment: before.segment,
-            h,
-            delta_t: target.delta_t,
-            f_n,
-            f_t,
-            a: size.radius,
-            stick_radius: size.stick_radius,
-            newton_iterations: report.iterations.len() + wasted,
-            cutbacks,
-            a_gap: size.radius_gap,
-            krylov_iterations: report.krylov(),
-            merit: report.merit,
-            work_external: before.work_external
-                + 0.5 * (before.f_n + f_n) * (h - before.h)
-                + 0.5 * (before.f_t + f_t) * (target.delta_t - before.delta_t),
-            energy_elastic: 2.0 * energies.elastic,
-            work_plastic: 2.0 * energies.plastic,
-            work_friction: before.work_friction + 2.0 * friction_work,
-            contact_points,
-            slipping_points,
-            max_alpha: energies.max_alpha,
-            reach: self.state.reach(),
-            relaxed: usize::from(report.relaxed),
-            landed_again: report.landed_again,
-            h_opponent: depth,
-            work_plastic_opponent: 2.0 * energies.opponent_plastic,
-            curvature,
-        };
-        log::info!(
-            "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
-             contact {:.2}, linear update {:.2}, linear solve {:.2}, commit {:.2})",
-            self.state.record.step,
-            target.delta_t,
-            self.state.record.newton_iterations,
-            report.krylov(),
-            cutbacks,
-            report.merit,
-            report.times.total(),
-            report.times.seconds(Phase::Tangent),
-            report.times.seconds(Phase::Force),
-            report.times.seconds(Phase::Contact),
-            report.times.seconds(Phase::LinearUpdate),
-            report.times.seconds(Phase::LinearSolve),
-            report.times.seconds(Phase::Commit),
-        );
-        if report.relaxed && !self.place.relaxed_told {
-            self.place.relaxed_told = true;
-            let r = &self.state.record;
-            observer.note(&format!(
-                "step {} of segment {} was accepted with relaxed conditions; column relaxed of the history tells of it and of any other in this segment",
-                r.step, r.segment
-            ));
-        }
-        self.last_report = report;
-        self.backend.take_notes().iter().for_each(|note| observer.note(note));
-        observer.step(&mut self.view()).map_err(SimulationError::Observer)
+        guess
     }
 
     /// The last accepted step.
     fn view(&mut self) -> StepView<'_> {
-        let (points, opponent_points) = self.state.points.split_at(self.own_contacts());
+        let own = self.own_contacts();
+        let displacement = Displacement { u: &mut self.state.u, u_before: &mut self.state.u_before, is_away: &mut self.is_away };
+        let (points, opponent_points) = self.state.points.split_at(own);
         StepView {
             record: Scaled(self.state.record),
             report: &self.last_report,
             unfinished: std::mem::take(&mut self.newton.times),
             mesh: &self.mesh,
-            displacement: &self.state.u,
+            displacement,
             points,
             opponent_points,
             backend: &mut *self.backend,
             case: self.case,
         }
-    }
-
-    /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over
-    /// the points of the meshed half.
-    fn friction_work(&self, u: &[f64], forces: &[[f64; 3]]) -> f64 {
-        let mut work = 0.0;
-        for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {
-            let base = 3 * node as usize;
-            let Some(rigid) = self.problem.rigid else {
-                for i in 0..2 {
-                    work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
-                }
-                continue;
-            };
-            // Along the surface half-way: across it points come down, and nothing is dissipated.
-            let [before, after] = [&self.state.u, u].map(|u| position(&self.mesh, u, node));
-            let frame = rigid.frame(&std::array::from_fn(|i| 0.5 * (before[i] + after[i])));
-            let slip = to_frame(&frame, &std::array::from_fn(|i| after[i] - before[i]));
-            let traction = to_frame(&frame, &std::array::from_fn(|i| 0.5 * (point.force[i] + force[i])));
-            work -= traction[0] * slip[0] + traction[1] * slip[1];
-        }
-        work
     }
 
     /// The contact has come within half an element of the edge of the fine zone.

@@ -82,7 +82,7 @@ impl<'a> Follower<'a> {
                 // Whatever becomes of the pictures, the path has not to be followed again.
                 drive.checkpoint(true, observer);
             }
-            self.paused = Some(drive.pause());
+            self.paused = Some(drive.pause()?);
             let grown = match &ending {
                 Ending::Outgrown(outgrowth) => {
                     let zone = self.problem.grown_zone(outgrowth.reach, outgrowth.contact_radius, BLIND_MARGIN);
@@ -134,7 +134,7 @@ fn set_out(problem: &Problem, seat: &mut Seat<'_>, snapshot: Option<Snapshot>) -
     if let Some(snapshot) = snapshot {
         drive.resume(snapshot)?;
     }
-    Ok(drive.pause())
+    Ok(drive.pause()?)
 }
 
 /// Gives out `first`, which was made for a problem on `zone`, and afterwards, or for another zone,

@@ -58,3 +58,11 @@ pub enum SimulationError {
     #[error("{0}")]
     Observer(Box<dyn std::error::Error + Send + Sync>),
 }
+
+impl SimulationError {
+    /// The device that had the committed state has failed, and its stand-in waits for an earlier
+    /// one.
+    pub(crate) fn is_gone(&self) -> bool {
+        matches!(self, Self::Compute(ComputeError::Gone) | Self::Solver(SolverError::Compute(ComputeError::Gone)))
+    }
+}

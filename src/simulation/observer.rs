@@ -4,6 +4,7 @@ use super::checkpoint::Snapshot;
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::Scaled;
+use crate::compute::iterate::{Answer, Ask, IterateRequest, Plate};
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseFields, Compute, ComputeError};
 use crate::mesh::Mesh;
@@ -47,8 +48,7 @@ pub struct StepView<'a> {
     pub unfinished: PhaseTimes,
     /// The mesh.
     pub mesh: &'a Mesh,
-    /// Displacement, three a node.
-    pub displacement: &'a [f64],
+    pub(super) displacement: Displacement<'a>,
     /// Every point of the sphere that can touch.
     pub points: &'a [ContactPoint],
     /// Every point of another body that deforms that can touch, in its own coordinates.
@@ -57,7 +57,42 @@ pub struct StepView<'a> {
     pub(super) case: usize,
 }
 
+/// The displacements of the last accepted step and of the one before, here or on a device.
+pub(super) struct Displacement<'a> {
+    pub u: &'a mut Vec<f64>,
+    pub u_before: &'a mut Vec<f64>,
+    /// They are on the device; here they are right at contact nodes alone.
+    pub is_away: &'a mut bool,
+}
+
+impl Displacement<'_> {
+    /// Brings them here.
+    pub fn fetch(&mut self, backend: &mut dyn Compute, case: usize) -> Result<(), ComputeError> {
+        if !*self.is_away {
+            return Ok(());
+        }
+        let mut request =
+            [IterateRequest { case, kept: false, plate: Plate::default(), ask: Ask::Displacements, answer: Answer::Nothing }];
+        backend.iterate(&mut request)?;
+        let [IterateRequest { answer, .. }] = request;
+        if let Answer::Displacements([u, u_before]) = answer {
+            (*self.u, *self.u_before) = (u, u_before);
+            *self.is_away = false;
+        }
+        Ok(())
+    }
+}
+
 impl StepView<'_> {
+    /// Displacement, three a node.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn displacement(&mut self) -> Result<&[f64], ComputeError> {
+        self.displacement.fetch(self.backend, self.case)?;
+        Ok(self.displacement.u)
+    }
+
     /// What has passed to the device and back so far; `None` without a device.
     pub fn traffic(&self) -> Option<Traffic> {
         self.backend.traffic()

@@ -21,6 +21,7 @@ use crate::solver::encounter::Series;
 use crate::solver::newton::Newton;
 use crate::solver::pair::{PairSolver, mirror_nodes};
 use crate::solver::system::Boundary;
+use crate::solver::systems::Unmade;
 use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_linear, monotone_from};
 
 /// A case ready to be simulated.
@@ -282,7 +283,8 @@ impl Problem {
             case::Linear::Multigrid => SolverKind::Multigrid,
             case::Linear::Direct => SolverKind::Direct,
         };
-        let linear = LinearSolver::new(kind, &pattern, &mesh.hierarchy).map_err(SolverError::from)?;
+        let mesh_of_solver = mesh.clone();
+        let linear = Unmade::new(kind, move || LinearSolver::new(kind, &pattern, &mesh_of_solver.hierarchy));
         let newton = Newton::new(mesh, linear, self.settings);
         Ok(match self.rigid {
             Some(rigid) => newton.against(rigid),

@@ -2,23 +2,21 @@
 //! solves.
 
 mod line_search;
-mod linearise;
 
 use super::encounter::Encounter;
+use super::iterate::host::HostIterate;
+use super::iterate::resident::ResidentIterate;
+use super::iterate::{Asked, Correction, Iterate, SetOut};
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
-use super::pair::mirror_nodes;
 use super::phases::PhaseTimes;
-use super::rigid::Against;
-use super::system::{Boundary, Meeting, Trial};
+use super::system::{Meeting, Trial};
 use super::systems::Systems;
 use super::{Control, Settings, SolverError};
-use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
+use crate::compute::iterate::{Reading, Settled};
 use crate::contact::coulomb::{Friction, Status};
-use crate::contact::pair::leave_even;
 use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
-use linearise::{Asked, Linearised};
 
 /// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance
 /// of the step asks for, and at the loosest to [`Settings::loosest_linear`]. Solving more tightly
@@ -56,33 +54,19 @@ const UNLOADED_SCALE: f64 = 1e-5;
 /// Share of the largest normal force so far that measures residuals when nothing touches.
 const LOST_SHARE: f64 = 1e-4;
 
-/// The Newton iteration of one case with everything it keeps between steps.
+/// The Newton iteration of one case with everything it keeps between steps. It decides by numbers;
+/// the vectors are its iterates'.
 pub struct Newton {
-    boundary: Boundary,
-    linear: Systems,
+    /// Its iterates, for the host and for a device that keeps them.
+    iterates: ResidentIterate,
+    /// The present step's are on the device.
+    is_resident: bool,
     settings: Settings,
     /// Force scale of the last accepted step, and the largest of any.
     last_scale: f64,
     largest_scale: f64,
-    current: Trial,
-    candidate: Trial,
-    best: Trial,
-    /// Per contact point under full stick: it has come off in the iteration of the present step.
-    came_off: Vec<bool>,
-    fixed: Vec<bool>,
-    rhs: Vec<f64>,
-    /// Correction of the displacements, and of the unknowns that the linear system has: relative
-    /// displacements where the body meets its own image.
-    delta: Vec<f64>,
-    correction: Vec<f64>,
-    functional: Vec<f64>,
-    unit_rhs: Vec<f64>,
-    unit_response: Vec<f64>,
-    /// Forces at the contact under a unit indentation of a body that moves as one, over those at a
-    /// plate that moves alone.
-    unit_scale: f64,
-    /// Krylov iterations of the step's last system and of its response to a unit indentation.
-    expected: [usize; 2],
+    /// What is known of the current iterate.
+    current: Reading,
     /// Time spent since the last converged step; whoever drives the iteration adds what else a step
     /// takes.
     pub times: PhaseTimes,
@@ -91,46 +75,49 @@ pub struct Newton {
 impl Newton {
     /// Prepares the iteration on a mesh.
     pub fn new(mesh: &Mesh, linear: impl Into<Systems>, settings: Settings) -> Self {
-        let n = 3 * mesh.nodes.len();
-        let linear = linear.into();
-        let mut boundary = Boundary::new(mesh);
-        if let Systems::Pair(solver) = &linear {
-            boundary.mirror = solver.mirror().to_vec();
-        } else if matches!(linear, Systems::Couple(_)) {
-            boundary.mirror = mirror_nodes(mesh).unwrap_or_default();
-        }
         Self {
-            boundary,
-            linear,
+            iterates: ResidentIterate::new(HostIterate::new(mesh, linear.into())),
+            is_resident: false,
             settings,
             last_scale: 0.0,
             largest_scale: 0.0,
-            current: Trial::new(mesh),
-            candidate: Trial::new(mesh),
-            best: Trial::new(mesh),
-            came_off: vec![false; mesh.contact_nodes.len()],
-            fixed: vec![false; n],
-            rhs: vec![0.0; n],
-            delta: vec![0.0; n],
-            correction: vec![0.0; n],
-            functional: vec![0.0; n],
-            unit_rhs: vec![0.0; n],
-            unit_response: vec![0.0; n],
-            unit_scale: 1.0,
-            expected: [0; 2],
+            current: Reading::default(),
             times: PhaseTimes::default(),
         }
     }
 
     /// The same against a rigid sphere in place of the plane.
     pub fn against(mut self, rigid: Rigid) -> Self {
-        self.boundary.against = Some(Against::new(rigid));
+        self.iterates.host.against(rigid);
         self
     }
 
-    /// The last accepted trial.
+    /// Whether steps on this backend leave their vectors on the device.
+    pub fn stays_on(&self, case: &dyn Evaluate) -> bool {
+        case.keeps_iterates() && self.iterates.host.is_over_plane_by_multigrid()
+    }
+
+    /// The last accepted trial, if its vectors are on the host.
     pub fn accepted(&self) -> &Trial {
-        &self.current
+        self.iterates.host.current()
+    }
+
+    /// Commits the last accepted trial, where its vectors are on the device; `None` where they are
+    /// not.
+    ///
+    /// # Errors
+    /// [`SolverError::Compute`].
+    pub fn settle(&mut self, case: &mut dyn Evaluate) -> Result<Option<Settled>, SolverError> {
+        if self.is_resident { self.iterates.settle(case).map(Some) } else { Ok(None) }
+    }
+
+    /// Indentation of the last accepted trial.
+    pub fn accepted_h(&self) -> f64 {
+        if self.is_resident { self.iterates.h() } else { self.iterates.host.h() }
+    }
+
+    fn iterate(&mut self) -> &mut dyn Iterate {
+        if self.is_resident { &mut self.iterates } else { &mut self.iterates.host }
     }
 
     /// What merits are measured by: the sum of the normal contact forces, but where contact is
@@ -163,89 +150,68 @@ impl Newton {
     /// Lets the contact points that `points` marks slide without friction until it is called again;
     /// none of them for an empty list.
     pub fn set_sliding(&mut self, points: &[bool]) {
-        self.boundary.frictionless.fill(false);
-        self.boundary.frictionless.iter_mut().zip(points).for_each(|(slides, &point)| *slides = point);
+        self.iterates.host.set_sliding(points);
     }
 
     /// Sets the interface of an equal pair for the next step.
     pub fn meet(&mut self, meeting: Meeting) {
-        if let Systems::Pair(solver) = &mut self.linear {
-            solver.set_symmetric(meeting.symmetric);
-        }
-        self.boundary.pair = Some(meeting);
+        self.iterates.host.meet(meeting);
     }
 
     /// Sets the interface with another body for the next step.
     pub fn encounter(&mut self, encounter: Encounter) {
-        self.boundary.encounter = Some(encounter);
+        self.iterates.host.encounter(encounter);
     }
 
     /// Work that friction dissipates in the step to the accepted trial, on the meshed half, where
     /// the forces at the contact were `before` (three a node) at its start; between two bodies
     /// alone.
     pub fn interface_friction_work(&self, before: &[f64]) -> Option<f64> {
-        self.boundary.encounter.as_ref().map(|encounter| encounter.friction_work(&self.current, before))
+        let host = &self.iterates.host;
+        host.boundary().encounter.as_ref().map(|encounter| encounter.friction_work(host.current(), before))
     }
 
     /// Leaves the even part of a guess where the step is symmetric.
     pub fn symmetrise(&self, guess: &mut [f64]) {
-        if let Systems::Pair(solver) = &self.linear {
-            solver.symmetrise(guess);
-        } else if self.boundary.is_even() {
-            leave_even(&self.boundary.mirror, guess);
-        }
+        self.iterates.host.symmetrise(guess);
     }
 
-    /// What contact exerts on each contact node at the accepted trial, what each does, and its gap.
+    /// What contact exerts on each contact node at the accepted trial, what each does, and its gap,
+    /// where its vectors are on the host.
     pub fn contact_state(&self, mesh: &Mesh) -> (Vec<[f64; 3]>, Vec<Status>, Vec<f64>) {
-        let trial = &self.current;
-        (trial.point_forces(mesh, &self.boundary), trial.statuses(&self.boundary), trial.gaps(mesh, &self.boundary))
+        let (trial, boundary) = (self.accepted(), self.iterates.host.boundary());
+        (trial.point_forces(mesh, boundary), trial.statuses(boundary), trial.gaps(mesh, boundary))
     }
 
     /// Number of contact nodes of the sphere; those of another body follow them.
     pub fn own_contacts(&self) -> usize {
-        self.boundary.own_contacts
+        self.iterates.host.boundary().own_contacts
     }
 
     /// Number of unknown displacements that are not prescribed.
     pub fn free_unknowns(&self) -> usize {
-        self.boundary.prescribed.iter().filter(|p| !**p).count()
+        self.iterates.host.boundary().prescribed.iter().filter(|p| !**p).count()
     }
 
-    /// Finds equilibrium under `control` from the committed displacement `start`, trying `guess`
-    /// first if there is one.
+    /// Finds equilibrium under `control` from the committed displacement, trying a guess first if
+    /// there is one.
     ///
-    /// On success the solution is in [`Newton::accepted`]; nothing is committed. A failure leaves
-    /// the committed state as it was.
-    pub fn solve(
-        &mut self,
-        case: &mut dyn Evaluate,
-        start: &[f64],
-        start_h: f64,
-        guess: Option<&[f64]>,
-        control: &Control,
-    ) -> Result<StepOutcome, SolverError> {
-        match self.iterate(case, start, start_h, guess, control) {
+    /// On success the solution is the accepted trial ([`Newton::accepted`], [`Newton::settle`]);
+    /// nothing is committed. A failure leaves the committed state as it was.
+    pub fn solve(&mut self, case: &mut dyn Evaluate, start: &SetOut<'_>, control: &Control) -> Result<StepOutcome, SolverError> {
+        self.is_resident = self.stays_on(case);
+        match self.follow(case, start, control) {
             Ok(report) => Ok(StepOutcome::Converged(report)),
             Err(Halt::Step(failure)) => Ok(StepOutcome::Failed(failure)),
             Err(Halt::Solver(error)) => Err(error),
         }
     }
 
-    fn iterate(
-        &mut self,
-        case: &mut dyn Evaluate,
-        start: &[f64],
-        start_h: f64,
-        guess: Option<&[f64]>,
-        control: &Control,
-    ) -> Result<StepReport, Halt> {
-        let mesh = case.model().mesh.clone();
-        self.came_off.fill(false);
-        if let Some(against) = &mut self.boundary.against {
-            against.set_out(&mesh, start);
-        }
-        self.begin(case, start, start_h, guess, control)?;
+    fn follow(&mut self, case: &mut dyn Evaluate, start: &SetOut<'_>, control: &Control) -> Result<StepReport, Halt> {
+        let mut times = std::mem::take(&mut self.times);
+        let begun = self.iterate().begin(case, start, control, &mut times);
+        self.times = times;
+        self.current = begun?;
         let mut report = StepReport::default();
         let mut previous = f64::INFINITY;
         let mut highest = 0.0_f64;
@@ -265,12 +231,14 @@ impl Newton {
                 break;
             }
             let eta = self.forcing(previous).min(if control.normal_force.is_some() { TIGHT_LINEAR } else { 1.0 });
-            let asked = Asked { mesh: &mesh, control, eta, first: iteration == 0 };
-            let Linearised { krylov, fallback, delta_h } = self.linearise(case, asked)?;
+            let mut times = std::mem::take(&mut self.times);
+            let corrected = self.iterate().correct(case, Asked { control, eta, first: iteration == 0 }, &mut times);
+            self.times = times;
+            let Correction { krylov, fallback, delta_h, slope } = corrected?;
             report.fallbacks += usize::from(fallback);
             highest = highest.max(self.current.merit);
             // An iteration that moves the plate has no merit before it to be compared with.
-            let moves_plate = iteration == 0 && !self.plate_is_placed(control);
+            let moves_plate = iteration == 0 && !self.iterate().plate_is_placed(control);
             let reference = match iteration {
                 0 if moves_plate => f64::INFINITY,
                 i if i < self.settings.monotone_from => highest,
@@ -279,29 +247,22 @@ impl Newton {
             let before = self.current.merit / scale;
             previous = self.current.merit;
             let may_stay = iteration >= self.settings.monotone_from
-                && self.plate_is_placed(control)
-                && self.holds_force(case, control, 2.0 * HELD_TOLERANCE)
+                && self.iterate().plate_is_placed(control)
+                && self.holds_force(control, 2.0 * HELD_TOLERANCE)
                 && previous <= KINK * self.settings.tolerance * scale;
-            let (step_length, changed) = self.line_search(case, control, reference, delta_h)?;
-            if may_stay && self.current.merit >= previous {
-                // The line search has left the iterate that it started from in `best`.
-                std::mem::swap(&mut self.current, &mut self.best);
+            let (step_length, found) = self.line_search(case, control, reference, slope, delta_h)?;
+            if may_stay && found.merit >= previous {
                 report.iterations.push(Iteration { merit: before, step_length: 0.0, krylov, changed: 0 });
                 log::debug!("  iteration {:2}: merit {before:.2e}, which no step length lowers: accepted", iteration + 1);
                 at_kink = true;
                 continue;
             }
-            if case.model().friction == Friction::Stick {
-                let landed = self.land_again();
-                if landed > 0 {
-                    report.landed_again += landed;
-                    self.current.assess(case, &self.boundary, control, &mut self.times)?;
-                }
-            }
+            self.keep(case, control, step_length, found, &mut report)?;
             if moves_plate {
                 highest = 0.0;
                 previous = f64::INFINITY;
             }
+            let changed = found.changed;
             report.iterations.push(Iteration { merit: before.min(f64::MAX), step_length, krylov, changed });
             log::debug!(
                 "  iteration {:2}: merit {:.2e} -> {:.2e}, step {step_length}, krylov {krylov} (eta {eta:.1e}), {changed} changed",
@@ -310,7 +271,35 @@ impl Newton {
                 self.current.merit / self.scale().max(f64::MIN_POSITIVE),
             );
         }
-        Err(self.exhausted(&mesh, report.iterations.len()).into())
+        let scale = self.scale();
+        let worst = self.iterate().worst(case, control, scale)?;
+        let merit = self.current.merit / scale.max(f64::MIN_POSITIVE);
+        Err(StepFailure::Iterations { iterations: report.iterations.len(), merit, worst }.into())
+    }
+
+    /// Makes the trial at a step length the current iterate; under full stick with the points that
+    /// land in it let go of.
+    fn keep(
+        &mut self,
+        case: &mut dyn Evaluate,
+        control: &Control,
+        length: f64,
+        found: Reading,
+        report: &mut StepReport,
+    ) -> Result<(), Halt> {
+        let mut times = std::mem::take(&mut self.times);
+        let iterate = self.iterate();
+        let mut kept = iterate.keep(case, control, length, &mut times).map(|()| None);
+        if kept.is_ok() && case.model().friction == Friction::Stick {
+            kept = iterate.land(case, control, found.landed, &mut times);
+        }
+        self.times = times;
+        self.current = found;
+        if let Some((landed, reading)) = kept? {
+            report.landed_again += landed;
+            self.current = reading;
+        }
+        Ok(())
     }
 
     /// The merit has fallen so much in the last iterations that a few more will do: a step is not
@@ -320,92 +309,25 @@ impl Newton {
         done.len() >= FEW_ITERATIONS && self.current.merit < CONVERGING * done[done.len() - LAST_ITERATIONS].merit * self.scale()
     }
 
-    /// Sets the first iterate: the guess if it can be evaluated, the start otherwise.
-    fn begin(
-        &mut self,
-        case: &mut dyn Evaluate,
-        start: &[f64],
-        start_h: f64,
-        guess: Option<&[f64]>,
-        control: &Control,
-    ) -> Result<(), SolverError> {
-        if let Some(guess) = guess {
-            self.current.h = control.h;
-            self.current.u.copy_from_slice(guess);
-            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
-            if self.current.evaluate(case, &self.boundary, control, &mut self.times)? == Outcome::Valid {
-                return Ok(());
-            }
-        }
-        self.current.h = if control.normal_force.is_some() { start_h } else { control.h };
-        self.current.u.copy_from_slice(start);
-        // The committed state can always be evaluated; the plate's increment enters through the
-        // linear system.
-        self.current.evaluate(case, &self.boundary, control, &mut self.times)?;
-        if self.current.force_scale == 0.0 {
-            // Nothing touches: the body follows the plate as it is.
-            let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
-            let shift = [control.delta_t - start[plate], 0.0, -self.current.h - start[plate + 2]];
-            for (u, s) in self.current.u.chunks_exact_mut(3).take(self.boundary.own_nodes).zip(std::iter::repeat(shift)) {
-                for i in 0..3 {
-                    u[i] += s[i];
-                }
-            }
-            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
-            // A shift leaves the forces as they are. Evaluated anew they would be those of an
-            // unloaded body, nothing but rounding, and which points stick would hang on it: the
-            // step would go another way on every device.
-            self.current.assess(case, &self.boundary, control, &mut self.times)?;
-        }
-        Ok(())
-    }
-
     /// The merit is below the tolerance, the tangential residuals of the contact are against the
     /// friction that there can be, and a held normal force is met.
-    fn has_converged(&self, case: &mut dyn Evaluate, control: &Control) -> bool {
+    fn has_converged(&mut self, case: &dyn Evaluate, control: &Control) -> bool {
         let bound = (self.settings.tolerance * self.scale()).max(ROUNDING);
-        if self.current.merit > bound || !self.plate_is_placed(control) {
+        if self.current.merit > bound || !self.iterate().plate_is_placed(control) {
             return false;
         }
         let friction = match case.model().friction {
             Friction::Coulomb(mu) if mu > 0.0 => (TANGENTIAL * mu).min(1.0),
             _ => 1.0,
         };
-        (friction == 1.0 || self.current.tangential_residual() <= (friction * bound).max(ROUNDING))
-            && self.holds_force(case, control, HELD_TOLERANCE)
+        (friction == 1.0 || self.current.tangential <= (friction * bound).max(ROUNDING))
+            && self.holds_force(control, HELD_TOLERANCE)
     }
 
     /// A normal force that is to be held is met to this share of it.
-    fn holds_force(&self, case: &mut dyn Evaluate, control: &Control, tolerance: f64) -> bool {
-        let found = || self.current.contact_force(&case.model().mesh, &self.boundary)[2];
-        control.normal_force.is_none_or(|force| (found() - force).abs() <= (tolerance * force).max(ROUNDING))
-    }
-
-    /// Under full stick a point that came off within the step and comes down again has let go of
-    /// its tangential force, and carries none up to the step's end: held to where it stuck before,
-    /// or open, there may be no equilibrium for it. After a line search `best` is the iterate
-    /// before. Returns how many points are new.
-    fn land_again(&mut self) -> usize {
-        let mut landed = 0;
-        for (i, (before, after)) in self.best.rows.iter().zip(&self.current.rows).enumerate() {
-            if self.boundary.frictionless[i] {
-                continue;
-            }
-            self.came_off[i] |= before.status == Status::Stick && after.status == Status::Open;
-            if self.came_off[i] && after.status == Status::Stick {
-                self.boundary.frictionless[i] = true;
-                landed += 1;
-            }
-        }
-        landed
-    }
-
-    fn plate_is_placed(&self, control: &Control) -> bool {
-        self.boundary.plate.iter().all(|&n| {
-            let base = 3 * n as usize;
-            let u = &self.current.u[base..base + 3];
-            (u[0] - control.delta_t).abs() <= 1e-14 && (u[2] + self.current.h).abs() <= 1e-14
-        })
+    fn holds_force(&self, control: &Control, tolerance: f64) -> bool {
+        let found = self.current.normal_force;
+        control.normal_force.is_none_or(|force| (found - force).abs() <= (tolerance * force).max(ROUNDING))
     }
 
     fn forcing(&self, previous: f64) -> f64 {
@@ -421,13 +343,5 @@ impl Newton {
         let floor = 0.3 * self.settings.tolerance * self.scale() / merit;
         let ratio = merit / previous;
         (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, loosest)
-    }
-
-    fn exhausted(&self, mesh: &Mesh, iterations: usize) -> StepFailure {
-        StepFailure::Iterations {
-            iterations,
-            merit: self.current.merit / self.scale().max(f64::MIN_POSITIVE),
-            worst: self.current.worst(mesh, &self.boundary, self.scale()),
-        }
     }
 }

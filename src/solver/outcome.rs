@@ -113,7 +113,7 @@ impl std::fmt::Display for Worst {
 
 /// What ends the iteration of a step before it has converged.
 #[derive(Debug)]
-pub(super) enum Halt {
+pub enum Halt {
     /// The step, which may do with less.
     Step(StepFailure),
     /// What no smaller step cures.

@@ -11,6 +11,7 @@ use super::phases::{Lap, Phase, PhaseTimes};
 use super::rigid::{Against, position};
 use super::{Control, Worst};
 use crate::compute::handle::Evaluate;
+use crate::compute::iterate::{missing_weight, prescribed};
 use crate::compute::{CaseModel, ComputeError, Outcome};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::contact::frame::Frame;
@@ -89,21 +90,13 @@ impl Meeting {
 impl Boundary {
     /// Plate and symmetry plane of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut prescribed = vec![false; 3 * mesh.nodes.len()];
-        for &n in &mesh.symmetry_nodes {
-            prescribed[3 * n as usize + 1] = true;
-        }
-        for &n in &mesh.plate_nodes {
-            prescribed[3 * n as usize..3 * n as usize + 3].fill(true);
-        }
-        let mean_size = mesh.contact_size.iter().sum::<f64>() / mesh.contact_size.len().max(1) as f64;
         let frictionless = vec![false; mesh.contact_nodes.len()];
         let own_nodes = mesh.couple.as_ref().map_or(mesh.nodes.len(), |couple| couple.node);
         Self {
             plate: mesh.plate_nodes.iter().copied().filter(|&n| (n as usize) < own_nodes).collect(),
-            prescribed,
+            prescribed: prescribed(mesh),
             frictionless,
-            weight: 0.1 * mean_size,
+            weight: missing_weight(mesh),
             pair: None,
             against: None,
             encounter: None,
@@ -127,8 +120,8 @@ impl Boundary {
     }
 }
 
-/// Everything known at one trial displacement.
-#[derive(Clone, Debug)]
+/// Everything known at one trial displacement; the default is one of no mesh.
+#[derive(Clone, Debug, Default)]
 pub struct Trial {
     /// Displacement, three a node.
     pub u: Vec<f64>,

@@ -3,11 +3,33 @@
 use super::couple::CoupleSolver;
 use super::pair::PairSolver;
 use super::tied::Tied;
-use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, LinalgError, LinearSolver, SolveReport};
+use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, LinalgError, LinearSolver, SolveReport, SolverKind};
+
+/// The solver of one body's systems over a plane, made when it is first asked for: where a device
+/// solves them it never is, and its matrices take no memory.
+pub struct Unmade {
+    kind: SolverKind,
+    make: Box<dyn Fn() -> Result<LinearSolver, LinalgError> + Send>,
+}
+
+impl Unmade {
+    /// A solver of that kind, which `make` makes.
+    pub fn new(kind: SolverKind, make: impl Fn() -> Result<LinearSolver, LinalgError> + Send + 'static) -> Self {
+        Self { kind, make: Box::new(make) }
+    }
+}
+
+impl std::fmt::Debug for Unmade {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Unmade({:?})", self.kind)
+    }
+}
 
 /// The solver of one body's systems, of an equal pair's, or of two bodies'.
 #[derive(Debug)]
 pub enum Systems {
+    /// Over a plane, not made yet.
+    Unmade(Unmade),
     /// Over a plane.
     Plane(Box<LinearSolver>),
     /// Against its own image.
@@ -19,6 +41,12 @@ pub enum Systems {
 impl From<CoupleSolver> for Systems {
     fn from(solver: CoupleSolver) -> Self {
         Self::Couple(Box::new(solver))
+    }
+}
+
+impl From<Unmade> for Systems {
+    fn from(unmade: Unmade) -> Self {
+        Self::Unmade(unmade)
     }
 }
 
@@ -35,13 +63,34 @@ impl From<PairSolver> for Systems {
 }
 
 impl Systems {
-    /// The tangent, to be written in place.
-    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+    /// Makes the solver if it is not.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::new`].
+    pub fn make(&mut self) -> Result<(), LinalgError> {
+        if let Self::Unmade(unmade) = self {
+            *self = (unmade.make)()?.into();
+        }
+        Ok(())
+    }
+
+    /// How systems are solved.
+    pub fn kind(&self) -> SolverKind {
         match self {
+            Self::Unmade(unmade) => unmade.kind,
+            Self::Plane(solver) => solver.kind(),
+            Self::Pair(_) | Self::Couple(_) => SolverKind::Multigrid,
+        }
+    }
+
+    /// The tangent, to be written in place; `None` of a solver that is not made.
+    pub fn matrix_mut(&mut self) -> Option<&mut BlockMatrix<f64>> {
+        Some(match self {
+            Self::Unmade(_) => return None,
             Self::Plane(solver) => solver.matrix_mut(),
             Self::Pair(solver) => solver.matrix_mut(),
             Self::Couple(solver) => solver.matrix_mut(),
-        }
+        })
     }
 
     /// Solves for the correction of the unknowns; without `fallback` never by the direct solver.
@@ -50,6 +99,7 @@ impl Systems {
     /// As [`LinearSolver::solve`].
     pub fn solve(&mut self, rhs: &[f64], tolerance: f64, x: &mut [f64], fallback: bool) -> Result<SolveReport, LinalgError> {
         match self {
+            Self::Unmade(_) => Err(LinalgError::NotUpdated),
             Self::Plane(solver) => {
                 solver.set_fallback_limit(if fallback { DEFAULT_FALLBACK_LIMIT } else { 0 });
                 solver.solve(rhs, tolerance, x)
@@ -65,6 +115,7 @@ impl Systems {
     /// As [`LinearSolver::residual_norm`].
     pub fn residual_norm(&mut self, rhs: &[f64], x: &[f64]) -> Result<f64, LinalgError> {
         match self {
+            Self::Unmade(_) => Err(LinalgError::NotUpdated),
             Self::Plane(solver) => solver.residual_norm(rhs, x),
             Self::Pair(solver) => Ok(solver.residual_norm(rhs, x)),
             Self::Couple(solver) => Ok(solver.residual_norm(rhs, x)),

@@ -14,6 +14,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::compute::iterate::{self, IterateRequest};
 use crate::compute::linear::{LinearRequest, Side, SideReport};
 use crate::compute::traffic::Traffic;
 use crate::compute::{
@@ -30,6 +31,7 @@ enum Ask {
     Tangent { displacement: Vec<f64>, blocks: Vec<[f64; 9]>, outcome: Outcome },
     Linear(LinearAsk),
     Commit { displacement: Vec<f64>, energies: Energies, outcome: Outcome },
+    Iterate(Box<IterateRequest>),
     Begin(f64),
     Fields(Option<CaseFields>),
     State(Option<CaseState>),
@@ -101,6 +103,8 @@ struct Told {
     description: Description,
     notes: Vec<String>,
     traffic: Option<Traffic>,
+    keeps_iterates: bool,
+    has_stand_in: bool,
 }
 
 /// A backend that will be shared.
@@ -126,7 +130,14 @@ pub struct Guest {
 /// A host for a backend and a guest for each of its cases.
 pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Guest>) {
     let models = Arc::new(backend.models().to_vec());
-    let told = Arc::new(Mutex::new(Told { description: backend.description(), notes: Vec::new(), traffic: backend.traffic() }));
+    let told = Told {
+        description: backend.description(),
+        notes: Vec::new(),
+        traffic: backend.traffic(),
+        keeps_iterates: backend.keeps_iterates(),
+        has_stand_in: backend.has_stand_in(),
+    };
+    let told = Arc::new(Mutex::new(told));
     let (sender, requests) = channel();
     let guest = |_| Guest {
         models: models.clone(),
@@ -151,6 +162,8 @@ impl Host {
             let notes = self.backend.take_notes();
             let mut told = lock(&self.told);
             told.traffic = self.backend.traffic();
+            told.keeps_iterates = self.backend.keeps_iterates();
+            told.has_stand_in = self.backend.has_stand_in();
             if !notes.is_empty() {
                 told.description = self.backend.description();
                 told.notes.extend(notes);
@@ -168,6 +181,7 @@ impl Host {
         let (mut forces, mut trials, mut contacts) = (vec![], vec![], vec![]);
         let (mut tangents, mut systems) = (vec![], vec![]);
         let (mut commits, mut others) = (vec![], vec![]);
+        let mut iterates: Vec<Vec<Request>> = vec![];
         for request in waiting {
             match request.ask {
                 Ask::Force { .. } => forces.push(request),
@@ -176,6 +190,10 @@ impl Host {
                 Ask::Tangent { .. } => tangents.push(request),
                 Ask::Linear(_) => systems.push(request),
                 Ask::Commit { .. } => commits.push(request),
+                Ask::Iterate(ref asked) => match iterates.iter_mut().find(|of| asks_alike(&of[0].ask, asked)) {
+                    Some(alike) => alike.push(request),
+                    None => iterates.push(vec![request]),
+                },
                 Ask::Begin(_) | Ask::Fields(_) | Ask::State(_) | Ask::Restore(_) => others.push(request),
             }
         }
@@ -189,6 +207,7 @@ impl Host {
             (linear, systems),
             (commit, commits),
         ];
+        let kinds = kinds.into_iter().chain(iterates.into_iter().map(|alike| (iterate as Call, alike)));
         for (call, mut requests) in kinds {
             if requests.is_empty() {
                 continue;
@@ -277,6 +296,26 @@ fn linear(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), Com
     Ok(())
 }
 
+/// Whether a request asks of its iterates what `asked` does: they go into one call.
+fn asks_alike(ask: &Ask, asked: &IterateRequest) -> bool {
+    matches!(ask, Ask::Iterate(other) if std::mem::discriminant(&other.ask) == std::mem::discriminant(&asked.ask))
+}
+
+fn iterate(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
+    let mut calls = Vec::with_capacity(requests.len());
+    for Request { case, ask, .. } in requests.iter_mut() {
+        if let Ask::Iterate(asked) = ask {
+            let nothing = IterateRequest { ask: iterate::Ask::Land, answer: iterate::Answer::Nothing, ..**asked };
+            calls.push(IterateRequest { case: *case, ..std::mem::replace(&mut **asked, nothing) });
+        }
+    }
+    backend.iterate(&mut calls)?;
+    let asks =
+        requests.iter_mut().filter_map(|request| if let Ask::Iterate(asked) = &mut request.ask { Some(asked) } else { None });
+    asks.zip(calls).for_each(|(asked, call)| **asked = call);
+    Ok(())
+}
+
 fn commit(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
     let mut answers = Vec::new();
     let mut calls: Vec<CommitRequest<'_>> = Vec::new();
@@ -351,6 +390,23 @@ impl Compute for Guest {
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
         self.ask(case, Ask::Begin(weight)).map(drop)
+    }
+
+    fn keeps_iterates(&self) -> bool {
+        lock(&self.told).keeps_iterates
+    }
+
+    fn has_stand_in(&self) -> bool {
+        lock(&self.told).has_stand_in
+    }
+
+    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        for request in requests {
+            if let Ask::Iterate(answered) = self.ask(request.case, Ask::Iterate(Box::new(request.clone())))? {
+                request.answer = answered.answer;
+            }
+        }
+        Ok(())
     }
 
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 const CASES: usize = 3;
 
-fn mesh() -> Arc<Mesh> {
+pub fn mesh() -> Arc<Mesh> {
     Arc::new(sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap())
 }
 

@@ -5,12 +5,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::batch::{Batch, CONTACT_ANSWER, CONTACT_TRIAL, Dispatch, Evaluation};
+use super::batch::{Batch, Dispatch, Evaluation};
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::linear::pack::Packed;
+use super::scratch::{CONTACT_ANSWER, CONTACT_TRIAL};
 use crate::compute::cpu::Cpu;
+use crate::compute::iterate::IterateRequest;
 use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
@@ -31,9 +33,15 @@ use crate::mesh::Mesh;
 /// committed displacement, formed in f64 and rounded once, so that f32 loses no digits of a small
 /// step.
 pub struct Gpu<R> {
-    models: Vec<CaseModel>,
+    pub(super) models: Vec<CaseModel>,
     /// Committed displacements, in f64.
-    committed: Vec<Vec<f64>>,
+    pub(super) committed: Vec<Vec<f64>>,
+    /// By case: `committed` is what the device has.
+    pub(super) fresh: Vec<bool>,
+    /// By case: which of the two iterates on the device is the current one.
+    pub(super) current: Vec<u32>,
+    /// By case and iterate: the largest number of its right-hand side.
+    pub(super) largest: Vec<[f64; 2]>,
     batch: Option<Batch<R>>,
     name: String,
 }
@@ -45,9 +53,23 @@ impl<R: DeviceReal> Gpu<R> {
     /// [`ComputeError::Connectivity`], [`ComputeError::InvertedMesh`], [`ComputeError::Device`]:
     /// memory, limits, no double precision, or the device's fault.
     pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
+        Self::of(context, models, false)
+    }
+
+    /// The same with tangents in single precision, whatever the residual's: they decide how fast an
+    /// answer is found, not what it is, and cost a half to a sixty-fourth of those in double.
+    ///
+    /// # Errors
+    /// As [`Gpu::new`].
+    pub fn with_tangents_in_single(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
+        Self::of(context, models, true)
+    }
+
+    fn of(context: Arc<GpuContext>, models: Vec<CaseModel>, tangents_in_single: bool) -> Result<Self, ComputeError> {
         let name = format!("{} ({})", context.adapter().name, context.adapter().kind);
         let Some(first) = models.first() else {
-            return Ok(Self { models, committed: Vec::new(), batch: None, name });
+            let (committed, fresh, current, largest) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            return Ok(Self { models, committed, fresh, current, largest, batch: None, name });
         };
         for (case, model) in models.iter().enumerate() {
             if model.mesh.elements != first.mesh.elements || model.mesh.contact_nodes != first.mesh.contact_nodes {
@@ -55,9 +77,10 @@ impl<R: DeviceReal> Gpu<R> {
             }
         }
         context.supports(R::PRECISION)?;
-        let batch = Batch::new(context, &models)?;
+        let batch = Batch::new(context, &models, tangents_in_single)?;
         let committed = models.iter().map(|m| vec![0.0; 3 * m.mesh.nodes.len()]).collect();
-        Ok(Self { models, committed, batch: Some(batch), name })
+        let (fresh, current, largest) = (vec![true; models.len()], vec![0; models.len()], vec![[0.0; 2]; models.len()]);
+        Ok(Self { models, committed, fresh, current, largest, batch: Some(batch), name })
     }
 
     /// What the user should know: what the device leaves to the host.
@@ -82,24 +105,29 @@ impl<R: DeviceReal> Gpu<R> {
         Ok(())
     }
 
-    fn batch(&self) -> Result<&Batch<R>, GpuError> {
+    pub(super) fn batch(&self) -> Result<&Batch<R>, GpuError> {
         let empty = || GpuError::Length { what: "the cases of the batch".into(), expected: 0, given: 1 };
         self.batch.as_ref().ok_or_else(empty)
     }
 
     /// The dispatches for requests of these cases; none for no requests.
-    fn schedule(&self, cases: impl Iterator<Item = usize>) -> Vec<Dispatch> {
+    pub(super) fn schedule(&self, cases: impl Iterator<Item = usize>) -> Vec<Dispatch> {
         self.batch.as_ref().map_or_else(Vec::new, |b| b.schedule(&cases.collect::<Vec<_>>()))
     }
 
     /// Increments of a dispatch, `[slot][3 node + i]`: formed in f64, rounded once.
-    fn increments<'a>(&self, dispatch: &Dispatch, request: impl Fn(usize) -> (usize, &'a [f64])) -> Vec<R> {
+    fn increments<'a>(
+        &mut self,
+        dispatch: &Dispatch,
+        request: impl Fn(usize) -> (usize, &'a [f64]),
+    ) -> Result<Vec<R>, ComputeError> {
         let mut out = Vec::new();
         for &i in &dispatch.requests {
             let (case, displacement) = request(i);
+            self.refresh(case)?;
             out.extend(displacement.iter().zip(&self.committed[case]).map(|(u, c)| R::of(u - c)));
         }
-        out
+        Ok(out)
     }
 }
 
@@ -122,7 +150,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
 
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
         for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
             let (outcomes, force) = self.batch()?.internal_force(&dispatch, &increments)?;
             for (slot, &i) in dispatch.requests.iter().enumerate() {
                 let request = &mut requests[i];
@@ -136,7 +164,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
 
     fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
         for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
             let answers = self.batch()?.trial(&dispatch, &increments)?;
             for (slot, &i) in dispatch.requests.iter().enumerate() {
                 let request = &mut requests[i];
@@ -151,7 +179,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
 
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
             let batch = self.batch()?;
             let (outcomes, upper) = batch.tangent(&dispatch, &increments)?;
             let count = batch.sizes().blocks;
@@ -161,13 +189,13 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                 if request.outcome != Outcome::Valid {
                     continue;
                 }
-                let upper = &upper[slot * 9 * count..][..9 * count];
+                let first = slot * 9 * count;
                 request.blocks.par_iter_mut().zip(&batch.plan.source).with_min_len(4096).for_each(|(out, &source)| {
                     let (block, transposed) = (source as usize / 2, source % 2 == 1);
                     for i in 0..3 {
                         for j in 0..3 {
                             let component = if transposed { 3 * j + i } else { 3 * i + j };
-                            out[3 * i + j] = upper[component * count + block].to_f64();
+                            out[3 * i + j] = upper.at(first + component * count + block);
                         }
                     }
                 });
@@ -181,8 +209,8 @@ impl<R: DeviceReal> Compute for Gpu<R> {
             return Ok(());
         }
         for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
-            let packed = Packed::<R>::new(dispatch.requests.iter().map(|&i| &requests[i]));
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
+            let packed = Packed::new(dispatch.requests.iter().map(|&i| &requests[i]));
             let (outcomes, answers) = self.batch()?.linear(&dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
             for (slot, &i) in dispatch.requests.iter().enumerate() {
                 requests[i].outcome = outcomes[slot];
@@ -193,6 +221,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
     }
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
+        requests.iter().try_for_each(|request| self.refresh(request.case))?;
         for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
             let batch = self.batch()?;
             let points = batch.sizes().contact_points;
@@ -216,9 +245,17 @@ impl<R: DeviceReal> Compute for Gpu<R> {
         Ok(())
     }
 
+    fn keeps_iterates(&self) -> bool {
+        self.batch.as_ref().is_some_and(Batch::keeps_iterates)
+    }
+
+    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        self.answer(requests)
+    }
+
     fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
         for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement));
+            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
             let (outcomes, energies) = self.batch()?.update(&dispatch, &increments)?;
             for (slot, &i) in dispatch.requests.iter().enumerate() {
                 let request = &mut requests[i];
@@ -252,6 +289,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
     }
 
     fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
+        self.refresh(case)?;
         let batch = self.batch()?;
         let (state, work) = batch.state(case)?;
         let count = batch.sizes().points();
@@ -285,6 +323,7 @@ impl<R: DeviceReal> Compute for Gpu<R> {
         let work: Vec<R> = state.plastic_work.iter().map(|&w| R::of(w)).collect();
         batch.restore(case, &self.models[case], &state.displacement, &rows, &work)?;
         self.committed[case].clone_from(&state.displacement);
+        self.fresh[case] = true;
         Ok(())
     }
 }

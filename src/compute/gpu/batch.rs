@@ -10,120 +10,37 @@ use super::block_plan::BlockPlan;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::iterate::Iterates;
+use super::iterate::arrays::{Kept, Kernels as OfIterates, Told};
 use super::linear::{Linear, Plan, Right};
-use super::pipelines::{Bound, Recorder};
+use super::pipelines::Recorder;
 use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
-use super::shader_sources::{
-    CONTACT_POINTS, CONTACT_TRIAL as GATHER_CONTACT_TRIAL, GATHER_NODE_FORCE, GATHER_TANGENT_BLOCKS, HEX8_BEGIN_STEP,
-    HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_MODULI, HEX8_UPDATE, Kernel,
-};
+use super::scratch::{CONTACT_ANSWER, Dimensions, Kernels, Scratch};
+use super::shader_sources::Precision;
+use super::tangents::{Bytes, Tangents};
 use crate::compute::gather::GatherPlan;
 use crate::compute::linear::SideReport;
 use crate::compute::{CaseModel, ComputeError, Outcome};
 use crate::contact::coulomb::CONTACT_WEIGHT;
 
-/// Components of `moduli` in `tangent.wgsl`.
-pub const MODULI: usize = 31;
-/// Numbers that go to a contact point: force, increment.
-pub const CONTACT_TRIAL: usize = 6;
-/// Numbers that come from it: residual, force rows, displacement rows.
-pub const CONTACT_ANSWER: usize = 21;
-
-/// The block that `batch.wgsl` calls Dimensions.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct Dimensions {
-    cases: u32,
-    in_dispatch: u32,
-    nodes: u32,
-    elements: u32,
-    contact_points: u32,
-    blocks: u32,
-    reserved: [u32; 2],
-}
-
-/// What dispatches make, slot by slot.
-#[derive(Debug)]
-struct Scratch<R> {
-    dimensions: StorageBuffer<Dimensions>,
-    active: StorageBuffer<[u32; 2]>,
-    increment: StorageBuffer<R>,
-    jacobian: StorageBuffer<R>,
-    first_invalid: StorageBuffer<u32>,
-    stress: StorageBuffer<R>,
-    force: StorageBuffer<R>,
-    moduli: StorageBuffer<R>,
-    blocks: StorageBuffer<R>,
-    next_history: StorageBuffer<R>,
-    point_work: StorageBuffer<R>,
-    energies: StorageBuffer<R>,
-    contact_trial: StorageBuffer<R>,
-    contact_answer: StorageBuffer<R>,
-    contact_status: StorageBuffer<u32>,
-}
-
-impl<R: DeviceReal> Scratch<R> {
-    fn new(context: &GpuContext, sizes: Sizes, slots: usize) -> Result<Self, GpuError> {
-        let points = sizes.points();
-        let zeros = |what: &str, per_slot: usize| context.zeros(what, slots * per_slot);
-        Ok(Self {
-            dimensions: context.block("dimensions")?,
-            active: context.zeros("active cases", slots)?,
-            first_invalid: context.zeros("status", slots)?,
-            increment: zeros("increments", 3 * sizes.nodes)?,
-            jacobian: zeros("Jacobians", points)?,
-            stress: zeros("stresses", 9 * points)?,
-            force: zeros("internal forces", 3 * sizes.nodes)?,
-            moduli: zeros("moduli", MODULI * points)?,
-            blocks: zeros("tangent blocks", 9 * sizes.blocks)?,
-            next_history: zeros("new states", HISTORY * points)?,
-            point_work: zeros("energies of points", 2 * points)?,
-            energies: zeros("energies of elements", 3 * sizes.elements)?,
-            contact_trial: zeros("contact points", CONTACT_TRIAL * sizes.contact_points)?,
-            contact_answer: zeros("contact rows", CONTACT_ANSWER * sizes.contact_points)?,
-            contact_status: context.zeros("contact status", slots * sizes.contact_points)?,
-        })
-    }
-
-    /// Bytes of a slot with its share of the staging buffer: the widest array, and all together.
-    fn bytes(sizes: Sizes) -> (u64, u64) {
-        let points = sizes.points();
-        let widest = (MODULI * points).max(9 * sizes.blocks);
-        let all = (1 + 9 + MODULI + HISTORY + 2) * points + 6 * sizes.nodes + 2 * 9 * sizes.blocks + 3 * sizes.elements;
-        let contact = (CONTACT_TRIAL + CONTACT_ANSWER + 1) * sizes.contact_points;
-        ((widest * size_of::<R>()) as u64, ((all + contact + 16) * size_of::<R>()) as u64)
-    }
-}
-
-/// The kernels bound to a group of cases.
-#[derive(Debug)]
-struct Kernels {
-    jacobian: Bound,
-    internal_force: Bound,
-    node_force: Bound,
-    moduli: Bound,
-    tangent_blocks: Bound,
-    begin_step: Bound,
-    update: Bound,
-    energies: Bound,
-    contact_trial: Bound,
-    contact: Bound,
-}
-
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
 pub struct Batch<R> {
-    context: Arc<GpuContext>,
+    pub(super) context: Arc<GpuContext>,
     connectivity: Connectivity,
     /// Where each block of the pattern comes from.
     pub(super) plan: BlockPlan,
-    groups: Vec<(Resident<R>, Kernels)>,
-    scratch: Scratch<R>,
+    pub(super) groups: Vec<(Resident<R>, Kernels)>,
+    pub(super) scratch: Scratch<R>,
     slots: usize,
     /// The increments that the slots have.
-    increments: Mutex<Vec<R>>,
+    pub(super) increments: Mutex<Vec<R>>,
+    /// Tangents.
+    pub(super) tangents: Tangents<R>,
     /// How linear systems are solved, if the mesh has a hierarchy.
-    linear: Option<Linear<R>>,
+    pub(super) linear: Option<Linear>,
+    /// Newton's iterates, where residuals are in double precision and linear systems are solved.
+    pub(super) iterates: Option<Iterates<R>>,
     /// What the user should know of it.
     pub(super) notes: Vec<String>,
 }
@@ -139,6 +56,25 @@ pub enum Evaluation {
     Contact,
     /// States at the end of a step and their energies, what a commit computes.
     Update,
+}
+
+/// Upper blocks of tangents, in the precision in which they are computed.
+#[derive(Clone, Debug)]
+pub enum UpperBlocks<R> {
+    /// In the residual's.
+    Same(Vec<R>),
+    /// In single precision.
+    Single(Vec<f32>),
+}
+
+impl<R: DeviceReal> UpperBlocks<R> {
+    /// The number at a place.
+    pub fn at(&self, place: usize) -> f64 {
+        match self {
+            Self::Same(blocks) => blocks[place].to_f64(),
+            Self::Single(blocks) => blocks[place].into(),
+        }
+    }
 }
 
 /// What [`Batch::trial`] finds.
@@ -160,11 +96,11 @@ pub type Answers = (Vec<f32>, Vec<SideReport>);
 /// Some of a call's requests, served by one dispatch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dispatch {
-    group: usize,
+    pub(super) group: usize,
     /// Indices of the requests, in the order of their slots.
     pub requests: Vec<usize>,
-    /// Their cases.
-    cases: Vec<usize>,
+    /// Their cases, counted from the first of the group.
+    pub(super) cases: Vec<usize>,
 }
 
 impl<R: DeviceReal> Batch<R> {
@@ -173,7 +109,8 @@ impl<R: DeviceReal> Batch<R> {
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; what the device says, above all [`GpuError::OutOfBudget`]
     /// and [`GpuError::TooLarge`].
-    pub fn new(context: Arc<GpuContext>, models: &[CaseModel]) -> Result<Self, ComputeError> {
+    pub fn new(context: Arc<GpuContext>, models: &[CaseModel], tangents_in_single: bool) -> Result<Self, ComputeError> {
+        let in_single = tangents_in_single && R::PRECISION != Precision::F32;
         let mesh = models[0].mesh.clone();
         let gather = GatherPlan::new(&mesh);
         let plan = BlockPlan::new(&mesh, &gather);
@@ -186,12 +123,16 @@ impl<R: DeviceReal> Batch<R> {
             .iter()
             .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count], CONTACT_WEIGHT))
             .collect::<Result<Vec<_>, _>>()?;
-        let (mut widest, mut all) = Scratch::<R>::bytes(sizes);
+        let Bytes { moduli, blocks, of_slot, of_case } = Tangents::<R>::bytes(sizes, in_single);
+        let pool = Scratch::<R>::pool_bytes(sizes, moduli);
+        let (mut widest, mut all) = (pool.max(blocks), Scratch::<R>::bytes(sizes) + pool + blocks + of_slot);
+        let of_cases = of_case * models.len() as u64;
         let (mut shared, mut notes) = (None, Vec::new());
         let linear_plan = linear_plan.and_then(|linear| {
-            let ((array, sum), lists) = (linear.bytes::<R>(), linear.shared_bytes());
+            let ((array, sum), lists) = (linear.bytes(), linear.shared_bytes());
             let what = "the linear solver of one case";
-            let fits = context.has_room(what, all + sum + lists).and_then(|()| context.chunks(what, 1, array, 0).map(drop));
+            let fits =
+                context.has_room(what, all + of_cases + sum + lists).and_then(|()| context.chunks(what, 1, array, 0).map(drop));
             match fits {
                 Ok(()) => {
                     (widest, all) = (widest.max(array), all + sum);
@@ -206,19 +147,59 @@ impl<R: DeviceReal> Batch<R> {
                 }
             }
         });
-        context.has_room("an evaluation of one case", all)?;
+        let keeps = R::PRECISION == Precision::F64 && linear_plan.is_some();
+        let of_kept = if keeps { Kept::<R>::bytes(sizes) * models.len() as u64 } else { 0 };
+        if keeps {
+            all += Told::<R>::bytes(sizes);
+        }
+        context.has_room("an evaluation of one case", all + of_cases + of_kept)?;
+        let kept = residents
+            .iter()
+            .filter(|_| keeps)
+            .map(|r| Kept::new(&context, sizes, r, &models[r.first..r.first + r.count]))
+            .collect::<Result<Vec<_>, _>>()?;
         let most = chunks.iter().map(|c| c.count).max().unwrap_or(1);
         // What the slots share is set aside while their number is found.
-        let set_aside = shared.map(|bytes| context.budget.reserve("lists of the linear solver", bytes)).transpose()?;
+        let set_aside = context.budget.reserve("lists of the linear solver", shared.unwrap_or(0) + of_cases)?;
         let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
         drop(set_aside);
-        let scratch = Scratch::new(&context, sizes, slots)?;
-        let linear = linear_plan.map(|plan| Linear::new(&context, &plan, slots, &scratch.blocks)).transpose()?;
-        let groups = residents
+        let scratch = Scratch::new(&context, sizes, (slots, moduli))?;
+        let tangents = Tangents::new(&context, &connectivity, &scratch, &residents, models, (slots, in_single))?;
+        let linear = linear_plan
+            .map(|plan| match &tangents {
+                Tangents::Same(set) => Linear::new(&context, &plan, slots, set.blocks()),
+                Tangents::Single(single) => Linear::new(&context, &plan, slots, single.set().blocks()),
+            })
+            .transpose()?;
+        let groups: Vec<(Resident<R>, Kernels)> = residents
             .into_iter()
             .map(|r| Kernels::new(&context, &connectivity, &r, &scratch).map(|k| (r, k)))
             .collect::<Result<_, GpuError>>()?;
-        Ok(Self { context, connectivity, plan, groups, scratch, slots, increments: Mutex::default(), linear, notes })
+        let iterates = match linear.as_ref().filter(|_| keeps) {
+            Some(linear) => {
+                let told = Told::new(&context, sizes, slots)?;
+                let bound = |(kept, (resident, _)): (Kept<R>, &(Resident<R>, Kernels))| {
+                    let kernels = OfIterates::new(&context, &connectivity, resident, &scratch, linear, (&kept, &told))?;
+                    Ok((kept, kernels))
+                };
+                let groups = kept.into_iter().zip(&groups).map(bound).collect::<Result<_, GpuError>>()?;
+                Some(Iterates { groups, told })
+            }
+            None => None,
+        };
+        Ok(Self {
+            context,
+            connectivity,
+            plan,
+            groups,
+            scratch,
+            slots,
+            increments: Mutex::default(),
+            tangents,
+            linear,
+            iterates,
+            notes,
+        })
     }
 
     /// The device.
@@ -246,7 +227,7 @@ impl<R: DeviceReal> Batch<R> {
         out
     }
 
-    fn begin(&self, dispatch: &Dispatch) -> Result<(), GpuError> {
+    pub(super) fn begin(&self, dispatch: &Dispatch) -> Result<(), GpuError> {
         let (context, scratch, sizes) = (&self.context, &self.scratch, self.sizes());
         let resident = &self.groups[dispatch.group].0;
         let slots: Vec<[u32; 2]> = dispatch.cases.iter().map(|&c| [c as u32, resident.geometry_of[c]]).collect();
@@ -272,12 +253,12 @@ impl<R: DeviceReal> Batch<R> {
 
     /// Runs the kernels of an evaluation and reads what they leave in `buffer`, and how each slot
     /// went.
-    fn evaluate(
+    fn evaluate<T: DeviceReal>(
         &self,
         dispatch: &Dispatch,
         evaluation: Evaluation,
-        buffer: &StorageBuffer<R>,
-        out: &mut [R],
+        buffer: &StorageBuffer<T>,
+        out: &mut [T],
     ) -> Result<Vec<Outcome>, GpuError> {
         let mut list = self.context.record();
         self.append(dispatch, evaluation, &mut list)?;
@@ -287,16 +268,20 @@ impl<R: DeviceReal> Batch<R> {
     }
 
     /// Appends the kernels of an evaluation.
-    fn append(&self, dispatch: &Dispatch, evaluation: Evaluation, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+    pub(super) fn append(&self, dispatch: &Dispatch, evaluation: Evaluation, list: &mut Recorder<'_>) -> Result<(), GpuError> {
         let (kernels, sizes, slots) = (&self.groups[dispatch.group].1, self.sizes(), dispatch.cases.len());
         if evaluation == Evaluation::Contact {
             return list.dispatch(&kernels.contact, sizes.contact_points, slots);
         }
+        if evaluation == Evaluation::Tangent {
+            return self.tangents.append(dispatch, sizes, list);
+        }
         list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
         let (at_points, gathered, items) = match evaluation {
             Evaluation::InternalForce => (&kernels.internal_force, &kernels.node_force, sizes.nodes),
-            Evaluation::Tangent => (&kernels.moduli, &kernels.tangent_blocks, sizes.blocks),
-            Evaluation::Contact | Evaluation::Update => (&kernels.update, &kernels.energies, sizes.elements),
+            Evaluation::Contact | Evaluation::Tangent | Evaluation::Update => {
+                (&kernels.update, &kernels.energies, sizes.elements)
+            }
         };
         list.dispatch(at_points, sizes.points(), slots)?;
         list.dispatch(gathered, items, slots)
@@ -356,11 +341,19 @@ impl<R: DeviceReal> Batch<R> {
     ///
     /// # Errors
     /// The device's fault.
-    pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, Vec<R>), GpuError> {
+    pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, UpperBlocks<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
-        let (sizes, slots) = (self.sizes(), dispatch.cases.len());
-        let mut blocks = vec![R::ZERO; slots * 9 * sizes.blocks];
-        Ok((self.evaluate(dispatch, Evaluation::Tangent, &self.scratch.blocks, &mut blocks)?, blocks))
+        let count = dispatch.cases.len() * 9 * self.sizes().blocks;
+        Ok(match &self.tangents {
+            Tangents::Same(set) => {
+                let mut blocks = vec![R::ZERO; count];
+                (self.evaluate(dispatch, Evaluation::Tangent, set.blocks(), &mut blocks)?, UpperBlocks::Same(blocks))
+            }
+            Tangents::Single(single) => {
+                let mut blocks = vec![0.0; count];
+                (self.evaluate(dispatch, Evaluation::Tangent, single.set().blocks(), &mut blocks)?, UpperBlocks::Single(blocks))
+            }
+        })
     }
 
     /// Whether linear systems are solved here: the mesh has a hierarchy.
@@ -377,7 +370,7 @@ impl<R: DeviceReal> Batch<R> {
         &self,
         dispatch: &Dispatch,
         increments: &[R],
-        rows: &[R],
+        rows: &[f32],
         fixed: &[u32],
         sides: &[Right],
     ) -> Result<(Vec<Outcome>, Vec<Answers>), GpuError> {
@@ -433,15 +426,26 @@ impl<R: DeviceReal> Batch<R> {
     /// # Errors
     /// The device's fault.
     pub fn keep(&self, dispatch: &Dispatch, slot: usize, model: &CaseModel, displacement: &[f64]) -> Result<(), GpuError> {
-        let (scratch, sizes, case) = (&self.scratch, self.sizes(), dispatch.cases[slot]);
-        let resident = &self.groups[dispatch.group].0;
-        let (history, state, elements) = (HISTORY * sizes.points(), STATE * sizes.points(), sizes.elements);
+        let (resident, case) = (&self.groups[dispatch.group].0, dispatch.cases[slot]);
         let mut list = self.context.record();
+        self.append_keep(&mut list, resident, slot, case)?;
+        list.submit()?;
+        resident.set_displacement(&self.context, self.sizes(), case, &model.mesh, displacement)
+    }
+
+    /// Appends the copies that make the states in `slot` those of a case of the group.
+    pub(super) fn append_keep(
+        &self,
+        list: &mut Recorder<'_>,
+        resident: &Resident<R>,
+        slot: usize,
+        case: usize,
+    ) -> Result<(), GpuError> {
+        let (scratch, sizes) = (&self.scratch, self.sizes());
+        let (history, state, elements) = (HISTORY * sizes.points(), STATE * sizes.points(), sizes.elements);
         list.copy(&scratch.next_history, slot * history, &resident.history, case * history, history)?;
         list.copy(&scratch.next_history, slot * history, &resident.state, case * state, state)?;
-        list.copy(&scratch.energies, (3 * slot + 1) * elements, &resident.plastic_work, case * elements, elements)?;
-        list.submit()?;
-        resident.set_displacement(&self.context, sizes, case, &model.mesh, displacement)
+        list.copy(&scratch.energies, (3 * slot + 1) * elements, &resident.plastic_work, case * elements, elements)
     }
 
     /// Forms the states from which the next step of a case starts, with `weight` times the last
@@ -488,7 +492,7 @@ impl<R: DeviceReal> Batch<R> {
         resident.set_displacement(&self.context, self.sizes(), index, &model.mesh, displacement)
     }
 
-    fn resident(&self, case: usize) -> Result<(&Resident<R>, usize), GpuError> {
+    pub(super) fn resident(&self, case: usize) -> Result<(&Resident<R>, usize), GpuError> {
         let holds = |r: &Resident<R>| (r.first..r.first + r.count).contains(&case);
         let found = self.groups.iter().map(|(r, _)| r).find(|r| holds(r));
         let expected = self.groups.iter().map(|(r, _)| r.count).sum();
@@ -505,62 +509,10 @@ fn same_bits<R: DeviceReal>(known: &[R], increments: &[R]) -> bool {
 }
 
 /// How each slot went, from the first invalid point of each.
-fn outcomes(first: &[u32]) -> Vec<Outcome> {
+pub(super) fn outcomes(first: &[u32]) -> Vec<Outcome> {
     let outcome = |&code: &u32| match code {
         u32::MAX => Outcome::Valid,
         code => Outcome::Inverted { element: code as usize / 16, point: code as usize % 8 },
     };
     first.iter().map(outcome).collect()
-}
-
-impl Kernels {
-    fn new<R: DeviceReal>(c: &GpuContext, mesh: &Connectivity, r: &Resident<R>, s: &Scratch<R>) -> Result<Self, GpuError> {
-        let shape = [s.dimensions.binding(), s.active.binding()];
-        let element = [
-            mesh.element_nodes.binding(),
-            r.gradient.binding(),
-            r.volume.binding(),
-            r.committed.binding(),
-            s.increment.binding(),
-        ];
-        let material = [r.parameters.binding(), r.table.binding()];
-        let at_points = [r.state.binding(), s.jacobian.binding(), s.first_invalid.binding()];
-        let bind = |kernel: &'static Kernel, parts: &[&[wgpu::BindingResource<'_>]]| {
-            let pipeline = c.pipeline(kernel, R::PRECISION)?;
-            c.bind(&pipeline, parts.concat())
-        };
-        let gather = [mesh.node_start.binding(), mesh.node_entry.binding(), s.stress.binding(), s.force.binding()];
-        let blocks = [mesh.block_start.binding(), mesh.block_entry.binding(), s.moduli.binding(), s.blocks.binding()];
-        let energies = [
-            s.jacobian.binding(),
-            s.next_history.binding(),
-            s.point_work.binding(),
-            r.plastic_work.binding(),
-            s.energies.binding(),
-        ];
-        let contact = [
-            r.weight.binding(),
-            mesh.on_symmetry_plane.binding(),
-            r.friction.binding(),
-            r.gap.binding(),
-            s.contact_trial.binding(),
-            s.contact_answer.binding(),
-            s.contact_status.binding(),
-        ];
-        let contact_trial = [mesh.contact_node.binding(), s.force.binding(), s.increment.binding(), s.contact_trial.binding()];
-        let at =
-            |kernel, outputs: &[wgpu::BindingResource<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
-        Ok(Self {
-            jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &[s.jacobian.binding()]])?,
-            internal_force: at(&HEX8_INTERNAL_FORCE, &[s.stress.binding()])?,
-            node_force: bind(&GATHER_NODE_FORCE, &[&shape, &element, &gather])?,
-            moduli: at(&HEX8_MODULI, &[s.moduli.binding()])?,
-            tangent_blocks: bind(&GATHER_TANGENT_BLOCKS, &[&shape, &element, &blocks])?,
-            begin_step: bind(&HEX8_BEGIN_STEP, &[&shape, &[r.history.binding(), r.anticipated.binding(), r.state.binding()]])?,
-            update: at(&HEX8_UPDATE, &[r.history.binding(), s.next_history.binding(), s.point_work.binding()])?,
-            energies: bind(&HEX8_ENERGIES, &[&shape, &element, &material, &energies])?,
-            contact_trial: bind(&GATHER_CONTACT_TRIAL, &[&shape, &contact_trial])?,
-            contact: bind(&CONTACT_POINTS, &[&shape, &contact])?,
-        })
-    }
 }

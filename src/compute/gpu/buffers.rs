@@ -71,7 +71,8 @@ pub struct StorageBuffer<T> {
     pub(super) raw: wgpu::Buffer,
     what: String,
     len: usize,
-    _reservation: Reservation,
+    /// None of a view.
+    _reservation: Option<Reservation>,
     _type: PhantomData<T>,
 }
 
@@ -114,6 +115,20 @@ impl<T> StorageBuffer<T> {
         }
         let offset = (offset * size_of::<T>()) as u64;
         Ok(Read { raw: &self.raw, what: &self.what, offset, out: bytemuck::cast_slice_mut(out) })
+    }
+
+    /// Another array in the same memory, for numbers that are not needed at the same time: no
+    /// kernel may be bound to both, and what the one holds is lost when the other is written.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] if it would be longer.
+    pub fn view<U>(&self, what: &str, len: usize) -> Result<StorageBuffer<U>, GpuError> {
+        let bytes = (len * size_of::<U>()) as u64;
+        if bytes > self.raw.size() {
+            let expected = self.raw.size() as usize / size_of::<U>().max(1);
+            return Err(GpuError::Length { what: what.to_owned(), expected, given: len });
+        }
+        Ok(StorageBuffer { raw: self.raw.clone(), what: what.to_owned(), len, _reservation: None, _type: PhantomData })
     }
 
     /// The whole array, as a kernel's argument.
@@ -168,7 +183,7 @@ impl GpuContext {
         let reservation = self.budget.reserve(what, bytes)?;
         let usage = kind | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let raw = self.buffer(what, bytes, usage)?;
-        Ok(StorageBuffer { raw, what: what.to_owned(), len, _reservation: reservation, _type: PhantomData })
+        Ok(StorageBuffer { raw, what: what.to_owned(), len, _reservation: Some(reservation), _type: PhantomData })
     }
 
     /// An array with these elements.

@@ -6,8 +6,9 @@
 //! it, [`validate`](mod@validate) says where a source does not compile.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
-//! device, [`linear`] solves their linear systems; [`backend`] is the [`Compute`](super::Compute)
-//! of it in one precision, [`mixed`] that of a device without double precision.
+//! device, [`linear`] solves their linear systems, [`iterate`] makes Newton iterations of both;
+//! [`backend`] is the [`Compute`](super::Compute) of it in one precision, [`mixed`] that of a
+//! device without double precision.
 //!
 //! A device fails quietly: a lost one ignores what is submitted and leaves old numbers in its
 //! buffers. [`health::DeviceHealth`] and the tickets of [`buffers`] turn that into an error;
@@ -22,6 +23,7 @@ mod compiled;
 pub mod context;
 pub mod error;
 pub mod health;
+pub mod iterate;
 pub mod linear;
 pub mod material;
 pub mod memory;
@@ -30,7 +32,9 @@ pub mod mixed;
 pub mod pipelines;
 pub mod report;
 pub mod resident;
+pub mod scratch;
 pub mod shader_sources;
+pub mod tangents;
 pub mod validate;
 
 pub use adapters::{Adapter, AdapterKind, Choice, DeviceRequest};

@@ -151,13 +151,9 @@ impl<R: DeviceReal> Resident<R> {
             })
             .collect();
         let points = sizes.points();
-        let gradient = context.zeros("reference gradients", meshes.len() * GRADIENT * points)?;
-        let volume = context.zeros("reference volumes", meshes.len() * points)?;
+        let (gradient, volume) = send_geometry::<R>(context, sizes, &meshes)?;
         let weight = context.zeros("contact weights", meshes.len() * sizes.contact_points)?;
         for (index, mesh) in meshes.iter().enumerate() {
-            let (gradients, volumes) = flatten_geometry::<R>(mesh)?;
-            context.upload_at(&gradient, index * GRADIENT * points, &gradients)?;
-            context.upload_at(&volume, index * points, &volumes)?;
             let weights: Vec<R> = mesh.contact_size.iter().map(|&h| R::of(contact_weight * h)).collect();
             context.upload_at(&weight, index * sizes.contact_points, &weights)?;
         }
@@ -194,6 +190,22 @@ impl<R: DeviceReal> Resident<R> {
         Ok(resident)
     }
 
+    /// The geometries of the group in another precision; `models` are all cases of the batch.
+    ///
+    /// # Errors
+    /// As [`Resident::new`].
+    pub fn geometry<T: DeviceReal>(
+        &self,
+        context: &GpuContext,
+        sizes: Sizes,
+        models: &[CaseModel],
+    ) -> Result<(StorageBuffer<T>, StorageBuffer<T>), ComputeError> {
+        let count = self.geometry_of.iter().max().map_or(0, |last| *last + 1);
+        let first_with = |geometry: u32| self.geometry_of.iter().position(|&g| g == geometry);
+        let meshes: Vec<&Arc<Mesh>> = (0..count).filter_map(first_with).map(|case| &models[self.first + case].mesh).collect();
+        send_geometry(context, sizes, &meshes)
+    }
+
     /// Sends the committed displacement of the group's case `index`, rounded once, and the gaps
     /// that it leaves, formed in f64.
     ///
@@ -216,6 +228,24 @@ impl<R: DeviceReal> Resident<R> {
             .collect();
         context.upload_at(&self.gap, index * sizes.contact_points, &gaps)
     }
+}
+
+/// Reference gradients `[mesh][3 a + j][point]` and volumes `[mesh][point]` of meshes, on the
+/// device.
+fn send_geometry<R: DeviceReal>(
+    context: &GpuContext,
+    sizes: Sizes,
+    meshes: &[&Arc<Mesh>],
+) -> Result<(StorageBuffer<R>, StorageBuffer<R>), ComputeError> {
+    let points = sizes.points();
+    let gradient = context.zeros("reference gradients", meshes.len() * GRADIENT * points)?;
+    let volume = context.zeros("reference volumes", meshes.len() * points)?;
+    for (index, mesh) in meshes.iter().enumerate() {
+        let (gradients, volumes) = flatten_geometry::<R>(mesh)?;
+        context.upload_at(&gradient, index * GRADIENT * points, &gradients)?;
+        context.upload_at(&volume, index * points, &volumes)?;
+    }
+    Ok((gradient, volume))
 }
 
 /// Reference gradients `[3 a + j][point]` and volumes `[point]` of a mesh.

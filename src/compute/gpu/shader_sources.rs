@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::iterate::sources as iterate;
 use super::linear::sources as linear;
 
 /// The precision in which a kernel is compiled.
@@ -114,6 +115,7 @@ pub static KERNELS: &[&Kernel] = &[
     &HEX8_BEGIN_STEP,
     &HEX8_UPDATE,
     &HEX8_ENERGIES,
+    &NARROW,
     &GATHER_NODE_FORCE,
     &GATHER_TANGENT_BLOCKS,
     &CONTACT_TRIAL,
@@ -126,6 +128,8 @@ pub static KERNELS: &[&Kernel] = &[
     &linear::SMOOTH_START,
     &linear::SMOOTH_STEP,
     &linear::SOLVE_COARSEST,
+    &linear::SMALL_DOWN,
+    &linear::SMALL_UP,
     &linear::RESIDUAL,
     &linear::RESTRICT,
     &linear::PROLONG,
@@ -139,6 +143,19 @@ pub static KERNELS: &[&Kernel] = &[
     &linear::KRYLOV_LEAST_SQUARES,
     &linear::KRYLOV_COMBINE,
     &linear::PLATE_FORCE,
+    &iterate::PLACE,
+    &iterate::CURRENT,
+    &iterate::SAVE,
+    &iterate::CONTACT,
+    &iterate::MEASURE,
+    &iterate::READ,
+    &iterate::SYSTEM,
+    &iterate::EXPAND,
+    &iterate::UNIT,
+    &iterate::RESPOND,
+    &iterate::LAND,
+    &iterate::COMMIT,
+    &iterate::ENERGIES,
 ];
 
 use Binding::{Read, ReadWrite, Uniform};
@@ -206,6 +223,14 @@ pub static HEX8_ENERGIES: Kernel = Kernel {
     name: "hex8_energies",
     sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, source!("element/energies.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
+    workgroup: 64,
+};
+
+/// A copy in single precision.
+pub static NARROW: Kernel = Kernel {
+    name: "narrow",
+    sources: &[BATCH, source!("element/narrow.wgsl")],
+    bindings: &[Uniform, Read, Uniform, Read, ReadWrite],
     workgroup: 64,
 };
 

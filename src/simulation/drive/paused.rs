@@ -1,7 +1,8 @@
 //! A run that is left between two steps.
 
 use super::Drive;
-use crate::compute::Compute;
+use super::safe::Safe;
+use crate::compute::{Compute, ComputeError};
 use crate::simulation::checkpoint::{Committed, Place};
 use crate::simulation::problem::Problem;
 use crate::simulation::record::ContactPoint;
@@ -12,23 +13,28 @@ use crate::solver::newton::Newton;
 pub struct Paused {
     newton: Newton,
     state: Committed,
+    safe: Safe,
     place: Place,
     last_report: StepReport,
 }
 
 impl Drive<'_> {
     /// Gives problem and backend back after an interruption or at the end of the path.
-    pub fn pause(self) -> Paused {
-        let Self { newton, state, place, last_report, .. } = self;
-        Paused { newton, state, place, last_report }
+    ///
+    /// # Errors
+    /// What the device says that has the displacements.
+    pub fn pause(mut self) -> Result<Paused, ComputeError> {
+        self.fetch()?;
+        let Self { newton, state, safe, place, last_report, .. } = self;
+        Ok(Paused { newton, state, safe, place, last_report })
     }
 }
 
 impl Paused {
     /// Takes the path up again, with the problem and the backend that [`Drive::pause`] gave back.
     pub fn go_on<'a>(self, problem: &'a Problem, backend: &'a mut dyn Compute, case: usize) -> Drive<'a> {
-        let Self { newton, state, place, last_report } = self;
-        Drive { state, place, last_report, ..Drive::new(problem, backend, case, newton) }
+        let Self { newton, state, safe, place, last_report } = self;
+        Drive { state, safe, place, last_report, ..Drive::new(problem, backend, case, newton) }
     }
 
     /// Displacement of the last accepted step, three numbers a node, scaled.

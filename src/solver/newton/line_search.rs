@@ -3,11 +3,11 @@
 
 use super::super::Control;
 use super::super::outcome::{Halt, StepFailure};
-use super::super::system::Trial;
 use super::Newton;
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
-use crate::contact::coulomb::{Friction, Status};
+use crate::compute::iterate::Reading;
+use crate::contact::coulomb::Friction;
 
 /// Step lengths of the line search, longest first.
 const STEP_LENGTHS: [f64; 6] = [1.0, 0.5, 0.25, 0.1, 0.03, 0.01];
@@ -20,89 +20,60 @@ const CREEPING: f64 = 0.03;
 const DOWNHILL_MERIT: f64 = 4.0;
 
 impl Newton {
-    /// Backtracks along `self.delta` until the merit falls below `reference`; otherwise takes the
+    /// Backtracks along the correction until the merit falls below `reference`; otherwise takes the
     /// best there was, or the whole correction where that would creep while the energy falls all
-    /// the way. Every length may invert an element: the shortest one tells which.
+    /// the way. `slope` is the work of the free residual on the correction, `delta_h` its change of
+    /// h. Every length may invert an element: the shortest one tells which. Returns the step length
+    /// and the trial there, which is not kept yet.
     pub(super) fn line_search(
         &mut self,
         case: &mut dyn Evaluate,
         control: &Control,
         reference: f64,
+        slope: f64,
         delta_h: f64,
-    ) -> Result<(f64, usize), Halt> {
-        let mut best: Option<f64> = None;
+    ) -> Result<(f64, Reading), Halt> {
+        let mut best: Option<(f64, Reading)> = None;
         let mut best_merit = f64::INFINITY;
         let mut inverted = (0, 0);
-        let slope = self.slope(&self.current, control, delta_h);
         let stick = case.model().friction == Friction::Stick;
-        let mut leap = false;
+        // The slope of the potential energy along the correction, where there is one.
+        let of_plate = |force: f64| control.normal_force.map_or(0.0, |held| delta_h * (force - held));
+        let slope = slope + of_plate(self.current.plate_force);
+        let mut whole = None;
         for s in STEP_LENGTHS {
-            for ((u, u0), d) in self.candidate.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
-                *u = u0 + s * d;
-            }
-            self.candidate.h = self.current.h + s * delta_h;
-            if s == 1.0 {
-                // Rounding must not leave the plate a hair from where it belongs.
-                self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, control.delta_t);
-            }
-            let outcome = self.candidate.evaluate(case, &self.boundary, control, &mut self.times)?;
-            if let Outcome::Inverted { element, point } = outcome {
+            let mut times = std::mem::take(&mut self.times);
+            let tried = self.iterate().try_length(case, control, s, &mut times);
+            self.times = times;
+            let reading = tried?;
+            if let Outcome::Inverted { element, point } = reading.outcome {
                 inverted = (element, point);
                 continue;
             }
-            if s == 1.0 && self.candidate.merit < DOWNHILL_MERIT * self.current.merit {
-                let left = self.slope(&self.candidate, control, delta_h) / slope;
-                leap = stick || reference <= self.current.merit && left < 1.0 && left > -0.25;
+            if s == 1.0 && reading.merit < DOWNHILL_MERIT * self.current.merit {
+                let left = (reading.slope + of_plate(reading.plate_force)) / slope;
+                let leap = stick || reference <= self.current.merit && left < 1.0 && left > -0.25;
+                whole = leap.then_some((s, reading));
             }
-            let merit = if stick { self.merit_without_releases() } else { self.candidate.merit };
+            let merit = if stick { without_releases(&reading) } else { reading.merit };
             if best.is_none() || merit < best_merit {
-                (best, best_merit) = (Some(s), merit);
-                std::mem::swap(&mut self.candidate, &mut self.best);
+                (best, best_merit) = (Some((s, reading)), merit);
+                self.iterate().favour();
             }
             if best_merit <= (1.0 - 1e-4 * s) * reference {
                 break;
             }
         }
-        let Some(mut s) = best else {
+        let Some(best) = best else {
             let (element, point) = inverted;
             return Err(StepFailure::Inverted { element, point }.into());
         };
-        if s <= CREEPING && leap {
-            s = 1.0;
-            for ((u, u0), d) in self.best.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
-                *u = u0 + d;
-            }
-            self.best.h = self.current.h + delta_h;
-            self.boundary.place_plate(&mut self.best.u, self.best.h, control.delta_t);
-            self.best.evaluate(case, &self.boundary, control, &mut self.times)?;
-        }
-        let changed = self.best.rows.iter().zip(&self.current.rows).filter(|(a, b)| a.status != b.status).count();
-        std::mem::swap(&mut self.current, &mut self.best);
-        Ok((s, changed))
+        Ok(whole.filter(|_| best.0 <= CREEPING).unwrap_or(best))
     }
+}
 
-    /// Merit of the candidate without the tangential forces of points that come off in it. Under
-    /// full stick a point that comes off lets go of whatever it held: the merit jumps by it,
-    /// however short the step, and a line search that counts the jump creeps up to it and stays
-    /// there. No point does so twice in a step (see `land_again`).
-    fn merit_without_releases(&self) -> f64 {
-        let released: f64 = (self.candidate.rows.iter().zip(&self.current.rows).zip(&self.boundary.frictionless))
-            .filter(|((after, before), frictionless)| {
-                before.status == Status::Stick && after.status == Status::Open && !**frictionless
-            })
-            .map(|((after, _), _)| {
-                let across = if after.fixed[1] { 0.0 } else { after.residual[1] };
-                after.residual[0] * after.residual[0] + across * across
-            })
-            .sum();
-        (self.candidate.merit * self.candidate.merit - released).max(0.0).sqrt()
-    }
-
-    /// Work of the residual forces of a trial on the correction: the slope of the potential energy
-    /// along it, where there is one.
-    fn slope(&self, trial: &Trial, control: &Control, delta_h: f64) -> f64 {
-        let held = control.normal_force.map_or(0.0, |force| delta_h * (trial.plate_force - force));
-        let free = trial.residual.iter().zip(&self.correction).zip(&self.fixed).filter(|(_, fixed)| !**fixed);
-        held + free.map(|((r, d), _)| r * d).sum::<f64>()
-    }
+/// Merit of a trial without the tangential forces of points that come off in it (see
+/// [`Reading::released`]).
+fn without_releases(trial: &Reading) -> f64 {
+    (trial.merit * trial.merit - trial.released).max(0.0).sqrt()
 }

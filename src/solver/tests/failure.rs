@@ -57,8 +57,7 @@ fn a_guess_that_is_meaningless_is_left_out() {
     let expected: Vec<u64> = rig.newton.accepted().u.iter().map(|x| x.to_bits()).collect();
     let mut guess = rig.u.clone();
     guess[100] += 50.0;
-    let mut handle = CaseHandle { backend: &mut rig.backend, case: 0 };
-    let outcome = rig.newton.solve(&mut handle, &rig.u, rig.h, Some(&guess), &control(0.003, 0.0)).unwrap();
+    let outcome = rig.attempt_from(Some(&guess), &control(0.003, 0.0));
     let StepOutcome::Converged(report) = outcome else { panic!("{outcome:?}") };
     assert_eq!(StepReport { times: clean.times, ..report }, clean);
     assert_eq!(rig.newton.accepted().u.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), expected);

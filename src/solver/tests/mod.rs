@@ -8,6 +8,7 @@ mod quadratic;
 
 use std::sync::Arc;
 
+use super::iterate::{Guess, SetOut};
 use super::newton::Newton;
 use super::{Control, Settings, StepFailure, StepOutcome, StepReport};
 use crate::compute::cpu::Cpu;
@@ -48,11 +49,18 @@ impl Rig {
 
     /// Solves a step without committing it.
     pub fn attempt(&mut self, control: &Control) -> Result<StepReport, StepFailure> {
-        let mut handle = CaseHandle { backend: &mut self.backend, case: 0 };
-        match self.newton.solve(&mut handle, &self.u, self.h, None, control).unwrap() {
+        match self.attempt_from(None, control) {
             StepOutcome::Converged(report) => Ok(report),
             StepOutcome::Failed(failure) => Err(failure),
         }
+    }
+
+    /// The same from a guess.
+    pub fn attempt_from(&mut self, guess: Option<&[f64]>, control: &Control) -> StepOutcome {
+        let mut handle = CaseHandle { backend: &mut self.backend, case: 0 };
+        let plate = self.mesh.plate_nodes.first().map_or(0, |&n| 3 * n as usize);
+        let start = SetOut { displacement: &self.u, h: self.h, delta_t: self.u[plate], guess: guess.map(Guess::At) };
+        self.newton.solve(&mut handle, &start, control).unwrap()
     }
 
     /// Solves a step and commits it.

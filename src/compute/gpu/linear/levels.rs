@@ -7,13 +7,17 @@ use super::super::pipelines::{Bound, Recorder};
 use super::super::shader_sources::{Kernel, Precision};
 use super::RESTART;
 use super::sources::{
-    GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESIDUAL, RESTRICT, SMOOTH_START, SMOOTH_STEP, SOLVE_COARSEST,
+    GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESIDUAL, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
+    SMOOTH_STEP, SOLVE_COARSEST,
 };
 use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
 
 /// Nodes of which one workgroup has the rows, and its threads.
 const NODES_IN_GROUP: usize = 64;
 const ROWS_IN_GROUP: usize = 192;
+
+/// Nodes of the largest level that one workgroup smooths.
+const SMALL_NODES: usize = 400;
 
 /// The block that `level.wgsl` calls Level.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -27,6 +31,8 @@ struct LevelBlock {
     restart: u32,
     plate_nodes: u32,
     coarsest_steps: u32,
+    smoothing_steps: u32,
+    reserved: [u32; 3],
 }
 
 /// What a slot solves, as `record.wgsl` has it.
@@ -106,6 +112,7 @@ pub struct Common {
     slots: usize,
     plate_nodes: usize,
     coarsest_steps: usize,
+    smoothing_steps: usize,
 }
 
 /// One level's arrays.
@@ -216,6 +223,8 @@ impl Level {
             restart: RESTART as u32,
             plate_nodes: common.plate_nodes as u32,
             coarsest_steps: common.coarsest_steps as u32,
+            smoothing_steps: common.smoothing_steps as u32,
+            reserved: [0; 3],
         };
         let block = context.block("a level")?;
         context.upload(&block, &[LevelShape(sizes)])?;
@@ -274,7 +283,7 @@ pub struct Levels {
     /// One V-cycle on the finest level's b.
     pub cycle: Vec<Call>,
     _shares: Vec<StorageBuffer<[f32; 4]>>,
-    _coarsest: StorageBuffer<[f32; 2]>,
+    _coarsest: [StorageBuffer<[f32; 2]>; 2],
 }
 
 impl Levels {
@@ -291,7 +300,8 @@ impl Levels {
         records: &StorageBuffer<Record>,
     ) -> Result<Self, GpuError> {
         let layouts = &layout.levels;
-        let common = Common { slots, plate_nodes, coarsest_steps: layout.coarsest.len() };
+        let (coarsest_steps, smoothing_steps) = (layout.coarsest.len(), layout.smoother.len());
+        let common = Common { slots, plate_nodes, coarsest_steps, smoothing_steps };
         let levels = (0..layouts.len())
             .map(|l| Level::new(context, &layouts[l], layouts.get(l + 1), common))
             .collect::<Result<Vec<_>, _>>()?;
@@ -305,7 +315,8 @@ impl Levels {
             })
             .collect::<Result<Vec<_>, GpuError>>()?;
         let coarsest = context.array("shares of the coarsest level's steps", &layout.coarsest)?;
-        let bind = Binder { context, records, shares: &shares };
+        let all_shares = context.array("shares of all smoothing steps", &layout.smoother)?;
+        let bind = Binder { context, records, shares: &shares, all_shares: &all_shares };
         let mut update = Vec::new();
         let mut cycle = Vec::new();
         for (l, level) in levels.iter().enumerate() {
@@ -313,24 +324,39 @@ impl Levels {
             match (&level.transfer, levels.get(l + 1)) {
                 (Some(transfer), Some(next)) => {
                     update.extend(bind.galerkin(level, transfer, next)?);
-                    cycle.extend(bind.down(level, transfer, next)?);
+                    if is_small(l, level) {
+                        cycle.extend(bind.small_down(level, transfer, next)?);
+                    } else {
+                        cycle.extend(bind.down(level, transfer, next)?);
+                    }
                 }
                 _ => cycle.push(bind.coarsest(level, &coarsest)?),
             }
         }
         for (l, level) in levels.iter().enumerate().rev() {
             if let (Some(transfer), Some(next)) = (&level.transfer, levels.get(l + 1)) {
-                cycle.extend(bind.up(level, transfer, next)?);
+                if is_small(l, level) {
+                    cycle.push(bind.small_up(level, transfer, next)?);
+                } else {
+                    cycle.extend(bind.up(level, transfer, next)?);
+                }
             }
         }
-        Ok(Self { levels, update, cycle, _shares: shares, _coarsest: coarsest })
+        Ok(Self { levels, update, cycle, _shares: shares, _coarsest: [coarsest, all_shares] })
     }
+}
+
+/// A level so small that one workgroup smooths it whole: its dispatches are saved. Not the finest,
+/// where some unknowns are fixed.
+fn is_small(l: usize, level: &Level) -> bool {
+    l > 0 && level.nodes <= SMALL_NODES
 }
 
 struct Binder<'a> {
     context: &'a GpuContext,
     records: &'a StorageBuffer<Record>,
     shares: &'a [StorageBuffer<[f32; 4]>],
+    all_shares: &'a StorageBuffer<[f32; 2]>,
 }
 
 impl Binder<'_> {
@@ -392,11 +418,43 @@ impl Binder<'_> {
         let mut residual = level.product(x);
         residual.extend([level.b.binding(), level.fixed.binding(), level.residual.binding(), self.records.binding()]);
         out.push(Call::new(self.context, &RESIDUAL, level.threads(), residual)?);
+        out.push(self.restrict(level, transfer, next)?);
+        Ok(out)
+    }
+
+    fn restrict(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
         let mut restrict = vec![level.block.binding()];
         restrict.extend(transfer.restriction.bindings());
         restrict.extend([level.residual.binding(), next.b.binding(), self.records.binding()]);
-        out.push(Call::new(self.context, &RESTRICT, row_threads(transfer.coarse_nodes), restrict)?);
-        Ok(out)
+        Call::new(self.context, &RESTRICT, row_threads(transfer.coarse_nodes), restrict)
+    }
+
+    fn small<'a>(&'a self, level: &'a Level) -> Vec<wgpu::BindingResource<'a>> {
+        vec![
+            level.block.binding(),
+            level.column.binding(),
+            level.matrix.binding(),
+            level.inverse.binding(),
+            level.b.binding(),
+            level.x.binding(),
+            level.last_step.binding(),
+            level.residual.binding(),
+            self.all_shares.binding(),
+            self.records.binding(),
+        ]
+    }
+
+    /// As [`Binder::down`], by one workgroup a slot; it leaves `x`.
+    fn small_down(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<[Call; 2], GpuError> {
+        Ok([Call::new(self.context, &SMALL_DOWN, 1, self.small(level))?, self.restrict(level, transfer, next)?])
+    }
+
+    /// As [`Binder::up`], by one workgroup a slot.
+    fn small_up(&self, level: &Level, transfer: &Transfer, next: &Level) -> Result<Call, GpuError> {
+        let mut arguments = self.small(level);
+        arguments.extend(transfer.prolongation.bindings());
+        arguments.push(next.x.binding());
+        Call::new(self.context, &SMALL_UP, 1, arguments)
     }
 
     /// The next level's correction, and smoothing, which ends in `x`.

@@ -13,7 +13,7 @@ mod levels;
 pub mod pack;
 pub mod sources;
 
-use super::buffers::{DeviceReal, StorageBuffer};
+use super::buffers::{DeviceReal, Read, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::pipelines::Recorder;
@@ -81,7 +81,7 @@ impl Plan {
     }
 
     /// Bytes of a slot: the widest array, and all together.
-    pub fn bytes<R>(&self) -> (u64, u64) {
+    pub fn bytes(&self) -> (u64, u64) {
         let n = 3 * self.layout.levels[0].nodes;
         let basis = (RESTART + 1) * n;
         let (mut widest, mut all) = (basis, (2 * RESTART + 5) * n + small_numbers() + 2 * (RESTART + 3) * n.div_ceil(CHUNK));
@@ -89,7 +89,7 @@ impl Plan {
             let (array, sum) = slot_numbers(level);
             (widest, all) = (widest.max(array), all + sum);
         }
-        let rows = POINT_ROWS * self.contact_points * size_of::<R>();
+        let rows = POINT_ROWS * self.contact_points * size_of::<f32>();
         ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + rows + size_of::<Record>()) as u64)
     }
 
@@ -126,10 +126,10 @@ pub struct Right {
 
 /// The linear solver of a batch's slots.
 #[derive(Debug)]
-pub struct Linear<R> {
+pub struct Linear {
     levels: Levels,
     records: StorageBuffer<Record>,
-    rows: StorageBuffer<R>,
+    rows: StorageBuffer<f32>,
     rhs: StorageBuffer<f32>,
     solution: StorageBuffer<f32>,
     guess: StorageBuffer<f32>,
@@ -155,13 +155,18 @@ pub struct Linear<R> {
     _counts: StorageBuffer<[u32; 4]>,
 }
 
-impl<R: DeviceReal> Linear<R> {
+impl Linear {
     /// The arrays and kernels for so many slots; `blocks` are the tangents that the gathering
     /// kernels leave.
     ///
     /// # Errors
     /// What the device says.
-    pub fn new(context: &GpuContext, plan: &Plan, slots: usize, blocks: &StorageBuffer<R>) -> Result<Self, GpuError> {
+    pub fn new<T: DeviceReal>(
+        context: &GpuContext,
+        plan: &Plan,
+        slots: usize,
+        blocks: &StorageBuffer<T>,
+    ) -> Result<Self, GpuError> {
         let finest = &plan.layout.levels[0];
         let unknowns = 3 * finest.nodes;
         let chunks = unknowns.div_ceil(CHUNK);
@@ -183,7 +188,7 @@ impl<R: DeviceReal> Linear<R> {
         let squares = zeros("partial squares", chunks)?;
         let small = zeros("least-squares problems", small_numbers())?;
 
-        let assemble = context.pipeline(&ASSEMBLE, R::PRECISION)?;
+        let assemble = context.pipeline(&ASSEMBLE, T::PRECISION)?;
         let arguments = vec![
             level.block.binding(),
             source.binding(),
@@ -264,12 +269,20 @@ impl<R: DeviceReal> Linear<R> {
         &self,
         context: &GpuContext,
         list: &mut Recorder<'_>,
-        rows: &[R],
+        rows: &[f32],
         fixed: &[u32],
         slots: usize,
     ) -> Result<(), GpuError> {
         context.upload_at(&self.rows, 0, rows)?;
         context.upload_at(&self.levels.levels[0].fixed, 0, fixed)?;
+        self.append_update(list, slots)
+    }
+
+    /// The same with rows and fixed components that are on the device.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn append_update(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
         self.assemble.append(list, slots)?;
         append(&self.levels.update, list, slots)
     }
@@ -287,55 +300,151 @@ impl<R: DeviceReal> Linear<R> {
         and: (&StorageBuffer<u32>, &mut [u32]),
     ) -> Result<(Vec<f32>, Vec<SideReport>), GpuError> {
         let slots = right.tolerance.len();
-        let fresh = |(&tolerance, &relative): (&f32, &bool)| Record {
-            tolerance,
-            relative_to_start: relative.into(),
-            ..Record::default()
-        };
-        let mut records: Vec<Record> = right.tolerance.iter().zip(&right.relative_to_guess).map(fresh).collect();
-        context.upload_at(&self.records, 0, &records)?;
+        let mut solves = Solves::new(&right.tolerance, &right.relative_to_guess, right.expected);
         context.upload_at(&self.rhs, 0, &right.rhs)?;
-        self.prescribe.append(&mut list, slots)?;
-        append(&self.residual, &mut list, slots)?;
-        self.measure.append(&mut list, slots)?;
         if let Some(guess) = &right.guess {
             context.upload_at(&self.guess, 0, guess)?;
-            list.copy(&self.guess, 0, &self.solution, 0, slots * self.unknowns)?;
-            append(&self.residual, &mut list, slots)?;
         }
-        append(&self.begin, &mut list, slots)?;
+        self.set_out(context, &mut list, &solves, right.guess.is_some())?;
         let mut answer = vec![0.0; slots * self.unknowns];
-        self.iterate(&mut list, (right.expected + 1).min(RESTART), slots)?;
-        let reads = &mut [self.records.read(0, &mut records)?, self.answer.read(0, &mut answer)?, and.0.read(0, and.1)?];
-        list.submit_and_read(reads)?;
-        while records.iter().any(|record| record.goes_on()) {
+        self.iterate(&mut list, solves.first_list(), slots)?;
+        list.submit_and_read(&mut [self.read(&mut solves)?, self.answer.read(0, &mut answer)?, and.0.read(0, and.1)?])?;
+        while solves.go_on() {
             let mut list = context.record();
-            // All slots are in the same step of their cycles: those that go on are all full, or
-            // none.
-            let full: Vec<usize> = (0..slots).filter(|&slot| records[slot].done == FULL && records[slot].goes_on()).collect();
-            for &slot in &full {
-                // The next cycle begins at the answer of this one.
-                list.copy(&self.answer, slot * self.unknowns, &self.solution, slot * self.unknowns, self.unknowns)?;
-                (records[slot].done, records[slot].vectors, records[slot].steps) = (0, 0, 0);
-                context.upload_at(&self.records, slot, &[records[slot]])?;
-            }
-            if !full.is_empty() {
-                append(&self.residual, &mut list, slots)?;
-                append(&self.begin, &mut list, slots)?;
-            }
-            self.iterate(&mut list, MORE, slots)?;
-            list.submit_and_read(&mut [self.records.read(0, &mut records)?, self.answer.read(0, &mut answer)?])?;
+            self.take_up(context, &mut list, &mut solves)?;
+            list.submit_and_read(&mut [self.read(&mut solves)?, self.answer.read(0, &mut answer)?])?;
         }
-        Ok((answer, records.iter().map(Record::report).collect()))
+        Ok((answer, solves.reports()))
     }
 
-    fn iterate(&self, list: &mut Recorder<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
+    /// Appends what begins solutions with the right-hand sides that are on the device, and with the
+    /// guesses that are if they count.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn set_out(&self, context: &GpuContext, list: &mut Recorder<'_>, solves: &Solves, guess: bool) -> Result<(), GpuError> {
+        let slots = solves.slots();
+        context.upload_at(&self.records, 0, &solves.records)?;
+        self.prescribe.append(list, slots)?;
+        append(&self.residual, list, slots)?;
+        self.measure.append(list, slots)?;
+        if guess {
+            list.copy(&self.guess, 0, &self.solution, 0, slots * self.unknowns)?;
+            append(&self.residual, list, slots)?;
+        }
+        append(&self.begin, list, slots)
+    }
+
+    /// Appends more of solutions that have not finished.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn take_up(&self, context: &GpuContext, list: &mut Recorder<'_>, solves: &mut Solves) -> Result<(), GpuError> {
+        let slots = solves.slots();
+        // All slots are in the same step of their cycles: those that go on are all full, or none.
+        let records = &mut solves.records;
+        let full: Vec<usize> = (0..slots).filter(|&slot| records[slot].done == FULL && records[slot].goes_on()).collect();
+        for &slot in &full {
+            // The next cycle begins at the answer of this one.
+            list.copy(&self.answer, slot * self.unknowns, &self.solution, slot * self.unknowns, self.unknowns)?;
+            (records[slot].done, records[slot].vectors, records[slot].steps) = (0, 0, 0);
+            context.upload_at(&self.records, slot, &[records[slot]])?;
+        }
+        if !full.is_empty() {
+            append(&self.residual, list, slots)?;
+            append(&self.begin, list, slots)?;
+        }
+        self.iterate(list, MORE, slots)
+    }
+
+    /// What is to be read back of solutions.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] for more slots than there are.
+    pub fn read<'a>(&'a self, solves: &'a mut Solves) -> Result<Read<'a>, GpuError> {
+        self.records.read(0, &mut solves.records)
+    }
+
+    /// The arrays that Newton's iterates fill and read.
+    pub fn of_iterates(&self) -> OfIterates<'_> {
+        OfIterates {
+            records: &self.records,
+            rhs: &self.rhs,
+            fixed: &self.levels.levels[0].fixed,
+            rows: &self.rows,
+            guess: &self.guess,
+            answer: &self.answer,
+        }
+    }
+
+    /// Appends Krylov iterations, and the answers after them.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn iterate(&self, list: &mut Recorder<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
         for _ in 0..times {
             append(&self.levels.cycle, list, slots)?;
             append(&self.iteration, list, slots)?;
         }
         append(&self.finish, list, slots)
     }
+}
+
+/// How solutions stand, a slot each.
+#[derive(Clone, Debug)]
+pub struct Solves {
+    records: Vec<Record>,
+    expected: usize,
+}
+
+impl Solves {
+    /// Solutions to these relative residuals, of the right-hand side or of the residual at the
+    /// guess; that which takes most will probably take `expected` Krylov iterations.
+    pub fn new(tolerance: &[f32], relative_to_guess: &[bool], expected: usize) -> Self {
+        let fresh = |(&tolerance, &relative): (&f32, &bool)| Record {
+            tolerance,
+            relative_to_start: relative.into(),
+            ..Record::default()
+        };
+        Self { records: tolerance.iter().zip(relative_to_guess).map(fresh).collect(), expected }
+    }
+
+    /// Number of slots.
+    pub fn slots(&self) -> usize {
+        self.records.len()
+    }
+
+    /// Krylov iterations of the first list.
+    pub fn first_list(&self) -> usize {
+        (self.expected + 1).min(RESTART)
+    }
+
+    /// Some have not finished.
+    pub fn go_on(&self) -> bool {
+        self.records.iter().any(Record::goes_on)
+    }
+
+    /// How they went.
+    pub fn reports(&self) -> Vec<SideReport> {
+        self.records.iter().map(Record::report).collect()
+    }
+}
+
+/// Arrays of the solver by which Newton's iterates reach it.
+#[derive(Debug)]
+pub struct OfIterates<'a> {
+    /// How solutions stand.
+    pub records: &'a StorageBuffer<Record>,
+    /// Right-hand sides.
+    pub rhs: &'a StorageBuffer<f32>,
+    /// Fixed components.
+    pub fixed: &'a StorageBuffer<u32>,
+    /// Rows of points that slide.
+    pub rows: &'a StorageBuffer<f32>,
+    /// Guesses.
+    pub guess: &'a StorageBuffer<f32>,
+    /// Solutions.
+    pub answer: &'a StorageBuffer<f32>,
 }
 
 impl Record {

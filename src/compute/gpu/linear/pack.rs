@@ -1,15 +1,14 @@
 //! Requests as the device takes them, and its answers as they are asked for.
 
-use super::super::buffers::DeviceReal;
 use super::{POINT_ROWS, Right};
 use crate::compute::linear::{LinearRequest, Side, SideReport};
 use crate::contact::coulomb::Status;
 
 /// The requests of a dispatch, slot by slot.
 #[derive(Debug, Default)]
-pub struct Packed<R> {
+pub struct Packed {
     /// Contact rows `[slot][slides, force rows, displacement rows][point]`.
-    pub rows: Vec<R>,
+    pub rows: Vec<f32>,
     /// Fixed components `[slot][node]`, a bit each.
     pub fixed: Vec<u32>,
     /// Right-hand sides; nothing for slots that have fewer than others.
@@ -19,7 +18,7 @@ pub struct Packed<R> {
     factors: Vec<Vec<f64>>,
 }
 
-impl<R: DeviceReal> Packed<R> {
+impl Packed {
     /// Packs requests in the order of their slots.
     pub fn new<'a, 'b: 'a>(requests: impl Iterator<Item = &'a LinearRequest<'b>> + Clone) -> Self {
         let mut out = Self { rows: Vec::new(), fixed: Vec::new(), sides: Vec::new(), factors: Vec::new() };
@@ -43,12 +42,12 @@ impl<R: DeviceReal> Packed<R> {
 
     fn pack_rows(&mut self, request: &LinearRequest<'_>) {
         let (first, points) = (self.rows.len(), request.rows.len());
-        self.rows.resize(first + POINT_ROWS * points, R::ZERO);
+        self.rows.resize(first + POINT_ROWS * points, 0.0);
         for (k, rows) in request.rows.iter().enumerate().filter(|(_, rows)| rows.status == Status::Slip) {
             let numbers =
                 std::iter::once(&1.0).chain(rows.force_rows.as_flattened()).chain(rows.displacement_rows.as_flattened());
             for (c, &number) in numbers.enumerate() {
-                self.rows[first + c * points + k] = R::of(number);
+                self.rows[first + c * points + k] = number as f32;
             }
         }
     }

@@ -10,6 +10,7 @@ const GALERKIN: Source = source!("linalg/galerkin.wgsl");
 const TRANSFER: Source = source!("linalg/transfer.wgsl");
 const KRYLOV: Source = source!("linalg/krylov.wgsl");
 const SUMS: Source = source!("linalg/sums.wgsl");
+const SMALL: Source = source!("linalg/small.wgsl");
 const NORM: Source = source!("linalg/norm.wgsl");
 
 /// The tangent as the finest level's matrix.
@@ -73,6 +74,22 @@ pub static SOLVE_COARSEST: Kernel = Kernel {
     name: "solve_coarsest",
     sources: &[LEVEL, RECORD, source!("linalg/coarsest.wgsl")],
     bindings: &[Uniform, Read, Read, ReadWrite, Read, Read, ReadWrite, Read, Read],
+    workgroup: 256,
+};
+
+/// A small level on the way down.
+pub static SMALL_DOWN: Kernel = Kernel {
+    name: "small_down",
+    sources: &[LEVEL, RECORD, SMALL, source!("linalg/small_down.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read],
+    workgroup: 256,
+};
+
+/// A small level on the way up.
+pub static SMALL_UP: Kernel = Kernel {
+    name: "small_up",
+    sources: &[LEVEL, RECORD, SMALL, source!("linalg/small_up.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read, Read, Read, Read, Read],
     workgroup: 256,
 };
 

@@ -1,62 +1,57 @@
 //! The linear system of an iteration: formed and solved on the host, or where the tangents are
 //! computed.
 
-use super::Newton;
+use super::host::HostIterate;
+use super::{Asked, Correction};
 use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
 use crate::compute::linear::{Ended, LinearRequest, Side, SideReport};
 use crate::contact::pair::leave_even;
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
+use crate::solver::SolverError;
 use crate::solver::outcome::{Halt, StepFailure};
-use crate::solver::phases::{Lap, Phase};
+use crate::solver::phases::{Lap, Phase, PhaseTimes};
 use crate::solver::rigid::turn;
 use crate::solver::system::{apply_contact, fixed_unknowns, plate_functional, right_hand_side};
 use crate::solver::systems::Systems;
-use crate::solver::{Control, SolverError};
 
 /// Share of the forces at the contact to which the response to a unit indentation is solved, which
 /// gives the change of h that a missing normal force asks for.
-const UNIT_RESPONSE: f64 = 0.01;
+pub(super) const UNIT_RESPONSE: f64 = 0.01;
 
 /// Krylov iterations that the first system of a step is expected to take.
-const EXPECTED: usize = 4;
-
-/// What a linear system took.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Linearised {
-    /// Krylov iterations.
-    pub krylov: usize,
-    /// It was solved directly, because the iteration stalled.
-    pub fallback: bool,
-    /// Change of h, where the normal force is held.
-    pub delta_h: f64,
-}
-
-/// What is asked of a linear system.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Asked<'a> {
-    pub mesh: &'a Mesh,
-    pub control: &'a Control,
-    /// Relative residual to be reached.
-    pub eta: f64,
-    /// It is the first of its step.
-    pub first: bool,
-}
+pub(super) const EXPECTED: usize = 4;
 
 /// What came of a system that the backend was asked to solve.
 enum There {
-    Solved(Linearised),
+    Solved(Correction),
     /// It solves no such systems, or gave up after so many Krylov iterations.
     NotSolved {
         krylov: usize,
     },
 }
 
-impl Newton {
+impl HostIterate {
     /// Forms and solves the linear system: the correction is in `self.delta`.
-    pub(super) fn linearise(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>) -> Result<Linearised, Halt> {
-        let mesh = asked.mesh;
+    pub(super) fn linearise(
+        &mut self,
+        case: &mut dyn Evaluate,
+        asked: Asked<'_>,
+        times: &mut PhaseTimes,
+    ) -> Result<Correction, Halt> {
+        self.state_system(case, times);
+        let krylov = match self.solve_there(case, asked, times)? {
+            There::Solved(done) => return Ok(done),
+            There::NotSolved { krylov } => krylov,
+        };
+        let here = self.solve_here(case, asked, times)?;
+        Ok(Correction { krylov: krylov + here.krylov, ..here })
+    }
+
+    /// What is fixed at the current iterate, and the right-hand sides.
+    pub(super) fn state_system(&mut self, case: &dyn Evaluate, times: &mut PhaseTimes) {
+        let mesh = &case.model().mesh;
         let mut lap = Lap::start();
         fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
         right_hand_side(&self.current, mesh, &self.boundary, &mut self.rhs);
@@ -64,19 +59,15 @@ impl Newton {
         for &n in &self.boundary.plate {
             self.unit_rhs[3 * n as usize + 2] = -1.0;
         }
-        lap.end(&mut self.times, Phase::Contact);
-        let krylov = match self.solve_there(case, asked)? {
-            There::Solved(done) => return Ok(done),
-            There::NotSolved { krylov } => krylov,
-        };
-        let here = self.solve_here(case, asked)?;
-        Ok(Linearised { krylov: krylov + here.krylov, ..here })
+        self.delta_h = 0.0;
+        lap.end(times, Phase::Contact);
     }
 
-    /// As [`Newton::linearise`], by the backend. Where it stalls, the host has a direct solver to
-    /// fall back on.
-    fn solve_there(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>) -> Result<There, Halt> {
-        let Asked { mesh, control, eta, first } = asked;
+    /// As [`HostIterate::linearise`], by the backend. Where it stalls, the host has a direct solver
+    /// to fall back on.
+    fn solve_there(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<There, Halt> {
+        let Asked { control, eta, first } = asked;
+        let mesh = &case.model().mesh.clone();
         let Systems::Plane(solver) = &self.linear else { return Ok(There::NotSolved { krylov: 0 }) };
         if solver.kind() != SolverKind::Multigrid || self.boundary.against.is_some() {
             return Ok(There::NotSolved { krylov: 0 });
@@ -108,7 +99,7 @@ impl Newton {
         if reports[0].ended == Ended::NotTried {
             return Ok(There::NotSolved { krylov: 0 });
         }
-        lap.end(&mut self.times, Phase::LinearSolve);
+        lap.end(times, Phase::LinearSolve);
         if let Outcome::Inverted { element, point } = outcome {
             return Err(StepFailure::Inverted { element, point }.into());
         }
@@ -129,7 +120,8 @@ impl Newton {
         }
         self.delta.copy_from_slice(&self.correction);
         self.current.expand(mesh, &self.boundary, &mut self.delta);
-        Ok(There::Solved(Linearised { krylov, fallback: false, delta_h }))
+        self.delta_h = delta_h;
+        Ok(There::Solved(Correction { krylov, fallback: false, delta_h, slope: 0.0 }))
     }
 
     /// The change of h by which the plate has the force that is to be held, given what its force
@@ -146,15 +138,21 @@ impl Newton {
         Ok(delta_h)
     }
 
-    /// As [`Newton::linearise`], on the host.
-    fn solve_here(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>) -> Result<Linearised, Halt> {
-        let Asked { mesh, control, eta, first } = asked;
+    /// As [`HostIterate::linearise`], on the host.
+    pub(super) fn solve_here(
+        &mut self,
+        case: &mut dyn Evaluate,
+        asked: Asked<'_>,
+        times: &mut PhaseTimes,
+    ) -> Result<Correction, Halt> {
+        let Asked { control, eta, first } = asked;
+        let mesh = &case.model().mesh.clone();
         let mut lap = Lap::start();
-        let matrix = self.linear.matrix_mut();
+        let Some(matrix) = self.linear.matrix_mut() else { return Err(LinalgError::NotUpdated.into()) };
         if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut matrix.blocks)? {
             return Err(StepFailure::Inverted { element, point }.into());
         }
-        lap.end(&mut self.times, Phase::Tangent);
+        lap.end(times, Phase::Tangent);
         if control.normal_force.is_some() {
             plate_functional(matrix, &self.boundary.plate, &mut self.functional);
         }
@@ -164,7 +162,7 @@ impl Newton {
         if self.boundary.pair.is_none() && self.boundary.encounter.is_none() {
             apply_contact(matrix, mesh, &self.current.rows);
         }
-        lap.end(&mut self.times, Phase::Contact);
+        lap.end(times, Phase::Contact);
         match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
             (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
             (Systems::Pair(solver), Some(pair), None) => {
@@ -175,7 +173,7 @@ impl Newton {
             }
             _ => return Err(StepFailure::Linear("the solver is made for another opponent".into()).into()),
         }
-        lap.end(&mut self.times, Phase::LinearUpdate);
+        lap.end(times, Phase::LinearUpdate);
         self.correction.fill(0.0);
         let solved = match self.linear.solve(&self.rhs, eta, &mut self.correction, true) {
             Ok(report) => report,
@@ -211,8 +209,9 @@ impl Newton {
             self.correction.copy_from_slice(&self.delta);
             self.current.contract(mesh, &self.boundary, &mut self.correction);
         }
-        lap.end(&mut self.times, Phase::LinearSolve);
-        Ok(Linearised { krylov, fallback, delta_h })
+        lap.end(times, Phase::LinearSolve);
+        self.delta_h = delta_h;
+        Ok(Correction { krylov, fallback, delta_h, slope: 0.0 })
     }
 
     /// The relative residual to which the response to a unit indentation is solved, and the guess
@@ -235,6 +234,6 @@ impl Newton {
 }
 
 /// The relative residual at which that of the contact's forces is `share`.
-fn unit_share(share: f64, unit_scale: f64) -> f64 {
+pub(super) fn unit_share(share: f64, unit_scale: f64) -> f64 {
     (share * unit_scale).clamp(1e-9, 0.1)
 }

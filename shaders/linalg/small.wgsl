@@ -1,0 +1,60 @@
+// A level so small that one workgroup smooths it whole: the same steps as in chebyshev_start.wgsl
+// and chebyshev.wgsl, without a dispatch for each.
+
+@group(0) @binding(1) var<storage, read> column: array<u32>;        // [k][node]
+@group(0) @binding(2) var<storage, read> matrix: array<real>;       // [slot][3 i + j][k][node]
+@group(0) @binding(3) var<storage, read> inverse: array<real>;      // [slot][3 i + j][node]
+@group(0) @binding(4) var<storage, read> b: array<real>;            // [slot][component][node]
+@group(0) @binding(5) var<storage, read_write> x: array<real>;      // [slot][component][node]
+@group(0) @binding(6) var<storage, read_write> last_step: array<real>;      // [slot][component][node]
+@group(0) @binding(7) var<storage, read_write> left: array<real>;   // [slot][component][node]: residual
+@group(0) @binding(8) var<storage, read> recurrence: array<vec2<real>>;     // shares of the last step and of D^-1 r
+@group(0) @binding(9) var<storage, read> records: array<Record>;
+
+const SMALL_THREADS: u32 = 256u;
+
+fn row_times(slot: u32, component: u32, node: u32) -> real {
+    let blocks = level.width * level.nodes;
+    let of_slot = 3u * slot * level.nodes;
+    var at = 3u * (3u * slot + component) * blocks + node;
+    var sum: real = 0.0;
+    for (var k = 0u; k < level.width; k++) {
+        let j = of_slot + column[k * level.nodes + node];
+        sum += matrix[at] * x[j] + matrix[at + blocks] * x[j + level.nodes] + matrix[at + 2u * blocks] * x[j + 2u * level.nodes];
+        at += level.nodes;
+    }
+    return sum;
+}
+
+// What is left of the equations, of x or, at first, of nothing.
+fn leave(slot: u32, local: u32, from_zero: bool) {
+    let first = 3u * slot * level.nodes;
+    for (var i = local; i < 3u * level.nodes; i += SMALL_THREADS) {
+        var r = b[first + i];
+        if !from_zero {
+            r -= row_times(slot, i / level.nodes, i % level.nodes);
+        }
+        left[first + i] = r;
+    }
+    storageBarrier();
+}
+
+// A step of the polynomial.
+fn smooth_once(slot: u32, local: u32, step: u32, from_zero: bool) {
+    leave(slot, local, from_zero);
+    let first = 3u * slot * level.nodes;
+    let shares = recurrence[step];
+    for (var i = local; i < 3u * level.nodes; i += SMALL_THREADS) {
+        let node = i % level.nodes;
+        let row = 9u * slot * level.nodes + 3u * (i - node) + node;
+        var change = shares.y * (inverse[row] * left[first + node]
+            + inverse[row + level.nodes] * left[first + level.nodes + node]
+            + inverse[row + 2u * level.nodes] * left[first + 2u * level.nodes + node]);
+        if shares.x > 0.0 {
+            change += shares.x * last_step[first + i];
+        }
+        last_step[first + i] = change;
+        x[first + i] = select(x[first + i], real(0.0), from_zero) + change;
+    }
+    storageBarrier();
+}

@@ -1,0 +1,27 @@
+// Adds the next level's correction to a small level and smooths it; a workgroup a slot.
+
+@group(0) @binding(10) var<storage, read> row_start: array<u32>;
+@group(0) @binding(11) var<storage, read> row_column: array<u32>;
+@group(0) @binding(12) var<storage, read> row_weight: array<real>;
+@group(0) @binding(13) var<storage, read> coarse: array<real>;      // [slot][component][node of the next level]
+
+@compute @workgroup_size(256)
+fn small_up(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let slot = group.y;
+    if records[slot].done != RUNNING {
+        return;
+    }
+    for (var i = local; i < 3u * level.nodes; i += SMALL_THREADS) {
+        let node = i % level.nodes;
+        let source_at = (3u * slot + i / level.nodes) * level.coarse_nodes;
+        var sum: real = 0.0;
+        for (var e = row_start[node]; e < row_start[node + 1u]; e++) {
+            sum += row_weight[e] * coarse[source_at + row_column[e]];
+        }
+        x[3u * slot * level.nodes + i] += sum;
+    }
+    storageBarrier();
+    for (var step = 0u; step < level.smoothing_steps; step++) {
+        smooth_once(slot, local, step, false);
+    }
+}

@@ -1,0 +1,475 @@
+//! Newton's iterates on the device: what a call of [`crate::compute::Compute::iterate`] makes of
+//! its requests, all of which ask for the same.
+//!
+//! A list of kernels goes from the linear system at the current iterates to the merit of the trials
+//! at the ends of their corrections, and is one submission; what comes back is some thirty numbers
+//! a case.
+
+pub mod arrays;
+mod requests;
+pub mod sources;
+
+use std::sync::PoisonError;
+
+use super::batch::{Batch, Dispatch, Evaluation, outcomes};
+use super::buffers::DeviceReal;
+use super::error::GpuError;
+use super::linear::{Linear, Solves};
+use super::pipelines::Recorder;
+use crate::compute::linear::SideReport;
+use crate::compute::{Energies, Outcome};
+use arrays::{AT_POINT, Kept, Kernels, NUMBERS, READINGS, Told};
+
+/// What is done to a slot, as `iterate.wgsl` has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mark {
+    /// The current iterate of the case, 0 or 1.
+    pub current: u32,
+    /// The one that is made.
+    pub trial: u32,
+    /// [`flags`].
+    pub flags: u32,
+    /// [`source`](mod@source).
+    pub source: u32,
+    /// `STEP` and so on.
+    pub numbers: [f64; NUMBERS],
+}
+
+/// Flags of a slot.
+pub mod flags {
+    /// The plate is put where it belongs.
+    pub const PLACES_PLATE: u32 = 1;
+    /// The merit has the missing normal force in it.
+    pub const HOLDS_FORCE: u32 = 2;
+    /// h changes by what is missing over the response to a unit indentation.
+    pub const RESPONDS: u32 = 4;
+    /// Points below the plane are put on it.
+    pub const LIFTS: u32 = 8;
+    /// The first system of its step.
+    pub const IS_FIRST: u32 = 16;
+    /// The last trial was kept, under full stick.
+    pub const LANDS: u32 = 32;
+}
+
+/// What a trial is made of.
+pub mod source {
+    /// The current iterate and a part of the correction.
+    pub const ALONG_CORRECTION: u32 = 0;
+    /// The last step.
+    pub const EXTRAPOLATED: u32 = 1;
+    /// The committed displacement.
+    pub const AT_START: u32 = 2;
+    /// The current iterate moved as one.
+    pub const SHIFTED: u32 = 3;
+}
+
+/// Places of a slot's numbers.
+pub mod number {
+    /// Step length.
+    pub const STEP: usize = 0;
+    /// h of the current iterate.
+    pub const DEPTH: usize = 1;
+    /// delta_T.
+    pub const SHEAR: usize = 2;
+    /// Change of h along the correction.
+    pub const DEPTH_CHANGE: usize = 3;
+    /// Force that is held.
+    pub const HELD_FORCE: usize = 4;
+    /// Share of the last step; of a shift its x.
+    pub const RATIO: usize = 5;
+    /// Of a shift its z.
+    pub const SHIFT_Z: usize = 6;
+    /// What is missing of the plate's force.
+    pub const MISSING: usize = 7;
+}
+
+/// What a slot's trial came to, as `read.wgsl` orders it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Readout {
+    /// How the evaluation went.
+    pub outcome: Outcome,
+    /// Merit, force scale, plate force, tangential residual, normal force, slope, slope at the
+    /// current iterate, square of what is released, change of h, largest right-hand side.
+    pub numbers: [f64; READINGS],
+    /// Status changed, come down again, closed, slipping.
+    pub counts: [u32; 4],
+}
+
+/// What a commit leaves in a slot.
+#[derive(Clone, Debug)]
+pub struct Committed {
+    /// How it went.
+    pub outcome: Outcome,
+    /// Energies of the body.
+    pub energies: Energies,
+    /// `[AT_POINT][point]`.
+    pub at_points: Vec<f64>,
+    /// `[point]`.
+    pub status: Vec<u32>,
+}
+
+/// Corrections and the trials at their ends, slot by slot.
+#[derive(Clone, Debug)]
+pub struct Corrections {
+    /// How the tangents went.
+    pub tangents: Vec<Outcome>,
+    /// How the solutions went.
+    pub reports: Vec<SideReport>,
+    /// The same of the responses to a unit indentation; none where no force is held.
+    pub units: Vec<SideReport>,
+    /// The trials.
+    pub readouts: Vec<Readout>,
+}
+
+/// An iterate of a case.
+#[derive(Clone, Debug)]
+pub struct Brought<R> {
+    /// Since the start of the step, `[3 node + i]`.
+    pub increments: Vec<R>,
+    /// Internal forces, `[3 node + i]`.
+    pub forces: Vec<R>,
+    /// Contact points that slide without friction.
+    pub slides: Vec<u32>,
+}
+
+/// The iterates of a batch: a part for each of its groups.
+#[derive(Debug)]
+pub struct Iterates<R> {
+    pub groups: Vec<(Kept<R>, Kernels)>,
+    pub told: Told<R>,
+}
+
+/// What is read back of a list.
+struct Back<R> {
+    first: Vec<u32>,
+    of_tangent: Vec<u32>,
+    readings: Vec<R>,
+    counts: Vec<[u32; 4]>,
+}
+
+impl<R: DeviceReal> Back<R> {
+    fn new(slots: usize) -> Self {
+        let status = || vec![0; slots];
+        Self { first: status(), of_tangent: status(), readings: vec![R::ZERO; slots * READINGS], counts: vec![[0; 4]; slots] }
+    }
+
+    fn readouts(&self) -> Vec<Readout> {
+        let readout = |(slot, outcome): (usize, Outcome)| {
+            let numbers: [f64; READINGS] = std::array::from_fn(|i| self.readings[READINGS * slot + i].to_f64());
+            // A merit that is not a number is as an inverted element.
+            let outcome = match outcome {
+                Outcome::Valid if !numbers[0].is_finite() => Outcome::Inverted { element: 0, point: 0 },
+                outcome => outcome,
+            };
+            Readout { outcome, numbers, counts: self.counts[slot] }
+        };
+        outcomes(&self.first).into_iter().enumerate().map(readout).collect()
+    }
+}
+
+impl<R: DeviceReal> Batch<R> {
+    /// Whether iterates are kept here.
+    pub fn keeps_iterates(&self) -> bool {
+        self.iterates.is_some()
+    }
+
+    fn iterates(&self) -> Result<(&Iterates<R>, &Linear), GpuError> {
+        let nothing = || GpuError::Length { what: "the iterates of the batch".into(), expected: 1, given: 0 };
+        self.iterates.as_ref().zip(self.linear.as_ref()).ok_or_else(nothing)
+    }
+
+    /// Tells the slots of a dispatch what is to be done.
+    fn tell(&self, dispatch: &Dispatch, marks: &[Mark]) -> Result<(), GpuError> {
+        self.begin(dispatch)?;
+        // The element's increments are formed on the device.
+        self.increments.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        let told = &self.iterates()?.0.told;
+        let words: Vec<[u32; 4]> = marks.iter().map(|m| [m.current, m.trial, m.flags, m.source]).collect();
+        let numbers: Vec<R> = marks.iter().flat_map(|m| m.numbers.map(R::of)).collect();
+        self.context.upload_at(&told.marks, 0, &words)?;
+        self.context.upload_at(&told.numbers, 0, &numbers)
+    }
+
+    /// Appends a copy that lets the next evaluation begin as a valid one.
+    fn append_valid(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+        list.copy(&self.iterates()?.0.told.all_valid, 0, &self.scratch.first_invalid, 0, slots)
+    }
+
+    /// Appends what makes and measures the trials that the marks ask for.
+    fn append_trial(&self, dispatch: &Dispatch, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+        let (nodes, slots) = (self.sizes().nodes, dispatch.cases.len());
+        let kernels = &self.iterates()?.0.groups[dispatch.group].1;
+        list.dispatch(&kernels.place, nodes, slots)?;
+        self.append_valid(list, slots)?;
+        self.append(dispatch, Evaluation::InternalForce, list)?;
+        list.dispatch(&kernels.save, nodes, slots)?;
+        self.append_assessment(dispatch, list)
+    }
+
+    /// Appends what contact makes of the trials, whose forces are there, and their measures.
+    fn append_assessment(&self, dispatch: &Dispatch, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+        let (sizes, slots) = (self.sizes(), dispatch.cases.len());
+        let kernels = &self.iterates()?.0.groups[dispatch.group].1;
+        list.dispatch(&kernels.contact, sizes.contact_points, slots)?;
+        list.dispatch(&kernels.measure, sizes.nodes, slots)?;
+        list.dispatch(&kernels.read, 1, slots)
+    }
+
+    fn append_landing(&self, dispatch: &Dispatch, marks: &[Mark], list: &mut Recorder<'_>) -> Result<(), GpuError> {
+        if marks.iter().all(|mark| mark.flags & flags::LANDS == 0) {
+            return Ok(());
+        }
+        let land = &self.iterates()?.0.groups[dispatch.group].1.land;
+        list.dispatch(land, self.sizes().contact_points, dispatch.cases.len())
+    }
+
+    /// Sends a list off and reads what its trials came to.
+    fn read_trials(&self, list: Recorder<'_>, solves: Option<&mut Solves>, back: &mut Back<R>) -> Result<(), GpuError> {
+        let (iterates, linear) = self.iterates()?;
+        let told = &iterates.told;
+        let mut reads = vec![
+            self.scratch.first_invalid.read(0, &mut back.first)?,
+            told.readings.read(0, &mut back.readings)?,
+            told.counts.read(0, &mut back.counts)?,
+        ];
+        if let Some(solves) = solves {
+            reads.push(linear.read(solves)?);
+            reads.push(told.of_tangent.read(0, &mut back.of_tangent)?);
+        }
+        list.submit_and_read(&mut reads)
+    }
+
+    /// Evaluates trials.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn try_iterates(&self, dispatch: &Dispatch, marks: &[Mark]) -> Result<Vec<Readout>, GpuError> {
+        self.tell(dispatch, marks)?;
+        let mut list = self.context.record();
+        self.append_landing(dispatch, marks, &mut list)?;
+        self.append_trial(dispatch, &mut list)?;
+        let mut back = Back::new(marks.len());
+        self.read_trials(list, None, &mut back)?;
+        Ok(back.readouts())
+    }
+
+    /// Assesses iterates anew whose forces stay as they are: the trial of each mark is itself the
+    /// current one. `moves` has them placed first.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn assess_iterates(&self, dispatch: &Dispatch, marks: &[Mark], moves: bool) -> Result<Vec<Readout>, GpuError> {
+        self.tell(dispatch, marks)?;
+        let mut list = self.context.record();
+        self.append_landing(dispatch, marks, &mut list)?;
+        if moves {
+            list.dispatch(&self.iterates()?.0.groups[dispatch.group].1.place, self.sizes().nodes, marks.len())?;
+        }
+        self.append_valid(&mut list, marks.len())?;
+        self.append_assessment(dispatch, &mut list)?;
+        let mut back = Back::new(marks.len());
+        self.read_trials(list, None, &mut back)?;
+        Ok(back.readouts())
+    }
+
+    /// Solves the linear systems at the current iterates and evaluates the trials at the ends of
+    /// their corrections, in one submission where so many Krylov iterations are enough. Where
+    /// `marks` hold forces (all or none), one more is for the response to a unit indentation;
+    /// `missing` is told what the plate's force changes by along each correction, and answers what
+    /// is missing of it then.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn correct_iterates(
+        &self,
+        dispatch: &Dispatch,
+        marks: &[Mark],
+        systems: [&Solves; 2],
+        missing: impl Fn(usize, f64) -> f64,
+    ) -> Result<Corrections, GpuError> {
+        let (iterates, linear) = self.iterates()?;
+        let (sizes, slots) = (self.sizes(), marks.len());
+        let kernels = &iterates.groups[dispatch.group].1;
+        let held = marks.iter().any(|mark| mark.flags & flags::HOLDS_FORCE != 0);
+        self.tell(dispatch, marks)?;
+        let mut list = self.context.record();
+        self.append_landing(dispatch, marks, &mut list)?;
+        list.dispatch(&kernels.current, sizes.nodes, slots)?;
+        self.append_valid(&mut list, slots)?;
+        self.append(dispatch, Evaluation::Tangent, &mut list)?;
+        list.copy(&self.scratch.first_invalid, 0, &iterates.told.of_tangent, 0, slots)?;
+        list.dispatch(&kernels.system, sizes.nodes, slots)?;
+        linear.append_update(&mut list, slots)?;
+        let mut solves = systems[0].clone();
+        let mut back = Back::new(slots);
+        linear.set_out(&self.context, &mut list, &solves, false)?;
+        let of_correction = |list: &mut Recorder<'_>| {
+            list.dispatch(&kernels.expand, sizes.nodes, slots)?;
+            if held { Ok(()) } else { self.append_trial(dispatch, list) }
+        };
+        self.solve(list, linear, &mut solves, &mut back, of_correction)?;
+        let reports = solves.reports();
+        let mut unit_reports = Vec::new();
+        if held {
+            let responding = |(slot, mark): (usize, &Mark)| {
+                let mut mark = Mark { flags: (mark.flags | flags::RESPONDS) & !flags::LANDS, ..*mark };
+                mark.numbers[number::MISSING] = missing(slot, reports[slot].along);
+                mark
+            };
+            let marks: Vec<Mark> = marks.iter().enumerate().map(responding).collect();
+            self.tell(dispatch, &marks)?;
+            let mut list = self.context.record();
+            let mut solves = systems[1].clone();
+            list.dispatch(&kernels.unit, sizes.nodes, slots)?;
+            linear.set_out(&self.context, &mut list, &solves, true)?;
+            let of_response = |list: &mut Recorder<'_>| {
+                list.dispatch(&kernels.respond, sizes.nodes, slots)?;
+                self.append_trial(dispatch, list)
+            };
+            self.solve(list, linear, &mut solves, &mut back, of_response)?;
+            unit_reports = solves.reports();
+        }
+        Ok(Corrections { tangents: outcomes(&back.of_tangent), reports, units: unit_reports, readouts: back.readouts() })
+    }
+
+    /// Sends a list off that begins a solution, with the Krylov iterations that it should take and
+    /// what `tail` appends, and as many more as it takes.
+    fn solve(
+        &self,
+        mut list: Recorder<'_>,
+        linear: &Linear,
+        solves: &mut Solves,
+        back: &mut Back<R>,
+        tail: impl Fn(&mut Recorder<'_>) -> Result<(), GpuError>,
+    ) -> Result<(), GpuError> {
+        linear.iterate(&mut list, solves.first_list(), solves.slots())?;
+        tail(&mut list)?;
+        self.read_trials(list, Some(solves), back)?;
+        while solves.go_on() {
+            let mut list = self.context.record();
+            linear.take_up(&self.context, &mut list, solves)?;
+            tail(&mut list)?;
+            self.read_trials(list, Some(solves), back)?;
+        }
+        Ok(())
+    }
+
+    /// Makes the current iterates the committed states, and reads what is recorded of them.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn commit_iterates(&self, dispatch: &Dispatch, marks: &[Mark]) -> Result<Vec<Committed>, GpuError> {
+        self.tell(dispatch, marks)?;
+        let (sizes, slots, points) = (self.sizes(), marks.len(), self.sizes().contact_points);
+        let iterates = self.iterates()?.0;
+        let (kernels, told, scratch) = (&iterates.groups[dispatch.group].1, &iterates.told, &self.scratch);
+        let resident = &self.groups[dispatch.group].0;
+        let mut list = self.context.record();
+        list.dispatch(&kernels.current, sizes.nodes, slots)?;
+        self.append_valid(&mut list, slots)?;
+        self.append(dispatch, Evaluation::Update, &mut list)?;
+        list.dispatch(&kernels.energies, 1, slots)?;
+        list.dispatch(&kernels.commit, sizes.nodes, slots)?;
+        for (slot, &case) in dispatch.cases.iter().enumerate() {
+            self.append_keep(&mut list, resident, slot, case)?;
+        }
+        let mut first = vec![0; slots];
+        let mut energies = vec![R::ZERO; 3 * slots];
+        let mut at_points = vec![R::ZERO; AT_POINT * points * slots];
+        let mut status = vec![0; points * slots];
+        list.submit_and_read(&mut [
+            scratch.first_invalid.read(0, &mut first)?,
+            told.energies.read(0, &mut energies)?,
+            told.at_points.read(0, &mut at_points)?,
+            told.status.read(0, &mut status)?,
+        ])?;
+        let committed = |(slot, outcome): (usize, Outcome)| {
+            let [elastic, plastic, max_alpha] = std::array::from_fn(|i| energies[3 * slot + i].to_f64());
+            Committed {
+                outcome,
+                energies: Energies { elastic, plastic, max_alpha, opponent_plastic: 0.0 },
+                at_points: at_points[AT_POINT * points * slot..][..AT_POINT * points].iter().map(|x| x.to_f64()).collect(),
+                status: status[points * slot..][..points].to_vec(),
+            }
+        };
+        Ok(outcomes(&first).into_iter().enumerate().map(committed).collect())
+    }
+
+    /// Says which contact points of a case slide in its step; none has come off yet.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn set_sliding(&self, case: usize, sliding: &[bool]) -> Result<(), GpuError> {
+        let (kept, index) = self.kept(case)?;
+        let points = self.sizes().contact_points;
+        let words: Vec<u32> = sliding.iter().map(|&slides| slides.into()).collect();
+        self.context.upload_at(&kept.slides, index * points, &words)?;
+        self.context.upload_at(&kept.came_off, index * points, &vec![0; points])
+    }
+
+    /// Increments and internal forces of an iterate of a case, and which points slide.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn bring_iterate(&self, case: usize, iterate: u32) -> Result<Brought<R>, GpuError> {
+        let (kept, index) = self.kept(case)?;
+        let (n, points) = (3 * self.sizes().nodes, self.sizes().contact_points);
+        let (mut increments, mut forces) = (vec![R::ZERO; n], vec![R::ZERO; n]);
+        let mut slides = vec![0; points];
+        let first = (2 * index + iterate as usize) * n;
+        self.context.record().submit_and_read(&mut [
+            kept.increments.read(first, &mut increments)?,
+            kept.forces.read(first, &mut forces)?,
+            kept.slides.read(index * points, &mut slides)?,
+        ])?;
+        Ok(Brought { increments, forces, slides })
+    }
+
+    /// Sets the correction of a case.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn give_correction(&self, case: usize, correction: &[f64]) -> Result<(), GpuError> {
+        let (kept, index) = self.kept(case)?;
+        let numbers: Vec<R> = correction.iter().map(|&x| R::of(x)).collect();
+        self.context.upload_at(&kept.correction, index * numbers.len(), &numbers)
+    }
+
+    /// Displacement of a case one step before the committed one.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn earlier(&self, case: usize) -> Result<Vec<R>, GpuError> {
+        let (kept, index) = self.kept(case)?;
+        let mut out = vec![R::ZERO; 3 * self.sizes().nodes];
+        self.context.download_at(&kept.before, index * out.len(), &mut out)?;
+        Ok(out)
+    }
+
+    /// Sets it.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn set_earlier(&self, case: usize, displacement: &[f64]) -> Result<(), GpuError> {
+        let (kept, index) = self.kept(case)?;
+        let numbers: Vec<R> = displacement.iter().map(|&u| R::of(u)).collect();
+        self.context.upload_at(&kept.before, index * numbers.len(), &numbers)
+    }
+
+    /// Committed displacement of a case.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn displacement(&self, case: usize) -> Result<Vec<R>, GpuError> {
+        let (resident, index) = self.resident(case)?;
+        let mut out = vec![R::ZERO; 3 * self.sizes().nodes];
+        self.context.download_at(&resident.committed, index * out.len(), &mut out)?;
+        Ok(out)
+    }
+
+    fn kept(&self, case: usize) -> Result<(&Kept<R>, usize), GpuError> {
+        let (_, index) = self.resident(case)?;
+        let group = self.groups.iter().position(|(r, _)| (r.first..r.first + r.count).contains(&case)).unwrap_or(0);
+        Ok((&self.iterates()?.0.groups[group].0, index))
+    }
+}

@@ -1,0 +1,333 @@
+//! Requests as marks of slots, and what the slots answer.
+
+use super::super::backend::Gpu;
+use super::super::batch::Dispatch;
+use super::super::buffers::DeviceReal;
+use super::super::linear::Solves;
+use super::{Brought, Corrections, Mark, Readout, flags, number, source};
+use crate::compute::iterate::{
+    Answer, Ask, Begin, Correct, Corrected, From, IterateRequest, Reading, Settled, SettledPoint, Vectors,
+};
+use crate::compute::linear::SideReport;
+use crate::compute::{ComputeError, Outcome};
+use crate::contact::coulomb::{Friction, Status};
+
+impl<R: DeviceReal> Gpu<R> {
+    /// As [`crate::compute::Compute::iterate`] has it.
+    pub(in super::super) fn answer(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        let Some(kind) = requests.first().map(|request| std::mem::discriminant(&request.ask)) else { return Ok(()) };
+        if requests.iter().any(|request| std::mem::discriminant(&request.ask) != kind) {
+            return Err(ComputeError::Device("requests of one call ask for different things".to_owned()));
+        }
+        for request in requests.iter_mut().filter(|request| request.kept) {
+            self.current[request.case] ^= 1;
+        }
+        match requests[0].ask {
+            Ask::Begin(_) => self.begin_iterates(requests),
+            Ask::Correct(_) => self.correct(requests),
+            Ask::Try(..) => self.try_lengths(requests),
+            Ask::Land => self.land(requests),
+            Ask::Commit => self.settle(requests),
+            Ask::Bring | Ask::Give(_) | Ask::Displacements | Ask::SetEarlier(_) => {
+                requests.iter_mut().try_for_each(|request| self.transfer(request))
+            }
+        }
+    }
+
+    /// What all marks of a case have: from the current iterate to the other one.
+    fn mark(&self, request: &IterateRequest) -> Mark {
+        let current = self.current[request.case];
+        let stick = self.models[request.case].friction == Friction::Stick;
+        let mut mark = Mark { current, trial: 1 - current, ..Mark::default() };
+        if request.kept && stick {
+            mark.flags |= flags::LANDS;
+        }
+        if let Some(force) = request.plate.held {
+            mark.flags |= flags::HOLDS_FORCE;
+            mark.numbers[number::HELD_FORCE] = force;
+        }
+        mark.numbers[number::DEPTH] = request.plate.h;
+        mark.numbers[number::SHEAR] = request.plate.delta_t;
+        mark
+    }
+
+    /// Calls `serve` for the dispatches of some of the requests, given by their indices.
+    fn dispatch(
+        &mut self,
+        requests: &mut [IterateRequest],
+        some: &[usize],
+        mut serve: impl FnMut(&mut Self, &Dispatch, &mut [&mut IterateRequest]) -> Result<(), ComputeError>,
+    ) -> Result<(), ComputeError> {
+        for dispatch in self.schedule(some.iter().map(|&i| requests[i].case)) {
+            let mut chosen: Vec<(usize, &mut IterateRequest)> = requests
+                .iter_mut()
+                .enumerate()
+                .filter_map(|(i, request)| dispatch.requests.iter().position(|&slot| some[slot] == i).map(|slot| (slot, request)))
+                .collect();
+            chosen.sort_by_key(|(slot, _)| *slot);
+            let mut chosen: Vec<&mut IterateRequest> = chosen.into_iter().map(|(_, request)| request).collect();
+            serve(self, &dispatch, &mut chosen)?;
+        }
+        Ok(())
+    }
+
+    fn begin_iterates(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        for request in requests.iter() {
+            if let Ask::Begin(Begin { sliding: Some(sliding), .. }) = &request.ask {
+                self.batch()?.set_sliding(request.case, sliding)?;
+            }
+        }
+        let shifts = |request: &IterateRequest| matches!(request.ask, Ask::Begin(Begin { from: From::Shift(_), .. }));
+        for shifted in [false, true] {
+            let some: Vec<usize> = (0..requests.len()).filter(|&i| shifts(&requests[i]) == shifted).collect();
+            self.dispatch(requests, &some, |gpu, dispatch, requests| {
+                let marks: Vec<Mark> = requests.iter().map(|request| gpu.first_mark(request)).collect();
+                let readouts = if shifted {
+                    gpu.batch()?.assess_iterates(dispatch, &marks, true)?
+                } else {
+                    gpu.batch()?.try_iterates(dispatch, &marks)?
+                };
+                for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
+                    if readout.outcome == Outcome::Valid {
+                        gpu.current[request.case] = mark.trial;
+                    }
+                    gpu.note(request.case, mark, &readout);
+                    request.answer = Answer::Reading(alone(reading(&readout)));
+                }
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    fn first_mark(&self, request: &IterateRequest) -> Mark {
+        let mut mark = self.mark(request);
+        let Ask::Begin(Begin { from, .. }) = &request.ask else { return mark };
+        match *from {
+            From::Extrapolation { ratio, lift } => {
+                mark.source = source::EXTRAPOLATED;
+                mark.flags |= flags::PLACES_PLATE | if lift { flags::LIFTS } else { 0 };
+                mark.numbers[number::RATIO] = ratio;
+            }
+            From::Start => mark.source = source::AT_START,
+            From::Shift([x, z]) => {
+                mark.source = source::SHIFTED;
+                mark.trial = mark.current;
+                mark.flags |= flags::PLACES_PLATE;
+                (mark.numbers[number::RATIO], mark.numbers[number::SHIFT_Z]) = (x, z);
+            }
+        }
+        mark
+    }
+
+    fn correct(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        for held in [false, true] {
+            let some: Vec<usize> = (0..requests.len()).filter(|&i| requests[i].plate.held.is_some() == held).collect();
+            self.dispatch(requests, &some, |gpu, dispatch, requests| gpu.correct_alike(dispatch, requests))?;
+        }
+        Ok(())
+    }
+
+    /// Requests that all hold a force, or none of them.
+    fn correct_alike(&mut self, dispatch: &Dispatch, requests: &mut [&mut IterateRequest]) -> Result<(), ComputeError> {
+        let asks: Vec<Correct> =
+            requests.iter().filter_map(|request| if let Ask::Correct(ask) = request.ask { Some(ask) } else { None }).collect();
+        let marks: Vec<Mark> = requests
+            .iter()
+            .zip(&asks)
+            .map(|(request, ask)| {
+                let mut mark = self.mark(request);
+                mark.flags |= flags::PLACES_PLATE | if ask.first { flags::IS_FIRST } else { 0 };
+                mark.numbers[number::STEP] = 1.0;
+                mark
+            })
+            .collect();
+        let of = |tolerance: fn(&Correct) -> f64, relative: fn(&Correct) -> bool, expected: fn(&Correct) -> usize| {
+            let tolerances: Vec<f32> = asks.iter().map(|ask| tolerance(ask) as f32).collect();
+            let relative: Vec<bool> = asks.iter().map(relative).collect();
+            Solves::new(&tolerances, &relative, asks.iter().map(expected).max().unwrap_or(0))
+        };
+        let correction = of(|ask| ask.tolerance, |_| false, |ask| ask.expected);
+        let unit = of(|ask| ask.unit_tolerance, |ask| ask.first, |ask| ask.unit_expected);
+        // What a slot's numbers were multiplied by.
+        let back: Vec<f64> =
+            requests.iter().zip(&marks).map(|(r, m)| 1.0 / scale(self.largest[r.case][m.current as usize])).collect();
+        let missing = |slot: usize, along: f64| {
+            let target = requests[slot].plate.held.unwrap_or(0.0);
+            target - asks[slot].plate_force + back[slot] * along
+        };
+        let Corrections { tangents, reports, units, readouts } =
+            self.batch()?.correct_iterates(dispatch, &marks, [&correction, &unit], missing)?;
+        for (slot, request) in requests.iter_mut().enumerate() {
+            let readout = &readouts[slot];
+            self.note(request.case, &marks[slot], readout);
+            let report = SideReport {
+                rhs_norm: reports[slot].rhs_norm * back[slot],
+                start_norm: reports[slot].start_norm * back[slot],
+                residual: reports[slot].residual * back[slot],
+                along: reports[slot].along * back[slot],
+                ..reports[slot]
+            };
+            request.answer = Answer::Corrected(Corrected {
+                tangent: tangents[slot],
+                report,
+                unit: units.get(slot).copied(),
+                delta_h: if units.is_empty() { 0.0 } else { readout.numbers[8] },
+                slope: readout.numbers[6],
+                trial: reading(readout),
+            });
+        }
+        Ok(())
+    }
+
+    fn try_lengths(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        let all: Vec<usize> = (0..requests.len()).collect();
+        self.dispatch(requests, &all, |gpu, dispatch, requests| {
+            let marks: Vec<Mark> = requests.iter().map(|request| gpu.mark_at_length(request)).collect();
+            let readouts = gpu.batch()?.try_iterates(dispatch, &marks)?;
+            for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
+                gpu.note(request.case, mark, &readout);
+                request.answer = Answer::Reading(reading(&readout));
+            }
+            Ok(())
+        })
+    }
+
+    fn mark_at_length(&self, request: &IterateRequest) -> Mark {
+        let mut mark = self.mark(request);
+        if let Ask::Try(length, delta_h) = request.ask {
+            // Rounding must not leave the plate a hair from where it belongs.
+            mark.flags |= if length == 1.0 { flags::PLACES_PLATE } else { 0 };
+            (mark.numbers[number::STEP], mark.numbers[number::DEPTH_CHANGE]) = (length, delta_h);
+        }
+        mark
+    }
+
+    fn land(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        let all: Vec<usize> = (0..requests.len()).collect();
+        self.dispatch(requests, &all, |gpu, dispatch, requests| {
+            let marks: Vec<Mark> = requests
+                .iter()
+                .map(|request| {
+                    let mark = gpu.mark(request);
+                    Mark { trial: mark.current, ..mark }
+                })
+                .collect();
+            let readouts = gpu.batch()?.assess_iterates(dispatch, &marks, false)?;
+            for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
+                gpu.note(request.case, mark, &readout);
+                request.answer = Answer::Reading(alone(reading(&readout)));
+            }
+            Ok(())
+        })
+    }
+
+    fn settle(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        let all: Vec<usize> = (0..requests.len()).collect();
+        self.dispatch(requests, &all, |gpu, dispatch, requests| {
+            let marks: Vec<Mark> = requests.iter().map(|request| gpu.mark(request)).collect();
+            let committed = gpu.batch()?.commit_iterates(dispatch, &marks)?;
+            for (request, committed) in requests.iter_mut().zip(committed) {
+                gpu.fresh[request.case] = false;
+                let mesh = &gpu.models[request.case].mesh;
+                let count = mesh.contact_nodes.len();
+                let point = |k: usize| {
+                    let vector = |first: usize| std::array::from_fn(|i| committed.at_points[(first + i) * count + k]);
+                    let mut force: [f64; 3] = vector(3);
+                    // The symmetry plane's force is not the contact's.
+                    if mesh.nodes[mesh.contact_nodes[k] as usize][1] == 0.0 {
+                        force[1] = 0.0;
+                    }
+                    let status = match committed.status[k] {
+                        0 => Status::Open,
+                        1 => Status::Stick,
+                        _ => Status::Slip,
+                    };
+                    SettledPoint { displacement: vector(0), force, status }
+                };
+                request.answer = Answer::Settled(Settled {
+                    outcome: committed.outcome,
+                    energies: committed.energies,
+                    points: (0..count).map(point).collect(),
+                });
+            }
+            Ok(())
+        })
+    }
+
+    /// What moves whole vectors, of one case.
+    fn transfer(&mut self, request: &mut IterateRequest) -> Result<(), ComputeError> {
+        let case = request.case;
+        let numbers = |vector: Vec<R>| vector.iter().map(|x| x.to_f64()).collect::<Vec<f64>>();
+        request.answer = match &request.ask {
+            Ask::Bring => {
+                self.refresh(case)?;
+                let Brought { increments, forces, slides } = self.batch()?.bring_iterate(case, self.current[case])?;
+                let displacement = increments.iter().zip(&self.committed[case]).map(|(d, u)| u + d.to_f64()).collect();
+                let sliding = slides.iter().map(|&slides| slides != 0).collect();
+                Answer::Vectors(Box::new(Vectors { displacement, force: numbers(forces), sliding }))
+            }
+            Ask::Give(correction) => {
+                self.batch()?.give_correction(case, correction)?;
+                Answer::Nothing
+            }
+            Ask::Displacements => {
+                self.refresh(case)?;
+                Answer::Displacements([self.committed[case].clone(), numbers(self.batch()?.earlier(case)?)])
+            }
+            Ask::SetEarlier(displacement) => {
+                self.batch()?.set_earlier(case, displacement)?;
+                Answer::Nothing
+            }
+            _ => Answer::Nothing,
+        };
+        Ok(())
+    }
+
+    /// The host's copy of a committed displacement, from the device where that has moved it.
+    pub(in super::super) fn refresh(&mut self, case: usize) -> Result<(), ComputeError> {
+        if !self.fresh[case] {
+            self.committed[case] = self.batch()?.displacement(case)?.iter().map(|u| u.to_f64()).collect();
+            self.fresh[case] = true;
+        }
+        Ok(())
+    }
+
+    /// Keeps what the host needs of a trial to scale the next system.
+    fn note(&mut self, case: usize, mark: &Mark, readout: &Readout) {
+        self.largest[case][mark.trial as usize] = readout.numbers[9];
+    }
+}
+
+/// The power of two that `scale_exponent` of `residual.wgsl` finds.
+fn scale(largest: f64) -> f64 {
+    let single = largest as f32;
+    if !(single > 0.0 && single.is_finite()) {
+        return 1.0;
+    }
+    f64::from(127 - ((single.to_bits() >> 23) & 0xff) as i32).exp2()
+}
+
+/// What is read of an iterate that no correction has led to.
+fn alone(reading: Reading) -> Reading {
+    Reading { slope: 0.0, released: 0.0, changed: 0, landed: 0, ..reading }
+}
+
+fn reading(readout: &Readout) -> Reading {
+    let Readout { outcome, numbers, counts } = readout;
+    if *outcome != Outcome::Valid {
+        return Reading { outcome: *outcome, merit: f64::INFINITY, ..Reading::default() };
+    }
+    Reading {
+        outcome: *outcome,
+        merit: numbers[0],
+        force_scale: numbers[1],
+        plate_force: numbers[2],
+        tangential: numbers[3],
+        normal_force: numbers[4],
+        slope: numbers[5],
+        released: numbers[7],
+        changed: counts[0] as usize,
+        landed: counts[1] as usize,
+    }
+}

@@ -1,0 +1,255 @@
+//! Tangents: in the precision of the residual, or in single precision beside a residual in double.
+//! Newton's residual decides what is a solution, the tangent only how fast it is found; the linear
+//! solver rounds it to single precision in any case.
+
+use super::batch::Dispatch;
+use super::buffers::{DeviceReal, StorageBuffer};
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::material::flatten;
+use super::pipelines::{Bound, Recorder};
+use super::resident::{Connectivity, GRADIENT, Resident, STATE, Sizes};
+use super::scratch::{MODULI, Scratch};
+use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_MODULI, Kernel, NARROW};
+use crate::compute::{CaseModel, ComputeError};
+use crate::material::Material;
+
+/// The arrays of which tangents are made, in one precision.
+struct Inputs<'a, T> {
+    gradient: &'a StorageBuffer<T>,
+    volume: &'a StorageBuffer<T>,
+    committed: &'a StorageBuffer<T>,
+    increment: &'a StorageBuffer<T>,
+    parameters: &'a StorageBuffer<T>,
+    table: &'a StorageBuffer<T>,
+    state: &'a StorageBuffer<T>,
+    jacobian: &'a StorageBuffer<T>,
+}
+
+/// The kernels of a group of cases.
+#[derive(Debug)]
+struct Kernels {
+    jacobian: Bound,
+    moduli: Bound,
+    blocks: Bound,
+}
+
+/// Tangents of all slots, and the kernels that make them.
+#[derive(Debug)]
+pub struct Set<T> {
+    moduli: StorageBuffer<T>,
+    blocks: StorageBuffer<T>,
+    groups: Vec<Kernels>,
+}
+
+impl<T: DeviceReal> Set<T> {
+    fn new<R>(context: &GpuContext, sizes: Sizes, scratch: &Scratch<R>, slots: usize) -> Result<Self, GpuError> {
+        Ok(Self {
+            moduli: scratch.pool.view("moduli", slots * MODULI * sizes.points())?,
+            blocks: context.zeros("tangent blocks", slots * 9 * sizes.blocks)?,
+            groups: Vec::new(),
+        })
+    }
+
+    fn bind<R>(
+        &mut self,
+        context: &GpuContext,
+        mesh: &Connectivity,
+        scratch: &Scratch<R>,
+        inputs: &Inputs<'_, T>,
+    ) -> Result<(), GpuError> {
+        let shape = [
+            scratch.dimensions.binding(),
+            scratch.active.binding(),
+            mesh.element_nodes.binding(),
+            inputs.gradient.binding(),
+            inputs.volume.binding(),
+            inputs.committed.binding(),
+            inputs.increment.binding(),
+        ];
+        let point = [
+            inputs.parameters.binding(),
+            inputs.table.binding(),
+            inputs.state.binding(),
+            inputs.jacobian.binding(),
+            scratch.first_invalid.binding(),
+            self.moduli.binding(),
+        ];
+        let gather = [mesh.block_start.binding(), mesh.block_entry.binding(), self.moduli.binding(), self.blocks.binding()];
+        let bind = |kernel: &'static Kernel, rest: &[wgpu::BindingResource<'_>]| {
+            let pipeline = context.pipeline(kernel, T::PRECISION)?;
+            context.bind(&pipeline, [&shape[..], rest].concat())
+        };
+        self.groups.push(Kernels {
+            jacobian: bind(&HEX8_JACOBIAN, &[inputs.jacobian.binding()])?,
+            moduli: bind(&HEX8_MODULI, &point)?,
+            blocks: bind(&GATHER_TANGENT_BLOCKS, &gather)?,
+        });
+        Ok(())
+    }
+
+    fn append(&self, dispatch: &Dispatch, sizes: Sizes, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+        let (kernels, slots) = (&self.groups[dispatch.group], dispatch.cases.len());
+        list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
+        list.dispatch(&kernels.moduli, sizes.points(), slots)?;
+        list.dispatch(&kernels.blocks, sizes.blocks, slots)
+    }
+
+    /// Upper blocks of the tangents, `[slot][3 i + j][block]`.
+    pub fn blocks(&self) -> &StorageBuffer<T> {
+        &self.blocks
+    }
+}
+
+/// What a group of cases has in single precision as well.
+#[derive(Debug)]
+struct Narrowed {
+    /// Numbers of a case or slot, with the kernel that copies them.
+    copies: Vec<(usize, Bound)>,
+    _arrays: [StorageBuffer<f32>; 6],
+}
+
+/// Tangents in single precision beside residuals in another.
+#[derive(Debug)]
+pub struct Single {
+    set: Set<f32>,
+    groups: Vec<Narrowed>,
+    _arrays: [StorageBuffer<f32>; 2],
+    _shapes: [StorageBuffer<[u32; 4]>; 3],
+}
+
+impl Single {
+    /// The tangents themselves.
+    pub fn set(&self) -> &Set<f32> {
+        &self.set
+    }
+}
+
+/// Memory of tangents.
+#[derive(Clone, Copy, Debug)]
+pub struct Bytes {
+    /// Moduli of a slot.
+    pub moduli: u64,
+    /// Upper blocks of a slot.
+    pub blocks: u64,
+    /// What else there is of a slot.
+    pub of_slot: u64,
+    /// Copies in single precision of what a case has.
+    pub of_case: u64,
+}
+
+/// The tangents of a batch.
+#[derive(Debug)]
+pub enum Tangents<R> {
+    /// In the residual's precision.
+    Same(Set<R>),
+    /// In single precision.
+    Single(Box<Single>),
+}
+
+impl<R: DeviceReal> Tangents<R> {
+    /// What they take.
+    pub fn bytes(sizes: Sizes, in_single: bool) -> Bytes {
+        let number = if in_single { size_of::<f32>() } else { size_of::<R>() };
+        let (moduli, blocks, points) = (MODULI * sizes.points(), 9 * sizes.blocks, sizes.points());
+        let of_slot = if in_single { points + 3 * sizes.nodes } else { 0 };
+        let of_case = if in_single { (GRADIENT + 1 + STATE) * points + 3 * sizes.nodes + 32 } else { 0 };
+        let [moduli, blocks, of_slot, of_case] = [moduli, blocks, of_slot, of_case].map(|numbers| (number * numbers) as u64);
+        Bytes { moduli, blocks, of_slot, of_case }
+    }
+
+    /// The arrays of so many slots, and the kernels for all groups of cases.
+    ///
+    /// # Errors
+    /// What the device says.
+    pub fn new(
+        context: &GpuContext,
+        mesh: &Connectivity,
+        scratch: &Scratch<R>,
+        residents: &[Resident<R>],
+        models: &[CaseModel],
+        (slots, in_single): (usize, bool),
+    ) -> Result<Self, ComputeError> {
+        let sizes = mesh.sizes;
+        if !in_single {
+            let mut set = Set::new(context, sizes, scratch, slots)?;
+            for r in residents {
+                let inputs = Inputs {
+                    gradient: &r.gradient,
+                    volume: &r.volume,
+                    committed: &r.committed,
+                    increment: &scratch.increment,
+                    parameters: &r.parameters,
+                    table: &r.table,
+                    state: &r.state,
+                    jacobian: &scratch.jacobian,
+                };
+                set.bind(context, mesh, scratch, &inputs)?;
+            }
+            return Ok(Self::Same(set));
+        }
+        let (points, unknowns) = (sizes.points(), 3 * sizes.nodes);
+        let shapes = [(unknowns, 1), (unknowns, 0), (STATE * points, 0)].map(|(count, by_slot)| {
+            let block = context.block("shape of a copy")?;
+            context.upload(&block, &[[count as u32, by_slot, 0, 0]])?;
+            Ok::<_, GpuError>(block)
+        });
+        let [of_increment, of_displacement, of_state] = shapes;
+        let shapes = [of_increment?, of_displacement?, of_state?];
+        let mut set = Set::new(context, sizes, scratch, slots)?;
+        let increment = context.zeros("increments in f32", slots * unknowns)?;
+        let jacobian = context.zeros("Jacobians in f32", slots * points)?;
+        let pipeline = context.pipeline(&NARROW, R::PRECISION)?;
+        let mut groups = Vec::with_capacity(residents.len());
+        for r in residents {
+            let (gradient, volume) = r.geometry::<f32>(context, sizes, models)?;
+            let committed = context.zeros("committed displacements in f32", r.count * unknowns)?;
+            let state = context.zeros("states in f32", r.count * STATE * points)?;
+            let materials: Vec<Material<f32>> = models[r.first..r.first + r.count].iter().map(|m| m.material.cast()).collect();
+            let (parameters, table) = flatten(&materials);
+            let parameters = context.array("material parameters in f32", &parameters)?;
+            let table = context.array("hardening tables in f32", &table)?;
+            let inputs = Inputs {
+                gradient: &gradient,
+                volume: &volume,
+                committed: &committed,
+                increment: &increment,
+                parameters: &parameters,
+                table: &table,
+                state: &state,
+                jacobian: &jacobian,
+            };
+            set.bind(context, mesh, scratch, &inputs)?;
+            let pairs = [(&scratch.increment, &increment), (&r.committed, &committed), (&r.state, &state)];
+            let counts = [unknowns, unknowns, STATE * points];
+            let copies = pairs
+                .into_iter()
+                .zip(&shapes)
+                .zip(counts)
+                .map(|(((wide, copy), shape), count)| {
+                    let dispatch = [scratch.dimensions.binding(), scratch.active.binding()];
+                    let arrays = [shape.binding(), wide.binding(), copy.binding()];
+                    Ok((count, context.bind(&pipeline, [&dispatch[..], &arrays].concat())?))
+                })
+                .collect::<Result<Vec<_>, GpuError>>()?;
+            groups.push(Narrowed { copies, _arrays: [gradient, volume, committed, state, parameters, table] });
+        }
+        Ok(Self::Single(Box::new(Single { set, groups, _arrays: [increment, jacobian], _shapes: shapes })))
+    }
+
+    /// Appends the kernels that make the tangents at the increments that the slots have.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn append(&self, dispatch: &Dispatch, sizes: Sizes, list: &mut Recorder<'_>) -> Result<(), GpuError> {
+        match self {
+            Self::Same(set) => set.append(dispatch, sizes, list),
+            Self::Single(single) => {
+                for (count, copy) in &single.groups[dispatch.group].copies {
+                    list.dispatch(copy, *count, dispatch.cases.len())?;
+                }
+                single.set.append(dispatch, sizes, list)
+            }
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! What becomes of a step that has converged: it is committed, measured and recorded.
+
+use super::{Drive, Observer};
+use crate::compute::handle::{CaseHandle, Evaluate};
+use crate::compute::iterate::Settled;
+use crate::compute::{ComputeError, Energies, Outcome};
+use crate::contact::coulomb::Status;
+use crate::contact::frame::to_frame;
+use crate::contact::plane::gap;
+use crate::simulation::SimulationError;
+use crate::simulation::footprint::{bulge, footprint};
+use crate::simulation::path::Target;
+use crate::simulation::record::StepRecord;
+use crate::solver::StepReport;
+use crate::solver::phases::{Lap, Phase};
+use crate::solver::rigid::position;
+
+/// What a step leaves that is accepted.
+struct Taken {
+    energies: Energies,
+    outcome: Outcome,
+    /// Three a node; of a step on a device right at contact nodes alone.
+    displacement: Vec<f64>,
+    /// Alike.
+    internal_force: Vec<f64>,
+    /// What contact exerts at each contact node, what each does, and its gap.
+    forces: Vec<[f64; 3]>,
+    statuses: Vec<Status>,
+    gaps: Vec<f64>,
+}
+
+impl Drive<'_> {
+    /// Commits the accepted trial and records it.
+    pub(super) fn accept(
+        &mut self,
+        target: &Target,
+        mut report: StepReport,
+        observer: &mut dyn Observer,
+    ) -> Result<(), SimulationError> {
+        let before = self.state.record;
+        let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));
+        let taken = match self.settled.take() {
+            Some(settled) => self.take_from_device(settled),
+            None => self.take_from_host(&mut report)?,
+        };
+        let Taken { energies, outcome, displacement, internal_force, forces, statuses, gaps } = taken;
+        if let (Some(before), Some(after)) = (self.traffic_before.take(), self.backend.traffic()) {
+            report.traffic = after - before;
+        }
+        if let Outcome::Inverted { element, point } = outcome {
+            return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
+        }
+        let h = self.newton.accepted_h();
+        let force: [f64; 3] = std::array::from_fn(|c| forces[..self.own_contacts()].iter().map(|f| f[c]).sum());
+        let slaves = self.slave_contacts();
+        let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
+        let (contact_points, slipping_points) = (count(Status::Stick) + count(Status::Slip), count(Status::Slip));
+        let length = self.state.length_to(target.h, target.delta_t);
+        let friction_work = match self.newton.interface_friction_work(&self.state.force) {
+            Some(work) => work,
+            None => self.friction_work(&displacement, &forces),
+        };
+        self.state.u_before = std::mem::replace(&mut self.state.u, displacement);
+        self.state.force = internal_force;
+        for (force, &node) in forces.iter().zip(&self.mesh.contact_nodes) {
+            self.state.force[3 * node as usize..][..3].copy_from_slice(force);
+        }
+        (self.state.statuses, self.state.gaps) = (statuses, gaps);
+        self.newton.committed();
+        self.state.last_increment = Some([h - before.h, target.delta_t - before.delta_t]);
+        self.state.last_length = length;
+        self.state.h_max = self.state.h_max.max(h);
+        self.state.place_points(&self.mesh);
+        let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing);
+        // A slave that is the opponent lies the other way round.
+        let side = if slaves.start == 0 { 1.0 } else { -1.0 };
+        let shape = self.problem.couple.and_then(|_| bulge(&self.state.points[slaves]));
+        let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
+        // 0 - x, not -x: no force is 0, not -0.
+        let (f_n, f_t) = (2.0 * force[2], 0.0 - 2.0 * force[0]);
+        self.state.record = StepRecord {
+            step: before.step + 1,
+            segment: before.segment,
+            h,
+            delta_t: target.delta_t,
+            f_n,
+            f_t,
+            a: size.radius,
+            stick_radius: size.stick_radius,
+            newton_iterations: report.iterations.len() + wasted,
+            cutbacks,
+            a_gap: size.radius_gap,
+            krylov_iterations: report.krylov(),
+            merit: report.merit,
+            work_external: before.work_external
+                + 0.5 * (before.f_n + f_n) * (h - before.h)
+                + 0.5 * (before.f_t + f_t) * (target.delta_t - before.delta_t),
+            energy_elastic: 2.0 * energies.elastic,
+            work_plastic: 2.0 * energies.plastic,
+            work_friction: before.work_friction + 2.0 * friction_work,
+            contact_points,
+            slipping_points,
+            max_alpha: energies.max_alpha,
+            reach: self.state.reach(),
+            relaxed: usize::from(report.relaxed),
+            landed_again: report.landed_again,
+            h_opponent: depth,
+            work_plastic_opponent: 2.0 * energies.opponent_plastic,
+            curvature,
+        };
+        log::info!(
+            "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
+             contact {:.2}, linear update {:.2}, linear solve {:.2}, commit {:.2})",
+            self.state.record.step,
+            target.delta_t,
+            self.state.record.newton_iterations,
+            report.krylov(),
+            cutbacks,
+            report.merit,
+            report.times.total(),
+            report.times.seconds(Phase::Tangent),
+            report.times.seconds(Phase::Force),
+            report.times.seconds(Phase::Contact),
+            report.times.seconds(Phase::LinearUpdate),
+            report.times.seconds(Phase::LinearSolve),
+            report.times.seconds(Phase::Commit),
+        );
+        if report.relaxed && !self.place.relaxed_told {
+            self.place.relaxed_told = true;
+            let r = &self.state.record;
+            observer.note(&format!(
+                "step {} of segment {} was accepted with relaxed conditions; column relaxed of the history tells of it and of any other in this segment",
+                r.step, r.segment
+            ));
+        }
+        self.last_report = report;
+        self.backend.take_notes().iter().for_each(|note| observer.note(note));
+        observer.step(&mut self.view()).map_err(SimulationError::Observer)
+    }
+
+    /// Commits the accepted trial, whose vectors are on the host.
+    fn take_from_host(&mut self, report: &mut StepReport) -> Result<Taken, SimulationError> {
+        let accepted = self.newton.accepted();
+        let mut lap = Lap::start();
+        let (energies, outcome) = CaseHandle { backend: &mut *self.backend, case: self.case }.commit(&accepted.u)?;
+        lap.end(&mut report.times, Phase::Commit);
+        let (forces, statuses, gaps) = self.newton.contact_state(&self.mesh);
+        let (displacement, internal_force) = (accepted.u.clone(), accepted.force.clone());
+        Ok(Taken { energies, outcome, displacement, internal_force, forces, statuses, gaps })
+    }
+
+    /// The committed step of a device, of which contact points are known.
+    fn take_from_device(&mut self, settled: Settled) -> Taken {
+        let Settled { outcome, energies, points } = settled;
+        let (mut displacement, internal_force) = (self.state.u.clone(), self.state.force.clone());
+        let mut gaps = Vec::with_capacity(points.len());
+        for (point, &node) in points.iter().zip(&self.mesh.contact_nodes) {
+            displacement[3 * node as usize..][..3].copy_from_slice(&point.displacement);
+            gaps.push(gap(self.mesh.nodes[node as usize][2], point.displacement[2]));
+        }
+        self.is_away = true;
+        Taken {
+            energies,
+            outcome,
+            displacement,
+            internal_force,
+            forces: points.iter().map(|point| point.force).collect(),
+            statuses: points.iter().map(|point| point.status).collect(),
+            gaps,
+        }
+    }
+
+    /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over
+    /// the points of the meshed half.
+    fn friction_work(&self, u: &[f64], forces: &[[f64; 3]]) -> f64 {
+        let mut work = 0.0;
+        for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {
+            let base = 3 * node as usize;
+            let Some(rigid) = self.problem.rigid else {
+                for i in 0..2 {
+                    work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
+                }
+                continue;
+            };
+            // Along the surface half-way: across it points come down, and nothing is dissipated.
+            let [before, after] = [&self.state.u, u].map(|u| position(&self.mesh, u, node));
+            let frame = rigid.frame(&std::array::from_fn(|i| 0.5 * (before[i] + after[i])));
+            let slip = to_frame(&frame, &std::array::from_fn(|i| after[i] - before[i]));
+            let traction = to_frame(&frame, &std::array::from_fn(|i| 0.5 * (point.force[i] + force[i])));
+            work -= traction[0] * slip[0] + traction[1] * slip[1];
+        }
+        work
+    }
+}

@@ -1,0 +1,365 @@
+//! Iterates whose vectors are on the host.
+
+use super::{Asked, Correction, Guess, Iterate, SetOut};
+use crate::compute::handle::Evaluate;
+use crate::compute::iterate::{Reading, Vectors};
+use crate::compute::{ComputeError, Outcome};
+use crate::contact::coulomb::{Friction, Status};
+use crate::contact::pair::leave_even;
+use crate::contact::rigid::Rigid;
+use crate::linalg::{LinalgError, SolverKind};
+use crate::mesh::Mesh;
+use crate::solver::encounter::Encounter;
+use crate::solver::outcome::{Halt, Worst};
+use crate::solver::pair::mirror_nodes;
+use crate::solver::phases::PhaseTimes;
+use crate::solver::rigid::Against;
+use crate::solver::system::{Boundary, Meeting, Trial};
+use crate::solver::systems::Systems;
+use crate::solver::{Control, SolverError};
+
+/// Iterates of one case with everything that is kept of them between steps.
+pub struct HostIterate {
+    /// Which displacements are prescribed, and the opponent.
+    pub(super) boundary: Boundary,
+    pub(super) linear: Systems,
+    pub(super) current: Trial,
+    candidate: Trial,
+    best: Trial,
+    /// Step length of `best`.
+    favoured: f64,
+    tried: f64,
+    /// Per contact point under full stick: it has come off in the iteration of the present step.
+    came_off: Vec<bool>,
+    pub(super) fixed: Vec<bool>,
+    pub(super) rhs: Vec<f64>,
+    /// Correction of the displacements, and of the unknowns that the linear system has: relative
+    /// displacements where the body meets its own image.
+    pub(super) delta: Vec<f64>,
+    pub(super) correction: Vec<f64>,
+    pub(super) delta_h: f64,
+    pub(super) functional: Vec<f64>,
+    pub(super) unit_rhs: Vec<f64>,
+    pub(super) unit_response: Vec<f64>,
+    /// Forces at the contact under a unit indentation of a body that moves as one, over those at a
+    /// plate that moves alone.
+    pub(super) unit_scale: f64,
+    /// Krylov iterations of the step's last system and of its response to a unit indentation.
+    pub(super) expected: [usize; 2],
+}
+
+impl HostIterate {
+    /// Iterates on a mesh.
+    pub fn new(mesh: &Mesh, linear: Systems) -> Self {
+        let mut boundary = Boundary::new(mesh);
+        if let Systems::Pair(solver) = &linear {
+            boundary.mirror = solver.mirror().to_vec();
+        } else if matches!(linear, Systems::Couple(_)) {
+            boundary.mirror = mirror_nodes(mesh).unwrap_or_default();
+        }
+        Self {
+            boundary,
+            linear,
+            current: Trial::default(),
+            candidate: Trial::default(),
+            best: Trial::default(),
+            favoured: 0.0,
+            tried: 0.0,
+            came_off: vec![false; mesh.contact_nodes.len()],
+            fixed: Vec::new(),
+            rhs: Vec::new(),
+            delta: Vec::new(),
+            correction: Vec::new(),
+            delta_h: 0.0,
+            functional: Vec::new(),
+            unit_rhs: Vec::new(),
+            unit_response: Vec::new(),
+            unit_scale: 1.0,
+            expected: [0; 2],
+        }
+    }
+
+    /// The opponent is a rigid sphere in place of the plane.
+    pub fn against(&mut self, rigid: Rigid) {
+        self.boundary.against = Some(Against::new(rigid));
+    }
+
+    /// The current iterate.
+    pub fn current(&self) -> &Trial {
+        &self.current
+    }
+
+    /// Which displacements are prescribed, and the opponent.
+    pub fn boundary(&self) -> &Boundary {
+        &self.boundary
+    }
+
+    /// Lets the contact points that `points` marks slide without friction; none for an empty list.
+    pub fn set_sliding(&mut self, points: &[bool]) {
+        self.boundary.frictionless.fill(false);
+        self.boundary.frictionless.iter_mut().zip(points).for_each(|(slides, &point)| *slides = point);
+    }
+
+    /// Sets the interface of an equal pair for the next step.
+    pub fn meet(&mut self, meeting: Meeting) {
+        if let Systems::Pair(solver) = &mut self.linear {
+            solver.set_symmetric(meeting.symmetric);
+        }
+        self.boundary.pair = Some(meeting);
+    }
+
+    /// Sets the interface with another body for the next step.
+    pub fn encounter(&mut self, encounter: Encounter) {
+        self.boundary.encounter = Some(encounter);
+    }
+
+    /// Leaves the even part of a guess where the step is symmetric.
+    pub fn symmetrise(&self, guess: &mut [f64]) {
+        if let Systems::Pair(solver) = &self.linear {
+            solver.symmetrise(guess);
+        } else if self.boundary.is_even() {
+            leave_even(&self.boundary.mirror, guess);
+        }
+    }
+
+    /// What Newton's method decides by of a trial, as seen from the current iterate.
+    fn reading(&self, trial: &Trial, outcome: Outcome, case: &dyn Evaluate, control: &Control) -> Reading {
+        if outcome != Outcome::Valid {
+            return Reading { outcome, merit: f64::INFINITY, ..Reading::default() };
+        }
+        let held = || trial.contact_force(&case.model().mesh, &self.boundary)[2];
+        let stick = case.model().friction == Friction::Stick;
+        Reading {
+            outcome,
+            merit: trial.merit,
+            force_scale: trial.force_scale,
+            plate_force: trial.plate_force,
+            tangential: trial.tangential_residual(),
+            normal_force: control.normal_force.map_or(0.0, |_| held()),
+            slope: 0.0,
+            released: if stick { self.released(trial) } else { 0.0 },
+            changed: trial.rows.iter().zip(&self.current.rows).filter(|(a, b)| a.status != b.status).count(),
+            landed: 0,
+        }
+    }
+
+    /// Square of the tangential forces of points that come off in a trial. Under full stick a point
+    /// that comes off lets go of whatever it held: the merit jumps by it, however short the step,
+    /// and a line search that counts the jump creeps up to it and stays there. No point does so
+    /// twice in a step (see [`Iterate::land`]).
+    fn released(&self, trial: &Trial) -> f64 {
+        (trial.rows.iter().zip(&self.current.rows).zip(&self.boundary.frictionless))
+            .filter(|((after, before), frictionless)| {
+                before.status == Status::Stick && after.status == Status::Open && !**frictionless
+            })
+            .map(|((after, _), _)| {
+                let across = if after.fixed[1] { 0.0 } else { after.residual[1] };
+                after.residual[0] * after.residual[0] + across * across
+            })
+            .sum()
+    }
+
+    /// Work of the free residual forces of a trial on the correction.
+    fn slope(&self, trial: &Trial) -> f64 {
+        let free = trial.residual.iter().zip(&self.correction).zip(&self.fixed).filter(|(_, fixed)| !**fixed);
+        free.map(|((r, d), _)| r * d).sum::<f64>()
+    }
+
+    /// That of the current iterate.
+    pub(super) fn slope_of_current(&self) -> f64 {
+        self.slope(&self.current)
+    }
+
+    /// Over a plane, its systems solved with multigrid: what a device that keeps iterates does by
+    /// itself.
+    pub fn is_over_plane_by_multigrid(&self) -> bool {
+        let over_plane = matches!(self.linear, Systems::Plane(_) | Systems::Unmade(_)) && self.boundary.against.is_none();
+        over_plane && self.linear.kind() == SolverKind::Multigrid
+    }
+
+    /// Takes the memory of vectors and matrices, if it has not yet: on a device that keeps iterates
+    /// they are not needed.
+    fn furnish(&mut self, mesh: &Mesh) -> Result<(), LinalgError> {
+        self.linear.make()?;
+        let n = 3 * mesh.nodes.len();
+        if self.rhs.len() == n {
+            return Ok(());
+        }
+        (self.current, self.candidate, self.best) = (Trial::new(mesh), Trial::new(mesh), Trial::new(mesh));
+        self.fixed = vec![false; n];
+        for vector in [
+            &mut self.rhs,
+            &mut self.delta,
+            &mut self.correction,
+            &mut self.functional,
+            &mut self.unit_rhs,
+            &mut self.unit_response,
+        ] {
+            *vector = vec![0.0; n];
+        }
+        Ok(())
+    }
+
+    /// Takes over an iterate from a device.
+    pub(super) fn take_over(
+        &mut self,
+        case: &mut dyn Evaluate,
+        vectors: &Vectors,
+        h: f64,
+        control: &Control,
+    ) -> Result<(), SolverError> {
+        self.furnish(&case.model().mesh.clone())?;
+        self.current.u.copy_from_slice(&vectors.displacement);
+        self.current.force.copy_from_slice(&vectors.force);
+        self.current.h = h;
+        self.boundary.frictionless.copy_from_slice(&vectors.sliding);
+        self.current.assess(case, &self.boundary, control, &mut PhaseTimes::default())?;
+        Ok(())
+    }
+
+    /// Evaluates the candidate at a step length.
+    fn evaluate(
+        &mut self,
+        case: &mut dyn Evaluate,
+        control: &Control,
+        length: f64,
+        times: &mut PhaseTimes,
+    ) -> Result<Outcome, ComputeError> {
+        for ((u, u0), d) in self.candidate.u.iter_mut().zip(&self.current.u).zip(&self.delta) {
+            *u = u0 + length * d;
+        }
+        self.candidate.h = self.current.h + length * self.delta_h;
+        if length == 1.0 {
+            // Rounding must not leave the plate a hair from where it belongs.
+            self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, control.delta_t);
+        }
+        self.candidate.evaluate(case, &self.boundary, control, times)
+    }
+}
+
+impl Iterate for HostIterate {
+    fn begin(
+        &mut self,
+        case: &mut dyn Evaluate,
+        start: &SetOut<'_>,
+        control: &Control,
+        times: &mut PhaseTimes,
+    ) -> Result<Reading, Halt> {
+        self.came_off.fill(false);
+        let mesh = case.model().mesh.clone();
+        self.furnish(&mesh)?;
+        if let Some(against) = &mut self.boundary.against {
+            against.set_out(&mesh, start.displacement);
+        }
+        if let Some(Guess::At(guess)) = start.guess {
+            self.current.h = control.h;
+            self.current.u.copy_from_slice(guess);
+            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
+            let outcome = self.current.evaluate(case, &self.boundary, control, times)?;
+            if outcome == Outcome::Valid {
+                return Ok(self.reading(&self.current, outcome, case, control));
+            }
+        }
+        self.current.h = if control.normal_force.is_some() { start.h } else { control.h };
+        self.current.u.copy_from_slice(start.displacement);
+        // The committed state can always be evaluated; the plate's increment enters through the
+        // linear system.
+        self.current.evaluate(case, &self.boundary, control, times)?;
+        if self.current.force_scale == 0.0 {
+            // Nothing touches: the body follows the plate as it is.
+            let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
+            let shift = [control.delta_t - start.displacement[plate], 0.0, -self.current.h - start.displacement[plate + 2]];
+            for (u, s) in self.current.u.chunks_exact_mut(3).take(self.boundary.own_nodes).zip(std::iter::repeat(shift)) {
+                for i in 0..3 {
+                    u[i] += s[i];
+                }
+            }
+            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
+            // A shift leaves the forces as they are. Evaluated anew they would be those of an
+            // unloaded body, nothing but rounding, and which points stick would hang on it: the
+            // step would go another way on every device.
+            self.current.assess(case, &self.boundary, control, times)?;
+        }
+        Ok(self.reading(&self.current, Outcome::Valid, case, control))
+    }
+
+    fn h(&self) -> f64 {
+        self.current.h
+    }
+
+    fn plate_is_placed(&self, control: &Control) -> bool {
+        self.boundary.plate.iter().all(|&n| {
+            let base = 3 * n as usize;
+            let u = &self.current.u[base..base + 3];
+            (u[0] - control.delta_t).abs() <= 1e-14 && (u[2] + self.current.h).abs() <= 1e-14
+        })
+    }
+
+    fn correct(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
+        let found = self.linearise(case, asked, times)?;
+        Ok(Correction { slope: self.slope(&self.current), ..found })
+    }
+
+    fn try_length(
+        &mut self,
+        case: &mut dyn Evaluate,
+        control: &Control,
+        length: f64,
+        times: &mut PhaseTimes,
+    ) -> Result<Reading, Halt> {
+        let outcome = self.evaluate(case, control, length, times)?;
+        self.tried = length;
+        let reading = self.reading(&self.candidate, outcome, case, control);
+        if outcome != Outcome::Valid {
+            return Ok(reading);
+        }
+        // Only the whole correction asks for it.
+        let slope = if length == 1.0 { self.slope(&self.candidate) } else { 0.0 };
+        Ok(Reading { slope, ..reading })
+    }
+
+    fn favour(&mut self) {
+        std::mem::swap(&mut self.candidate, &mut self.best);
+        self.favoured = self.tried;
+    }
+
+    fn keep(&mut self, case: &mut dyn Evaluate, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt> {
+        if length != self.favoured {
+            self.evaluate(case, control, length, times)?;
+            std::mem::swap(&mut self.candidate, &mut self.best);
+            self.favoured = length;
+        }
+        // The iterate before is in `best` from now on.
+        std::mem::swap(&mut self.current, &mut self.best);
+        Ok(())
+    }
+
+    fn land(
+        &mut self,
+        case: &mut dyn Evaluate,
+        control: &Control,
+        _expected: usize,
+        times: &mut PhaseTimes,
+    ) -> Result<Option<(usize, Reading)>, Halt> {
+        let mut landed = 0;
+        for (i, (before, after)) in self.best.rows.iter().zip(&self.current.rows).enumerate() {
+            if self.boundary.frictionless[i] {
+                continue;
+            }
+            self.came_off[i] |= before.status == Status::Stick && after.status == Status::Open;
+            if self.came_off[i] && after.status == Status::Stick {
+                self.boundary.frictionless[i] = true;
+                landed += 1;
+            }
+        }
+        if landed == 0 {
+            return Ok(None);
+        }
+        let outcome = self.current.assess(case, &self.boundary, control, times)?;
+        Ok(Some((landed, self.reading(&self.current, outcome, case, control))))
+    }
+
+    fn worst(&mut self, case: &mut dyn Evaluate, _control: &Control, scale: f64) -> Result<Worst, Halt> {
+        Ok(self.current.worst(&case.model().mesh, &self.boundary, scale))
+    }
+}
