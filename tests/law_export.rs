@@ -16,7 +16,7 @@ use std::process::{Command, Output};
 
 use asperity::analytical::ElasticSphere;
 use asperity::case::Case;
-use asperity::contact_law::POINTS;
+use asperity::contact_law::{Frame, POINTS};
 use asperity::law::export::{Language, engine_files, files, law_files, law_source, source, vectors};
 use asperity::law::forms::{Constants, Forms, NormalCurve, SlipForm, Variable};
 use asperity::law::model::{FORMAT, Interval, Law, Provenance, VERSION, Validity};
@@ -399,6 +399,7 @@ fn table_against(hardening: &str, opponent: &str) -> LawFile {
         } else {
             tabulated::Against::OtherSphere
         },
+        frame: (!opponent.is_empty() && !opponent.contains("flat = true")).then_some(Frame::LineOfCentres),
         program: "a test".to_owned(),
         case: format!(
             "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1.0\npoissons_ratio = 0.25\n[material.hardening]\n{hardening}\n[contact]\n\

@@ -40,11 +40,13 @@
 pub mod export;
 pub mod path;
 
+mod centres;
 mod curve;
 mod shapes;
 mod update;
 mod virgin;
 
+pub use centres::{Centres, Frame};
 pub use curve::NormalCurve;
 pub use update::{ContactResponse, ContactState};
 pub use virgin::{

@@ -11,8 +11,8 @@ use super::tabulated::{self, Tabulated};
 use super::variables::{Body, yield_lambda};
 use super::{Law, LawError};
 use crate::case::{Case, Friction};
-use crate::contact_law::ContactParameters;
-use crate::contact_law::path::{PathPoint, follow};
+use crate::contact_law::path::{PathPoint, follow_centres};
+use crate::contact_law::{Centres, ContactParameters};
 
 /// The name under which a law comes with the program.
 pub const BUILT_IN: &str = "built-in";
@@ -103,12 +103,13 @@ impl LawFile {
     }
 
     /// Indentation, displacement and forces along the whole path of a case, in its units, without
-    /// simulating any of it; and what of its deepest contact lies outside of the law's range.
+    /// simulating any of it; and what of its deepest contact lies outside of the law's range. As in
+    /// a simulation all is along fixed axes, also where two spheres pass each other.
     ///
     /// # Errors
     /// Those of [`LawFile::contact_parameters`].
     pub fn follow(&self, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
-        let points = follow(&self.contact_parameters(case)?, &case.path);
+        let points = follow_centres(&self.contact_parameters(case)?, Centres::of(case), &case.path);
         let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
         let out_of_range = if deepest > 0.0 { self.out_of_range(case, deepest)? } else { Vec::new() };
         Ok((points, out_of_range))

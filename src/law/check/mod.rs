@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::{LawError, LawFile};
 use crate::case::Case;
-use crate::contact_law::path::drive;
-use crate::contact_law::{ContactParameters, ContactState};
+use crate::contact_law::path::{dissipated, drive_centres};
+use crate::contact_law::{Centres, ContactParameters};
 use crate::output::{Recorder, StepRecord};
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
@@ -132,25 +132,11 @@ fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> R
     };
     let rows: Vec<StepRecord> = recorder.rows.into_iter().filter(|row| row.step > 0).collect();
     let places: Vec<[f64; 2]> = rows.iter().map(|row| [row.h, row.delta_t]).collect();
-    let law = drive(parameters, &places, INCREMENTS);
+    let centres = Centres::of(&path.case);
+    let law = drive_centres(parameters, centres, &places, INCREMENTS);
     let simulated = rows.last().map_or(0.0, |row| row.work_plastic + row.work_friction);
-    Ok(Checked { name: path.name, dissipated: [simulated, dissipated(parameters, &places)], rows, law, failure })
-}
-
-/// Work that the update takes along some places, less what it stores at the end.
-fn dissipated(parameters: &ContactParameters, places: &[[f64; 2]]) -> f64 {
-    let (mut state, mut at, mut before, mut work) = (ContactState::default(), [0.0; 2], [0.0; 2], 0.0);
-    for &[h, delta_t] in places {
-        let step = [(h - at[0]) / INCREMENTS as f64, (delta_t - at[1]) / INCREMENTS as f64];
-        for i in 1..=INCREMENTS {
-            let (next, out) = parameters.update(&state, at[0] + step[0] * i as f64, [step[1], 0.0]);
-            let now = [out.f_n, out.f_t[0]];
-            work += 0.5 * ((before[0] + now[0]) * step[0] + (before[1] + now[1]) * step[1]);
-            (state, before) = (next, now);
-        }
-        at = [h, delta_t];
-    }
-    work - parameters.stored_energy(&state)
+    let taken = dissipated(parameters, centres, &places, INCREMENTS);
+    Ok(Checked { name: path.name, dissipated: [simulated, taken], rows, law, failure })
 }
 
 /// The checked paths as a table, a line each.

@@ -11,7 +11,7 @@ use super::process::{Place, Process};
 use super::{FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
-use crate::contact_law::POINTS;
+use crate::contact_law::{Frame, POINTS};
 use crate::law::LawError;
 use crate::law::fit::study_name;
 use crate::law::model::Interval;
@@ -93,6 +93,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
         format: FORMAT.to_owned(),
         version: VERSION,
         body,
+        frame: (body == Against::EqualSphere).then_some(Frame::LineOfCentres),
         source: Source {
             program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
             study: study_name(dir),

@@ -29,6 +29,7 @@ use super::tabulated::{self, Against, Tabulated, equivalent};
 use super::variables::{Body, yield_lambda};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Opponent};
+use crate::contact_law::Frame;
 
 pub use fit::fit;
 
@@ -102,6 +103,9 @@ pub struct Interpolated {
     pub version: u32,
     /// What the sphere meets: a rigid plane, or an equal sphere.
     pub body: Against,
+    /// Of two spheres, the frame of h, delta_T and the forces; none on a plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<Frame>,
     /// Where it comes from.
     pub source: Source,
     /// Errors of F_T and F_N along the shear, from h alone, of materials that were left out.
@@ -166,6 +170,8 @@ impl Interpolated {
     /// One from the text of its file; the error is what is wrong, in words.
     pub(super) fn from_json(text: &str) -> Result<Self, String> {
         let law: Self = json::parse(text, "law by interpolation", FORMAT, VERSION)?;
+        let wanted = (law.body == Against::EqualSphere).then_some(Frame::LineOfCentres);
+        tabulated::frame_of_the_centres(law.frame, wanted, "law fit --interpolate")?;
         let complete = law.inputs.len() == INPUTS
             && law.processes.len() == PROCESSES
             && law.processes.iter().all(|process| process.weights.len() == law.samples.len());

@@ -21,9 +21,9 @@ const REVERSAL: usize = 4;
 const END: f64 = 1.75;
 /// F_T/F_N over mu from which a contact with a plane has come to full slip,
 const SLIPPED: f64 = 0.99;
-/// and one of two spheres: as these pass each other, the plane of their contact turns, and the
-/// forces along h and delta_T are no longer those along its normal and its tangent.
-const SLIPPED_PAIR: f64 = 0.9;
+/// and one of two spheres: elastic ones whose points all slide have up to 3 % less at mu above 0.6,
+/// since not all of them slide in one direction.
+const SLIPPED_PAIR: f64 = 0.95;
 /// Intervals of the integral that gives the length of the slip.
 const INTERVALS: usize = 400;
 /// Cattaneo and Mindlin's displacement at full slip is 5/2 of that integral; three keep the curves

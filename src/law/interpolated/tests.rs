@@ -1,4 +1,5 @@
 use super::*;
+use crate::contact_law::Centres;
 use crate::contact_law::path::follow;
 use crate::law::LawFile;
 
@@ -162,6 +163,9 @@ fn two_bodies_are_put_in_series() {
 fn the_built_in_law_knows_equal_spheres() {
     let law = Interpolated::built_in().unwrap();
     let pair = law.pair.as_deref().expect("the law of two equal spheres");
+    assert_eq!([law.frame, pair.frame], [None, Some(Frame::LineOfCentres)]);
+    let old = BUILT_IN[1].1.replacen(",\"frame\":\"line of centres\"", "", 1);
+    assert!(Interpolated::from_json(&old).unwrap_err().contains("two spheres along fixed axes"));
     assert_eq!([law.body, pair.body], [Against::Plane, Against::EqualSphere]);
     for case in cases("[opponent]\nequal = true").into_iter().step_by(6) {
         let (table, own) = (law.compose(&case).unwrap(), pair.table(&case).unwrap());
@@ -180,4 +184,20 @@ fn the_built_in_law_knows_equal_spheres() {
     let on_a_plane = &cases("")[0];
     assert!(pair.table(on_a_plane).unwrap_err().to_string().contains("rigid plane"));
     assert_eq!(law.compose(on_a_plane).unwrap(), plane().compose(on_a_plane).unwrap());
+}
+
+#[test]
+fn two_spheres_slide_at_mu_in_the_frame_of_their_centres() {
+    let case = case("{ law = \"ideal\", yield_stress = 0.42 }", 0.3, 0.05, 0.04, "[opponent]\nequal = true");
+    let law = Interpolated::built_in().unwrap();
+    for level in &law.compose(&case).unwrap().levels {
+        let last = level.tangential[level.tangential.len() - 1];
+        assert!((last - 1.0).abs() < 5e-3, "{last} at {}", level.h);
+    }
+    // What is predicted is along the axes of a simulation: there it is less.
+    let (points, _) = LawFile::Interpolated(Box::new(law)).follow(&case).unwrap();
+    let last = points[points.len() - 1];
+    let [n, t] = Centres::of(&case).turned([last.h, last.delta_t], [last.f_n, last.f_t]);
+    assert!((t / (0.05 * n) - 1.0).abs() < 5e-3, "{}", t / n);
+    assert!(last.f_t / (0.05 * last.f_n) < 0.995, "{}", last.f_t / last.f_n);
 }

@@ -1,7 +1,8 @@
 //! A law beside the simulation of one case.
 
 use crate::case::Case;
-use crate::contact_law::path::drive;
+use crate::contact_law::Centres;
+use crate::contact_law::path::drive_centres;
 use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::variables::Body;
@@ -21,7 +22,7 @@ pub fn table_beside_run(
 ) -> Result<(Picture, Vec<OutOfRange>), LawError> {
     let parameters = law.contact_parameters(case)?;
     let places: Vec<[f64; 2]> = history.iter().map(|record| [record.h, record.delta_t]).collect();
-    let forces = drive(&parameters, &places, 8);
+    let forces = drive_centres(&parameters, Centres::of(case), &places, 8);
     let points = places.iter().zip(forces).map(|(place, [f_n, f_t])| [place[1], f_t, f_n]);
     // From where the shear begins, as the simulation is drawn.
     let pressed = places.windows(2).take_while(|pair| pair[1][1] == pair[0][1]).count();

@@ -10,7 +10,7 @@ use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
 use crate::contact_law::path::drive;
-use crate::contact_law::{POINTS, unloading_exponent};
+use crate::contact_law::{Centres, POINTS, unloading_exponent};
 use crate::law::LawError;
 use crate::law::model::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
@@ -157,6 +157,7 @@ pub(super) fn of_levels(scaled: Case, mut levels: Vec<Level>, elements: usize) -
         format: FORMAT.to_owned(),
         version: VERSION,
         body: Against::of(&scaled),
+        frame: Centres::of(&scaled).frame(),
         program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
         case: scaled.to_toml(),
         range: Interval { from, to },
@@ -221,7 +222,13 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
     let (f_n_slip, lost) = (f_n(1.0).min(one.f_n0), one.f_n0 - f_n(1.0));
     // Of a loss within the tolerance of a step there is no shape.
     let shape = |x: f64| if lost > 1e-3 * one.f_n0 { ((one.f_n0 - f_n(x)) / lost).clamp(0.0, 1.0) } else { x };
-    let [k_t, backbone] = reversal(sphere, friction, one);
+    let [k_t, backbone] = if lost > ELASTIC * one.f_n0 {
+        reversal(sphere, friction, one)
+    } else {
+        // An elastic contact follows its sliders from the start, and Masing's rule later.
+        let curve = one.curve.iter().skip(1).map(|point| [point.delta_t, point.f_t]);
+        backbone_of(curve, friction * one.f_n0, cattaneo_mindlin::initial_stiffness(sphere, one.a0))
+    };
     Level {
         h: one.h,
         f_n0: one.f_n0,
@@ -236,38 +243,39 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
     }
 }
 
-/// k_T and the exponent b with which Masing's rule, F_T = F - 2 F_s [1 - (1 - k_T delta/(2 b
-/// F_s))^b], is nearest to the simulated reversal, F and F_s = mu F_N being those where it begins.
+/// k_T and the exponent b with which F_T = F - 2 F_s [1 - (1 - k_T delta/(2 b F_s))^b], Masing's
+/// rule, is nearest to the simulated reversal, F and F_s = mu F_N being those where it begins.
 pub fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 2] {
     let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
     let Some(start) = one.back.first().filter(|_| one.back.len() > 4) else { return [mindlin, 1.5] };
-    let slip = friction * start.f_n;
+    let falls = one.back.iter().skip(1).map(|point| [start.delta_t - point.delta_t, start.f_t - point.f_t]);
+    let [k_t, backbone] = backbone_of(falls, 2.0 * friction * start.f_n, mindlin);
+    // A first reversal also loses what F_N shear has left to lose: more so where it has lost much.
+    let again = AGAIN * (start.f_n / one.f_n0 / KEPT).min(1.0);
+    [k_t, 1.0 + again * (backbone - 1.0)]
+}
+
+/// k and b with which way [1 - (1 - k delta/(b way))^b] is nearest to a curve of (delta, F), whose
+/// k is near `stiffness`, up to most of the way.
+fn backbone_of(curve: impl Iterator<Item = [f64; 2]>, way: f64, stiffness: f64) -> [f64; 2] {
     // Beyond, what it loses of F_N shows.
-    let rows: Vec<[f64; 2]> = one
-        .back
-        .iter()
-        .skip(1)
-        .map(|point| [start.delta_t - point.delta_t, start.f_t - point.f_t])
-        .take_while(|row| row[1] < REVERSED * slip)
-        .collect();
+    let rows: Vec<[f64; 2]> = curve.take_while(|row| row[1] < MOST_OF_THE_WAY * way).collect();
     let misfit = |k: f64, b: f64| -> f64 {
-        let fall = |d: f64| 2.0 * slip * (1.0 - (1.0 - (k * d / (2.0 * b * slip)).min(1.0)).powf(b));
-        rows.iter().map(|row| (fall(row[0]) - row[1]).powi(2)).sum()
+        let force = |d: f64| way * (1.0 - (1.0 - (k * d / (b * way)).min(1.0)).powf(b));
+        rows.iter().map(|row| (force(row[0]) - row[1]).powi(2)).sum()
     };
-    let mut best = [f64::INFINITY, mindlin, 1.5];
+    let mut best = [f64::INFINITY, stiffness, 1.5];
     for i in 0..=40 {
         let b = BACKBONE[0] + (1.5 - BACKBONE[0]) * f64::from(i) / 40.0;
         for j in 0..=120 {
-            let k = mindlin * (0.4 + 0.01 * f64::from(j));
+            let k = stiffness * (0.4 + 0.01 * f64::from(j));
             let found = misfit(k, b);
             if found < best[0] {
                 best = [found, k, b];
             }
         }
     }
-    // A first reversal also loses what F_N shear has left to lose: more so where it has lost much.
-    let again = AGAIN * (start.f_n / one.f_n0 / KEPT).min(1.0);
-    [best[1], 1.0 + again * (best[2] - 1.0)]
+    [best[1], best[2]]
 }
 
 /// The radius a with which F_N = F (e/D)^gamma, D = gamma F/(2 E* a), takes the simulated way from
@@ -293,9 +301,10 @@ pub fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
 const AGAIN: f64 = 0.65;
 /// Share of F_N0 left at full slip below which that share is less, in proportion.
 const KEPT: f64 = 0.6;
-/// Fall of F_T over mu F_N up to which a reversal is fitted: to nine tenths of the way to slip on
-/// the other side.
-const REVERSED: f64 = 1.9;
+/// Share of F_N0 below which a loss is none: the update takes such a contact for elastic.
+const ELASTIC: f64 = 1e-6;
+/// Share of the way to slip up to which a reversal is fitted.
+const MOST_OF_THE_WAY: f64 = 0.95;
 
 /// Share of Mindlin's slip displacement at which F_T/F_N is 0.99 mu: (1 - y)^(3/2) = 0.01.
 const NEARLY_MINDLIN: f64 = 0.953_584_1;

@@ -2,7 +2,8 @@
 //! where formulas for all materials are not. It is of one pair of bodies, and says which: a sphere
 //! on a rigid plane, two equal spheres, or any two that a case can describe.
 //!
-//! `series` makes the table of two unlike bodies from one of each.
+//! `series` makes the table of two unlike bodies from one of each. Tables of two spheres are in the
+//! [frame of their centres](Centres), which engines have.
 //!
 //! Lengths are over R and forces over E R^2, so that one table serves every radius.
 //! [`Tabulated::contact_parameters`] hands the curves to the contact update, and everything that
@@ -25,7 +26,7 @@ use super::LawError;
 use super::json;
 use super::model::{Interval, OutOfRange};
 use crate::case::{self, Case, Friction, Opponent};
-use crate::contact_law::{ContactParameters, KNOTS, LEVELS, POINTS, Shapes, VirginPoint};
+use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINTS, Shapes, VirginPoint};
 
 pub use against::{Against, equivalent, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
@@ -107,6 +108,9 @@ pub struct Tabulated {
     pub version: u32,
     /// What the sphere meets.
     pub body: Against,
+    /// Of two spheres, the frame of h, delta_T and the forces; none on a flat.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<Frame>,
     /// The program and its version.
     pub program: String,
     /// The case that it was made of, in units in which R and E are 1: material and friction are
@@ -141,7 +145,7 @@ impl Tabulated {
     /// The table of two bodies that are alike as that of an equal pair, which `case` is of.
     pub(super) fn of_an_equal_pair(self, case: &Case) -> Self {
         let case = build::case_of(&build::scaled(case), self.elements_per_contact_radius);
-        Self { body: Against::of(&case), case: case.to_toml(), ..self }
+        Self { body: Against::of(&case), frame: Centres::of(&case).frame(), case: case.to_toml(), ..self }
     }
 
     /// Writes it, whole or not at all.
@@ -176,6 +180,7 @@ impl Tabulated {
         if body != self.body {
             return Err(format!("says that it is against {}, and its case is against {body}", self.body));
         }
+        frame_of_the_centres(self.frame, Centres::of(&case).frame(), "law tabulate")?;
         if self.levels.len() < 3 || !self.levels.windows(2).all(|pair| pair[0].h < pair[1].h) {
             return Err("has fewer than three levels, or they do not increase".to_owned());
         }
@@ -336,6 +341,19 @@ impl Tabulated {
     pub fn out_of_range(&self, h: f64) -> Vec<OutOfRange> {
         let range = Interval { from: 0.0, to: self.range.to };
         if range.contains(h, 1e-9) { Vec::new() } else { vec![OutOfRange { quantity: "h/R", value: h, range }] }
+    }
+}
+
+/// Refuses a law of two spheres along fixed axes, as they were made before: an engine has the line
+/// of centres, and F_T along the axes is up to a fifth less where they pass each other.
+pub(super) fn frame_of_the_centres(own: Option<Frame>, wanted: Option<Frame>, command: &str) -> Result<(), String> {
+    match (own, wanted) {
+        (None, Some(_)) => Err(format!(
+            "is of two spheres along fixed axes, as earlier versions made it, and not in the frame of their centres, which \
+             engines have: make it anew with `asperity {command}`"
+        )),
+        (Some(_), None) => Err("says that it is in the frame of two centres, and one of its bodies is flat".to_owned()),
+        _ => Ok(()),
     }
 }
 

@@ -22,7 +22,7 @@ use super::build::{LENGTH, NEARLY_SLIPPING, depths, hertzian, points};
 use super::{Curves, FORMAT, Level, Tabulated, VERSION};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Material, Opponent, Segment, Sphere};
-use crate::contact_law::{POINTS, unloading_exponent};
+use crate::contact_law::{Centres, POINTS, unloading_exponent};
 use crate::law::LawError;
 use crate::law::model::Interval;
 
@@ -479,6 +479,7 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
         format: FORMAT.to_owned(),
         version: VERSION,
         body: Against::of(&scaled),
+        frame: Centres::of(&scaled).frame(),
         program: format!("asperity {}, in series from the tables of its two bodies", env!("CARGO_PKG_VERSION")),
         case: super::build::case_of(&scaled, elements[0].min(elements[1])).to_toml(),
         range,

@@ -1,9 +1,11 @@
 use super::build::table;
 use super::measure::Measured;
 use super::*;
+use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::contact_law::path::{drive, follow};
 use crate::law::data::Point;
 use crate::law::file::LawFile;
+use crate::output::StepRecord;
 
 const MU: f64 = 0.3;
 
@@ -191,11 +193,96 @@ fn another_opponent_is_refused_by_name() {
     let rigid = |radius: f64| pair(&format!("[opponent]\nrigid = true\nradius = {radius}"));
     let refused = answer(&made(&rigid(3.0)), &rigid(5.0)).unwrap_err();
     assert!(refused.contains("the rigid sphere has 2.5 R, and that of the table 1.5 R"), "{refused}");
-    // Written and read back, with its opponent.
+    // Written and read back, with its opponent; without its frame it is one of earlier versions.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("law.json");
     law.write(&path).unwrap();
     assert_eq!(LawFile::read(&path).unwrap(), law);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let frame = "  \"frame\": \"line of centres\",\n";
+    assert!(text.contains(frame), "{text}");
+    std::fs::write(&path, text.replace(frame, "")).unwrap();
+    let refused = LawFile::read(&path).unwrap_err().to_string();
+    assert!(refused.contains("two spheres along fixed axes") && refused.contains("`asperity law tabulate`"), "{refused}");
+    made(&pair("")).write(&path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(!text.contains("frame"));
+    std::fs::write(&path, text.replacen("  \"program\"", &format!("{frame}  \"program\""), 1)).unwrap();
+    let refused = LawFile::read(&path).unwrap_err().to_string();
+    assert!(refused.contains("one of its bodies is flat"), "{refused}");
+}
+
+/// A history of two spheres as a simulation along fixed axes has it: `one` is what it is in the
+/// frame of their centres, at one overlap.
+fn along_axes(case: &Case, one: &Measured) -> Vec<StepRecord> {
+    let centres = Centres::of(case);
+    let (r, force) = (case.sphere.radius, case.material.youngs_modulus * case.sphere.radius * case.sphere.radius);
+    let h = one.h * r;
+    let mut history = vec![StepRecord { h, f_n: one.f_n0 * force, a: one.a0 * r, ..StepRecord::default() }];
+    for point in &one.curve[1..] {
+        // At constant h; the place at which so much has slid.
+        let (mut low, mut high) = (0.0, 2.0 * point.delta_t * r);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if centres.displacement([h, 0.0], [h, middle]) < point.delta_t * r { low = middle } else { high = middle }
+        }
+        let [f_n, f_t] = centres.along_axes([h, low], [point.f_n * force, point.f_t * force]);
+        history.push(StepRecord { segment: 1, h, delta_t: low, f_n, f_t, ..StepRecord::default() });
+    }
+    history
+}
+
+#[test]
+fn two_spheres_are_turned_into_the_frame_of_their_centres() {
+    let mut case = case("law = \"ideal\"\nyield_stress = 400.0");
+    case.opponent = Some(Opponent::Rigid { radius: 1.0 });
+    case.path.push(case::Segment::Shear { shear: case::ShearTarget::FullSlip, hold: case::Hold::Indentation });
+    let exact = measured(0.02, 0.0);
+    let history = along_axes(&case, &exact);
+    let last = history[history.len() - 1];
+    assert!(last.f_t / (MU * last.f_n) < 0.996, "{}", last.f_t / last.f_n);
+    let one = Measured::of(&case, &history).unwrap();
+    let (end, before) = (one.curve[25], exact.curve[25]);
+    assert!((end.f_t / (MU * end.f_n) - 1.0).abs() < 1e-12, "{end:?}");
+    // What the overlap lacks, delta_T^2/2D, is put back by what the elastic approach gives.
+    let lacks = before.delta_t * before.delta_t / (2.0 * 1.5);
+    let stiffness = end.f_n / exact.f_n0;
+    assert!(end.f_n > before.f_n && end.f_n - before.f_n < 4.0 * lacks * exact.a0 / 0.91 / stiffness, "{end:?} {before:?}");
+    // On a plane nothing changes.
+    case.opponent = None;
+    let plain = Measured::of(&case, &history).unwrap();
+    assert_eq!(plain.curve[25].f_t, last.f_t / (case.material.youngs_modulus * 4.0));
+}
+
+/// Two elastic spheres whose overlap falls as they pass each other: Hertz's and Mindlin's contact
+/// at the overlap of the start.
+#[test]
+fn what_the_overlap_lacks_is_put_back() {
+    let mut case = case("law = \"elastic\"");
+    case.opponent = Some(Opponent::Equal);
+    case.path.push(case::Segment::Shear { shear: case::ShearTarget::FullSlip, hold: case::Hold::Indentation });
+    let (centres, h) = (Centres::of(&case), 0.1);
+    let sphere = equivalent(&case);
+    let slip = |h: f64| CattaneoMindlin::at_indentation(sphere, MU, h);
+    let start = slip(h);
+    let mut history = vec![StepRecord { h, f_n: start.normal_force, a: start.contact_radius, ..StepRecord::default() }];
+    for i in 1..=20 {
+        let delta_t = 0.06 * f64::from(i) / 20.0;
+        let now = slip(centres.overlap([h, delta_t]));
+        let slid = centres.displacement([h, 0.0], [h, delta_t]);
+        let [f_n, f_t] = centres.along_axes([h, delta_t], [now.normal_force, now.force(slid)]);
+        history.push(StepRecord { segment: 1, h, delta_t, f_n, f_t, ..StepRecord::default() });
+    }
+    let one = Measured::of(&case, &history).unwrap();
+    let (r, force) = (case.sphere.radius, case.material.youngs_modulus * case.sphere.radius * case.sphere.radius);
+    for point in &one.curve {
+        assert!((point.f_n * force / start.normal_force - 1.0).abs() < 1e-9, "{point:?}");
+        let exact = start.force(point.delta_t * r);
+        assert!((point.f_t * force - exact).abs() < 1e-3 * MU * start.normal_force, "{point:?} {exact}");
+    }
+    let last = history[20];
+    let n = centres.turned([h, last.delta_t], [last.f_n, last.f_t])[0];
+    assert!(last.f_t / (MU * last.f_n) < 0.96 && n < 0.994 * start.normal_force, "{last:?}");
 }
 
 #[test]
