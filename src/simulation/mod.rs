@@ -63,6 +63,11 @@ impl SimulationError {
     /// The device that had the committed state has failed, and its stand-in waits for an earlier
     /// one.
     pub(crate) fn is_gone(&self) -> bool {
-        matches!(self, Self::Compute(ComputeError::Gone) | Self::Solver(SolverError::Compute(ComputeError::Gone)))
+        match self {
+            Self::Compute(error) | Self::Solver(SolverError::Compute(error)) => matches!(error, ComputeError::Gone),
+            // Who watches the run had asked for fields.
+            Self::Observer(error) => matches!(error.downcast_ref(), Some(ComputeError::Gone)),
+            _ => false,
+        }
     }
 }
