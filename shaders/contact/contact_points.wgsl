@@ -26,22 +26,6 @@ fn contact_points(@builtin(global_invocation_id) id: vec3<u32>) {
         on_symmetry_plane[id.x] != 0u,
     );
     let rows = contact_rows(friction[case_index], point);
-    var at = 21u * slot * points + id.x;
-    at = store(at, rows.residual);
-    at = store(at, rows.force_rows[0]);
-    at = store(at, rows.force_rows[1]);
-    at = store(at, rows.force_rows[2]);
-    at = store(at, rows.displacement_rows[0]);
-    at = store(at, rows.displacement_rows[1]);
-    at = store(at, rows.displacement_rows[2]);
-    let fixed = select(vec3<u32>(), vec3<u32>(4u, 8u, 16u), rows.fixed);
-    answer_status[slot * points + id.x] = rows.status + fixed.x + fixed.y + fixed.z;
-}
-
-fn store(at: u32, v: vec3<real>) -> u32 {
-    let points = dimensions.contact_points;
-    answer[at] = v.x;
-    answer[at + points] = v.y;
-    answer[at + 2u * points] = v.z;
-    return at + 3u * points;
+    store_rows(21u * slot * points + id.x, rows);
+    answer_status[slot * points + id.x] = status_code(rows);
 }

@@ -2,15 +2,18 @@
 // what is recorded of them.
 
 @group(0) @binding(5) var<storage, read> node_info: array<u32>;         // [node]
-@group(0) @binding(6) var<storage, read> height: array<real>;           // [geometry][point]: of the undeformed body over the plane
+// [geometry][point]: of the undeformed body over the plane
+@group(0) @binding(6) var<storage, read> height: array<real>;
 @group(0) @binding(7) var<storage, read> increments: array<real>;       // [case][iterate][3 node + i]
 @group(0) @binding(8) var<storage, read> forces: array<real>;           // [case][iterate][3 node + i]
-@group(0) @binding(9) var<storage, read> rows: array<real>;             // [case][iterate][residual, force rows, displacement rows][point]
+// [case][iterate][residual, force rows, displacement rows][point]
+@group(0) @binding(9) var<storage, read> rows: array<real>;
 @group(0) @binding(10) var<storage, read> codes: array<u32>;            // [case][iterate][point]
 @group(0) @binding(11) var<storage, read_write> committed: array<real>; // [case][3 node + i]: displacement
 @group(0) @binding(12) var<storage, read_write> before: array<real>;    // [case][3 node + i]: one step earlier
 @group(0) @binding(13) var<storage, read_write> gap_at_start: array<real>;  // [case][point]
-@group(0) @binding(14) var<storage, read_write> at_points: array<real>; // [slot][displacement, force of the plane][point]
+// [slot][displacement, force of the plane][point]
+@group(0) @binding(14) var<storage, read_write> at_points: array<real>;
 @group(0) @binding(15) var<storage, read_write> status: array<u32>;     // [slot][point]
 
 @compute @workgroup_size(64)

@@ -8,8 +8,10 @@
 @group(0) @binding(10) var<storage, read> gap_at_start: array<real>;    // [case][point]
 @group(0) @binding(11) var<storage, read> increments: array<real>;      // [case][iterate][3 node + i]
 @group(0) @binding(12) var<storage, read> forces: array<real>;          // [case][iterate][3 node + i]
-@group(0) @binding(13) var<storage, read_write> rows: array<real>;      // [case][iterate][residual, force rows, displacement rows][point]
-@group(0) @binding(14) var<storage, read_write> codes: array<u32>;      // [case][iterate][point]: status + 4, 8, 16 for fixed x, y, z
+// [case][iterate][residual, force rows, displacement rows][point]
+@group(0) @binding(13) var<storage, read_write> answer: array<real>;
+// [case][iterate][point]: status + 4, 8, 16 for fixed x, y, z
+@group(0) @binding(14) var<storage, read_write> answer_status: array<u32>;
 
 @compute @workgroup_size(64)
 fn iterate_contact(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -33,22 +35,6 @@ fn iterate_contact(@builtin(global_invocation_id) id: vec3<u32>) {
         coefficient = 0.0;
     }
     let found = contact_rows(coefficient, point);
-    var out = iterate_place_of(case_index, trial, 21u * points) + id.x;
-    out = store(out, found.residual);
-    out = store(out, found.force_rows[0]);
-    out = store(out, found.force_rows[1]);
-    out = store(out, found.force_rows[2]);
-    out = store(out, found.displacement_rows[0]);
-    out = store(out, found.displacement_rows[1]);
-    out = store(out, found.displacement_rows[2]);
-    let fixed = select(vec3<u32>(), vec3<u32>(4u, 8u, 16u), found.fixed);
-    codes[iterate_place_of(case_index, trial, points) + id.x] = found.status + fixed.x + fixed.y + fixed.z;
-}
-
-fn store(at: u32, v: vec3<real>) -> u32 {
-    let points = dimensions.contact_points;
-    rows[at] = v.x;
-    rows[at + points] = v.y;
-    rows[at + 2u * points] = v.z;
-    return at + 3u * points;
+    store_rows(iterate_place_of(case_index, trial, 21u * points) + id.x, found);
+    answer_status[iterate_place_of(case_index, trial, points) + id.x] = status_code(found);
 }

@@ -1,6 +1,7 @@
 // Energies of the body from those of its elements: a workgroup a slot.
 
-@group(0) @binding(5) var<storage, read> energies: array<real>;         // [slot][elastic, plastic, largest alpha][element]
+// [slot][elastic, plastic, largest alpha][element]
+@group(0) @binding(5) var<storage, read> energies: array<real>;
 @group(0) @binding(6) var<storage, read_write> totals: array<real>;     // [slot][elastic, plastic, largest alpha]
 
 @compute @workgroup_size(256)

@@ -2,7 +2,8 @@
 // precision; a thread a node.
 
 @group(0) @binding(12) var<storage, read> largest: array<real>;         // [case][iterate]: of the right-hand side
-@group(0) @binding(13) var<storage, read> answer: array<u32>;           // [slot][component][node], scaled, bits of single precision
+// [slot][component][node], scaled, bits of single precision
+@group(0) @binding(13) var<storage, read> answer: array<u32>;
 @group(0) @binding(14) var<storage, read_write> correction: array<real>;    // [case][3 node + i]
 @group(0) @binding(15) var<storage, read_write> by_residual: array<real>;   // [case][3 node + i]: without a change of h
 

@@ -2,7 +2,8 @@
 // the trial, and a correction from the one to the other. The host says what is to be done by marks
 // and numbers of each slot.
 
-@group(0) @binding(2) var<storage, read> marks: array<vec4<u32>>;   // [slot]: current iterate, trial, flags, source of the trial
+// [slot]: current iterate, trial, flags, source of the trial
+@group(0) @binding(2) var<storage, read> marks: array<vec4<u32>>;
 @group(0) @binding(3) var<storage, read> numbers: array<real>;      // [slot][NUMBERS]
 @group(0) @binding(4) var<storage, read> records: array<u32>;       // [slot][RECORD]: see linalg/record.wgsl, its bits
 

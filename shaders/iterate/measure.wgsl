@@ -2,7 +2,8 @@
 // workgroup, in a fixed order.
 
 @group(0) @binding(12) var<storage, read> correction: array<real>;          // [case][3 node + i]
-@group(0) @binding(13) var<storage, read> plate_weight: array<real>;        // [geometry]: of a displacement that is missing
+// [geometry]: of a displacement that is missing
+@group(0) @binding(13) var<storage, read> plate_weight: array<real>;
 @group(0) @binding(14) var<storage, read_write> partial_sums: array<real>;  // [slot][PARTS][workgroup]
 
 @compute @workgroup_size(256)

@@ -3,14 +3,16 @@
 @group(0) @binding(5) var<storage, read> plate: array<u32>;             // number of its nodes, and they
 @group(0) @binding(6) var<storage, read> contact_node: array<u32>;      // [point]
 @group(0) @binding(7) var<storage, read> forces: array<real>;           // [case][iterate][3 node + i]
-@group(0) @binding(8) var<storage, read> rows: array<real>;             // [case][iterate][residual, force rows, displacement rows][point]
+// [case][iterate][residual, force rows, displacement rows][point]
+@group(0) @binding(8) var<storage, read> rows: array<real>;
 @group(0) @binding(9) var<storage, read> codes: array<u32>;             // [case][iterate][point]
 @group(0) @binding(10) var<storage, read> slides: array<u32>;           // [case][point]: without friction in this step
 @group(0) @binding(11) var<storage, read> came_off: array<u32>;         // [case][point]: under full stick, in this step
 @group(0) @binding(12) var<storage, read> partial_sums: array<real>;    // [slot][PARTS][workgroup]
 @group(0) @binding(13) var<storage, read_write> largest: array<real>;   // [case][iterate]: of the right-hand side
 @group(0) @binding(14) var<storage, read_write> readings: array<real>;  // [slot][READINGS]
-@group(0) @binding(15) var<storage, read_write> counts: array<vec4<u32>>;   // [slot]: status changed, come down again, closed, slipping
+// [slot]: status changed, come down again, closed, slipping
+@group(0) @binding(15) var<storage, read_write> counts: array<vec4<u32>>;
 
 const READINGS: u32 = 10;
 
@@ -86,7 +88,12 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
     normal = add_up(local, normal);
     tangential = add_up(local, tangential);
     released = add_up(local, released);
-    let counted = vec4<u32>(count_up(local, count.x), count_up(local, count.y), count_up(local, count.z), count_up(local, count.w));
+    let counted = vec4<u32>(
+        count_up(local, count.x),
+        count_up(local, count.y),
+        count_up(local, count.z),
+        count_up(local, count.w),
+    );
     if local == 0u {
         var missing: real = 0.0;
         if has(slot, HOLDS_FORCE) {

@@ -6,8 +6,10 @@
 @group(0) @binding(7) var<storage, read> weight: array<real>;       // [geometry][point]: c of Alart and Curnier
 @group(0) @binding(8) var<storage, read> increments: array<real>;   // [case][iterate][3 node + i]
 @group(0) @binding(9) var<storage, read> forces: array<real>;       // [case][iterate][3 node + i]
-@group(0) @binding(10) var<storage, read> rows: array<real>;        // [case][iterate][residual, force rows, displacement rows][point]
-@group(0) @binding(11) var<storage, read> codes: array<u32>;        // [case][iterate][point]: status + 4, 8, 16 for fixed x, y, z
+// [case][iterate][residual, force rows, displacement rows][point]
+@group(0) @binding(10) var<storage, read> rows: array<real>;
+// [case][iterate][point]: status + 4, 8, 16 for fixed x, y, z
+@group(0) @binding(11) var<storage, read> codes: array<u32>;
 
 struct NodeResidual {
     residual: vec3<real>,

@@ -2,9 +2,11 @@
 // fixed unknowns, and the conditions of points that slide, which replace the rows of their nodes.
 
 @group(0) @binding(12) var<storage, read> largest: array<real>;         // [case][iterate]: of the right-hand side
-@group(0) @binding(13) var<storage, read_write> rhs: array<u32>;        // [slot][component][node], scaled, bits of single precision
+// [slot][component][node], scaled, bits of single precision
+@group(0) @binding(13) var<storage, read_write> rhs: array<u32>;
 @group(0) @binding(14) var<storage, read_write> is_fixed: array<u32>;   // [slot][node]: a bit a component
-@group(0) @binding(15) var<storage, read_write> sliding: array<u32>;    // [slot][slides, force rows, displacement rows][point], alike
+// [slot][slides, force rows, displacement rows][point], alike
+@group(0) @binding(15) var<storage, read_write> sliding: array<u32>;
 
 @compute @workgroup_size(64)
 fn iterate_system(@builtin(global_invocation_id) id: vec3<u32>) {

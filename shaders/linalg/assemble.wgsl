@@ -6,7 +6,8 @@
 @group(0) @binding(2) var<storage, read> diagonal: array<u32>;      // [node]: k of its diagonal block
 @group(0) @binding(3) var<storage, read> point_of: array<u32>;      // [node]: its contact point
 @group(0) @binding(4) var<storage, read> blocks: array<real>;       // [slot][3 i + j][block]
-@group(0) @binding(5) var<storage, read> rows: array<u32>;          // [slot][slides, force rows, displacement rows][point], bits of f32
+// [slot][slides, force rows, displacement rows][point], bits of f32
+@group(0) @binding(5) var<storage, read> rows: array<u32>;
 @group(0) @binding(6) var<storage, read_write> matrix: array<u32>;  // [slot][3 i + j][k][node], bits of f32
 @group(0) @binding(7) var<uniform> counts: vec4<u32>;               // upper blocks, contact points
 

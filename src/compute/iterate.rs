@@ -154,7 +154,8 @@ pub struct Corrected {
 pub struct SettledPoint {
     /// Displacement.
     pub displacement: [f64; 3],
-    /// What the plane exerts, as [`crate::solver::system::Trial::point_force`] has it.
+    /// What the plane exerts: along it what Coulomb's bound allows, normal to it the internal
+    /// force.
     pub force: [f64; 3],
     /// What it does.
     pub status: Status,

@@ -118,7 +118,9 @@ impl<'a> Drive<'a> {
     /// [`SimulationError::Snapshot`] if it is one of another mesh, [`SimulationError::Compute`].
     pub fn resume(&mut self, snapshot: Snapshot) -> Result<(), SimulationError> {
         snapshot.check(&self.mesh)?;
-        self.safe.keep(&snapshot);
+        if self.backend.has_stand_in() {
+            self.safe.keep(snapshot.clone());
+        }
         self.backend.restore(self.case, &snapshot.case)?;
         if self.newton.stays_on(&CaseHandle { backend: &mut *self.backend, case: self.case }) {
             self.handle().iterate(false, Plate::default(), Ask::SetEarlier(snapshot.state.u_before.clone()))?;
@@ -136,14 +138,18 @@ impl<'a> Drive<'a> {
 
     /// Offers the observer a checkpoint of the last accepted step.
     pub fn checkpoint(&mut self, last: bool, observer: &mut dyn Observer) {
-        let mut taken = None;
-        observer.checkpoint(last, &mut || Ok(taken.insert(self.snapshot()?).clone()));
+        let (mut taken, may_go_back) = (None, self.backend.has_stand_in());
+        observer.checkpoint(last, &mut || {
+            let snapshot = self.snapshot()?;
+            taken = may_go_back.then(|| snapshot.clone());
+            Ok(snapshot)
+        });
         if let Some(snapshot) = taken {
-            self.safe.keep(&snapshot);
-        } else if self.is_away && self.safe.is_due() && self.backend.has_stand_in() {
+            self.safe.keep(snapshot);
+        } else if may_go_back && self.is_away && self.safe.is_due() {
             // Without a copy the run would begin anew: that is not worth an error.
             match self.snapshot() {
-                Ok(snapshot) => self.safe.keep(&snapshot),
+                Ok(snapshot) => self.safe.keep(snapshot),
                 Err(error) => log::info!("no copy of the state could be taken: {error}"),
             }
         }

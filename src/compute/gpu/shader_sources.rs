@@ -82,6 +82,9 @@ pub const PLANE: Source = source!("contact/plane.wgsl");
 /// The contact conditions of a point.
 pub const COULOMB: Source = source!("contact/coulomb.wgsl");
 
+/// How they are stored.
+pub const ANSWER: Source = source!("contact/answer.wgsl");
+
 /// How a kernel sees an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Binding {
@@ -261,7 +264,7 @@ pub static CONTACT_TRIAL: Kernel = Kernel {
 /// The contact conditions of every point.
 pub static CONTACT_POINTS: Kernel = Kernel {
     name: "contact_points",
-    sources: &[BATCH, PLANE, COULOMB, source!("contact/contact_points.wgsl")],
+    sources: &[BATCH, PLANE, COULOMB, ANSWER, source!("contact/contact_points.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };

@@ -33,8 +33,8 @@ impl Default for Safe {
 
 impl Safe {
     /// Keeps a copy.
-    pub fn keep(&mut self, snapshot: &Snapshot) {
-        (self.snapshot, self.taken) = (Some(Box::new(snapshot.clone())), Instant::now());
+    pub fn keep(&mut self, snapshot: Snapshot) {
+        (self.snapshot, self.taken) = (Some(Box::new(snapshot)), Instant::now());
     }
 
     /// The last copy is old.
@@ -44,7 +44,7 @@ impl Safe {
 
     /// The run has lost its state after so many steps, in this segment; gives the last copy.
     pub fn lose(&mut self, step: usize, segment: usize) -> Option<Box<Snapshot>> {
-        let before = self.lost.map_or(Lost { step: 0, segment: 0 }, |lost| lost);
+        let before = self.lost.unwrap_or(Lost { step: 0, segment: 0 });
         self.lost = Some(Lost { step: step.max(before.step), segment: segment.max(before.segment) });
         self.snapshot.take()
     }

@@ -1,7 +1,7 @@
 //! The kernels of Newton's iterates.
 
 use super::super::shader_sources::Binding::{Read, ReadWrite, Uniform};
-use super::super::shader_sources::{BATCH, COULOMB, Kernel, PLANE, Source, source};
+use super::super::shader_sources::{ANSWER, BATCH, COULOMB, Kernel, PLANE, Source, source};
 
 const ITERATE: Source = source!("iterate/iterate.wgsl");
 const NODE_INFO: Source = source!("iterate/node_info.wgsl");
@@ -36,7 +36,7 @@ pub static SAVE: Kernel = Kernel {
 /// The contact conditions of a trial.
 pub static CONTACT: Kernel = Kernel {
     name: "iterate_contact",
-    sources: &[BATCH, ITERATE, PLANE, COULOMB, source!("iterate/contact.wgsl")],
+    sources: &[BATCH, ITERATE, PLANE, COULOMB, ANSWER, source!("iterate/contact.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };

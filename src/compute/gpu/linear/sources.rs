@@ -6,6 +6,7 @@ use super::super::shader_sources::{Kernel, Source, source};
 const LEVEL: Source = source!("linalg/level.wgsl");
 const RECORD: Source = source!("linalg/record.wgsl");
 const PRODUCT: Source = source!("linalg/product.wgsl");
+const ROW_TIMES: Source = source!("linalg/row_times.wgsl");
 const GALERKIN: Source = source!("linalg/galerkin.wgsl");
 const TRANSFER: Source = source!("linalg/transfer.wgsl");
 const KRYLOV: Source = source!("linalg/krylov.wgsl");
@@ -64,7 +65,7 @@ pub static SMOOTH_START: Kernel = Kernel {
 /// A step of the smoother.
 pub static SMOOTH_STEP: Kernel = Kernel {
     name: "smooth_step",
-    sources: &[LEVEL, RECORD, PRODUCT, source!("linalg/chebyshev.wgsl")],
+    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, source!("linalg/chebyshev.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, Uniform, Read],
     workgroup: 192,
 };
@@ -80,7 +81,7 @@ pub static SOLVE_COARSEST: Kernel = Kernel {
 /// A small level on the way down.
 pub static SMALL_DOWN: Kernel = Kernel {
     name: "small_down",
-    sources: &[LEVEL, RECORD, SMALL, source!("linalg/small_down.wgsl")],
+    sources: &[LEVEL, RECORD, SMALL, ROW_TIMES, source!("linalg/small_down.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read],
     workgroup: 256,
 };
@@ -88,7 +89,7 @@ pub static SMALL_DOWN: Kernel = Kernel {
 /// A small level on the way up.
 pub static SMALL_UP: Kernel = Kernel {
     name: "small_up",
-    sources: &[LEVEL, RECORD, SMALL, source!("linalg/small_up.wgsl")],
+    sources: &[LEVEL, RECORD, SMALL, ROW_TIMES, source!("linalg/small_up.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read, Read, Read, Read, Read],
     workgroup: 256,
 };
@@ -96,7 +97,7 @@ pub static SMALL_UP: Kernel = Kernel {
 /// b - A x.
 pub static RESIDUAL: Kernel = Kernel {
     name: "residual",
-    sources: &[LEVEL, RECORD, PRODUCT, source!("linalg/residual.wgsl")],
+    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, source!("linalg/residual.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, Read],
     workgroup: 192,
 };
@@ -120,7 +121,7 @@ pub static PROLONG: Kernel = Kernel {
 /// A times the preconditioned vector, which is kept.
 pub static KRYLOV_PRODUCT: Kernel = Kernel {
     name: "krylov_product",
-    sources: &[LEVEL, RECORD, PRODUCT, source!("linalg/krylov_product.wgsl")],
+    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, source!("linalg/krylov_product.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 192,
 };
@@ -192,7 +193,7 @@ pub static KRYLOV_COMBINE: Kernel = Kernel {
 /// The plate's force along the solution.
 pub static PLATE_FORCE: Kernel = Kernel {
     name: "plate_force",
-    sources: &[LEVEL, RECORD, PRODUCT, SUMS, source!("linalg/plate_force.wgsl")],
+    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, SUMS, source!("linalg/plate_force.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
     workgroup: 256,
 };
