@@ -18,6 +18,8 @@ mod iterate;
 mod linear;
 #[path = "conformance/material.rs"]
 mod material;
+#[path = "conformance/memory.rs"]
+mod memory;
 #[path = "conformance/press.rs"]
 mod press;
 

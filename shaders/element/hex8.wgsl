@@ -3,7 +3,8 @@
 // e + q.
 
 @group(0) @binding(2) var<storage, read> element_nodes: array<u32>;     // [element][local node]
-@group(0) @binding(3) var<storage, read> gradient: array<real>;         // [geometry][3 a + j][point]: dN_a/dX_j
+// [geometry][3 a + i][element]: reference positions of its nodes, from the first one on
+@group(0) @binding(3) var<storage, read> coordinates: array<real>;
 @group(0) @binding(4) var<storage, read> volume: array<real>;           // [geometry][point]
 @group(0) @binding(5) var<storage, read> committed: array<real>;        // [case][3 node + i]: displacement
 @group(0) @binding(6) var<storage, read> increment: array<real>;        // [slot][3 node + i]
@@ -30,11 +31,23 @@ fn point_place(id: vec3<u32>) -> Place {
     return Place(id.y, slot.x, slot.y, id.x / 8u, id.x);
 }
 
-// dN_a/dX at a point of a geometry.
-fn reference_gradient(geometry: u32, a: u32, point: u32) -> vec3<real> {
-    let points = point_count();
-    let at = (24u * geometry + 3u * a) * points + point;
-    return vec3<real>(gradient[at], gradient[at + points], gradient[at + 2u * points]);
+// Natural coordinates of the quadrature points, 1/sqrt 3 from the middle, and the factor (1 + xi_a
+// xi)/2 of a shape function where node and point are on the same side of it.
+const POINT_AT: real = 0.5773502691896258;
+const SAME_SIDE: real = 0.7886751345948129;
+
+// On which side of the middle a node is, or the quadrature point of the same number: 1 for positive
+// natural coordinates.
+fn sides(a: u32) -> vec3<u32> {
+    return vec3<u32>((a ^ (a >> 1u)) & 1u, (a >> 1u) & 1u, a >> 2u);
+}
+
+// dN_a/dxi at quadrature point q.
+fn shape_derivative(a: u32, q: u32) -> vec3<real> {
+    let side = sides(a);
+    let factor = vec3<real>(SAME_SIDE) - POINT_AT * vec3<real>(side ^ sides(q));
+    let half = vec3<real>(side) - vec3<real>(0.5);
+    return half * vec3<real>(factor.y * factor.z, factor.x * factor.z, factor.x * factor.y);
 }
 
 fn point_volume(geometry: u32, point: u32) -> real {
@@ -63,28 +76,38 @@ fn identity_plus(h: mat3x3<real>) -> mat3x3<real> {
     );
 }
 
-// Gradients with respect to the reference position: of the committed displacement and of the
-// increment.
+// Gradients with respect to the reference position: of the committed displacement, of the increment
+// and of the natural coordinates.
 struct DisplacementGradients {
     committed: mat3x3<real>,
     increment: mat3x3<real>,
+    natural: mat3x3<real>,
 }
 
 fn displacement_gradients(at: Place) -> DisplacementGradients {
-    var g: DisplacementGradients;
+    let stride = dimensions.elements;
+    var position: mat3x3<real>;
+    var of_committed: mat3x3<real>;
+    var of_increment: mat3x3<real>;
     for (var a = 0u; a < 8u; a++) {
         let node = element_nodes[8u * at.element + a];
         let of_case = 3u * (at.case_index * dimensions.nodes + node);
         let of_slot = 3u * (at.slot * dimensions.nodes + node);
         let u = vec3<real>(committed[of_case], committed[of_case + 1u], committed[of_case + 2u]);
         let d = vec3<real>(increment[of_slot], increment[of_slot + 1u], increment[of_slot + 2u]);
-        let n = reference_gradient(at.geometry, a, at.point);
-        g.committed[0] += n.x * u;
-        g.committed[1] += n.y * u;
-        g.committed[2] += n.z * u;
-        g.increment[0] += n.x * d;
-        g.increment[1] += n.y * d;
-        g.increment[2] += n.z * d;
+        let of_element = (24u * at.geometry + 3u * a) * stride + at.element;
+        let x = vec3<real>(coordinates[of_element], coordinates[of_element + stride], coordinates[of_element + 2u * stride]);
+        let n = shape_derivative(a, at.point % 8u);
+        position[0] += n.x * x;
+        position[1] += n.y * x;
+        position[2] += n.z * x;
+        of_committed[0] += n.x * u;
+        of_committed[1] += n.y * u;
+        of_committed[2] += n.z * u;
+        of_increment[0] += n.x * d;
+        of_increment[1] += n.y * d;
+        of_increment[2] += n.z * d;
     }
-    return g;
+    let natural = invert(position);
+    return DisplacementGradients(of_committed * natural, of_increment * natural, natural);
 }

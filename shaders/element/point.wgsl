@@ -11,7 +11,7 @@ const REFUSED_BY_MATERIAL: u32 = 8u;
 
 struct Kinematics {
     relative: mat3x3<real>,     // f - I, f = F F_n^-1
-    f_inverse: mat3x3<real>,    // F^-1
+    natural: mat3x3<real>,      // of the natural coordinates with respect to the present position
     j_minus_1: real,            // det F - 1
     theta_minus_1: real,        // mean dilatation - 1
     total_volume: real,
@@ -66,7 +66,7 @@ fn evaluate_point(at: Place, material: Material) -> PointAnswer {
         g.committed[2] + g.increment[2],
     );
     answer.k.relative = g.increment * f_n_inverse;
-    answer.k.f_inverse = invert(identity_plus(h));
+    answer.k.natural = g.natural * invert(identity_plus(h));
     answer.k.j_minus_1 = j;
     let theta = mean_dilatation(at.slot, at.geometry, at.element);
     answer.k.theta_minus_1 = theta.x;

@@ -1,6 +1,6 @@
 // What the tangent needs of every quadrature point, ready to be gathered into block rows: the
 // moduli in the form in which they are applied, the stress of the geometric term, all times the
-// reference volume, and F^-1.
+// reference volume, and dxi/dx.
 
 @group(0) @binding(12) var<storage, read_write> moduli: array<real>;    // [slot][component][point], 31 components
 
@@ -31,7 +31,7 @@ fn hex8_moduli(@builtin(global_invocation_id) id: vec3<u32>) {
     let v_j = v * (1.0 + a.k.j_minus_1);
     var next = 31u * at.slot * point_count() + at.point;
     for (var k = 0u; k < 3u; k++) {
-        next = store_vector(next, a.k.f_inverse[k]);
+        next = store_vector(next, a.k.natural[k]);
     }
     next = store_vector(next, tau.diagonal);
     next = store_vector(next, tau.shear);

@@ -24,7 +24,6 @@ fn gather_tangent_blocks(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let block = id.x;
     let slot = id.y;
-    let geometry = active_cases[slot].y;
     let points = point_count();
     // columns of the block
     var x_column = vec3<real>();
@@ -41,9 +40,9 @@ fn gather_tangent_blocks(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var q = 0u; q < 8u; q++) {
             let point = 8u * element + q;
             let at = 31u * slot * points + point;
-            let f_inverse = mat3x3<real>(load_vector(at), load_vector(at + 3u * points), load_vector(at + 6u * points));
-            let g_a = reference_gradient(geometry, a, point) * f_inverse;
-            let g_b = reference_gradient(geometry, b, point) * f_inverse;
+            let natural = mat3x3<real>(load_vector(at), load_vector(at + 3u * points), load_vector(at + 6u * points));
+            let g_a = shape_derivative(a, q) * natural;
+            let g_b = shape_derivative(b, q) * natural;
             let normal = load_sym(at + 15u * points);
             let x = load_sym(at + 21u * points);
             let modulus = moduli[at + 27u * points];

@@ -4,7 +4,7 @@
 
 use crate::compute::gpu::Evaluation;
 use crate::compute::gpu::material::{ANSWER, RELATIVE, STATE, TANGENT};
-use crate::compute::gpu::resident::{GRADIENT, HISTORY};
+use crate::compute::gpu::resident::{COORDINATES, HISTORY};
 use crate::compute::gpu::scratch::{CONTACT_ANSWER, CONTACT_TRIAL, MODULI};
 use crate::contact::coulomb::Rows;
 use crate::element::hex8::{Geometry, NODES, Nodal, Points, State, Tangent};
@@ -46,18 +46,17 @@ impl Sizes {
         let points = NODES * self.elements;
         // what every kernel at the points reads of the element, and the Jacobians that the first
         // kernel writes
-        let element = INDEX * NODES * self.elements + word * (GRADIENT * points + 6 * self.nodes);
+        let element = INDEX * NODES * self.elements + word * (COORDINATES * self.elements + 6 * self.nodes);
         let jacobian = element + word * points;
         let at_points = element + word * (2 + STATE) * points;
-        let gradients = word * GRADIENT * points;
         let upper = (self.blocks + self.nodes) / 2;
         match evaluation {
             Evaluation::InternalForce => {
-                let gather = INDEX * (self.nodes + NODES * self.elements) + gradients + word * (9 * points + 3 * self.nodes);
+                let gather = INDEX * (self.nodes + NODES * self.elements) + word * (9 * points + 3 * self.nodes);
                 jacobian + at_points + word * 9 * points + gather
             }
             Evaluation::Tangent => {
-                let gather = INDEX * (upper + PAIRS * self.elements) + gradients + word * (MODULI * points + 9 * upper);
+                let gather = INDEX * (upper + PAIRS * self.elements) + word * (MODULI * points + 9 * upper);
                 jacobian + at_points + word * MODULI * points + gather
             }
             Evaluation::Contact => self.contact_points * (word * (3 + CONTACT_TRIAL + CONTACT_ANSWER) + 2 * INDEX),

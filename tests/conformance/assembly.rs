@@ -71,8 +71,9 @@ fn short_memory_cuts_a_call_up_and_changes_no_bit() {
     let used = whole.context().unwrap().budget().used();
     let expected = bits(&mut whole, &steps);
     let Some(context) = crate::device::device(name, Precision::F32) else { return };
-    let context = std::sync::Arc::new(context.with_budget(used / 2));
+    // Enough for what stays of the cases and for some of the slots.
+    let context = std::sync::Arc::new(context.with_budget(used / 3 * 2));
     let mut cut = Gpu::<f32>::new(context.clone(), models.clone()).unwrap();
-    assert!(context.budget().used() < used / 2);
+    assert!(context.budget().used() < used / 3 * 2);
     assert!(bits(&mut cut, &steps) == expected);
 }

@@ -14,10 +14,11 @@ use super::iterate::Iterates;
 use super::iterate::arrays::{Kept, Kernels as OfIterates, Told};
 use super::linear::{Linear, Plan, Right};
 use super::pipelines::Recorder;
+use super::pools::PoolBytes;
 use super::resident::{Connectivity, HISTORY, Resident, STATE, Sizes};
 use super::scratch::{CONTACT_ANSWER, Dimensions, Kernels, Scratch};
 use super::shader_sources::Precision;
-use super::tangents::{Bytes, Tangents};
+use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
 use crate::compute::linear::SideReport;
 use crate::compute::{CaseModel, ComputeError, Outcome};
@@ -118,41 +119,45 @@ impl<R: DeviceReal> Batch<R> {
         let connectivity = Connectivity::new(&context, &mesh, &plan)?;
         let sizes = connectivity.sizes;
         let (widest, _) = sizes.resident_bytes::<R>();
-        let chunks = context.chunks_of_bindings("the geometry of a case", models.len(), widest)?;
+        let chunks = context.chunks_of_bindings("the states of a case", models.len(), widest)?;
         let residents = chunks
             .iter()
             .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count], CONTACT_WEIGHT))
             .collect::<Result<Vec<_>, _>>()?;
-        let Bytes { moduli, blocks, of_slot, of_case } = Tangents::<R>::bytes(sizes, in_single);
-        let pool = Scratch::<R>::pool_bytes(sizes, moduli);
-        let (mut widest, mut all) = (pool.max(blocks), Scratch::<R>::bytes(sizes) + pool + blocks + of_slot);
-        let of_cases = of_case * models.len() as u64;
-        let (mut shared, mut notes) = (None, Vec::new());
-        let linear_plan = linear_plan.and_then(|linear| {
-            let ((array, sum), lists) = (linear.bytes(), linear.shared_bytes());
+        let tangents = Tangents::<R>::bytes(sizes, in_single);
+        let of_cases = tangents.of_case * models.len() as u64;
+        // What comes down at a time: of every slot what a trial finds, and its tangent where the
+        // host solves; of one case its state, and its tangent after a linear solve that stalled.
+        let answers = (size_of::<R>() * (3 * sizes.nodes + CONTACT_ANSWER * sizes.contact_points)) as u64;
+        let of_state = (size_of::<R>() * HISTORY * sizes.points()) as u64;
+        let once = of_state.max(tangents.blocks);
+        let own = Scratch::<R>::bytes(sizes) + tangents.of_slot;
+        let needs = |linear: Option<&Plan>| {
+            let (widest, pools) = PoolBytes::new::<R>(sizes, &tangents, linear).widest_and_all();
+            let (array, sum) = linear.map_or((0, 0), Plan::bytes);
+            let down = if linear.is_some() { answers } else { answers.max(tangents.blocks) };
+            (widest.max(array), own + pools + sum + down)
+        };
+        let mut notes = Vec::new();
+        let linear_plan = linear_plan.and_then(|plan| {
+            let ((widest, all), lists) = (needs(Some(&plan)), plan.shared_bytes());
             let what = "the linear solver of one case";
             let fits =
-                context.has_room(what, all + of_cases + sum + lists).and_then(|()| context.chunks(what, 1, array, 0).map(drop));
-            match fits {
-                Ok(()) => {
-                    (widest, all) = (widest.max(array), all + sum);
-                    shared = Some(lists);
-                    Some(linear)
-                }
-                Err(error) => {
-                    let note = format!("the linear systems are solved on the CPU: {error}");
-                    log::info!("{note}");
-                    notes.push(note);
-                    None
-                }
+                context.has_room(what, all + of_cases + once + lists).and_then(|()| context.chunks(what, 1, widest, 0).map(drop));
+            if let Err(error) = &fits {
+                let note = format!("the linear systems are solved on the CPU: {error}");
+                log::info!("{note}");
+                notes.push(note);
             }
+            fits.is_ok().then_some(plan)
         });
+        let (widest, mut all) = needs(linear_plan.as_ref());
         let keeps = R::PRECISION == Precision::F64 && linear_plan.is_some();
         let of_kept = if keeps { Kept::<R>::bytes(sizes) * models.len() as u64 } else { 0 };
         if keeps {
             all += Told::<R>::bytes(sizes);
         }
-        context.has_room("an evaluation of one case", all + of_cases + of_kept)?;
+        context.has_room("an evaluation of one case", all + of_cases + of_kept + once)?;
         let kept = residents
             .iter()
             .filter(|_| keeps)
@@ -160,15 +165,17 @@ impl<R: DeviceReal> Batch<R> {
             .collect::<Result<Vec<_>, _>>()?;
         let most = chunks.iter().map(|c| c.count).max().unwrap_or(1);
         // What the slots share is set aside while their number is found.
-        let set_aside = context.budget.reserve("lists of the linear solver", shared.unwrap_or(0) + of_cases)?;
+        let lists = linear_plan.as_ref().map_or(0, Plan::shared_bytes);
+        let set_aside = context.budget.reserve("lists of the linear solver", lists + of_cases + once)?;
         let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
         drop(set_aside);
-        let scratch = Scratch::new(&context, sizes, (slots, moduli))?;
+        let pools = PoolBytes::new::<R>(sizes, &tangents, linear_plan.as_ref());
+        let scratch = Scratch::new(&context, sizes, (slots, pools))?;
         let tangents = Tangents::new(&context, &connectivity, &scratch, &residents, models, (slots, in_single))?;
         let linear = linear_plan
             .map(|plan| match &tangents {
-                Tangents::Same(set) => Linear::new(&context, &plan, slots, set.blocks()),
-                Tangents::Single(single) => Linear::new(&context, &plan, slots, single.set().blocks()),
+                Tangents::Same(set) => Linear::new(&context, &plan, (slots, &scratch.pools), set.blocks()),
+                Tangents::Single(single) => Linear::new(&context, &plan, (slots, &scratch.pools), single.set().blocks()),
             })
             .transpose()?;
         let groups: Vec<(Resident<R>, Kernels)> = residents
@@ -343,17 +350,34 @@ impl<R: DeviceReal> Batch<R> {
     /// The device's fault.
     pub fn tangent(&self, dispatch: &Dispatch, increments: &[R]) -> Result<(Vec<Outcome>, UpperBlocks<R>), GpuError> {
         self.begin_element(dispatch, increments)?;
-        let count = dispatch.cases.len() * 9 * self.sizes().blocks;
         Ok(match &self.tangents {
             Tangents::Same(set) => {
-                let mut blocks = vec![R::ZERO; count];
-                (self.evaluate(dispatch, Evaluation::Tangent, set.blocks(), &mut blocks)?, UpperBlocks::Same(blocks))
+                let (outcomes, blocks) = self.bring_tangents(dispatch, set.blocks())?;
+                (outcomes, UpperBlocks::Same(blocks))
             }
             Tangents::Single(single) => {
-                let mut blocks = vec![0.0; count];
-                (self.evaluate(dispatch, Evaluation::Tangent, single.set().blocks(), &mut blocks)?, UpperBlocks::Single(blocks))
+                let (outcomes, blocks) = self.bring_tangents(dispatch, single.set().blocks())?;
+                (outcomes, UpperBlocks::Single(blocks))
             }
         })
+    }
+
+    /// Makes the tangents and reads them: all at once where the host always solves, slot by slot
+    /// where it seldom does, and there is memory for no more.
+    fn bring_tangents<T: DeviceReal>(
+        &self,
+        dispatch: &Dispatch,
+        buffer: &StorageBuffer<T>,
+    ) -> Result<(Vec<Outcome>, Vec<T>), GpuError> {
+        let (slots, of_slot) = (dispatch.cases.len(), 9 * self.sizes().blocks);
+        let mut blocks = vec![T::ZERO; slots * of_slot];
+        let at_a_time = if self.solves() { 1 } else { slots };
+        let (first, rest) = blocks.split_at_mut(at_a_time * of_slot);
+        let outcomes = self.evaluate(dispatch, Evaluation::Tangent, buffer, first)?;
+        for (i, piece) in rest.chunks_mut(of_slot).enumerate() {
+            self.context.download_at(buffer, (at_a_time + i) * of_slot, piece)?;
+        }
+        Ok((outcomes, blocks))
     }
 
     /// Whether linear systems are solved here: the mesh has a hierarchy.

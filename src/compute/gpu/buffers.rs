@@ -3,6 +3,7 @@
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::memory::{Reservation, Staging};
+use super::pools::ALIGNMENT;
 use super::shader_sources::Precision;
 use crate::real::Real;
 use bytemuck::{Pod, cast_slice};
@@ -71,6 +72,8 @@ pub struct StorageBuffer<T> {
     pub(super) raw: wgpu::Buffer,
     what: String,
     len: usize,
+    /// First byte in `raw`: 0 but of a view.
+    pub(super) first: u64,
     /// None of a view.
     _reservation: Option<Reservation>,
     _type: PhantomData<T>,
@@ -113,7 +116,7 @@ impl<T> StorageBuffer<T> {
         if offset.checked_add(out.len()).is_none_or(|end| end > self.len) {
             return Err(GpuError::Length { what: self.what.clone(), expected: self.len, given: offset + out.len() });
         }
-        let offset = (offset * size_of::<T>()) as u64;
+        let offset = self.first + (offset * size_of::<T>()) as u64;
         Ok(Read { raw: &self.raw, what: &self.what, offset, out: bytemuck::cast_slice_mut(out) })
     }
 
@@ -123,18 +126,40 @@ impl<T> StorageBuffer<T> {
     /// # Errors
     /// [`GpuError::Length`] if it would be longer.
     pub fn view<U>(&self, what: &str, len: usize) -> Result<StorageBuffer<U>, GpuError> {
-        let bytes = (len * size_of::<U>()) as u64;
-        if bytes > self.raw.size() {
-            let expected = self.raw.size() as usize / size_of::<U>().max(1);
+        self.view_after::<(), U>(None, what, len)
+    }
+
+    /// As [`StorageBuffer::view`], behind another view of the same memory: the two may be in use at
+    /// the same time, but a kernel that writes one may not be bound to the other.
+    ///
+    /// # Errors
+    /// As [`StorageBuffer::view`].
+    pub fn view_after<V, U>(
+        &self,
+        before: Option<&StorageBuffer<V>>,
+        what: &str,
+        len: usize,
+    ) -> Result<StorageBuffer<U>, GpuError> {
+        let end = |view: &StorageBuffer<V>| view.first + (view.len * size_of::<V>()) as u64;
+        let first = before.map_or(0, end).next_multiple_of(ALIGNMENT);
+        let bytes = padded_bytes::<U>(len);
+        if first + bytes > self.raw.size() {
+            let expected = self.raw.size().saturating_sub(first) as usize / size_of::<U>().max(1);
             return Err(GpuError::Length { what: what.to_owned(), expected, given: len });
         }
-        Ok(StorageBuffer { raw: self.raw.clone(), what: what.to_owned(), len, _reservation: None, _type: PhantomData })
+        Ok(StorageBuffer { raw: self.raw.clone(), what: what.to_owned(), len, first, _reservation: None, _type: PhantomData })
     }
 
     /// The whole array, as a kernel's argument.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
-        self.raw.as_entire_binding()
+        let size = std::num::NonZeroU64::new(padded_bytes::<T>(self.len));
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &self.raw, offset: self.first, size })
     }
+}
+
+/// Bytes that an array takes: an empty binding is invalid, 16 bytes stand for it.
+fn padded_bytes<T>(len: usize) -> u64 {
+    ((len * size_of::<T>()) as u64).next_multiple_of(16).max(16)
 }
 
 impl GpuContext {
@@ -174,8 +199,7 @@ impl GpuContext {
     }
 
     fn allocate<T: Pod>(&self, what: &str, len: usize, kind: wgpu::BufferUsages) -> Result<StorageBuffer<T>, GpuError> {
-        // an empty binding is invalid: 16 bytes stand for it
-        let bytes = ((len * size_of::<T>()) as u64).next_multiple_of(16).max(16);
+        let bytes = padded_bytes::<T>(len);
         let limit = self.adapter().max_binding.min(self.adapter().max_buffer);
         if bytes > limit {
             return Err(GpuError::TooLarge { what: what.to_owned(), bytes, limit });
@@ -183,7 +207,7 @@ impl GpuContext {
         let reservation = self.budget.reserve(what, bytes)?;
         let usage = kind | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let raw = self.buffer(what, bytes, usage)?;
-        Ok(StorageBuffer { raw, what: what.to_owned(), len, _reservation: Some(reservation), _type: PhantomData })
+        Ok(StorageBuffer { raw, what: what.to_owned(), len, first: 0, _reservation: Some(reservation), _type: PhantomData })
     }
 
     /// An array with these elements.
@@ -229,7 +253,7 @@ impl GpuContext {
         let start = offset * size_of::<T>();
         self.scoped(&buffer.what, || {
             for (i, piece) in bytes.chunks(UPLOAD_PIECE).enumerate() {
-                self.queue.write_buffer(&buffer.raw, (start + i * UPLOAD_PIECE) as u64, piece);
+                self.queue.write_buffer(&buffer.raw, buffer.first + (start + i * UPLOAD_PIECE) as u64, piece);
                 self.meter.went_up(piece.len() as u64);
                 if bytes.len() > UPLOAD_PIECE {
                     self.queue.submit([]);

@@ -30,6 +30,7 @@ pub mod memory;
 mod meter;
 pub mod mixed;
 pub mod pipelines;
+mod pools;
 pub mod report;
 pub mod resident;
 pub mod scratch;

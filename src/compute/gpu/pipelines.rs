@@ -167,7 +167,8 @@ impl Recorder<'_> {
             }
         }
         let size = size_of::<T>() as u64;
-        self.encoder.copy_buffer_to_buffer(&from.raw, first as u64 * size, &to.raw, to_first as u64 * size, count as u64 * size);
+        let (at, to_at) = (from.first + first as u64 * size, to.first + to_first as u64 * size);
+        self.encoder.copy_buffer_to_buffer(&from.raw, at, &to.raw, to_at, count as u64 * size);
         self.commands += 1;
         Ok(())
     }

@@ -17,8 +17,8 @@ use crate::mesh::Mesh;
 pub const STATE: usize = super::material::STATE;
 /// Components of a point's committed state and of what flowed in its last step.
 pub const HISTORY: usize = 2 * STATE;
-/// Components of a point's reference gradients.
-pub const GRADIENT: usize = 3 * NODES;
+/// Coordinates of an element's nodes.
+pub const COORDINATES: usize = 3 * NODES;
 /// The coefficient of friction that stands for full stick in `coulomb.wgsl`.
 const FULL_STICK: f64 = -1.0;
 
@@ -43,8 +43,13 @@ impl Sizes {
 
     /// Bytes a case keeps on the device, with its own geometry: the widest array, and all together.
     pub fn resident_bytes<R>(&self) -> (u64, u64) {
-        let widest = GRADIENT * self.points();
-        let all = widest + (1 + STATE + HISTORY) * self.points() + self.elements + 3 * self.nodes + 2 * self.contact_points + 32;
+        let widest = HISTORY * self.points();
+        let all = widest
+            + (1 + STATE) * self.points()
+            + (COORDINATES + 1) * self.elements
+            + 3 * self.nodes
+            + 2 * self.contact_points
+            + 32;
         ((widest * size_of::<R>()) as u64, (all * size_of::<R>()) as u64)
     }
 }
@@ -108,7 +113,7 @@ pub struct Resident<R> {
     pub count: usize,
     /// Index of each case's geometry among those of the group.
     pub geometry_of: Vec<u32>,
-    pub(super) gradient: StorageBuffer<R>,
+    pub(super) coordinates: StorageBuffer<R>,
     pub(super) volume: StorageBuffer<R>,
     pub(super) committed: StorageBuffer<R>,
     pub(super) parameters: StorageBuffer<R>,
@@ -151,7 +156,7 @@ impl<R: DeviceReal> Resident<R> {
             })
             .collect();
         let points = sizes.points();
-        let (gradient, volume) = send_geometry::<R>(context, sizes, &meshes)?;
+        let (coordinates, volume) = send_geometry::<R>(context, sizes, &meshes)?;
         let weight = context.zeros("contact weights", meshes.len() * sizes.contact_points)?;
         for (index, mesh) in meshes.iter().enumerate() {
             let weights: Vec<R> = mesh.contact_size.iter().map(|&h| R::of(contact_weight * h)).collect();
@@ -170,7 +175,7 @@ impl<R: DeviceReal> Resident<R> {
             first,
             count,
             geometry_of,
-            gradient,
+            coordinates,
             volume,
             weight,
             committed: context.zeros("committed displacements", count * 3 * sizes.nodes)?,
@@ -230,7 +235,7 @@ impl<R: DeviceReal> Resident<R> {
     }
 }
 
-/// Reference gradients `[mesh][3 a + j][point]` and volumes `[mesh][point]` of meshes, on the
+/// Reference positions of the nodes `[mesh][3 a + i][element]` and volumes `[mesh][point]` of meshes, on the
 /// device.
 fn send_geometry<R: DeviceReal>(
     context: &GpuContext,
@@ -238,34 +243,34 @@ fn send_geometry<R: DeviceReal>(
     meshes: &[&Arc<Mesh>],
 ) -> Result<(StorageBuffer<R>, StorageBuffer<R>), ComputeError> {
     let points = sizes.points();
-    let gradient = context.zeros("reference gradients", meshes.len() * GRADIENT * points)?;
+    let coordinates = context.zeros("reference positions", meshes.len() * COORDINATES * sizes.elements)?;
     let volume = context.zeros("reference volumes", meshes.len() * points)?;
     for (index, mesh) in meshes.iter().enumerate() {
-        let (gradients, volumes) = flatten_geometry::<R>(mesh)?;
-        context.upload_at(&gradient, index * GRADIENT * points, &gradients)?;
+        let (positions, volumes) = flatten_geometry::<R>(mesh)?;
+        context.upload_at(&coordinates, index * COORDINATES * sizes.elements, &positions)?;
         context.upload_at(&volume, index * points, &volumes)?;
     }
-    Ok((gradient, volume))
+    Ok((coordinates, volume))
 }
 
-/// Reference gradients `[3 a + j][point]` and volumes `[point]` of a mesh.
+/// Positions of the nodes relative to the element's first one `[3 a + i][element]`, which keep
+/// their digits far from the origin, and volumes `[point]` of a mesh.
 fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
-    let points = QUADRATURE_POINTS * mesh.elements.len();
-    let mut gradient = vec![R::ZERO; GRADIENT * points];
-    let mut volume = vec![R::ZERO; points];
+    let elements = mesh.elements.len();
+    let mut coordinates = vec![R::ZERO; COORDINATES * elements];
+    let mut volume = vec![R::ZERO; QUADRATURE_POINTS * elements];
     for (e, nodes) in mesh.elements.iter().enumerate() {
-        let geometry = Geometry::<R>::new(&nodes.map(|n| mesh.nodes[n as usize])).map_err(|invalid| {
+        let positions = nodes.map(|n| mesh.nodes[n as usize]);
+        let geometry = Geometry::<R>::new(&positions).map_err(|invalid| {
             let (Invalid::Inverted(point) | Invalid::Material(point)) = invalid;
             ComputeError::InvertedMesh { element: e, point }
         })?;
-        let first = QUADRATURE_POINTS * e;
-        volume[first..first + QUADRATURE_POINTS].copy_from_slice(&geometry.volume.0);
-        for a in 0..NODES {
-            for j in 0..3 {
-                let row = (3 * a + j) * points + first;
-                gradient[row..row + QUADRATURE_POINTS].copy_from_slice(&geometry.gradient[a][j].0);
+        volume[QUADRATURE_POINTS * e..][..QUADRATURE_POINTS].copy_from_slice(&geometry.volume.0);
+        for (a, position) in positions.iter().enumerate() {
+            for i in 0..3 {
+                coordinates[(3 * a + i) * elements + e] = R::of(position[i] - positions[0][i]);
             }
         }
     }
-    Ok((gradient, volume))
+    Ok((coordinates, volume))
 }

@@ -4,6 +4,7 @@ use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::pipelines::Bound;
+use super::pools::{PoolBytes, Pools};
 use super::resident::{Connectivity, HISTORY, Resident, Sizes};
 use super::shader_sources::{
     CONTACT_POINTS, CONTACT_TRIAL as GATHER_CONTACT_TRIAL, GATHER_NODE_FORCE, HEX8_BEGIN_STEP, HEX8_ENERGIES,
@@ -13,7 +14,7 @@ use super::shader_sources::{
 /// Components of `moduli` in `tangent.wgsl`.
 pub const MODULI: usize = 31;
 /// Components of the stresses that a force is gathered from.
-const STRESS: usize = 9;
+pub const STRESS: usize = 9;
 /// Numbers that go to a contact point: force, increment.
 pub const CONTACT_TRIAL: usize = 6;
 /// Numbers that come from it: residual, force rows, displacement rows.
@@ -40,9 +41,8 @@ pub struct Scratch<R> {
     pub increment: StorageBuffer<R>,
     pub jacobian: StorageBuffer<R>,
     pub first_invalid: StorageBuffer<u32>,
-    /// Memory of what is not needed at the same time: stresses of a force, new states of a commit,
-    /// moduli of a tangent.
-    pub pool: StorageBuffer<u32>,
+    /// Memory of what is not needed at the same time.
+    pub pools: Pools,
     pub(super) stress: StorageBuffer<R>,
     pub force: StorageBuffer<R>,
     pub(super) next_history: StorageBuffer<R>,
@@ -54,9 +54,9 @@ pub struct Scratch<R> {
 }
 
 impl<R: DeviceReal> Scratch<R> {
-    pub fn new(context: &GpuContext, sizes: Sizes, (slots, moduli): (usize, u64)) -> Result<Self, GpuError> {
+    pub fn new(context: &GpuContext, sizes: Sizes, (slots, pools): (usize, PoolBytes)) -> Result<Self, GpuError> {
         let points = sizes.points();
-        let pool = context.zeros("moduli, stresses or new states", slots * Self::pool_bytes(sizes, moduli) as usize / 4)?;
+        let pools = Pools::new(context, pools, slots)?;
         let zeros = |what: &str, per_slot: usize| context.zeros(what, slots * per_slot);
         Ok(Self {
             dimensions: context.block("dimensions")?,
@@ -64,10 +64,10 @@ impl<R: DeviceReal> Scratch<R> {
             first_invalid: context.zeros("status", slots)?,
             increment: zeros("increments", 3 * sizes.nodes)?,
             jacobian: zeros("Jacobians", points)?,
-            stress: pool.view("stresses", slots * STRESS * points)?,
+            stress: pools.blocks.view("stresses", slots * STRESS * points)?,
             force: zeros("internal forces", 3 * sizes.nodes)?,
-            next_history: pool.view("new states", slots * HISTORY * points)?,
-            pool,
+            next_history: pools.vectors.view("new states", slots * HISTORY * points)?,
+            pools,
             point_work: zeros("energies of points", 2 * points)?,
             energies: zeros("energies of elements", 3 * sizes.elements)?,
             contact_trial: zeros("contact points", CONTACT_TRIAL * sizes.contact_points)?,
@@ -76,12 +76,7 @@ impl<R: DeviceReal> Scratch<R> {
         })
     }
 
-    /// Bytes of a slot's share of the pool, where its moduli take so many.
-    pub fn pool_bytes(sizes: Sizes, moduli: u64) -> u64 {
-        moduli.max((STRESS.max(HISTORY) * sizes.points() * size_of::<R>()) as u64)
-    }
-
-    /// Bytes of a slot with its share of the staging buffer, but for the pool.
+    /// Bytes of a slot, but for the pools.
     pub fn bytes(sizes: Sizes) -> u64 {
         let points = sizes.points();
         let all = (1 + 2) * points + 6 * sizes.nodes + 3 * sizes.elements;
@@ -108,7 +103,7 @@ impl Kernels {
         let shape = [s.dimensions.binding(), s.active.binding()];
         let element = [
             mesh.element_nodes.binding(),
-            r.gradient.binding(),
+            r.coordinates.binding(),
             r.volume.binding(),
             r.committed.binding(),
             s.increment.binding(),

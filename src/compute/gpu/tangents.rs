@@ -8,7 +8,7 @@ use super::context::GpuContext;
 use super::error::GpuError;
 use super::material::flatten;
 use super::pipelines::{Bound, Recorder};
-use super::resident::{Connectivity, GRADIENT, Resident, STATE, Sizes};
+use super::resident::{COORDINATES, Connectivity, Resident, STATE, Sizes};
 use super::scratch::{MODULI, Scratch};
 use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_MODULI, Kernel, NARROW};
 use crate::compute::{CaseModel, ComputeError};
@@ -16,7 +16,7 @@ use crate::material::Material;
 
 /// The arrays of which tangents are made, in one precision.
 struct Inputs<'a, T> {
-    gradient: &'a StorageBuffer<T>,
+    coordinates: &'a StorageBuffer<T>,
     volume: &'a StorageBuffer<T>,
     committed: &'a StorageBuffer<T>,
     increment: &'a StorageBuffer<T>,
@@ -43,10 +43,10 @@ pub struct Set<T> {
 }
 
 impl<T: DeviceReal> Set<T> {
-    fn new<R>(context: &GpuContext, sizes: Sizes, scratch: &Scratch<R>, slots: usize) -> Result<Self, GpuError> {
+    fn new<R>(sizes: Sizes, scratch: &Scratch<R>, slots: usize) -> Result<Self, GpuError> {
         Ok(Self {
-            moduli: scratch.pool.view("moduli", slots * MODULI * sizes.points())?,
-            blocks: context.zeros("tangent blocks", slots * 9 * sizes.blocks)?,
+            moduli: scratch.pools.vectors.view("moduli", slots * MODULI * sizes.points())?,
+            blocks: scratch.pools.blocks.view("tangent blocks", slots * 9 * sizes.blocks)?,
             groups: Vec::new(),
         })
     }
@@ -62,7 +62,7 @@ impl<T: DeviceReal> Set<T> {
             scratch.dimensions.binding(),
             scratch.active.binding(),
             mesh.element_nodes.binding(),
-            inputs.gradient.binding(),
+            inputs.coordinates.binding(),
             inputs.volume.binding(),
             inputs.committed.binding(),
             inputs.increment.binding(),
@@ -153,7 +153,7 @@ impl<R: DeviceReal> Tangents<R> {
         let number = if in_single { size_of::<f32>() } else { size_of::<R>() };
         let (moduli, blocks, points) = (MODULI * sizes.points(), 9 * sizes.blocks, sizes.points());
         let of_slot = if in_single { points + 3 * sizes.nodes } else { 0 };
-        let of_case = if in_single { (GRADIENT + 1 + STATE) * points + 3 * sizes.nodes + 32 } else { 0 };
+        let of_case = if in_single { COORDINATES * sizes.elements + (1 + STATE) * points + 3 * sizes.nodes + 32 } else { 0 };
         let [moduli, blocks, of_slot, of_case] = [moduli, blocks, of_slot, of_case].map(|numbers| (number * numbers) as u64);
         Bytes { moduli, blocks, of_slot, of_case }
     }
@@ -172,10 +172,10 @@ impl<R: DeviceReal> Tangents<R> {
     ) -> Result<Self, ComputeError> {
         let sizes = mesh.sizes;
         if !in_single {
-            let mut set = Set::new(context, sizes, scratch, slots)?;
+            let mut set = Set::new(sizes, scratch, slots)?;
             for r in residents {
                 let inputs = Inputs {
-                    gradient: &r.gradient,
+                    coordinates: &r.coordinates,
                     volume: &r.volume,
                     committed: &r.committed,
                     increment: &scratch.increment,
@@ -196,13 +196,13 @@ impl<R: DeviceReal> Tangents<R> {
         });
         let [of_increment, of_displacement, of_state] = shapes;
         let shapes = [of_increment?, of_displacement?, of_state?];
-        let mut set = Set::new(context, sizes, scratch, slots)?;
+        let mut set = Set::new(sizes, scratch, slots)?;
         let increment = context.zeros("increments in f32", slots * unknowns)?;
         let jacobian = context.zeros("Jacobians in f32", slots * points)?;
         let pipeline = context.pipeline(&NARROW, R::PRECISION)?;
         let mut groups = Vec::with_capacity(residents.len());
         for r in residents {
-            let (gradient, volume) = r.geometry::<f32>(context, sizes, models)?;
+            let (coordinates, volume) = r.geometry::<f32>(context, sizes, models)?;
             let committed = context.zeros("committed displacements in f32", r.count * unknowns)?;
             let state = context.zeros("states in f32", r.count * STATE * points)?;
             let materials: Vec<Material<f32>> = models[r.first..r.first + r.count].iter().map(|m| m.material.cast()).collect();
@@ -210,7 +210,7 @@ impl<R: DeviceReal> Tangents<R> {
             let parameters = context.array("material parameters in f32", &parameters)?;
             let table = context.array("hardening tables in f32", &table)?;
             let inputs = Inputs {
-                gradient: &gradient,
+                coordinates: &coordinates,
                 volume: &volume,
                 committed: &committed,
                 increment: &increment,
@@ -232,7 +232,7 @@ impl<R: DeviceReal> Tangents<R> {
                     Ok((count, context.bind(&pipeline, [&dispatch[..], &arrays].concat())?))
                 })
                 .collect::<Result<Vec<_>, GpuError>>()?;
-            groups.push(Narrowed { copies, _arrays: [gradient, volume, committed, state, parameters, table] });
+            groups.push(Narrowed { copies, _arrays: [coordinates, volume, committed, state, parameters, table] });
         }
         Ok(Self::Single(Box::new(Single { set, groups, _arrays: [increment, jacobian], _shapes: shapes })))
     }

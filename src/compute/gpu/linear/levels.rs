@@ -4,6 +4,7 @@ use super::super::buffers::StorageBuffer;
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::pipelines::{Bound, Recorder};
+use super::super::pools::Pools;
 use super::super::shader_sources::{Kernel, Precision};
 use super::RESTART;
 use super::sources::{
@@ -108,8 +109,10 @@ pub fn row_threads(nodes: usize) -> usize {
 
 /// What all levels share.
 #[derive(Clone, Copy, Debug)]
-pub struct Common {
+pub struct Common<'a> {
     slots: usize,
+    /// Memory for A P, of the finest level alone.
+    pool: Option<&'a StorageBuffer<u32>>,
     plate_nodes: usize,
     coarsest_steps: usize,
     smoothing_steps: usize,
@@ -186,10 +189,14 @@ impl DeviceLists {
     }
 }
 
-/// Numbers that a slot takes on a level and on the way to the next: the widest array, and all.
+/// Numbers that a slot takes on a level: the widest array, and all.
 pub fn slot_numbers(level: &LevelLayout) -> (usize, usize) {
-    let products = level.transfer.as_ref().map_or(0, |t| 9 * (t.product.start.len() - 1));
-    ((9 * level.blocks()).max(products), 9 * level.blocks() + products + (9 + 1 + 5 * 3) * level.nodes)
+    (9 * level.blocks(), 9 * level.blocks() + (9 + 1 + 5 * 3) * level.nodes)
+}
+
+/// Numbers of a level's A P.
+pub fn product_numbers(level: &LevelLayout) -> usize {
+    level.transfer.as_ref().map_or(0, |t| 9 * (t.product.start.len() - 1))
 }
 
 /// Numbers of a level that all slots share.
@@ -207,11 +214,23 @@ impl Level {
     ///
     /// # Errors
     /// What the device says.
-    pub fn new(context: &GpuContext, layout: &LevelLayout, next: Option<&LevelLayout>, common: Common) -> Result<Self, GpuError> {
+    pub fn new(
+        context: &GpuContext,
+        layout: &LevelLayout,
+        next: Option<&LevelLayout>,
+        common: Common<'_>,
+    ) -> Result<Self, GpuError> {
         let slots = common.slots;
         let zeros = |what: &str, numbers: usize| context.zeros(what, slots * numbers);
         let transfer = match (&layout.transfer, next) {
-            (Some(transfer), Some(next)) => Some(Transfer::new(context, transfer, next, slots)?),
+            (Some(transfer), Some(next)) => {
+                let numbers = slots * product_numbers(layout);
+                let product = match common.pool {
+                    Some(pool) => pool.view("products A P", numbers)?,
+                    None => context.zeros("products A P", numbers)?,
+                };
+                Some(Transfer::new(context, transfer, next, product)?)
+            }
             _ => None,
         };
         let sizes = LevelBlock {
@@ -258,14 +277,19 @@ impl Level {
 }
 
 impl Transfer {
-    fn new(context: &GpuContext, layout: &TransferLayout, next: &LevelLayout, slots: usize) -> Result<Self, GpuError> {
+    fn new(
+        context: &GpuContext,
+        layout: &TransferLayout,
+        next: &LevelLayout,
+        product: StorageBuffer<f32>,
+    ) -> Result<Self, GpuError> {
         let products = layout.product.start.len() - 1;
         Ok(Self {
             product_lists: DeviceLists::of_lists(context, "blocks of A P", &layout.product)?,
             coarse_lists: DeviceLists::of_lists(context, "blocks of the next level", &layout.coarse)?,
             prolongation: DeviceLists::of_rows(context, "prolongation", &layout.prolongation)?,
             restriction: DeviceLists::of_rows(context, "restriction", &layout.restriction)?,
-            product: context.zeros("products A P", slots * 9 * products)?,
+            product,
             products,
             coarse_blocks: next.blocks(),
             coarse_nodes: next.nodes,
@@ -295,15 +319,16 @@ impl Levels {
     pub fn new(
         context: &GpuContext,
         layout: &Layout,
-        slots: usize,
+        (slots, pools): (usize, &Pools),
         plate_nodes: usize,
         records: &StorageBuffer<Record>,
     ) -> Result<Self, GpuError> {
         let layouts = &layout.levels;
         let (coarsest_steps, smoothing_steps) = (layout.coarsest.len(), layout.smoother.len());
-        let common = Common { slots, plate_nodes, coarsest_steps, smoothing_steps };
+        let pool = |l: usize| (l == 0).then_some(&pools.blocks);
+        let common = |l| Common { slots, pool: pool(l), plate_nodes, coarsest_steps, smoothing_steps };
         let levels = (0..layouts.len())
-            .map(|l| Level::new(context, &layouts[l], layouts.get(l + 1), common))
+            .map(|l| Level::new(context, &layouts[l], layouts.get(l + 1), common(l)))
             .collect::<Result<Vec<_>, _>>()?;
         let shares = layout
             .smoother

@@ -17,10 +17,11 @@ use super::buffers::{DeviceReal, Read, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
 use super::pipelines::Recorder;
+use super::pools::Pools;
 use crate::compute::linear::{Ended, SideReport};
 use crate::linalg::layout::{Layout, NOWHERE};
 use crate::mesh::Mesh;
-use levels::{Call, Levels, Record, row_threads, shared_numbers, slot_numbers};
+use levels::{Call, Levels, Record, product_numbers, row_threads, shared_numbers, slot_numbers};
 use sources::{
     ASSEMBLE, KRYLOV_ADVANCE, KRYLOV_BEGIN, KRYLOV_COMBINE, KRYLOV_DOTS, KRYLOV_LEAST_SQUARES, KRYLOV_MEASURE, KRYLOV_NORMALISE,
     KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, PRESCRIBE, RESIDUAL,
@@ -80,14 +81,24 @@ impl Plan {
         })
     }
 
-    /// Bytes of a slot: the widest array, and all together.
+    /// Bytes of a slot's Krylov vectors.
+    pub fn krylov_bytes(&self) -> u64 {
+        ((2 * RESTART + 1) * 3 * self.layout.levels[0].nodes * size_of::<f32>()) as u64
+    }
+
+    /// Bytes of a slot's A P of the finest level.
+    pub fn product_bytes(&self) -> u64 {
+        (product_numbers(&self.layout.levels[0]) * size_of::<f32>()) as u64
+    }
+
+    /// Bytes of a slot but for these: the widest array, and all together.
     pub fn bytes(&self) -> (u64, u64) {
         let n = 3 * self.layout.levels[0].nodes;
-        let basis = (RESTART + 1) * n;
-        let (mut widest, mut all) = (basis, (2 * RESTART + 5) * n + small_numbers() + 2 * (RESTART + 3) * n.div_ceil(CHUNK));
-        for level in &self.layout.levels {
+        let (mut widest, mut all) = (n, 4 * n + small_numbers() + (RESTART + 3) * n.div_ceil(CHUNK));
+        for (l, level) in self.layout.levels.iter().enumerate() {
             let (array, sum) = slot_numbers(level);
-            (widest, all) = (widest.max(array), all + sum);
+            let product = if l == 0 { 0 } else { product_numbers(level) };
+            (widest, all) = (widest.max(array).max(product), all + sum + product);
         }
         let rows = POINT_ROWS * self.contact_points * size_of::<f32>();
         ((widest * size_of::<f32>()) as u64, (all * size_of::<f32>() + rows + size_of::<Record>()) as u64)
@@ -156,15 +167,15 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The arrays and kernels for so many slots; `blocks` are the tangents that the gathering
-    /// kernels leave.
+    /// The arrays and kernels for so many slots, some in memory that they share with others;
+    /// `blocks` are the tangents that the gathering kernels leave.
     ///
     /// # Errors
     /// What the device says.
     pub fn new<T: DeviceReal>(
         context: &GpuContext,
         plan: &Plan,
-        slots: usize,
+        (slots, pools): (usize, &Pools),
         blocks: &StorageBuffer<T>,
     ) -> Result<Self, GpuError> {
         let finest = &plan.layout.levels[0];
@@ -172,7 +183,7 @@ impl Linear {
         let chunks = unknowns.div_ceil(CHUNK);
         let zeros = |what: &str, numbers: usize| context.zeros::<f32>(what, slots * numbers);
         let records = context.zeros("linear solves", slots)?;
-        let levels = Levels::new(context, &plan.layout, slots, plan.plate.len(), &records)?;
+        let levels = Levels::new(context, &plan.layout, (slots, pools), plan.plate.len(), &records)?;
         let level = &levels.levels[0];
         let rows = context.zeros("contact rows of the matrix", slots * POINT_ROWS * plan.contact_points)?;
         let source = context.array("blocks of the matrix", &plan.source)?;
@@ -182,8 +193,8 @@ impl Linear {
         context.upload(&counts, &[[plan.upper_blocks as u32, plan.contact_points as u32, 0, 0]])?;
         let (rhs, solution) = (zeros("right-hand sides", unknowns)?, zeros("solutions", unknowns)?);
         let (guess, answer) = (zeros("guesses", unknowns)?, zeros("answers", unknowns)?);
-        let basis = zeros("Krylov vectors", (RESTART + 1) * unknowns)?;
-        let preconditioned = zeros("preconditioned vectors", RESTART * unknowns)?;
+        let basis = pools.vectors.view("Krylov vectors", slots * (RESTART + 1) * unknowns)?;
+        let preconditioned = pools.vectors.view_after(Some(&basis), "preconditioned vectors", slots * RESTART * unknowns)?;
         let sums = zeros("partial sums", (RESTART + 2) * chunks)?;
         let squares = zeros("partial squares", chunks)?;
         let small = zeros("least-squares problems", small_numbers())?;

@@ -1,0 +1,63 @@
+//! Memory that arrays have in turn: what one leaves is lost when the next is written.
+//!
+//! An iteration makes moduli, gathers them into blocks, forms the finest matrix of these, takes A P
+//! of it on the way to the coarser ones, and iterates; then trials take stresses, of which there may
+//! be some between two lists of Krylov iterations. So Krylov vectors may lie where moduli were, but
+//! not where stresses come.
+
+use super::buffers::{DeviceReal, StorageBuffer};
+use super::context::GpuContext;
+use super::error::GpuError;
+use super::linear::Plan;
+use super::resident::{HISTORY, Sizes};
+use super::scratch::STRESS;
+use super::tangents::Bytes;
+
+/// What any device can bind from: the largest alignment that Vulkan lets a driver ask for.
+pub const ALIGNMENT: u64 = 256;
+
+/// Bytes of a slot's share of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PoolBytes {
+    vectors: u64,
+    blocks: u64,
+}
+
+impl PoolBytes {
+    /// Of a slot with these tangents, and if linear systems are solved with what that takes.
+    pub fn new<R: DeviceReal>(sizes: Sizes, tangents: &Bytes, linear: Option<&Plan>) -> Self {
+        let numbers = |components: usize| (components * sizes.points() * size_of::<R>()) as u64;
+        Self {
+            vectors: tangents.moduli.max(numbers(HISTORY)).max(linear.map_or(0, Plan::krylov_bytes)),
+            blocks: tangents.blocks.max(numbers(STRESS)).max(linear.map_or(0, Plan::product_bytes)),
+        }
+    }
+
+    /// The wider one, and both.
+    pub fn widest_and_all(&self) -> (u64, u64) {
+        (self.vectors.max(self.blocks), self.vectors + self.blocks)
+    }
+}
+
+/// The memory of all slots.
+#[derive(Debug)]
+pub struct Pools {
+    /// Moduli of tangents, Krylov vectors, new states of a commit.
+    pub vectors: StorageBuffer<u32>,
+    /// Blocks of tangents, A P of the finest level, stresses of a force.
+    pub blocks: StorageBuffer<u32>,
+}
+
+impl Pools {
+    /// That of so many slots.
+    ///
+    /// # Errors
+    /// As [`GpuContext::zeros`].
+    pub fn new(context: &GpuContext, bytes: PoolBytes, slots: usize) -> Result<Self, GpuError> {
+        let words = |bytes: u64| (slots as u64 * bytes + ALIGNMENT) as usize / size_of::<u32>();
+        Ok(Self {
+            vectors: context.zeros("moduli, Krylov vectors or new states", words(bytes.vectors))?,
+            blocks: context.zeros("blocks of tangents, A P or stresses", words(bytes.blocks))?,
+        })
+    }
+}

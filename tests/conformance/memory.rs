@@ -1,0 +1,43 @@
+//! Memory of a batch on a device whose residuals are in double precision.
+
+use crate::device::device;
+use asperity::internals::compute::{CaseModel, Compute};
+use asperity::internals::compute::gpu::{Gpu, Precision};
+use asperity::internals::contact::coulomb::Friction;
+use asperity::internals::mesh::{SphereSpec, sphere_mesh};
+use asperity::material::{Elasticity, Hardening, Material};
+use std::sync::Arc;
+
+const MEGABYTE: u64 = 1_000_000;
+const GIBIBYTE: u64 = 1 << 30;
+
+/// The reference case's mesh. Each case has one of its own: what cases of one mesh share is not
+/// counted on.
+#[test]
+fn a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes() {
+    let name = "a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes";
+    let spec = SphereSpec { contact_radius: 0.2091, elements_per_contact_radius: 16, fine_zone: 1.3 };
+    let mesh = sphere_mesh(&spec).unwrap();
+    println!("{} elements, {} nodes", mesh.elements.len(), mesh.nodes.len());
+    assert!(mesh.nodes.len() >= 16_173, "{} nodes", mesh.nodes.len());
+    let used = [1, 2].map(|cases| {
+        let context = device(name, Precision::F64)?;
+        let model = || CaseModel {
+            mesh: Arc::new(mesh.clone()),
+            material: Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() },
+            friction: Friction::Coulomb(0.3),
+            opponent: None,
+        };
+        let models = (0..cases).map(|_| model()).collect();
+        let gpu = Gpu::<f64>::with_tangents_in_single(context.into(), models).unwrap();
+        let slots = gpu.context().unwrap().budget().used();
+        assert!(gpu.keeps_iterates());
+        Some(slots)
+    });
+    let [Some(one), Some(two)] = used else { return };
+    let of_case = two - one;
+    let all = one + 31 * of_case;
+    println!("a case takes {:.1} MB, 32 take {:.2} GiB", of_case as f64 / MEGABYTE as f64, all as f64 / GIBIBYTE as f64);
+    assert!(of_case <= 90 * MEGABYTE, "a case takes {of_case} bytes");
+    assert!(all <= 3 * GIBIBYTE, "32 cases take {all} bytes");
+}
