@@ -14,6 +14,8 @@ mod contact;
 mod element;
 #[path = "conformance/iterate.rs"]
 mod iterate;
+#[path = "conformance/kernels.rs"]
+mod kernels;
 #[path = "conformance/linear.rs"]
 mod linear;
 #[path = "conformance/material.rs"]

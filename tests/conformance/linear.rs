@@ -22,7 +22,7 @@ pub fn mesh() -> Arc<Mesh> {
 }
 
 /// Three spheres: elastic, plastic, nearly incompressible.
-fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
+pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
     let cases = [(Hardening::Elastic, 0.3), (Hardening::ideal(2e-3).unwrap(), 0.3), (Hardening::Elastic, 0.49)];
     let model = |(hardening, nu): (Hardening<f64>, f64)| CaseModel {
         mesh: mesh.clone(),
@@ -34,18 +34,18 @@ fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
 }
 
 /// One system, and what is asked of it.
-struct System {
+pub struct System {
     displacement: Vec<f64>,
     rows: Vec<Rows<f64>>,
-    fixed: Vec<bool>,
-    rhs: Vec<f64>,
-    matrix: BlockMatrix<f64>,
+    pub fixed: Vec<bool>,
+    pub rhs: Vec<f64>,
+    pub matrix: BlockMatrix<f64>,
     functional: Vec<f64>,
 }
 
 /// Points that stick, slide and are open by chance; every other free unknown has a random force,
 /// every fixed one a random displacement.
-fn system(case: usize, models: &[CaseModel], masked: bool) -> System {
+pub fn system(case: usize, models: &[CaseModel], masked: bool) -> System {
     let mesh = &models[case].mesh;
     let mut rng = random(40 + case as u64);
     let n = 3 * mesh.nodes.len();
@@ -109,7 +109,7 @@ fn asked<'a>(case: usize, system: &'a System, tolerance: f64, relative_to_guess:
     LinearRequest { case, displacement, rows, fixed, sides, outcome: Outcome::Valid }
 }
 
-fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
+pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
     let mut solutions: Vec<Vec<f64>> = systems.iter().map(|(_, system)| vec![0.0; system.rhs.len()]).collect();
     let mut requests: Vec<LinearRequest<'_>> =
         systems.iter().zip(&mut solutions).map(|(&(case, system), x)| asked(case, system, tolerance, false, x)).collect();

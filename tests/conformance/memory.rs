@@ -1,8 +1,8 @@
 //! Memory of a batch on a device whose residuals are in double precision.
 
 use crate::device::device;
-use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::compute::gpu::{Gpu, Precision};
+use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::contact::coulomb::Friction;
 use asperity::internals::mesh::{SphereSpec, sphere_mesh};
 use asperity::material::{Elasticity, Hardening, Material};

@@ -9,6 +9,7 @@ use super::batch::{Batch, Dispatch, Evaluation};
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::linear::Linear;
 use super::linear::pack::Packed;
 use super::scratch::{CONTACT_ANSWER, CONTACT_TRIAL};
 use crate::compute::cpu::Cpu;
@@ -108,6 +109,11 @@ impl<R: DeviceReal> Gpu<R> {
     pub(super) fn batch(&self) -> Result<&Batch<R>, GpuError> {
         let empty = || GpuError::Length { what: "the cases of the batch".into(), expected: 0, given: 1 };
         self.batch.as_ref().ok_or_else(empty)
+    }
+
+    /// What solves linear systems on the device, if anything does.
+    pub fn solver(&self) -> Option<&Linear> {
+        self.batch.as_ref().and_then(|batch| batch.linear.as_ref())
     }
 
     /// The dispatches for requests of these cases; none for no requests.

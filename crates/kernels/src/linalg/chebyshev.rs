@@ -48,6 +48,11 @@ impl Smoother {
         }
     }
 
+    /// Inverses of the diagonal blocks, by columns.
+    pub fn inverse(&self) -> &[Inverse] {
+        &self.inverse
+    }
+
     /// After the matrix changed.
     pub fn update(&mut self) {
         let (blocks, diagonal) = (&self.matrix.blocks, &self.matrix.pattern.diagonal);

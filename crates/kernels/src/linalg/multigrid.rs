@@ -32,6 +32,20 @@ struct Level {
     r: Vec<Node>,
 }
 
+/// What a level holds. Vectors have three components a node and a fourth number that is 0.
+#[derive(Clone, Copy, Debug)]
+pub struct OnLevel<'a> {
+    /// Its matrix; on the finest level with the rows and columns of fixed unknowns replaced by those
+    /// of the identity.
+    pub matrix: &'a BlockMatrix<f32>,
+    /// Inverses of its diagonal blocks, by columns.
+    pub inverse: &'a [[[f32; 4]; 3]],
+    /// Right-hand side of the last V-cycle.
+    pub b: &'a [[f32; 4]],
+    /// What it left.
+    pub x: &'a [[f32; 4]],
+}
+
 /// A multigrid preconditioner for one sparsity pattern and one chain of prolongations.
 #[derive(Clone, Debug)]
 pub struct Hierarchy {
@@ -119,6 +133,14 @@ impl Hierarchy {
             usize::MAX => Ok(()),
             node => Err(LinalgError::NotFinite { place: "the matrix", node }),
         }
+    }
+
+    /// What an update and a V-cycle left on a level, the finest being 0: for comparisons with a
+    /// device. None beyond the coarsest.
+    pub fn on_level(&self, l: usize) -> Option<OnLevel<'_>> {
+        let level = self.levels.get(l)?;
+        let (matrix, inverse) = (&level.smoother.matrix, level.smoother.inverse());
+        Some(OnLevel { matrix, inverse, b: &level.b, x: &level.x })
     }
 
     /// z = one V-cycle's approximation of A^-1 v from zero. `v` must be zero at fixed unknowns; so

@@ -135,12 +135,14 @@ pub struct Level {
     pub b: StorageBuffer<f32>,
     /// Where the cycle leaves its solution.
     pub x: StorageBuffer<f32>,
-    inverse: StorageBuffer<f32>,
+    /// Inverses of the diagonal blocks, `[slot][3 i + j][node]`.
+    pub inverse: StorageBuffer<f32>,
     other: StorageBuffer<f32>,
     last_step: StorageBuffer<f32>,
     residual: StorageBuffer<f32>,
     transfer: Option<Transfer>,
     nodes: usize,
+    width: usize,
 }
 
 /// The uniform block of a level, to be named by others.
@@ -262,7 +264,13 @@ impl Level {
             residual: zeros("residuals of a level", vector)?,
             transfer,
             nodes: layout.nodes,
+            width: layout.width,
         })
+    }
+
+    /// Its nodes, and blocks in a row.
+    pub fn size(&self) -> (usize, usize) {
+        (self.nodes, self.width)
     }
 
     /// Threads for its rows.

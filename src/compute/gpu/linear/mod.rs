@@ -9,6 +9,7 @@
 //! one more; slots that have finished leave out what remains, and where some have not, more is
 //! sent.
 
+pub mod inspect;
 mod levels;
 pub mod pack;
 pub mod sources;
@@ -135,6 +136,15 @@ pub struct Right {
     pub expected: usize,
 }
 
+/// What a cycle of FGMRES makes.
+#[derive(Debug)]
+struct Vectors {
+    basis: StorageBuffer<f32>,
+    preconditioned: StorageBuffer<f32>,
+    /// See `krylov.wgsl`.
+    small: StorageBuffer<f32>,
+}
+
 /// The linear solver of a batch's slots.
 #[derive(Debug)]
 pub struct Linear {
@@ -160,8 +170,9 @@ pub struct Linear {
     /// The answer, from the vectors of a cycle.
     finish: Vec<Call>,
     unknowns: usize,
+    vectors: Vectors,
     /// Arrays that only kernels name: they stay in the memory account as long as the kernels do.
-    _vectors: [StorageBuffer<f32>; 5],
+    _sums: [StorageBuffer<f32>; 2],
     _lists: [StorageBuffer<u32>; 3],
     _counts: StorageBuffer<[u32; 4]>,
 }
@@ -264,7 +275,8 @@ impl Linear {
             guess,
             answer,
             unknowns,
-            _vectors: [basis, preconditioned, sums, squares, small],
+            vectors: Vectors { basis, preconditioned, small },
+            _sums: [sums, squares],
             _lists: [source, point_of, plate],
             _counts: counts,
         })
