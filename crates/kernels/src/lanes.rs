@@ -9,6 +9,18 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use crate::real::Real;
 
+/// What `f` gives for each place of an array, `any` being no matter what. Always compiled in line,
+/// which [`std::array::from_fn`] and `map` are not: in the element's kernels they then hand each
+/// number through memory.
+#[inline(always)]
+pub fn array<T: Copy, const N: usize>(any: T, mut f: impl FnMut(usize) -> T) -> [T; N] {
+    let mut out = [any; N];
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = f(i);
+    }
+    out
+}
+
 /// One number ([`Real`]) or eight side by side ([`Lanes`]).
 pub trait Number:
     Copy
@@ -153,7 +165,7 @@ impl<R: Real> Lanes<R> {
     /// The number that `f` gives for each lane.
     #[inline(always)]
     pub fn from_fn(f: impl FnMut(usize) -> R) -> Self {
-        Self(std::array::from_fn(f))
+        Self(array(R::ZERO, f))
     }
 
     /// `self + a * b`, fused where the machine can.
@@ -210,7 +222,7 @@ impl<R: Real> Neg for Lanes<R> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+        Self(array(R::ZERO, |q| -self.0[q]))
     }
 }
 
@@ -225,7 +237,7 @@ impl<R: Real> Number for Lanes<R> {
     }
     #[inline(always)]
     fn from_fn(f: impl FnMut(usize) -> R) -> Self {
-        Self(std::array::from_fn(f))
+        Self(array(R::ZERO, f))
     }
     #[inline(always)]
     fn lane(self, i: usize) -> R {
@@ -237,35 +249,35 @@ impl<R: Real> Number for Lanes<R> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0.map(R::abs))
+        Self(array(R::ZERO, |q| self.0[q].abs()))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(std::array::from_fn(|q| self.0[q].max(other.0[q])))
+        Self(array(R::ZERO, |q| self.0[q].max(other.0[q])))
     }
     #[inline(always)]
     fn at_most(self, other: Self) -> [bool; 8] {
-        std::array::from_fn(|q| self.0[q] <= other.0[q])
+        array(false, |q| self.0[q] <= other.0[q])
     }
     #[inline(always)]
     fn above(self, other: Self) -> [bool; 8] {
-        std::array::from_fn(|q| self.0[q] > other.0[q])
+        array(false, |q| self.0[q] > other.0[q])
     }
     #[inline(always)]
     fn finite(self) -> [bool; 8] {
-        self.0.map(R::is_finite)
+        array(false, |q| self.0[q].is_finite())
     }
     #[inline(always)]
     fn select(mask: [bool; 8], yes: Self, no: Self) -> Self {
-        Self(std::array::from_fn(|q| if mask[q] { yes.0[q] } else { no.0[q] }))
+        Self(array(R::ZERO, |q| if mask[q] { yes.0[q] } else { no.0[q] }))
     }
     #[inline(always)]
     fn not(mask: [bool; 8]) -> [bool; 8] {
-        mask.map(|x| !x)
+        array(false, |q| !mask[q])
     }
     #[inline(always)]
     fn and(a: [bool; 8], b: [bool; 8]) -> [bool; 8] {
-        std::array::from_fn(|q| a[q] & b[q])
+        array(false, |q| a[q] & b[q])
     }
     #[inline(always)]
     fn any(mask: [bool; 8]) -> bool {

@@ -11,7 +11,7 @@
 //! Everything is computed from displacement gradients: `f - I = dH F_n^-1` with `dH` the gradient
 //! of the increment, so that small strains keep their digits (see `material::j2`).
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, array};
 use crate::material::j2::{Response, deviatoric_tangent, return_mapping_of_eight};
 use crate::material::multistep::{Flow, anticipate, complete};
 use crate::material::{Material, PointState, elastic_energy_deviatoric, elastic_energy_volumetric, pressure};
@@ -188,7 +188,7 @@ struct Kinematics<R> {
 }
 
 #[inline(always)]
-fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: &Nodal<R>) -> Result<Kinematics<R>, Invalid> {
+fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: &Nodal<R>) -> Kinematics<R> {
     let h_n = displacement_gradient(geometry, committed);
     let dh = displacement_gradient(geometry, increment);
     let (f_n_inverse, _) = invert(&identity_plus(&h_n));
@@ -201,12 +201,6 @@ fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: 
         }
     }
     let j_minus_1 = jacobian_minus_one(&h);
-    for q in 0..QUADRATURE_POINTS {
-        // The negated comparison catches NaN as well.
-        if !(j_minus_1.0[q] > -R::ONE) {
-            return Err(Invalid::Inverted(q));
-        }
-    }
     let (f_inverse, _) = invert(&identity_plus(&h));
     let mut gradient = geometry.gradient;
     for a in 0..NODES {
@@ -216,7 +210,17 @@ fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: 
         }
     }
     let theta_minus_1 = (j_minus_1 * geometry.volume).sum() / geometry.total_volume;
-    Ok(Kinematics { relative, gradient, j_minus_1, theta_minus_1 })
+    Kinematics { relative, gradient, j_minus_1, theta_minus_1 }
+}
+
+impl<R: Real> Kinematics<R> {
+    /// Whether no point is turned inside out: nothing of the kinematics means anything otherwise.
+    #[inline(always)]
+    fn check(&self) -> Result<(), Invalid> {
+        // The negated comparison catches NaN as well.
+        let inverted = self.j_minus_1.0.iter().position(|&j| !(j > -R::ONE));
+        inverted.map_or(Ok(()), |q| Err(Invalid::Inverted(q)))
+    }
 }
 
 #[inline(always)]
@@ -233,8 +237,8 @@ fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, start: &Points<R>
 /// weighted by the volumes.
 #[inline(always)]
 fn divergence<R: Real>(gradient: &[[Lanes<R>; 3]; NODES], weighted: &[Lanes<R>; 6]) -> Nodal<R> {
-    std::array::from_fn(|a| {
-        std::array::from_fn(|i| {
+    array([R::ZERO; 3], |a| {
+        array(R::ZERO, |i| {
             let g = &gradient[a];
             (weighted[VOIGT[i][0]] * g[0]).plus(weighted[VOIGT[i][1]], g[1]).plus(weighted[VOIGT[i][2]], g[2]).sum()
         })
@@ -252,7 +256,8 @@ pub fn internal_force<R: Real>(
     committed: &Nodal<R>,
     increment: &Nodal<R>,
 ) -> Result<Nodal<R>, Invalid> {
-    let k = kinematics(geometry, committed, increment)?;
+    let k = kinematics(geometry, committed, increment);
+    k.check()?;
     let mut stress = respond(material, &k, start)?.stress;
     let (p, _) = pressure(&material.elasticity, k.theta_minus_1);
     let p_j = Lanes::from_fn(|q| p * (R::ONE + k.j_minus_1.0[q]));
@@ -285,13 +290,15 @@ pub fn tangent<R: Real>(
     increment: &Nodal<R>,
     out: &mut Tangent<R>,
 ) -> Result<(), Invalid> {
-    let k = kinematics(geometry, committed, increment)?;
+    let k = kinematics(geometry, committed, increment);
+    k.check()?;
     let (p, dp) = pressure(&material.elasticity, k.theta_minus_1);
     let response = respond(material, &k, start)?;
     let v = geometry.volume;
     let p_j = Lanes::from_fn(|q| p * (R::ONE + k.j_minus_1.0[q]));
-    let stress: [Lanes<R>; 6] = std::array::from_fn(|i| v * if i < 3 { response.stress[i] + p_j } else { response.stress[i] });
-    let mut moduli = deviatoric_tangent(&response).map(|row| row.map(|c| v * c));
+    let stress: [Lanes<R>; 6] = array(v, |i| v * if i < 3 { response.stress[i] + p_j } else { response.stress[i] });
+    let mut moduli = deviatoric_tangent(&response);
+    moduli.iter_mut().flatten().for_each(|c| *c = v * *c);
     // d(p J grad N) at fixed p: p J (1 (x) 1 - 2 I_sym), with p J I among the stresses of the
     // geometric term.
     let v_p_j = v * p_j;
@@ -316,10 +323,9 @@ pub fn tangent<R: Real>(
                 row[j] = (m[VOIGT[j][0]] * g[b][0]).plus(m[VOIGT[j][1]], g[b][1]).plus(m[VOIGT[j][2]], g[b][2]);
             }
         }
-        let t: [Lanes<R>; 3] = std::array::from_fn(|i| {
-            (stress[VOIGT[i][0]] * g[b][0]).plus(stress[VOIGT[i][1]], g[b][1]).plus(stress[VOIGT[i][2]], g[b][2])
-        });
-        let same: Tensor<R> = std::array::from_fn(|i| std::array::from_fn(|k| d[VOIGT[i][k]][i] + t[k]));
+        let t: [Lanes<R>; 3] =
+            array(v, |i| (stress[VOIGT[i][0]] * g[b][0]).plus(stress[VOIGT[i][1]], g[b][1]).plus(stress[VOIGT[i][2]], g[b][2]));
+        let same: Tensor<R> = array([v; 3], |i| array(v, |k| d[VOIGT[i][k]][i] + t[k]));
         for half in 0..=b / 4 {
             let mut block = [[R::ZERO; 4]; 9];
             for q in 0..QUADRATURE_POINTS {
@@ -340,7 +346,7 @@ pub fn tangent<R: Real>(
             }
             for a in 0..4 {
                 if 4 * half + a <= b {
-                    out[pair(4 * half + a, b)] = block.map(|of_nodes| of_nodes[a]);
+                    out[pair(4 * half + a, b)] = array(R::ZERO, |m| block[m][a]);
                 }
             }
         }
@@ -360,8 +366,8 @@ impl<R: Real> FourNodes<R> {
     fn new(gradient: &[[Lanes<R>; 3]; NODES]) -> Self {
         let node = |half: usize, q: usize, k: usize, a: usize| gradient[4 * half + a][k].0[q];
         Self {
-            gradient: std::array::from_fn(|half| {
-                std::array::from_fn(|q| std::array::from_fn(|k| std::array::from_fn(|a| node(half, q, k, a))))
+            gradient: array([[[R::ZERO; 4]; 3]; QUADRATURE_POINTS], |half| {
+                array([[R::ZERO; 4]; 3], |q| array([R::ZERO; 4], |k| array(R::ZERO, |a| node(half, q, k, a))))
             }),
         }
     }
@@ -391,7 +397,8 @@ pub fn update<R: Real>(
     committed: &Nodal<R>,
     increment: &Nodal<R>,
 ) -> Result<(State<R>, R), Invalid> {
-    let k = kinematics(geometry, committed, increment)?;
+    let k = kinematics(geometry, committed, increment);
+    k.check()?;
     let mut next = *state;
     let responses = respond(material, &k, start)?;
     for q in 0..QUADRATURE_POINTS {
@@ -432,7 +439,8 @@ pub fn fields<R: Real>(
     points: &Points<R>,
     committed: &Nodal<R>,
 ) -> Result<Fields<R>, Invalid> {
-    let k = kinematics(geometry, committed, &[[R::ZERO; 3]; NODES])?;
+    let k = kinematics(geometry, committed, &[[R::ZERO; 3]; NODES]);
+    k.check()?;
     let (p, _) = pressure(&material.elasticity, k.theta_minus_1);
     let mut out = Fields::default();
     let third = R::ONE / R::of(3.0);

@@ -21,7 +21,7 @@
 #![allow(clippy::needless_range_loop, clippy::neg_cmp_op_on_partial_ord)]
 
 use super::{Material, PointError, PointState};
-use crate::lanes::{Lanes, Number};
+use crate::lanes::{Lanes, Number, array};
 use crate::real::Real;
 
 /// The answer of a point (or of eight) to one increment: the trial state that the caller commits
@@ -256,9 +256,9 @@ fn respond<T: Number>(material: &Material<T::Scalar>, relative: &[[T; 3]; 3], st
     // A deviator whose square underflows has no direction; what it lacks is below rounding next to
     // mu_bar.
     let inverse = T::select(strain_norm.above(zero), one / strain_norm, zero);
-    let normal = deviator.map(|x| x * inverse);
+    let normal = array(zero, |c| deviator[c] * inverse);
     let mut response = Response {
-        stress: deviator.map(|x| mu * x),
+        stress: array(zero, |c| mu * deviator[c]),
         state: PointState { be, alpha: state.alpha },
         yielding: zero.above(zero),
         mu_bar,
@@ -286,13 +286,13 @@ fn respond<T: Number>(material: &Material<T::Scalar>, relative: &[[T; 3]; 3], st
     if T::any(T::and(yielding, T::not(alpha.finite()))) {
         return None;
     }
-    let deviator = deviator.map(|x| keep * x);
+    let deviator: [T; 6] = array(zero, |c| keep * deviator[c]);
     let mean = isochoric_mean(&deviator, mean);
-    response.stress = deviator.map(|x| mu * x);
+    response.stress = array(zero, |c| mu * deviator[c]);
     let [xx, yy, zz, xy, yz, zx] = deviator;
     let returned = [xx + mean, yy + mean, zz + mean, xy, yz, zx];
     response.state = PointState {
-        be: std::array::from_fn(|c| T::select(yielding, returned[c], be[c])),
+        be: array(zero, |c| T::select(yielding, returned[c], be[c])),
         alpha: T::select(yielding, alpha, state.alpha),
     };
     response.yielding = yielding;

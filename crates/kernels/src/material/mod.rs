@@ -32,7 +32,7 @@ pub use laws::{HardeningLaw, HardeningParameter, hollomon_yield_stress};
 
 use serde::{Deserialize, Serialize};
 
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, array};
 use crate::real::Real;
 
 /// Why a point has no answer for the deformation it was given. A reason to cut the step back, not
@@ -84,7 +84,7 @@ impl<R: Real> PointState<Lanes<R>> {
     /// Eight states side by side.
     #[inline(always)]
     pub fn of_eight(points: &[PointState<R>; 8]) -> Self {
-        let be = std::array::from_fn(|c| Lanes::from_fn(|q| points[q].be[c]));
+        let be = array(Lanes::ZERO, |c| Lanes::from_fn(|q| points[q].be[c]));
         Self { be, alpha: Lanes::from_fn(|q| points[q].alpha) }
     }
 }
