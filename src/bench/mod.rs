@@ -1,9 +1,9 @@
 //! Rates of the kernels: return mapping, internal force, tangent, contact and commit, on a device
-//! and beside it on the CPU.
+//! and beside it on the CPU; and parts of the linear solver, on a device alone.
 //!
 //! What is measured is one call as the program makes it: on a device with its transfers, and the
 //! kernels alone beside that. A row is one evaluation in one precision at one batch size; its input
-//! is seeded and the same everywhere. [`element`] and [`material`] measure, [`traffic`] counts
+//! is seeded and the same everywhere. [`element`], [`linear`] and [`material`] measure, [`traffic`] counts
 //! bytes, [`count`] operations, [`copy`] measures what memory could do, [`report`] holds the
 //! numbers and [`table`] shows them. [`whole_job`] runs whole simulations instead.
 
@@ -11,6 +11,7 @@ pub mod copy;
 pub mod count;
 pub mod element;
 pub mod input;
+pub mod linear;
 pub mod material;
 pub mod report;
 pub mod table;
@@ -168,5 +169,6 @@ pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<Report, Bench
     material::measure::<f32>(options, context.as_deref(), &pools, &mut report, say)?;
     element::measure::<f64>(options, context.as_ref(), &pools, &mut report, say)?;
     element::measure::<f32>(options, context.as_ref(), &pools, &mut report, say)?;
+    linear::measure(options, context.as_ref(), &mut report, say)?;
     Ok(report)
 }

@@ -11,6 +11,7 @@ use super::context::GpuContext;
 use super::error::GpuError;
 use super::linear::Linear;
 use super::linear::pack::Packed;
+use super::linear::parts::Part;
 use super::scratch::{CONTACT_ANSWER, CONTACT_TRIAL};
 use crate::compute::cpu::Cpu;
 use crate::compute::iterate::IterateRequest;
@@ -102,6 +103,19 @@ impl<R: DeviceReal> Gpu<R> {
     pub fn repeat(&self, evaluation: Evaluation, cases: &[usize], times: usize) -> Result<(), ComputeError> {
         for dispatch in self.schedule(cases.iter().copied()) {
             self.batch()?.repeat(&dispatch, evaluation, times)?;
+        }
+        Ok(())
+    }
+
+    /// The same of a part of the linear solver.
+    ///
+    /// # Errors
+    /// [`ComputeError::Device`], also where linear systems are not solved on the device.
+    pub fn repeat_part(&self, part: Part, cases: &[usize], times: usize) -> Result<(), ComputeError> {
+        let missing = || ComputeError::Device("the linear systems are not solved on the device".to_owned());
+        let solver = self.solver().ok_or_else(missing)?;
+        for dispatch in self.schedule(cases.iter().copied()) {
+            solver.repeat(self.batch()?.context(), part, dispatch.requests.len(), times)?;
         }
         Ok(())
     }

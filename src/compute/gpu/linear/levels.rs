@@ -7,6 +7,7 @@ use super::super::pipelines::{Bound, Recorder};
 use super::super::pools::Pools;
 use super::super::shader_sources::{Kernel, Precision};
 use super::RESTART;
+use super::parts::Account;
 use super::sources::{
     GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESIDUAL, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
     SMOOTH_STEP, SOLVE_COARSEST,
@@ -273,6 +274,31 @@ impl Level {
         (self.nodes, self.width)
     }
 
+    /// A product with its matrix, and what the result takes and gives.
+    pub fn product_account(&self) -> Account {
+        let (nodes, blocks) = (self.nodes, self.width * self.nodes);
+        Account { numbers: 9 * blocks + (3 * 3 + 1) * nodes, shared: blocks, operations: 18 * blocks }
+    }
+
+    /// A step of its smoother: a product, D^-1, right-hand side, last step and iterate.
+    pub fn step_account(&self) -> Account {
+        let product = self.product_account();
+        let nodes = self.nodes;
+        Account { numbers: product.numbers + (9 + 3 * 3) * nodes, operations: product.operations + 30 * nodes, ..product }
+    }
+
+    /// A P of it, and the next level's matrix of that.
+    pub fn galerkin_account(&self) -> Account {
+        let Some(transfer) = &self.transfer else { return Account::default() };
+        let (products, coarse) = (9 * transfer.products, 9 * transfer.coarse_blocks);
+        let lists = [&transfer.product_lists, &transfer.coarse_lists];
+        Account {
+            numbers: 9 * self.width * self.nodes + 2 * products + coarse + self.nodes,
+            shared: lists.iter().map(|list| list.start.len() + 2 * list.entry.len()).sum(),
+            operations: lists.iter().map(|list| 18 * list.entry.len()).sum(),
+        }
+    }
+
     /// Threads for its rows.
     pub fn threads(&self) -> usize {
         row_threads(self.nodes)
@@ -314,6 +340,7 @@ pub struct Levels {
     pub update: Vec<Call>,
     /// One V-cycle on the finest level's b.
     pub cycle: Vec<Call>,
+    smoothing_steps: usize,
     _shares: Vec<StorageBuffer<[f32; 4]>>,
     _coarsest: [StorageBuffer<[f32; 2]>; 2],
 }
@@ -375,7 +402,37 @@ impl Levels {
                 }
             }
         }
-        Ok(Self { levels, update, cycle, _shares: shares, _coarsest: [coarsest, all_shares] })
+        Ok(Self { levels, update, cycle, smoothing_steps, _shares: shares, _coarsest: [coarsest, all_shares] })
+    }
+}
+
+impl Levels {
+    /// The kernels of the finest level's Galerkin product; none where it is the only level.
+    pub fn galerkin(&self) -> &[Call] {
+        if self.levels.len() > 1 { &self.update[1..3] } else { &[] }
+    }
+
+    /// A step of the smoother on the finest level; none where it is the only level.
+    pub fn smoother_step(&self) -> &[Call] {
+        if self.levels.len() > 1 && self.smoothing_steps > 1 { &self.cycle[1..2] } else { &[] }
+    }
+
+    /// A V-cycle. Levels that one workgroup smooths read their matrix as often as the others, from
+    /// caches.
+    pub fn cycle_account(&self) -> Account {
+        let mut all = Account::default();
+        for level in &self.levels {
+            let (product, step) = (level.product_account(), level.step_account());
+            // From zero the first step needs no product; on the way up all do.
+            let (products, steps) = match level.transfer {
+                Some(_) => (1, 2 * self.smoothing_steps - 1),
+                None => (0, 1),
+            };
+            all.numbers += products * product.numbers + steps * step.numbers;
+            all.shared += products * product.shared + steps * step.shared;
+            all.operations += products * product.operations + steps * step.operations;
+        }
+        all
     }
 }
 

@@ -12,6 +12,7 @@
 pub mod inspect;
 mod levels;
 pub mod pack;
+pub mod parts;
 pub mod sources;
 
 use super::buffers::{DeviceReal, Read, StorageBuffer};
@@ -170,6 +171,8 @@ pub struct Linear {
     /// The answer, from the vectors of a cycle.
     finish: Vec<Call>,
     unknowns: usize,
+    /// Numbers of the tangent's upper blocks.
+    upper_numbers: usize,
     vectors: Vectors,
     /// Arrays that only kernels name: they stay in the memory account as long as the kernels do.
     _sums: [StorageBuffer<f32>; 2],
@@ -275,6 +278,7 @@ impl Linear {
             guess,
             answer,
             unknowns,
+            upper_numbers: 9 * plan.upper_blocks,
             vectors: Vectors { basis, preconditioned, small },
             _sums: [sums, squares],
             _lists: [source, point_of, plate],
