@@ -16,7 +16,8 @@ use crate::output::write_atomically;
 /// Measure the kernels (return mapping, internal force, tangent, contact, commit) on a GPU and on
 /// the CPU.
 ///
-/// Needs nothing but this program, and a driver for the GPU. Takes some minutes.
+/// On a GPU also parts of the linear solver by themselves. Needs nothing but this program, and a
+/// driver for the GPU. Takes some minutes.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
     /// What to measure beside the CPU.

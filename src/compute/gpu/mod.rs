@@ -6,7 +6,7 @@
 //! it, [`validate`](mod@validate) says where a source does not compile.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
-//! device, [`linear`] solves their linear systems, [`iterate`] makes Newton iterations of both;
+//! device and arrays in memory that they have in turn, [`linear`] solves their linear systems, [`iterate`] makes Newton iterations of both;
 //! [`backend`] is the [`Compute`](super::Compute) of it in one precision, [`mixed`] that of a
 //! device without double precision.
 //!
