@@ -3,8 +3,8 @@
 //!
 //! What is measured is one call as the program makes it: on a device with its transfers, and the
 //! kernels alone beside that. A row is one evaluation in one precision at one batch size; its input
-//! is seeded and the same everywhere. [`element`], [`linear`] and [`material`] measure, [`traffic`] counts
-//! bytes, [`count`] operations, [`copy`] measures what memory could do, [`report`] holds the
+//! is seeded and the same everywhere. [`element`], [`linear`] and [`material`] measure, [`traffic`]
+//! counts bytes, [`count`] operations, [`copy`] measures what memory could do, [`report`] holds the
 //! numbers and [`table`] shows them. [`whole_job`] runs whole simulations instead.
 
 pub mod copy;

@@ -35,8 +35,8 @@ struct Level {
 /// What a level holds. Vectors have three components a node and a fourth number that is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct OnLevel<'a> {
-    /// Its matrix; on the finest level with the rows and columns of fixed unknowns replaced by those
-    /// of the identity.
+    /// Its matrix; on the finest level with the rows and columns of fixed unknowns replaced by
+    /// those of the identity.
     pub matrix: &'a BlockMatrix<f32>,
     /// Inverses of its diagonal blocks, by columns.
     pub inverse: &'a [[[f32; 4]; 3]],
