@@ -37,6 +37,7 @@ pub fn measure(
         };
         let reason = found.as_ref().err().map(ToString::to_string).unwrap_or_default();
         for (i, (_, name)) in Part::ALL.into_iter().enumerate() {
+            // Of a solver that does not fit, bytes and operations are not known.
             let known = found.as_ref().ok().map(|found| found[i]);
             let account = known.map_or(Account::default(), |(account, _, _)| account);
             let row = Row {
@@ -59,7 +60,9 @@ pub fn measure(
 }
 
 fn parts<R: DeviceReal>(options: &Options, gpu: &Gpu<R>, models: &[CaseModel]) -> Result<Found, ComputeError> {
-    let missing = || ComputeError::Device("the linear systems are not solved on the device".to_owned());
+    // Where it does not fit, a note says what it needs.
+    let why = || gpu.notes().first().cloned().unwrap_or_else(|| "the device solves no linear systems".to_owned());
+    let missing = || ComputeError::Device(why());
     let solver = gpu.solver().ok_or_else(missing)?;
     let cases: Vec<usize> = (0..models.len()).collect();
     // The matrices are those of undeformed bodies.
