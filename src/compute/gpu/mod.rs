@@ -6,9 +6,9 @@
 //! it, [`validate`](mod@validate) says where a source does not compile.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
-//! device and arrays in memory that they have in turn, [`linear`] solves their linear systems, [`iterate`] makes Newton iterations of both;
-//! [`backend`] is the [`Compute`](super::Compute) of it in one precision, [`mixed`] that of a
-//! device without double precision.
+//! device and arrays in memory that they have in turn, [`linear`] solves their linear systems,
+//! [`iterate`] makes Newton iterations of both; [`backend`] is the [`Compute`](super::Compute) of
+//! it in one precision, [`mixed`] that of a device without double precision.
 //!
 //! A device fails quietly: a lost one ignores what is submitted and leaves old numbers in its
 //! buffers. [`health::DeviceHealth`] and the tickets of [`buffers`] turn that into an error;

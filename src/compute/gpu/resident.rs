@@ -235,8 +235,8 @@ impl<R: DeviceReal> Resident<R> {
     }
 }
 
-/// Reference positions of the nodes `[mesh][3 a + i][element]` and volumes `[mesh][point]` of meshes, on the
-/// device.
+/// Reference positions of the nodes `[mesh][3 a + i][element]` and volumes `[mesh][point]` of
+/// meshes, on the device.
 fn send_geometry<R: DeviceReal>(
     context: &GpuContext,
     sizes: Sizes,

@@ -1,5 +1,5 @@
-//! What the solver's kernels leave on the device, brought to the host: for comparisons with what the
-//! CPU makes of the same numbers.
+//! What the solver's kernels leave on the device, brought to the host: for comparisons with what
+//! the CPU makes of the same numbers.
 
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
