@@ -458,7 +458,7 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
         [("terminated", Signal::TERM), ("interrupted", Signal::INT), ("warned", Signal::USR1), ("hung-up", Signal::HUP)]
     {
         let mut command = program();
-        command.args(scratch.args(name, &["--set", "mesh.elements_per_contact_radius=8"]));
+        command.args(scratch.args(name, &["--set", "mesh.elements_per_contact_radius=12"]));
         let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("a run");
         let history = scratch.path(name).join("history.csv");
         let started = Instant::now();
