@@ -3,7 +3,7 @@
 // e + q.
 
 @group(0) @binding(2) var<storage, read> element_nodes: array<u32>;     // [element][local node]
-// [geometry][3 a + i][element]: reference positions of its nodes, from the first one on
+// [geometry][3 a + i][element]: reference positions of its nodes, relative to the first one
 @group(0) @binding(3) var<storage, read> coordinates: array<real>;
 @group(0) @binding(4) var<storage, read> volume: array<real>;           // [geometry][point]
 @group(0) @binding(5) var<storage, read> committed: array<real>;        // [case][3 node + i]: displacement

@@ -9,7 +9,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use crate::real::Real;
 
-/// What `f` gives for each place of an array, `any` being no matter what. Always compiled in line,
+/// An array of what `f` gives for each place; `any` only fills it before. Always compiled in line,
 /// which [`std::array::from_fn`] and `map` are not: in the element's kernels they then hand each
 /// number through memory.
 #[inline(always)]

@@ -13,7 +13,7 @@ use super::resident::{HISTORY, Sizes};
 use super::scratch::STRESS;
 use super::tangents::Bytes;
 
-/// What any device can bind from: the largest alignment that Vulkan lets a driver ask for.
+/// A binding may begin at any multiple of this: Vulkan lets no driver ask for more.
 pub const ALIGNMENT: u64 = 256;
 
 /// Bytes of a slot's share of each.

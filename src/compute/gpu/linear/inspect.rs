@@ -4,7 +4,8 @@
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::levels::Record;
-use super::{Linear, RESTART, append, small_numbers};
+use super::parts::Part;
+use super::{Linear, RESTART, small_numbers};
 
 /// What a slot has on a level after an update and a V-cycle.
 #[derive(Clone, Debug)]
@@ -52,11 +53,8 @@ impl Linear {
     /// # Errors
     /// The device's fault.
     pub fn v_cycle(&self, context: &GpuContext, b: &[f32]) -> Result<(), GpuError> {
-        context.upload_at(&self.records, 0, &[Record::default()])?;
         context.upload_at(&self.levels.levels[0].b, 0, b)?;
-        let mut list = context.record();
-        append(&self.levels.cycle, &mut list, 1)?;
-        list.submit()
+        self.repeat(context, Part::Cycle, 1, 1)
     }
 
     /// What slot 0 has on a level, the finest being 0.
