@@ -19,9 +19,9 @@ pub struct ContactState {
     /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of
     /// its loss of F_N to shear. Beyond 1, up to 2, of what reversed slip costs besides.
     pub x: f64,
-    /// x of the virgin curves up to which the contact has hardened in shear: 0 after a press without
-    /// F_T, 1 after full slip. Below it F_T/F_N rises without yielding to shear; the edge of a
-    /// contact that was not sheared slips sooner.
+    /// x of the virgin curves up to which the contact has hardened in shear: 0 after a press
+    /// without F_T, 1 after full slip. Below it F_T/F_N rises without yielding to shear; the edge
+    /// of a contact that was not sheared slips sooner.
     pub sheared: f64,
     /// Tangential deflections of the sliders, length, innermost (last to slip) first.
     pub deflection: [[f64; 2]; SLIDERS],
@@ -78,6 +78,10 @@ const GONE: f64 = 1e-5;
 
 /// x over which a sudden shear takes F_N from the yield curve of a press down to the virgin one.
 const RELAXATION: f64 = 0.1;
+
+/// So much less than mu F_N is the F_T that slides where F_N is above the virgin curve, as a share
+/// of that: where nothing is left between the two a step could not tell what is beyond.
+const EASED: f64 = 0.05;
 
 /// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
 const REVERSED: f64 = 0.05;
@@ -443,6 +447,7 @@ impl ContactParameters {
         }
         out.df_n_dh = pressed.df_n_dh;
         let share = taken(pressed.flow);
+        let pressed = Pressed { sudden: share * pressed.sudden, ..pressed };
         shear(self, &mut next, &mut out, &virgin, &pressed, [share * increment[0], share * increment[1]]);
         for i in 0..2 {
             out.df_t_ddelta[i] = [share * out.df_t_ddelta[i][0], share * out.df_t_ddelta[i][1]];
@@ -546,18 +551,22 @@ fn shear(
     let at = if next.x > next.sheared { next.x } else { next.sheared };
     let at = if at < 1.0 { at } else { 1.0 };
     let before_cap = normal_cap(p, virgin, at);
-    // After a press F_N may be above the virgin curve, but not above the yield curve; F_T/F_N is that
-    // of the virgin curve there too.
+    // After a press F_N may be above the virgin curve, but not above the yield curve; F_T/F_N is
+    // that of the virgin curve there too.
     let raised = AT_CAP * f_n > before_cap;
     let share = if raised { yield_share(virgin, yield_coefficient(p, virgin)) } else { 0.0 };
     let mut bound = slip_force * tangential_shape(p, virgin, at)[0];
-    let mut over = 1.0;
+    let eased = |ratio: f64, cap: f64, f_n: f64| {
+        let most = p.friction * (1.0 - EASED * (1.0 - cap / f_n));
+        if ratio < most { ratio } else { most }
+    };
     if raised {
-        let top = yielding_at(virgin, share, bound / before_cap);
+        let ratio = bound / before_cap;
+        let top = yielding_at(virgin, share, ratio);
         let top = if top < f_n { top } else { f_n };
-        over = if top > before_cap { top / before_cap } else { 1.0 };
+        let top = if top > before_cap { top } else { before_cap };
+        bound = eased(ratio, before_cap, top) * top;
     }
-    bound *= over;
     let trial = length(out.f_t);
     if trial <= AT_BOUND * bound {
         let [highest, q] = pressed_cap(virgin, share, trial);
@@ -615,7 +624,7 @@ fn shear(
     slide(&mut next.deflection, &limit, increment);
     let held = slider_force(virgin, &next.deflection);
     let stiffness = slider_stiffness(virgin, &before, &limit, increment);
-    let bound = ratio * out.f_n;
+    let bound = eased(ratio, cap, out.f_n) * out.f_n;
     let per_x = if hardens > 0.0 { beyond / virgin.point.delta_t_slip } else { 0.0 };
     let rate = (steeper * out.f_n - ratio * loss) * per_x;
     let size = length(held);

@@ -213,9 +213,10 @@ impl ContactParameters {
         Ok(parameters)
     }
 
-    /// The same with f_T and f_N given by numbers for every level, the first at the first knot; with
-    /// the contact radius that `contact_radius` has for an indentation, and with the coefficient c
-    /// of the yield curve that `yielding` has, or that of the virgin curve where it has none.
+    /// The same with f_T and f_N given by numbers for every level, the first at the first knot;
+    /// with the contact radius that `contact_radius` has for an indentation, and with the
+    /// coefficient c of the yield curve that `yielding` has, or that of the virgin curve where it
+    /// has none.
     #[must_use]
     pub fn with_shapes(
         self,

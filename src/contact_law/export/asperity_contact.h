@@ -157,6 +157,7 @@ typedef struct asperity_tangent {
 #define ASPERITY_SUDDEN ASPERITY_R(0.2)
 #define ASPERITY_FORGETS ASPERITY_R(4.0)
 #define ASPERITY_GONE ASPERITY_R(1e-5)
+#define ASPERITY_EASED ASPERITY_R(0.05)
 #define ASPERITY_RELAXATION ASPERITY_R(0.1)
 #define ASPERITY_REVERSED ASPERITY_R(0.05)
 #define ASPERITY_SLIDING ASPERITY_R(0.98)
@@ -1211,6 +1212,11 @@ ASPERITY_FN asperity_real asperity_reverse(
     return slip;
 }
 
+/* F_T/F_N that a contact bears whose F_N is above the virgin curve's, `cap`: a little less than mu, so that a step can tell what is beyond. */
+ASPERITY_FN asperity_real asperity_eased(const asperity_table *t, asperity_real ratio, asperity_real cap, asperity_real f_n) {
+    return asperity_least(ratio, t->friction * (ASPERITY_R(1.0) - ASPERITY_EASED * (ASPERITY_R(1.0) - cap / f_n)));
+}
+
 /* Moves delta_T with h held; returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_shear(
     const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
@@ -1250,9 +1256,10 @@ ASPERITY_FN asperity_real asperity_shear(
     share = raised ? asperity_yield_share(v, asperity_yield_coefficient(t, v)) : zero;
     bound = slip_force * from.f_t;
     over = one;
-    if (raised) {
+    if (raised && bound > zero) {
         ratio = bound / before_cap;
-        over = asperity_most(asperity_least(v->f_n0 / (one + share * (ratio * ratio)), f_n) / before_cap, one);
+        cap = asperity_most(asperity_least(v->f_n0 / (one + share * (ratio * ratio)), f_n), before_cap);
+        over = asperity_eased(t, ratio, before_cap, cap) * cap / bound;
     }
     bound *= over;
     trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
@@ -1320,7 +1327,7 @@ ASPERITY_FN asperity_real asperity_shear(
         }
     }
     asperity_slider_force(v, s->deflection, held);
-    bound = ratio * out->f_n;
+    bound = asperity_eased(t, ratio, cap, out->f_n) * out->f_n;
     size = ASPERITY_SQRT(held[0] * held[0] + held[1] * held[1]);
     out->f_t[0] = held[0];
     out->f_t[1] = held[1];
@@ -1535,6 +1542,7 @@ ASPERITY_FN void asperity_update(
     s.x = p.x;
     size = p.f_n;
     share = asperity_taken(p.flow);
+    p.sudden *= share;
     slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, share * d0, share * d1);
     if (dh != zero || out->f_n != size) {
         s.approach = p.approach;

@@ -126,6 +126,7 @@ LEAST_NORMAL = 0.25
 SUDDEN = 0.2
 FORGETS = 4.0
 GONE = 1e-5
+EASED = 0.05
 RELAXATION = 0.1
 REVERSED = 0.05
 SLIDING = 0.98
@@ -499,6 +500,11 @@ def reverse(p, s, out, v, before, force_before, increment):
             out.df_t_ddelta[i][j] += falls * out.f_t[i]
 
 
+def eased(p, ratio, cap, f_n):
+    """F_T/F_N that a contact bears whose F_N is above the virgin curve's, `cap`: a little less than mu, so that a step can tell what is beyond."""
+    return min(ratio, p.friction * (1.0 - EASED * (1.0 - cap / f_n)))
+
+
 def shear(p, s, out, v, f_n, sudden, increment):
     """Moves delta_T with h held."""
     before = s.deflection
@@ -522,7 +528,8 @@ def shear(p, s, out, v, f_n, sudden, increment):
     bound = slip_force * tangential_shape(v, at)[0]
     if raised:
         ratio = bound / before_cap
-        bound *= max(min(v.f_n0 / (1.0 + share * (ratio * ratio)), f_n) / before_cap, 1.0)
+        top = max(min(v.f_n0 / (1.0 + share * (ratio * ratio)), f_n), before_cap)
+        bound = eased(p, ratio, before_cap, top) * top
     trial = math.sqrt(out.f_t[0] * out.f_t[0] + out.f_t[1] * out.f_t[1])
     if trial <= AT_BOUND * bound:
         highest, q = pressed_cap(v, share, trial)
@@ -571,7 +578,7 @@ def shear(p, s, out, v, f_n, sudden, increment):
     s.deflection = slide(before, limit, increment)
     held = slider_force(v, s.deflection)
     stiffness = slider_stiffness(v, before, limit, increment)
-    bound = ratio * out.f_n
+    bound = eased(p, ratio, cap, out.f_n) * out.f_n
     per_x = beyond / v.delta_t_slip if hardens > 0.0 else 0.0
     rate = (steeper * out.f_n - ratio * loss) * per_x
     size = math.sqrt(held[0] * held[0] + held[1] * held[1])
@@ -626,7 +633,7 @@ def update(p, state, h, increment):
         return s, out
     out.df_n_dh = df_n_dh
     share = taken(flow)
-    shear(p, s, out, v, f_n, sudden, (share * increment[0], share * increment[1]))
+    shear(p, s, out, v, f_n, share * sudden, (share * increment[0], share * increment[1]))
     out.df_t_ddelta = [[share * k for k in row] for row in out.df_t_ddelta]
     out.df_n_ddelta = [share * k for k in out.df_n_ddelta]
     out.a = v.a * (s.approach / v.depth) ** (v.gamma - 1.0)
