@@ -447,7 +447,6 @@ impl ContactParameters {
         }
         out.df_n_dh = pressed.df_n_dh;
         let share = taken(pressed.flow);
-        let pressed = Pressed { sudden: share * pressed.sudden, ..pressed };
         shear(self, &mut next, &mut out, &virgin, &pressed, [share * increment[0], share * increment[1]]);
         for i in 0..2 {
             out.df_t_ddelta[i] = [share * out.df_t_ddelta[i][0], share * out.df_t_ddelta[i][1]];
@@ -595,8 +594,9 @@ fn shear(
     let beyond = if excess < travel { excess / travel } else { 1.0 };
     let forward = direction[0] * increment[0] + direction[1] * increment[1];
     let forward = if forward > 0.0 { forward } else { 0.0 };
-    let hardens = beyond * forward - pressed.sudden;
-    let hardens = if hardens > 0.0 { hardens } else { 0.0 };
+    // In a long step, half of it at the least.
+    let way = beyond * forward;
+    let hardens = if pressed.sudden < 0.5 * way { way - pressed.sudden } else { 0.5 * way };
     let dx = hardens / virgin.point.delta_t_slip;
     let x = if at + dx < 1.0 { at + dx } else { 1.0 };
     let cap = normal_cap(p, virgin, x);

@@ -1298,7 +1298,7 @@ ASPERITY_FN asperity_real asperity_shear(
     beyond = excess < travel ? excess / travel : one; /* share of the increment that is beyond the curve */
     forward = direction[0] * d0 + direction[1] * d1;
     forward = forward > zero ? forward : zero;
-    hardens = asperity_most(beyond * forward - p->sudden, zero);
+    hardens = asperity_most(beyond * forward - p->sudden, ASPERITY_R(0.5) * (beyond * forward)); /* in a long step, half of it at the least */
     dx = hardens * v->per_slip;
     asperity_shapes(t->form, v, asperity_least(at + dx, one), &place);
     cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
@@ -1542,7 +1542,6 @@ ASPERITY_FN void asperity_update(
     s.x = p.x;
     size = p.f_n;
     share = asperity_taken(p.flow);
-    p.sudden *= share;
     slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, share * d0, share * d1);
     if (dh != zero || out->f_n != size) {
         s.approach = p.approach;

@@ -552,7 +552,7 @@ def shear(p, s, out, v, f_n, sudden, increment):
     beyond = excess / travel if excess < travel else 1.0
     forward = direction[0] * increment[0] + direction[1] * increment[1]
     forward = forward if forward > 0.0 else 0.0
-    hardens = max(beyond * forward - sudden, 0.0)
+    hardens = max(beyond * forward - sudden, 0.5 * (beyond * forward))  # in a long step, half of it at the least
     dx = hardens / v.delta_t_slip
     x = at + dx if at + dx < 1.0 else 1.0
     cap = normal_cap(v, x)
@@ -633,7 +633,7 @@ def update(p, state, h, increment):
         return s, out
     out.df_n_dh = df_n_dh
     share = taken(flow)
-    shear(p, s, out, v, f_n, share * sudden, (share * increment[0], share * increment[1]))
+    shear(p, s, out, v, f_n, sudden, (share * increment[0], share * increment[1]))
     out.df_t_ddelta = [[share * k for k in row] for row in out.df_t_ddelta]
     out.df_n_ddelta = [share * k for k in out.df_n_ddelta]
     out.a = v.a * (s.approach / v.depth) ** (v.gamma - 1.0)
