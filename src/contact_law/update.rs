@@ -81,7 +81,7 @@ const RELAXATION: f64 = 0.1;
 
 /// So much less than mu F_N is the F_T that slides where F_N is above the virgin curve, as a share
 /// of that: where nothing is left between the two a step could not tell what is beyond.
-const EASED: f64 = 0.05;
+const EASED: f64 = 0.0;
 
 /// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
 const REVERSED: f64 = 0.05;
