@@ -79,9 +79,10 @@ const GONE: f64 = 1e-5;
 /// x over which a sudden shear takes F_N from the yield curve of a press down to the virgin one.
 const RELAXATION: f64 = 0.1;
 
-/// So much less than mu F_N is the F_T that slides where F_N is above the virgin curve, as a share
-/// of that: where nothing is left between the two a step could not tell what is beyond.
-const EASED: f64 = 0.0;
+/// Share of what F_T would rise by at k_T that counts as risen when it is asked whether a step goes
+/// beyond the virgin curve. Where everything slides F_T rises by nothing but rounding; there the
+/// displacement tells what is beyond.
+const AHEAD: f64 = 0.02;
 
 /// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
 const REVERSED: f64 = 0.05;
@@ -384,6 +385,8 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
         virgin.slope * (raised / f_n0 + gain) + f_n0 * gain * rate
     };
     let slope = if raised < f_n && along < stiffness { along } else { stiffness };
+    // Where F_N is below the curve, it is F_N that tells the place.
+    let x = if f_n < on_curve { elastic } else { x };
     let f_n = if raised < f_n { raised } else { f_n };
     let back = (1.0 - keep) / virgin.point.k_t;
     slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [-back * force[0], -back * force[1]]);
@@ -392,7 +395,7 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     }
     let x = if x < state.x { x } else { state.x };
     // It forgets with the growth of the contact, and as F_T is taken back.
-    let kept = (-plastic / h - FORGETS * taken_back * flow).exp();
+    let kept = (-plastic / h - FORGETS * (taken_back * taken_back) * flow).exp();
     state.sheared = if state.sheared > x { x + (state.sheared - x) * kept } else { x };
     Pressed { f_n, x, df_n_dh: slope, flow, sudden }
 }
@@ -493,10 +496,13 @@ fn reverse(
     if !(stick > 0.0 && stick < 1.0) {
         return;
     }
+    // What F_N is above that of its x stays above it.
+    let above = out.f_n - virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0));
+    let above = if above > 0.0 { above } else { 0.0 };
     let rate = 4.0 * GATHERED * (MOST - next.x) * (k_t / (p.friction * virgin.point.f_n_slip));
     let x = next.x + rate * (stick * (1.0 - stick)) * size;
     next.x = if x < MOST { x } else { MOST };
-    let cap = virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0));
+    let cap = virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0)) + above;
     if !(cap < out.f_n) {
         return;
     }
@@ -555,19 +561,19 @@ fn shear(
     let raised = AT_CAP * f_n > before_cap;
     let share = if raised { yield_share(virgin, yield_coefficient(p, virgin)) } else { 0.0 };
     let mut bound = slip_force * tangential_shape(p, virgin, at)[0];
-    let eased = |ratio: f64, cap: f64, f_n: f64| {
-        let most = p.friction * (1.0 - EASED * (1.0 - cap / f_n));
-        if ratio < most { ratio } else { most }
-    };
+    let bounded = |ratio: f64| if ratio < p.friction { ratio } else { p.friction };
     if raised {
         let ratio = bound / before_cap;
         let top = yielding_at(virgin, share, ratio);
         let top = if top < f_n { top } else { f_n };
         let top = if top > before_cap { top } else { before_cap };
-        bound = eased(ratio, before_cap, top) * top;
+        bound = bounded(ratio) * top;
     }
     let trial = length(out.f_t);
-    if trial <= AT_BOUND * bound {
+    let forward = if trial > 0.0 { (out.f_t[0] * increment[0] + out.f_t[1] * increment[1]) / trial } else { 0.0 };
+    let forward = if forward > 0.0 { forward } else { 0.0 };
+    let ahead = (AHEAD + if raised { 1.0 - before_cap / f_n } else { 0.0 }) * (virgin.point.k_t * forward);
+    if trial + ahead <= AT_BOUND * bound {
         let [highest, q] = pressed_cap(virgin, share, trial);
         if raised && AT_CAP * highest < f_n {
             let cap = if highest > before_cap { highest } else { before_cap };
@@ -584,16 +590,17 @@ fn shear(
             slide(&mut next.deflection, &limit, increment);
             out.f_t = slider_force(virgin, &next.deflection);
             out.df_t_ddelta = slider_stiffness(virgin, &before, &limit, increment);
+        } else if next.x >= 1.0 {
+            reverse(p, next, out, virgin, &before, force_before, increment);
         }
         return;
     }
     let direction = [out.f_t[0] / trial, out.f_t[1] / trial];
     let along = direction[0] * force_before[0] + direction[1] * force_before[1];
     // Share of the increment that is beyond the curve: all of it when the contact stood on it.
-    let (excess, travel) = (trial - bound, trial - along);
+    let (excess, travel) = (trial - bound + ahead, trial - along + ahead);
+    let excess = if excess > 0.0 { excess } else { 0.0 };
     let beyond = if excess < travel { excess / travel } else { 1.0 };
-    let forward = direction[0] * increment[0] + direction[1] * increment[1];
-    let forward = if forward > 0.0 { forward } else { 0.0 };
     // In a long step, half of it at the least.
     let way = beyond * forward;
     let hardens = if pressed.sudden < 0.5 * way { way - pressed.sudden } else { 0.5 * way };
@@ -624,7 +631,7 @@ fn shear(
     slide(&mut next.deflection, &limit, increment);
     let held = slider_force(virgin, &next.deflection);
     let stiffness = slider_stiffness(virgin, &before, &limit, increment);
-    let bound = eased(ratio, cap, out.f_n) * out.f_n;
+    let bound = bounded(ratio) * out.f_n;
     let per_x = if hardens > 0.0 { beyond / virgin.point.delta_t_slip } else { 0.0 };
     let rate = (steeper * out.f_n - ratio * loss) * per_x;
     let size = length(held);

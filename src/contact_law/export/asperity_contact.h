@@ -157,7 +157,7 @@ typedef struct asperity_tangent {
 #define ASPERITY_SUDDEN ASPERITY_R(0.2)
 #define ASPERITY_FORGETS ASPERITY_R(4.0)
 #define ASPERITY_GONE ASPERITY_R(1e-5)
-#define ASPERITY_EASED ASPERITY_R(0.0)
+#define ASPERITY_AHEAD ASPERITY_R(0.02)
 #define ASPERITY_RELAXATION ASPERITY_R(0.1)
 #define ASPERITY_REVERSED ASPERITY_R(0.05)
 #define ASPERITY_SLIDING ASPERITY_R(0.98)
@@ -1091,10 +1091,12 @@ ASPERITY_FN void asperity_press(
     if (left < place.f_t) { /* a force beyond the peak of the virgin curve stays at its place */
         asperity_back(t->form, v, left, &place);
     }
-    p->x = place.x < s->x ? place.x : s->x;
     pressed = asperity_pressed_cap(v, share, keep * f_t, &root);
     on_curve = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
     raised = pressed > on_curve ? pressed : on_curve;
+    /* Where F_N is below the curve, it is F_N that tells the place. */
+    p->x = p->f_n < on_curve ? asperity_mobilisation(t->form, v, p->f_n) : place.x;
+    p->x = p->x < s->x ? p->x : s->x;
     if (derivatives) {
         if (pressed > on_curve) {
             turns = root > zero ? ASPERITY_R(0.5) * (one - root * root) / root : zero;
@@ -1127,7 +1129,7 @@ ASPERITY_FN void asperity_press(
     }
     asperity_slider_force(v, s->deflection, p->force);
     /* It forgets with the growth of the contact, and as F_T is taken back. */
-    change = asperity_exponential_near(-plastic / h - ASPERITY_FORGETS * taken_back * flow);
+    change = asperity_exponential_near(-plastic / h - ASPERITY_FORGETS * (taken_back * taken_back) * flow);
     s->sheared = s->sheared > p->x ? p->x + (s->sheared - p->x) * change : p->x;
 }
 
@@ -1169,7 +1171,7 @@ ASPERITY_FN asperity_real asperity_reverse(
     const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p, asperity_moved *moved, int measured,
     asperity_real d0, asperity_real d1, asperity_real slip) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, rate, x, cap, loss, stiffer, falls;
+    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, above, rate, x, cap, loss, stiffer, falls;
     int i, j;
     if (s->x >= ASPERITY_ALL_LOST || !(size > zero) || p->force[0] * p->force[0] + p->force[1] * p->force[1] > most * most) {
         return slip;
@@ -1181,10 +1183,12 @@ ASPERITY_FN asperity_real asperity_reverse(
     if (!(stick > zero && stick < one)) {
         return slip;
     }
+    /* What F_N is above that of its x stays above it. */
+    above = asperity_most(out->f_n - v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one)), zero);
     rate = ASPERITY_R(4.0) * ASPERITY_GATHERED * (ASPERITY_ALL_LOST - s->x) * (v->k_t / (t->friction * v->f_n_slip));
     x = s->x + rate * (stick * (one - stick)) * size;
     s->x = x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
-    cap = v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one));
+    cap = v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one)) + above;
     if (!(cap < out->f_n)) {
         return slip;
     }
@@ -1212,18 +1216,13 @@ ASPERITY_FN asperity_real asperity_reverse(
     return slip;
 }
 
-/* F_T/F_N that a contact bears whose F_N is above the virgin curve's, `cap`: a little less than mu, so that a step can tell what is beyond. */
-ASPERITY_FN asperity_real asperity_eased(const asperity_table *t, asperity_real ratio, asperity_real cap, asperity_real f_n) {
-    return asperity_least(ratio, t->friction * (ASPERITY_R(1.0) - ASPERITY_EASED * (ASPERITY_R(1.0) - cap / f_n)));
-}
-
 /* Moves delta_T with h held; returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_shear(
     const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
     asperity_real d0, asperity_real d1) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
     asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, root;
-    asperity_real slip_force, bound, over, share, trial, along, excess, travel, beyond, forward, hardens, at, dx, cap, before_cap, highest, ratio, steeper, falls, rises, above, lowered, size;
+    asperity_real slip_force, bound, over, share, trial, along, excess, travel, ahead, beyond, forward, hardens, at, dx, cap, before_cap, highest, ratio, steeper, falls, rises, above, lowered, size;
     asperity_real per_x, loss, keep, rate, radial;
     asperity_moved moved;
     asperity_place place, from;
@@ -1259,11 +1258,14 @@ ASPERITY_FN asperity_real asperity_shear(
     if (raised && bound > zero) {
         ratio = bound / before_cap;
         cap = asperity_most(asperity_least(v->f_n0 / (one + share * (ratio * ratio)), f_n), before_cap);
-        over = asperity_eased(t, ratio, before_cap, cap) * cap / bound;
+        over = asperity_least(ratio, t->friction) * cap / bound;
     }
     bound *= over;
     trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
-    if (trial <= ASPERITY_AT_BOUND * bound) {
+    /* Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond. */
+    forward = trial > zero ? asperity_most((out->f_t[0] * d0 + out->f_t[1] * d1) / trial, zero) : zero;
+    ahead = (ASPERITY_AHEAD + (raised ? one - before_cap / f_n : zero)) * (v->k_t * forward);
+    if (trial + ahead <= ASPERITY_AT_BOUND * bound) {
         highest = asperity_pressed_cap(v, share, trial, &root);
         if (raised && ASPERITY_AT_CAP * highest < f_n) {
             cap = asperity_least(asperity_most(highest, before_cap), f_n);
@@ -1286,6 +1288,8 @@ ASPERITY_FN asperity_real asperity_shear(
             if (tangent) {
                 asperity_slider_stiffness(v, &moved, p->limit, tangent->df_t_ddelta);
             }
+        } else if (s->x >= one) {
+            slip = asperity_reverse(t, s, out, tangent, v, p, &moved, measured, d0, d1, slip);
         }
         return slip;
     }
@@ -1293,11 +1297,9 @@ ASPERITY_FN asperity_real asperity_shear(
     direction[1] = out->f_t[1] / trial;
     along = direction[0] * p->force[0] + direction[1] * p->force[1];
     excess = asperity_excess(t->form, v, s->deflection, slip_force * over, at, trial - bound);
-    excess = excess > zero ? excess : zero;
-    travel = trial - along;
+    excess = asperity_most(excess + ahead, zero);
+    travel = trial - along + ahead;
     beyond = excess < travel ? excess / travel : one; /* share of the increment that is beyond the curve */
-    forward = direction[0] * d0 + direction[1] * d1;
-    forward = forward > zero ? forward : zero;
     hardens = asperity_most(beyond * forward - p->sudden, ASPERITY_R(0.5) * (beyond * forward)); /* in a long step, half of it at the least */
     dx = hardens * v->per_slip;
     asperity_shapes(t->form, v, asperity_least(at + dx, one), &place);
@@ -1327,7 +1329,7 @@ ASPERITY_FN asperity_real asperity_shear(
         }
     }
     asperity_slider_force(v, s->deflection, held);
-    bound = asperity_eased(t, ratio, cap, out->f_n) * out->f_n;
+    bound = asperity_least(ratio, t->friction) * out->f_n;
     size = ASPERITY_SQRT(held[0] * held[0] + held[1] * held[1]);
     out->f_t[0] = held[0];
     out->f_t[1] = held[1];

@@ -126,7 +126,7 @@ LEAST_NORMAL = 0.25
 SUDDEN = 0.2
 FORGETS = 4.0
 GONE = 1e-5
-EASED = 0.0
+AHEAD = 0.02
 RELAXATION = 0.1
 REVERSED = 0.05
 SLIDING = 0.98
@@ -456,6 +456,7 @@ def press(p, s, v, h, increment):
         gain = falls * keep * f_t / (v.f_n0 * steep) if steep > 0.0 else 0.0
         slope = v.slope * (raised / v.f_n0 + gain) + v.f_n0 * gain * rate
     slope = slope if raised < f_n and slope < stiffness else stiffness
+    x = elastic if f_n < on_curve else x  # where F_N is below the curve, it is F_N that tells the place
     f_n = raised if raised < f_n else f_n
     back = (1.0 - keep) / v.k_t
     s.deflection = slide(s.deflection, slider_limits(p, v, f_n), (-back * force[0], -back * force[1]))
@@ -463,7 +464,7 @@ def press(p, s, v, h, increment):
         s.deflection = [[0.0, 0.0] for _ in range(SLIDERS)]
     x = x if x < s.x else s.x
     # It forgets with the growth of the contact, and as F_T is taken back.
-    kept = math.exp(-plastic / h - FORGETS * taken_back * flow)
+    kept = math.exp(-plastic / h - FORGETS * (taken_back * taken_back) * flow)
     s.sheared = x + (s.sheared - x) * kept if s.sheared > x else x
     return f_n, x, slope, flow, sudden
 
@@ -479,9 +480,11 @@ def reverse(p, s, out, v, before, force_before, increment):
     stick = risen / (v.k_t * size)
     if not 0.0 < stick < 1.0:
         return
+    # What F_N is above that of its x stays above it.
+    above = max(out.f_n - v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0)), 0.0)
     rate = 4.0 * GATHERED * (MOST - s.x) * (v.k_t / (p.friction * v.f_n_slip))
     s.x = min(s.x + rate * (stick * (1.0 - stick)) * size, MOST)
-    cap = v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0))
+    cap = v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0)) + above
     if not cap < out.f_n:
         return
     out.f_n = cap
@@ -498,11 +501,6 @@ def reverse(p, s, out, v, before, force_before, increment):
         falls = (1.0 - stick) * out.df_n_ddelta[j] / cap
         for i in range(2):
             out.df_t_ddelta[i][j] += falls * out.f_t[i]
-
-
-def eased(p, ratio, cap, f_n):
-    """F_T/F_N that a contact bears whose F_N is above the virgin curve's, `cap`: a little less than mu, so that a step can tell what is beyond."""
-    return min(ratio, p.friction * (1.0 - EASED * (1.0 - cap / f_n)))
 
 
 def shear(p, s, out, v, f_n, sudden, increment):
@@ -529,9 +527,12 @@ def shear(p, s, out, v, f_n, sudden, increment):
     if raised:
         ratio = bound / before_cap
         top = max(min(v.f_n0 / (1.0 + share * (ratio * ratio)), f_n), before_cap)
-        bound = eased(p, ratio, before_cap, top) * top
+        bound = min(ratio, p.friction) * top
     trial = math.sqrt(out.f_t[0] * out.f_t[0] + out.f_t[1] * out.f_t[1])
-    if trial <= AT_BOUND * bound:
+    # Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond.
+    forward = max((out.f_t[0] * increment[0] + out.f_t[1] * increment[1]) / trial, 0.0) if trial > 0.0 else 0.0
+    ahead = (AHEAD + (1.0 - before_cap / f_n if raised else 0.0)) * (v.k_t * forward)
+    if trial + ahead <= AT_BOUND * bound:
         highest, q = pressed_cap(v, share, trial)
         if raised and AT_CAP * highest < f_n:
             cap = min(highest if highest > before_cap else before_cap, f_n)
@@ -544,14 +545,14 @@ def shear(p, s, out, v, f_n, sudden, increment):
             s.deflection = slide(before, limit, increment)
             out.f_t = slider_force(v, s.deflection)
             out.df_t_ddelta = slider_stiffness(v, before, limit, increment)
+        elif s.x >= 1.0:
+            reverse(p, s, out, v, before, force_before, increment)
         return
     direction = [out.f_t[0] / trial, out.f_t[1] / trial]
     along = direction[0] * force_before[0] + direction[1] * force_before[1]
-    excess = trial - bound
-    travel = trial - along
+    excess = max(trial - bound + ahead, 0.0)
+    travel = trial - along + ahead
     beyond = excess / travel if excess < travel else 1.0
-    forward = direction[0] * increment[0] + direction[1] * increment[1]
-    forward = forward if forward > 0.0 else 0.0
     hardens = max(beyond * forward - sudden, 0.5 * (beyond * forward))  # in a long step, half of it at the least
     dx = hardens / v.delta_t_slip
     x = at + dx if at + dx < 1.0 else 1.0
@@ -578,7 +579,7 @@ def shear(p, s, out, v, f_n, sudden, increment):
     s.deflection = slide(before, limit, increment)
     held = slider_force(v, s.deflection)
     stiffness = slider_stiffness(v, before, limit, increment)
-    bound = eased(p, ratio, cap, out.f_n) * out.f_n
+    bound = min(ratio, p.friction) * out.f_n
     per_x = beyond / v.delta_t_slip if hardens > 0.0 else 0.0
     rate = (steeper * out.f_n - ratio * loss) * per_x
     size = math.sqrt(held[0] * held[0] + held[1] * held[1])
