@@ -79,10 +79,10 @@ const GONE: f64 = 1e-5;
 /// x over which a sudden shear takes F_N from the yield curve of a press down to the virgin one.
 const RELAXATION: f64 = 0.1;
 
-/// Share of what F_T would rise by at k_T that counts as risen when it is asked whether a step goes
-/// beyond the virgin curve. Where everything slides F_T rises by nothing but rounding; there the
-/// displacement tells what is beyond.
-const AHEAD: f64 = 0.02;
+/// Share of what F_T would rise by at k_T that it counts as risen at the least, when it is asked
+/// what part of a step is beyond the virgin curve. Where everything slides it rises by nothing but
+/// rounding; there the displacement tells what is beyond.
+const LEAST_TRAVEL: f64 = 0.1;
 
 /// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
 const REVERSED: f64 = 0.05;
@@ -572,7 +572,10 @@ fn shear(
     let trial = length(out.f_t);
     let forward = if trial > 0.0 { (out.f_t[0] * increment[0] + out.f_t[1] * increment[1]) / trial } else { 0.0 };
     let forward = if forward > 0.0 { forward } else { 0.0 };
-    let ahead = (AHEAD + if raised { 1.0 - before_cap / f_n } else { 0.0 }) * (virgin.point.k_t * forward);
+    let along = if trial > 0.0 { (out.f_t[0] * force_before[0] + out.f_t[1] * force_before[1]) / trial } else { 0.0 };
+    let travel = trial - along;
+    let ahead = LEAST_TRAVEL * (virgin.point.k_t * forward) - travel;
+    let ahead = if ahead > 0.0 { ahead } else { 0.0 };
     if trial + ahead <= AT_BOUND * bound {
         let [highest, q] = pressed_cap(virgin, share, trial);
         if raised && AT_CAP * highest < f_n {
@@ -596,9 +599,8 @@ fn shear(
         return;
     }
     let direction = [out.f_t[0] / trial, out.f_t[1] / trial];
-    let along = direction[0] * force_before[0] + direction[1] * force_before[1];
     // Share of the increment that is beyond the curve: all of it when the contact stood on it.
-    let (excess, travel) = (trial - bound + ahead, trial - along + ahead);
+    let (excess, travel) = (trial - bound + ahead, travel + ahead);
     let excess = if excess > 0.0 { excess } else { 0.0 };
     let beyond = if excess < travel { excess / travel } else { 1.0 };
     // In a long step, half of it at the least.

@@ -157,7 +157,7 @@ typedef struct asperity_tangent {
 #define ASPERITY_SUDDEN ASPERITY_R(0.2)
 #define ASPERITY_FORGETS ASPERITY_R(4.0)
 #define ASPERITY_GONE ASPERITY_R(1e-5)
-#define ASPERITY_AHEAD ASPERITY_R(0.02)
+#define ASPERITY_LEAST_TRAVEL ASPERITY_R(0.1)
 #define ASPERITY_RELAXATION ASPERITY_R(0.1)
 #define ASPERITY_REVERSED ASPERITY_R(0.05)
 #define ASPERITY_SLIDING ASPERITY_R(0.98)
@@ -1222,7 +1222,7 @@ ASPERITY_FN asperity_real asperity_shear(
     asperity_real d0, asperity_real d1) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
     asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, root;
-    asperity_real slip_force, bound, over, share, trial, along, excess, travel, ahead, beyond, forward, hardens, at, dx, cap, before_cap, highest, ratio, steeper, falls, rises, above, lowered, size;
+    asperity_real slip_force, bound, over, share, trial, excess, travel, ahead, beyond, forward, hardens, at, dx, cap, before_cap, highest, ratio, steeper, falls, rises, above, lowered, size;
     asperity_real per_x, loss, keep, rate, radial;
     asperity_moved moved;
     asperity_place place, from;
@@ -1264,7 +1264,8 @@ ASPERITY_FN asperity_real asperity_shear(
     trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
     /* Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond. */
     forward = trial > zero ? asperity_most((out->f_t[0] * d0 + out->f_t[1] * d1) / trial, zero) : zero;
-    ahead = (ASPERITY_AHEAD + (raised ? one - before_cap / f_n : zero)) * (v->k_t * forward);
+    travel = trial > zero ? trial - (out->f_t[0] * p->force[0] + out->f_t[1] * p->force[1]) / trial : zero;
+    ahead = asperity_most(ASPERITY_LEAST_TRAVEL * (v->k_t * forward) - travel, zero);
     if (trial + ahead <= ASPERITY_AT_BOUND * bound) {
         highest = asperity_pressed_cap(v, share, trial, &root);
         if (raised && ASPERITY_AT_CAP * highest < f_n) {
@@ -1295,10 +1296,9 @@ ASPERITY_FN asperity_real asperity_shear(
     }
     direction[0] = out->f_t[0] / trial;
     direction[1] = out->f_t[1] / trial;
-    along = direction[0] * p->force[0] + direction[1] * p->force[1];
     excess = asperity_excess(t->form, v, s->deflection, slip_force * over, at, trial - bound);
     excess = asperity_most(excess + ahead, zero);
-    travel = trial - along + ahead;
+    travel += ahead;
     beyond = excess < travel ? excess / travel : one; /* share of the increment that is beyond the curve */
     hardens = asperity_most(beyond * forward - p->sudden, ASPERITY_R(0.5) * (beyond * forward)); /* in a long step, half of it at the least */
     dx = hardens * v->per_slip;

@@ -126,7 +126,7 @@ LEAST_NORMAL = 0.25
 SUDDEN = 0.2
 FORGETS = 4.0
 GONE = 1e-5
-AHEAD = 0.02
+LEAST_TRAVEL = 0.1
 RELAXATION = 0.1
 REVERSED = 0.05
 SLIDING = 0.98
@@ -531,7 +531,8 @@ def shear(p, s, out, v, f_n, sudden, increment):
     trial = math.sqrt(out.f_t[0] * out.f_t[0] + out.f_t[1] * out.f_t[1])
     # Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond.
     forward = max((out.f_t[0] * increment[0] + out.f_t[1] * increment[1]) / trial, 0.0) if trial > 0.0 else 0.0
-    ahead = (AHEAD + (1.0 - before_cap / f_n if raised else 0.0)) * (v.k_t * forward)
+    travel = trial - (out.f_t[0] * force_before[0] + out.f_t[1] * force_before[1]) / trial if trial > 0.0 else 0.0
+    ahead = max(LEAST_TRAVEL * (v.k_t * forward) - travel, 0.0)
     if trial + ahead <= AT_BOUND * bound:
         highest, q = pressed_cap(v, share, trial)
         if raised and AT_CAP * highest < f_n:
@@ -549,9 +550,8 @@ def shear(p, s, out, v, f_n, sudden, increment):
             reverse(p, s, out, v, before, force_before, increment)
         return
     direction = [out.f_t[0] / trial, out.f_t[1] / trial]
-    along = direction[0] * force_before[0] + direction[1] * force_before[1]
     excess = max(trial - bound + ahead, 0.0)
-    travel = trial - along + ahead
+    travel += ahead
     beyond = excess / travel if excess < travel else 1.0
     hardens = max(beyond * forward - sudden, 0.5 * (beyond * forward))  # in a long step, half of it at the least
     dx = hardens / v.delta_t_slip
