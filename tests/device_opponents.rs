@@ -1,5 +1,5 @@
-//! An equal pair, a rigid sphere and an unlike sphere that deforms, on a device: the CPU's history step by step, and the same bits
-//! again, alone or in a study.
+//! An equal pair, a rigid sphere and an unlike sphere that deforms, on a device: the CPU's history
+//! step by step, and the same bits again, alone or in a study.
 
 mod device;
 

@@ -85,7 +85,7 @@ fn every_evaluation_has_its_rows_and_numbers() {
 
 #[test]
 fn bytes_are_those_of_the_arrays() {
-    let sizes = Sizes { nodes: 10, elements: 2, own_elements: 2, contact_points: 3, blocks: 100 };
+    let sizes = Sizes { nodes: 10, elements: 2, contact_points: 3, blocks: 100 };
     use crate::compute::gpu::Evaluation;
     // contact: weight, friction's symmetry flag, gap, six numbers there, 21 back, a status
     assert!(sizes.on_device(Evaluation::Contact, 8) >= 3 * 8 * (2 + 6 + 21));
