@@ -158,6 +158,8 @@ pub static KERNELS: &[&Kernel] = &[
     &iterate::EXPAND,
     &iterate::UNIT,
     &iterate::RESPOND,
+    &iterate::DEPTH,
+    &iterate::PRESS,
     &iterate::LAND,
     &iterate::COMMIT,
     &iterate::ENERGIES,
