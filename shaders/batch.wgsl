@@ -8,8 +8,8 @@ struct Dimensions {
     elements: u32,
     contact_points: u32,
     blocks: u32,            // upper block triangle of the tangent
-    reserved_0: u32,
-    reserved_1: u32,
+    own_elements: u32,      // those of the sphere; an opponent that deforms has those after them
+    materials: u32,         // sets of parameters: of all cases, then of their opponents, if they have any
 }
 
 @group(0) @binding(0) var<uniform> dimensions: Dimensions;

@@ -1,5 +1,5 @@
-//! An equal pair and a rigid sphere on a device: the CPU's history step by step, and the same bits
-//! again, alone or in a study.
+//! An equal pair, a rigid sphere and an unlike sphere that deforms, on a device: the CPU's history
+//! step by step, and the same bits again, alone or in a study.
 
 mod device;
 
@@ -36,6 +36,22 @@ plots = false
 const EQUAL: &str = "[base.opponent]\nequal = true\n[[base.path]]\nindentation = 0.02\n[[base.path]]\nshear = 0.004\n";
 const RIGID: &str =
     "[base.opponent]\nrigid = true\nradius = 0.8\n[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = 0.002\n";
+const UNLIKE: &str = r#"
+[base.opponent]
+radius = 2.0
+[base.opponent.material]
+youngs_modulus = 600e3
+poissons_ratio = 0.25
+[base.opponent.material.hardening]
+law = "voce"
+yield_stress = 500.0
+saturation_stress = 900.0
+rate = 30.0
+[[base.path]]
+indentation = 0.02
+[[base.path]]
+shear = 0.004
+"#;
 
 fn program(verb: &str, file: &Path, out: &Path, device: &str) {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
@@ -97,4 +113,9 @@ fn an_equal_pair_has_the_cpus_history() {
 #[test]
 fn a_rigid_sphere_has_the_cpus_history() {
     check("a_rigid_sphere_has_the_cpus_history", RIGID);
+}
+
+#[test]
+fn an_unlike_pair_has_the_cpus_history() {
+    check("an_unlike_pair_has_the_cpus_history", UNLIKE);
 }

@@ -141,27 +141,3 @@ fn without_a_driver_auto_is_the_cpu_and_gpu_is_one_clear_error() {
     assert!(text.contains("no GPU found") && text.contains("--device cpu"), "{text}");
     println!("child: done");
 }
-
-/// Two meshes are on no device yet: asked for by name it is an error, by itself the CPU's turn.
-#[test]
-fn two_bodies_that_deform_are_the_cpus_turn_or_an_error() {
-    let out = tempfile::tempdir().unwrap();
-    let run = |device: &str| {
-        Command::new(env!("CARGO_BIN_EXE_asperity"))
-            .args(["run", "fixtures/cases/unlike.toml", "--quiet", "--force", "--device", device, "--out"])
-            .arg(out.path().join(device))
-            .args(["--set", "mesh.elements_per_contact_radius=4", "--set", "solver.error_estimate=false"])
-            .args(["--set", "path.1.shear=1e-4", "--set", "path.0.indentation=1e-4"])
-            .output()
-            .unwrap()
-    };
-    let refused = run("gpu");
-    let told = String::from_utf8_lossy(&refused.stderr);
-    assert_eq!(refused.status.code(), Some(2), "{told}");
-    assert!(told.contains("--device gpu: two bodies that both deform are computed on the CPU only"), "{told}");
-    assert!(!out.path().join("gpu/history.csv").exists());
-    let done = run("auto");
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let summary = std::fs::read_to_string(out.path().join("auto/summary.json")).unwrap();
-    assert!(summary.contains("\"CPU"), "{summary}");
-}

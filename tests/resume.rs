@@ -47,6 +47,15 @@ shear = "full-slip"
 [[path]]
 release = true
 "#;
+const UNLIKE: &str = r#"[opponent]
+radius = 2.0
+[opponent.material]
+youngs_modulus = 600e3
+poissons_ratio = 0.3
+[opponent.material.hardening]
+law = "ideal"
+yield_stress = 500.0
+"#;
 /// A program that has not come so far after this time hangs.
 const PATIENCE: Duration = Duration::from_secs(300);
 
@@ -354,21 +363,24 @@ fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() 
     let scratch = scratch();
     // The press alone, in few steps: software adapters are slow.
     let press: Vec<&str> = CASE.split("[[path]]").take(2).collect();
-    fs::write(scratch.path("case.toml"), press.join("[[path]]")).expect("the case");
+    let one_body = press.join("[[path]]");
+    let two_bodies = press.join(&format!("{UNLIKE}[[path]]"));
     let small = ["mesh.elements_per_contact_radius=4", "solver.press_steps=5", "solver.error_estimate=false"];
     let sets: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
-    for precision in ["f64", "f32"] {
+    for (name, case, precision) in [("plane", &one_body, "f64"), ("plane in f32", &one_body, "f32"), ("pair", &two_bodies, "f64")]
+    {
+        fs::write(scratch.path("case.toml"), case).expect("the case");
         let run = |options: &[&str], device: &str| {
-            let mut args = scratch.args(precision, &[&sets[..], &["--precision", precision], options].concat());
+            let mut args = scratch.args(name, &[&sets[..], &["--precision", precision], options].concat());
             args.iter_mut().filter(|arg| *arg == "cpu").for_each(|arg| *arg = device.into());
             args
         };
         let whole = scratch.path("whole");
         let args = run(&["--force"], "gpu")
             .into_iter()
-            .map(|arg| if Path::new(&arg) == scratch.path(precision) { whole.clone().into() } else { arg });
+            .map(|arg| if Path::new(&arg) == scratch.path(name) { whole.clone().into() } else { arg });
         assert_eq!(program().args(args).output().expect("it runs").status.code(), Some(0));
-        let out = scratch.path(precision);
+        let out = scratch.path(name);
         let output = stop(piped(program().args(run(&[], "gpu"))), Signal::TERM, &out, 2);
         assert_eq!(output.status.code(), Some(75), "{}", stderr(&output));
         let (left, at) = (files(&out), steps(&out));
@@ -387,7 +399,7 @@ fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() 
         let note = format!("note: computed up to step {at} on {}, from there on {}", there.device, here.device);
         assert_eq!(here.messages, [note]);
         let ratio = here.f_n0.expect("a force") / there.f_n0.expect("a force");
-        assert!((ratio - 1.0).abs() < if precision == "f64" { 1e-7 } else { 5e-4 }, "{precision}: {ratio}");
+        assert!((ratio - 1.0).abs() < if precision == "f64" { 1e-7 } else { 5e-4 }, "{name}: {ratio}");
     }
 }
 

@@ -2,7 +2,7 @@
 //! comparison in `benches/against_ccx`.
 //!
 //! `cargo run --release --example ccx_deck -- CASE.toml OUT.inp [--set KEY=VALUE]...
-//! [--overclosure N] [--stick-slope N] [--increment SHARE] [--quadratic]`
+//! [--overclosure N] [--stick-slope N] [--increment SHARE] [--element NAME]`
 //!
 //! Contact is what CalculiX has: surface to surface, a linear pressure-overclosure law of slope 100
 //! E/R and a stick slope of 5 E/R, settings with which it is known to finish. The rigid plane is
@@ -12,8 +12,9 @@
 //! softer body is the slave.
 //!
 //! The elements are C3D8, which have Asperity's nodes but lock in plastic flow: their pressure
-//! swings from one integration point to the next. With `--quadratic` they are C3D20R, with a node
-//! more on each edge, which do not.
+//! swings from one integration point to the next. `--element` takes two that do not: C3D8R, the
+//! same with one point (CalculiX stabilises its hourglass modes), and C3D20R, with a node more on
+//! each edge.
 
 mod quadratic;
 #[cfg(test)]
@@ -41,13 +42,36 @@ struct Settings {
     stick_slope: f64,
     /// First and largest increment of a step, as a share of it.
     largest_increment: f64,
-    /// Elements of twenty nodes with reduced integration, instead of eight nodes.
-    quadratic: bool,
+    /// The bodies' elements.
+    element: Element,
+}
+
+/// An element, by CalculiX' name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Element {
+    /// Eight nodes, eight points.
+    C3D8,
+    /// Eight nodes, one point.
+    C3D8R,
+    /// Twenty nodes, eight points.
+    C3D20R,
+}
+
+impl Element {
+    const ALL: [Self; 3] = [Self::C3D8, Self::C3D8R, Self::C3D20R];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::C3D8 => "C3D8",
+            Self::C3D8R => "C3D8R",
+            Self::C3D20R => "C3D20R",
+        }
+    }
 }
 
 /// Those with which CalculiX is known to finish.
 const KNOWN_TO_FINISH: Settings =
-    Settings { overclosure_slope: 100.0, stick_slope: 5.0, largest_increment: 0.1, quadratic: false };
+    Settings { overclosure_slope: 100.0, stick_slope: 5.0, largest_increment: 0.1, element: Element::C3D8 };
 /// A rigid sphere: facets in y (twice as many in x, along the shear), and its thickness over R.
 const CAP: (usize, f64) = (36, 0.2);
 /// Faces in CalculiX' numbering, S1 to S6, as positions in [`FACES`].
@@ -79,13 +103,15 @@ struct Arguments {
 }
 
 fn arguments() -> Result<Arguments, Failed> {
-    const USAGE: &str = "usage: ccx_deck CASE.toml OUT.inp [--set KEY=VALUE]... [--overclosure N] [--stick-slope N] [--increment SHARE] [--quadratic]";
+    const USAGE: &str = "usage: ccx_deck CASE.toml OUT.inp [--set KEY=VALUE]... [--overclosure N] [--stick-slope N] [--increment SHARE] [--element C3D8|C3D8R|C3D20R]";
     let (mut files, mut set, mut settings) = (Vec::new(), Vec::new(), KNOWN_TO_FINISH);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let number = match argument.as_str() {
-            "--quadratic" => {
-                settings.quadratic = true;
+            "--element" => {
+                let name = arguments.next().unwrap_or_default();
+                let known = Element::ALL.into_iter().find(|element| element.name() == name);
+                settings.element = known.ok_or_else(|| format!("--element wants C3D8, C3D8R or C3D20R, not \"{name}\""))?;
                 continue;
             }
             "--set" => {
@@ -121,7 +147,7 @@ fn deck(case: &Case, problem: &Problem, settings: &Settings) -> Result<String, F
         return Err("a deck has a plane, a rigid sphere or a meshed opponent: give two equal spheres as opponent.radius".into());
     }
     let mut text = String::from("** Half of the lower half of a sphere; symmetry plane y = 0, equator driven.\n");
-    geometry(&mut text, case, problem, settings.quadratic)?;
+    geometry(&mut text, case, problem, settings.element)?;
     materials(&mut text, case, problem)?;
     contact(&mut text, case, problem, settings)?;
     let (mut h, mut delta_t) = (0.0, 0.0);
@@ -144,14 +170,14 @@ fn deck(case: &Case, problem: &Problem, settings: &Settings) -> Result<String, F
 }
 
 /// Nodes, elements, sets and surfaces of the sphere and what it is pressed against.
-fn geometry(text: &mut String, case: &Case, problem: &Problem, quadratic: bool) -> Result<(), Failed> {
+fn geometry(text: &mut String, case: &Case, problem: &Problem, kind: Element) -> Result<(), Failed> {
     let (mesh, radius) = (&problem.model.mesh, case.sphere.radius);
     let couple = mesh.couple.as_deref();
     let first_below = couple.map_or(mesh.nodes.len(), |couple| couple.node);
     let first_mirrored = couple.map_or(mesh.elements.len(), |couple| couple.element);
     let elements: Vec<[u32; 8]> =
         mesh.elements.iter().enumerate().map(|(e, &element)| turned(element, e >= first_mirrored)).collect();
-    let middles = if quadratic { Middles::new(mesh, &elements, &radii(case)) } else { Middles::default() };
+    let middles = if kind == Element::C3D20R { Middles::new(mesh, &elements, &radii(case)) } else { Middles::default() };
     text.push_str("*NODE, NSET=BODY\n");
     for (i, x) in mesh.nodes.iter().chain(&middles.nodes).enumerate() {
         let above = if i < mesh.nodes.len() { i < first_below } else { middles.above[i - mesh.nodes.len()] };
@@ -159,7 +185,7 @@ fn geometry(text: &mut String, case: &Case, problem: &Problem, quadratic: bool) 
         let z = if above { x[2] } else { 0.0 - x[2] };
         writeln!(text, "{}, {:.12e}, {:.12e}, {:.12e}", i + 1, x[0] * radius, x[1] * radius, z * radius)?;
     }
-    let kind = if quadratic { "C3D20R" } else { "C3D8" };
+    let kind = kind.name();
     for (e, element) in elements.iter().enumerate() {
         if e == 0 {
             writeln!(text, "*ELEMENT, TYPE={kind}, ELSET=SPHERE")?;

@@ -172,11 +172,12 @@ fn each_body_has_its_material_and_the_softer_one_is_the_slave() {
 #[test]
 fn settings_are_what_was_asked_for() {
     let (case, problem) = case(&[]);
-    let settings = Settings { overclosure_slope: 200.0, stick_slope: 20.0, largest_increment: 0.05, quadratic: false };
+    let settings = Settings { overclosure_slope: 200.0, stick_slope: 20.0, largest_increment: 0.05, element: Element::C3D8R };
     let deck = deck(&case, &problem, &settings).expect("a deck");
     assert_eq!(number(data(&deck, "*SURFACE BEHAVIOR")[0][0]), 200.0 * 200e3);
     assert_eq!(number(data(&deck, "*FRICTION")[0][1]), 20.0 * 200e3);
     assert!(data(&deck, "*STATIC").iter().all(|row| number(row[0]) == 0.05 && number(row[3]) == 0.05));
+    assert_eq!(data(&deck, "*ELEMENT, TYPE=C3D8R, ELSET=SPHERE").len(), problem.model.mesh.elements.len());
 }
 
 #[test]
@@ -210,7 +211,7 @@ fn what_calculix_cannot_follow_is_refused() {
     }
 }
 
-const QUADRATIC: Settings = Settings { overclosure_slope: 50.0, quadratic: true, ..KNOWN_TO_FINISH };
+const QUADRATIC: Settings = Settings { overclosure_slope: 50.0, element: Element::C3D20R, ..KNOWN_TO_FINISH };
 
 #[test]
 fn a_quadratic_brick_has_the_middles_of_its_edges() {

@@ -32,7 +32,7 @@ fn hex8_energies(@builtin(global_invocation_id) id: vec3<u32>) {
         plastic += point_work[(2u * slot + 1u) * points + point];
         alpha = max(alpha, next_history[(14u * slot + 6u) * points + point]);
     }
-    let material = load_material(case_index, dimensions.cases);
+    let material = material_of(case_index, element);
     let first = 3u * slot * elements + element;
     energies[first] = elastic + total * elastic_energy_volumetric(material.elasticity, change / total);
     energies[first + elements] = work_at_start[case_index * elements + element] + plastic;

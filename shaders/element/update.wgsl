@@ -11,7 +11,7 @@ fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let at = point_place(id);
-    let material = load_material(at.case_index, dimensions.cases);
+    let material = material_of(at.case_index, at.element);
     let a = evaluate_point(at, material);
     if !a.valid {
         return;

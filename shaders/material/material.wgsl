@@ -23,14 +23,14 @@ struct Material {
     hardening: Hardening,
 }
 
-// Parameter p of case c at p * cases + c, in the order of load_material; whole numbers are stored
-// as reals.
+// Parameter p of material m at p * materials + m, in the order of load_material; whole numbers are
+// stored as reals.
 @group(0) @binding(7) var<storage, read> material_parameters: array<real>;
 
-fn load_material(case_index: u32, cases: u32) -> Material {
+fn load_material(index: u32, materials: u32) -> Material {
     var p: array<real, 9>;
     for (var i = 0u; i < 9u; i++) {
-        p[i] = material_parameters[i * cases + case_index];
+        p[i] = material_parameters[i * materials + index];
     }
     let hardening = Hardening(u32(p[2]), p[3], p[4], p[5], p[6], u32(p[7]), u32(p[8]));
     return Material(Elasticity(p[0], p[1]), hardening);

@@ -27,7 +27,7 @@ pub struct BenchArgs {
     #[arg(long)]
     pub quick: bool,
     /// Run whole simulations (the press and shear of ideal plasticity) instead: on one core, on all
-    /// cores, and on the device in batches of 1 to 64, with --quick 1 and 2.
+    /// cores, and on the device in batches of 1 to 256, with --quick 1 and 2.
     #[arg(long)]
     pub whole_job: bool,
     /// Elements along the contact radius of the mesh, 2 to 32; by default 8, with --quick 4.
@@ -92,7 +92,7 @@ fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> 
         Device::Cpu => DeviceChoice::Cpu,
         Device::Gpu => DeviceChoice::Gpu,
     };
-    let batches = if args.quick { vec![1, 2] } else { vec![1, 4, 16, 64] };
+    let batches = if args.quick { vec![1, 2] } else { vec![1, 4, 16, 64, 256] };
     let jobs = WholeJobs { device, threads: options.threads, batches, elements: options.elements };
     let rows = whole_job::run(&jobs, say).map_err(|error| match error {
         BenchError::Study(error) => CliError::from(error),

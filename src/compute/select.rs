@@ -49,14 +49,8 @@ pub struct Selected {
 /// [`ComputeError::InvertedMesh`] and [`ComputeError::Connectivity`] from any device;
 /// [`ComputeError::Device`] if a GPU was asked for and there is none, or the batch does not fit.
 pub fn select(device: DeviceChoice, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
-    // Devices take one material a case.
-    let two_bodies = models.iter().any(|model| model.opponent.is_some());
     match device {
-        DeviceChoice::Gpu if two_bodies => Err(ComputeError::Device(
-            "two bodies that both deform are computed on the CPU only. Ask for the CPU, or leave the choice open".to_owned(),
-        )),
         DeviceChoice::Cpu => Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
-        _ if two_bodies => Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
         choice => on_device(choice, precision, models),
     }
 }

@@ -71,7 +71,7 @@ pub struct Report {
 }
 
 /// Most cases that share a device at a time.
-const LARGEST_BATCH: usize = 64;
+const LARGEST_BATCH: usize = 256;
 
 /// Computes a study into `dir`: a directory a case, and `study.csv`, which is written anew as cases
 /// end.

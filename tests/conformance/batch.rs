@@ -8,6 +8,7 @@ use asperity::internals::compute::{
 use asperity::internals::contact::coulomb::{Friction, Point, Rows, contact_rows};
 use asperity::internals::mesh::Mesh;
 use asperity::internals::mesh::brick::brick;
+use asperity::internals::mesh::couple::{couple, scaled};
 use asperity::internals::mesh::pattern::Pattern;
 use asperity::internals::real::Real;
 use asperity::material::{Elasticity, Hardening, Material};
@@ -97,6 +98,21 @@ pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
         opponent: None,
     };
     laws.into_iter().enumerate().map(model).collect()
+}
+
+/// Two bodies that deform, of unlike materials, on meshes of one connectivity; and the models of
+/// each body by itself.
+pub fn couples(cells: [usize; 3]) -> (Vec<CaseModel>, [Vec<CaseModel>; 2]) {
+    let own = models(cells);
+    let opponents: Vec<_> = own.iter().cycle().skip(2).take(own.len()).cloned().collect();
+    let couple = |(own, opponent): (&CaseModel, &CaseModel)| CaseModel {
+        mesh: Arc::new(couple((*own.mesh).clone(), scaled((*opponent.mesh).clone(), 2.0))),
+        opponent: Some(opponent.material.clone()),
+        ..own.clone()
+    };
+    let both = own.iter().zip(&opponents).map(couple).collect();
+    let larger = |model: CaseModel| CaseModel { mesh: Arc::new(scaled((*model.mesh).clone(), 2.0)), ..model };
+    (both, [own, opponents.into_iter().map(larger).collect()])
 }
 
 /// A random displacement whose gradients are about `strain`, after `from`; the difference is a

@@ -1,7 +1,7 @@
 //! The element on small distorted meshes: forces, tangents, commits and energies of every law
 //! against the CPU in f64.
 
-use crate::batch::{Backend, OnCpu, commits, difference, displaced, for_every_batch, forces, models, random, tangents};
+use crate::batch::{Backend, OnCpu, commits, couples, difference, displaced, for_every_batch, forces, models, random, tangents};
 use asperity::internals::compute::{CaseState, Compute, Outcome};
 use asperity::internals::real::Real;
 
@@ -181,7 +181,61 @@ fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds
     }
 }
 
+/// Two bodies in one mesh answer as each by itself, to the bit: forces, tangents, energies, and
+/// which part of the plastic work is the opponent's.
+fn two_bodies_answer_as_each_by_itself<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+    let (both, alone) = couples(CELLS);
+    let nodes = alone[0][0].mesh.nodes.len();
+    let mut ours = backend.start(&both);
+    let mut reference = <OnCpu as Backend<f64>>::start(&OnCpu, &both);
+    let mut bodies = alone.map(|models| backend.start(&models));
+    let mut rng = random(80);
+    let mut at: Vec<_> = (0..both.len()).map(|case| (case, vec![0.0; 6 * nodes])).collect();
+    for strain in [2e-3, 2e-2, 5e-3] {
+        at = at.iter().map(|(case, u)| (*case, displaced::<R>(u, strain, &mut rng))).collect();
+        let part = |body: usize| -> Vec<_> {
+            at.iter().map(|(case, u)| (*case, u[3 * nodes * body..3 * nodes * (body + 1)].to_vec())).collect()
+        };
+        let (f, k) = (forces(ours.as_mut(), &at), tangents(ours.as_mut(), &at));
+        let (g, l) = (forces(reference.as_mut(), &at), tangents(reference.as_mut(), &at));
+        let (e, d) = (commits(ours.as_mut(), &at), commits(reference.as_mut(), &at));
+        let answers = [0, 1].map(|body| {
+            let (backend, part) = (bodies[body].as_mut(), part(body));
+            (forces(backend, &part), tangents(backend, &part), commits(backend, &part))
+        });
+        for case in 0..both.len() {
+            assert_eq!([f[case].0, k[case].0, e[case].0], [Outcome::Valid; 3], "case {case}");
+            assert!(difference(&f[case].1, &g[case].1) <= bounds.force, "case {case}: force");
+            assert!(difference(k[case].1.as_flattened(), l[case].1.as_flattened()) <= bounds.tangent, "case {case}: tangent");
+            let [(f0, k0, e0), (f1, k1, e1)] = &answers;
+            assert!(f[case].1 == [&f0[case].1[..], &f1[case].1].concat(), "case {case}: other forces than alone");
+            assert!(k[case].1 == [&k0[case].1[..], &k1[case].1].concat(), "case {case}: other tangents than alone");
+            let (e, d, own, opponent) = (e[case].1, d[case].1, e0[case].1, e1[case].1);
+            let sums = [e.elastic, e.plastic, e.opponent_plastic, e.max_alpha];
+            let alone = [
+                own.elastic + opponent.elastic,
+                own.plastic + opponent.plastic,
+                opponent.plastic,
+                own.max_alpha.max(opponent.max_alpha),
+            ];
+            let on_cpu = [d.elastic, d.plastic, d.opponent_plastic, d.max_alpha];
+            for (sum, (alone, on_cpu)) in sums.iter().zip(alone.iter().zip(&on_cpu)) {
+                assert!(difference([sum], [alone]) <= 1e-12, "case {case}: {sums:?}, alone {alone:?}");
+                assert!(difference([sum], [on_cpu]) <= bounds.state, "case {case}: {sums:?}, in f64 {on_cpu:?}");
+            }
+            assert!(ours.state(case).unwrap().plastic_work.len() == 2 * bodies[0].state(case).unwrap().plastic_work.len());
+        }
+        let bits = bodies.each_mut().map(|body| (0..both.len()).map(|case| body.state(case).unwrap()).collect::<Vec<_>>());
+        for case in 0..both.len() {
+            let state = ours.state(case).unwrap();
+            let [own, opponent] = bits.each_ref().map(|states| &states[case]);
+            assert!(state.points == [&own.points[..], &opponent.points].concat(), "case {case}: other states than alone");
+        }
+    }
+}
+
 for_every_batch!(
+    two_bodies_answer_as_each_by_itself,
     forces_and_tangents_agree,
     commits_and_energies_agree,
     a_state_survives_being_taken_and_restored,

@@ -9,6 +9,7 @@ use asperity::internals::compute::gpu::{Gpu, Precision};
 use asperity::internals::compute::handle::CaseHandle;
 use asperity::internals::compute::iterate::{Answer, Ask, Begin, Correct, Corrected, From, IterateRequest, Plate, Reading};
 use asperity::internals::compute::linear::Ended;
+use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::compute::{CaseModel, Compute, Outcome};
 use asperity::internals::contact::coulomb::{Friction, Status};
 use asperity::internals::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
@@ -235,32 +236,71 @@ fn a_correction_solves_the_hosts_system() {
 }
 
 /// What is read of cases does not depend on who is beside them; and few bytes pass, whatever the
-/// batch.
+/// batch, in one submission and one wait, where a force is held too.
 #[test]
 fn a_batch_reads_as_its_cases_alone_and_little_passes() {
     let Some(mut pressed) = pressed("a_batch_reads_as_its_cases_alone_and_little_passes") else { return };
-    let control = Control { h: DEPTH + 2e-4, delta_t: 0.0, normal_force: None };
     let gpu = &mut pressed.gpu;
-    let round = |gpu: &mut Gpu<f64>, cases: &[usize]| -> Vec<(Reading, Corrected)> {
-        let all = |ask: &dyn Fn(usize) -> Ask| -> Vec<(usize, bool, Plate, Ask)> {
-            cases.iter().enumerate().map(|(i, &case)| (case, false, plate(&control), ask(i))).collect()
+    for held in [None, Some(2e-4)] {
+        let control = Control { h: DEPTH + 2e-4, delta_t: 0.0, normal_force: held };
+        let round = |gpu: &mut Gpu<f64>, cases: &[usize]| -> Vec<(Reading, Corrected)> {
+            let (answers, passed) = correct_from_start(gpu, cases, &control, 0.1, [12, 12]);
+            let count = cases.len() as u64;
+            assert!(passed.bytes_up <= 512 * count && passed.bytes_down <= 256 * count, "{passed:?} for {count}");
+            assert!(passed.submissions <= 2 && passed.waits == 1, "{passed:?}");
+            // 13 Krylov iterations are sent off, for a system and for the response to the plate.
+            let systems = 1 + u64::from(held.is_some());
+            assert!(passed.dispatches <= 30 * 13 * systems + 40, "{passed:?}");
+            answers
         };
-        let begun: Vec<Reading> = ask(gpu, &all(&|_| begin())).iter().map(reading).collect();
-        let before = gpu.traffic().unwrap();
-        let answers = ask(gpu, &all(&|i| correct(0.1, begun[i].plate_force)));
-        let passed = gpu.traffic().unwrap() - before;
-        let count = cases.len() as u64;
-        assert!(passed.bytes_up <= 512 * count && passed.bytes_down <= 256 * count, "{passed:?} for {count}");
-        assert!(passed.submissions <= 2 && passed.waits == 1, "{passed:?}");
-        // 13 Krylov iterations are sent off.
-        assert!(passed.dispatches <= 30 * 13 + 40, "{passed:?}");
-        begun.into_iter().zip(answers.iter().map(corrected)).collect()
-    };
-    let together = round(gpu, &[0, 1, 2]);
-    assert!(together.iter().all(|(_, found)| found.report.ended == Ended::Converged));
-    for case in 0..3 {
-        assert_eq!(round(gpu, &[case])[0], together[case], "case {case} alone");
+        let together = round(gpu, &[0, 1, 2]);
+        assert!(together.iter().all(|(_, found)| found.report.ended == Ended::Converged));
+        assert!(together.iter().all(|(_, found)| found.unit.is_some() == held.is_some()));
+        for case in 0..3 {
+            assert_eq!(round(gpu, &[case])[0], together[case], "case {case} alone");
+        }
+        let turned = round(gpu, &[2, 0]);
+        assert_eq!((turned[0], turned[1]), (together[2], together[0]));
     }
-    let turned = round(gpu, &[2, 0]);
-    assert_eq!((turned[0], turned[1]), (together[2], together[0]));
+}
+
+/// How many Krylov iterations are sent off at first changes no bit: neither where a correction
+/// takes more, nor where the response to the plate does, nor where both do.
+#[test]
+fn a_list_that_is_too_short_changes_no_bit() {
+    let Some(mut pressed) = pressed("a_list_that_is_too_short_changes_no_bit") else { return };
+    let gpu = &mut pressed.gpu;
+    for held in [None, Some(2e-4)] {
+        let control = Control { h: DEPTH + 2e-4, delta_t: 0.0, normal_force: held };
+        let (expected, _) = correct_from_start(gpu, &[0, 1, 2], &control, 1e-3, [20, 20]);
+        for lists in [[0, 20], [20, 0], [0, 0]] {
+            let (found, passed) = correct_from_start(gpu, &[0, 1, 2], &control, 1e-3, lists);
+            let short = lists[0] == 0 || held.is_some();
+            assert!(!short || passed.waits > 1, "{lists:?}: {passed:?}");
+            assert_eq!(found, expected, "{lists:?}");
+        }
+    }
+}
+
+/// Corrections from the start of the step, so many Krylov iterations expected for the correction
+/// and the response to the plate, and what passed on the way.
+fn correct_from_start(
+    gpu: &mut Gpu<f64>,
+    cases: &[usize],
+    control: &Control,
+    tolerance: f64,
+    [expected, unit_expected]: [usize; 2],
+) -> (Vec<(Reading, Corrected)>, Traffic) {
+    let all = |ask: &dyn Fn(usize) -> Ask| -> Vec<(usize, bool, Plate, Ask)> {
+        cases.iter().enumerate().map(|(i, &case)| (case, false, plate(control), ask(i))).collect()
+    };
+    let begun: Vec<Reading> = ask(gpu, &all(&|_| begin())).iter().map(reading).collect();
+    let correct = |i: usize| {
+        let plate_force = begun[i].plate_force;
+        Ask::Correct(Correct { tolerance, expected, unit_tolerance: 0.1 * tolerance, unit_expected, first: true, plate_force })
+    };
+    let before = gpu.traffic().unwrap();
+    let answers = ask(gpu, &all(&correct));
+    let passed = gpu.traffic().unwrap() - before;
+    (begun.into_iter().zip(answers.iter().map(corrected)).collect(), passed)
 }

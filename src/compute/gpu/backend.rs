@@ -287,11 +287,12 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                 batch.keep(&dispatch, slot, &self.models[request.case], request.displacement)?;
                 let elements = batch.sizes().elements;
                 let component = |c: usize| energies[(3 * slot + c) * elements..][..elements].iter().map(|e| e.to_f64());
+                let own = batch.sizes().own_elements;
                 request.energies = Energies {
                     elastic: component(0).sum(),
                     plastic: component(1).sum(),
                     max_alpha: component(2).fold(0.0, f64::max),
-                    opponent_plastic: 0.0,
+                    opponent_plastic: component(1).skip(own).sum(),
                 };
                 self.committed[request.case].copy_from_slice(request.displacement);
             }

@@ -238,9 +238,16 @@ impl<R: DeviceReal> Batch<R> {
         let (context, scratch, sizes) = (&self.context, &self.scratch, self.sizes());
         let resident = &self.groups[dispatch.group].0;
         let slots: Vec<[u32; 2]> = dispatch.cases.iter().map(|&c| [c as u32, resident.geometry_of[c]]).collect();
-        let [cases, in_dispatch, nodes, elements, contact_points, blocks] =
-            [resident.count, slots.len(), sizes.nodes, sizes.elements, sizes.contact_points, sizes.blocks].map(|n| n as u32);
-        let dimensions = Dimensions { cases, in_dispatch, nodes, elements, contact_points, blocks, reserved: [0; 2] };
+        let dimensions = Dimensions {
+            cases: resident.count as u32,
+            in_dispatch: slots.len() as u32,
+            nodes: sizes.nodes as u32,
+            elements: sizes.elements as u32,
+            contact_points: sizes.contact_points as u32,
+            blocks: sizes.blocks as u32,
+            own_elements: sizes.own_elements as u32,
+            materials: (sizes.bodies() * resident.count) as u32,
+        };
         context.upload(&scratch.dimensions, &[dimensions])?;
         context.upload_at(&scratch.active, 0, &slots)
     }

@@ -47,7 +47,8 @@ impl PointStatus {
     }
 }
 
-/// Materials as kernels read them: `material_parameters` (parameter p of case c at `p * cases + c`)
+/// Materials as kernels read them: `material_parameters` (parameter p of material m at
+/// `p * materials + m`)
 /// and `hardening_table` (alpha, sigma, plastic work of the points of all tables).
 pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
     let cases = materials.len();

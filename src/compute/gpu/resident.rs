@@ -29,6 +29,8 @@ pub struct Sizes {
     pub nodes: usize,
     /// Elements.
     pub elements: usize,
+    /// Those of the sphere: an opponent that deforms has those after them.
+    pub own_elements: usize,
     /// Points that can touch.
     pub contact_points: usize,
     /// Blocks of the tangent's upper triangle.
@@ -41,6 +43,11 @@ impl Sizes {
         QUADRATURE_POINTS * self.elements
     }
 
+    /// Bodies that deform.
+    pub fn bodies(&self) -> usize {
+        if self.own_elements < self.elements { 2 } else { 1 }
+    }
+
     /// Bytes a case keeps on the device, with its own geometry: the widest array, and all together.
     pub fn resident_bytes<R>(&self) -> (u64, u64) {
         let widest = HISTORY * self.points();
@@ -49,7 +56,7 @@ impl Sizes {
             + (COORDINATES + 1) * self.elements
             + 3 * self.nodes
             + 2 * self.contact_points
-            + 32;
+            + 32 * self.bodies();
         ((widest * size_of::<R>()) as u64, (all * size_of::<R>()) as u64)
     }
 }
@@ -89,6 +96,7 @@ impl Connectivity {
             sizes: Sizes {
                 nodes: mesh.nodes.len(),
                 elements: mesh.elements.len(),
+                own_elements: mesh.couple.as_ref().map_or(mesh.elements.len(), |couple| couple.element),
                 contact_points: mesh.contact_nodes.len(),
                 blocks: plan.blocks(),
             },
@@ -162,8 +170,7 @@ impl<R: DeviceReal> Resident<R> {
             let weights: Vec<R> = mesh.contact_size.iter().map(|&h| R::of(contact_weight * h)).collect();
             context.upload_at(&weight, index * sizes.contact_points, &weights)?;
         }
-        let materials: Vec<Material<R>> = models.iter().map(|m| m.material.cast()).collect();
-        let (parameters, table) = flatten(&materials);
+        let (parameters, table) = flatten(&materials::<R>(sizes, models));
         let friction: Vec<R> = models
             .iter()
             .map(|m| match m.friction {
@@ -233,6 +240,13 @@ impl<R: DeviceReal> Resident<R> {
             .collect();
         context.upload_at(&self.gap, index * sizes.contact_points, &gaps)
     }
+}
+
+/// The materials of cases, then those of their opponents, if they have any that deform.
+pub fn materials<T: DeviceReal>(sizes: Sizes, models: &[CaseModel]) -> Vec<Material<T>> {
+    let own = models.iter().map(|model| &model.material);
+    let opponents = models.iter().map(|model| model.opponent.as_ref().unwrap_or(&model.material));
+    own.chain(opponents).take(sizes.bodies() * models.len()).map(Material::cast).collect()
 }
 
 /// Reference positions of the nodes `[mesh][3 a + i][element]` and volumes `[mesh][point]` of

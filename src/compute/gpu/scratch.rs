@@ -30,7 +30,8 @@ pub struct Dimensions {
     pub(super) elements: u32,
     pub(super) contact_points: u32,
     pub(super) blocks: u32,
-    pub(super) reserved: [u32; 2],
+    pub(super) own_elements: u32,
+    pub(super) materials: u32,
 }
 
 /// What dispatches make, slot by slot.

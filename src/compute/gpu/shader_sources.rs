@@ -75,6 +75,8 @@ const RETURN_MAPPING_POINTS: Source = source!("material/return_mapping.wgsl");
 pub const BATCH: Source = source!("batch.wgsl");
 /// Geometry and kinematics of the element.
 pub const HEX8: Source = source!("element/hex8.wgsl");
+/// The material of an element.
+pub const BODY: Source = source!("element/body.wgsl");
 /// A quadrature point at a trial displacement.
 pub const POINT: Source = source!("element/point.wgsl");
 /// Gap and slip.
@@ -156,6 +158,8 @@ pub static KERNELS: &[&Kernel] = &[
     &iterate::EXPAND,
     &iterate::UNIT,
     &iterate::RESPOND,
+    &iterate::DEPTH,
+    &iterate::PRESS,
     &iterate::LAND,
     &iterate::COMMIT,
     &iterate::ENERGIES,
@@ -192,7 +196,7 @@ pub static HEX8_JACOBIAN: Kernel = Kernel {
 /// The weighted stress of every quadrature point.
 pub static HEX8_INTERNAL_FORCE: Kernel = Kernel {
     name: "hex8_internal_force",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, POINT, source!("element/internal_force.wgsl")],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, POINT, source!("element/internal_force.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
@@ -200,7 +204,7 @@ pub static HEX8_INTERNAL_FORCE: Kernel = Kernel {
 /// The weighted moduli of every quadrature point.
 pub static HEX8_MODULI: Kernel = Kernel {
     name: "hex8_moduli",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, POINT, source!("element/tangent.wgsl")],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, POINT, source!("element/tangent.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
@@ -216,7 +220,7 @@ pub static HEX8_BEGIN_STEP: Kernel = Kernel {
 /// The state of every quadrature point at the end of a step.
 pub static HEX8_UPDATE: Kernel = Kernel {
     name: "hex8_update",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, MULTISTEP, HEX8, POINT, source!("element/update.wgsl")],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, MULTISTEP, BODY, HEX8, POINT, source!("element/update.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
@@ -224,7 +228,7 @@ pub static HEX8_UPDATE: Kernel = Kernel {
 /// The energies of every element at the end of a step.
 pub static HEX8_ENERGIES: Kernel = Kernel {
     name: "hex8_energies",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, HEX8, source!("element/energies.wgsl")],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, source!("element/energies.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
     workgroup: 64,
 };

@@ -8,11 +8,10 @@ use super::context::GpuContext;
 use super::error::GpuError;
 use super::material::flatten;
 use super::pipelines::{Bound, Recorder};
-use super::resident::{COORDINATES, Connectivity, Resident, STATE, Sizes};
+use super::resident::{COORDINATES, Connectivity, Resident, STATE, Sizes, materials};
 use super::scratch::{MODULI, Scratch};
 use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_MODULI, Kernel, NARROW};
 use crate::compute::{CaseModel, ComputeError};
-use crate::material::Material;
 
 /// The arrays of which tangents are made, in one precision.
 struct Inputs<'a, T> {
@@ -153,7 +152,11 @@ impl<R: DeviceReal> Tangents<R> {
         let number = if in_single { size_of::<f32>() } else { size_of::<R>() };
         let (moduli, blocks, points) = (MODULI * sizes.points(), 9 * sizes.blocks, sizes.points());
         let of_slot = if in_single { points + 3 * sizes.nodes } else { 0 };
-        let of_case = if in_single { COORDINATES * sizes.elements + (1 + STATE) * points + 3 * sizes.nodes + 32 } else { 0 };
+        let of_case = if in_single {
+            COORDINATES * sizes.elements + (1 + STATE) * points + 3 * sizes.nodes + 32 * sizes.bodies()
+        } else {
+            0
+        };
         let [moduli, blocks, of_slot, of_case] = [moduli, blocks, of_slot, of_case].map(|numbers| (number * numbers) as u64);
         Bytes { moduli, blocks, of_slot, of_case }
     }
@@ -205,8 +208,7 @@ impl<R: DeviceReal> Tangents<R> {
             let (coordinates, volume) = r.geometry::<f32>(context, sizes, models)?;
             let committed = context.zeros("committed displacements in f32", r.count * unknowns)?;
             let state = context.zeros("states in f32", r.count * STATE * points)?;
-            let materials: Vec<Material<f32>> = models[r.first..r.first + r.count].iter().map(|m| m.material.cast()).collect();
-            let (parameters, table) = flatten(&materials);
+            let (parameters, table) = flatten(&materials::<f32>(sizes, &models[r.first..r.first + r.count]));
             let parameters = context.array("material parameters in f32", &parameters)?;
             let table = context.array("hardening tables in f32", &table)?;
             let inputs = Inputs {

@@ -3,7 +3,7 @@
 use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
-use super::super::linear::{Linear, POINT_ROWS};
+use super::super::linear::{Linear, POINT_ROWS, Record};
 use super::super::pipelines::Bound;
 use super::super::resident::{Connectivity, Resident, Sizes};
 use super::super::scratch::Scratch;
@@ -14,7 +14,7 @@ use crate::compute::iterate::{missing_weight, prescribed};
 use crate::mesh::Mesh;
 
 /// Numbers that go to a slot, as `iterate.wgsl` names them.
-pub const NUMBERS: usize = 8;
+pub const NUMBERS: usize = 9;
 /// Numbers that come back, as `read.wgsl` orders them.
 pub const READINGS: usize = 10;
 /// Partial sums of `parts.wgsl`.
@@ -132,6 +132,12 @@ pub struct Told<R> {
     /// `[slot][elastic, plastic, largest alpha]`.
     pub energies: StorageBuffer<R>,
     partial_sums: StorageBuffer<R>,
+    /// `[slot]`: how the systems of corrections begin that hold a force, and how they end.
+    pub corrections: StorageBuffer<Record>,
+    /// `[slot]`: the same of the responses to a unit indentation.
+    pub units: StorageBuffer<Record>,
+    /// `[slot]`: change of h along such a correction.
+    depth_changes: StorageBuffer<R>,
 }
 
 impl<R: DeviceReal> Told<R> {
@@ -152,13 +158,17 @@ impl<R: DeviceReal> Told<R> {
             status: context.zeros("recorded status", slots * sizes.contact_points)?,
             energies: zeros("energies of bodies", 3)?,
             partial_sums: zeros("partial sums of trials", PARTS * sizes.nodes.div_ceil(SUMMING))?,
+            corrections: context.zeros("solves of corrections", slots)?,
+            units: context.zeros("solves of responses", slots)?,
+            depth_changes: zeros("changes of h", 1)?,
         })
     }
 
     /// Bytes of a slot.
     pub fn bytes(sizes: Sizes) -> u64 {
-        let numbers = NUMBERS + READINGS + 3 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(SUMMING);
-        (size_of::<R>() * numbers + size_of::<u32>() * (10 + sizes.contact_points)) as u64
+        let numbers = NUMBERS + READINGS + 4 + AT_POINT * sizes.contact_points + PARTS * sizes.nodes.div_ceil(SUMMING);
+        let words = 10 + sizes.contact_points;
+        (size_of::<R>() * numbers + size_of::<u32>() * words + 2 * size_of::<Record>()) as u64
     }
 }
 
@@ -175,6 +185,8 @@ pub struct Kernels {
     pub(super) expand: Bound,
     pub(super) unit: Bound,
     pub(super) respond: Bound,
+    pub(super) depth: Bound,
+    pub(super) press: Bound,
     pub(super) land: Bound,
     pub(super) commit: Bound,
     pub(super) energies: Bound,
@@ -194,13 +206,8 @@ impl Kernels {
         (kept, told): (&Kept<R>, &Told<R>),
     ) -> Result<Self, GpuError> {
         let solver = linear.of_iterates();
-        let shape = [
-            scratch.dimensions.binding(),
-            scratch.active.binding(),
-            told.marks.binding(),
-            told.numbers.binding(),
-            solver.records.binding(),
-        ];
+        let told_alone = [scratch.dimensions.binding(), scratch.active.binding(), told.marks.binding(), told.numbers.binding()];
+        let shape = [&told_alone[..], &[told.depth_changes.binding()]].concat();
         let residual = [
             resident.committed.binding(),
             kept.node_info.binding(),
@@ -258,14 +265,10 @@ impl Kernels {
             solver.rhs.binding(),
             solver.guess.binding(),
         ];
-        let respond = [
-            solver.answer.binding(),
-            solver.rhs.binding(),
-            solver.fixed.binding(),
-            kept.response.binding(),
-            kept.correction.binding(),
-            kept.by_residual.binding(),
-        ];
+        let respond = [solver.answer.binding(), solver.rhs.binding(), solver.fixed.binding(), kept.response.binding()];
+        let press = [kept.response.binding(), kept.by_residual.binding(), kept.correction.binding()];
+        let depth = [told.corrections.binding(), told.units.binding(), told.depth_changes.binding()];
+        let depth_kernel = context.pipeline(&sources::DEPTH, R::PRECISION)?;
         let commit = [
             kept.node_info.binding(),
             kept.height.binding(),
@@ -290,6 +293,8 @@ impl Kernels {
             expand: bind(&sources::EXPAND, &[&residual, &expand])?,
             unit: bind(&sources::UNIT, &[&unit])?,
             respond: bind(&sources::RESPOND, &[&respond])?,
+            depth: context.bind(&depth_kernel, [&told_alone[..], &depth].concat())?,
+            press: bind(&sources::PRESS, &[&press])?,
             land: bind(&sources::LAND, &[&[kept.codes.binding(), kept.slides.binding(), kept.came_off.binding()]])?,
             commit: bind(&sources::COMMIT, &[&commit])?,
             energies: bind(&sources::ENERGIES, &[&[scratch.energies.binding(), told.energies.binding()]])?,

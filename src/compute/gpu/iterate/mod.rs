@@ -12,7 +12,7 @@ pub mod sources;
 use std::sync::PoisonError;
 
 use super::batch::{Batch, Dispatch, Evaluation, outcomes};
-use super::buffers::DeviceReal;
+use super::buffers::{DeviceReal, Read};
 use super::error::GpuError;
 use super::linear::{Linear, Solves};
 use super::pipelines::Recorder;
@@ -34,6 +34,9 @@ pub struct Mark {
     /// `STEP` and so on.
     pub numbers: [f64; NUMBERS],
 }
+
+/// Krylov iterations by which a correction's list is longer the second time.
+const MORE_AGAIN: usize = 6;
 
 /// Flags of a slot.
 pub mod flags {
@@ -79,8 +82,10 @@ pub mod number {
     pub const RATIO: usize = 5;
     /// Of a shift its z.
     pub const SHIFT_Z: usize = 6;
-    /// What is missing of the plate's force.
+    /// What is missing of the plate's force at the current iterate.
     pub const MISSING: usize = 7;
+    /// What solutions of the slot's scaled systems are multiplied by.
+    pub const BACK: usize = 8;
 }
 
 /// What a slot's trial came to, as `read.wgsl` orders it.
@@ -225,6 +230,17 @@ impl<R: DeviceReal> Batch<R> {
 
     /// Sends a list off and reads what its trials came to.
     fn read_trials(&self, list: Recorder<'_>, solves: Option<&mut Solves>, back: &mut Back<R>) -> Result<(), GpuError> {
+        self.read_trials_and(list, solves, back, None)
+    }
+
+    /// The same, and something else.
+    fn read_trials_and(
+        &self,
+        list: Recorder<'_>,
+        solves: Option<&mut Solves>,
+        back: &mut Back<R>,
+        and: Option<Read<'_>>,
+    ) -> Result<(), GpuError> {
         let (iterates, linear) = self.iterates()?;
         let told = &iterates.told;
         let mut reads = vec![
@@ -236,6 +252,7 @@ impl<R: DeviceReal> Batch<R> {
             reads.push(linear.read(solves)?);
             reads.push(told.of_tangent.read(0, &mut back.of_tangent)?);
         }
+        reads.extend(and);
         list.submit_and_read(&mut reads)
     }
 
@@ -274,19 +291,11 @@ impl<R: DeviceReal> Batch<R> {
 
     /// Solves the linear systems at the current iterates and evaluates the trials at the ends of
     /// their corrections, in one submission where so many Krylov iterations are enough. Where
-    /// `marks` hold forces (all or none), one more is for the response to a unit indentation;
-    /// `missing` is told what the plate's force changes by along each correction, and answers what
-    /// is missing of it then.
+    /// `marks` hold forces (all or none), the responses to a unit indentation are solved in it too.
     ///
     /// # Errors
     /// The device's fault.
-    pub fn correct_iterates(
-        &self,
-        dispatch: &Dispatch,
-        marks: &[Mark],
-        systems: [&Solves; 2],
-        missing: impl Fn(usize, f64) -> f64,
-    ) -> Result<Corrections, GpuError> {
+    pub fn correct_iterates(&self, dispatch: &Dispatch, marks: &[Mark], systems: [&Solves; 2]) -> Result<Corrections, GpuError> {
         let (iterates, linear) = self.iterates()?;
         let (sizes, slots) = (self.sizes(), marks.len());
         let kernels = &iterates.groups[dispatch.group].1;
@@ -303,48 +312,95 @@ impl<R: DeviceReal> Batch<R> {
         let mut solves = systems[0].clone();
         let mut back = Back::new(slots);
         linear.set_out(&self.context, &mut list, &solves, false)?;
-        let of_correction = |list: &mut Recorder<'_>| {
-            list.dispatch(&kernels.expand, sizes.nodes, slots)?;
-            if held { Ok(()) } else { self.append_trial(dispatch, list) }
-        };
-        self.solve(list, linear, &mut solves, &mut back, of_correction)?;
-        let reports = solves.reports();
-        let mut unit_reports = Vec::new();
+        linear.iterate(&mut list, solves.first_list(), slots)?;
         if held {
-            let responding = |(slot, mark): (usize, &Mark)| {
-                let mut mark = Mark { flags: (mark.flags | flags::RESPONDS) & !flags::LANDS, ..*mark };
-                mark.numbers[number::MISSING] = missing(slot, reports[slot].along);
-                mark
-            };
-            let marks: Vec<Mark> = marks.iter().enumerate().map(responding).collect();
-            self.tell(dispatch, &marks)?;
-            let mut list = self.context.record();
-            let mut solves = systems[1].clone();
-            list.dispatch(&kernels.unit, sizes.nodes, slots)?;
-            linear.set_out(&self.context, &mut list, &solves, true)?;
-            let of_response = |list: &mut Recorder<'_>| {
-                list.dispatch(&kernels.respond, sizes.nodes, slots)?;
-                self.append_trial(dispatch, list)
-            };
-            self.solve(list, linear, &mut solves, &mut back, of_response)?;
-            unit_reports = solves.reports();
+            let units = self.hold_forces(dispatch, list, (&mut solves, systems[1]), &mut back)?;
+            return Ok(Corrections {
+                tangents: outcomes(&back.of_tangent),
+                reports: solves.reports(),
+                units: units.reports(),
+                readouts: back.readouts(),
+            });
         }
-        Ok(Corrections { tangents: outcomes(&back.of_tangent), reports, units: unit_reports, readouts: back.readouts() })
+        let tail = |list: &mut Recorder<'_>| {
+            list.dispatch(&kernels.expand, sizes.nodes, slots)?;
+            self.append_trial(dispatch, list)
+        };
+        tail(&mut list)?;
+        self.read_trials(list, Some(&mut solves), &mut back)?;
+        self.finish(linear, &mut solves, &mut back, tail)?;
+        Ok(Corrections {
+            tangents: outcomes(&back.of_tangent),
+            reports: solves.reports(),
+            units: Vec::new(),
+            readouts: back.readouts(),
+        })
     }
 
-    /// Sends a list off that begins a solution, with the Krylov iterations that it should take and
-    /// what `tail` appends, and as many more as it takes.
-    fn solve(
+    /// Goes on with `list`, in which corrections at constant h are being solved, to the trials at
+    /// the ends of those that hold a force: the responses to a unit indentation, with the same
+    /// matrix, and how far the plate moves.
+    fn hold_forces(
         &self,
+        dispatch: &Dispatch,
         mut list: Recorder<'_>,
+        (solves, units): (&mut Solves, &Solves),
+        back: &mut Back<R>,
+    ) -> Result<Solves, GpuError> {
+        let (iterates, linear) = self.iterates()?;
+        let (told, kernels) = (&iterates.told, &iterates.groups[dispatch.group].1);
+        let (nodes, slots) = (self.sizes().nodes, solves.slots());
+        let begun = solves.clone();
+        let mut units = units.clone();
+        let of_correction = |list: &mut Recorder<'_>| {
+            linear.append_keep(list, &told.corrections, slots)?;
+            list.dispatch(&kernels.expand, nodes, slots)
+        };
+        let trial = |list: &mut Recorder<'_>| {
+            list.dispatch(&kernels.depth, 1, slots)?;
+            list.dispatch(&kernels.press, nodes, slots)?;
+            self.append_trial(dispatch, list)
+        };
+        let of_response = |list: &mut Recorder<'_>| {
+            linear.append_keep(list, &told.units, slots)?;
+            list.dispatch(&kernels.respond, nodes, slots)?;
+            trial(list)
+        };
+        units.send(&self.context, &told.units)?;
+        of_correction(&mut list)?;
+        list.dispatch(&kernels.unit, nodes, slots)?;
+        linear.set_out_after(&mut list, &told.units, slots, true)?;
+        linear.iterate(&mut list, units.first_list(), slots)?;
+        of_response(&mut list)?;
+        self.read_trials_and(list, Some(&mut units), back, Some(solves.read_kept(&told.corrections)?))?;
+        self.finish(linear, &mut units, back, of_response)?;
+        if solves.go_on() {
+            // The responses have taken the place of vectors that were to be gone on with: the
+            // corrections are solved anew, and the responses are kept.
+            *solves = begun.with_more(MORE_AGAIN);
+            let mut list = self.context.record();
+            list.dispatch(&kernels.system, nodes, slots)?;
+            linear.set_out(&self.context, &mut list, solves, false)?;
+            linear.iterate(&mut list, solves.first_list(), slots)?;
+            let tail = |list: &mut Recorder<'_>| {
+                of_correction(list)?;
+                trial(list)
+            };
+            tail(&mut list)?;
+            self.read_trials(list, Some(solves), back)?;
+            self.finish(linear, solves, back, tail)?;
+        }
+        Ok(units)
+    }
+
+    /// Goes on with solutions that have not finished, and with what `tail` appends after them.
+    fn finish(
+        &self,
         linear: &Linear,
         solves: &mut Solves,
         back: &mut Back<R>,
         tail: impl Fn(&mut Recorder<'_>) -> Result<(), GpuError>,
     ) -> Result<(), GpuError> {
-        linear.iterate(&mut list, solves.first_list(), solves.slots())?;
-        tail(&mut list)?;
-        self.read_trials(list, Some(solves), back)?;
         while solves.go_on() {
             let mut list = self.context.record();
             linear.take_up(&self.context, &mut list, solves)?;

@@ -132,16 +132,7 @@ impl<R: DeviceReal> Gpu<R> {
     fn correct_alike(&mut self, dispatch: &Dispatch, requests: &mut [&mut IterateRequest]) -> Result<(), ComputeError> {
         let asks: Vec<Correct> =
             requests.iter().filter_map(|request| if let Ask::Correct(ask) = request.ask { Some(ask) } else { None }).collect();
-        let marks: Vec<Mark> = requests
-            .iter()
-            .zip(&asks)
-            .map(|(request, ask)| {
-                let mut mark = self.mark(request);
-                mark.flags |= flags::PLACES_PLATE | if ask.first { flags::IS_FIRST } else { 0 };
-                mark.numbers[number::STEP] = 1.0;
-                mark
-            })
-            .collect();
+        let marks: Vec<Mark> = requests.iter().zip(&asks).map(|(request, ask)| self.mark_of_correction(request, ask)).collect();
         let of = |tolerance: fn(&Correct) -> f64, relative: fn(&Correct) -> bool, expected: fn(&Correct) -> usize| {
             let tolerances: Vec<f32> = asks.iter().map(|ask| tolerance(ask) as f32).collect();
             let relative: Vec<bool> = asks.iter().map(relative).collect();
@@ -149,23 +140,16 @@ impl<R: DeviceReal> Gpu<R> {
         };
         let correction = of(|ask| ask.tolerance, |_| false, |ask| ask.expected);
         let unit = of(|ask| ask.unit_tolerance, |ask| ask.first, |ask| ask.unit_expected);
-        // What a slot's numbers were multiplied by.
-        let back: Vec<f64> =
-            requests.iter().zip(&marks).map(|(r, m)| 1.0 / scale(self.largest[r.case][m.current as usize])).collect();
-        let missing = |slot: usize, along: f64| {
-            let target = requests[slot].plate.held.unwrap_or(0.0);
-            target - asks[slot].plate_force + back[slot] * along
-        };
         let Corrections { tangents, reports, units, readouts } =
-            self.batch()?.correct_iterates(dispatch, &marks, [&correction, &unit], missing)?;
+            self.batch()?.correct_iterates(dispatch, &marks, [&correction, &unit])?;
         for (slot, request) in requests.iter_mut().enumerate() {
-            let readout = &readouts[slot];
+            let (readout, back) = (&readouts[slot], marks[slot].numbers[number::BACK]);
             self.note(request.case, &marks[slot], readout);
             let report = SideReport {
-                rhs_norm: reports[slot].rhs_norm * back[slot],
-                start_norm: reports[slot].start_norm * back[slot],
-                residual: reports[slot].residual * back[slot],
-                along: reports[slot].along * back[slot],
+                rhs_norm: reports[slot].rhs_norm * back,
+                start_norm: reports[slot].start_norm * back,
+                residual: reports[slot].residual * back,
+                along: reports[slot].along * back,
                 ..reports[slot]
             };
             request.answer = Answer::Corrected(Corrected {
@@ -178,6 +162,18 @@ impl<R: DeviceReal> Gpu<R> {
             });
         }
         Ok(())
+    }
+
+    fn mark_of_correction(&self, request: &IterateRequest, ask: &Correct) -> Mark {
+        let mut mark = self.mark(request);
+        mark.flags |= flags::PLACES_PLATE | if ask.first { flags::IS_FIRST } else { 0 };
+        mark.numbers[number::STEP] = 1.0;
+        mark.numbers[number::BACK] = 1.0 / scale(self.largest[request.case][mark.current as usize]);
+        if let Some(force) = request.plate.held {
+            mark.flags |= flags::RESPONDS;
+            mark.numbers[number::MISSING] = force - ask.plate_force;
+        }
+        mark
     }
 
     fn try_lengths(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {

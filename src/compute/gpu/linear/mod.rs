@@ -23,7 +23,8 @@ use super::pools::Pools;
 use crate::compute::linear::{Ended, SideReport};
 use crate::linalg::layout::{Layout, NOWHERE};
 use crate::mesh::Mesh;
-use levels::{Call, Levels, Record, product_numbers, row_threads, shared_numbers, slot_numbers};
+pub use levels::Record;
+use levels::{Call, Levels, product_numbers, row_threads, shared_numbers, slot_numbers};
 use sources::{
     ASSEMBLE, KRYLOV_ADVANCE, KRYLOV_BEGIN, KRYLOV_COMBINE, KRYLOV_DOTS, KRYLOV_LEAST_SQUARES, KRYLOV_MEASURE, KRYLOV_NORMALISE,
     KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, PRESCRIBE, RESIDUAL,
@@ -350,8 +351,35 @@ impl Linear {
     /// # Errors
     /// The device's fault.
     pub fn set_out(&self, context: &GpuContext, list: &mut Recorder<'_>, solves: &Solves, guess: bool) -> Result<(), GpuError> {
-        let slots = solves.slots();
         context.upload_at(&self.records, 0, &solves.records)?;
+        self.append_begin(list, solves.slots(), guess)
+    }
+
+    /// The same after other solutions of the list: `records`, to which it was told how these begin,
+    /// are on the device.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn set_out_after(
+        &self,
+        list: &mut Recorder<'_>,
+        records: &StorageBuffer<Record>,
+        slots: usize,
+        guess: bool,
+    ) -> Result<(), GpuError> {
+        list.copy(records, 0, &self.records, 0, slots)?;
+        self.append_begin(list, slots, guess)
+    }
+
+    /// Appends a copy of how the present solutions stand.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn append_keep(&self, list: &mut Recorder<'_>, records: &StorageBuffer<Record>, slots: usize) -> Result<(), GpuError> {
+        list.copy(&self.records, 0, records, 0, slots)
+    }
+
+    fn append_begin(&self, list: &mut Recorder<'_>, slots: usize, guess: bool) -> Result<(), GpuError> {
         self.prescribe.append(list, slots)?;
         append(&self.residual, list, slots)?;
         self.measure.append(list, slots)?;
@@ -395,7 +423,6 @@ impl Linear {
     /// The arrays that Newton's iterates fill and read.
     pub fn of_iterates(&self) -> OfIterates<'_> {
         OfIterates {
-            records: &self.records,
             rhs: &self.rhs,
             fixed: &self.levels.levels[0].fixed,
             rows: &self.rows,
@@ -436,6 +463,27 @@ impl Solves {
         Self { records: tolerance.iter().zip(relative_to_guess).map(fresh).collect(), expected }
     }
 
+    /// The same with `more` Krylov iterations in the first list.
+    pub fn with_more(&self, more: usize) -> Self {
+        Self { expected: self.expected + more, ..self.clone() }
+    }
+
+    /// How they begin, to be copied to where they are solved.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn send(&self, context: &GpuContext, to: &StorageBuffer<Record>) -> Result<(), GpuError> {
+        context.upload_at(to, 0, &self.records)
+    }
+
+    /// What is to be read back of a copy of how they stand.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] for more slots than there are.
+    pub fn read_kept<'a>(&'a mut self, kept: &'a StorageBuffer<Record>) -> Result<Read<'a>, GpuError> {
+        kept.read(0, &mut self.records)
+    }
+
     /// Number of slots.
     pub fn slots(&self) -> usize {
         self.records.len()
@@ -460,8 +508,6 @@ impl Solves {
 /// Arrays of the solver by which Newton's iterates reach it.
 #[derive(Debug)]
 pub struct OfIterates<'a> {
-    /// How solutions stand.
-    pub records: &'a StorageBuffer<Record>,
     /// Right-hand sides.
     pub rhs: &'a StorageBuffer<f32>,
     /// Fixed components.

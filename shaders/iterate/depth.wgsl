@@ -1,0 +1,21 @@
+// Change of h along the whole correction, where a force is held: what is missing of the plate's at
+// the end of the correction at constant h, over the response to a unit indentation; a thread a
+// slot.
+
+// [slot][RECORD]: see linalg/record.wgsl, its bits; of the correction's systems, of the responses'
+@group(0) @binding(4) var<storage, read> corrections: array<u32>;
+@group(0) @binding(5) var<storage, read> units: array<u32>;
+@group(0) @binding(6) var<storage, read_write> depth_changes: array<real>;  // [slot]
+
+const RECORD: u32 = 12;
+const ALONG: u32 = 11;
+
+@compute @workgroup_size(64)
+fn iterate_depth(@builtin(global_invocation_id) id: vec3<u32>) {
+    let slot = id.y;
+    if id.x > 0u || slot >= dimensions.in_dispatch {
+        return;
+    }
+    let along = number(slot, BACK) * real_of_single(corrections[RECORD * slot + ALONG]);
+    depth_changes[slot] = (number(slot, MISSING) + along) / -real_of_single(units[RECORD * slot + ALONG]);
+}

@@ -1,0 +1,21 @@
+// Moves the plate so that it has the force that is to be held: adds the response to a unit
+// indentation to the correction, as often as h changes; a thread a node.
+
+@group(0) @binding(5) var<storage, read> response: array<u32>;              // [case][component][node], bits of single precision
+@group(0) @binding(6) var<storage, read> by_residual: array<real>;          // [case][3 node + i]: without a change of h
+@group(0) @binding(7) var<storage, read_write> correction: array<real>;     // [case][3 node + i]
+
+@compute @workgroup_size(64)
+fn iterate_press(@builtin(global_invocation_id) id: vec3<u32>) {
+    let nodes = dimensions.nodes;
+    if id.x >= nodes || id.y >= dimensions.in_dispatch {
+        return;
+    }
+    let slot = id.y;
+    let case_index = active_cases[slot].x;
+    let change = depth_change(slot);
+    for (var i = 0u; i < 3u; i++) {
+        let at = (case_index * nodes + id.x) * 3u + i;
+        correction[at] = by_residual[at] + change * real_of_single(response[(3u * case_index + i) * nodes + id.x]);
+    }
+}
