@@ -286,7 +286,7 @@ fn a_damaged_table_is_refused() {
     let whole = fs::read_to_string(&file).unwrap();
     for (content, says) in [
         (whole[..whole.len() / 2].to_owned(), "is damaged"),
-        (whole.replacen("table 3", "table 2", 1), "no contact table of this version"),
+        (whole.replacen("table 4", "table 2", 1), "no contact table of this version"),
         (whole.replacen("friction", "fiction", 1), "is damaged"),
         (String::new(), "no contact table"),
     ] {
@@ -376,6 +376,7 @@ fn table_against(hardening: &str, opponent: &str) -> LawFile {
         let shape = |power: f64| (1..=POINTS).map(move |j| 1.0 - (1.0 - (j as f64 / POINTS as f64).powi(2)).powf(power));
         let peak = |x: f64| 0.05 * plasticity * x * (1.0 - x);
         Level {
+            yield_coefficient: None,
             h,
             f_n0,
             a0,

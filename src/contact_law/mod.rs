@@ -21,11 +21,17 @@
 //! - *On the curve* plastic flow in h and delta_T moves the contact along it: x grows with delta_T
 //!   / delta_T_slip, the normal part of the flow being an indentation, so that F_N is lost and does
 //!   not come back on reversal.
-//! - *Pressed while it is sheared* it yields where F_N (1 + c r^2) = F_N0, r = F_T/F_N, an ellipse
-//!   through the origin as in modified Cam clay (Roscoe & Burland 1968), and flows normal to it: F_T
-//!   falls as F_N comes back. Simulated steady oblique presses have d(delta_T)/dh = 2 c r/(1 - c
-//!   r^2); r of the update is up to a third lower. c is that of the virgin curve, F_N0/F_N = 1 + b r
-//!   + c r^2; the linear part is a sudden shear's.
+//! - *Pressed while it is sheared* it yields where F_N (1 + s c r^2) = F_N0, r = F_T/F_N, an
+//!   ellipse through the origin as in modified Cam clay (Roscoe & Burland 1968), and flows with
+//!   d(delta_T)/dh = 2 c r/(1 - c r^2), which at s = 1 is normal to it. Simulated steady oblique
+//!   presses do, with one c for all angles up to where they slip. The sliders take what of delta_T
+//!   does not flow: so a press alone takes F_T as F_N comes back, and one along the flow keeps it.
+//!   c is a table's own, of a simulated oblique press; or that of the virgin curve, F_N0/F_N = 1 +
+//!   b r + c r^2.
+//! - *Hardening in shear.* What mobilises F_T on the virgin curve is F_T/F_N over x, and a contact
+//!   that a press has raised above the curve follows the same F_T/F_N. While it is pressed, a part
+//!   of delta_T hardens nothing (what the linear part b takes, a fifth at the most). x is forgotten
+//!   as the contact grows and where a press takes F_T.
 //! - *Reversed at full slip* it loses a little more F_N.
 //!
 //! So simulated contacts behave: after a reversal F_N stands still until |F_T| is back at its

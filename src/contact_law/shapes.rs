@@ -73,16 +73,6 @@ pub(super) fn tangential_shape(p: &ContactParameters, virgin: &Virgin, x: f64) -
     [1.0 - power * rest, n * power]
 }
 
-/// The derivative of f_T at `x`, which is after point `j`.
-pub(super) fn tangential_slope(p: &ContactParameters, virgin: &Virgin, x: f64, j: usize) -> f64 {
-    if p.form == BY_NUMBERS {
-        let shape = &virgin.shapes[0];
-        let below = if j == 0 { 0.0 } else { shape[j - 1] };
-        return (shape[j] - below) / (point_x(j + 1) - point_x(j));
-    }
-    tangential_shape(p, virgin, x)[1]
-}
-
 /// The x at which f_T has the value `f`, and the point before it of a shape by numbers.
 pub(super) fn tangential_shape_inverse(p: &ContactParameters, virgin: &Virgin, f: f64) -> (f64, usize) {
     if p.form == BY_NUMBERS {

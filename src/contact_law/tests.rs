@@ -59,7 +59,7 @@ fn by_numbers(peak: f64) -> ContactParameters {
             shape[0][j] = (1.0 - (1.0 - x).powf(v.n) + bump).min((1.0 - 1e-4) * most);
         }
     }
-    let given = p.with_shapes(shapes, |h| p.virgin(h).point.a);
+    let given = p.with_shapes(shapes, |h| p.virgin(h).point.a, |_| None);
     // The exponent of the sliders' backbone.
     ContactParameters { table: given.table.map(|[a, b, c, d, e, f, _, h]| [a, b, c, d, e, f, 1.2, h]), ..given }
 }

@@ -1,10 +1,8 @@
 //! One increment of one contact. The C and the Python twin have the same functions in the same
 //! order and do the same operations.
 
-use super::shapes::{
-    normal_shape, normal_shape_inverse, tangential_shape, tangential_shape_back, tangential_shape_inverse, tangential_slope,
-};
-use super::virgin::{ContactParameters, SLIDERS, Virgin, VirginPoint};
+use super::shapes::{normal_shape, normal_shape_inverse, tangential_shape, tangential_shape_back, tangential_shape_inverse};
+use super::virgin::{BY_NUMBERS, ContactParameters, SLIDERS, Virgin, VirginPoint};
 
 /// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
 /// file as it is.
@@ -21,8 +19,9 @@ pub struct ContactState {
     /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of
     /// its loss of F_N to shear. Beyond 1, up to 2, of what reversed slip costs besides.
     pub x: f64,
-    /// x of the virgin curves at which the contact last yielded to shear: 0 after a press without
-    /// F_T, 1 after full slip. The edge of a contact that was not sheared slips sooner.
+    /// x of the virgin curves up to which the contact has hardened in shear: 0 after a press
+    /// without F_T, 1 after full slip. Below it F_T/F_N rises without yielding to shear; the edge
+    /// of a contact that was not sheared slips sooner.
     pub sheared: f64,
     /// Tangential deflections of the sliders, length, innermost (last to slip) first.
     pub deflection: [[f64; 2]; SLIDERS],
@@ -58,28 +57,33 @@ const AT_SLIP: f64 = 1.0 - 1e-13;
 /// its elastic stiffness.
 const AT_BOUND: f64 = 1.0 + 1e-10;
 
-/// A contact that is pressed while F_T acts yields where F_N (1 + c r^2) = F_N0, r = F_T/F_N, and
-/// flows normal to that curve: simulated steady oblique presses have d(delta_T)/dh = 2 c r/(1 - c
-/// r^2). c is that of the virgin curve, [`yield_coefficient`]. The indentation grows meanwhile, so
-/// that F_N falls less: by this share of c in a rigid-plastic contact, and
-const PRESSED: f64 = 0.8;
-
-/// by less where the recovered approach takes this share of the press.
-const RECOVERED: f64 = 0.8;
+/// A contact that is pressed while F_T acts yields where F_N (1 + s c r^2) = F_N0, r = F_T/F_N, and
+/// flows as if s were 1: simulated steady oblique presses have d(delta_T)/dh = 2 c r/(1 - c r^2)
+/// for the plastic parts of both. s is this share, less what of it the contact recovers on
+/// unloading. Of simulated oblique presses.
+const PRESSED: f64 = 0.9;
 
 /// Least 1 - c r^2: beyond it F_N falls along the yield curve however it is pressed.
 const LEAST_NORMAL: f64 = 0.25;
 
-/// The stiffness with which F_T answers a contact at yield: the mean of what the virgin curve has
-/// there and of what the yield curve and elasticity give.
-const BETWEEN: f64 = 0.5;
+/// Greatest share of a displacement that hardens nothing while the contact is pressed too. Of
+/// simulated contacts that were pressed first and obliquely then.
+const SUDDEN: f64 = 0.2;
 
-/// Share of the difference of those two by which F_T rises beyond the virgin curve while the
-/// contact is pressed. Of simulated oblique presses.
-const CARRIED: f64 = 0.3;
+/// How many times faster than F_T the hardening in shear is forgotten where a press takes F_T.
+const FORGETS: f64 = 4.0;
+
+/// Share of the slip force below which the rest of an F_T that a press takes is gone.
+const GONE: f64 = 1e-5;
 
 /// x over which a sudden shear takes F_N from the yield curve of a press down to the virgin one.
 const RELAXATION: f64 = 0.1;
+
+/// Share of what F_T would rise by at k_T that it counts as risen at the least, when it is asked
+/// what part of a step is beyond the virgin curve. Where everything slides it rises by nothing but
+/// rounding; there the displacement tells what is beyond. At a tenth a contact that is pressed as
+/// it slides swings from step to step in an engine, and last bits grow by half in each.
+const LEAST_TRAVEL: f64 = 0.4;
 
 /// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
 const REVERSED: f64 = 0.05;
@@ -110,7 +114,7 @@ pub(super) fn is_elastic(point: &VirginPoint) -> bool {
 /// c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows; by its points at
 /// 40 % and all of the slip force. The linear part belongs to a sudden shear alone. Not less than
 /// half of what it is without that part.
-fn yield_coefficient(p: &ContactParameters, virgin: &Virgin) -> f64 {
+pub(super) fn virgin_yield_coefficient(p: &ContactParameters, virgin: &Virgin) -> f64 {
     if !(p.friction > 0.0) {
         return 0.0;
     }
@@ -125,14 +129,28 @@ fn yield_coefficient(p: &ContactParameters, virgin: &Virgin) -> f64 {
     if c > least { c } else { least }
 }
 
-/// Greatest F_N of a contact that is pressed with the tangential force `f_t`, and q, the square of
-/// its root: F_N (1 + c r^2) = F_N0 with the share of c that a press has; at its apex F_N0/2.
-fn pressed_cap(virgin: &Virgin, c: f64, f_t: f64) -> [f64; 2] {
+/// c of the yield curve: a table's own, or that of the virgin curve.
+fn yield_coefficient(p: &ContactParameters, virgin: &Virgin) -> f64 {
+    if p.form == BY_NUMBERS { virgin.point.n } else { virgin_yield_coefficient(p, virgin) }
+}
+
+/// s c of the yield curve F_N (1 + s c r^2) = F_N0.
+fn yield_share(virgin: &Virgin, c: f64) -> f64 {
+    PRESSED * (1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0)) * c
+}
+
+/// Greatest F_N of a contact that is pressed with the tangential force `f_t`, on the yield curve of
+/// this s c, and q, the square of its root; at its apex F_N0/2.
+fn pressed_cap(virgin: &Virgin, share: f64, f_t: f64) -> [f64; 2] {
     let f_n0 = virgin.point.f_n0;
-    let share = PRESSED * (1.0 - RECOVERED * (virgin.slope * virgin.depth / (virgin.gamma * f_n0)));
     let force = f_t / f_n0;
-    let q = 1.0 - 4.0 * share * c * (force * force);
+    let q = 1.0 - 4.0 * share * (force * force);
     if q > 0.0 { [0.5 * f_n0 * (1.0 + q.sqrt()), q] } else { [0.5 * f_n0, 0.0] }
+}
+
+/// F_N on that curve at a ratio F_T/F_N.
+fn yielding_at(virgin: &Virgin, share: f64, ratio: f64) -> f64 {
+    virgin.point.f_n0 / (1.0 + share * (ratio * ratio))
 }
 
 /// The x of the virgin curve that has the normal force `f_n`.
@@ -241,8 +259,8 @@ struct Pressed {
     df_n_dh: f64,
     /// By how many e-folds F_T has flowed.
     flow: f64,
-    /// Stiffness by which F_T may rise beyond the virgin curve.
-    carried: f64,
+    /// Displacement that hardens nothing.
+    sudden: f64,
 }
 
 /// Share of a displacement that the sliders take where their force meanwhile flows by `flow`
@@ -258,8 +276,8 @@ fn taken(flow: f64) -> f64 {
 
 /// Moves h with delta_T held. The elastic force follows the unloading curve; first loading caps it;
 /// a sheared contact that is pressed against its yield curve loses tangential force to plastic flow
-/// as it gains normal force.
-fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f64) -> Pressed {
+/// as it gains normal force, while `increment` brings some of it back.
+fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f64, increment: [f64; 2]) -> Pressed {
     let dh = h - state.h;
     let grown = h > state.h_max;
     let first = grown && (state.x == 0.0 || !(state.h_max > 0.0));
@@ -291,20 +309,21 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     if dh == 0.0 {
         // At rest on the virgin curve the next press is first loading.
         let slope = if state.x == 0.0 && state.h == state.h_max { virgin.slope } else { stiffness };
-        return Pressed { f_n, x: state.x, df_n_dh: slope, flow: 0.0, carried: 0.0 };
+        return Pressed { f_n, x: state.x, df_n_dh: slope, flow: 0.0, sudden: 0.0 };
     }
     let elastic = mobilisation(p, virgin, f_n);
     if dh < 0.0 {
         let x = if elastic > state.x { elastic } else { state.x };
-        return Pressed { f_n, x, df_n_dh: stiffness, flow: 0.0, carried: 0.0 };
+        return Pressed { f_n, x, df_n_dh: stiffness, flow: 0.0, sudden: 0.0 };
     }
     if trial >= f_n0 && grown {
         stiffness = virgin.slope;
     }
     slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [0.0, 0.0]);
-    let f_t = length(slider_force(virgin, &state.deflection));
+    let force = slider_force(virgin, &state.deflection);
+    let f_t = length(force);
     if is_elastic(&virgin.point) {
-        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0, carried: 0.0 }; // pressing leaves F_T as it is
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0, sudden: 0.0 }; // pressing leaves F_T as it is
     }
     let slip_force = p.friction * virgin.point.f_n_slip;
     let (place, before) = tangential_shape_inverse(p, virgin, f_t / slip_force);
@@ -313,22 +332,16 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
         if f_n >= AT_CAP * f_n0 {
             state.sheared = 0.0;
         }
-        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0, carried: 0.0 };
+        return Pressed { f_n, x: elastic, df_n_dh: stiffness, flow: 0.0, sudden: 0.0 };
     }
     let c = yield_coefficient(p, virgin);
-    let highest = pressed_cap(virgin, c, f_t)[0];
-    // The yield curve's normal, and with it and the elastic stiffnesses how F_T answers there.
+    let share = yield_share(virgin, c);
+    let [highest, _] = pressed_cap(virgin, share, f_t);
+    // The direction of the flow, and the yield curve's normal.
     let r = f_t / f_n;
-    let normal = 1.0 - c * (r * r);
-    let normal = if normal > LEAST_NORMAL { normal } else { LEAST_NORMAL };
-    let tangential = 2.0 * c * r;
-    let sticking = if r < p.friction { (1.0 - r / p.friction).powf((virgin.backbone - 1.0) / virgin.backbone) } else { 0.0 };
-    let k_t = virgin.point.k_t * sticking;
-    let normal_part = normal * normal * elastic_stiffness;
-    let yielding = normal_part * k_t / (normal_part + tangential * tangential * k_t);
-    let rises = slip_force * tangential_slope(p, virgin, place, before) / virgin.point.delta_t_slip;
-    let rises = if rises > 0.0 { rises } else { 0.0 };
-    let rises = if rises < virgin.point.k_t { rises } else { virgin.point.k_t };
+    let bounded = |normal: f64| if normal > LEAST_NORMAL { normal } else { LEAST_NORMAL };
+    let (normal, tangential) = (bounded(1.0 - c * (r * r)), 2.0 * c * r);
+    let (across, along) = (bounded(1.0 - share * (r * r)), 2.0 * share * r);
     // Between the virgin curve and the yield curve the contact yields in part.
     let part = if highest > cap { (trial - cap) / (highest - cap) } else { 1.0 };
     let part = if part < 1.0 { part } else { 1.0 };
@@ -336,12 +349,27 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
     let plastic = if softer > 0.0 { softer * dh } else { 0.0 };
     let most = (trial - cap) / elastic_stiffness;
     let plastic = if plastic < most { plastic } else { most };
-    let flow = 2.0 * c / normal * (rises + BETWEEN * (yielding - rises)) * part * plastic / f_n;
+    let forward = (force[0] * increment[0] + force[1] * increment[1]) / f_t;
+    let forward = if forward > 0.0 { forward } else { 0.0 };
+    // What of delta_T flows. Where the contact does not move as far, F_T falls, and F_N rises along
+    // the yield curve: that takes some of the press.
+    let steady = part * (tangential / normal) * plastic;
+    let (mut flows, mut taken_back) = (steady, 0.0);
+    if forward < steady {
+        let (stiff, soft) = (normal * across * elastic_stiffness, tangential * along * virgin.point.k_t);
+        flows = forward + (steady - forward) * (stiff / (stiff + soft));
+        taken_back = 1.0 - forward / steady;
+    }
+    let flow = virgin.point.k_t * flows / f_t;
+    // The linear part of the virgin curve flows too, and what it takes of delta_T does not harden.
+    let linear = (f_n0 / virgin.point.f_n_slip - 1.0) / p.friction - c * p.friction;
+    let sudden = if linear > 0.0 { linear / normal * plastic } else { 0.0 };
+    let sudden = if sudden < SUDDEN * forward { sudden } else { SUDDEN * forward };
     let keep = (-flow).exp();
     // A force beyond the peak of the virgin curve stays at its place.
     let left = keep * f_t / slip_force;
     let x = if left < tangential_shape(p, virgin, place)[0] { tangential_shape_back(p, virgin, left, before) } else { place };
-    let [pressed, q] = pressed_cap(virgin, c, keep * f_t);
+    let [pressed, q] = pressed_cap(virgin, share, keep * f_t);
     let on_curve = normal_cap(p, virgin, x);
     let raised = if pressed > on_curve { pressed } else { on_curve };
     let rate = flow / dh;
@@ -358,13 +386,19 @@ fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Virgin, h: f6
         virgin.slope * (raised / f_n0 + gain) + f_n0 * gain * rate
     };
     let slope = if raised < f_n && along < stiffness { along } else { stiffness };
+    // Where F_N is below the curve, it is F_N that tells the place.
+    let x = if f_n < on_curve { elastic } else { x };
     let f_n = if raised < f_n { raised } else { f_n };
-    for q in &mut state.deflection {
-        *q = [keep * q[0], keep * q[1]];
+    let back = (1.0 - keep) / virgin.point.k_t;
+    slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [-back * force[0], -back * force[1]]);
+    if taken_back > 0.0 && left < GONE {
+        state.deflection = [[0.0; 2]; SLIDERS];
     }
-    state.sheared = x;
-    let carried = if yielding > rises { CARRIED * part * (yielding - rises) } else { 0.0 };
-    Pressed { f_n, x, df_n_dh: slope, flow, carried }
+    let x = if x < state.x { x } else { state.x };
+    // It forgets with the growth of the contact, and as F_T is taken back.
+    let kept = (-plastic / h - FORGETS * (taken_back * taken_back) * flow).exp();
+    state.sheared = if state.sheared > x { x + (state.sheared - x) * kept } else { x };
+    Pressed { f_n, x, df_n_dh: slope, flow, sudden }
 }
 
 impl ContactState {
@@ -404,7 +438,7 @@ impl ContactParameters {
             return (next, out);
         }
         let virgin = self.virgin_sheared(greatest, state.sheared);
-        let pressed = press(self, &mut next, &virgin, h);
+        let pressed = press(self, &mut next, &virgin, h, increment);
         if h != state.h {
             next.approach = if pressed.f_n > 0.0 { approach_at(&virgin, pressed.f_n) } else { state.approach + (h - state.h) };
         }
@@ -463,10 +497,13 @@ fn reverse(
     if !(stick > 0.0 && stick < 1.0) {
         return;
     }
+    // What F_N is above that of its x stays above it.
+    let above = out.f_n - virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0));
+    let above = if above > 0.0 { above } else { 0.0 };
     let rate = 4.0 * GATHERED * (MOST - next.x) * (k_t / (p.friction * virgin.point.f_n_slip));
     let x = next.x + rate * (stick * (1.0 - stick)) * size;
     next.x = if x < MOST { x } else { MOST };
-    let cap = virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0));
+    let cap = virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0)) + above;
     if !(cap < out.f_n) {
         return;
     }
@@ -512,44 +549,82 @@ fn shear(
     if is_elastic(&virgin.point) {
         return;
     }
-    if next.x >= 1.0 && pressed.carried == 0.0 {
+    if next.x >= 1.0 && !(AT_CAP * f_n > virgin.point.f_n_slip) {
         reverse(p, next, out, virgin, &before, force_before, increment);
         return;
     }
     let slip_force = p.friction * virgin.point.f_n_slip;
-    let mut at = if next.x < 1.0 { next.x } else { 1.0 };
+    let at = if next.x > next.sheared { next.x } else { next.sheared };
+    let at = if at < 1.0 { at } else { 1.0 };
+    let before_cap = normal_cap(p, virgin, at);
+    // After a press F_N may be above the virgin curve, but not above the yield curve; F_T/F_N is
+    // that of the virgin curve there too.
+    let raised = AT_CAP * f_n > before_cap;
+    let share = if raised { yield_share(virgin, yield_coefficient(p, virgin)) } else { 0.0 };
     let mut bound = slip_force * tangential_shape(p, virgin, at)[0];
+    let bounded = |ratio: f64| if ratio < p.friction { ratio } else { p.friction };
+    if raised {
+        let ratio = bound / before_cap;
+        let top = yielding_at(virgin, share, ratio);
+        let top = if top < f_n { top } else { f_n };
+        let top = if top > before_cap { top } else { before_cap };
+        bound = bounded(ratio) * top;
+    }
     let trial = length(out.f_t);
-    if trial <= AT_BOUND * bound {
-        return;
-    }
-    // A press raises F_N above the virgin curve: there the place on it is that of F_T.
-    let carried = length(force_before);
-    if carried > AT_BOUND * bound {
-        let (place, _) = tangential_shape_inverse(p, virgin, carried / slip_force);
-        at = if place > at { place } else { at };
-        bound = slip_force * tangential_shape(p, virgin, at)[0];
-    }
-    let beyond_peak = carried > AT_BOUND * bound;
-    if beyond_peak {
-        bound = carried;
-    }
-    if trial <= AT_BOUND * bound {
+    let forward = if trial > 0.0 { (out.f_t[0] * increment[0] + out.f_t[1] * increment[1]) / trial } else { 0.0 };
+    let forward = if forward > 0.0 { forward } else { 0.0 };
+    let along = if trial > 0.0 { (out.f_t[0] * force_before[0] + out.f_t[1] * force_before[1]) / trial } else { 0.0 };
+    let travel = trial - along;
+    let ahead = LEAST_TRAVEL * (virgin.point.k_t * forward) - travel;
+    let ahead = if ahead > 0.0 { ahead } else { 0.0 };
+    if trial + ahead <= AT_BOUND * bound {
+        let [highest, q] = pressed_cap(virgin, share, trial);
+        if raised && AT_CAP * highest < f_n {
+            let cap = if highest > before_cap { highest } else { before_cap };
+            let falls = if highest > before_cap && q > 0.0 { 2.0 * share * trial / (virgin.point.f_n0 * q.sqrt()) } else { 0.0 };
+            for j in 0..2 {
+                let rises = out.f_t[0] * out.df_t_ddelta[0][j] + out.f_t[1] * out.df_t_ddelta[1][j];
+                out.df_n_ddelta[j] = if trial > 0.0 { -falls * rises / trial } else { 0.0 };
+            }
+            let cap = if cap < f_n { cap } else { f_n };
+            out.f_n = cap;
+            next.approach = approach_at(virgin, cap);
+            let limit = slider_limits(p, virgin, cap);
+            next.deflection = before;
+            slide(&mut next.deflection, &limit, increment);
+            out.f_t = slider_force(virgin, &next.deflection);
+            out.df_t_ddelta = slider_stiffness(virgin, &before, &limit, increment);
+        } else if next.x >= 1.0 {
+            reverse(p, next, out, virgin, &before, force_before, increment);
+        }
         return;
     }
     let direction = [out.f_t[0] / trial, out.f_t[1] / trial];
-    let along = direction[0] * force_before[0] + direction[1] * force_before[1];
     // Share of the increment that is beyond the curve: all of it when the contact stood on it.
-    let (excess, travel) = (trial - bound, trial - along);
+    let (excess, travel) = (trial - bound + ahead, travel + ahead);
+    let excess = if excess > 0.0 { excess } else { 0.0 };
     let beyond = if excess < travel { excess / travel } else { 1.0 };
-    let forward = direction[0] * increment[0] + direction[1] * increment[1];
-    let forward = if forward > 0.0 { forward } else { 0.0 };
-    let dx = beyond * forward / virgin.point.delta_t_slip;
+    // In a long step, half of it at the least.
+    let way = beyond * forward;
+    let hardens = if pressed.sudden < 0.5 * way { way - pressed.sudden } else { 0.5 * way };
+    let dx = hardens / virgin.point.delta_t_slip;
     let x = if at + dx < 1.0 { at + dx } else { 1.0 };
     let cap = normal_cap(p, virgin, x);
-    let before_cap = normal_cap(p, virgin, at);
-    let above = if AT_CAP * f_n > before_cap { (f_n - before_cap) * (-dx / RELAXATION).exp() } else { 0.0 };
-    let relaxed = cap + above;
+    let [shape, shape_slope] = tangential_shape(p, virgin, x);
+    let falls = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1];
+    let ratio = slip_force * shape / cap;
+    let steeper = (slip_force * shape_slope + ratio * falls) / cap;
+    let above = if raised { (f_n - before_cap) * (-dx / RELAXATION).exp() } else { 0.0 };
+    let (mut relaxed, mut loss) = (cap + above, falls + above / RELAXATION);
+    if raised {
+        let highest = yielding_at(virgin, share, ratio);
+        if highest < relaxed && highest > cap {
+            relaxed = highest;
+            loss = 2.0 * share * ratio * steeper * highest * (highest / virgin.point.f_n0);
+        } else if highest < relaxed {
+            (relaxed, loss) = (cap, falls);
+        }
+    }
     out.f_n = if relaxed < f_n { relaxed } else { f_n };
     next.x = if AT_SLIP * out.f_n <= virgin.point.f_n_slip { 1.0 } else { x };
     next.sheared = x;
@@ -559,30 +634,23 @@ fn shear(
     slide(&mut next.deflection, &limit, increment);
     let held = slider_force(virgin, &next.deflection);
     let stiffness = slider_stiffness(virgin, &before, &limit, increment);
-    let [shape, shape_slope] = tangential_shape(p, virgin, x);
-    let mut rate = slip_force * shape_slope / virgin.point.delta_t_slip;
-    bound = slip_force * shape;
-    if beyond_peak && carried > bound {
-        bound = carried;
-        rate = 0.0;
-    }
-    bound += pressed.carried * (beyond * forward);
-    rate = (rate + pressed.carried) * beyond;
+    let bound = bounded(ratio) * out.f_n;
+    let per_x = if hardens > 0.0 { beyond / virgin.point.delta_t_slip } else { 0.0 };
+    let rate = (steeper * out.f_n - ratio * loss) * per_x;
     let size = length(held);
     out.f_t = held;
     out.df_t_ddelta = stiffness;
-    let per_x = beyond / virgin.point.delta_t_slip;
-    let loss = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[1] + above / RELAXATION;
     out.df_n_ddelta = [-loss * per_x * direction[0], -loss * per_x * direction[1]];
-    if size <= bound {
+    // At full slip the two are the same but for rounding.
+    if AT_BOUND * size <= bound {
         return;
     }
-    let keep = bound / size;
+    let keep = if size > bound { bound / size } else { 1.0 };
     for q in &mut next.deflection {
         *q = [keep * q[0], keep * q[1]];
     }
     let m = [held[0] / size, held[1] / size];
-    out.f_t = [bound * m[0], bound * m[1]];
+    out.f_t = [keep * held[0], keep * held[1]];
     for j in 0..2 {
         let radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j];
         for i in 0..2 {

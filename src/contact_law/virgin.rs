@@ -6,7 +6,7 @@
 //! that every language fills and reads it by the same operations.
 
 use super::curve::NormalCurve;
-use super::update::is_elastic;
+use super::update::{is_elastic, virgin_yield_coefficient};
 
 /// Number of knots over ln h.
 pub const KNOTS: usize = 128;
@@ -56,8 +56,9 @@ pub struct ContactParameters {
     /// The gentle exponent of f_N, N of form 0 and M of form 1: the same at every h.
     pub gentle: f64,
     /// Per knot: ln F_N0; ln a, the radius with which 2 E* a is the stiffness of an unloading;
-    /// F_N_slip/F_N0; ln delta_T_slip; n; the contact radius over a; the steep exponent of f_N
-    /// (with form 2 the exponent of the sliders' backbone); ln k_T.
+    /// F_N_slip/F_N0; ln delta_T_slip; n (with form 2 the coefficient c of the yield curve); the
+    /// contact radius over a; the steep exponent of f_N (with form 2 the exponent of the sliders'
+    /// backbone); ln k_T.
     pub table: [[f64; COLUMNS]; KNOTS],
     /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero
     /// otherwise.
@@ -105,7 +106,8 @@ pub struct VirginPoint {
     pub delta_t_slip: f64,
     /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
     pub k_t: f64,
-    /// Exponent n of f_T.
+    /// Exponent n of f_T; with form 2 the coefficient c of the yield curve, of which f_T knows
+    /// nothing.
     pub n: f64,
     /// Exponent M of f_N.
     pub m_exponent: f64,
@@ -211,14 +213,28 @@ impl ContactParameters {
         Ok(parameters)
     }
 
-    /// The same with f_T and f_N given by numbers for every level, the first at the first knot, and
-    /// with the contact radius that `contact_radius` has for an indentation.
+    /// The same with f_T and f_N given by numbers for every level, the first at the first knot;
+    /// with the contact radius that `contact_radius` has for an indentation, and with the
+    /// coefficient c of the yield curve that `yielding` has, or that of the virgin curve where it
+    /// has none.
     #[must_use]
-    pub fn with_shapes(self, shapes: [Shapes; LEVELS], contact_radius: impl Fn(f64) -> f64) -> Self {
+    pub fn with_shapes(
+        self,
+        shapes: [Shapes; LEVELS],
+        contact_radius: impl Fn(f64) -> f64,
+        yielding: impl Fn(f64) -> Option<f64>,
+    ) -> Self {
         let mut given = Self { form: BY_NUMBERS, shapes, ..self };
+        let place = |i: usize| (self.log_first + self.log_step * i as f64).exp();
         for (i, row) in given.table.iter_mut().enumerate() {
-            let h = (self.log_first + self.log_step * i as f64).exp();
-            row[5] = contact_radius(h) / row[1].exp();
+            row[5] = contact_radius(place(i)) / row[1].exp();
+        }
+        let coefficients: [f64; KNOTS] = std::array::from_fn(|i| {
+            let h = place(i);
+            yielding(h).unwrap_or_else(|| virgin_yield_coefficient(&given, &given.virgin(h)))
+        });
+        for (row, c) in given.table.iter_mut().zip(coefficients) {
+            row[4] = c;
         }
         given
     }
@@ -411,17 +427,18 @@ impl ContactParameters {
         let steep = self.column(6, position)[0];
         let (m_exponent, n_exponent) = if self.form == 0.0 { (steep, self.gentle) } else { (self.gentle, steep) };
         let mut backbone = if gamma < n { gamma } else { n };
+        // The elastic sliders must be able to follow the virgin curve: neither softer at its start,
+        // as a table's are, nor slower to slip.
+        let mut k_t = self.column(7, position)[0].exp();
         if self.form == BY_NUMBERS {
             backbone = steep;
+        } else {
+            let start = n * self.friction * f_n_slip / delta_t_slip;
+            if k_t < start {
+                k_t = start;
+            }
         }
-        // The elastic sliders must be able to follow the virgin curve: neither softer at its start
-        // nor slower to slip.
-        let mut k_t = self.column(7, position)[0].exp();
-        let start = n * self.friction * f_n_slip / delta_t_slip;
         let end = backbone * self.friction * f_n0 / delta_t_slip;
-        if k_t < start {
-            k_t = start;
-        }
         if k_t < end {
             k_t = end;
         }

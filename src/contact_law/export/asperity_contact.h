@@ -116,8 +116,8 @@ typedef struct asperity_table {
     asperity_real first;             /* h of the first knot */
     asperity_real log_step;
     asperity_real gentle;            /* exponent of f_N: N of form 0, M of form 1 */
-    /* F_N0, 1/a (2 E* a is the stiffness of an unloading), 1/delta_T_slip, k_T, F_N_slip/F_N0, n, the contact radius over a, the steep exponent of f_N
-     * (with form 2 that of the sliders' backbone) at a knot; towards the next, of the logarithms of the first four and of the others, the
+    /* F_N0, 1/a (2 E* a is the stiffness of an unloading), 1/delta_T_slip, k_T, F_N_slip/F_N0, n (with form 2 c of the yield curve), the contact radius over a, the
+     * steep exponent of f_N (with form 2 that of the sliders' backbone) at a knot; towards the next, of the logarithms of the first four and of the others, the
      * coefficients of u, u^2 and u^3, where u is the share of a step. So nothing is lost to the size of a logarithm in float. */
     asperity_real knots[ASPERITY_KNOTS][4][ASPERITY_COLUMNS];
     asperity_real shapes[ASPERITY_LEVELS][2][ASPERITY_POINTS];
@@ -129,7 +129,7 @@ typedef struct asperity_state {
     asperity_real h_max;
     asperity_real approach; /* elastic: what is recovered until contact is lost; negative: the gap over the residual dent */
     asperity_real x;        /* place on the virgin curves: the measure of F_N lost to shear; beyond 1, up to 2, of what reversed slip costs besides */
-    asperity_real sheared;  /* the place at which the contact last yielded to shear */
+    asperity_real sheared;  /* the place up to which the contact has hardened in shear */
     asperity_real deflection[2][ASPERITY_SLIDERS];
 } asperity_state;
 
@@ -152,11 +152,12 @@ typedef struct asperity_tangent {
 } asperity_tangent;
 
 /* Of simulated oblique presses, rebounds and reversals; asperity's model of the update says what they are. */
-#define ASPERITY_PRESSED ASPERITY_R(0.8)
-#define ASPERITY_RECOVERED ASPERITY_R(0.8)
+#define ASPERITY_PRESSED ASPERITY_R(0.9)
 #define ASPERITY_LEAST_NORMAL ASPERITY_R(0.25)
-#define ASPERITY_BETWEEN ASPERITY_R(0.5)
-#define ASPERITY_CARRIED ASPERITY_R(0.3)
+#define ASPERITY_SUDDEN ASPERITY_R(0.2)
+#define ASPERITY_FORGETS ASPERITY_R(4.0)
+#define ASPERITY_GONE ASPERITY_R(1e-5)
+#define ASPERITY_LEAST_TRAVEL ASPERITY_R(0.4)
 #define ASPERITY_RELAXATION ASPERITY_R(0.1)
 #define ASPERITY_REVERSED ASPERITY_R(0.05)
 #define ASPERITY_SLIDING ASPERITY_R(0.98)
@@ -166,7 +167,8 @@ typedef struct asperity_tangent {
 
 /* What a virgin contact answers at one indentation. */
 typedef struct asperity_curve {
-    asperity_real f_n0, f_n_slip, n, m, big_n, k_t;
+    asperity_real f_n0, f_n_slip, m, big_n, k_t;
+    asperity_real n;             /* of f_T; with form 2 c of the yield curve */
     asperity_real radii;         /* contact radius over a */
     asperity_real per_slip;      /* 1/delta_T_slip, */
     asperity_real per_a;         /* 1/a, of F_N0 */
@@ -525,8 +527,8 @@ ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, c
     v->slope = v->f_n0 * row->slope / h;
     v->backbone = t->form == 2 ? v->big_n : (v->gamma < v->n ? v->gamma : v->n);
     v->elastic = v->f_n_slip >= ASPERITY_R(1.0 - 1e-6) * v->f_n0;
-    /* The sliders must be able to follow the virgin curve: neither softer at its start nor slower to slip. */
-    start = t->friction * v->per_slip * v->n * v->f_n_slip;
+    /* The sliders must be able to follow the virgin curve: neither softer at its start, as a table's are, nor slower to slip. */
+    start = t->form == 2 ? ASPERITY_R(0.0) : t->friction * v->per_slip * v->n * v->f_n_slip;
     end = t->friction * v->per_slip * v->backbone * v->f_n0;
     v->k_t = v->k_t < start ? start : v->k_t;
     v->k_t = v->k_t < end ? end : v->k_t;
@@ -542,7 +544,7 @@ ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, c
     v->per_force = ASPERITY_R(1.0) / v->f_n0;
     v->per_gamma = ASPERITY_R(1.0) / v->gamma;
     v->per_backbone = ASPERITY_R(1.0) / v->backbone;
-    v->per_n = ASPERITY_R(1.0) / v->n;
+    v->per_n = t->form == 2 ? ASPERITY_R(0.0) : ASPERITY_R(1.0) / v->n;
     asperity_sliders(v->backbone, v->lost);
     if (t->form == 2) {
         asperity_real level = row->position * (ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1)), most = ASPERITY_R(ASPERITY_LEVELS - 1);
@@ -696,18 +698,7 @@ ASPERITY_FN void asperity_shapes(int form, const asperity_curve *v, asperity_rea
     place->f_n = asperity_complements(form, v, x, log_rest);
 }
 
-/* f_T(x) alone. */
-ASPERITY_FN asperity_real asperity_tangential_shape(int form, const asperity_curve *v, asperity_real x) {
-    if (x <= ASPERITY_R(0.0)) {
-        return ASPERITY_R(0.0);
-    }
-    if (form == 2) {
-        return asperity_given(v, 0, x, asperity_point_before(x));
-    }
-    return ASPERITY_R(1.0) - asperity_power(ASPERITY_R(1.0) - x, v->n);
-}
-
-/* Their derivatives; those of f_N, and at x = 1 both, are 0 at the ends. */
+/* The derivatives of f_T and f_N; those of f_N, and at x = 1 both, are 0 at the ends. */
 ASPERITY_FN void asperity_slopes(int form, const asperity_curve *v, asperity_real x, asperity_real slope[2]) {
     const asperity_real one = ASPERITY_R(1.0), zero = ASPERITY_R(0.0);
     asperity_real rest, risen;
@@ -732,14 +723,6 @@ ASPERITY_FN void asperity_slopes(int form, const asperity_curve *v, asperity_rea
         risen = asperity_power(x, v->m);
         slope[1] = v->big_n * asperity_power(one - risen, v->big_n - one) * v->m * risen / x;
     }
-}
-
-/* The derivative of f_T at a place of a known f_T. */
-ASPERITY_FN asperity_real asperity_tangential_slope(int form, const asperity_curve *v, const asperity_place *place) {
-    if (form == 2) {
-        return asperity_given_slope(v, 0, place->after);
-    }
-    return place->x < ASPERITY_R(1.0) ? v->n * (ASPERITY_R(1.0) - place->f_t) / (ASPERITY_R(1.0) - place->x) : ASPERITY_R(0.0);
 }
 
 /* The least x at which f_T has the value f, or its peak where it stays below. */
@@ -962,9 +945,7 @@ typedef struct asperity_work {
 typedef struct asperity_pressed {
     asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
     asperity_real flow;                  /* by how many e-folds F_T has flowed */
-    asperity_real carried;               /* stiffness by which F_T may rise beyond the virgin curve */
-    asperity_real shape;                 /* f_T(x); negative: not asked yet */
-    int placed;                          /* whether `place` and `f_t` are of the force as it is */
+    asperity_real sudden;                /* displacement that hardens nothing */
     asperity_real eta;                   /* (F_N/F_N0)^(1/backbone) */
     asperity_real approach;              /* elastic, of that F_N */
     asperity_real force[2], f_t;         /* of the sliders, and its size */
@@ -987,10 +968,13 @@ ASPERITY_FN asperity_real asperity_taken(asperity_real flow) {
     return (ASPERITY_R(1.0) - asperity_exponential_near(-flow)) / flow;
 }
 
-/* c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows; by its points at 40 % and all of the slip force. */
+/* c of the yield curve: a table's own, or that of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows; by its points at 40 % and all of the slip force. */
 ASPERITY_FN asperity_real asperity_yield_coefficient(const asperity_table *t, const asperity_curve *v) {
     asperity_real loss, lost, at_slip, f_n, r, before, c, least;
     asperity_place place;
+    if (t->form == 2) {
+        return v->n;
+    }
     if (!(t->friction > ASPERITY_R(0.0))) {
         return ASPERITY_R(0.0);
     }
@@ -1006,26 +990,30 @@ ASPERITY_FN asperity_real asperity_yield_coefficient(const asperity_table *t, co
     return c > least ? c : least;
 }
 
-/* Greatest F_N of a contact that is pressed with the tangential force f_t, of its share of c: F_N (1 + c r^2) = F_N0, at its apex F_N0/2. `root`: of the discriminant. */
-ASPERITY_FN asperity_real asperity_pressed_cap(const asperity_curve *v, asperity_real c, asperity_real f_t, asperity_real *root) {
-    asperity_real force = f_t * v->per_force, q = ASPERITY_R(1.0) - ASPERITY_R(4.0) * c * (force * force);
+/* s c of the yield curve F_N (1 + s c r^2) = F_N0. */
+ASPERITY_FN asperity_real asperity_yield_share(const asperity_curve *v, asperity_real c) {
+    return ASPERITY_PRESSED * (ASPERITY_R(1.0) - v->slope * v->depth * (v->per_gamma * v->per_force)) * c;
+}
+
+/* Greatest F_N of a contact that is pressed with the tangential force f_t, on the yield curve of this s c; at its apex F_N0/2. `root`: of the discriminant. */
+ASPERITY_FN asperity_real asperity_pressed_cap(const asperity_curve *v, asperity_real share, asperity_real f_t, asperity_real *root) {
+    asperity_real force = f_t * v->per_force, q = ASPERITY_R(1.0) - ASPERITY_R(4.0) * share * (force * force);
     *root = q > ASPERITY_R(0.0) ? ASPERITY_SQRT(q) : ASPERITY_R(0.0);
     return ASPERITY_R(0.5) * v->f_n0 * (ASPERITY_R(1.0) + *root);
 }
 
-/* Moves h with delta_T held. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, `stiffness` its
+/* Moves h with delta_T held, while the displacement (d0, d1) brings some of F_T back. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, `stiffness` its
  * slope, and `elastic_stiffness` that of the elastic response. */
 ASPERITY_FN void asperity_press(
-    const asperity_table *t, asperity_work *s, const asperity_curve *v, asperity_real trial, asperity_real stiffness, asperity_real elastic_stiffness, asperity_real h, int derivatives,
-    asperity_pressed *p) {
+    const asperity_table *t, asperity_work *s, const asperity_curve *v, asperity_real trial, asperity_real stiffness, asperity_real elastic_stiffness, asperity_real h, asperity_real d0, asperity_real d1,
+    int derivatives, asperity_pressed *p) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
     int grown = h > s->h_max;
-    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, c, share, highest, r, normal, tangential, sticking, k_t, normal_part, yielding, rises, part, softer, plastic, most, flow;
-    asperity_real falls, gain, turns, along, slope[2], raised, pressed, on_curve, root, keep, left, change;
+    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, c, share, highest, r, normal, tangential, across, turn, part, softer, plastic, most, forward, steady, flows, taken_back;
+    asperity_real stiff, soft, flow, linear, falls, gain, turns, along, slope[2], raised, pressed, on_curve, root, keep, left, back, change;
     asperity_place place;
-    p->slip = p->flow = p->carried = zero;
-    p->shape = -one;
-    p->placed = 0;
+    asperity_moved moved;
+    p->slip = p->flow = p->sudden = zero;
     p->df_n_dh = stiffness;
     asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
     if (dh == zero) {
@@ -1041,17 +1029,14 @@ ASPERITY_FN void asperity_press(
     if (trial >= v->f_n0 && grown) {
         stiffness = v->slope;
     }
-    {
-        asperity_moved moved;
-        asperity_move(s->deflection, zero, zero, &moved);
-        if (asperity_exceeds(&moved, p->limit)) {
-            asperity_measure(&moved);
-            p->slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
-            if (!v->elastic) {
-                asperity_stand(t, v, s->deflection, p);
-            } else {
-                asperity_slider_force(v, s->deflection, p->force);
-            }
+    asperity_move(s->deflection, zero, zero, &moved);
+    if (asperity_exceeds(&moved, p->limit)) {
+        asperity_measure(&moved);
+        p->slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
+        if (!v->elastic) {
+            asperity_stand(t, v, s->deflection, p);
+        } else {
+            asperity_slider_force(v, s->deflection, p->force);
         }
     }
     p->df_n_dh = stiffness;
@@ -1059,7 +1044,6 @@ ASPERITY_FN void asperity_press(
         p->x = asperity_mobilisation(t->form, v, p->f_n);
         return; /* pressing leaves F_T as it is */
     }
-    p->placed = 1;
     place = p->place;
     f_t = p->f_t;
     cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
@@ -1071,55 +1055,60 @@ ASPERITY_FN void asperity_press(
     slip_force = t->friction * v->f_n_slip;
     per_slip_force = one / slip_force;
     c = asperity_yield_coefficient(t, v);
-    share = ASPERITY_PRESSED * (one - ASPERITY_RECOVERED * (v->slope * v->depth * (v->per_gamma * v->per_force)));
-    highest = asperity_pressed_cap(v, share * c, f_t, &root);
-    /* The yield curve's normal, and with it and the elastic stiffnesses how F_T answers there. */
+    share = asperity_yield_share(v, c);
+    highest = asperity_pressed_cap(v, share, f_t, &root);
+    /* The direction of the flow, and the yield curve's normal. */
     r = f_t / p->f_n;
     normal = asperity_most(one - c * (r * r), ASPERITY_LEAST_NORMAL);
     tangential = ASPERITY_R(2.0) * c * r;
-    sticking = r < t->friction ? asperity_power(one - r / t->friction, one - v->per_backbone) : zero;
-    k_t = v->k_t * sticking;
-    normal_part = normal * normal * elastic_stiffness;
-    yielding = normal_part * k_t / (normal_part + tangential * tangential * k_t);
-    rises = slip_force * asperity_tangential_slope(t->form, v, &place) * v->per_slip;
-    rises = asperity_least(asperity_most(rises, zero), v->k_t);
+    across = asperity_most(one - share * (r * r), ASPERITY_LEAST_NORMAL);
+    turn = ASPERITY_R(2.0) * share * r;
     /* Between the virgin curve and the yield curve the contact yields in part. */
     part = highest > cap ? asperity_least((trial - cap) / (highest - cap), one) : one;
     softer = grown ? one - v->slope * p->f_n / (v->f_n0 * elastic_stiffness) : one;
     plastic = softer > zero ? softer * dh : zero;
     most = (trial - cap) / elastic_stiffness;
     plastic = plastic < most ? plastic : most;
-    flow = ASPERITY_R(2.0) * c / normal * (rises + ASPERITY_BETWEEN * (yielding - rises)) * part * plastic / p->f_n;
+    forward = (p->force[0] * d0 + p->force[1] * d1) / f_t;
+    forward = forward > zero ? forward : zero;
+    /* What of delta_T flows. Where the contact does not move as far, F_T falls, and F_N rises along the yield curve: that takes some of the press. */
+    steady = part * (tangential / normal) * plastic;
+    flows = steady;
+    taken_back = zero;
+    if (forward < steady) {
+        stiff = normal * across * elastic_stiffness;
+        soft = tangential * turn * v->k_t;
+        flows = forward + (steady - forward) * (stiff / (stiff + soft));
+        taken_back = one - forward / steady;
+    }
+    flow = v->k_t * flows / f_t;
     p->flow = flow;
-    p->carried = yielding > rises ? ASPERITY_CARRIED * part * (yielding - rises) : zero;
+    /* The linear part of the virgin curve flows too, and what it takes of delta_T does not harden. */
+    linear = (v->f_n0 / v->f_n_slip - one) / t->friction - c * t->friction;
+    p->sudden = asperity_least(linear > zero ? linear / normal * plastic : zero, ASPERITY_SUDDEN * forward);
     keep = asperity_exponential_near(-flow);
     left = keep * f_t * per_slip_force;
     if (left < place.f_t) { /* a force beyond the peak of the virgin curve stays at its place */
         asperity_back(t->form, v, left, &place);
     }
-    p->x = place.x;
-    s->sheared = place.x;
-    p->shape = place.f_t;
-    pressed = asperity_pressed_cap(v, share * c, keep * f_t, &root);
+    pressed = asperity_pressed_cap(v, share, keep * f_t, &root);
     on_curve = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
     raised = pressed > on_curve ? pressed : on_curve;
+    /* Where F_N is below the curve, it is F_N that tells the place. */
+    p->x = p->f_n < on_curve ? asperity_mobilisation(t->form, v, p->f_n) : place.x;
+    p->x = p->x < s->x ? p->x : s->x;
     if (derivatives) {
         if (pressed > on_curve) {
             turns = root > zero ? ASPERITY_R(0.5) * (one - root * root) / root : zero;
             along = v->slope * (ASPERITY_R(0.5) * (one + root) + turns) + v->f_n0 * turns * (flow / dh);
         } else {
-            asperity_slopes(t->form, v, p->x, slope);
+            asperity_slopes(t->form, v, place.x, slope);
             falls = (v->f_n0 - v->f_n_slip) * slope[1];
             gain = slope[0] > zero ? falls * keep * f_t / (v->f_n0 * slip_force * slope[0]) : zero;
             along = v->slope * (raised / v->f_n0 + gain) + v->f_n0 * gain * (flow / dh);
         }
         p->df_n_dh = raised < p->f_n && along < stiffness ? along : stiffness;
     }
-    asperity_scale(s->deflection, keep);
-    p->force[0] *= keep;
-    p->force[1] *= keep;
-    p->f_t = keep * f_t;
-    p->place = place;
     if (raised < p->f_n) {
         change = asperity_log_ratio(raised, p->f_n);
         p->f_n = raised;
@@ -1127,6 +1116,21 @@ ASPERITY_FN void asperity_press(
         p->approach *= asperity_exponential_near(change * v->per_gamma);
         asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
     }
+    back = (one - keep) / v->k_t;
+    asperity_move(s->deflection, -back * p->force[0], -back * p->force[1], &moved);
+    if (asperity_exceeds(&moved, p->limit)) {
+        asperity_measure(&moved);
+        p->slip += v->k_t * asperity_hold(&moved, p->limit, s->deflection);
+    } else {
+        memcpy(s->deflection, moved.q, sizeof moved.q);
+    }
+    if (taken_back > zero && left < ASPERITY_GONE) {
+        memset(s->deflection, 0, sizeof s->deflection);
+    }
+    asperity_slider_force(v, s->deflection, p->force);
+    /* It forgets with the growth of the contact, and as F_T is taken back. */
+    change = asperity_exponential_near(-plastic / h - ASPERITY_FORGETS * (taken_back * taken_back) * flow);
+    s->sheared = s->sheared > p->x ? p->x + (s->sheared - p->x) * change : p->x;
 }
 
 /* By how much the sliders' force is beyond the curve at x. Where both are near to each other float has too few digits: there it is done in double. */
@@ -1167,7 +1171,7 @@ ASPERITY_FN asperity_real asperity_reverse(
     const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p, asperity_moved *moved, int measured,
     asperity_real d0, asperity_real d1, asperity_real slip) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, rate, x, cap, loss, stiffer, falls;
+    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, above, rate, x, cap, loss, stiffer, falls;
     int i, j;
     if (s->x >= ASPERITY_ALL_LOST || !(size > zero) || p->force[0] * p->force[0] + p->force[1] * p->force[1] > most * most) {
         return slip;
@@ -1179,10 +1183,12 @@ ASPERITY_FN asperity_real asperity_reverse(
     if (!(stick > zero && stick < one)) {
         return slip;
     }
+    /* What F_N is above that of its x stays above it. */
+    above = asperity_most(out->f_n - v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one)), zero);
     rate = ASPERITY_R(4.0) * ASPERITY_GATHERED * (ASPERITY_ALL_LOST - s->x) * (v->k_t / (t->friction * v->f_n_slip));
     x = s->x + rate * (stick * (one - stick)) * size;
     s->x = x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
-    cap = v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one));
+    cap = v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one)) + above;
     if (!(cap < out->f_n)) {
         return slip;
     }
@@ -1215,11 +1221,12 @@ ASPERITY_FN asperity_real asperity_shear(
     const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
     asperity_real d0, asperity_real d1) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, first_shape;
-    asperity_real slip_force, bound, trial, along, excess, travel, beyond, forward, at, dx, cap, before_cap, above, lowered, size, per_x, loss, keep, rate, radial;
+    asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, root;
+    asperity_real slip_force, bound, over, share, trial, excess, travel, ahead, beyond, forward, hardens, at, dx, cap, before_cap, highest, ratio, steeper, falls, rises, above, lowered, size;
+    asperity_real per_x, loss, keep, rate, radial;
     asperity_moved moved;
     asperity_place place, from;
-    int i, j, measured, beyond_peak;
+    int i, j, measured, raised, on_yield;
     asperity_move(s->deflection, d0, d1, &moved);
     measured = asperity_exceeds(&moved, p->limit);
     if (measured) {
@@ -1236,47 +1243,79 @@ ASPERITY_FN asperity_real asperity_shear(
     if (v->elastic) {
         return slip;
     }
-    if (s->x >= one && p->carried == zero) {
+    if (s->x >= one && !(ASPERITY_AT_CAP * f_n > v->f_n_slip)) {
         return asperity_reverse(t, s, out, tangent, v, p, &moved, measured, d0, d1, slip);
     }
     slip_force = t->friction * v->f_n_slip;
-    at = s->x < one ? s->x : one;
-    first_shape = p->shape >= zero ? p->shape : asperity_tangential_shape(t->form, v, at);
-    bound = slip_force * first_shape;
-    trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
-    if (trial <= ASPERITY_AT_BOUND * bound) {
-        return slip;
-    }
-    /* A press raises F_N above the virgin curve: there the place on it is that of F_T. */
-    if (!p->placed) {
-        p->f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
-    }
-    if (p->f_t > ASPERITY_AT_BOUND * bound) {
-        asperity_place_of(t->form, v, p->f_t / slip_force, &from);
-        at = asperity_most(from.x, at);
-    }
+    at = asperity_least(asperity_most(s->x, s->sheared), one);
     asperity_shapes(t->form, v, at, &from);
+    before_cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * from.f_n;
+    /* After a press F_N may be above the virgin curve, but not above the yield curve; F_T/F_N is that of the virgin curve there too. */
+    raised = ASPERITY_AT_CAP * f_n > before_cap;
+    share = raised ? asperity_yield_share(v, asperity_yield_coefficient(t, v)) : zero;
     bound = slip_force * from.f_t;
-    beyond_peak = p->f_t > ASPERITY_AT_BOUND * bound;
-    bound = beyond_peak ? p->f_t : bound;
-    if (trial <= ASPERITY_AT_BOUND * bound) {
+    over = one;
+    if (raised && bound > zero) {
+        ratio = bound / before_cap;
+        cap = asperity_most(asperity_least(v->f_n0 / (one + share * (ratio * ratio)), f_n), before_cap);
+        over = asperity_least(ratio, t->friction) * cap / bound;
+    }
+    bound *= over;
+    trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
+    /* Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond. */
+    forward = trial > zero ? asperity_most((out->f_t[0] * d0 + out->f_t[1] * d1) / trial, zero) : zero;
+    travel = trial > zero ? trial - (out->f_t[0] * p->force[0] + out->f_t[1] * p->force[1]) / trial : zero;
+    ahead = asperity_most(ASPERITY_LEAST_TRAVEL * (v->k_t * forward) - travel, zero);
+    if (trial + ahead <= ASPERITY_AT_BOUND * bound) {
+        highest = asperity_pressed_cap(v, share, trial, &root);
+        if (raised && ASPERITY_AT_CAP * highest < f_n) {
+            cap = asperity_least(asperity_most(highest, before_cap), f_n);
+            if (tangent) {
+                falls = highest > before_cap && root > zero && trial > zero ? ASPERITY_R(2.0) * share * v->per_force / root : zero;
+                for (j = 0; j < 2; j++) {
+                    rises = out->f_t[0] * tangent->df_t_ddelta[0][j] + out->f_t[1] * tangent->df_t_ddelta[1][j];
+                    tangent->df_n_ddelta[j] = -falls * rises;
+                }
+            }
+            out->f_n = cap;
+            asperity_lower(t, v, cap, p);
+            if (measured || asperity_exceeds(&moved, p->limit)) {
+                if (!measured) {
+                    asperity_measure(&moved);
+                }
+                slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
+            }
+            asperity_slider_force(v, s->deflection, out->f_t);
+            if (tangent) {
+                asperity_slider_stiffness(v, &moved, p->limit, tangent->df_t_ddelta);
+            }
+        } else if (s->x >= one) {
+            slip = asperity_reverse(t, s, out, tangent, v, p, &moved, measured, d0, d1, slip);
+        }
         return slip;
     }
     direction[0] = out->f_t[0] / trial;
     direction[1] = out->f_t[1] / trial;
-    along = direction[0] * p->force[0] + direction[1] * p->force[1];
-    excess = beyond_peak ? trial - bound : asperity_excess(t->form, v, s->deflection, slip_force, at, trial - bound);
-    excess = excess > zero ? excess : zero;
-    travel = trial - along;
+    excess = asperity_excess(t->form, v, s->deflection, slip_force * over, at, trial - bound);
+    excess = asperity_most(excess + ahead, zero);
+    travel += ahead;
     beyond = excess < travel ? excess / travel : one; /* share of the increment that is beyond the curve */
-    forward = direction[0] * d0 + direction[1] * d1;
-    forward = forward > zero ? forward : zero;
-    dx = beyond * forward * v->per_slip;
+    hardens = asperity_most(beyond * forward - p->sudden, ASPERITY_R(0.5) * (beyond * forward)); /* in a long step, half of it at the least */
+    dx = hardens * v->per_slip;
     asperity_shapes(t->form, v, asperity_least(at + dx, one), &place);
     cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
-    before_cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * from.f_n;
-    above = ASPERITY_AT_CAP * f_n > before_cap ? (f_n - before_cap) * asperity_exponential_near(-dx / ASPERITY_RELAXATION) : zero;
+    ratio = slip_force * place.f_t / cap;
+    above = raised ? (f_n - before_cap) * asperity_exponential_near(-dx / ASPERITY_RELAXATION) : zero;
     lowered = cap + above;
+    on_yield = 0;
+    if (raised) {
+        highest = v->f_n0 / (one + share * (ratio * ratio));
+        if (highest < lowered) {
+            on_yield = highest > cap;
+            above = zero;
+            lowered = on_yield ? highest : cap;
+        }
+    }
     out->f_n = lowered < f_n ? lowered : f_n;
     s->x = ASPERITY_AT_SLIP * out->f_n <= v->f_n_slip ? one : place.x;
     s->sheared = place.x;
@@ -1290,26 +1329,26 @@ ASPERITY_FN asperity_real asperity_shear(
         }
     }
     asperity_slider_force(v, s->deflection, held);
-    bound = slip_force * place.f_t;
-    beyond_peak = beyond_peak && p->f_t > bound;
-    bound = (beyond_peak ? p->f_t : bound) + p->carried * (beyond * forward);
+    bound = asperity_least(ratio, t->friction) * out->f_n;
     size = ASPERITY_SQRT(held[0] * held[0] + held[1] * held[1]);
     out->f_t[0] = held[0];
     out->f_t[1] = held[1];
     keep = size > bound ? bound / size : one;
     if (tangent) {
         asperity_slopes(t->form, v, place.x, slope);
-        per_x = beyond * v->per_slip;
-        loss = (v->f_n0 - v->f_n_slip) * slope[1] + above / ASPERITY_RELAXATION;
+        per_x = hardens > zero ? beyond * v->per_slip : zero;
+        falls = (v->f_n0 - v->f_n_slip) * slope[1];
+        steeper = (slip_force * slope[0] + ratio * falls) / cap;
+        loss = on_yield ? ASPERITY_R(2.0) * share * ratio * steeper * out->f_n * (out->f_n * v->per_force) : falls + above / ASPERITY_RELAXATION;
         asperity_slider_stiffness(v, &moved, p->limit, stiffness);
         m[0] = held[0] / size;
         m[1] = held[1] / size;
-        rate = ((beyond_peak ? zero : slip_force * slope[0] * v->per_slip) + p->carried) * beyond;
+        rate = (steeper * out->f_n - ratio * loss) * per_x;
         for (j = 0; j < 2; j++) {
             tangent->df_n_ddelta[j] = -loss * per_x * direction[j];
             radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j];
             for (i = 0; i < 2; i++) {
-                tangent->df_t_ddelta[i][j] = size > bound ? rate * m[i] * direction[j] + keep * (stiffness[i][j] - m[i] * radial) : stiffness[i][j];
+                tangent->df_t_ddelta[i][j] = ASPERITY_AT_BOUND * size > bound ? rate * m[i] * direction[j] + keep * (stiffness[i][j] - m[i] * radial) : stiffness[i][j];
             }
         }
     }
@@ -1499,7 +1538,7 @@ ASPERITY_FN void asperity_update(
         memset(next->deflection, 0, sizeof next->deflection);
         return;
     }
-    asperity_press(t, &s, &v, trial, stiffness, elastic_stiffness, h, tangent != NULL, &p);
+    asperity_press(t, &s, &v, trial, stiffness, elastic_stiffness, h, d0, d1, tangent != NULL, &p);
     s.h = h;
     s.h_max = greatest;
     s.x = p.x;
@@ -1571,7 +1610,7 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
     if (!file) {
         return 1;
     }
-    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 3) {
+    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 4) {
         fclose(file);
         return 2;
     }

@@ -97,14 +97,13 @@ def virgin(p, h, sheared=1.0):
     steep = column_at(p, 6, position)[0]
     v.m_exponent, v.n_exponent = (steep, p.gentle) if NORMAL_CURVE == 0 else (p.gentle, steep)
     v.backbone = v.gamma if v.gamma < v.n else v.n
+    v.k_t = math.exp(column_at(p, 7, position)[0])
     if NORMAL_CURVE == 2:
         v.backbone = steep
         v.shapes = shapes_at(p, position)
-    v.k_t = math.exp(column_at(p, 7, position)[0])
-    start = v.n * p.friction * v.f_n_slip / v.delta_t_slip
+    else:
+        v.k_t = max(v.k_t, v.n * p.friction * v.f_n_slip / v.delta_t_slip)
     end = v.backbone * p.friction * v.f_n0 / v.delta_t_slip
-    if v.k_t < start:
-        v.k_t = start
     if v.k_t < end:
         v.k_t = end
     if v.backbone < UNSHEARED and not is_elastic(v):
@@ -122,11 +121,12 @@ def virgin(p, h, sheared=1.0):
 # ---- update ----
 
 # Of simulated oblique presses, rebounds and reversals; asperity's model of the update says what they are.
-PRESSED = 0.8
-RECOVERED = 0.8
+PRESSED = 0.9
 LEAST_NORMAL = 0.25
-BETWEEN = 0.5
-CARRIED = 0.3
+SUDDEN = 0.2
+FORGETS = 4.0
+GONE = 1e-5
+LEAST_TRAVEL = 0.4
 RELAXATION = 0.1
 REVERSED = 0.05
 SLIDING = 0.98
@@ -194,14 +194,6 @@ def tangential_shape(v, x):
     return 1.0 - power * rest, v.n * power
 
 
-def tangential_slope(v, x, j):
-    """The derivative of f_T at x, which is after point j."""
-    if NORMAL_CURVE == 2:
-        shape = v.shapes[0]
-        return (shape[j] - (0.0 if j == 0 else shape[j - 1])) / (point_x(j + 1) - point_x(j))
-    return tangential_shape(v, x)[1]
-
-
 def tangential_shape_inverse(v, f):
     """The x at which f_T has the value f, and the point before it of a shape by numbers."""
     if NORMAL_CURVE == 2:
@@ -260,7 +252,9 @@ def is_elastic(v):
 
 
 def yield_coefficient(p, v):
-    """c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows."""
+    """c of the yield curve: a table's own, or that of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows."""
+    if NORMAL_CURVE == 2:
+        return v.n
     if not p.friction > 0.0:
         return 0.0
     loss = v.f_n0 - v.f_n_slip
@@ -273,11 +267,15 @@ def yield_coefficient(p, v):
     return max((at_slip - before) / (p.friction - r), 0.5 * at_slip / p.friction)
 
 
-def pressed_cap(v, c, f_t):
-    """Greatest F_N of a contact that is pressed with the tangential force f_t, and the square of its root."""
-    share = PRESSED * (1.0 - RECOVERED * (v.slope * v.depth / (v.gamma * v.f_n0)))
+def yield_share(v, c):
+    """s c of the yield curve F_N (1 + s c r^2) = F_N0."""
+    return PRESSED * (1.0 - v.slope * v.depth / (v.gamma * v.f_n0)) * c
+
+
+def pressed_cap(v, share, f_t):
+    """Greatest F_N of a contact that is pressed with the tangential force f_t, on the yield curve of this s c, and the square of its root."""
     force = f_t / v.f_n0
-    q = 1.0 - 4.0 * share * c * (force * force)
+    q = 1.0 - 4.0 * share * (force * force)
     return (0.5 * v.f_n0 * (1.0 + math.sqrt(q)), q) if q > 0.0 else (0.5 * v.f_n0, 0.0)
 
 
@@ -376,8 +374,9 @@ def taken(flow):
     return (1.0 - math.exp(-flow)) / flow
 
 
-def press(p, s, v, h):
-    """Moves h with delta_T held: F_N, x, dF_N/dh, by how many e-folds F_T has flowed, and the stiffness by which it may rise beyond the virgin curve."""
+def press(p, s, v, h, increment):
+    """Moves h with delta_T held, while `increment` brings some of F_T back. Returns F_N, x, dF_N/dh, by how many e-folds F_T has flowed, and the displacement that hardens
+    nothing."""
     dh = h - s.h
     grown = h > s.h_max
     first = grown and (s.x == 0.0 or not s.h_max > 0.0)
@@ -417,24 +416,33 @@ def press(p, s, v, h):
             s.sheared = 0.0
         return f_n, elastic, stiffness, 0.0, 0.0
     c = yield_coefficient(p, v)
-    highest = pressed_cap(v, c, f_t)[0]
+    share = yield_share(v, c)
+    highest = pressed_cap(v, share, f_t)[0]
     r = f_t / f_n
     normal = max(1.0 - c * (r * r), LEAST_NORMAL)
     tangential = 2.0 * c * r
-    sticking = (1.0 - r / p.friction) ** ((v.backbone - 1.0) / v.backbone) if r < p.friction else 0.0
-    k_t = v.k_t * sticking
-    normal_part = normal * normal * elastic_stiffness
-    yielding = normal_part * k_t / (normal_part + tangential * tangential * k_t)
-    rises = slip_force * tangential_slope(v, place, before) / v.delta_t_slip
-    rises = min(max(rises, 0.0), v.k_t)
+    across = max(1.0 - share * (r * r), LEAST_NORMAL)
+    turn = 2.0 * share * r
     part = min((trial - cap) / (highest - cap), 1.0) if highest > cap else 1.0
     softer = 1.0 - v.slope * f_n / (v.f_n0 * elastic_stiffness) if grown else 1.0
     plastic = min(softer * dh if softer > 0.0 else 0.0, (trial - cap) / elastic_stiffness)
-    flow = 2.0 * c / normal * (rises + BETWEEN * (yielding - rises)) * part * plastic / f_n
+    forward = max((force[0] * increment[0] + force[1] * increment[1]) / f_t, 0.0)
+    # What of delta_T flows. Where the contact does not move as far, F_T falls, and F_N rises along the yield curve: that takes some of the press.
+    steady = part * (tangential / normal) * plastic
+    flows, taken_back = steady, 0.0
+    if forward < steady:
+        stiff = normal * across * elastic_stiffness
+        soft = tangential * turn * v.k_t
+        flows = forward + (steady - forward) * (stiff / (stiff + soft))
+        taken_back = 1.0 - forward / steady
+    flow = v.k_t * flows / f_t
+    # The linear part of the virgin curve flows too, and what it takes of delta_T does not harden.
+    linear = (v.f_n0 / v.f_n_slip - 1.0) / p.friction - c * p.friction
+    sudden = min(linear / normal * plastic if linear > 0.0 else 0.0, SUDDEN * forward)
     keep = math.exp(-flow)
     left = keep * f_t / slip_force
     x = tangential_shape_back(v, left, before) if left < tangential_shape(v, place)[0] else place
-    pressed, q = pressed_cap(v, c, keep * f_t)
+    pressed, q = pressed_cap(v, share, keep * f_t)
     on_curve = normal_cap(v, x)
     raised = pressed if pressed > on_curve else on_curve
     rate = flow / dh
@@ -448,10 +456,17 @@ def press(p, s, v, h):
         gain = falls * keep * f_t / (v.f_n0 * steep) if steep > 0.0 else 0.0
         slope = v.slope * (raised / v.f_n0 + gain) + v.f_n0 * gain * rate
     slope = slope if raised < f_n and slope < stiffness else stiffness
+    x = elastic if f_n < on_curve else x  # where F_N is below the curve, it is F_N that tells the place
     f_n = raised if raised < f_n else f_n
-    s.deflection = scale(s.deflection, keep)
-    s.sheared = x
-    return f_n, x, slope, flow, CARRIED * part * (yielding - rises) if yielding > rises else 0.0
+    back = (1.0 - keep) / v.k_t
+    s.deflection = slide(s.deflection, slider_limits(p, v, f_n), (-back * force[0], -back * force[1]))
+    if taken_back > 0.0 and left < GONE:
+        s.deflection = [[0.0, 0.0] for _ in range(SLIDERS)]
+    x = x if x < s.x else s.x
+    # It forgets with the growth of the contact, and as F_T is taken back.
+    kept = math.exp(-plastic / h - FORGETS * (taken_back * taken_back) * flow)
+    s.sheared = x + (s.sheared - x) * kept if s.sheared > x else x
+    return f_n, x, slope, flow, sudden
 
 
 def reverse(p, s, out, v, before, force_before, increment):
@@ -465,9 +480,11 @@ def reverse(p, s, out, v, before, force_before, increment):
     stick = risen / (v.k_t * size)
     if not 0.0 < stick < 1.0:
         return
+    # What F_N is above that of its x stays above it.
+    above = max(out.f_n - v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0)), 0.0)
     rate = 4.0 * GATHERED * (MOST - s.x) * (v.k_t / (p.friction * v.f_n_slip))
     s.x = min(s.x + rate * (stick * (1.0 - stick)) * size, MOST)
-    cap = v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0))
+    cap = v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0)) + above
     if not cap < out.f_n:
         return
     out.f_n = cap
@@ -486,7 +503,7 @@ def reverse(p, s, out, v, before, force_before, increment):
             out.df_t_ddelta[i][j] += falls * out.f_t[i]
 
 
-def shear(p, s, out, v, f_n, carried, increment):
+def shear(p, s, out, v, f_n, sudden, increment):
     """Moves delta_T with h held."""
     before = s.deflection
     force_before = slider_force(v, before)
@@ -497,37 +514,63 @@ def shear(p, s, out, v, f_n, carried, increment):
     out.df_t_ddelta = slider_stiffness(v, before, limit, increment)
     if is_elastic(v):
         return
-    if s.x >= 1.0 and carried == 0.0:
+    if s.x >= 1.0 and not AT_CAP * f_n > v.f_n_slip:
         reverse(p, s, out, v, before, force_before, increment)
         return
     slip_force = p.friction * v.f_n_slip
-    at = s.x if s.x < 1.0 else 1.0
+    at = min(max(s.x, s.sheared), 1.0)
+    before_cap = normal_cap(v, at)
+    # After a press F_N may be above the virgin curve, but not above the yield curve; F_T/F_N is that of the virgin curve there too.
+    raised = AT_CAP * f_n > before_cap
+    share = yield_share(v, yield_coefficient(p, v)) if raised else 0.0
     bound = slip_force * tangential_shape(v, at)[0]
+    if raised:
+        ratio = bound / before_cap
+        top = max(min(v.f_n0 / (1.0 + share * (ratio * ratio)), f_n), before_cap)
+        bound = min(ratio, p.friction) * top
     trial = math.sqrt(out.f_t[0] * out.f_t[0] + out.f_t[1] * out.f_t[1])
-    if trial <= AT_BOUND * bound:
-        return
-    held_before = math.sqrt(force_before[0] * force_before[0] + force_before[1] * force_before[1])
-    if held_before > AT_BOUND * bound:
-        at = max(at, tangential_shape_inverse(v, held_before / slip_force)[0])
-        bound = slip_force * tangential_shape(v, at)[0]
-    beyond_peak = held_before > AT_BOUND * bound
-    if beyond_peak:
-        bound = held_before
-    if trial <= AT_BOUND * bound:
+    # Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond.
+    forward = max((out.f_t[0] * increment[0] + out.f_t[1] * increment[1]) / trial, 0.0) if trial > 0.0 else 0.0
+    travel = trial - (out.f_t[0] * force_before[0] + out.f_t[1] * force_before[1]) / trial if trial > 0.0 else 0.0
+    ahead = max(LEAST_TRAVEL * (v.k_t * forward) - travel, 0.0)
+    if trial + ahead <= AT_BOUND * bound:
+        highest, q = pressed_cap(v, share, trial)
+        if raised and AT_CAP * highest < f_n:
+            cap = min(highest if highest > before_cap else before_cap, f_n)
+            falls = 2.0 * share / (v.f_n0 * math.sqrt(q)) if highest > before_cap and q > 0.0 and trial > 0.0 else 0.0
+            for j in range(2):
+                out.df_n_ddelta[j] = -falls * (out.f_t[0] * out.df_t_ddelta[0][j] + out.f_t[1] * out.df_t_ddelta[1][j])
+            out.f_n = cap
+            s.approach = approach_at(v, cap)
+            limit = slider_limits(p, v, cap)
+            s.deflection = slide(before, limit, increment)
+            out.f_t = slider_force(v, s.deflection)
+            out.df_t_ddelta = slider_stiffness(v, before, limit, increment)
+        elif s.x >= 1.0:
+            reverse(p, s, out, v, before, force_before, increment)
         return
     direction = [out.f_t[0] / trial, out.f_t[1] / trial]
-    along = direction[0] * force_before[0] + direction[1] * force_before[1]
-    excess = trial - bound
-    travel = trial - along
+    excess = max(trial - bound + ahead, 0.0)
+    travel += ahead
     beyond = excess / travel if excess < travel else 1.0
-    forward = direction[0] * increment[0] + direction[1] * increment[1]
-    forward = forward if forward > 0.0 else 0.0
-    dx = beyond * forward / v.delta_t_slip
+    hardens = max(beyond * forward - sudden, 0.5 * (beyond * forward))  # in a long step, half of it at the least
+    dx = hardens / v.delta_t_slip
     x = at + dx if at + dx < 1.0 else 1.0
     cap = normal_cap(v, x)
-    before_cap = normal_cap(v, at)
-    above = (f_n - before_cap) * math.exp(-dx / RELAXATION) if AT_CAP * f_n > before_cap else 0.0
+    shape, shape_slope = tangential_shape(v, x)
+    falls = (v.f_n0 - v.f_n_slip) * normal_shape(v, x)[1]
+    ratio = slip_force * shape / cap
+    steeper = (slip_force * shape_slope + ratio * falls) / cap
+    above = (f_n - before_cap) * math.exp(-dx / RELAXATION) if raised else 0.0
     lowered = cap + above
+    loss = falls + above / RELAXATION
+    if raised:
+        highest = v.f_n0 / (1.0 + share * (ratio * ratio))
+        if cap < highest < lowered:
+            lowered = highest
+            loss = 2.0 * share * ratio * steeper * highest * (highest / v.f_n0)
+        elif highest < lowered:
+            lowered, loss = cap, falls
     out.f_n = lowered if lowered < f_n else f_n
     s.x = 1.0 if AT_SLIP * out.f_n <= v.f_n_slip else x
     s.sheared = x
@@ -536,26 +579,19 @@ def shear(p, s, out, v, f_n, carried, increment):
     s.deflection = slide(before, limit, increment)
     held = slider_force(v, s.deflection)
     stiffness = slider_stiffness(v, before, limit, increment)
-    shape, shape_slope = tangential_shape(v, x)
-    rate = slip_force * shape_slope / v.delta_t_slip
-    bound = slip_force * shape
-    if beyond_peak and held_before > bound:
-        bound = held_before
-        rate = 0.0
-    bound += carried * (beyond * forward)
-    rate = (rate + carried) * beyond
+    bound = min(ratio, p.friction) * out.f_n
+    per_x = beyond / v.delta_t_slip if hardens > 0.0 else 0.0
+    rate = (steeper * out.f_n - ratio * loss) * per_x
     size = math.sqrt(held[0] * held[0] + held[1] * held[1])
-    per_x = beyond / v.delta_t_slip
-    loss = (v.f_n0 - v.f_n_slip) * normal_shape(v, x)[1] + above / RELAXATION
     out.f_t = held
     out.df_n_ddelta = [-loss * per_x * direction[0], -loss * per_x * direction[1]]
     out.df_t_ddelta = stiffness
-    if size <= bound:
+    if AT_BOUND * size <= bound:  # at full slip the two are the same but for rounding
         return
-    keep = bound / size
+    keep = bound / size if size > bound else 1.0
     s.deflection = scale(s.deflection, keep)
     m = [held[0] / size, held[1] / size]
-    out.f_t = [bound * m[0], bound * m[1]]
+    out.f_t = [keep * held[0], keep * held[1]]
     out.df_t_ddelta = [[0.0, 0.0], [0.0, 0.0]]
     for j in range(2):
         radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j]
@@ -587,7 +623,7 @@ def update(p, state, h, increment):
         s.h = h
         return s, out
     v = virgin(p, greatest, state.sheared)
-    f_n, x, df_n_dh, flow, carried = press(p, s, v, h)
+    f_n, x, df_n_dh, flow, sudden = press(p, s, v, h, increment)
     if h != state.h:
         s.approach = approach_at(v, f_n) if f_n > 0.0 else state.approach + (h - state.h)
     s.h = h
@@ -598,7 +634,7 @@ def update(p, state, h, increment):
         return s, out
     out.df_n_dh = df_n_dh
     share = taken(flow)
-    shear(p, s, out, v, f_n, carried, (share * increment[0], share * increment[1]))
+    shear(p, s, out, v, f_n, sudden, (share * increment[0], share * increment[1]))
     out.df_t_ddelta = [[share * k for k in row] for row in out.df_t_ddelta]
     out.df_n_ddelta = [share * k for k in out.df_n_ddelta]
     out.a = v.a * (s.approach / v.depth) ** (v.gamma - 1.0)

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use crate::contact_law::{COLUMNS, ContactParameters, KNOTS};
 
 /// Version of the table's file.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// Columns of the parameters' table in the order of the header's.
 const ORDER: [usize; COLUMNS] = [0, 1, 3, 7, 2, 4, 5, 6];

@@ -119,6 +119,7 @@ impl Outputs {
             unloading_radius: a * unloading.exp(),
             k_t: stiffness * k_t.exp(),
             backbone,
+            yield_coefficient: None,
             tangential: self.ratio.iter().zip(&normal).map(|(ratio, share)| ratio.clamp(0.0, 1.0) * share / kept).collect(),
             normal: normal.iter().map(|share| if kept < 1.0 { (1.0 - share) / (1.0 - kept) } else { 0.0 }).collect(),
         })

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::against::first_yield;
-use super::measure::{Measured, Missing, measured};
+use super::measure::{Measured, Missing, Study, measured};
 use super::spline::{Spline, smooth};
-use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, equivalent, level_of};
+use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, equivalent, level_of, straight};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
@@ -93,18 +93,31 @@ pub fn case_of(case: &Case, elements: usize) -> Case {
     case
 }
 
+/// delta_T over h of the oblique press that tells how the contact yields under F_T: with a yield
+/// coefficient of 2 it comes to half of mu. `None` where nothing slips or yields.
+fn oblique_slope(case: &Case) -> Option<f64> {
+    match case.contact.friction {
+        Friction::Coefficient(mu) if mu > 0.0 => first_yield(case).ok()?.map(|_| 2.0 * mu / (1.0 + 0.5 * mu * mu)),
+        _ => None,
+    }
+}
+
 /// The study that [`build`] makes a table of, as a study file: [`case_of`] with the depths, over R,
-/// as its grid.
+/// as its list, and at its end one oblique press to the last of them.
 pub fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
     let radius = case.sphere.radius;
     let base = toml::Value::String(String::new());
     let base = toml::Table::try_from(case_of(case, elements)).map_or(base, toml::Value::Table);
-    let depths = depths.iter().map(|h| toml::Value::Float(h * radius)).collect();
-    let mut grid = toml::Table::new();
-    grid.insert("path.0.indentation".to_owned(), toml::Value::Array(depths));
+    let one = |key: &str, value: toml::Value| toml::Value::Table([(key.to_owned(), value)].into_iter().collect());
+    let mut list: Vec<toml::Value> = depths.iter().map(|h| one("path.0.indentation", toml::Value::Float(h * radius))).collect();
+    if let (Some(slope), Some(deepest)) = (oblique_slope(case), depths.last()) {
+        let both = [("indentation", deepest * radius), ("shear", slope * deepest * radius)];
+        let both = both.into_iter().map(|(key, value)| (key.to_owned(), toml::Value::Float(value))).collect();
+        list.push(one("path", toml::Value::Array(vec![toml::Value::Table(both)])));
+    }
     let mut study = toml::Table::new();
     study.insert("base".to_owned(), base);
-    study.insert("grid".to_owned(), toml::Value::Table(grid));
+    study.insert("list".to_owned(), toml::Value::Array(list));
     study.to_string()
 }
 
@@ -114,7 +127,7 @@ pub fn study_text(case: &Case, elements: usize, depths: &[f64]) -> String {
 /// Results that cannot be read; [`LawError::TooFewDepths`].
 pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError> {
     let wanted = depths(case)?;
-    let (all, missing) = measured(dir)?;
+    let Study { depths: all, yielding, missing } = measured(dir)?;
     let is = |h: f64, wanted: f64| (h / wanted - 1.0).abs() < 1e-6;
     let all: Vec<Measured> = all.into_iter().filter(|one| wanted.iter().any(|&h| is(one.h, h))).collect();
     let even: Vec<Measured> = all.iter().filter(|one| wanted.iter().step_by(2).any(|&h| is(one.h, h))).cloned().collect();
@@ -128,6 +141,9 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     }
     let mut table = table(case, &all, elements)?;
     table.errors.clone_from(&coarse.errors);
+    for level in &mut table.levels {
+        level.yield_coefficient = straight(&yielding, level.h.ln());
+    }
     Ok(Built { table, coarse, measured: all, missing })
 }
 
@@ -238,6 +254,7 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
         unloading_radius: unloading_radius(sphere, one),
         k_t,
         backbone,
+        yield_coefficient: None,
         tangential: points().map(|x| f_t(x) / (friction * f_n_slip)).collect(),
         normal: points().map(shape).collect(),
     }
@@ -325,6 +342,7 @@ pub(super) fn hertzian(sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
         unloading_radius: contact.contact_radius,
         k_t: cattaneo_mindlin::initial_stiffness(sphere, contact.contact_radius),
         backbone: 1.5,
+        yield_coefficient: None,
         tangential: points().map(share).collect(),
         normal: points().collect(),
     }

@@ -117,12 +117,53 @@ impl Measured {
     }
 }
 
-/// The depths of a study that are there, increasing; and those that are not, with the reason.
+/// Share of mu above which F_T/F_N of an oblique press says that it slides, and not how it yields.
+const SLIDING: f64 = 0.97;
+/// Fewest steps of an oblique press that are used, its last ones.
+const FEWEST: usize = 3;
+/// Steps to either side over which the ripple of the mesh is taken out.
+const RIPPLE: usize = 2;
+/// Share of mu below which F_T/F_N is the tolerance's.
+const NOTHING: f64 = 0.01;
+
+/// ln h and c of the yield curve along an oblique press, increasing in h: steady flow has
+/// d(delta_T)/dh = 2 c r/(1 - c r^2), r = F_T/F_N.
+pub fn yielding(case: &Case, history: &[StepRecord]) -> Vec<[f64; 2]> {
+    let Friction::Coefficient(mu) = case.contact.friction else { return Vec::new() };
+    let rows: Vec<[f64; 3]> = turned(Centres::of(case), history)
+        .iter()
+        .filter(|row| row.h > 0.0 && row.f_n > 0.0)
+        .map(|row| [(row.h / case.sphere.radius).ln(), row.delta_t / row.h, row.f_t / row.f_n])
+        .collect();
+    let sticks = rows.iter().rposition(|row| row[2] > SLIDING * mu).map_or(0, |i| i + 1);
+    let used = &rows[sticks.min(rows.len().saturating_sub(FEWEST))..];
+    let logarithm = |[_, slope, r]: &[f64; 3]| {
+        let r = r.max(NOTHING * mu);
+        (slope / (r * (2.0 + slope * r))).ln()
+    };
+    let mean = |i: usize| {
+        let near = &used[i.saturating_sub(RIPPLE)..(i + RIPPLE + 1).min(used.len())];
+        (near.iter().map(logarithm).sum::<f64>() / near.len() as f64).exp()
+    };
+    (0..used.len()).map(|i| [used[i][0], mean(i)]).filter(|point| point[1] > 0.0 && point[1].is_finite()).collect()
+}
+
+/// What a study gives.
+pub struct Study {
+    /// The depths that are there, increasing.
+    pub depths: Vec<Measured>,
+    /// [`yielding`] of its oblique press; empty without one.
+    pub yielding: Vec<[f64; 2]>,
+    /// What is not there, with the reason.
+    pub missing: Vec<Missing>,
+}
+
+/// What is there of a study.
 ///
 /// # Errors
 /// No study there, or a file that cannot be read.
-pub fn measured(dir: &Path) -> Result<(Vec<Measured>, Vec<Missing>), LawError> {
-    let (mut all, mut missing) = (Vec::new(), Vec::new());
+pub fn measured(dir: &Path) -> Result<Study, LawError> {
+    let (mut all, mut missing, mut oblique) = (Vec::new(), Vec::new(), Vec::new());
     for row in StudyTable::read(&dir.join("study.csv"))?.rows {
         if !row.is_done() {
             missing.push(Missing { id: row.id, reason: row.status });
@@ -130,11 +171,16 @@ pub fn measured(dir: &Path) -> Result<(Vec<Measured>, Vec<Missing>), LawError> {
         }
         let directory = OutputDirectory::existing(dir.join(&row.directory));
         let case = Case::load(&directory.case(), &[])?;
-        match Measured::of(&case, &read_history(&directory.history())?) {
+        let history = read_history(&directory.history())?;
+        if let Some(Segment::Oblique { .. }) = case.path.first() {
+            oblique = yielding(&case, &history);
+            continue;
+        }
+        match Measured::of(&case, &history) {
             Some(one) => all.push(one),
             None => missing.push(Missing { id: row.id, reason: "without a step".to_owned() }),
         }
     }
     all.sort_by(|a, b| a.h.total_cmp(&b.h));
-    Ok((all, missing))
+    Ok(Study { depths: all, yielding: oblique, missing })
 }

@@ -67,6 +67,10 @@ pub struct Level {
     /// Exponent of the curve on reversal: 3/2 in Cattaneo and Mindlin's contact, near 1 where it
     /// turns sharply.
     pub backbone: f64,
+    /// c of the yield curve of a press under F_T, d(delta_T)/dh = 2 c r/(1 - c r^2) with r =
+    /// F_T/F_N; where there is none it is that of the shear at constant h.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yield_coefficient: Option<f64>,
     /// F_T over mu times the normal force at full slip, at x = (j/24)^2, j = 1 and on.
     pub tangential: Vec<f64>,
     /// What F_N has lost of what it loses, likewise.
@@ -194,6 +198,7 @@ impl Tabulated {
                 level.unloading_radius,
                 level.k_t,
                 level.backbone - 1.0,
+                level.yield_coefficient.unwrap_or(1.0),
             ];
             let shapes = level.tangential.iter().chain(&level.normal);
             let complete = level.tangential.len() == POINTS && level.normal.len() == POINTS;
@@ -306,8 +311,10 @@ impl Tabulated {
                 f_n0: level.f_n0,
                 f_n_slip: level.slip_share * level.f_n0,
                 delta_t_slip: level.delta_t_slip,
-                k_t: level.k_t,
-                n: steepest(&level.tangential),
+                // The sliders must not be softer than the curve of the shear at its start.
+                k_t: level.k_t.max(steepest(&level.tangential) * mu * level.slip_share * level.f_n0 / level.delta_t_slip),
+                // Its place is that of the yield curve's coefficient where the shapes are numbers.
+                n: 1.0,
                 // The steep exponent's place is the backbone's where the shapes are numbers.
                 m_exponent: level.backbone,
                 n_exponent: 1.0,
@@ -323,7 +330,14 @@ impl Tabulated {
             shape[0].copy_from_slice(&level.tangential);
             shape[1].copy_from_slice(&level.normal);
         }
-        Ok(parameters.with_shapes(shapes, |h| level_at(h).a0))
+        Ok(parameters.with_shapes(shapes, |h| level_at(h).a0, |h| self.yield_coefficient(h)))
+    }
+
+    /// c of the yield curve at an indentation, straight over ln h between the levels that have one.
+    fn yield_coefficient(&self, h: f64) -> Option<f64> {
+        let known: Vec<[f64; 2]> =
+            self.levels.iter().filter_map(|level| level.yield_coefficient.map(|c| [level.h.ln(), c])).collect();
+        straight(&known, h.ln())
     }
 
     /// A case of its material and friction that is pressed to its end.
@@ -342,6 +356,15 @@ impl Tabulated {
         let range = Interval { from: 0.0, to: self.range.to };
         if range.contains(h, 1e-9) { Vec::new() } else { vec![OutOfRange { quantity: "h/R", value: h, range }] }
     }
+}
+
+/// What points (x, y), increasing in x, have at `x`: straight between them, and flat beyond.
+fn straight(points: &[[f64; 2]], x: f64) -> Option<f64> {
+    let after = points.partition_point(|point| point[0] <= x);
+    let (Some(before), Some(after)) = (after.checked_sub(1).map(|i| points[i]), points.get(after)) else {
+        return if after == 0 { points.first() } else { points.last() }.map(|point| point[1]);
+    };
+    Some(before[1] + (after[1] - before[1]) * (x - before[0]) / (after[0] - before[0]))
 }
 
 /// Refuses a law of two spheres along fixed axes, as they were made before: an engine has the line
@@ -455,6 +478,7 @@ fn level_of(h: f64, columns: &[f64]) -> Level {
         unloading_radius: (columns[4] + 0.5 * ln_h).exp(),
         k_t: (columns[5] + 0.5 * ln_h).exp(),
         backbone: columns[6].clamp(BACKBONE[0], BACKBONE[1]),
+        yield_coefficient: None,
         tangential,
         normal,
     }

@@ -392,6 +392,7 @@ impl<'a> Series<'a> {
             unloading_radius,
             k_t,
             backbone: 1.0 / (1.0 - bend * k_t),
+            yield_coefficient: None,
             tangential: points().map(tangential).collect(),
             normal: points().map(normal).collect(),
         }

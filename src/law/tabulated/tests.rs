@@ -1,5 +1,5 @@
 use super::build::table;
-use super::measure::Measured;
+use super::measure::{Measured, yielding};
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::contact_law::path::{drive, follow};
@@ -101,6 +101,47 @@ fn what_is_fitted_to_a_reversal_and_a_release_is_found_again() {
         let way = virgin.depth * exact.release[0][1] / exact.f_n0 * (1.0 - 0.5f64.powf(1.0 / virgin.gamma));
         assert!((way / (exact.release[0][0] - exact.release[5][0]) - 1.0).abs() < 0.05, "{h}: {way}");
     }
+}
+
+/// An oblique press that slides at first, then flows with this c.
+fn oblique(case: &Case, c: impl Fn(f64) -> f64, slope: f64) -> Vec<StepRecord> {
+    let row = |i: i32| {
+        let h = 0.04 * f64::from(i) / 20.0;
+        // r of d(delta_T)/dh = 2 c r/(1 - c r^2).
+        let c = c(h / case.sphere.radius);
+        let r = ((1.0 + slope * slope / c).sqrt() - 1.0) / slope;
+        let f_n = 1e3 * h * (1.0 + 0.02 * f64::from(i % 2));
+        StepRecord { h, delta_t: slope * h, f_n, f_t: r.min(MU) * f_n, ..StepRecord::default() }
+    };
+    (1..=20).map(row).collect()
+}
+
+#[test]
+fn an_oblique_press_tells_how_the_contact_yields() {
+    let case = case("law = \"ideal\"\nyield_stress = 400.0");
+    let grows = |h: f64| 4.0 * (h / 0.02).powf(0.2);
+    let found = yielding(&case, &oblique(&case, grows, 0.6));
+    assert!(found.len() > 10 && found.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{found:?}");
+    // The mean over the ripple is one-sided at the ends.
+    for [ln_h, c] in &found[2..] {
+        assert!((c / grows(ln_h.exp()) - 1.0).abs() < 0.04, "{ln_h}: {c}");
+    }
+    // One that slides to its end is told by its last steps.
+    let slides = yielding(&case, &oblique(&case, |_| 0.1, 0.6));
+    assert!(slides.len() == 3 && slides.iter().all(|point| (point[1] - 0.6 / (MU * (2.0 + 0.6 * MU))).abs() < 1e-9));
+    // The level's own goes into the update; without one it is that of the virgin curve.
+    let mut table = made();
+    let virgin = table.unit_parameters().unwrap();
+    for level in &mut table.levels {
+        level.yield_coefficient = straight(&found, level.h.ln());
+    }
+    let given = table.unit_parameters().unwrap();
+    assert!((given.virgin(0.02).point.n / found[found.len() - 1][1] - 1.0).abs() < 1e-6);
+    assert!((given.virgin(1e-4).point.n / found[0][1] - 1.0).abs() < 1e-6);
+    assert!((virgin.virgin(0.02).point.n / given.virgin(0.02).point.n - 1.0).abs() > 0.05);
+    let text = serde_json::to_string(&table).unwrap();
+    assert_eq!(serde_json::from_str::<Tabulated>(&text).unwrap(), table);
+    assert!(!serde_json::to_string(&made()).unwrap().contains("yield_coefficient"));
 }
 
 #[test]

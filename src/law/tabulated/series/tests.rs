@@ -48,6 +48,7 @@ fn plastic(sphere: &ElasticSphere, h: f64) -> Level {
     let n = 1.5 + 3.0 * plasticity;
     let k_t = 1.7 * sphere.effective_modulus() * a0;
     Level {
+        yield_coefficient: None,
         h,
         f_n0,
         a0,
