@@ -72,10 +72,10 @@ const PRESS_STEPS_PER_ELEMENT: f64 = 0.75;
 const SHEAR_STEPS: usize = 15;
 /// Two bodies have their linear systems solved further than one: by how much the loosest tolerance
 /// is smaller, and how far the first of a step is solved (see [`first_linear`]). Else points that
-/// flow in one of the bodies are thrown back, as the plate strains one of them alone at first. Where
-/// a press starts from all of the last step, the first system alone: at E_2/E_1 = 3, R_2/R_1 = 2 and
-/// 12 elements it takes 120 iterations with 439 of Krylov so, 118 with 548 with both, and 130 with
-/// 449 with none.
+/// flow in one of the bodies are thrown back, as the plate strains one of them alone at first.
+/// Where a press starts from all of the last step, the first system alone: at E_2/E_1 = 3, R_2/R_1
+/// = 2 and 12 elements it takes 120 iterations with 439 of Krylov so, 118 with 548 with both, and
+/// 130 with 449 with none.
 const COUPLE_LINEAR: f64 = 0.3;
 const COUPLE_FIRST: f64 = 0.002;
 /// See [`Problem::pressed_in_full`].
