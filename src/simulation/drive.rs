@@ -432,7 +432,9 @@ impl<'a> Drive<'a> {
         if let Some(couple) = self.problem.couple {
             let expected = guess.as_deref().unwrap_or(&self.state.u);
             let encounter = Encounter::new(&self.mesh, couple, &self.state.u, expected, self.state.direction == 0.0);
-            if let Some(guess) = &mut guess {
+            if let Some(guess) = &mut guess
+                && !self.problem.pressed_in_full
+            {
                 encounter.separate(&self.mesh, guess);
             }
             self.newton.encounter(encounter);
@@ -470,13 +472,16 @@ impl<'a> Drive<'a> {
     /// elements under them backwards. Without friction, at E/sigma_Y = 15,000 and h = 0.085 R, a
     /// press took 2,200 iterations and 37 cuts, and takes 150 and one; an oblique press at
     /// E/sigma_Y = 9000, mu = 0.5, took 19,800 and 472, and takes 300 and none.
+    ///
+    /// So is one of two bodies of which one is stiffer and one flows, and points that have passed
+    /// the other body are left there (see [`Problem::pressed_in_full`]).
     fn extrapolation(&self, target: &Target) -> Option<f64> {
         let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;
         if last_delta_t != 0.0 {
             Some((target.delta_t - r.delta_t) / last_delta_t)
         } else if last_h != 0.0 {
-            let share = if self.problem.fully_plastic { 1.0 } else { PRESS_EXTRAPOLATION };
+            let share = if self.problem.pressed_in_full { 1.0 } else { PRESS_EXTRAPOLATION };
             Some(share * (target.h - r.h) / last_h)
         } else {
             None
