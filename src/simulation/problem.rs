@@ -44,7 +44,7 @@ pub struct Problem {
     /// The contact becomes fully plastic: what flows has to be found flowing.
     pub fully_plastic: bool,
     /// A step of a press starts from all of the last one: fully plastic, or a body on one that is
-    /// [`UNLIKE_STIFFNESS`] times as stiff, with a Lambda above [`UNLIKE_PLASTIC`]. The rest of the
+    /// `UNLIKE_STIFFNESS` times as stiff, with a Lambda above `UNLIKE_PLASTIC`. The rest of the
     /// plate's motion would strain the sphere alone at first. A press of `unlike.toml` takes 88,
     /// 120 and 153 iterations at 8, 12 and 16 elements so, and 95, 145 and 277 with a part of the
     /// last step and points that have passed the other body moved back (on the plane 75, 91 and
