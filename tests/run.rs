@@ -458,7 +458,9 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
         [("terminated", Signal::TERM), ("interrupted", Signal::INT), ("warned", Signal::USR1), ("hung-up", Signal::HUP)]
     {
         let mut command = program();
-        command.args(scratch.args(name, &["--set", "mesh.elements_per_contact_radius=12"]));
+        // Far more steps than it makes before the signal comes, however busy the machine.
+        let long = ["solver.press_steps=400", "mesh.contact_radius=0.22", "solver.error_estimate=false"];
+        command.args(scratch.args(name, &long.map(|set| ["--set", set]).concat()));
         let child = command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().expect("a run");
         let history = scratch.path(name).join("history.csv");
         let started = Instant::now();
