@@ -172,9 +172,7 @@ fn deck(case: &Case, problem: &Problem, settings: &Settings) -> Result<String, F
 /// Nodes, elements, sets and surfaces of the sphere and what it is pressed against.
 fn geometry(text: &mut String, case: &Case, problem: &Problem, kind: Element) -> Result<(), Failed> {
     let (mesh, radius) = (&problem.model.mesh, case.sphere.radius);
-    let couple = mesh.couple.as_deref();
-    let first_below = couple.map_or(mesh.nodes.len(), |couple| couple.node);
-    let first_mirrored = couple.map_or(mesh.elements.len(), |couple| couple.element);
+    let (first_below, first_mirrored) = (mesh.own_nodes(), mesh.own_elements());
     let elements: Vec<[u32; 8]> =
         mesh.elements.iter().enumerate().map(|(e, &element)| turned(element, e >= first_mirrored)).collect();
     let middles = if kind == Element::C3D20R { Middles::new(mesh, &elements, &radii(case)) } else { Middles::default() };
@@ -210,7 +208,7 @@ fn geometry(text: &mut String, case: &Case, problem: &Problem, kind: Element) ->
     set(text, "SYMMETRY", &symmetry)?;
     let (above, below): (Vec<_>, Vec<_>) = element_faces(mesh).into_iter().partition(|(e, _)| *e < first_mirrored);
     surface(text, "BELOW", &above)?;
-    if couple.is_some() {
+    if mesh.couple.is_some() {
         set(text, "HELD", &held)?;
         // In elements that are turned, S1 and S2 have changed places.
         let turned = |&(e, number): &(usize, usize)| (e, if number < 2 { 1 - number } else { number });

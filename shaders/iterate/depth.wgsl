@@ -1,6 +1,6 @@
-// Change of h along the whole correction, where a force is held: what is missing of the plate's at
-// the end of the correction at constant h, over the response to a unit indentation; a thread a
-// slot.
+// Change of h along the whole correction, where a force is held: what is missing of the plate's
+// force at the end of the correction at constant h, over what a unit indentation adds to it; a
+// thread a slot.
 
 // [slot][RECORD]: see linalg/record.wgsl, its bits; of the correction's systems, of the responses'
 @group(0) @binding(4) var<storage, read> corrections: array<u32>;

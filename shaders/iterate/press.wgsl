@@ -1,5 +1,5 @@
 // Moves the plate so that it has the force that is to be held: adds the response to a unit
-// indentation to the correction, as often as h changes; a thread a node.
+// indentation, times the change of h, to the correction; a thread a node.
 
 @group(0) @binding(5) var<storage, read> response: array<u32>;              // [case][component][node], bits of single precision
 @group(0) @binding(6) var<storage, read> by_residual: array<real>;          // [case][3 node + i]: without a change of h

@@ -54,7 +54,7 @@ pub struct CaseModel {
 impl CaseModel {
     /// Index of the first element of the opponent: the number of elements if there is none.
     pub fn opponent_from(&self) -> usize {
-        self.mesh.couple.as_ref().map_or(self.mesh.elements.len(), |couple| couple.element)
+        self.mesh.own_elements()
     }
 }
 

@@ -48,9 +48,13 @@ pub mod path;
 
 mod centres;
 mod curve;
+mod press;
 mod shapes;
+mod shear;
+mod sliders;
 mod update;
 mod virgin;
+mod yielding;
 
 pub use centres::{Centres, Frame};
 pub use curve::NormalCurve;

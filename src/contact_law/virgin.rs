@@ -6,7 +6,7 @@
 //! that every language fills and reads it by the same operations.
 
 use super::curve::NormalCurve;
-use super::update::{is_elastic, virgin_yield_coefficient};
+use super::yielding::{is_elastic, virgin_yield_coefficient};
 
 /// Number of knots over ln h.
 pub const KNOTS: usize = 128;

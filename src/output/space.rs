@@ -5,21 +5,21 @@ use crate::mesh::Mesh;
 
 /// Vectors at the nodes, or the nodes' positions, in space.
 pub fn vectors_in_space(mesh: &Mesh, vectors: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let from = mesh.couple.as_ref().map_or(vectors.len(), |couple| couple.node);
+    let from = mesh.own_nodes();
     // 0 - z, not -z: what is at rest moves by 0, not -0.
     vectors.iter().enumerate().map(|(n, &[x, y, z])| if n < from { [x, y, z] } else { [x, y, 0.0 - z] }).collect()
 }
 
 /// Nodes of the elements, those of mirrored ones in an order that keeps their volume positive.
 pub fn elements_in_space(mesh: &Mesh) -> Vec<[u32; 8]> {
-    let from = mesh.couple.as_ref().map_or(mesh.elements.len(), |couple| couple.element);
+    let from = mesh.own_elements();
     let turned = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
     mesh.elements.iter().enumerate().map(|(e, &nodes)| if e < from { nodes } else { turned(nodes) }).collect()
 }
 
 /// Stresses [xx, yy, zz, xy, yz, zx] of the elements in space.
 pub fn stresses_in_space(mesh: &Mesh, stresses: &[[f64; 6]]) -> Vec<[f64; 6]> {
-    let from = mesh.couple.as_ref().map_or(stresses.len(), |couple| couple.element);
+    let from = mesh.own_elements();
     let mirrored = |[xx, yy, zz, xy, yz, zx]: [f64; 6]| [xx, yy, zz, xy, 0.0 - yz, 0.0 - zx];
     stresses.iter().enumerate().map(|(e, &stress)| if e < from { stress } else { mirrored(stress) }).collect()
 }

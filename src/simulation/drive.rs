@@ -97,14 +97,9 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Number of contact nodes of the sphere: they come first.
-    fn own_contacts(&self) -> usize {
-        self.mesh.couple.as_ref().map_or(self.mesh.contact_nodes.len(), |couple| couple.contact)
-    }
-
     /// The contact nodes at which the contact is known: of two bodies the slave's.
     fn slave_contacts(&self) -> Range<usize> {
-        let (own, all) = (self.own_contacts(), self.mesh.contact_nodes.len());
+        let (own, all) = (self.mesh.own_contacts(), self.mesh.contact_nodes.len());
         match self.problem.couple {
             Some((1, _)) => own..all,
             _ => 0..own,
@@ -511,7 +506,7 @@ impl<'a> Drive<'a> {
 
     /// The last accepted step.
     fn view(&mut self) -> StepView<'_> {
-        let own = self.own_contacts();
+        let own = self.mesh.own_contacts();
         let displacement = Displacement { u: &mut self.state.u, u_before: &mut self.state.u_before, is_away: &mut self.is_away };
         let (points, opponent_points) = self.state.points.split_at(own);
         StepView {

@@ -43,13 +43,14 @@ pub struct Problem {
     pub zone: Zone,
     /// The contact becomes fully plastic: what flows has to be found flowing.
     pub fully_plastic: bool,
-    /// A step of a press starts from all of the last one: fully plastic, or a body on one that is
-    /// `UNLIKE_STIFFNESS` times as stiff, with a Lambda above `UNLIKE_PLASTIC`. The rest of the
-    /// plate's motion would strain the sphere alone at first. A press of `unlike.toml` takes 88,
-    /// 120 and 153 iterations at 8, 12 and 16 elements so, and 95, 145 and 277 with a part of the
-    /// last step and points that have passed the other body moved back (on the plane 75, 91 and
-    /// 107). Elastic spheres and bodies of one stiffness need that part: two elastic ones took 46
-    /// iterations at 10 elements with it, and 258 without.
+    /// A step of a press is guessed from all of the last one, not from a part of it. So it is where
+    /// the contact becomes fully plastic, and where one of two bodies is at least
+    /// `UNLIKE_STIFFNESS` times as stiff as the other and Lambda at least `UNLIKE_PLASTIC`: what a
+    /// part leaves of the plate's motion strains the sphere alone at first. A press of
+    /// `unlike.toml` takes 88, 120 and 153 iterations at 8, 12 and 16 elements, and took 95, 145
+    /// and 277 from a part, with points that had passed the other body moved back (on the plane it
+    /// takes 75, 91 and 107). Elastic bodies and bodies of one stiffness need the part: two elastic
+    /// spheres take 46 iterations at 10 elements with it, and 258 from all.
     pub pressed_in_full: bool,
     /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a
     /// plane.
@@ -202,10 +203,7 @@ impl Problem {
         let lambda = johnson_parameter(&laws, case.compliance()[0], nu, zone.contact_radius / case.effective_radius());
         let two_bodies = opponent.is_some();
         let couple = slave_and_series(&scaled);
-        let is_unlike = couple.as_ref().is_some_and(|(_, series)| {
-            let share = series.master_share;
-            share.max(1.0 - share) >= UNLIKE_STIFFNESS * share.min(1.0 - share)
-        });
+        let is_unlike = couple.is_some_and(|(_, series)| series.contrast() >= UNLIKE_STIFFNESS);
         let pressed_in_full = lambda >= FULLY_PLASTIC || is_unlike && lambda >= UNLIKE_PLASTIC;
         let further = if two_bodies && !pressed_in_full { COUPLE_LINEAR } else { 1.0 };
         let largest_nu = match &case.opponent {

@@ -35,6 +35,12 @@ impl Series {
     pub fn new(slave: f64, master: f64) -> Self {
         Self { modulus: slave * master / (slave + master), master_share: slave / (slave + master) }
     }
+
+    /// How many times as stiff as the other the stiffer body is.
+    pub fn contrast(&self) -> f64 {
+        let other = 1.0 - self.master_share;
+        self.master_share.max(other) / self.master_share.min(other)
+    }
 }
 
 impl Encounter {

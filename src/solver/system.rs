@@ -91,7 +91,7 @@ impl Boundary {
     /// Plate and symmetry plane of a mesh.
     pub fn new(mesh: &Mesh) -> Self {
         let frictionless = vec![false; mesh.contact_nodes.len()];
-        let own_nodes = mesh.couple.as_ref().map_or(mesh.nodes.len(), |couple| couple.node);
+        let own_nodes = mesh.own_nodes();
         Self {
             plate: mesh.plate_nodes.iter().copied().filter(|&n| (n as usize) < own_nodes).collect(),
             prescribed: prescribed(mesh),
@@ -101,7 +101,7 @@ impl Boundary {
             against: None,
             encounter: None,
             own_nodes,
-            own_contacts: mesh.couple.as_ref().map_or(mesh.contact_nodes.len(), |couple| couple.contact),
+            own_contacts: mesh.own_contacts(),
             mirror: Vec::new(),
         }
     }

@@ -47,9 +47,8 @@ impl PointStatus {
     }
 }
 
-/// Materials as kernels read them: `material_parameters` (parameter p of material m at
-/// `p * materials + m`)
-/// and `hardening_table` (alpha, sigma, plastic work of the points of all tables).
+/// Materials as kernels read them: `material_parameters` (parameter p of material m at `p *
+/// materials + m`) and `hardening_table` (alpha, sigma, plastic work of the points of all tables).
 pub fn flatten<R: Real>(materials: &[Material<R>]) -> (Vec<R>, Vec<R>) {
     let cases = materials.len();
     let mut parameters = vec![R::ZERO; PARAMETERS * cases];

@@ -96,7 +96,7 @@ impl Connectivity {
             sizes: Sizes {
                 nodes: mesh.nodes.len(),
                 elements: mesh.elements.len(),
-                own_elements: mesh.couple.as_ref().map_or(mesh.elements.len(), |couple| couple.element),
+                own_elements: mesh.own_elements(),
                 contact_points: mesh.contact_nodes.len(),
                 blocks: plan.blocks(),
             },

@@ -1002,6 +1002,11 @@ ASPERITY_FN asperity_real asperity_pressed_cap(const asperity_curve *v, asperity
     return ASPERITY_R(0.5) * v->f_n0 * (ASPERITY_R(1.0) + *root);
 }
 
+/* F_N on that curve at a ratio F_T/F_N. */
+ASPERITY_FN asperity_real asperity_yielding_at(const asperity_curve *v, asperity_real share, asperity_real ratio) {
+    return v->f_n0 / (ASPERITY_R(1.0) + share * (ratio * ratio));
+}
+
 /* Moves h with delta_T held, while the displacement (d0, d1) brings some of F_T back. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, `stiffness` its
  * slope, and `elastic_stiffness` that of the elastic response. */
 ASPERITY_FN void asperity_press(
@@ -1257,7 +1262,7 @@ ASPERITY_FN asperity_real asperity_shear(
     over = one;
     if (raised && bound > zero) {
         ratio = bound / before_cap;
-        cap = asperity_most(asperity_least(v->f_n0 / (one + share * (ratio * ratio)), f_n), before_cap);
+        cap = asperity_most(asperity_least(asperity_yielding_at(v, share, ratio), f_n), before_cap);
         over = asperity_least(ratio, t->friction) * cap / bound;
     }
     bound *= over;
@@ -1309,7 +1314,7 @@ ASPERITY_FN asperity_real asperity_shear(
     lowered = cap + above;
     on_yield = 0;
     if (raised) {
-        highest = v->f_n0 / (one + share * (ratio * ratio));
+        highest = asperity_yielding_at(v, share, ratio);
         if (highest < lowered) {
             on_yield = highest > cap;
             above = zero;

@@ -279,6 +279,11 @@ def pressed_cap(v, share, f_t):
     return (0.5 * v.f_n0 * (1.0 + math.sqrt(q)), q) if q > 0.0 else (0.5 * v.f_n0, 0.0)
 
 
+def yielding_at(v, share, ratio):
+    """F_N on that curve at a ratio F_T/F_N."""
+    return v.f_n0 / (1.0 + share * (ratio * ratio))
+
+
 def mobilisation(v, f_n):
     """The x of the virgin curve that has the normal force f_n."""
     if f_n >= AT_CAP * v.f_n0:
@@ -526,7 +531,7 @@ def shear(p, s, out, v, f_n, sudden, increment):
     bound = slip_force * tangential_shape(v, at)[0]
     if raised:
         ratio = bound / before_cap
-        top = max(min(v.f_n0 / (1.0 + share * (ratio * ratio)), f_n), before_cap)
+        top = max(min(yielding_at(v, share, ratio), f_n), before_cap)
         bound = min(ratio, p.friction) * top
     trial = math.sqrt(out.f_t[0] * out.f_t[0] + out.f_t[1] * out.f_t[1])
     # Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond.
@@ -565,7 +570,7 @@ def shear(p, s, out, v, f_n, sudden, increment):
     lowered = cap + above
     loss = falls + above / RELAXATION
     if raised:
-        highest = v.f_n0 / (1.0 + share * (ratio * ratio))
+        highest = yielding_at(v, share, ratio)
         if cap < highest < lowered:
             lowered = highest
             loss = 2.0 * share * ratio * steeper * highest * (highest / v.f_n0)

@@ -51,7 +51,7 @@ impl Drive<'_> {
             return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
         }
         let h = self.newton.accepted_h();
-        let force: [f64; 3] = std::array::from_fn(|c| forces[..self.own_contacts()].iter().map(|f| f[c]).sum());
+        let force: [f64; 3] = std::array::from_fn(|c| forces[..self.mesh.own_contacts()].iter().map(|f| f[c]).sum());
         let slaves = self.slave_contacts();
         let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
         let (contact_points, slipping_points) = (count(Status::Stick) + count(Status::Slip), count(Status::Slip));

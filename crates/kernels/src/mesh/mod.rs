@@ -113,3 +113,20 @@ pub struct Mesh {
     /// Where the opponent begins, if the mesh is of two bodies.
     pub couple: Option<Box<Couple>>,
 }
+
+impl Mesh {
+    /// Number of nodes of the sphere: those of an opponent that deforms come after them.
+    pub fn own_nodes(&self) -> usize {
+        self.couple.as_ref().map_or(self.nodes.len(), |couple| couple.node)
+    }
+
+    /// Number of elements of the sphere, likewise.
+    pub fn own_elements(&self) -> usize {
+        self.couple.as_ref().map_or(self.elements.len(), |couple| couple.element)
+    }
+
+    /// Number of contact nodes of the sphere, likewise.
+    pub fn own_contacts(&self) -> usize {
+        self.couple.as_ref().map_or(self.contact_nodes.len(), |couple| couple.contact)
+    }
+}

@@ -13,7 +13,7 @@ use crate::compute::CaseModel;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::mesh::Mesh;
 
-/// Numbers that go to a slot, as `iterate.wgsl` names them.
+/// Numbers that go to a slot, as `told.wgsl` names them.
 pub const NUMBERS: usize = 9;
 /// Numbers that come back, as `read.wgsl` orders them.
 pub const READINGS: usize = 10;

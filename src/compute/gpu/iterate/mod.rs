@@ -20,7 +20,7 @@ use crate::compute::linear::SideReport;
 use crate::compute::{Energies, Outcome};
 use arrays::{AT_POINT, Kept, Kernels, NUMBERS, READINGS, Told};
 
-/// What is done to a slot, as `iterate.wgsl` has it.
+/// What is done to a slot, as `told.wgsl` has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mark {
     /// The current iterate of the case, 0 or 1.
@@ -313,28 +313,20 @@ impl<R: DeviceReal> Batch<R> {
         let mut back = Back::new(slots);
         linear.set_out(&self.context, &mut list, &solves, false)?;
         linear.iterate(&mut list, solves.first_list(), slots)?;
-        if held {
-            let units = self.hold_forces(dispatch, list, (&mut solves, systems[1]), &mut back)?;
-            return Ok(Corrections {
-                tangents: outcomes(&back.of_tangent),
-                reports: solves.reports(),
-                units: units.reports(),
-                readouts: back.readouts(),
-            });
-        }
-        let tail = |list: &mut Recorder<'_>| {
-            list.dispatch(&kernels.expand, sizes.nodes, slots)?;
-            self.append_trial(dispatch, list)
+        let units = if held {
+            self.hold_forces(dispatch, list, (&mut solves, systems[1]), &mut back)?.reports()
+        } else {
+            let tail = |list: &mut Recorder<'_>| {
+                list.dispatch(&kernels.expand, sizes.nodes, slots)?;
+                self.append_trial(dispatch, list)
+            };
+            tail(&mut list)?;
+            self.read_trials(list, Some(&mut solves), &mut back)?;
+            self.finish(linear, &mut solves, &mut back, tail)?;
+            Vec::new()
         };
-        tail(&mut list)?;
-        self.read_trials(list, Some(&mut solves), &mut back)?;
-        self.finish(linear, &mut solves, &mut back, tail)?;
-        Ok(Corrections {
-            tangents: outcomes(&back.of_tangent),
-            reports: solves.reports(),
-            units: Vec::new(),
-            readouts: back.readouts(),
-        })
+        let (tangents, reports) = (outcomes(&back.of_tangent), solves.reports());
+        Ok(Corrections { tangents, reports, units, readouts: back.readouts() })
     }
 
     /// Goes on with `list`, in which corrections at constant h are being solved, to the trials at

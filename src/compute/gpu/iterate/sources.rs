@@ -82,7 +82,7 @@ pub static UNIT: Kernel = Kernel {
     workgroup: 64,
 };
 
-/// It, kept for the next iteration.
+/// Keeps that response for the next iteration.
 pub static RESPOND: Kernel = Kernel {
     name: "iterate_respond",
     sources: &[BATCH, TOLD, ITERATE, source!("iterate/respond.wgsl")],
@@ -98,7 +98,7 @@ pub static DEPTH: Kernel = Kernel {
     workgroup: 64,
 };
 
-/// The correction with it.
+/// The correction with that change.
 pub static PRESS: Kernel = Kernel {
     name: "iterate_press",
     sources: &[BATCH, TOLD, ITERATE, source!("iterate/press.wgsl")],

@@ -1,0 +1,102 @@
+//! Where a contact yields: the virgin curve in F_N, the yield curve of a press under F_T, and the
+//! elastic approach below them.
+
+use super::shapes::{normal_shape, normal_shape_inverse, tangential_shape_inverse};
+use super::virgin::{BY_NUMBERS, ContactParameters, Virgin, VirginPoint};
+
+/// Share of F_N0 from which a force counts as F_N0, so that rounding is not taken for unloading.
+pub(super) const AT_CAP: f64 = 1.0 - 1e-9;
+
+/// Share of F_N that is compared with F_N_slip, so that rounding does not decide whether a contact
+/// slips as a whole.
+pub(super) const AT_SLIP: f64 = 1.0 - 1e-13;
+
+/// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
+pub(super) const REVERSED: f64 = 0.05;
+
+/// x after all of that loss.
+pub(super) const MOST: f64 = 2.0;
+
+/// A contact that is pressed while F_T acts yields where F_N (1 + s c r^2) = F_N0, r = F_T/F_N, and
+/// flows as if s were 1: simulated steady oblique presses have d(delta_T)/dh = 2 c r/(1 - c r^2)
+/// for the plastic parts of both. s is this share, less what of it the contact recovers on
+/// unloading. Of simulated oblique presses.
+const PRESSED: f64 = 0.9;
+
+/// F_N_slip/F_N0 from which a contact counts as elastic.
+const ELASTIC: f64 = 1.0 - 1e-6;
+
+/// F_N on the virgin curve at `x`.
+pub(super) fn normal_cap(p: &ContactParameters, virgin: &Virgin, x: f64) -> f64 {
+    virgin.point.f_n0 - (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, x)[0]
+}
+
+/// Whether shear costs no normal force: the sliders alone then are Cattaneo and Mindlin's contact.
+pub(super) fn is_elastic(point: &VirginPoint) -> bool {
+    point.f_n_slip >= ELASTIC * point.f_n0
+}
+
+/// c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows; by its points at
+/// 40 % and all of the slip force. The linear part belongs to a sudden shear alone. Not less than
+/// half of what it is without that part.
+pub(super) fn virgin_yield_coefficient(p: &ContactParameters, virgin: &Virgin) -> f64 {
+    if !(p.friction > 0.0) {
+        return 0.0;
+    }
+    let loss = virgin.point.f_n0 - virgin.point.f_n_slip;
+    let at_slip = loss / (virgin.point.f_n_slip * p.friction);
+    let (x, _) = tangential_shape_inverse(p, virgin, 0.4);
+    let lost = loss * normal_shape(p, virgin, x)[0];
+    let f_n = virgin.point.f_n0 - lost;
+    let r = 0.4 * p.friction * virgin.point.f_n_slip / f_n;
+    let before = lost / (f_n * r);
+    let (c, least) = ((at_slip - before) / (p.friction - r), 0.5 * at_slip / p.friction);
+    if c > least { c } else { least }
+}
+
+/// c of the yield curve: a table's own, or that of the virgin curve.
+pub(super) fn yield_coefficient(p: &ContactParameters, virgin: &Virgin) -> f64 {
+    if p.form == BY_NUMBERS { virgin.point.n } else { virgin_yield_coefficient(p, virgin) }
+}
+
+/// s c of the yield curve F_N (1 + s c r^2) = F_N0.
+pub(super) fn yield_share(virgin: &Virgin, c: f64) -> f64 {
+    PRESSED * (1.0 - virgin.slope * virgin.depth / (virgin.gamma * virgin.point.f_n0)) * c
+}
+
+/// Greatest F_N of a contact that is pressed with the tangential force `f_t`, on the yield curve of
+/// this s c, and q, the square of its root; at its apex F_N0/2.
+pub(super) fn pressed_cap(virgin: &Virgin, share: f64, f_t: f64) -> [f64; 2] {
+    let f_n0 = virgin.point.f_n0;
+    let force = f_t / f_n0;
+    let q = 1.0 - 4.0 * share * (force * force);
+    if q > 0.0 { [0.5 * f_n0 * (1.0 + q.sqrt()), q] } else { [0.5 * f_n0, 0.0] }
+}
+
+/// F_N on that curve at a ratio F_T/F_N.
+pub(super) fn yielding_at(virgin: &Virgin, share: f64, ratio: f64) -> f64 {
+    virgin.point.f_n0 / (1.0 + share * (ratio * ratio))
+}
+
+/// The x of the virgin curve that has the normal force `f_n`.
+pub(super) fn mobilisation(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> f64 {
+    if f_n >= AT_CAP * virgin.point.f_n0 {
+        return 0.0;
+    }
+    if AT_SLIP * f_n <= virgin.point.f_n_slip {
+        let lost = 1.0 - f_n / virgin.point.f_n_slip;
+        let x = if lost > 0.0 { 1.0 + lost / REVERSED } else { 1.0 };
+        return if x < MOST { x } else { MOST };
+    }
+    normal_shape_inverse(p, virgin, (virgin.point.f_n0 - f_n) / (virgin.point.f_n0 - virgin.point.f_n_slip))
+}
+
+/// Elastic unloading: F_N at the approach `e`.
+pub(super) fn force_at(virgin: &Virgin, e: f64) -> f64 {
+    if e <= 0.0 { 0.0 } else { virgin.point.f_n0 * (e / virgin.depth).powf(virgin.gamma) }
+}
+
+/// Inverse of [`force_at`].
+pub(super) fn approach_at(virgin: &Virgin, f_n: f64) -> f64 {
+    if f_n >= virgin.point.f_n0 { virgin.depth } else { virgin.depth * (f_n / virgin.point.f_n0).powf(1.0 / virgin.gamma) }
+}
