@@ -92,8 +92,8 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     let mut handle = CaseHandle { backend: &mut backend, case: 0 };
     let outcome = trial.evaluate(&mut handle, &boundary, &control, &mut PhaseTimes::default())?;
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
-    let mut matrix = BlockMatrix::<f64>::zeros(pattern.clone());
-    handle.tangent(&trial.u, &mut matrix.blocks)?;
+    let mut matrix = BlockMatrix::<f32>::zeros(pattern.clone());
+    handle.tangent(&trial.u, (&mut matrix.blocks).into())?;
     let raw = matrix.clone();
     let mut fixed = vec![false; trial.u.len()];
     fixed_unknowns(&mesh, &boundary, &trial.rows, &mut fixed);
@@ -108,8 +108,8 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     let mut group = criterion.benchmark_group(name);
     let mut force = vec![0.0; trial.u.len()];
     group.bench_function("force", |b| b.iter(|| handle.internal_force(&trial.u, &mut force)));
-    let mut blocks = vec![[0.0; 9]; matrix.blocks.len()];
-    group.bench_function("tangent, formed and gathered", |b| b.iter(|| handle.tangent(&trial.u, &mut blocks)));
+    let mut blocks = vec![[0.0_f32; 9]; matrix.blocks.len()];
+    group.bench_function("tangent, formed and gathered", |b| b.iter(|| handle.tangent(&trial.u, (&mut blocks).into())));
     group.bench_function("contact, residual, merit", |b| {
         b.iter(|| trial.assess(&mut handle, &boundary, &control, &mut PhaseTimes::default()))
     });

@@ -72,7 +72,12 @@ impl Calls {
             Evaluation::Tangent => {
                 let mut requests: Vec<_> = cases
                     .zip(&mut self.blocks)
-                    .map(|((case, displacement), blocks)| TangentRequest { case, displacement, blocks, outcome: Went::Valid })
+                    .map(|((case, displacement), blocks)| TangentRequest {
+                        case,
+                        displacement,
+                        blocks: blocks.into(),
+                        outcome: Went::Valid,
+                    })
                     .collect();
                 backend.tangent(&mut requests)?;
                 valid(requests.iter().map(|r| r.outcome))

@@ -8,12 +8,13 @@ use rayon::prelude::*;
 use super::gather::GatherPlan;
 use super::sweep::Sweep;
 use super::{
-    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
-    Outcome, TangentRequest,
+    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies,
+    ForceRequest, Outcome, TangentRequest,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
 use crate::element::hex8::{self, Geometry, Invalid, NODES, Nodal, Points, State, Tangent, pair};
+use crate::lanes::array;
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
@@ -166,6 +167,35 @@ impl<R: Real, T: Real> Case<R, T> {
         (committed, increment)
     }
 
+    /// The tangent into `blocks`, wave by wave of elements: a row is summed when the last of its
+    /// elements is there.
+    fn tangent<B: Real>(
+        &self,
+        (plan, sweep, tangents): (&GatherPlan, &Sweep, &mut [Tangent<T>]),
+        displacement: &[f64],
+        blocks: &mut [[B; 9]],
+    ) -> Outcome {
+        let mut rows = block_rows(plan, blocks);
+        for (elements, complete) in sweep.waves() {
+            let slot = sweep.slot(elements.start);
+            let out = &mut tangents[slot..slot + elements.len()];
+            let outcome =
+                self.each_element(elements.start, WAVE_CHUNK, displacement, out, |case, e, committed, increment, out| {
+                    let start = &case.start[e].map(|p| PointState { be: p.be.map(convert), alpha: convert(p.alpha) });
+                    hex8::tangent(&case.tangent_geometry[e], case.tangent_material(e), start, committed, increment, out)
+                });
+            if outcome != Outcome::Valid {
+                return outcome;
+            }
+            let mut complete: Vec<_> = complete.iter().map(|&node| (node, std::mem::take(&mut rows[node as usize]))).collect();
+            let tangents = &*tangents;
+            complete.par_iter_mut().with_min_len(WAVE_CHUNK).for_each(|(node, row)| {
+                gather_row(plan, &self.mesh, *node as usize, |element| &tangents[sweep.slot(element)], row);
+            });
+        }
+        Outcome::Valid
+    }
+
     /// Evaluates `f` on the elements from `first` on into `out`, so many at a time in each thread;
     /// the first invalid element by index is reported.
     fn each_element<N: Real, O: Send>(
@@ -254,32 +284,11 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
-            let (plan, sweep, tangents) = (&self.plan, &self.sweep, &mut self.element_tangent);
-            let mut rows = block_rows(plan, request.blocks);
-            request.outcome = Outcome::Valid;
-            for (elements, complete) in sweep.waves() {
-                let slot = sweep.slot(elements.start);
-                let out = &mut tangents[slot..slot + elements.len()];
-                request.outcome = case.each_element(
-                    elements.start,
-                    WAVE_CHUNK,
-                    request.displacement,
-                    out,
-                    |case, e, committed, increment, out| {
-                        let start = &case.start[e].map(|p| PointState { be: p.be.map(convert), alpha: convert(p.alpha) });
-                        hex8::tangent(&case.tangent_geometry[e], case.tangent_material(e), start, committed, increment, out)
-                    },
-                );
-                if request.outcome != Outcome::Valid {
-                    break;
-                }
-                let mut complete: Vec<_> =
-                    complete.iter().map(|&node| (node, std::mem::take(&mut rows[node as usize]))).collect();
-                let tangents = &*tangents;
-                complete.par_iter_mut().with_min_len(WAVE_CHUNK).for_each(|(node, row)| {
-                    gather_row(plan, &case.mesh, *node as usize, |element| &tangents[sweep.slot(element)], row);
-                });
-            }
+            let assembly = (&self.plan, &self.sweep, &mut *self.element_tangent);
+            request.outcome = match &mut request.blocks {
+                Blocks::Double(blocks) => case.tangent(assembly, request.displacement, blocks),
+                Blocks::Single(blocks) => case.tangent(assembly, request.displacement, blocks),
+            };
         }
         Ok(())
     }
@@ -412,7 +421,7 @@ fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<Geometry<R>>, ComputeError> {
 }
 
 /// The blocks of each node's row; `blocks` in the order of the plan's pattern.
-fn block_rows<'a>(plan: &GatherPlan, blocks: &'a mut [[f64; 9]]) -> Vec<&'a mut [[f64; 9]]> {
+fn block_rows<'a, B>(plan: &GatherPlan, blocks: &'a mut [[B; 9]]) -> Vec<&'a mut [[B; 9]]> {
     let mut rows = Vec::with_capacity(plan.pattern.rows());
     let mut rest = blocks;
     for node in 0..plan.pattern.rows() {
@@ -425,35 +434,36 @@ fn block_rows<'a>(plan: &GatherPlan, blocks: &'a mut [[f64; 9]]) -> Vec<&'a mut 
 
 /// Sums the tangents of the elements around a node into its block row, in the order of the node's
 /// elements.
-fn gather_row<'a, R: Real>(
+fn gather_row<'a, R: Real, B: Real>(
     plan: &GatherPlan,
     mesh: &Mesh,
     node: usize,
     tangent_of: impl Fn(usize) -> &'a Tangent<R>,
-    row: &mut [[f64; 9]],
+    row: &mut [[B; 9]],
 ) {
     let lists = &mesh.node_elements;
-    row.fill([0.0; 9]);
+    row.fill([B::ZERO; 9]);
     for entry_index in lists.list(node) {
         let entry = lists.entry[entry_index] as usize;
         let (tangent, a) = (tangent_of(entry / 8), entry % 8);
-        for (b, &offset) in plan.offset[entry_index].iter().enumerate() {
-            let out = &mut row[offset as usize];
-            if a <= b {
-                let block = &tangent[pair(a, b)];
-                for (o, k) in out.iter_mut().zip(block) {
-                    *o += k.to_f64();
-                }
-            } else {
-                let block = &tangent[pair(b, a)];
-                for i in 0..3 {
-                    for j in 0..3 {
-                        out[3 * i + j] += block[3 * j + i].to_f64();
-                    }
-                }
-            }
+        let offset = &plan.offset[entry_index];
+        // Of two nodes an element has the block of the lower one's row; the other's is transposed.
+        for b in 0..a {
+            let k = &tangent[pair(b, a)];
+            add(&mut row[offset[b] as usize], [k[0], k[3], k[6], k[1], k[4], k[7], k[2], k[5], k[8]]);
+        }
+        for b in a..NODES {
+            add(&mut row[offset[b] as usize], tangent[pair(a, b)]);
         }
     }
+}
+
+/// out += block, eight numbers at once and the last by itself.
+#[inline(always)]
+fn add<R: Real, B: Real>(out: &mut [B; 9], block: [R; 9]) {
+    let eight = B::add_eight(array(B::ZERO, |m| out[m]), array(B::ZERO, |m| convert(block[m])));
+    out[..8].copy_from_slice(&eight);
+    out[8] += convert::<R, B>(block[8]);
 }
 
 fn widen<R: Real>(rows: &Rows<R>) -> Rows<f64> {

@@ -3,7 +3,7 @@
 use super::iterate::{Answer, Ask, IterateRequest, Plate};
 use super::linear::LinearRequest;
 use super::{
-    CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
+    Blocks, CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
     TrialRequest,
 };
 use crate::contact::coulomb::Rows;
@@ -15,7 +15,7 @@ pub trait Evaluate {
     /// Internal forces at a trial displacement.
     fn internal_force(&mut self, displacement: &[f64], force: &mut [f64]) -> Result<Outcome, ComputeError>;
     /// Tangent blocks at a trial displacement.
-    fn tangent(&mut self, displacement: &[f64], blocks: &mut [[f64; 9]]) -> Result<Outcome, ComputeError>;
+    fn tangent(&mut self, displacement: &[f64], blocks: Blocks<'_>) -> Result<Outcome, ComputeError>;
     /// Contact conditions at a trial displacement with its internal forces.
     fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError>;
     /// Internal forces at a trial displacement, and the contact conditions with them.
@@ -51,7 +51,7 @@ impl Evaluate for CaseHandle<'_> {
         Ok(request[0].outcome)
     }
 
-    fn tangent(&mut self, displacement: &[f64], blocks: &mut [[f64; 9]]) -> Result<Outcome, ComputeError> {
+    fn tangent(&mut self, displacement: &[f64], blocks: Blocks<'_>) -> Result<Outcome, ComputeError> {
         let mut request = [TangentRequest { case: self.case, displacement, blocks, outcome: Outcome::Valid }];
         self.backend.tangent(&mut request)?;
         Ok(request[0].outcome)

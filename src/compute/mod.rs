@@ -86,6 +86,28 @@ pub struct ForceRequest<'a> {
     pub outcome: Outcome,
 }
 
+/// Where blocks of a tangent go, in f64 or each rounded once to f32, which is all that a solver
+/// needs: it holds its matrices in f32.
+#[derive(Debug)]
+pub enum Blocks<'a> {
+    /// In f64.
+    Double(&'a mut [[f64; 9]]),
+    /// In f32.
+    Single(&'a mut [[f32; 9]]),
+}
+
+impl<'a> From<&'a mut Vec<[f64; 9]>> for Blocks<'a> {
+    fn from(blocks: &'a mut Vec<[f64; 9]>) -> Self {
+        Self::Double(blocks)
+    }
+}
+
+impl<'a> From<&'a mut Vec<[f32; 9]>> for Blocks<'a> {
+    fn from(blocks: &'a mut Vec<[f32; 9]>) -> Self {
+        Self::Single(blocks)
+    }
+}
+
 /// Asks for the tangent of one case: blocks d f_i / d u_j in the order of
 /// [`crate::mesh::pattern::Pattern`].
 #[derive(Debug)]
@@ -95,7 +117,7 @@ pub struct TangentRequest<'a> {
     /// Trial displacement, three a node.
     pub displacement: &'a [f64],
     /// Receives the blocks, row-major; they mean nothing if the outcome is not [`Outcome::Valid`].
-    pub blocks: &'a mut [[f64; 9]],
+    pub blocks: Blocks<'a>,
     /// Receives how it went.
     pub outcome: Outcome,
 }

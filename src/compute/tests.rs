@@ -80,10 +80,10 @@ fn answer(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Answer {
     let mut handle = CaseHandle { backend, case };
     let mesh = handle.model().mesh.clone();
     let mut force = vec![0.0; u.len()];
-    let mut blocks = vec![[0.0; 9]; Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries()];
+    let mut blocks = vec![[0.0_f64; 9]; Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries()];
     let mut rows = no_rows(&mesh);
     assert_eq!(handle.internal_force(u, &mut force).unwrap(), Outcome::Valid);
-    assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Outcome::Valid);
+    assert_eq!(handle.tangent(u, (&mut blocks).into()).unwrap(), Outcome::Valid);
     handle.contact(u, &force, &mut rows).unwrap();
     let row = |r: &Rows<f64>| {
         let numbers =
@@ -153,11 +153,11 @@ fn a_batch_gives_each_case_what_it_gets_alone() {
             .collect();
         together.internal_force(&mut requests).unwrap();
         let entries = Pattern::from_elements(meshes[0].nodes.len(), &meshes[0].elements).entries();
-        let mut blocks = vec![vec![[0.0; 9]; entries]; 3];
+        let mut blocks = vec![vec![[0.0_f64; 9]; entries]; 3];
         let mut requests: Vec<_> = blocks
             .iter_mut()
             .enumerate()
-            .map(|(case, blocks)| TangentRequest { case, displacement: &u[case], blocks, outcome: Outcome::Valid })
+            .map(|(case, blocks)| TangentRequest { case, displacement: &u[case], blocks: blocks.into(), outcome: Outcome::Valid })
             .collect();
         together.tangent(&mut requests).unwrap();
         for case in 0..3 {
@@ -173,8 +173,10 @@ fn the_assembled_tangent_is_symmetric_and_the_derivative_of_the_force() {
     let mesh = backend.models()[1].mesh.clone();
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     let u = displacement(&mesh, 0.02);
-    let mut blocks = vec![[0.0; 9]; pattern.entries()];
-    backend.tangent(&mut [TangentRequest { case: 1, displacement: &u, blocks: &mut blocks, outcome: Outcome::Valid }]).unwrap();
+    let mut blocks = vec![[0.0_f64; 9]; pattern.entries()];
+    backend
+        .tangent(&mut [TangentRequest { case: 1, displacement: &u, blocks: (&mut blocks).into(), outcome: Outcome::Valid }])
+        .unwrap();
     let scale = blocks.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     for a in 0..pattern.rows() {
         for k in pattern.row(a) {

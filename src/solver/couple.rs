@@ -18,19 +18,15 @@ use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;
-use crate::linalg::bsr::Widen;
 use crate::linalg::fgmres::System;
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// Solves for the unknowns y of two bodies.
 #[derive(Debug)]
 pub struct CoupleSolver {
     /// The tangent of both, along the axes.
-    matrix: BlockMatrix<f64>,
-    /// The same in f32, for the products of the Krylov iteration.
-    single: BlockMatrix<f32>,
+    matrix: BlockMatrix<f32>,
     /// Which body is the slave.
     slave: usize,
     bodies: [Body; 2],
@@ -48,7 +44,7 @@ struct Body {
     unknowns: Range<usize>,
     blocks: Range<usize>,
     /// Its tangent; the slave's in the frames of its contact points, with their rows.
-    matrix: BlockMatrix<f64>,
+    matrix: BlockMatrix<f32>,
     hierarchy: Hierarchy,
     fixed: Vec<bool>,
     z: Vec<f32>,
@@ -97,7 +93,6 @@ impl CoupleSolver {
         let zero = || vec![0.0; n];
         Ok(Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
-            single: BlockMatrix::zeros(pattern.clone()),
             slave,
             bodies: [Body::new(mesh, 0, pattern)?, Body::new(mesh, 1, pattern)?],
             contact_nodes: mesh.contact_nodes.clone(),
@@ -109,7 +104,7 @@ impl CoupleSolver {
     }
 
     /// The tangent of both bodies, to be written in place before [`CoupleSolver::refresh`].
-    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f32> {
         &mut self.matrix
     }
 
@@ -122,7 +117,6 @@ impl CoupleSolver {
         self.rows.clear();
         self.rows.extend_from_slice(rows);
         self.reduced.fixed.copy_from_slice(fixed);
-        self.single.blocks.iter_mut().zip(&self.matrix.blocks).for_each(|(s, b)| *s = b.map(|b| b as f32));
         for body in &mut self.bodies {
             body.matrix.blocks.copy_from_slice(&self.matrix.blocks[body.blocks.clone()]);
             body.fixed.copy_from_slice(&fixed[body.unknowns.clone()]);
@@ -142,11 +136,11 @@ impl CoupleSolver {
         Ok(())
     }
 
-    /// f = A y with the tangent in `matrix`; rows of fixed unknowns mean nothing.
-    fn apply<T: Real + Widen<f64>>(&self, matrix: &BlockMatrix<T>, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+    /// f = A y; rows of fixed unknowns mean nothing.
+    fn apply(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
         u.copy_from_slice(y);
         self.interface.expand(u);
-        matrix.multiply(u, f);
+        self.matrix.multiply(u, f);
         self.interface.reduce(f);
         impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
     }
@@ -171,7 +165,7 @@ impl Tied for CoupleSolver {
     }
 
     fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
-        self.apply(&self.matrix, y, u, f);
+        self.apply(y, u, f);
     }
 }
 
@@ -184,13 +178,13 @@ impl System<f32> for CoupleSolver {
         let mut r: Vec<f64> = v.iter().map(|v| f64::from(*v)).collect();
         self.cycle(master, &mut r, y);
         // What the master's part leaves of the slave's equations.
-        self.apply(&self.single, y, u, f);
+        self.apply(y, u, f);
         let range = self.bodies[slave].unknowns.clone();
         r[range.clone()].iter_mut().zip(&f[range]).for_each(|(r, f)| *r -= f);
         self.cycle(slave, &mut r, y);
         clear(&self.reduced.fixed, y);
         z.iter_mut().zip(&*y).for_each(|(z, y)| *z = *y as f32);
-        self.apply(&self.single, y, u, f);
+        self.apply(y, u, f);
         clear(&self.reduced.fixed, f);
         w.iter_mut().zip(&*f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;
@@ -202,32 +196,28 @@ impl System<f32> for CoupleSolver {
 }
 
 /// Turns the row and the column of a node into a frame.
-pub(super) fn turn_node(matrix: &mut BlockMatrix<f64>, node: usize, q: &Frame) {
+pub(super) fn turn_node(matrix: &mut BlockMatrix<f32>, node: usize, q: &Frame) {
     for k in matrix.pattern.row(node) {
         let column = matrix.pattern.column[k] as usize;
-        let a = matrix.blocks[k];
-        matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|i| q[m / 3][i] * a[3 * i + m % 3]).sum());
+        let a = matrix.blocks[k].map(f64::from);
+        matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|i| q[m / 3][i] * a[3 * i + m % 3]).sum::<f64>() as f32);
         // The pattern is symmetric.
         if let Some(k) = matrix.pattern.position(column, node) {
-            let a = matrix.blocks[k];
-            matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|j| a[3 * (m / 3) + j] * q[m % 3][j]).sum());
+            let a = matrix.blocks[k].map(f64::from);
+            matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|j| a[3 * (m / 3) + j] * q[m % 3][j]).sum::<f64>() as f32);
         }
     }
 }
 
 /// Replaces the rows of a node by the conditions of its contact.
-pub(super) fn apply_rows(matrix: &mut BlockMatrix<f64>, node: usize, rows: &Rows<f64>) {
+pub(super) fn apply_rows(matrix: &mut BlockMatrix<f32>, node: usize, rows: &Rows<f64>) {
     let diagonal = matrix.pattern.diagonal[node] as usize;
     for k in matrix.pattern.row(node) {
-        let old = matrix.blocks[k];
-        let new = &mut matrix.blocks[k];
-        for i in 0..3 {
-            for j in 0..3 {
-                new[3 * i + j] = (0..3).map(|m| rows.force_rows[i][m] * old[3 * m + j]).sum();
-                if k == diagonal {
-                    new[3 * i + j] += rows.displacement_rows[i][j];
-                }
-            }
-        }
+        let old = matrix.blocks[k].map(f64::from);
+        matrix.blocks[k] = std::array::from_fn(|m| {
+            let (i, j) = (m / 3, m % 3);
+            let sum: f64 = (0..3).map(|m| rows.force_rows[i][m] * old[3 * m + j]).sum();
+            (if k == diagonal { sum + rows.displacement_rows[i][j] } else { sum }) as f32
+        });
     }
 }

@@ -12,18 +12,14 @@ use std::sync::Arc;
 use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
-use crate::linalg::bsr::Widen;
 use crate::linalg::fgmres::System;
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
-use crate::real::Real;
 
 /// Solves for the unknowns y of a pair.
 #[derive(Debug)]
 pub struct PairSolver {
-    matrix: BlockMatrix<f64>,
-    /// The same in f32, for the products of the Krylov iteration.
-    single: BlockMatrix<f32>,
+    matrix: BlockMatrix<f32>,
     /// The state and the step are even in x, and so are all corrections.
     symmetric: bool,
     even: Hierarchy,
@@ -74,7 +70,6 @@ impl PairSolver {
         let small = || vec![0.0; n];
         Ok(Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
-            single: BlockMatrix::zeros(pattern.clone()),
             symmetric: false,
             odd: hierarchy.clone(),
             even: hierarchy,
@@ -90,7 +85,7 @@ impl PairSolver {
     }
 
     /// The tangent of the body, to be written in place before [`PairSolver::refresh`].
-    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f32> {
         &mut self.matrix
     }
 
@@ -150,16 +145,15 @@ impl PairSolver {
                 }
             }
         }
-        self.single.blocks.iter_mut().zip(&self.matrix.blocks).for_each(|(s, b)| *s = b.map(|b| b as f32));
         self.even.update(&self.matrix, &self.even_fixed)?;
         if self.symmetric { Ok(()) } else { self.odd.update(&self.matrix, &self.odd_fixed) }
     }
 
-    /// f = A y with the tangent in `matrix`; rows of fixed unknowns mean nothing.
-    fn apply<T: Real + Widen<f64>>(&self, matrix: &BlockMatrix<T>, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+    /// f = A y; rows of fixed unknowns mean nothing.
+    fn apply(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
         u.copy_from_slice(y);
         self.interface.expand(u);
-        matrix.multiply(u, f);
+        self.matrix.multiply(u, f);
         self.symmetrise(f);
         self.interface.reduce(f);
         impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
@@ -176,7 +170,7 @@ impl Tied for PairSolver {
     }
 
     fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
-        self.apply(&self.matrix, y, u, f);
+        self.apply(y, u, f);
     }
 }
 
@@ -215,7 +209,7 @@ impl System<f32> for PairSolver {
         clear(&self.reduced.fixed, &mut work.u);
         z.iter_mut().zip(&work.u).for_each(|(z, u)| *z = *u as f32);
         let y: Vec<f64> = z.iter().map(|z| f64::from(*z)).collect();
-        self.apply(&self.single, &y, &mut work.u, &mut work.f);
+        self.apply(&y, &mut work.u, &mut work.f);
         clear(&self.reduced.fixed, &mut work.f);
         w.iter_mut().zip(&work.f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;

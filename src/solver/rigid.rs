@@ -39,7 +39,7 @@ impl Against {
 }
 
 /// Turns the rows and columns of contact nodes into their frames.
-pub(super) fn turn(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, frames: &[Frame]) {
+pub(super) fn turn(matrix: &mut BlockMatrix<f32>, mesh: &Mesh, frames: &[Frame]) {
     for (q, &node) in frames.iter().zip(&mesh.contact_nodes) {
         turn_node(matrix, node as usize, q);
     }

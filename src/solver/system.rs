@@ -486,13 +486,13 @@ pub fn chunked_sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
 }
 
 /// Rows of the plate's normal reaction: `w . du` is the change of the plate's summed f_z.
-pub fn plate_functional(matrix: &BlockMatrix<f64>, plate: &[u32], w: &mut [f64]) {
+pub fn plate_functional(matrix: &BlockMatrix<f32>, plate: &[u32], w: &mut [f64]) {
     w.fill(0.0);
     for &n in plate {
         for k in matrix.pattern.row(n as usize) {
             let base = 3 * matrix.pattern.column[k] as usize;
             for j in 0..3 {
-                w[base + j] += matrix.blocks[k][6 + j];
+                w[base + j] += f64::from(matrix.blocks[k][6 + j]);
             }
         }
     }
@@ -513,7 +513,7 @@ pub fn fixed_unknowns(mesh: &Mesh, boundary: &Boundary, rows: &[Rows<f64>], fixe
 ///
 /// Rows of prescribed unknowns are left as they are: the linear solver takes `fixed` and never
 /// reads them.
-pub fn apply_contact(matrix: &mut BlockMatrix<f64>, mesh: &Mesh, rows: &[Rows<f64>]) {
+pub fn apply_contact(matrix: &mut BlockMatrix<f32>, mesh: &Mesh, rows: &[Rows<f64>]) {
     for (rows, &node) in rows.iter().zip(&mesh.contact_nodes) {
         if rows.status == Status::Slip {
             apply_rows(matrix, node as usize, rows);

@@ -9,12 +9,12 @@ use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, LinalgError, LinearSolv
 /// solves them it never is, and its matrices take no memory.
 pub struct Unmade {
     kind: SolverKind,
-    make: Box<dyn Fn() -> Result<LinearSolver, LinalgError> + Send>,
+    make: Box<dyn Fn() -> Result<LinearSolver<f32>, LinalgError> + Send>,
 }
 
 impl Unmade {
     /// A solver of that kind, which `make` makes.
-    pub fn new(kind: SolverKind, make: impl Fn() -> Result<LinearSolver, LinalgError> + Send + 'static) -> Self {
+    pub fn new(kind: SolverKind, make: impl Fn() -> Result<LinearSolver<f32>, LinalgError> + Send + 'static) -> Self {
         Self { kind, make: Box::new(make) }
     }
 }
@@ -31,7 +31,7 @@ pub enum Systems {
     /// Over a plane, not made yet.
     Unmade(Unmade),
     /// Over a plane.
-    Plane(Box<LinearSolver>),
+    Plane(Box<LinearSolver<f32>>),
     /// Against its own image.
     Pair(Box<PairSolver>),
     /// Against another body.
@@ -50,8 +50,8 @@ impl From<Unmade> for Systems {
     }
 }
 
-impl From<LinearSolver> for Systems {
-    fn from(solver: LinearSolver) -> Self {
+impl From<LinearSolver<f32>> for Systems {
+    fn from(solver: LinearSolver<f32>) -> Self {
         Self::Plane(Box::new(solver))
     }
 }
@@ -84,7 +84,7 @@ impl Systems {
     }
 
     /// The tangent, to be written in place; `None` of a solver that is not made.
-    pub fn matrix_mut(&mut self) -> Option<&mut BlockMatrix<f64>> {
+    pub fn matrix_mut(&mut self) -> Option<&mut BlockMatrix<f32>> {
         Some(match self {
             Self::Unmade(_) => return None,
             Self::Plane(solver) => solver.matrix_mut(),

@@ -18,8 +18,8 @@ use crate::compute::iterate::{self, IterateRequest};
 use crate::compute::linear::{LinearRequest, Side, SideReport};
 use crate::compute::traffic::Traffic;
 use crate::compute::{
-    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
-    Outcome, TangentRequest, TrialRequest,
+    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies,
+    ForceRequest, Outcome, TangentRequest, TrialRequest,
 };
 use crate::contact::coulomb::Rows;
 
@@ -28,7 +28,7 @@ enum Ask {
     Force { displacement: Vec<f64>, force: Vec<f64>, outcome: Outcome },
     Trial { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>>, outcome: Outcome },
     Contact { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>> },
-    Tangent { displacement: Vec<f64>, blocks: Vec<[f64; 9]>, outcome: Outcome },
+    Tangent { displacement: Vec<f64>, blocks: OwnBlocks, outcome: Outcome },
     Linear(LinearAsk),
     Commit { displacement: Vec<f64>, energies: Energies, outcome: Outcome },
     Iterate(Box<IterateRequest>),
@@ -36,6 +36,52 @@ enum Ask {
     Fields(Option<CaseFields>),
     State(Option<CaseState>),
     Restore(CaseState),
+}
+
+/// [`Blocks`] that own their numbers.
+enum OwnBlocks {
+    Double(Vec<[f64; 9]>),
+    Single(Vec<[f32; 9]>),
+}
+
+impl Default for OwnBlocks {
+    fn default() -> Self {
+        Self::Single(Vec::new())
+    }
+}
+
+impl OwnBlocks {
+    /// Of the size and precision of `asked`; the memory is used again where it fits.
+    fn like(self, asked: &Blocks<'_>) -> Self {
+        match (self, asked) {
+            (Self::Double(mut own), Blocks::Double(asked)) => {
+                own.resize(asked.len(), [0.0; 9]);
+                Self::Double(own)
+            }
+            (Self::Single(mut own), Blocks::Single(asked)) => {
+                own.resize(asked.len(), [0.0; 9]);
+                Self::Single(own)
+            }
+            (_, Blocks::Double(asked)) => Self::Double(vec![[0.0; 9]; asked.len()]),
+            (_, Blocks::Single(asked)) => Self::Single(vec![[0.0; 9]; asked.len()]),
+        }
+    }
+
+    fn request(&mut self) -> Blocks<'_> {
+        match self {
+            Self::Double(blocks) => Blocks::Double(blocks),
+            Self::Single(blocks) => Blocks::Single(blocks),
+        }
+    }
+
+    /// Copies to where they were asked for; of another precision there is nothing to copy.
+    fn copy_to(&self, asked: &mut Blocks<'_>) {
+        match (self, asked) {
+            (Self::Double(own), Blocks::Double(asked)) => asked.copy_from_slice(own),
+            (Self::Single(own), Blocks::Single(asked)) => asked.copy_from_slice(own),
+            _ => {}
+        }
+    }
 }
 
 /// A [`LinearRequest`] that owns what it is about.
@@ -124,7 +170,7 @@ pub struct Guest {
     /// Buffers that go to the host and come back.
     displacement: Vec<f64>,
     force: Vec<f64>,
-    blocks: Vec<[f64; 9]>,
+    blocks: OwnBlocks,
 }
 
 /// A host for a backend and a guest for each of its cases.
@@ -146,7 +192,7 @@ pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Guest>) {
         heard: 0,
         displacement: Vec::new(),
         force: Vec::new(),
-        blocks: Vec::new(),
+        blocks: OwnBlocks::default(),
     };
     let guests = (0..models.len()).map(guest).collect();
     (Host { backend, requests, told }, guests)
@@ -269,7 +315,7 @@ fn tangent(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), Co
     let mut calls: Vec<TangentRequest<'_>> = Vec::new();
     for Request { case, ask, .. } in requests {
         if let Ask::Tangent { displacement, blocks, outcome } = ask {
-            calls.push(TangentRequest { case: *case, displacement, blocks, outcome: Outcome::Valid });
+            calls.push(TangentRequest { case: *case, displacement, blocks: blocks.request(), outcome: Outcome::Valid });
             outcomes.push(outcome);
         }
     }
@@ -426,12 +472,11 @@ impl Compute for Guest {
 
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
-            let mut blocks = std::mem::take(&mut self.blocks);
-            blocks.resize(request.blocks.len(), [0.0; 9]);
+            let blocks = std::mem::take(&mut self.blocks).like(&request.blocks);
             let displacement = filled(&mut self.displacement, request.displacement);
             let ask = Ask::Tangent { displacement, blocks, outcome: Outcome::Valid };
             if let Ask::Tangent { displacement, blocks, outcome } = self.ask(request.case, ask)? {
-                request.blocks.copy_from_slice(&blocks);
+                blocks.copy_to(&mut request.blocks);
                 request.outcome = outcome;
                 (self.displacement, self.blocks) = (displacement, blocks);
             }

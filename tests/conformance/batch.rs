@@ -140,7 +140,12 @@ pub fn tangents(backend: &mut dyn Compute, displacements: &[(usize, Vec<f64>)]) 
     let mut requests: Vec<_> = displacements
         .iter()
         .zip(&mut out)
-        .map(|((case, displacement), blocks)| TangentRequest { case: *case, displacement, blocks, outcome: Outcome::Valid })
+        .map(|((case, displacement), blocks)| TangentRequest {
+            case: *case,
+            displacement,
+            blocks: blocks.into(),
+            outcome: Outcome::Valid,
+        })
         .collect();
     backend.tangent(&mut requests).unwrap();
     let outcomes: Vec<_> = requests.iter().map(|r| r.outcome).collect();

@@ -18,8 +18,8 @@ use crate::compute::iterate::IterateRequest;
 use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
-    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
-    Outcome, TangentRequest, TrialRequest,
+    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies,
+    ForceRequest, Outcome, TangentRequest, TrialRequest,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Rows, Status};
 use crate::contact::plane::slip;
@@ -27,6 +27,7 @@ use crate::element::hex8::QUADRATURE_POINTS;
 use crate::material::PointState;
 use crate::material::multistep::Flow;
 use crate::mesh::Mesh;
+use crate::real::Real;
 
 /// Evaluates a batch on a device in precision `R`: residuals, tangents, contact and state; and
 /// solves linear systems with the tangents, in f32 (see [`super::linear`]).
@@ -209,16 +210,11 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                 if request.outcome != Outcome::Valid {
                     continue;
                 }
-                let first = slot * 9 * count;
-                request.blocks.par_iter_mut().zip(&batch.plan.source).with_min_len(4096).for_each(|(out, &source)| {
-                    let (block, transposed) = (source as usize / 2, source % 2 == 1);
-                    for i in 0..3 {
-                        for j in 0..3 {
-                            let component = if transposed { 3 * j + i } else { 3 * i + j };
-                            out[3 * i + j] = upper.at(first + component * count + block);
-                        }
-                    }
-                });
+                let upper = |component, block| upper.at((slot * 9 + component) * count + block);
+                match &mut request.blocks {
+                    Blocks::Double(blocks) => mirror(&batch.plan.source, upper, blocks),
+                    Blocks::Single(blocks) => mirror(&batch.plan.source, upper, blocks),
+                }
             }
         }
         Ok(())
@@ -370,4 +366,18 @@ fn read_rows<R: DeviceReal>(slot: usize, answer: &[R], status: &[u32], mesh: &Me
             weight: R::of(CONTACT_WEIGHT * mesh.contact_size[k]).to_f64(),
         };
     }
+}
+
+/// All blocks of a tangent from `upper(component, block)`, its upper ones: `source` says of each
+/// which it is, twice its index, and one more if it is transposed.
+fn mirror<B: Real>(source: &[u32], upper: impl Fn(usize, usize) -> f64 + Sync, blocks: &mut [[B; 9]]) {
+    blocks.par_iter_mut().zip(source).with_min_len(4096).for_each(|(out, &source)| {
+        let (block, transposed) = (source as usize / 2, source % 2 == 1);
+        for i in 0..3 {
+            for j in 0..3 {
+                let component = if transposed { 3 * j + i } else { 3 * i + j };
+                out[3 * i + j] = B::of(upper(component, block));
+            }
+        }
+    });
 }

@@ -149,7 +149,7 @@ impl HostIterate {
         let mesh = &case.model().mesh.clone();
         let mut lap = Lap::start();
         let Some(matrix) = self.linear.matrix_mut() else { return Err(LinalgError::NotUpdated.into()) };
-        if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, &mut matrix.blocks)? {
+        if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, (&mut matrix.blocks).into())? {
             return Err(StepFailure::Inverted { element, point }.into());
         }
         lap.end(times, Phase::Tangent);

@@ -15,11 +15,12 @@ use faer::linalg::triangular_solve::{
 };
 use faer::{Accum, Mat, MatMut, Par};
 
-use super::bsr::{BlockMatrix, Pattern};
+use super::bsr::{BlockMatrix, Pattern, Widen};
 use super::dissection::{Dissection, Part};
 use super::fixed::Fixed;
 use super::vector::norm;
 use super::{LinalgError, SolveReport};
+use crate::real::Real;
 
 /// Memory the factors may take by default, in bytes.
 pub const DEFAULT_MEMORY_LIMIT: usize = 8 << 30;
@@ -88,14 +89,14 @@ impl DirectSolver {
     }
 
     /// Factorises the matrix with its fixed unknowns eliminated.
-    pub(super) fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &Fixed) -> Result<(), LinalgError> {
+    pub(super) fn update<T: Real>(&mut self, matrix: &BlockMatrix<T>, fixed: &Fixed) -> Result<(), LinalgError> {
         self.fronts.clear();
         let need = self.memory();
         if need > self.memory_limit {
             return Err(LinalgError::TooLarge { unknowns: matrix.unknowns(), need, limit: self.memory_limit });
         }
         for i in (0..matrix.rows()).filter(|&i| fixed.node(i) != 7) {
-            if matrix.blocks[matrix.pattern.row(i)].as_flattened().iter().any(|a| !a.is_finite()) {
+            if matrix.blocks[matrix.pattern.row(i)].as_flattened().iter().any(|a| !a.to_f64().is_finite()) {
                 return Err(LinalgError::NotFinite { place: "the matrix", node: i });
             }
         }
@@ -110,9 +111,9 @@ impl DirectSolver {
 
     /// x = A^-1 b for the reduced system, refined until the residual is at rounding or no longer
     /// halves.
-    pub(super) fn solve(
+    pub(super) fn solve<T: Real + Widen<f64>>(
         &self,
-        matrix: &BlockMatrix<f64>,
+        matrix: &BlockMatrix<T>,
         fixed: &Fixed,
         b: &[f64],
         x: &mut [f64],
@@ -189,13 +190,13 @@ pub(super) fn column(x: &mut [f64]) -> MatMut<'_, f64> {
 }
 
 /// A factorisation under way.
-struct Job<'a> {
+struct Job<'a, T> {
     dissection: &'a Dissection,
-    matrix: &'a BlockMatrix<f64>,
+    matrix: &'a BlockMatrix<T>,
     fixed: &'a Fixed,
 }
 
-impl Job<'_> {
+impl<T: Real> Job<'_, T> {
     /// Factorises the subtree of a part, whose fronts (and no others) are `fronts`. Returns what it
     /// leaves over for the boundary.
     fn factorise(&self, part: usize, fronts: &mut [Front]) -> Result<Mat<f64>, LinalgError> {
@@ -249,7 +250,7 @@ impl Job<'_> {
         for (m, &a) in self.matrix.blocks[at].iter().enumerate() {
             let (r, c) = (m / 3, m % 3);
             let held = (rows >> r | columns >> c) & 1 != 0;
-            f[(3 * k + r, 3 * l + c)] += if held { f64::from(u8::from(i == j && r == c)) } else { a };
+            f[(3 * k + r, 3 * l + c)] += if held { f64::from(u8::from(i == j && r == c)) } else { a.to_f64() };
         }
     }
 }

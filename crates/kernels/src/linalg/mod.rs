@@ -26,6 +26,8 @@ pub use direct::DirectSolver;
 pub use multigrid::Hierarchy;
 
 use crate::mesh::Prolongation;
+use crate::real::Real;
+use bsr::Widen;
 use fgmres::{Fgmres, System};
 use fixed::Fixed;
 use vector::norm;
@@ -128,11 +130,12 @@ pub enum SolverKind {
     Direct,
 }
 
-/// A solver for a sequence of systems on one pattern.
+/// A solver for a sequence of systems on one pattern, whose matrix is held in `T`. Right-hand sides,
+/// solutions and residuals are in f64 whatever `T` is.
 #[derive(Debug)]
-pub struct LinearSolver {
+pub struct LinearSolver<T = f64> {
     method: Method,
-    matrix: BlockMatrix<f64>,
+    matrix: BlockMatrix<T>,
     fixed: Fixed,
     updated: bool,
     fallback_limit: usize,
@@ -154,7 +157,7 @@ enum Method {
     Direct(Box<DirectSolver>),
 }
 
-impl LinearSolver {
+impl<T: Real + Widen<f64>> LinearSolver<T> {
     /// Plans a solver: everything that depends on the pattern alone. `prolongations` is the mesh's
     /// chain, finest first; if it is empty the solver is direct.
     ///
@@ -204,7 +207,7 @@ impl LinearSolver {
     /// # Errors
     /// [`LinalgError::Size`], [`LinalgError::NotFinite`]; from the direct solver also
     /// [`LinalgError::TooLarge`] and [`LinalgError::Singular`].
-    pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
+    pub fn update(&mut self, matrix: &BlockMatrix<T>, fixed: &[bool]) -> Result<(), LinalgError> {
         self.updated = false;
         size("the matrix", matrix.blocks.len(), self.matrix.blocks.len())?;
         size("the matrix's pattern", matrix.pattern.rows(), self.matrix.unknowns() / 3)?;
@@ -213,7 +216,7 @@ impl LinearSolver {
     }
 
     /// The matrix, to be written in place before [`LinearSolver::refresh`].
-    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f64> {
+    pub fn matrix_mut(&mut self) -> &mut BlockMatrix<T> {
         self.updated = false;
         &mut self.matrix
     }
@@ -345,13 +348,13 @@ fn in_pool<R: Send>(job: impl FnOnce() -> R + Send) -> R {
     if rayon::current_num_threads() == 1 || rayon::current_thread_index().is_some() { job() } else { rayon::scope(|_| job()) }
 }
 
-struct Preconditioned<'a> {
-    matrix: &'a BlockMatrix<f64>,
+struct Preconditioned<'a, T> {
+    matrix: &'a BlockMatrix<T>,
     fixed: &'a Fixed,
     hierarchy: &'a mut Hierarchy,
 }
 
-impl System<f32> for Preconditioned<'_> {
+impl<T: Real + Widen<f64>> System<f32> for Preconditioned<'_, T> {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         self.hierarchy.v_cycle_and_product(v, z, w);
     }

@@ -79,7 +79,7 @@ impl Hierarchy {
     /// # Errors
     /// [`LinalgError::Size`]; [`LinalgError::NotFinite`] names the first node in whose row there is
     /// a number that is not finite in f32.
-    pub fn update(&mut self, matrix: &BlockMatrix<f64>, fixed: &[bool]) -> Result<(), LinalgError> {
+    pub fn update<T: Real>(&mut self, matrix: &BlockMatrix<T>, fixed: &[bool]) -> Result<(), LinalgError> {
         let finest = &self.levels[0].smoother.matrix;
         size("the matrix", matrix.blocks.len(), finest.blocks.len())?;
         size("the mask of fixed unknowns", fixed.len(), finest.unknowns())?;
@@ -98,7 +98,7 @@ impl Hierarchy {
     }
 
     /// Copies the matrix to the finest level, rows and columns of fixed unknowns replaced.
-    fn take(&mut self, matrix: &BlockMatrix<f64>) -> Result<(), LinalgError> {
+    fn take<T: Real>(&mut self, matrix: &BlockMatrix<T>) -> Result<(), LinalgError> {
         let fixed = &self.fixed;
         let BlockMatrix { pattern, blocks } = &mut self.levels[0].smoother.matrix;
         let not_finite = AtomicUsize::new(usize::MAX);
@@ -109,7 +109,7 @@ impl Hierarchy {
             // A finite number times 0 is 0, all others give NaN.
             let mut check = [0.0; 9];
             for ((block, a), &j) in row.iter_mut().zip(&matrix.blocks[range.clone()]).zip(columns) {
-                *block = a.map(|a| a as f32);
+                *block = a.map(|a| a.to_f64() as f32);
                 if rows != 0 {
                     mask(block, rows, 0);
                 }

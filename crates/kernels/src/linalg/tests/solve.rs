@@ -221,7 +221,7 @@ fn one_node_and_none() {
     assert_eq!(x, [1.0, 0.5, 3.0]);
 
     let pattern = Pattern::from_elements(0, &[]);
-    let mut solver = LinearSolver::new(SolverKind::Direct, &pattern, &[]).unwrap();
+    let mut solver = LinearSolver::<f64>::new(SolverKind::Direct, &pattern, &[]).unwrap();
     solver.update(&BlockMatrix::zeros(pattern), &[]).unwrap();
     assert!(solver.solve(&[], 1e-8, &mut []).unwrap().converged);
 }
@@ -309,7 +309,7 @@ fn a_singular_matrix_is_an_error() {
 #[test]
 fn sizes_and_chains_that_do_not_fit_are_errors() {
     let (small, large) = (Brick::elastic(6).problem(), Brick::elastic(8).problem());
-    let wrong = LinearSolver::new(SolverKind::Multigrid, &small.matrix.pattern, &large.prolongations);
+    let wrong = LinearSolver::<f64>::new(SolverKind::Multigrid, &small.matrix.pattern, &large.prolongations);
     assert!(matches!(wrong, Err(LinalgError::Hierarchy { level: 0, .. })));
     let mut solver = solver(&small, SolverKind::Multigrid);
     assert!(matches!(solver.update(&large.matrix, &large.fixed), Err(LinalgError::Size { .. })));
