@@ -265,6 +265,8 @@ impl Problem {
         if let Some((slave, series)) = &mut self.couple {
             *slave = 1 - *slave;
             series.master_share = 1.0 - series.master_share;
+            // The full guess is for a slave that yields first.
+            self.pressed_in_full = false;
         }
     }
 
@@ -302,7 +304,13 @@ impl Problem {
             case::Linear::Direct => SolverKind::Direct,
         };
         let mesh_of_solver = mesh.clone();
-        let linear = Unmade::new(kind, move || LinearSolver::new(kind, &pattern, &mesh_of_solver.hierarchy));
+        let linear = Unmade::new(kind, move || {
+            let hierarchy = &mesh_of_solver.hierarchy;
+            Ok(match kind {
+                SolverKind::Multigrid => LinearSolver::<f32>::new(kind, &pattern, hierarchy)?.into(),
+                SolverKind::Direct => LinearSolver::<f64>::new(kind, &pattern, hierarchy)?.into(),
+            })
+        });
         let newton = Newton::new(mesh, linear, self.settings);
         Ok(match self.rigid {
             Some(rigid) => newton.against(rigid),

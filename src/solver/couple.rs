@@ -21,6 +21,7 @@ use crate::contact::frame::Frame;
 use crate::linalg::fgmres::System;
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
+use crate::real::Real;
 
 /// Solves for the unknowns y of two bodies.
 #[derive(Debug)]
@@ -196,28 +197,28 @@ impl System<f32> for CoupleSolver {
 }
 
 /// Turns the row and the column of a node into a frame.
-pub(super) fn turn_node(matrix: &mut BlockMatrix<f32>, node: usize, q: &Frame) {
+pub(super) fn turn_node<T: Real>(matrix: &mut BlockMatrix<T>, node: usize, q: &Frame) {
     for k in matrix.pattern.row(node) {
         let column = matrix.pattern.column[k] as usize;
-        let a = matrix.blocks[k].map(f64::from);
-        matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|i| q[m / 3][i] * a[3 * i + m % 3]).sum::<f64>() as f32);
+        let a = matrix.blocks[k].map(T::to_f64);
+        matrix.blocks[k] = std::array::from_fn(|m| T::of((0..3).map(|i| q[m / 3][i] * a[3 * i + m % 3]).sum()));
         // The pattern is symmetric.
         if let Some(k) = matrix.pattern.position(column, node) {
-            let a = matrix.blocks[k].map(f64::from);
-            matrix.blocks[k] = std::array::from_fn(|m| (0..3).map(|j| a[3 * (m / 3) + j] * q[m % 3][j]).sum::<f64>() as f32);
+            let a = matrix.blocks[k].map(T::to_f64);
+            matrix.blocks[k] = std::array::from_fn(|m| T::of((0..3).map(|j| a[3 * (m / 3) + j] * q[m % 3][j]).sum()));
         }
     }
 }
 
 /// Replaces the rows of a node by the conditions of its contact.
-pub(super) fn apply_rows(matrix: &mut BlockMatrix<f32>, node: usize, rows: &Rows<f64>) {
+pub(super) fn apply_rows<T: Real>(matrix: &mut BlockMatrix<T>, node: usize, rows: &Rows<f64>) {
     let diagonal = matrix.pattern.diagonal[node] as usize;
     for k in matrix.pattern.row(node) {
-        let old = matrix.blocks[k].map(f64::from);
+        let old = matrix.blocks[k].map(T::to_f64);
         matrix.blocks[k] = std::array::from_fn(|m| {
             let (i, j) = (m / 3, m % 3);
             let sum: f64 = (0..3).map(|m| rows.force_rows[i][m] * old[3 * m + j]).sum();
-            (if k == diagonal { sum + rows.displacement_rows[i][j] } else { sum }) as f32
+            T::of(if k == diagonal { sum + rows.displacement_rows[i][j] } else { sum })
         });
     }
 }

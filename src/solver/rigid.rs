@@ -10,6 +10,7 @@ use crate::contact::frame::Frame;
 use crate::contact::rigid::Rigid;
 use crate::linalg::bsr::BlockMatrix;
 use crate::mesh::Mesh;
+use crate::real::Real;
 
 /// A rigid sphere that the body is pressed against, and where the step started.
 #[derive(Clone, Debug)]
@@ -39,7 +40,7 @@ impl Against {
 }
 
 /// Turns the rows and columns of contact nodes into their frames.
-pub(super) fn turn(matrix: &mut BlockMatrix<f32>, mesh: &Mesh, frames: &[Frame]) {
+pub(super) fn turn<T: Real>(matrix: &mut BlockMatrix<T>, mesh: &Mesh, frames: &[Frame]) {
     for (q, &node) in frames.iter().zip(&mesh.contact_nodes) {
         turn_node(matrix, node as usize, q);
     }

@@ -19,6 +19,7 @@ use crate::contact::pair::{Interface, leave_even};
 use crate::contact::plane::gap;
 use crate::linalg::bsr::BlockMatrix;
 use crate::mesh::Mesh;
+use crate::real::Real;
 
 /// Which displacements are prescribed, whatever the contact does.
 #[derive(Clone, Debug)]
@@ -486,13 +487,13 @@ pub fn chunked_sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
 }
 
 /// Rows of the plate's normal reaction: `w . du` is the change of the plate's summed f_z.
-pub fn plate_functional(matrix: &BlockMatrix<f32>, plate: &[u32], w: &mut [f64]) {
+pub fn plate_functional<T: Real>(matrix: &BlockMatrix<T>, plate: &[u32], w: &mut [f64]) {
     w.fill(0.0);
     for &n in plate {
         for k in matrix.pattern.row(n as usize) {
             let base = 3 * matrix.pattern.column[k] as usize;
             for j in 0..3 {
-                w[base + j] += f64::from(matrix.blocks[k][6 + j]);
+                w[base + j] += matrix.blocks[k][6 + j].to_f64();
             }
         }
     }
@@ -513,7 +514,7 @@ pub fn fixed_unknowns(mesh: &Mesh, boundary: &Boundary, rows: &[Rows<f64>], fixe
 ///
 /// Rows of prescribed unknowns are left as they are: the linear solver takes `fixed` and never
 /// reads them.
-pub fn apply_contact(matrix: &mut BlockMatrix<f32>, mesh: &Mesh, rows: &[Rows<f64>]) {
+pub fn apply_contact<T: Real>(matrix: &mut BlockMatrix<T>, mesh: &Mesh, rows: &[Rows<f64>]) {
     for (rows, &node) in rows.iter().zip(&mesh.contact_nodes) {
         if rows.status == Status::Slip {
             apply_rows(matrix, node as usize, rows);

@@ -9,12 +9,12 @@ use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, LinalgError, LinearSolv
 /// solves them it never is, and its matrices take no memory.
 pub struct Unmade {
     kind: SolverKind,
-    make: Box<dyn Fn() -> Result<LinearSolver<f32>, LinalgError> + Send>,
+    make: Box<dyn Fn() -> Result<Systems, LinalgError> + Send>,
 }
 
 impl Unmade {
-    /// A solver of that kind, which `make` makes.
-    pub fn new(kind: SolverKind, make: impl Fn() -> Result<LinearSolver<f32>, LinalgError> + Send + 'static) -> Self {
+    /// Systems of that kind, which `make` makes.
+    pub fn new(kind: SolverKind, make: impl Fn() -> Result<Systems, LinalgError> + Send + 'static) -> Self {
         Self { kind, make: Box::new(make) }
     }
 }
@@ -30,12 +30,23 @@ impl std::fmt::Debug for Unmade {
 pub enum Systems {
     /// Over a plane, not made yet.
     Unmade(Unmade),
-    /// Over a plane.
+    /// Over a plane, by multigrid.
     Plane(Box<LinearSolver<f32>>),
+    /// Over a plane, by elimination: the reference, in f64 throughout.
+    Direct(Box<LinearSolver<f64>>),
     /// Against its own image.
     Pair(Box<PairSolver>),
     /// Against another body.
     Couple(Box<CoupleSolver>),
+}
+
+/// The tangent of a system, in the precision in which it is solved.
+#[derive(Debug)]
+pub enum Matrix<'a> {
+    /// In f64.
+    Double(&'a mut BlockMatrix<f64>),
+    /// In f32.
+    Single(&'a mut BlockMatrix<f32>),
 }
 
 impl From<CoupleSolver> for Systems {
@@ -56,6 +67,12 @@ impl From<LinearSolver<f32>> for Systems {
     }
 }
 
+impl From<LinearSolver<f64>> for Systems {
+    fn from(solver: LinearSolver<f64>) -> Self {
+        Self::Direct(Box::new(solver))
+    }
+}
+
 impl From<PairSolver> for Systems {
     fn from(solver: PairSolver) -> Self {
         Self::Pair(Box::new(solver))
@@ -69,7 +86,7 @@ impl Systems {
     /// As [`LinearSolver::new`].
     pub fn make(&mut self) -> Result<(), LinalgError> {
         if let Self::Unmade(unmade) = self {
-            *self = (unmade.make)()?.into();
+            *self = (unmade.make)()?;
         }
         Ok(())
     }
@@ -79,17 +96,19 @@ impl Systems {
         match self {
             Self::Unmade(unmade) => unmade.kind,
             Self::Plane(solver) => solver.kind(),
+            Self::Direct(solver) => solver.kind(),
             Self::Pair(_) | Self::Couple(_) => SolverKind::Multigrid,
         }
     }
 
     /// The tangent, to be written in place; `None` of a solver that is not made.
-    pub fn matrix_mut(&mut self) -> Option<&mut BlockMatrix<f32>> {
+    pub fn matrix_mut(&mut self) -> Option<Matrix<'_>> {
         Some(match self {
             Self::Unmade(_) => return None,
-            Self::Plane(solver) => solver.matrix_mut(),
-            Self::Pair(solver) => solver.matrix_mut(),
-            Self::Couple(solver) => solver.matrix_mut(),
+            Self::Direct(solver) => Matrix::Double(solver.matrix_mut()),
+            Self::Plane(solver) => Matrix::Single(solver.matrix_mut()),
+            Self::Pair(solver) => Matrix::Single(solver.matrix_mut()),
+            Self::Couple(solver) => Matrix::Single(solver.matrix_mut()),
         })
     }
 
@@ -104,6 +123,7 @@ impl Systems {
                 solver.set_fallback_limit(if fallback { DEFAULT_FALLBACK_LIMIT } else { 0 });
                 solver.solve(rhs, tolerance, x)
             }
+            Self::Direct(solver) => solver.solve(rhs, tolerance, x),
             Self::Pair(solver) => solver.solve(rhs, tolerance, x),
             Self::Couple(solver) => solver.solve(rhs, tolerance, x),
         }
@@ -117,6 +137,7 @@ impl Systems {
         match self {
             Self::Unmade(_) => Err(LinalgError::NotUpdated),
             Self::Plane(solver) => solver.residual_norm(rhs, x),
+            Self::Direct(solver) => solver.residual_norm(rhs, x),
             Self::Pair(solver) => Ok(solver.residual_norm(rhs, x)),
             Self::Couple(solver) => Ok(solver.residual_norm(rhs, x)),
         }

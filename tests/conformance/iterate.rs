@@ -62,7 +62,7 @@ fn pressed(name: &str) -> Option<Pressed> {
     for (case, model) in models.iter().enumerate() {
         let mesh = &model.mesh;
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
-        let linear = LinearSolver::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy).unwrap();
+        let linear = LinearSolver::<f32>::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy).unwrap();
         let mut newton = Newton::new(mesh, linear, settings);
         let zero = vec![0.0; 3 * mesh.nodes.len()];
         let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None };

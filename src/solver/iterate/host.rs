@@ -173,7 +173,8 @@ impl HostIterate {
     /// Over a plane, its systems solved with multigrid: what a device that keeps iterates does by
     /// itself.
     pub fn is_over_plane_by_multigrid(&self) -> bool {
-        let over_plane = matches!(self.linear, Systems::Plane(_) | Systems::Unmade(_)) && self.boundary.against.is_none();
+        let over_plane =
+            matches!(self.linear, Systems::Plane(_) | Systems::Direct(_) | Systems::Unmade(_)) && self.boundary.against.is_none();
         over_plane && self.linear.kind() == SolverKind::Multigrid
     }
 

@@ -7,14 +7,15 @@ use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
 use crate::compute::linear::{Ended, LinearRequest, Side, SideReport};
 use crate::contact::pair::leave_even;
-use crate::linalg::{LinalgError, SolverKind};
+use crate::linalg::{BlockMatrix, LinalgError, SolverKind};
 use crate::mesh::Mesh;
+use crate::real::Real;
 use crate::solver::SolverError;
 use crate::solver::outcome::{Halt, StepFailure};
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
 use crate::solver::rigid::turn;
-use crate::solver::system::{apply_contact, fixed_unknowns, plate_functional, right_hand_side};
-use crate::solver::systems::Systems;
+use crate::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::systems::{Matrix, Systems};
 
 /// Share of the forces at the contact to which the response to a unit indentation is solved, which
 /// gives the change of h that a missing normal force asks for.
@@ -148,23 +149,25 @@ impl HostIterate {
         let Asked { control, eta, first } = asked;
         let mesh = &case.model().mesh.clone();
         let mut lap = Lap::start();
-        let Some(matrix) = self.linear.matrix_mut() else { return Err(LinalgError::NotUpdated.into()) };
-        if let Outcome::Inverted { element, point } = case.tangent(&self.current.u, (&mut matrix.blocks).into())? {
+        let outcome = match self.linear.matrix_mut() {
+            None => return Err(LinalgError::NotUpdated.into()),
+            Some(Matrix::Double(matrix)) => case.tangent(&self.current.u, (&mut matrix.blocks).into())?,
+            Some(Matrix::Single(matrix)) => case.tangent(&self.current.u, (&mut matrix.blocks).into())?,
+        };
+        if let Outcome::Inverted { element, point } = outcome {
             return Err(StepFailure::Inverted { element, point }.into());
         }
         lap.end(times, Phase::Tangent);
-        if control.normal_force.is_some() {
-            plate_functional(matrix, &self.boundary.plate, &mut self.functional);
-        }
-        if self.boundary.against.is_some() {
-            turn(matrix, mesh, &self.current.frames);
-        }
-        if self.boundary.pair.is_none() && self.boundary.encounter.is_none() {
-            apply_contact(matrix, mesh, &self.current.rows);
+        let held = control.normal_force.is_some().then_some(&mut self.functional);
+        match self.linear.matrix_mut() {
+            None => {}
+            Some(Matrix::Double(matrix)) => state_rows(matrix, mesh, &self.boundary, &self.current, held),
+            Some(Matrix::Single(matrix)) => state_rows(matrix, mesh, &self.boundary, &self.current, held),
         }
         lap.end(times, Phase::Contact);
         match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
             (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
+            (Systems::Direct(solver), None, None) => solver.refresh(&self.fixed)?,
             (Systems::Pair(solver), Some(pair), None) => {
                 solver.refresh(&pair.interface, &self.current.rows, &self.fixed, &self.boundary.prescribed)?;
             }
@@ -230,6 +233,26 @@ impl HostIterate {
             self.unit_response.copy_from_slice(&guess);
         }
         Ok(unit_share(eta.min(UNIT_RESPONSE), self.unit_scale))
+    }
+}
+
+/// Puts the conditions of contact into a tangent; before it, where the normal force is held, takes
+/// from it how the plate's force follows the displacements.
+fn state_rows<T: Real>(
+    matrix: &mut BlockMatrix<T>,
+    mesh: &Mesh,
+    boundary: &Boundary,
+    current: &Trial,
+    held: Option<&mut Vec<f64>>,
+) {
+    if let Some(functional) = held {
+        plate_functional(matrix, &boundary.plate, functional);
+    }
+    if boundary.against.is_some() {
+        turn(matrix, mesh, &current.frames);
+    }
+    if boundary.pair.is_none() && boundary.encounter.is_none() {
+        apply_contact(matrix, mesh, &current.rows);
     }
 }
 

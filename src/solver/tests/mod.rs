@@ -41,7 +41,7 @@ impl Rig {
     pub fn new(mesh: Mesh, material: Material<f64>, friction: Friction<f64>, settings: Settings) -> Self {
         let mesh = Arc::new(mesh);
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
-        let linear = LinearSolver::new(SolverKind::Direct, &pattern, &mesh.hierarchy).unwrap();
+        let linear = LinearSolver::<f64>::new(SolverKind::Direct, &pattern, &mesh.hierarchy).unwrap();
         let newton = Newton::new(&mesh, linear, settings);
         let backend = Cpu::new(vec![CaseModel { mesh: mesh.clone(), material, friction, opponent: None }]).unwrap();
         Self { backend, newton, u: vec![0.0; 3 * mesh.nodes.len()], mesh, h: 0.0, energies: Energies::default() }
