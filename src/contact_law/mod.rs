@@ -26,11 +26,11 @@
 //! - *Pressed while it is sheared* it yields where F_N (1 + s c r^2) = F_N0, r = F_T/F_N, an
 //!   ellipse through the origin as in modified Cam clay (Roscoe & Burland 1968), and flows with
 //!   d(delta_T)/dh = 2 c r/(1 - c r^2), which at s = 1 is normal to it. Simulated steady oblique
-//!   presses do up to where they slip, all of delta_T over all of h; with r their c rises where much
-//!   of the indentation is elastic, and falls where little is. The sliders take what of delta_T does
-//!   not flow: so a press alone takes F_T as F_N comes back, and one along the flow keeps it. c is a
-//!   table's own, of a simulated oblique press; or that of the virgin curve, F_N0/F_N = 1 + b r + c
-//!   r^2.
+//!   presses do up to where they slip, all of delta_T over all of h; with r their c rises where
+//!   much of the indentation is elastic, and falls where little is. The sliders take what of
+//!   delta_T does not flow: so a press alone takes F_T as F_N comes back, and one along the flow
+//!   keeps it. c is a table's own, of a simulated oblique press; or that of the virgin curve,
+//!   F_N0/F_N = 1 + b r + c r^2.
 //! - *Hardening in shear.* What mobilises F_T on the virgin curve is F_T/F_N over x, and a contact
 //!   that a press has raised above the curve follows the same F_T/F_N. While it is pressed, a part
 //!   of delta_T hardens nothing (what the linear part b takes, a fifth at the most). x is forgotten

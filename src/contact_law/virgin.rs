@@ -25,12 +25,14 @@ pub const SLIDERS: usize = 16;
 /// rebounds; fades with the eighth power of 1 - x.
 const UNSHEARED: f64 = 2.0;
 
-/// Over the excess over 1 of a table's exponent of the sliders' backbone, which is between them, that
-/// of the first reversal; and the exponent of those after it, which turn more sharply, in all
-/// materials alike. Of simulated cycles.
+/// Exponent of the sliders' backbone in a first reversal, less 1, over that of a table, which is
+/// between it and those after.
 const FIRST: f64 = 1.5;
+/// The exponent of those after, which turn more sharply, in all materials alike. Of simulated
+/// cycles.
 const LATER: f64 = 1.15;
-/// Share of F_N0 that is lost to shear from which that is so: an elastic contact keeps its exponent.
+/// Share of F_N0 that is lost to shear from which that is so: an elastic contact keeps its
+/// exponent.
 const HARDLY: f64 = 0.02;
 
 /// Pieces of a step of the table over which its work is summed.
@@ -473,8 +475,8 @@ impl ContactParameters {
 
 impl Virgin {
     /// Gives it the sliders of a contact that has yielded to shear at the place `sheared` of the
-    /// virgin curves, and whose slip was reversed so far. Where it was hardly sheared, the tractions
-    /// are lost sooner as it is released.
+    /// virgin curves, and whose slip was reversed so far. Where it was hardly sheared, the
+    /// tractions are lost sooner as it is released.
     pub(super) fn sharpen(&mut self, sheared: f64, reversed: f64) {
         self.backbone = self.first;
         if !is_elastic(&self.point) {

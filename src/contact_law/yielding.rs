@@ -5,9 +5,9 @@ use super::shapes::{normal_shape, normal_shape_inverse, tangential_shape_inverse
 use super::update::ContactState;
 use super::virgin::{BY_NUMBERS, ContactParameters, Virgin, VirginPoint};
 
-/// Share of an indentation that unloading recovers at which c is the same for all ratios F_T/F_N: it
-/// rises with them where more is elastic, and falls where less is. Of simulated oblique presses at
-/// 15, 45 and 75 degrees.
+/// Share of an indentation that unloading recovers at which c is the same for all ratios F_T/F_N:
+/// it rises with them where more is elastic, and falls where less is. Of simulated oblique presses
+/// at 15, 45 and 75 degrees.
 const NO_CHANGE: f64 = 0.15;
 
 /// Share of F_N0 from which a force counts as F_N0, so that rounding is not taken for unloading.
