@@ -28,7 +28,7 @@ using namespace LAMMPS_NS;
 namespace {
 
 constexpr int NUMBERS = sizeof(asperity_contact) / sizeof(double);
-static_assert(NUMBERS == 41, "a contact has 41 numbers");
+static_assert(NUMBERS == 43, "a contact has 43 numbers");
 
 // Reads a table; every process reads it.
 std::unique_ptr<asperity_table> read_table(LAMMPS *lmp, const char *file)

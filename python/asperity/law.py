@@ -58,8 +58,8 @@ class Contacts:
 
     @property
     def array(self) -> np.ndarray:
-        """A copy of the memory, a row a contact: h, the greatest h, the elastic approach, lengths; x, the place on the virgin curves; the deflections of the
-        sliders, lengths. What is assigned here is put back."""
+        """A copy of the memory, a row a contact: h, the greatest h, the elastic approach and the one it is released from, lengths; x and the place of
+        hardening, on the virgin curves; how far its slip was reversed; the deflections of the sliders, lengths. What is assigned here is put back."""
         return self._native.to_array()
 
     @array.setter

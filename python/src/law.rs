@@ -351,14 +351,22 @@ fn check_length(name: &str, found: usize, wanted: usize) -> PyResult<()> {
 
 /// The numbers of a state in a row, as they lie in memory.
 fn row(state: &ContactState) -> impl Iterator<Item = f64> {
-    let ContactState { h, h_max, approach, x, sheared, deflection } = *state;
-    [h, h_max, approach, x, sheared].into_iter().chain(deflection.into_iter().flatten())
+    let ContactState { h, h_max, approach, reach, x, sheared, reversed, deflection } = *state;
+    [h, h_max, approach, reach, x, sheared, reversed].into_iter().chain(deflection.into_iter().flatten())
 }
 
 /// The state of a row, which is long enough.
 fn of_row(row: &[f64]) -> ContactState {
-    let mut state =
-        ContactState { h: row[0], h_max: row[1], approach: row[2], x: row[3], sheared: row[4], ..ContactState::default() };
-    state.deflection.iter_mut().flatten().zip(&row[5..]).for_each(|(to, from)| *to = *from);
+    let mut state = ContactState {
+        h: row[0],
+        h_max: row[1],
+        approach: row[2],
+        reach: row[3],
+        x: row[4],
+        sheared: row[5],
+        reversed: row[6],
+        ..ContactState::default()
+    };
+    state.deflection.iter_mut().flatten().zip(&row[7..]).for_each(|(to, from)| *to = *from);
     state
 }

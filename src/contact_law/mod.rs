@@ -13,7 +13,9 @@
 //! - *Inside the curve* the contact is elastic with friction. F_N = F_N0 eta^gamma, eta the elastic
 //!   approach over its greatest value D = gamma F_N0/(2 E* a): it starts with 2 E* a (a is the
 //!   contact radius, or a little more where the body is stiffer than a half-space), ends at the
-//!   residual dent, and is Hertz for gamma = 3/2. F_T is carried by [`SLIDERS`] sliders in parallel
+//!   residual dent, and is Hertz for gamma = 3/2. What shear takes of F_N leaves the contact as
+//!   wide as it was, and D falls with F_N: so it unloads with 2 E* a, and turns with k_T, from any
+//!   F_N. F_T is carried by [`SLIDERS`] sliders in parallel
 //!   (Iwan 1967), each an annulus that leaves contact at its own eta (Jaeger 1998, Ciavarella 1998;
 //!   Popov & Hess 2015): Masing's rule, nested loops, and shear while h changes (Mindlin &
 //!   Deresiewicz 1953) follow without rules of their own. Sliding in any direction holds each
@@ -24,15 +26,16 @@
 //! - *Pressed while it is sheared* it yields where F_N (1 + s c r^2) = F_N0, r = F_T/F_N, an
 //!   ellipse through the origin as in modified Cam clay (Roscoe & Burland 1968), and flows with
 //!   d(delta_T)/dh = 2 c r/(1 - c r^2), which at s = 1 is normal to it. Simulated steady oblique
-//!   presses do, with one c for all angles up to where they slip. The sliders take what of delta_T
-//!   does not flow: so a press alone takes F_T as F_N comes back, and one along the flow keeps it.
-//!   c is a table's own, of a simulated oblique press; or that of the virgin curve, F_N0/F_N = 1 +
-//!   b r + c r^2.
+//!   presses do up to where they slip, all of delta_T over all of h; with r their c rises where
+//!   much of the indentation is elastic, and falls where little is. The sliders take what of
+//!   delta_T does not flow: so a press alone takes F_T as F_N comes back, and one along the flow
+//!   keeps it. c is a table's own, of a simulated oblique press; or that of the virgin curve,
+//!   F_N0/F_N = 1 + b r + c r^2.
 //! - *Hardening in shear.* What mobilises F_T on the virgin curve is F_T/F_N over x, and a contact
 //!   that a press has raised above the curve follows the same F_T/F_N. While it is pressed, a part
 //!   of delta_T hardens nothing (what the linear part b takes, a fifth at the most). x is forgotten
 //!   as the contact grows and where a press takes F_T.
-//! - *Reversed at full slip* it loses a little more F_N.
+//! - *Reversed at full slip* it loses a little more F_N, and turns more sharply from then on.
 //!
 //! So simulated contacts behave: after a reversal F_N stands still until |F_T| is back at its
 //! former height, then falls on; a press of some per cent in h restores F_N and takes F_T.

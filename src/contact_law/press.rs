@@ -1,13 +1,20 @@
 //! The normal part of an increment: h moves, delta_T is held.
 
 use super::shapes::{normal_shape, tangential_shape, tangential_shape_back, tangential_shape_inverse};
-use super::sliders::{length, slide, slider_force, slider_limits};
+use super::sliders::{extent, length, slide, slider_force, slider_limits};
 use super::update::ContactState;
 use super::virgin::{ContactParameters, SLIDERS, Virgin};
-use super::yielding::{AT_CAP, force_at, is_elastic, mobilisation, normal_cap, pressed_cap, yield_coefficient, yield_share};
+use super::yielding::{
+    AT_CAP, Elastic, elastic_at, flow_coefficient, is_elastic, lower, mobilisation, normal_cap, pressed_cap, yield_coefficient,
+    yield_share,
+};
 
 /// Least 1 - c r^2: beyond it F_N falls along the yield curve however it is pressed.
 const LEAST_NORMAL: f64 = 0.25;
+
+/// Share of what a press takes of F_T by the flow of a steady press that it does take. Of simulated
+/// contacts that were sheared first and pressed on then.
+const TAKEN_BACK: f64 = 0.9;
 
 /// Greatest share of a displacement that hardens nothing while the contact is pressed too. Of
 /// simulated contacts that were pressed first and obliquely then.
@@ -49,9 +56,14 @@ pub(super) fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Vi
     let grown = h > state.h_max;
     let first = grown && (state.x == 0.0 || !(state.h_max > 0.0));
     let f_n0 = virgin.point.f_n0;
-    let (mut trial, mut stiffness) = (f_n0, virgin.slope);
-    let mut elastic_stiffness = virgin.gamma * f_n0 / virgin.depth;
-    let e = state.approach + dh;
+    let (reach, e) = (state.reach, state.approach + dh);
+    let mut answer = Elastic {
+        f_n: f_n0,
+        stiffness: virgin.slope,
+        unloading: virgin.gamma * f_n0 / virgin.depth,
+        approach: virgin.depth,
+        reach: virgin.depth,
+    };
     if grown && state.h_max > 0.0 {
         let old = p.virgin(state.h_max);
         // The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and
@@ -63,16 +75,19 @@ pub(super) fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Vi
             }
         }
         if !first {
-            trial = force_at(&old, e);
-            stiffness = if e > 0.0 { old.gamma * trial / e } else { 0.0 };
-            elastic_stiffness = stiffness;
+            answer = elastic_at(&old, virgin, true, reach, e);
         }
     } else if !grown {
-        trial = force_at(virgin, e);
-        stiffness = if e > 0.0 { virgin.gamma * trial / e } else { 0.0 };
-        elastic_stiffness = stiffness;
+        answer = elastic_at(virgin, virgin, false, reach, e);
     }
+    let Elastic { f_n: trial, mut stiffness, unloading: elastic_stiffness, .. } = answer;
     let f_n = if trial < f_n0 { trial } else { f_n0 };
+    if dh != 0.0 {
+        let stands = trial < f_n0;
+        state.approach = if stands { answer.approach } else { virgin.depth };
+        state.reach = if stands { answer.reach } else { virgin.depth };
+    }
+    let eta = extent(virgin, state);
     if dh == 0.0 {
         // At rest on the virgin curve the next press is first loading.
         let slope = if state.x == 0.0 && state.h == state.h_max { virgin.slope } else { stiffness };
@@ -86,7 +101,7 @@ pub(super) fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Vi
     if trial >= f_n0 && grown {
         stiffness = virgin.slope;
     }
-    slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [0.0, 0.0]);
+    slide(&mut state.deflection, &slider_limits(p, virgin, f_n, eta), [0.0, 0.0]);
     let force = slider_force(virgin, &state.deflection);
     let f_t = length(force);
     if is_elastic(&virgin.point) {
@@ -106,6 +121,7 @@ pub(super) fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Vi
     let [highest, _] = pressed_cap(virgin, share, f_t);
     // The direction of the flow, and the yield curve's normal.
     let r = f_t / f_n;
+    let c = flow_coefficient(p, virgin, c, r);
     let bounded = |normal: f64| if normal > LEAST_NORMAL { normal } else { LEAST_NORMAL };
     let (normal, tangential) = (bounded(1.0 - c * (r * r)), 2.0 * c * r);
     let (across, along) = (bounded(1.0 - share * (r * r)), 2.0 * share * r);
@@ -120,11 +136,19 @@ pub(super) fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Vi
     let forward = if forward > 0.0 { forward } else { 0.0 };
     // What of delta_T flows. Where the contact does not move as far, F_T falls, and F_N rises along
     // the yield curve: that takes some of the press.
-    let steady = part * (tangential / normal) * plastic;
+    let mut steady = part * (tangential / normal) * plastic;
+    if grown && softer > 0.0 {
+        // In a steady press the sliders' force grows too, and c is of all of delta_T over all of h.
+        let all = plastic / softer;
+        let grows = r * virgin.slope * (f_n / f_n0) / virgin.point.k_t;
+        let flows = part * ((tangential / normal - grows) * all);
+        let flows = if flows < forward { flows } else { forward };
+        steady = if flows > steady { flows } else { steady };
+    }
     let (mut flows, mut taken_back) = (steady, 0.0);
     if forward < steady {
         let (stiff, soft) = (normal * across * elastic_stiffness, tangential * along * virgin.point.k_t);
-        flows = forward + (steady - forward) * (stiff / (stiff + soft));
+        flows = forward + TAKEN_BACK * (steady - forward) * (stiff / (stiff + soft));
         taken_back = 1.0 - forward / steady;
     }
     let flow = virgin.point.k_t * flows / f_t;
@@ -155,9 +179,12 @@ pub(super) fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Vi
     let slope = if raised < f_n && along < stiffness { along } else { stiffness };
     // Where F_N is below the curve, it is F_N that tells the place.
     let x = if f_n < on_curve { elastic } else { x };
+    if raised < f_n {
+        lower(state, raised / f_n);
+    }
     let f_n = if raised < f_n { raised } else { f_n };
     let back = (1.0 - keep) / virgin.point.k_t;
-    slide(&mut state.deflection, &slider_limits(p, virgin, f_n), [-back * force[0], -back * force[1]]);
+    slide(&mut state.deflection, &slider_limits(p, virgin, f_n, eta), [-back * force[0], -back * force[1]]);
     if taken_back > 0.0 && left < GONE {
         state.deflection = [[0.0; 2]; SLIDERS];
     }
@@ -165,5 +192,6 @@ pub(super) fn press(p: &ContactParameters, state: &mut ContactState, virgin: &Vi
     // It forgets with the growth of the contact, and as F_T is taken back.
     let kept = (-plastic / h - FORGETS * (taken_back * taken_back) * flow).exp();
     state.sheared = if state.sheared > x { x + (state.sheared - x) * kept } else { x };
+    state.reversed *= kept;
     Pressed { f_n, x, df_n_dh: slope, flow, sudden }
 }

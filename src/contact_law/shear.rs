@@ -2,11 +2,11 @@
 
 use super::press::Pressed;
 use super::shapes::{normal_shape, tangential_shape};
-use super::sliders::{AT_BOUND, length, slide, slider_force, slider_limits, slider_stiffness};
+use super::sliders::{AT_BOUND, extent, length, slide, slider_force, slider_limits, slider_stiffness};
 use super::update::{ContactResponse, ContactState};
 use super::virgin::{ContactParameters, SLIDERS, Virgin};
 use super::yielding::{
-    AT_CAP, AT_SLIP, MOST, REVERSED, approach_at, is_elastic, normal_cap, pressed_cap, yield_coefficient, yield_share,
+    AT_CAP, AT_SLIP, MOST, REVERSED, is_elastic, lower, normal_cap, pressed_cap, reversed_cap, yield_coefficient, yield_share,
     yielding_at,
 };
 
@@ -26,8 +26,8 @@ const GATHERED: f64 = 0.7;
 /// Share of mu F_N from which a contact slides on as it did: nothing is lost then.
 const SLIDING: f64 = 0.98;
 
-/// The sliders slip and stick while F_N is at that of full slip, or the contact was released: it
-/// loses what a reversal of the slip costs besides.
+/// The sliders slip and stick while F_N is at that of full slip or next to it, or the contact was
+/// released: it loses what a reversal of the slip costs besides.
 fn reverse(
     p: &ContactParameters,
     next: &mut ContactState,
@@ -49,22 +49,42 @@ fn reverse(
         return;
     }
     // What F_N is above that of its x stays above it.
-    let above = out.f_n - virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0));
+    let stands = reversed_cap(p, virgin, next.x);
+    let above = if out.f_n > stands { out.f_n - stands } else { 0.0 };
     let above = if above > 0.0 { above } else { 0.0 };
-    let rate = 4.0 * GATHERED * (MOST - next.x) * (k_t / (p.friction * virgin.point.f_n_slip));
-    let x = next.x + rate * (stick * (1.0 - stick)) * size;
-    next.x = if x < MOST { x } else { MOST };
-    let cap = virgin.point.f_n_slip * (1.0 - REVERSED * (next.x - 1.0)) + above;
-    if !(cap < out.f_n) {
-        return;
+    let mut rate = 4.0 * GATHERED * (k_t / (p.friction * virgin.point.f_n_slip));
+    let mut falling = REVERSED * virgin.point.f_n_slip;
+    if next.x < 1.0 {
+        // Next to full slip alone: F_T/F_N over mu to the power 24.
+        let near = tangential_shape(p, virgin, next.x)[0] * virgin.point.f_n_slip / stands;
+        let near = near * near * near;
+        let near = near * near;
+        let near = near * near;
+        rate *= near * near;
+        falling = (virgin.point.f_n0 - virgin.point.f_n_slip) * normal_shape(p, virgin, next.x)[1];
     }
-    out.f_n = cap;
-    next.approach = approach_at(virgin, cap);
-    let limit = slider_limits(p, virgin, cap);
+    let gain = rate * (stick * (1.0 - stick)) * size;
+    let rate = rate * (MOST - next.x);
+    let x = next.x + (MOST - next.x) * gain;
+    next.x = if x < MOST { x } else { MOST };
+    let reversed = next.reversed + (1.0 - next.reversed) * gain;
+    next.reversed = if reversed < 1.0 { reversed } else { 1.0 };
+    // The sliders of a contact at rest are those that it came to rest with.
+    let mut sharper = *virgin;
+    sharper.sharpen(next.sheared, next.reversed);
+    let virgin = &sharper;
+    let eta = extent(virgin, next);
+    let cap = reversed_cap(p, virgin, next.x) + above;
+    let lowers = cap < out.f_n;
+    if lowers {
+        lower(next, cap / out.f_n);
+        out.f_n = cap;
+    }
+    let limit = slider_limits(p, virgin, out.f_n, eta);
     next.deflection = *before;
     slide(&mut next.deflection, &limit, increment);
     out.f_t = slider_force(virgin, &next.deflection);
-    let loss = if next.x < MOST { REVERSED * virgin.point.f_n_slip * rate } else { 0.0 };
+    let loss = if lowers && next.x < MOST { falling * rate } else { 0.0 };
     for j in 0..2 {
         let stiffer = (rise[0] * out.df_t_ddelta[0][j] + rise[1] * out.df_t_ddelta[1][j]) / (risen * k_t);
         out.df_n_ddelta[j] = -loss * ((1.0 - 2.0 * stick) * stiffer + stick * stick * increment[j] / size);
@@ -72,7 +92,7 @@ fn reverse(
     out.df_t_ddelta = slider_stiffness(virgin, before, &limit, increment);
     for j in 0..2 {
         // The limits of what slips fall with F_N.
-        let falls = (1.0 - stick) * out.df_n_ddelta[j] / cap;
+        let falls = (1.0 - stick) * out.df_n_ddelta[j] / out.f_n;
         for i in 0..2 {
             out.df_t_ddelta[i][j] += falls * out.f_t[i];
         }
@@ -92,7 +112,8 @@ pub(super) fn shear(
     let f_n = pressed.f_n;
     let before = next.deflection;
     let force_before = slider_force(virgin, &before);
-    let limit = slider_limits(p, virgin, f_n);
+    let eta = extent(virgin, next);
+    let limit = slider_limits(p, virgin, f_n, eta);
     slide(&mut next.deflection, &limit, increment);
     out.f_n = f_n;
     out.f_t = slider_force(virgin, &next.deflection);
@@ -138,14 +159,14 @@ pub(super) fn shear(
                 out.df_n_ddelta[j] = if trial > 0.0 { -falls * rises / trial } else { 0.0 };
             }
             let cap = if cap < f_n { cap } else { f_n };
+            lower(next, cap / f_n);
             out.f_n = cap;
-            next.approach = approach_at(virgin, cap);
-            let limit = slider_limits(p, virgin, cap);
+            let limit = slider_limits(p, virgin, cap, eta);
             next.deflection = before;
             slide(&mut next.deflection, &limit, increment);
             out.f_t = slider_force(virgin, &next.deflection);
             out.df_t_ddelta = slider_stiffness(virgin, &before, &limit, increment);
-        } else if next.x >= 1.0 {
+        } else if next.x >= 1.0 || (next.x > 0.0 && !raised) {
             reverse(p, next, out, virgin, &before, force_before, increment);
         }
         return;
@@ -179,8 +200,8 @@ pub(super) fn shear(
     out.f_n = if relaxed < f_n { relaxed } else { f_n };
     next.x = if AT_SLIP * out.f_n <= virgin.point.f_n_slip { 1.0 } else { x };
     next.sheared = x;
-    next.approach = approach_at(virgin, out.f_n);
-    let limit = slider_limits(p, virgin, out.f_n);
+    lower(next, out.f_n / f_n);
+    let limit = slider_limits(p, virgin, out.f_n, eta);
     next.deflection = before;
     slide(&mut next.deflection, &limit, increment);
     let held = slider_force(virgin, &next.deflection);

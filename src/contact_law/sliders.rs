@@ -1,20 +1,29 @@
 //! The tangential sliders in parallel (Iwan 1967): their limits, what a displacement makes of them,
 //! their force and their stiffness.
 
+use super::update::ContactState;
 use super::virgin::{ContactParameters, SLIDERS, Virgin};
 
 /// Share of a bound up to which a force counts as within it, so that a contact at rest answers with
 /// its elastic stiffness.
 pub(super) const AT_BOUND: f64 = 1.0 + 1e-10;
 
-/// Greatest deflection of each slider under the normal force `f_n`: their forces then add up to mu
-/// F_N.
-pub(super) fn slider_limits(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> [f64; SLIDERS] {
+/// What is left of the contact's extent as it is released: eta of the sliders, 1 at its reach. What
+/// shear takes of F_N leaves it as wide as it was.
+pub(super) fn extent(virgin: &Virgin, state: &ContactState) -> f64 {
+    if state.approach <= 0.0 {
+        return 0.0;
+    }
+    if state.approach < state.reach { (state.approach / state.reach).powf(virgin.gamma / virgin.backbone) } else { 1.0 }
+}
+
+/// Greatest deflection of each slider under the normal force `f_n` at the [`extent`] `eta`: their
+/// forces then add up to mu F_N.
+pub(super) fn slider_limits(p: &ContactParameters, virgin: &Virgin, f_n: f64, eta: f64) -> [f64; SLIDERS] {
     let mut limit = [0.0; SLIDERS];
     if f_n <= 0.0 {
         return limit;
     }
-    let eta = (f_n / virgin.point.f_n0).powf(1.0 / virgin.backbone);
     let mut sum = 0.0;
     for i in 0..SLIDERS {
         limit[i] = if eta > virgin.lost[i] { eta - virgin.lost[i] } else { 0.0 };

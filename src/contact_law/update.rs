@@ -6,7 +6,7 @@ use super::press::{press, taken};
 use super::shear::shear;
 use super::sliders::bounded;
 use super::virgin::{ContactParameters, SLIDERS};
-use super::yielding::{approach_at, force_at};
+use super::yielding::force_at;
 
 /// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
 /// file as it is.
@@ -20,6 +20,9 @@ pub struct ContactState {
     /// Elastic approach, length: what is recovered until contact is lost; negative is the gap over
     /// the residual dent.
     pub approach: f64,
+    /// Elastic approach from which the contact is released, length: F_N = 2 E* a reach/gamma
+    /// (approach/reach)^gamma. It falls with F_N where shear takes that.
+    pub reach: f64,
     /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of
     /// its loss of F_N to shear. Beyond 1, up to 2, of what reversed slip costs besides.
     pub x: f64,
@@ -27,6 +30,8 @@ pub struct ContactState {
     /// without F_T, 1 after full slip. Below it F_T/F_N rises without yielding to shear; the edge
     /// of a contact that was not sheared slips sooner.
     pub sheared: f64,
+    /// How far its slip was reversed, 0 to 1: then it turns more sharply.
+    pub reversed: f64,
     /// Tangential deflections of the sliders, length, innermost (last to slip) first.
     pub deflection: [[f64; 2]; SLIDERS],
 }
@@ -86,11 +91,8 @@ impl ContactParameters {
             next.h = h;
             return (next, out);
         }
-        let virgin = self.virgin_sheared(greatest, state.sheared);
+        let virgin = self.virgin_sheared(greatest, state.sheared, state.reversed);
         let pressed = press(self, &mut next, &virgin, h, increment);
-        if h != state.h {
-            next.approach = if pressed.f_n > 0.0 { approach_at(&virgin, pressed.f_n) } else { state.approach + (h - state.h) };
-        }
         next.h = h;
         next.h_max = greatest;
         next.x = pressed.x;
@@ -105,7 +107,7 @@ impl ContactParameters {
             out.df_t_ddelta[i] = [share * out.df_t_ddelta[i][0], share * out.df_t_ddelta[i][1]];
             out.df_n_ddelta[i] *= share;
         }
-        out.a = virgin.point.a * (next.approach / virgin.depth).powf(virgin.gamma - 1.0);
+        out.a = virgin.point.a * (next.approach / next.reach).powf(virgin.gamma - 1.0);
         (next, out)
     }
 
@@ -120,6 +122,6 @@ impl ContactParameters {
             let q = state.deflection[i];
             sum += virgin.weight[i] * (q[0] * q[0] + q[1] * q[1]);
         }
-        force_at(&virgin, state.approach) * state.approach / (virgin.gamma + 1.0) + 0.5 * virgin.point.k_t * sum
+        force_at(&virgin, state.reach, state.approach) * state.approach / (virgin.gamma + 1.0) + 0.5 * virgin.point.k_t * sum
     }
 }

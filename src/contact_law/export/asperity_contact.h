@@ -128,8 +128,10 @@ typedef struct asperity_state {
     asperity_real h;
     asperity_real h_max;
     asperity_real approach; /* elastic: what is recovered until contact is lost; negative: the gap over the residual dent */
+    asperity_real reach;    /* elastic approach from which it is released: F_N = 2 E* a reach/gamma (approach/reach)^gamma; falls with F_N where shear takes that */
     asperity_real x;        /* place on the virgin curves: the measure of F_N lost to shear; beyond 1, up to 2, of what reversed slip costs besides */
     asperity_real sheared;  /* the place up to which the contact has hardened in shear */
+    asperity_real reversed; /* 0 to 1: how far its slip was reversed, after which it turns more sharply */
     asperity_real deflection[2][ASPERITY_SLIDERS];
 } asperity_state;
 
@@ -163,10 +165,16 @@ typedef struct asperity_tangent {
 #define ASPERITY_SLIDING ASPERITY_R(0.98)
 #define ASPERITY_GATHERED ASPERITY_R(0.7)
 #define ASPERITY_ALL_LOST ASPERITY_R(2.0) /* x after all of what reversed slip costs */
-#define ASPERITY_UNSHEARED ASPERITY_R(1.8)
+#define ASPERITY_UNSHEARED ASPERITY_R(2.0)
+#define ASPERITY_TAKEN_BACK ASPERITY_R(0.9)
+#define ASPERITY_NO_CHANGE ASPERITY_R(0.15)
+#define ASPERITY_FIRST ASPERITY_R(1.5)
+#define ASPERITY_LATER ASPERITY_R(1.15)
+#define ASPERITY_HARDLY ASPERITY_R(0.02)
 
 /* What a virgin contact answers at one indentation. */
 typedef struct asperity_curve {
+    asperity_real first; /* exponent of the sliders' backbone in a first reversal of a contact that was sheared */
     asperity_real f_n0, f_n_slip, m, big_n, k_t;
     asperity_real n;             /* of f_T; with form 2 c of the yield curve */
     asperity_real radii;         /* contact radius over a */
@@ -505,11 +513,29 @@ ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h,
     }
 }
 
-/* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need.
- * The sliders of a contact that has yielded to shear at the place `sheared`: those of the table after full slip; where it was hardly sheared, tractions are lost sooner as it is released. */
-ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_real sheared, asperity_curve *v) {
+/* The sliders of a contact that has yielded to shear at the place `sheared`, and whose slip was reversed: those of the first reversal of a contact that was sheared, where it was hardly
+ * sheared those of which tractions are lost sooner as it is released, and where its slip was reversed those that turn more sharply. */
+ASPERITY_FN void asperity_sharpen(asperity_curve *v, asperity_real sheared, asperity_real reversed) {
+    asperity_real rest, lost = (ASPERITY_R(1.0) - v->f_n_slip / v->f_n0) / ASPERITY_HARDLY;
+    v->backbone = v->first;
+    if (!v->elastic) {
+        lost = reversed * (lost < ASPERITY_R(1.0) ? lost : ASPERITY_R(1.0));
+        v->backbone += v->backbone > ASPERITY_LATER ? (ASPERITY_LATER - v->backbone) * lost : ASPERITY_R(0.0);
+        if (v->backbone < ASPERITY_UNSHEARED) {
+            rest = sheared < ASPERITY_R(1.0) ? ASPERITY_R(1.0) - sheared : ASPERITY_R(0.0);
+            rest *= rest;
+            rest *= rest;
+            v->backbone += (ASPERITY_UNSHEARED - v->backbone) * (rest * rest);
+        }
+    }
+    v->per_backbone = ASPERITY_R(1.0) / v->backbone;
+    asperity_sliders(v->backbone, v->lost);
+}
+
+/* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need. */
+ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_real sheared, asperity_real reversed, asperity_curve *v) {
     const asperity_real *column = row->column;
-    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share, rest, per_contact;
+    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share, per_contact;
     v->f_n0 = column[0] * exponential[0];
     v->per_a = column[1] * exponential[1];
     v->f_n_slip = column[4] * v->f_n0;
@@ -535,17 +561,11 @@ ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, c
     if (!whole) {
         return;
     }
-    if (v->backbone < ASPERITY_UNSHEARED && !v->elastic) {
-        rest = sheared < ASPERITY_R(1.0) ? ASPERITY_R(1.0) - sheared : ASPERITY_R(0.0);
-        rest *= rest;
-        rest *= rest;
-        v->backbone += (ASPERITY_UNSHEARED - v->backbone) * (rest * rest);
-    }
+    v->first = t->form == 2 && !v->elastic ? ASPERITY_R(1.0) + ASPERITY_FIRST * (v->backbone - ASPERITY_R(1.0)) : v->backbone;
+    asperity_sharpen(v, sheared, reversed);
     v->per_force = ASPERITY_R(1.0) / v->f_n0;
     v->per_gamma = ASPERITY_R(1.0) / v->gamma;
-    v->per_backbone = ASPERITY_R(1.0) / v->backbone;
     v->per_n = t->form == 2 ? ASPERITY_R(0.0) : ASPERITY_R(1.0) / v->n;
-    asperity_sliders(v->backbone, v->lost);
     if (t->form == 2) {
         asperity_real level = row->position * (ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1)), most = ASPERITY_R(ASPERITY_LEVELS - 1);
         int i;
@@ -564,7 +584,7 @@ ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h
     asperity_real exponential[4];
     asperity_read_row(t, ASPERITY_LOG(h / t->first), &row, exponential);
     asperity_exponentials(exponential, 4);
-    asperity_make_curve(t, h, &row, exponential, whole, ASPERITY_R(1.0), v);
+    asperity_make_curve(t, h, &row, exponential, whole, ASPERITY_R(1.0), ASPERITY_R(0.0), v);
 }
 
 /* Radius of the contact of first loading. */
@@ -799,17 +819,22 @@ ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *
     return asperity_normal_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
 }
 
-/* Elastic unloading: ln(F_N/F_N0) at the approach e > 0. */
-ASPERITY_FN asperity_real asperity_level_at(const asperity_curve *v, asperity_real e) {
-    return e == v->depth ? ASPERITY_R(0.0) : v->gamma * asperity_logarithm(e / v->depth);
+/* F_N at x, with what a reversed slip costs. */
+ASPERITY_FN asperity_real asperity_reversed_cap(const asperity_curve *v, asperity_real x, const asperity_place *place) {
+    return x < ASPERITY_R(1.0) ? v->f_n0 - (v->f_n0 - v->f_n_slip) * place->f_n : v->f_n_slip * (ASPERITY_R(1.0) - ASPERITY_REVERSED * (x - ASPERITY_R(1.0)));
 }
 
-/* F_N at the approach e. */
-ASPERITY_FN asperity_real asperity_force_at(const asperity_curve *v, asperity_real e) {
-    return e <= ASPERITY_R(0.0) ? ASPERITY_R(0.0) : v->f_n0 * asperity_exponential(asperity_level_at(v, e));
+/* F_N over the reach of a contact: 2 E* a/gamma. */
+ASPERITY_FN asperity_real asperity_per_reach(const asperity_curve *v) {
+    return v->f_n0 / v->depth;
 }
 
-/* Greatest deflection of each slider under the normal force f_n > 0, so that their forces add up to mu F_N; eta = (F_N/F_N0)^(1/backbone). */
+/* Elastic unloading: F_N at the approach e > 0 of a contact with this reach, from ln(e/reach). It starts with 2 E* a from any F_N: what shear takes of F_N leaves the contact as wide as it was. */
+ASPERITY_FN asperity_real asperity_force_at(const asperity_curve *v, asperity_real reach, asperity_real level) {
+    return asperity_per_reach(v) * reach * (level == ASPERITY_R(0.0) ? ASPERITY_R(1.0) : asperity_exponential(v->gamma * level));
+}
+
+/* Greatest deflection of each slider under the normal force f_n > 0, so that their forces add up to mu F_N; eta is what is left of its extent as it is released. */
 ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v, asperity_real f_n, asperity_real eta, asperity_real limit[ASPERITY_SLIDERS]) {
     asperity_real scale;
     int i;
@@ -938,7 +963,7 @@ ASPERITY_FN void asperity_scale(asperity_real deflection[2][ASPERITY_SLIDERS], a
 /* A contact at work: an asperity_state. */
 typedef struct asperity_work {
     ASPERITY_ALIGNED asperity_real deflection[2][ASPERITY_SLIDERS];
-    asperity_real h, h_max, approach, x, sheared;
+    asperity_real h, h_max, approach, reach, x, sheared, reversed;
 } asperity_work;
 
 /* What the press leaves for the shear. */
@@ -946,8 +971,8 @@ typedef struct asperity_pressed {
     asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
     asperity_real flow;                  /* by how many e-folds F_T has flowed */
     asperity_real sudden;                /* displacement that hardens nothing */
-    asperity_real eta;                   /* (F_N/F_N0)^(1/backbone) */
-    asperity_real approach;              /* elastic, of that F_N */
+    asperity_real eta;                   /* what is left of the extent: (approach/reach)^(gamma/backbone) */
+    asperity_real approach, reach;       /* elastic, of that F_N */
     asperity_real force[2], f_t;         /* of the sliders, and its size */
     asperity_place place;                /* on the virgin curves, of that force */
     ASPERITY_ALIGNED asperity_real limit[ASPERITY_SLIDERS];
@@ -990,9 +1015,22 @@ ASPERITY_FN asperity_real asperity_yield_coefficient(const asperity_table *t, co
     return c > least ? c : least;
 }
 
+/* Share of an indentation that unloading recovers. */
+ASPERITY_FN asperity_real asperity_recovered(const asperity_curve *v) {
+    return v->slope * v->depth * (v->per_gamma * v->per_force);
+}
+
 /* s c of the yield curve F_N (1 + s c r^2) = F_N0. */
 ASPERITY_FN asperity_real asperity_yield_share(const asperity_curve *v, asperity_real c) {
-    return ASPERITY_PRESSED * (ASPERITY_R(1.0) - v->slope * v->depth * (v->per_gamma * v->per_force)) * c;
+    return ASPERITY_PRESSED * (ASPERITY_R(1.0) - asperity_recovered(v)) * c;
+}
+
+/* c of the flow at the ratio r of F_T to F_N, from the c that was measured where d(delta_T)/dh is mu/(1/2 + mu^2/4). */
+ASPERITY_FN asperity_real asperity_flow_coefficient(const asperity_table *t, const asperity_curve *v, asperity_real c, asperity_real r) {
+    asperity_real slope = ASPERITY_R(2.0) * t->friction / (ASPERITY_R(1.0) + ASPERITY_R(0.5) * t->friction * t->friction);
+    asperity_real measured = (ASPERITY_SQRT(ASPERITY_R(1.0) + slope * slope / c) - ASPERITY_R(1.0)) / slope;
+    asperity_real share = r < ASPERITY_R(2.0) * measured ? r / measured : ASPERITY_R(2.0);
+    return c * (ASPERITY_R(1.0) + (asperity_recovered(v) - ASPERITY_NO_CHANGE) * (share - ASPERITY_R(1.0)));
 }
 
 /* Greatest F_N of a contact that is pressed with the tangential force f_t, on the yield curve of this s c; at its apex F_N0/2. `root`: of the discriminant. */
@@ -1007,6 +1045,15 @@ ASPERITY_FN asperity_real asperity_yielding_at(const asperity_curve *v, asperity
     return v->f_n0 / (ASPERITY_R(1.0) + share * (ratio * ratio));
 }
 
+/* F_N falls to f_n without an unloading: approach, reach and the sliders' limits with it. */
+ASPERITY_FN void asperity_lower(const asperity_table *t, const asperity_curve *v, asperity_real f_n, asperity_pressed *p) {
+    asperity_real share = f_n / p->f_n;
+    p->f_n = f_n;
+    p->approach *= share;
+    p->reach *= share;
+    asperity_limits(t->friction, v, f_n, p->eta, p->limit);
+}
+
 /* Moves h with delta_T held, while the displacement (d0, d1) brings some of F_T back. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, `stiffness` its
  * slope, and `elastic_stiffness` that of the elastic response. */
 ASPERITY_FN void asperity_press(
@@ -1014,7 +1061,7 @@ ASPERITY_FN void asperity_press(
     int derivatives, asperity_pressed *p) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
     int grown = h > s->h_max;
-    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, c, share, highest, r, normal, tangential, across, turn, part, softer, plastic, most, forward, steady, flows, taken_back;
+    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, c, share, highest, r, normal, tangential, across, turn, part, softer, plastic, most, forward, steady, flows, taken_back, all;
     asperity_real stiff, soft, flow, linear, falls, gain, turns, along, slope[2], raised, pressed, on_curve, root, keep, left, back, change;
     asperity_place place;
     asperity_moved moved;
@@ -1064,6 +1111,7 @@ ASPERITY_FN void asperity_press(
     highest = asperity_pressed_cap(v, share, f_t, &root);
     /* The direction of the flow, and the yield curve's normal. */
     r = f_t / p->f_n;
+    c = asperity_flow_coefficient(t, v, c, r);
     normal = asperity_most(one - c * (r * r), ASPERITY_LEAST_NORMAL);
     tangential = ASPERITY_R(2.0) * c * r;
     across = asperity_most(one - share * (r * r), ASPERITY_LEAST_NORMAL);
@@ -1078,12 +1126,19 @@ ASPERITY_FN void asperity_press(
     forward = forward > zero ? forward : zero;
     /* What of delta_T flows. Where the contact does not move as far, F_T falls, and F_N rises along the yield curve: that takes some of the press. */
     steady = part * (tangential / normal) * plastic;
+    if (grown && softer > zero) {
+        /* In a steady press the sliders' force grows too, and c is of all of delta_T over all of h. */
+        all = plastic / softer;
+        flows = part * ((tangential / normal - r * v->slope * (p->f_n * v->per_force) / v->k_t) * all);
+        flows = flows < forward ? flows : forward;
+        steady = flows > steady ? flows : steady;
+    }
     flows = steady;
     taken_back = zero;
     if (forward < steady) {
         stiff = normal * across * elastic_stiffness;
         soft = tangential * turn * v->k_t;
-        flows = forward + (steady - forward) * (stiff / (stiff + soft));
+        flows = forward + ASPERITY_TAKEN_BACK * (steady - forward) * (stiff / (stiff + soft));
         taken_back = one - forward / steady;
     }
     flow = v->k_t * flows / f_t;
@@ -1115,11 +1170,7 @@ ASPERITY_FN void asperity_press(
         p->df_n_dh = raised < p->f_n && along < stiffness ? along : stiffness;
     }
     if (raised < p->f_n) {
-        change = asperity_log_ratio(raised, p->f_n);
-        p->f_n = raised;
-        p->eta *= asperity_exponential_near(change * v->per_backbone);
-        p->approach *= asperity_exponential_near(change * v->per_gamma);
-        asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
+        asperity_lower(t, v, raised, p);
     }
     back = (one - keep) / v->k_t;
     asperity_move(s->deflection, -back * p->force[0], -back * p->force[1], &moved);
@@ -1136,6 +1187,7 @@ ASPERITY_FN void asperity_press(
     /* It forgets with the growth of the contact, and as F_T is taken back. */
     change = asperity_exponential_near(-plastic / h - ASPERITY_FORGETS * (taken_back * taken_back) * flow);
     s->sheared = s->sheared > p->x ? p->x + (s->sheared - p->x) * change : p->x;
+    s->reversed *= change;
 }
 
 /* By how much the sliders' force is beyond the curve at x. Where both are near to each other float has too few digits: there it is done in double. */
@@ -1162,22 +1214,14 @@ ASPERITY_FN asperity_real asperity_excess(
     return plain;
 }
 
-/* F_N falls to f_n: eta, approach and the sliders' limits with it. */
-ASPERITY_FN void asperity_lower(const asperity_table *t, const asperity_curve *v, asperity_real f_n, asperity_pressed *p) {
-    asperity_real change = asperity_log_ratio(f_n, p->f_n);
-    p->f_n = f_n;
-    p->approach *= asperity_exponential_near(change * v->per_gamma);
-    p->eta *= asperity_exponential_near(change * v->per_backbone);
-    asperity_limits(t->friction, v, f_n, p->eta, p->limit);
-}
-
-/* The sliders slip and stick while F_N is at that of full slip, or the contact was released: it loses what a reversal of the slip costs besides. Returns what the sliders dissipate. */
+/* The sliders slip and stick while F_N is at that of full slip or next to it, or the contact was released: it loses what a reversal of the slip costs besides. Returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_reverse(
-    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p, asperity_moved *moved, int measured,
+    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, asperity_curve *v, asperity_pressed *p, asperity_moved *moved, int measured,
     asperity_real d0, asperity_real d1, asperity_real slip) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, above, rate, x, cap, loss, stiffer, falls;
-    int i, j;
+    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, above, rate, gain, level, cap, loss, falling, near, stiffer, falls, slope[2];
+    asperity_place place;
+    int i, j, lowers;
     if (s->x >= ASPERITY_ALL_LOST || !(size > zero) || p->force[0] * p->force[0] + p->force[1] * p->force[1] > most * most) {
         return slip;
     }
@@ -1189,30 +1233,52 @@ ASPERITY_FN asperity_real asperity_reverse(
         return slip;
     }
     /* What F_N is above that of its x stays above it. */
-    above = asperity_most(out->f_n - v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one)), zero);
-    rate = ASPERITY_R(4.0) * ASPERITY_GATHERED * (ASPERITY_ALL_LOST - s->x) * (v->k_t / (t->friction * v->f_n_slip));
-    x = s->x + rate * (stick * (one - stick)) * size;
-    s->x = x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
-    cap = v->f_n_slip * (one - ASPERITY_REVERSED * (s->x - one)) + above;
-    if (!(cap < out->f_n)) {
-        return slip;
+    asperity_shapes(t->form, v, asperity_least(s->x, one), &place);
+    cap = asperity_reversed_cap(v, s->x, &place);
+    above = asperity_most(out->f_n - cap, zero);
+    rate = ASPERITY_R(4.0) * ASPERITY_GATHERED * (v->k_t / (t->friction * v->f_n_slip));
+    falling = ASPERITY_REVERSED * v->f_n_slip;
+    if (s->x < one) {
+        /* Next to full slip alone: F_T/F_N over mu to the power 24. */
+        near = place.f_t * v->f_n_slip / cap;
+        near = near * near * near;
+        near = near * near;
+        near = near * near;
+        rate *= near * near;
+        if (tangent) {
+            asperity_slopes(t->form, v, s->x, slope);
+            falling = (v->f_n0 - v->f_n_slip) * slope[1];
+        }
     }
-    out->f_n = cap;
-    asperity_lower(t, v, cap, p);
+    gain = rate * (stick * (one - stick)) * size;
+    rate *= ASPERITY_ALL_LOST - s->x;
+    s->x = asperity_least(s->x + (ASPERITY_ALL_LOST - s->x) * gain, ASPERITY_ALL_LOST);
+    s->reversed = asperity_least(s->reversed + (one - s->reversed) * gain, one);
+    /* The sliders of a contact at rest are those that it came to rest with. */
+    level = p->eta < one && p->eta > zero ? asperity_logarithm(p->eta) * v->backbone : zero;
+    asperity_sharpen(v, s->sheared, s->reversed);
+    p->eta = level < zero ? asperity_exponential(level * v->per_backbone) : p->eta;
+    if (s->x < one) {
+        asperity_shapes(t->form, v, s->x, &place);
+    }
+    cap = asperity_reversed_cap(v, s->x, &place) + above;
+    lowers = cap < out->f_n;
+    out->f_n = lowers ? cap : out->f_n;
+    asperity_lower(t, v, out->f_n, p);
     if (!measured) {
         asperity_measure(moved);
     }
     slip = v->k_t * asperity_hold(moved, p->limit, s->deflection);
     asperity_slider_force(v, s->deflection, out->f_t);
     if (tangent) {
-        loss = s->x < ASPERITY_ALL_LOST ? ASPERITY_REVERSED * v->f_n_slip * rate : zero;
+        loss = lowers && s->x < ASPERITY_ALL_LOST ? falling * rate : zero;
         for (j = 0; j < 2; j++) {
             stiffer = (rise[0] * tangent->df_t_ddelta[0][j] + rise[1] * tangent->df_t_ddelta[1][j]) / (risen * v->k_t);
             tangent->df_n_ddelta[j] = -loss * ((one - ASPERITY_R(2.0) * stick) * stiffer + stick * stick * (j ? d1 : d0) / size);
         }
         asperity_slider_stiffness(v, moved, p->limit, tangent->df_t_ddelta);
         for (j = 0; j < 2; j++) {
-            falls = (one - stick) * tangent->df_n_ddelta[j] / cap; /* the limits of what slips fall with F_N */
+            falls = (one - stick) * tangent->df_n_ddelta[j] / out->f_n; /* the limits of what slips fall with F_N */
             for (i = 0; i < 2; i++) {
                 tangent->df_t_ddelta[i][j] += falls * out->f_t[i];
             }
@@ -1223,7 +1289,7 @@ ASPERITY_FN asperity_real asperity_reverse(
 
 /* Moves delta_T with h held; returns what the sliders dissipate. */
 ASPERITY_FN asperity_real asperity_shear(
-    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, const asperity_curve *v, asperity_pressed *p,
+    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, asperity_curve *v, asperity_pressed *p,
     asperity_real d0, asperity_real d1) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
     asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, root;
@@ -1294,7 +1360,7 @@ ASPERITY_FN asperity_real asperity_shear(
             if (tangent) {
                 asperity_slider_stiffness(v, &moved, p->limit, tangent->df_t_ddelta);
             }
-        } else if (s->x >= one) {
+        } else if (s->x >= one || (s->x > zero && !raised)) {
             slip = asperity_reverse(t, s, out, tangent, v, p, &moved, measured, d0, d1, slip);
         }
         return slip;
@@ -1387,8 +1453,10 @@ ASPERITY_FN void asperity_begin(const asperity_state *from, asperity_work *to) {
     to->h = from->h;
     to->h_max = from->h_max;
     to->approach = from->approach;
+    to->reach = from->reach;
     to->x = from->x;
     to->sheared = from->sheared;
+    to->reversed = from->reversed;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         to->deflection[0][i] = from->deflection[0][i];
@@ -1401,8 +1469,10 @@ ASPERITY_FN void asperity_end(const asperity_work *from, asperity_state *to) {
     to->h = from->h;
     to->h_max = from->h_max;
     to->approach = from->approach;
+    to->reach = from->reach;
     to->x = from->x;
     to->sheared = from->sheared;
+    to->reversed = from->reversed;
     ASPERITY_LANES
     for (i = 0; i < ASPERITY_SLIDERS; i++) {
         to->deflection[0][i] = from->deflection[0][i];
@@ -1422,7 +1492,7 @@ ASPERITY_FN void asperity_update(
     const asperity_curve *before = &v;
     asperity_pressed p;
     asperity_real inverse = one / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, e, log_h, exponential[4] ASPERITY_ALIGNED, old_exponential[4] ASPERITY_ALIGNED;
-    asperity_real level, at_trial, trial, stiffness, elastic_stiffness, old_n, old_t[2], stored, total, slip, keep, share;
+    asperity_real level, at_trial, began, half, kept, softness, trial, stiffness, elastic_stiffness, old_n, old_t[2], stored, total, slip, keep, share;
     int grown, touched, first;
     memset(out, 0, sizeof *out);
     if (tangent) {
@@ -1452,7 +1522,7 @@ ASPERITY_FN void asperity_update(
     e = state->approach + dh;
     if (!(greatest > zero) || (!grown && state->approach <= zero && e <= zero)) {
         /* An open gap, before the first contact or over a dent: no slider is deflected. */
-        asperity_real h_max = state->h_max, approach = state->approach, place = state->x;
+        asperity_real h_max = state->h_max, approach = state->approach, reach = state->reach, place = state->x;
         if (greatest > zero) {
             place = dh == zero ? place : ASPERITY_ALL_LOST;
             approach += dh;
@@ -1461,9 +1531,11 @@ ASPERITY_FN void asperity_update(
             memset(next->deflection, 0, sizeof next->deflection);
         }
         next->sheared = state->sheared;
+        next->reversed = state->reversed;
         next->h = h;
         next->h_max = h_max;
         next->approach = approach;
+        next->reach = reach;
         next->x = place;
         return;
     }
@@ -1475,15 +1547,15 @@ ASPERITY_FN void asperity_update(
         asperity_read_row(t, log_h + asperity_log_ratio(state->h_max, h), &old_row, old_exponential);
         asperity_exponentials(exponential, 4);
         asperity_exponentials(old_exponential, 4);
-        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, &v);
-        asperity_make_curve(t, state->h_max, &old_row, old_exponential, 0, one, &old);
+        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, state->reversed, &v);
+        asperity_make_curve(t, state->h_max, &old_row, old_exponential, 0, one, zero, &old);
         before = &old;
         /* The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it. */
         keep = old.k_t / v.k_t;
         keep = keep < one ? keep : one;
     } else {
         asperity_exponentials(exponential, 4);
-        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, &v);
+        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, state->reversed, &v);
     }
     asperity_begin(state, &s);
     asperity_slider_force(before, s.deflection, old_t);
@@ -1498,34 +1570,41 @@ ASPERITY_FN void asperity_update(
         asperity_slider_force(&v, s.deflection, p.force);
     }
     first = grown && (state->x == zero || !touched);
-    level = at_trial = zero;
+    level = zero;
     old_n = zero;
     trial = v.f_n0;
     stiffness = v.slope;
     elastic_stiffness = v.gamma * v.f_n0 / v.depth;
     p.eta = one;
-    p.approach = v.depth;
+    p.approach = p.reach = v.depth;
     if (touched && state->approach > zero) {
-        level = asperity_level_at(before, state->approach);
-        old_n = before->f_n0;
+        level = state->approach == state->reach ? zero : asperity_logarithm(state->approach / state->reach);
+        old_n = asperity_force_at(before, state->reach, level);
     }
-    if (first) {
-        old_n *= asperity_exponential(level);
-    } else {
-        /* Most steps are small: what F_N was is near to what it is. */
-        if (e > zero) {
-            at_trial = state->approach > zero ? level + before->gamma * asperity_log_ratio(e, state->approach) : asperity_level_at(before, e);
-        }
-        old_n *= asperity_exponential(level);
-        trial = e > zero ? before->f_n0 * asperity_exponential(at_trial) : zero;
-        stiffness = e > zero ? before->gamma * trial / e : zero;
-        elastic_stiffness = stiffness;
-        if (trial < v.f_n0) {
-            at_trial += grown ? asperity_log_ratio(before->f_n0, v.f_n0) : zero;
-            p.eta = e > zero ? asperity_exponential(at_trial * v.per_backbone) : zero;
-            p.approach = e;
-            if (grown) {
-                p.approach = e > zero ? v.depth * asperity_exponential(at_trial * v.per_gamma) : zero;
+    if (!first) {
+        if (e <= state->reach && !grown) {
+            /* Most steps are small: what ln(approach/reach) was is near to what it is. */
+            at_trial = e == state->reach || !(e > zero) ? zero : state->approach > zero ? level + asperity_log_ratio(e, state->approach) : asperity_logarithm(e / state->reach);
+            trial = e > zero ? asperity_force_at(&v, state->reach, at_trial) : zero;
+            stiffness = e > zero ? v.gamma * trial / e : zero;
+            elastic_stiffness = stiffness;
+            if (trial < v.f_n0) {
+                p.approach = e;
+                p.reach = state->reach;
+                p.eta = e < state->reach ? (e > zero ? asperity_exponential(at_trial * v.gamma * v.per_backbone) : zero) : one;
+            }
+        } else {
+            /* Beyond its reach it stores F_N^2/(k (gamma + 1)), k being F_N over the reach: the work, by the mean of the forces before and after, of a contact that was not sheared; of one
+             * whose reach shear has made less, in part. */
+            began = asperity_per_reach(before) * state->reach;
+            half = e > state->reach ? ASPERITY_R(0.5) * (e - state->reach) : zero;
+            softness = one / (asperity_per_reach(&v) * (v.gamma + one));
+            kept = half * ASPERITY_SQRT(state->reach / before->depth);
+            trial = (kept + ASPERITY_SQRT(kept * kept + ASPERITY_R(4.0) * softness * (began * state->reach / (before->gamma + one) + began * kept))) / (ASPERITY_R(2.0) * softness);
+            elastic_stiffness = before->gamma * asperity_per_reach(before);
+            stiffness = half > zero ? ASPERITY_R(0.5) * (trial - began) / half : elastic_stiffness;
+            if (trial < v.f_n0) {
+                p.approach = p.reach = trial / asperity_per_reach(&v);
             }
         }
     }
@@ -1539,7 +1618,9 @@ ASPERITY_FN void asperity_update(
         next->h_max = s.h_max;
         next->x = dh == zero ? s.x : ASPERITY_ALL_LOST;
         next->sheared = s.sheared;
+        next->reversed = s.reversed;
         next->approach = e;
+        next->reach = s.reach;
         memset(next->deflection, 0, sizeof next->deflection);
         return;
     }
@@ -1552,10 +1633,11 @@ ASPERITY_FN void asperity_update(
     slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, share * d0, share * d1);
     if (dh != zero || out->f_n != size) {
         s.approach = p.approach;
+        s.reach = p.reach;
     }
     if (tangent) {
         tangent->df_n_dh = p.df_n_dh * modulus * radius;
-        tangent->a = asperity_radius(&v) * asperity_power(s.approach / v.depth, v.gamma - one) * radius;
+        tangent->a = asperity_radius(&v) * asperity_power(s.approach / s.reach, v.gamma - one) * radius;
         tangent->df_n_ddelta[0] *= share * modulus * radius;
         tangent->df_n_ddelta[1] *= share * modulus * radius;
         tangent->df_t_ddelta[0][0] *= share * modulus * radius;
@@ -1585,7 +1667,7 @@ ASPERITY_FN asperity_real asperity_stored_energy(const asperity_table *t, asperi
         return ASPERITY_R(0.0);
     }
     asperity_first_loading(t, s.h_max, 0, &v);
-    return modulus * radius * radius * radius * asperity_energy(&v, asperity_force_at(&v, s.approach), s.approach, s.deflection);
+    return modulus * radius * radius * radius * asperity_energy(&v, asperity_force_at(&v, s.reach, asperity_logarithm(s.approach / s.reach)), s.approach, s.deflection);
 }
 
 /* Whether a contact has been deeper than the law was made for. */

@@ -1,6 +1,6 @@
 /* asperity_contact3d.h: two spheres, or a sphere and a plane wall, in three dimensions: what an engine wraps round the update of asperity_contact.h.
  *
- * A contact's memory is one asperity_contact: 41 numbers, all zero before first contact; copy it, write it to a restart file as it is. Each step, for each pair that is kept:
+ * A contact's memory is one asperity_contact: 43 numbers, all zero before first contact; copy it, write it to a restart file as it is. Each step, for each pair that is kept:
  *     asperity_spheres(&law, &i, &j, dt, &contact, &contact, &out);
  * and add out.force_i, out.torque_i, out.force_j, out.torque_j. With `wall` in place of j: asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
  *

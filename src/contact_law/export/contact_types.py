@@ -7,30 +7,32 @@ class Parameters:
 class State:
     """The memory of a contact; as constructed, that before first contact."""
 
-    __slots__ = ("h", "h_max", "approach", "x", "sheared", "deflection")
-    _LAYOUT = struct.Struct("<%dd" % (5 + 2 * SLIDERS))
+    __slots__ = ("h", "h_max", "approach", "reach", "x", "sheared", "reversed", "deflection")
+    _LAYOUT = struct.Struct("<%dd" % (7 + 2 * SLIDERS))
 
-    def __init__(self, h=0.0, h_max=0.0, approach=0.0, x=0.0, sheared=0.0, deflection=None):
+    def __init__(self, h=0.0, h_max=0.0, approach=0.0, reach=0.0, x=0.0, sheared=0.0, reversed=0.0, deflection=None):
         self.h = h
         self.h_max = h_max
         self.approach = approach
+        self.reach = reach
         self.x = x
         self.sheared = sheared
+        self.reversed = reversed
         self.deflection = [[0.0, 0.0] for _ in range(SLIDERS)] if deflection is None else deflection
 
     def copy(self):
         """An independent copy."""
-        return State(self.h, self.h_max, self.approach, self.x, self.sheared, [list(q) for q in self.deflection])
+        return State(self.h, self.h_max, self.approach, self.reach, self.x, self.sheared, self.reversed, [list(q) for q in self.deflection])
 
     def to_bytes(self):
         """The memory as bytes."""
-        return self._LAYOUT.pack(self.h, self.h_max, self.approach, self.x, self.sheared, *(v for q in self.deflection for v in q))
+        return self._LAYOUT.pack(self.h, self.h_max, self.approach, self.reach, self.x, self.sheared, self.reversed, *(v for q in self.deflection for v in q))
 
     @classmethod
     def from_bytes(cls, data):
         """The memory from its bytes."""
         v = cls._LAYOUT.unpack(data)
-        return cls(v[0], v[1], v[2], v[3], v[4], [[v[5 + 2 * i], v[6 + 2 * i]] for i in range(SLIDERS)])
+        return cls(v[0], v[1], v[2], v[3], v[4], v[5], v[6], [[v[7 + 2 * i], v[8 + 2 * i]] for i in range(SLIDERS)])
 
 
 class Response:

@@ -5,7 +5,7 @@ class Virgin:
     """First loading at one indentation."""
 
     __slots__ = (
-        "f_n0", "a", "f_n_slip", "delta_t_slip", "k_t", "n", "m_exponent", "n_exponent", "slope", "gamma", "depth", "backbone", "weight", "lost", "shapes"
+        "f_n0", "a", "f_n_slip", "delta_t_slip", "k_t", "n", "m_exponent", "n_exponent", "slope", "gamma", "depth", "first", "backbone", "weight", "lost", "shapes"
     )  # fmt: skip
 
 
@@ -82,8 +82,23 @@ def shapes_at(p, position):
     return [[low + u * (high - low) for low, high in zip(p.shapes[i][kind], p.shapes[i + 1][kind])] for kind in range(2)]
 
 
-def virgin(p, h, sheared=1.0):
-    """First loading at the indentation h > 0, with the sliders of a contact that has yielded to shear at the place `sheared`."""
+def sharpen(v, sheared, reversed):
+    """Gives it the sliders of a contact that has yielded to shear at the place `sheared`, and whose slip was reversed so far."""
+    v.backbone = v.first
+    if not is_elastic(v):
+        again = reversed * min((1.0 - v.f_n_slip / v.f_n0) / HARDLY, 1.0)
+        if v.backbone > LATER:
+            v.backbone += (LATER - v.backbone) * again
+        if v.backbone < UNSHEARED:
+            rest = 1.0 - sheared if sheared < 1.0 else 0.0
+            rest = rest * rest
+            rest = rest * rest
+            v.backbone += (UNSHEARED - v.backbone) * (rest * rest)
+    v.weight, v.lost = sliders(v.backbone)
+
+
+def virgin(p, h, sheared=1.0, reversed=0.0):
+    """First loading at the indentation h > 0, with the sliders of a contact that was sheared."""
     v = Virgin()
     position = (math.log(h) - p.log_first) / p.log_step
     log_f, log_slope = column_at(p, 0, position)
@@ -106,12 +121,8 @@ def virgin(p, h, sheared=1.0):
     end = v.backbone * p.friction * v.f_n0 / v.delta_t_slip
     if v.k_t < end:
         v.k_t = end
-    if v.backbone < UNSHEARED and not is_elastic(v):
-        rest = 1.0 - sheared if sheared < 1.0 else 0.0
-        rest = rest * rest
-        rest = rest * rest
-        v.backbone += (UNSHEARED - v.backbone) * (rest * rest)
-    v.weight, v.lost = sliders(v.backbone)
+    v.first = 1.0 + FIRST * (v.backbone - 1.0) if NORMAL_CURVE == 2 and not is_elastic(v) else v.backbone
+    sharpen(v, sheared, reversed)
     v.slope = v.f_n0 * log_slope / (p.log_step * h)
     v.depth = v.gamma * v.f_n0 / (2.0 * p.effective_modulus * v.a)
     v.a = radii * v.a
@@ -132,7 +143,12 @@ REVERSED = 0.05
 SLIDING = 0.98
 GATHERED = 0.7
 MOST = 2.0  # x after all of what reversed slip costs
-UNSHEARED = 1.8
+UNSHEARED = 2.0
+TAKEN_BACK = 0.9
+NO_CHANGE = 0.15
+FIRST = 1.5
+LATER = 1.15
+HARDLY = 0.02
 AT_BOUND = 1.0 + 1e-10
 AT_CAP = 1.0 - 1e-9
 AT_SLIP = 1.0 - 1e-13
@@ -267,9 +283,22 @@ def yield_coefficient(p, v):
     return max((at_slip - before) / (p.friction - r), 0.5 * at_slip / p.friction)
 
 
+def recovered(v):
+    """Share of an indentation that unloading recovers."""
+    return v.slope * v.depth / (v.gamma * v.f_n0)
+
+
 def yield_share(v, c):
     """s c of the yield curve F_N (1 + s c r^2) = F_N0."""
-    return PRESSED * (1.0 - v.slope * v.depth / (v.gamma * v.f_n0)) * c
+    return PRESSED * (1.0 - recovered(v)) * c
+
+
+def flow_coefficient(p, v, c, r):
+    """c of the flow at the ratio r of F_T to F_N, from the c that was measured where d(delta_T)/dh is mu/(1/2 + mu^2/4)."""
+    slope = 2.0 * p.friction / (1.0 + 0.5 * p.friction * p.friction)
+    measured = (math.sqrt(1.0 + slope * slope / c) - 1.0) / slope
+    share = r / measured if r < 2.0 * measured else 2.0
+    return c * (1.0 + (recovered(v) - NO_CHANGE) * (share - 1.0))
 
 
 def pressed_cap(v, share, f_t):
@@ -293,22 +322,59 @@ def mobilisation(v, f_n):
     return normal_shape_inverse(v, (v.f_n0 - f_n) / (v.f_n0 - v.f_n_slip))
 
 
-def force_at(v, e):
-    """F_N at the elastic approach e."""
-    return 0.0 if e <= 0.0 else v.f_n0 * (e / v.depth) ** v.gamma
+def reversed_cap(v, x):
+    """F_N at x, with what a reversed slip costs."""
+    return normal_cap(v, x) if x < 1.0 else v.f_n_slip * (1.0 - REVERSED * (x - 1.0))
 
 
-def approach_at(v, f_n):
-    """Its inverse."""
-    return v.depth if f_n >= v.f_n0 else v.depth * (f_n / v.f_n0) ** (1.0 / v.gamma)
+def per_reach(v):
+    """F_N over the reach of a contact: 2 E* a/gamma."""
+    return v.f_n0 / v.depth
 
 
-def slider_limits(p, v, f_n):
-    """Greatest deflection of each slider under the normal force f_n: their forces then add up to mu F_N."""
+def force_at(v, reach, e):
+    """F_N at the elastic approach e of a contact with this reach. An unloading starts with 2 E* a from any F_N: what shear takes of F_N leaves the contact as wide as it was."""
+    return 0.0 if e <= 0.0 else per_reach(v) * reach * (e / reach) ** v.gamma
+
+
+def elastic_at(old, v, grown, reach, e):
+    """The elastic response of a contact with this reach at the approach e, on its way from the greatest h of `old` to that of `v`: F_N, dF_N/dh, that of an unloading, approach, reach.
+    Beyond its reach it stores F_N^2/(k (gamma + 1)), k being F_N over the reach: the work, by the mean of the forces before and after, of a contact that was not sheared; of one
+    whose reach shear has made less, in part."""
+    if e <= reach and not grown:
+        f_n = force_at(v, reach, e)
+        stiffness = v.gamma * f_n / e if e > 0.0 else 0.0
+        return f_n, stiffness, stiffness, e, reach
+    began = per_reach(old) * reach
+    half = 0.5 * (e - reach) if e > reach else 0.0
+    softness = 1.0 / (per_reach(v) * (v.gamma + 1.0))
+    kept = half * math.sqrt(reach / old.depth)
+    stored = began * reach / (old.gamma + 1.0) + began * kept
+    f_n = (kept + math.sqrt(kept * kept + 4.0 * softness * stored)) / (2.0 * softness)
+    unloading = old.gamma * per_reach(old)
+    stiffness = 0.5 * (f_n - began) / half if half > 0.0 else unloading
+    reach = f_n / per_reach(v)
+    return f_n, stiffness, unloading, reach, reach
+
+
+def lower(s, share):
+    """F_N falls to a share of what it was, without an unloading."""
+    s.approach *= share
+    s.reach *= share
+
+
+def extent(v, s):
+    """What is left of the contact's extent as it is released: eta of the sliders, 1 at its reach."""
+    if s.approach <= 0.0:
+        return 0.0
+    return (s.approach / s.reach) ** (v.gamma / v.backbone) if s.approach < s.reach else 1.0
+
+
+def slider_limits(p, v, f_n, eta):
+    """Greatest deflection of each slider under the normal force f_n at the extent eta: their forces then add up to mu F_N."""
     limit = [0.0] * SLIDERS
     if f_n <= 0.0:
         return limit
-    eta = (f_n / v.f_n0) ** (1.0 / v.backbone)
     total = 0.0
     for i in range(SLIDERS):
         limit[i] = eta - v.lost[i] if eta > v.lost[i] else 0.0
@@ -385,22 +451,22 @@ def press(p, s, v, h, increment):
     dh = h - s.h
     grown = h > s.h_max
     first = grown and (s.x == 0.0 or not s.h_max > 0.0)
-    trial = v.f_n0
-    stiffness = v.slope
-    elastic_stiffness = v.gamma * v.f_n0 / v.depth
     e = s.approach + dh
+    answer = v.f_n0, v.slope, v.gamma * v.f_n0 / v.depth, v.depth, v.depth
     if grown and s.h_max > 0.0:
         old = virgin(p, s.h_max)
         keep = old.k_t / v.k_t
         if keep < 1.0:
             s.deflection = [[keep * q[0], keep * q[1]] for q in s.deflection]
         if not first:
-            trial = force_at(old, e)
-            stiffness = elastic_stiffness = old.gamma * trial / e if e > 0.0 else 0.0
+            answer = elastic_at(old, v, True, s.reach, e)
     elif not grown:
-        trial = force_at(v, e)
-        stiffness = elastic_stiffness = v.gamma * trial / e if e > 0.0 else 0.0
+        answer = elastic_at(v, v, False, s.reach, e)
+    trial, stiffness, elastic_stiffness, approach, reach = answer
     f_n = trial if trial < v.f_n0 else v.f_n0
+    if dh != 0.0:
+        s.approach, s.reach = (approach, reach) if trial < v.f_n0 else (v.depth, v.depth)
+    eta = extent(v, s)
     if dh == 0.0:
         return f_n, s.x, v.slope if s.x == 0.0 and s.h == s.h_max else stiffness, 0.0, 0.0
     elastic = mobilisation(v, f_n)
@@ -408,7 +474,7 @@ def press(p, s, v, h, increment):
         return f_n, elastic if elastic > s.x else s.x, stiffness, 0.0, 0.0
     if trial >= v.f_n0 and grown:
         stiffness = v.slope
-    s.deflection = slide(s.deflection, slider_limits(p, v, f_n), (0.0, 0.0))
+    s.deflection = slide(s.deflection, slider_limits(p, v, f_n, eta), (0.0, 0.0))
     force = slider_force(v, s.deflection)
     f_t = math.sqrt(force[0] * force[0] + force[1] * force[1])
     if is_elastic(v):
@@ -424,6 +490,7 @@ def press(p, s, v, h, increment):
     share = yield_share(v, c)
     highest = pressed_cap(v, share, f_t)[0]
     r = f_t / f_n
+    c = flow_coefficient(p, v, c, r)
     normal = max(1.0 - c * (r * r), LEAST_NORMAL)
     tangential = 2.0 * c * r
     across = max(1.0 - share * (r * r), LEAST_NORMAL)
@@ -434,11 +501,16 @@ def press(p, s, v, h, increment):
     forward = max((force[0] * increment[0] + force[1] * increment[1]) / f_t, 0.0)
     # What of delta_T flows. Where the contact does not move as far, F_T falls, and F_N rises along the yield curve: that takes some of the press.
     steady = part * (tangential / normal) * plastic
+    if grown and softer > 0.0:
+        # In a steady press the sliders' force grows too, and c is of all of delta_T over all of h.
+        all_of_it = plastic / softer
+        grows = r * v.slope * (f_n / v.f_n0) / v.k_t
+        steady = max(min(part * ((tangential / normal - grows) * all_of_it), forward), steady)
     flows, taken_back = steady, 0.0
     if forward < steady:
         stiff = normal * across * elastic_stiffness
         soft = tangential * turn * v.k_t
-        flows = forward + (steady - forward) * (stiff / (stiff + soft))
+        flows = forward + TAKEN_BACK * (steady - forward) * (stiff / (stiff + soft))
         taken_back = 1.0 - forward / steady
     flow = v.k_t * flows / f_t
     # The linear part of the virgin curve flows too, and what it takes of delta_T does not harden.
@@ -462,20 +534,23 @@ def press(p, s, v, h, increment):
         slope = v.slope * (raised / v.f_n0 + gain) + v.f_n0 * gain * rate
     slope = slope if raised < f_n and slope < stiffness else stiffness
     x = elastic if f_n < on_curve else x  # where F_N is below the curve, it is F_N that tells the place
-    f_n = raised if raised < f_n else f_n
+    if raised < f_n:
+        lower(s, raised / f_n)
+        f_n = raised
     back = (1.0 - keep) / v.k_t
-    s.deflection = slide(s.deflection, slider_limits(p, v, f_n), (-back * force[0], -back * force[1]))
+    s.deflection = slide(s.deflection, slider_limits(p, v, f_n, eta), (-back * force[0], -back * force[1]))
     if taken_back > 0.0 and left < GONE:
         s.deflection = [[0.0, 0.0] for _ in range(SLIDERS)]
     x = x if x < s.x else s.x
     # It forgets with the growth of the contact, and as F_T is taken back.
     kept = math.exp(-plastic / h - FORGETS * (taken_back * taken_back) * flow)
     s.sheared = x + (s.sheared - x) * kept if s.sheared > x else x
+    s.reversed *= kept
     return f_n, x, slope, flow, sudden
 
 
 def reverse(p, s, out, v, before, force_before, increment):
-    """The sliders slip and stick at the F_N of full slip, or the contact was released: it loses what a reversal of the slip costs besides."""
+    """The sliders slip and stick at the F_N of full slip or next to it, or the contact was released: it loses what a reversal of the slip costs besides."""
     size = math.sqrt(increment[0] * increment[0] + increment[1] * increment[1])
     held = math.sqrt(force_before[0] * force_before[0] + force_before[1] * force_before[1])
     if s.x >= MOST or not size > 0.0 or held > SLIDING * (p.friction * out.f_n):
@@ -486,24 +561,40 @@ def reverse(p, s, out, v, before, force_before, increment):
     if not 0.0 < stick < 1.0:
         return
     # What F_N is above that of its x stays above it.
-    above = max(out.f_n - v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0)), 0.0)
-    rate = 4.0 * GATHERED * (MOST - s.x) * (v.k_t / (p.friction * v.f_n_slip))
-    s.x = min(s.x + rate * (stick * (1.0 - stick)) * size, MOST)
-    cap = v.f_n_slip * (1.0 - REVERSED * (s.x - 1.0)) + above
-    if not cap < out.f_n:
-        return
-    out.f_n = cap
-    s.approach = approach_at(v, cap)
-    limit = slider_limits(p, v, cap)
+    stands = reversed_cap(v, s.x)
+    above = max(out.f_n - stands, 0.0)
+    rate = 4.0 * GATHERED * (v.k_t / (p.friction * v.f_n_slip))
+    falling = REVERSED * v.f_n_slip
+    if s.x < 1.0:
+        # Next to full slip alone: F_T/F_N over mu to the power 24.
+        near = tangential_shape(v, s.x)[0] * v.f_n_slip / stands
+        near = near * near * near
+        near = near * near
+        near = near * near
+        rate *= near * near
+        falling = (v.f_n0 - v.f_n_slip) * normal_shape(v, s.x)[1]
+    gain = rate * (stick * (1.0 - stick)) * size
+    rate = rate * (MOST - s.x)
+    s.x = min(s.x + (MOST - s.x) * gain, MOST)
+    s.reversed = min(s.reversed + (1.0 - s.reversed) * gain, 1.0)
+    # The sliders of a contact at rest are those that it came to rest with.
+    sharpen(v, s.sheared, s.reversed)
+    eta = extent(v, s)
+    cap = reversed_cap(v, s.x) + above
+    lowers = cap < out.f_n
+    if lowers:
+        lower(s, cap / out.f_n)
+        out.f_n = cap
+    limit = slider_limits(p, v, out.f_n, eta)
     s.deflection = slide(before, limit, increment)
     out.f_t = slider_force(v, s.deflection)
-    loss = REVERSED * v.f_n_slip * rate if s.x < MOST else 0.0
+    loss = falling * rate if lowers and s.x < MOST else 0.0
     for j in range(2):
         stiffer = (rise[0] * out.df_t_ddelta[0][j] + rise[1] * out.df_t_ddelta[1][j]) / (risen * v.k_t)
         out.df_n_ddelta[j] = -loss * ((1.0 - 2.0 * stick) * stiffer + stick * stick * increment[j] / size)
     out.df_t_ddelta = slider_stiffness(v, before, limit, increment)
     for j in range(2):
-        falls = (1.0 - stick) * out.df_n_ddelta[j] / cap
+        falls = (1.0 - stick) * out.df_n_ddelta[j] / out.f_n
         for i in range(2):
             out.df_t_ddelta[i][j] += falls * out.f_t[i]
 
@@ -512,7 +603,8 @@ def shear(p, s, out, v, f_n, sudden, increment):
     """Moves delta_T with h held."""
     before = s.deflection
     force_before = slider_force(v, before)
-    limit = slider_limits(p, v, f_n)
+    eta = extent(v, s)
+    limit = slider_limits(p, v, f_n, eta)
     s.deflection = slide(before, limit, increment)
     out.f_n = f_n
     out.f_t = slider_force(v, s.deflection)
@@ -545,13 +637,13 @@ def shear(p, s, out, v, f_n, sudden, increment):
             falls = 2.0 * share / (v.f_n0 * math.sqrt(q)) if highest > before_cap and q > 0.0 and trial > 0.0 else 0.0
             for j in range(2):
                 out.df_n_ddelta[j] = -falls * (out.f_t[0] * out.df_t_ddelta[0][j] + out.f_t[1] * out.df_t_ddelta[1][j])
+            lower(s, cap / f_n)
             out.f_n = cap
-            s.approach = approach_at(v, cap)
-            limit = slider_limits(p, v, cap)
+            limit = slider_limits(p, v, cap, eta)
             s.deflection = slide(before, limit, increment)
             out.f_t = slider_force(v, s.deflection)
             out.df_t_ddelta = slider_stiffness(v, before, limit, increment)
-        elif s.x >= 1.0:
+        elif s.x >= 1.0 or (s.x > 0.0 and not raised):
             reverse(p, s, out, v, before, force_before, increment)
         return
     direction = [out.f_t[0] / trial, out.f_t[1] / trial]
@@ -579,8 +671,8 @@ def shear(p, s, out, v, f_n, sudden, increment):
     out.f_n = lowered if lowered < f_n else f_n
     s.x = 1.0 if AT_SLIP * out.f_n <= v.f_n_slip else x
     s.sheared = x
-    s.approach = approach_at(v, out.f_n)
-    limit = slider_limits(p, v, out.f_n)
+    lower(s, out.f_n / f_n)
+    limit = slider_limits(p, v, out.f_n, eta)
     s.deflection = slide(before, limit, increment)
     held = slider_force(v, s.deflection)
     stiffness = slider_stiffness(v, before, limit, increment)
@@ -627,10 +719,8 @@ def update(p, state, h, increment):
     if not greatest > 0.0:
         s.h = h
         return s, out
-    v = virgin(p, greatest, state.sheared)
+    v = virgin(p, greatest, state.sheared, state.reversed)
     f_n, x, df_n_dh, flow, sudden = press(p, s, v, h, increment)
-    if h != state.h:
-        s.approach = approach_at(v, f_n) if f_n > 0.0 else state.approach + (h - state.h)
     s.h = h
     s.h_max = greatest
     s.x = x
@@ -642,7 +732,7 @@ def update(p, state, h, increment):
     shear(p, s, out, v, f_n, sudden, (share * increment[0], share * increment[1]))
     out.df_t_ddelta = [[share * k for k in row] for row in out.df_t_ddelta]
     out.df_n_ddelta = [share * k for k in out.df_n_ddelta]
-    out.a = v.a * (s.approach / v.depth) ** (v.gamma - 1.0)
+    out.a = v.a * (s.approach / s.reach) ** (v.gamma - 1.0)
     return s, out
 
 
@@ -654,6 +744,6 @@ def stored_energy(p, state):
     total = 0.0
     for w, q in zip(v.weight, state.deflection):
         total += w * (q[0] * q[0] + q[1] * q[1])
-    return force_at(v, state.approach) * state.approach / (v.gamma + 1.0) + 0.5 * v.k_t * total
+    return force_at(v, state.reach, state.approach) * state.approach / (v.gamma + 1.0) + 0.5 * v.k_t * total
 
 
