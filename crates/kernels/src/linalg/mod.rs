@@ -130,8 +130,8 @@ pub enum SolverKind {
     Direct,
 }
 
-/// A solver for a sequence of systems on one pattern, whose matrix is held in `T`. Right-hand sides,
-/// solutions and residuals are in f64 whatever `T` is.
+/// A solver for a sequence of systems on one pattern, whose matrix is held in `T`. Right-hand
+/// sides, solutions and residuals are in f64 whatever `T` is.
 #[derive(Debug)]
 pub struct LinearSolver<T = f64> {
     method: Method,
