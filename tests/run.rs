@@ -447,17 +447,10 @@ fn a_contact_that_leaves_the_fine_mesh_is_computed_on_a_larger_one() {
     }
 }
 
-/// Whether SIGHUP is ignored here, and so in what is started from here, as far as the system tells.
-#[cfg(unix)]
-fn hangups_are_ignored() -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).map(str::trim);
-    mask.and_then(|mask| u64::from_str_radix(mask, 16).ok()).is_some_and(|mask| mask & 1 == 1)
-}
-
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
+    use asperity::internals::cli::signals::is_ignored;
     use rustix::process::{Pid, Signal, kill_process};
     use std::time::{Duration, Instant};
 
@@ -479,7 +472,7 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
         kill_process(Pid::from_child(&child), signal).expect("a signal is sent");
         let output = child.wait_with_output().expect("it ends");
         let message = stderr(&output);
-        if signal == Signal::HUP && hangups_are_ignored() {
+        if signal == Signal::HUP && is_ignored(signal.as_raw()) {
             // These tests were started by `nohup`, and so was the run: it goes on.
             assert_eq!(output.status.code(), Some(0), "{message}");
             continue;

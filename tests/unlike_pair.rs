@@ -140,7 +140,7 @@ fn which_body_has_the_slaves_hardly_matters() {
     let ends = |steps: &Steps, segment: usize| {
         steps.iter().rfind(|(row, _)| row.segment == segment).map(|(row, _)| *row).unwrap_or_default()
     };
-    // 0.34 % and 0.25 %: the ripple of the two, whose points enter the contact one by one.
+    // 0.10 % and 0.001 % in F_N: the ripple of the two, whose points enter the contact one by one.
     for segment in [0, 1] {
         let [one, other] = [&both[0], &both[1]].map(|steps| ends(steps, segment));
         assert!((one.f_n / other.f_n - 1.0).abs() < 5e-3, "{} and {}", one.f_n, other.f_n);

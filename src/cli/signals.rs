@@ -21,7 +21,7 @@ const ONE_SIGNAL: Duration = Duration::from_millis(250);
 pub fn stop_flag() -> Result<Arc<AtomicBool>, CliError> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
     let failed = |source| CliError::Signals { source };
-    let wanted = [SIGINT, SIGTERM, SIGUSR1].into_iter().chain((!ignored(SIGHUP)).then_some(SIGHUP));
+    let wanted = [SIGINT, SIGTERM, SIGUSR1].into_iter().chain((!is_ignored(SIGHUP)).then_some(SIGHUP));
     let mut signals = signal_hook::iterator::Signals::new(wanted).map_err(failed)?;
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -39,9 +39,10 @@ pub fn stop_flag() -> Result<Arc<AtomicBool>, CliError> {
     Ok(stop)
 }
 
-/// Whether a signal was ignored when the program started, as far as the system tells.
+/// Whether a signal is ignored, as far as the system tells: where the program is started, by what
+/// started it (`nohup`).
 #[cfg(unix)]
-fn ignored(signal: i32) -> bool {
+pub fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).map(str::trim);
     mask.and_then(|mask| u64::from_str_radix(mask, 16).ok()).is_some_and(|mask| mask >> (signal - 1) & 1 == 1)

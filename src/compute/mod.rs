@@ -86,8 +86,8 @@ pub struct ForceRequest<'a> {
     pub outcome: Outcome,
 }
 
-/// Where blocks of a tangent go, in f64 or each rounded once to f32, which is all that a solver
-/// needs: it holds its matrices in f32.
+/// Where the blocks of a tangent go: in f32 for multigrid, which holds its matrices so; in f64 for
+/// the direct solver, and for comparisons.
 #[derive(Debug)]
 pub enum Blocks<'a> {
     /// In f64.

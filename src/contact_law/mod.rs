@@ -66,6 +66,7 @@ pub use virgin::{
     BY_NUMBERS, COLUMNS, ContactError, ContactParameters, KNOTS, LEVELS, PIECES, POINTS, ROUNDING, SLIDERS, SPARE, Shapes,
     Virgin, VirginPoint, unloading_exponent,
 };
+pub use yielding::measured_slope;
 
 #[cfg(test)]
 mod tests;

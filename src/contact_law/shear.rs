@@ -51,7 +51,6 @@ fn reverse(
     // What F_N is above that of its x stays above it.
     let stands = reversed_cap(p, virgin, next.x);
     let above = if out.f_n > stands { out.f_n - stands } else { 0.0 };
-    let above = if above > 0.0 { above } else { 0.0 };
     let mut rate = 4.0 * GATHERED * (k_t / (p.friction * virgin.point.f_n_slip));
     let mut falling = REVERSED * virgin.point.f_n_slip;
     if next.x < 1.0 {

@@ -75,10 +75,15 @@ pub(super) fn yield_share(virgin: &Virgin, c: f64) -> f64 {
     PRESSED * (1.0 - recovered(virgin)) * c
 }
 
-/// c of the flow at the ratio `r` of F_T to F_N, from the `c` that was measured where
-/// d(delta_T)/dh is mu/(1/2 + mu^2/4).
+/// delta_T over h of the oblique press by which c is measured: at c = 2 its F_T comes to half of mu
+/// F_N.
+pub fn measured_slope(mu: f64) -> f64 {
+    2.0 * mu / (1.0 + 0.5 * mu * mu)
+}
+
+/// c of the flow at the ratio `r` of F_T to F_N, from the `c` that was measured.
 pub(super) fn flow_coefficient(p: &ContactParameters, virgin: &Virgin, c: f64, r: f64) -> f64 {
-    let slope = 2.0 * p.friction / (1.0 + 0.5 * p.friction * p.friction);
+    let slope = measured_slope(p.friction);
     let measured = ((1.0 + slope * slope / c).sqrt() - 1.0) / slope;
     let share = if r < 2.0 * measured { r / measured } else { 2.0 };
     c * (1.0 + (recovered(virgin) - NO_CHANGE) * (share - 1.0))
@@ -117,7 +122,7 @@ pub(super) fn reversed_cap(p: &ContactParameters, virgin: &Virgin, x: f64) -> f6
 }
 
 /// F_N over the reach of a contact: 2 E* a/gamma.
-pub(super) fn per_reach(virgin: &Virgin) -> f64 {
+fn per_reach(virgin: &Virgin) -> f64 {
     virgin.point.f_n0 / virgin.depth
 }
 
@@ -138,11 +143,14 @@ pub(super) struct Elastic {
     pub(super) reach: f64,
 }
 
-/// The elastic response of a contact with this reach at the approach `e`, on its way from the
-/// greatest h of `old` to that of `virgin`, or below it in one that does not grow. Beyond its reach
-/// it stores F_N^2/(k (gamma + 1)), k being F_N over the reach: the work, by the mean of the forces
-/// before and after, of a contact that was not sheared; of one whose reach shear has made less, in
-/// part. Of simulated contacts that were sheared first and pressed on then.
+/// The elastic response at the approach `e` of a contact with this reach. `virgin` is first loading
+/// at the greatest h so far and `old` the same before the step; they differ if the contact has
+/// `grown`.
+///
+/// Beyond its reach the contact stores the work of the step, with the mean of the forces before and
+/// after; the energy is F_N^2/(k (gamma + 1)), k = F_N/reach. Where shear has made the reach
+/// smaller than D, it stores sqrt(reach/D) of the work only. Of simulated contacts that were
+/// sheared first and pressed on then.
 pub(super) fn elastic_at(old: &Virgin, virgin: &Virgin, grown: bool, reach: f64, e: f64) -> Elastic {
     if e <= reach && !grown {
         let f_n = force_at(virgin, reach, e);

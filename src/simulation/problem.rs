@@ -265,7 +265,7 @@ impl Problem {
         if let Some((slave, series)) = &mut self.couple {
             *slave = 1 - *slave;
             series.master_share = 1.0 - series.master_share;
-            // The full guess is for a slave that yields first.
+            // The full guess needs the softer body as the slave.
             self.pressed_in_full = false;
         }
     }

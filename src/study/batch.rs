@@ -74,13 +74,14 @@ impl OwnBlocks {
         }
     }
 
-    /// Copies to where they were asked for; of another precision there is nothing to copy.
-    fn copy_to(&self, asked: &mut Blocks<'_>) {
+    /// Copies to where they were asked for.
+    fn copy_to(&self, asked: &mut Blocks<'_>) -> Result<(), ComputeError> {
         match (self, asked) {
             (Self::Double(own), Blocks::Double(asked)) => asked.copy_from_slice(own),
             (Self::Single(own), Blocks::Single(asked)) => asked.copy_from_slice(own),
-            _ => {}
+            _ => return Err(ComputeError::Device("a tangent came back in another precision".to_owned())),
         }
+        Ok(())
     }
 }
 
@@ -476,7 +477,7 @@ impl Compute for Guest {
             let displacement = filled(&mut self.displacement, request.displacement);
             let ask = Ask::Tangent { displacement, blocks, outcome: Outcome::Valid };
             if let Ask::Tangent { displacement, blocks, outcome } = self.ask(request.case, ask)? {
-                blocks.copy_to(&mut request.blocks);
+                blocks.copy_to(&mut request.blocks)?;
                 request.outcome = outcome;
                 (self.displacement, self.blocks) = (displacement, blocks);
             }

@@ -1594,8 +1594,8 @@ ASPERITY_FN void asperity_update(
                 p.eta = e < state->reach ? (e > zero ? asperity_exponential(at_trial * v.gamma * v.per_backbone) : zero) : one;
             }
         } else {
-            /* Beyond its reach it stores F_N^2/(k (gamma + 1)), k being F_N over the reach: the work, by the mean of the forces before and after, of a contact that was not sheared; of one
-             * whose reach shear has made less, in part. */
+            /* Beyond its reach the contact stores the work of the step, with the mean of the forces before and after; the energy is F_N^2/(k (gamma + 1)), k = F_N/reach. Where shear has
+             * made the reach smaller than D, it stores sqrt(reach/D) of the work only. */
             began = asperity_per_reach(before) * state->reach;
             half = e > state->reach ? ASPERITY_R(0.5) * (e - state->reach) : zero;
             softness = one / (asperity_per_reach(&v) * (v.gamma + one));

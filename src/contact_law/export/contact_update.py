@@ -339,8 +339,8 @@ def force_at(v, reach, e):
 
 def elastic_at(old, v, grown, reach, e):
     """The elastic response of a contact with this reach at the approach e, on its way from the greatest h of `old` to that of `v`: F_N, dF_N/dh, that of an unloading, approach, reach.
-    Beyond its reach it stores F_N^2/(k (gamma + 1)), k being F_N over the reach: the work, by the mean of the forces before and after, of a contact that was not sheared; of one
-    whose reach shear has made less, in part."""
+    Beyond its reach the contact stores the work of the step, with the mean of the forces before and after; the energy is F_N^2/(k (gamma + 1)), k = F_N/reach. Where shear has made
+    the reach smaller than D, it stores sqrt(reach/D) of the work only."""
     if e <= reach and not grown:
         f_n = force_at(v, reach, e)
         stiffness = v.gamma * f_n / e if e > 0.0 else 0.0

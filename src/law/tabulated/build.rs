@@ -10,7 +10,7 @@ use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
 use crate::contact_law::path::drive;
-use crate::contact_law::{Centres, POINTS, unloading_exponent};
+use crate::contact_law::{Centres, POINTS, measured_slope, unloading_exponent};
 use crate::law::LawError;
 use crate::law::model::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
@@ -93,11 +93,11 @@ pub fn case_of(case: &Case, elements: usize) -> Case {
     case
 }
 
-/// delta_T over h of the oblique press that tells how the contact yields under F_T: with a yield
-/// coefficient of 2 it comes to half of mu. `None` where nothing slips or yields.
+/// delta_T over h of the oblique press that tells how the contact yields under F_T. `None` where
+/// nothing slips or yields.
 fn oblique_slope(case: &Case) -> Option<f64> {
     match case.contact.friction {
-        Friction::Coefficient(mu) if mu > 0.0 => first_yield(case).ok()?.map(|_| 2.0 * mu / (1.0 + 0.5 * mu * mu)),
+        Friction::Coefficient(mu) if mu > 0.0 => first_yield(case).ok()?.map(|_| measured_slope(mu)),
         _ => None,
     }
 }

@@ -3,9 +3,9 @@
 
 use super::host::HostIterate;
 use super::{Asked, Correction};
-use crate::compute::Outcome;
 use crate::compute::handle::Evaluate;
 use crate::compute::linear::{Ended, LinearRequest, Side, SideReport};
+use crate::compute::{Blocks, Outcome};
 use crate::contact::pair::leave_even;
 use crate::linalg::{BlockMatrix, LinalgError, SolverKind};
 use crate::mesh::Mesh;
@@ -148,23 +148,13 @@ impl HostIterate {
     ) -> Result<Correction, Halt> {
         let Asked { control, eta, first } = asked;
         let mesh = &case.model().mesh.clone();
-        let mut lap = Lap::start();
-        let outcome = match self.linear.matrix_mut() {
-            None => return Err(LinalgError::NotUpdated.into()),
-            Some(Matrix::Double(matrix)) => case.tangent(&self.current.u, (&mut matrix.blocks).into())?,
-            Some(Matrix::Single(matrix)) => case.tangent(&self.current.u, (&mut matrix.blocks).into())?,
-        };
-        if let Outcome::Inverted { element, point } = outcome {
-            return Err(StepFailure::Inverted { element, point }.into());
-        }
-        lap.end(times, Phase::Tangent);
         let held = control.normal_force.is_some().then_some(&mut self.functional);
         match self.linear.matrix_mut() {
-            None => {}
-            Some(Matrix::Double(matrix)) => state_rows(matrix, mesh, &self.boundary, &self.current, held),
-            Some(Matrix::Single(matrix)) => state_rows(matrix, mesh, &self.boundary, &self.current, held),
+            None => return Err(LinalgError::NotUpdated.into()),
+            Some(Matrix::Double(matrix)) => form(matrix, case, &self.boundary, &self.current, held, times)?,
+            Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &self.current, held, times)?,
         }
-        lap.end(times, Phase::Contact);
+        let mut lap = Lap::start();
         match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
             (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
             (Systems::Direct(solver), None, None) => solver.refresh(&self.fixed)?,
@@ -236,15 +226,25 @@ impl HostIterate {
     }
 }
 
-/// Puts the conditions of contact into a tangent; before it, where the normal force is held, takes
-/// from it how the plate's force follows the displacements.
-fn state_rows<T: Real>(
+/// Forms the matrix: the tangent, and over a plane or a rigid sphere the contact's rows in it.
+/// `held`, where the normal force is, receives how the plate's force follows the displacements.
+fn form<T: Real>(
     matrix: &mut BlockMatrix<T>,
-    mesh: &Mesh,
+    case: &mut dyn Evaluate,
     boundary: &Boundary,
     current: &Trial,
     held: Option<&mut Vec<f64>>,
-) {
+    times: &mut PhaseTimes,
+) -> Result<(), Halt>
+where
+    for<'a> Blocks<'a>: From<&'a mut Vec<[T; 9]>>,
+{
+    let mesh = &case.model().mesh.clone();
+    let mut lap = Lap::start();
+    if let Outcome::Inverted { element, point } = case.tangent(&current.u, (&mut matrix.blocks).into())? {
+        return Err(StepFailure::Inverted { element, point }.into());
+    }
+    lap.end(times, Phase::Tangent);
     if let Some(functional) = held {
         plate_functional(matrix, &boundary.plate, functional);
     }
@@ -254,6 +254,8 @@ fn state_rows<T: Real>(
     if boundary.pair.is_none() && boundary.encounter.is_none() {
         apply_contact(matrix, mesh, &current.rows);
     }
+    lap.end(times, Phase::Contact);
+    Ok(())
 }
 
 /// The relative residual at which that of the contact's forces is `share`.
