@@ -148,6 +148,7 @@ wait_for() { # seconds, what, command
     fail "waited $seconds s for $what"
 }
 running() { [ "$(state "$1")" = RUNNING ]; }
+answers() { scontrol ping 2>/dev/null | grep -q UP && sinfo --noheader --format %t 2>/dev/null | grep -qE '^(mix|alloc|idle)$'; }
 gone() { [ -z "$(squeue --noheader --format %i 2>/dev/null)" ]; }
 # Slurm holds what was requeued for two minutes, which a test has not.
 all_gone() {
@@ -156,8 +157,12 @@ all_gone() {
 }
 # The program that a task runs: the child of its script.
 process_of() { pgrep -f -- "--out $out --shard $1/4 " | head -n 1; }
-# As many checkpoints or results as say that a share is well under way.
-under_way() { [ -n "$(process_of "$1")" ]; }
+# A share that is to be disturbed stands still until then, however fast its cases are.
+stopped() {
+    local process
+    process=$(process_of "$1")
+    [ -n "$process" ] && kill -STOP "$process" 2>/dev/null
+}
 
 out=$scratch/slurm
 say "asperity study --slurm --submit"
@@ -165,23 +170,25 @@ submitted=$("$program" study "$scratch/study.toml" --out "$out" --device cpu --s
 echo "$submitted"
 array=$(sed -n 's/.*tasks \([0-9]*\),.*/\1/p' <<< "$submitted")
 
-wait_for 60 "share 1" under_way 1
-wait_for 60 "share 2" under_way 2
+wait_for 60 "share 1" stopped 1
+wait_for 60 "share 2" stopped 2
 say "killing the program of share 1 with -9"
 kill -9 "$(process_of 1)"
 say "requeueing share 2"
 scontrol requeue "${array}_2"
-sleep 2
+wait_for 90 "share 3" stopped 3
+wait_for 90 "share 4" stopped 4
 say "restarting slurmd"
 stop_daemon slurmd
 sleep 1
 start_slurmd
-wait_for 90 "share 3" under_way 3
+wait_for 90 "the node's return" answers
 say "cancelling share 3"
 scancel "${array}_3"
-wait_for 90 "share 4" under_way 4
 say "telling share 4 that its time is over"
 scancel --signal=USR1 --batch "${array}_4"
+sleep 1
+kill -CONT "$(process_of 4)"
 wait_for 400 "the end of all jobs" all_gone
 say "the table's job said:"
 cat "$out/slurm/table.log"
