@@ -263,11 +263,12 @@ impl Simulation {
         }
     }
 
-    /// Calls `work` in the pool of this simulation, if it has one.
+    /// Calls `work` in the pool of this simulation, or else in the one from which it is called: a
+    /// step has a hundred parallel loops, each of which would have to enter it.
     fn within_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
         match self.pool.clone() {
             Some(pool) => pool.install(|| work(self)),
-            None => work(self),
+            None => rayon::scope(|_| work(self)),
         }
     }
 

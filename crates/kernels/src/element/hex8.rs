@@ -310,7 +310,7 @@ pub fn tangent<R: Real>(
         moduli[i + 3][i + 3] += -v_p_j;
     }
     let g = &k.gradient;
-    let by_node = FourNodes::new(g);
+    let by_node = ByNode::new(g);
     // Volume change: h_a = sum_q V J grad N_a, the derivative of the current volume.
     let v_j = Lanes::from_fn(|q| geometry.volume.0[q] * (R::ONE + k.j_minus_1.0[q]));
     let h = by_node.volume_change(&v_j);
@@ -327,61 +327,79 @@ pub fn tangent<R: Real>(
         let t: [Lanes<R>; 3] =
             array(v, |i| (stress[VOIGT[i][0]] * g[b][0]).plus(stress[VOIGT[i][1]], g[b][1]).plus(stress[VOIGT[i][2]], g[b][2]));
         let same: Tensor<R> = array([v; 3], |i| array(v, |k| d[VOIGT[i][k]][i] + t[k]));
-        for half in 0..=b / 4 {
-            let mut block = [[R::ZERO; 4]; 9];
-            for q in 0..QUADRATURE_POINTS {
-                for (k, &gradient) in by_node.gradient[half][q].iter().enumerate() {
-                    for i in 0..3 {
-                        for j in 0..3 {
-                            let factor = if i == j { same[i][k].0[q] } else { d[VOIGT[i][k]][j].0[q] };
-                            block[3 * i + j] = R::mul_add_four([factor; 4], gradient, block[3 * i + j]);
-                        }
-                    }
-                }
-            }
-            for i in 0..3 {
-                for j in 0..3 {
-                    let factor = bulk * h[b / 4][j][b % 4];
-                    block[3 * i + j] = R::mul_add_four([factor; 4], h[half][i], block[3 * i + j]);
-                }
-            }
-            for a in 0..4 {
-                if 4 * half + a <= b {
-                    out[pair(4 * half + a, b)] = array(R::ZERO, |m| block[m][a]);
-                }
-            }
+        let factor = |q: usize, k: usize, i: usize, j: usize| if i == j { same[i][k].0[q] } else { d[VOIGT[i][k]][j].0[q] };
+        let volume = |i: usize, j: usize| (bulk * h[j][b], h[i]);
+        // Nodes a after b are not asked for: up to the fourth, half a register will do.
+        if b < 4 {
+            let block = row_blocks(R::mul_add_four, factor, |q, k| first_four(by_node.gradient[q][k]), |i, j| {
+                let (factor, h) = volume(i, j);
+                (factor, first_four(h))
+            });
+            (0..=b).for_each(|a| out[pair(a, b)] = array(R::ZERO, |m| block[m][a]));
+        } else {
+            let block = row_blocks(R::mul_add_eight, factor, |q, k| by_node.gradient[q][k], volume);
+            (0..=b).for_each(|a| out[pair(a, b)] = array(R::ZERO, |m| block[m][a]));
         }
     }
     Ok(())
 }
 
-/// Gradients of the shape functions with four nodes side by side instead of the quadrature points:
-/// sums over points are then sums of vectors.
-struct FourNodes<R> {
-    /// Gradients dN_a/dx_k of the nodes 0 to 3 and 4 to 7: `[half][q][k][a % 4]`.
-    gradient: [[[[R; 4]; 3]; QUADRATURE_POINTS]; 2],
-}
-
-impl<R: Real> FourNodes<R> {
-    #[inline(always)]
-    fn new(gradient: &[[Lanes<R>; 3]; NODES]) -> Self {
-        let node = |half: usize, q: usize, k: usize, a: usize| gradient[4 * half + a][k].0[q];
-        Self {
-            gradient: array([[[R::ZERO; 4]; 3]; QUADRATURE_POINTS], |half| {
-                array([[R::ZERO; 4]; 3], |q| array([R::ZERO; 4], |k| array(R::ZERO, |a| node(half, q, k, a))))
-            }),
+/// Blocks of several nodes a with one node b, `[3 i + j][a]`: the sum of `factor(q, k, i, j)
+/// dN_a/dx_k` over points and directions, and the change of volume, a factor and the nodes' own.
+#[inline(always)]
+fn row_blocks<R: Real, const N: usize>(
+    mul_add: impl Fn([R; N], [R; N], [R; N]) -> [R; N],
+    factor: impl Fn(usize, usize, usize, usize) -> R,
+    gradient: impl Fn(usize, usize) -> [R; N],
+    volume: impl Fn(usize, usize) -> (R, [R; N]),
+) -> [[R; N]; 9] {
+    let mut block = [[R::ZERO; N]; 9];
+    for q in 0..QUADRATURE_POINTS {
+        for k in 0..3 {
+            let gradient = gradient(q, k);
+            for i in 0..3 {
+                for j in 0..3 {
+                    block[3 * i + j] = mul_add([factor(q, k, i, j); N], gradient, block[3 * i + j]);
+                }
+            }
         }
     }
+    for i in 0..3 {
+        for j in 0..3 {
+            let (factor, h) = volume(i, j);
+            block[3 * i + j] = mul_add([factor; N], h, block[3 * i + j]);
+        }
+    }
+    block
+}
 
-    /// sum_q weight grad N_a, `[half][i][a % 4]`.
+#[inline(always)]
+fn first_four<R: Copy>(x: [R; NODES]) -> [R; 4] {
+    [x[0], x[1], x[2], x[3]]
+}
+
+/// Gradients of the shape functions with the nodes side by side instead of the quadrature points:
+/// sums over points are then sums of vectors.
+struct ByNode<R> {
+    /// Gradients dN_a/dx_k: `[q][k][a]`.
+    gradient: [[[R; NODES]; 3]; QUADRATURE_POINTS],
+}
+
+impl<R: Real> ByNode<R> {
     #[inline(always)]
-    fn volume_change(&self, weight: &Lanes<R>) -> [[[R; 4]; 3]; 2] {
-        let mut sum = [[[R::ZERO; 4]; 3]; 2];
-        for (sum, gradient) in sum.iter_mut().zip(&self.gradient) {
-            for (&weight, gradient) in weight.0.iter().zip(gradient) {
-                for (sum, gradient) in sum.iter_mut().zip(gradient) {
-                    *sum = R::mul_add_four([weight; 4], *gradient, *sum);
-                }
+    fn new(gradient: &[[Lanes<R>; 3]; NODES]) -> Self {
+        let nodes = |q: usize, k: usize| array(R::ZERO, |a| gradient[a][k].0[q]);
+        let none = [R::ZERO; NODES];
+        Self { gradient: array([none; 3], |q| array(none, |k| nodes(q, k))) }
+    }
+
+    /// sum_q weight grad N_a, `[i][a]`.
+    #[inline(always)]
+    fn volume_change(&self, weight: &Lanes<R>) -> [[R; NODES]; 3] {
+        let mut sum = [[R::ZERO; NODES]; 3];
+        for (&weight, gradient) in weight.0.iter().zip(&self.gradient) {
+            for (sum, gradient) in sum.iter_mut().zip(gradient) {
+                *sum = R::mul_add_eight([weight; NODES], *gradient, *sum);
             }
         }
         sum
