@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::gather::GatherPlan;
-use super::sweep::Sweep;
+use super::sweep::{Keep, Sweep};
 use super::{
     Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies,
     ForceRequest, Outcome, TangentRequest,
@@ -22,6 +22,10 @@ use crate::real::Real;
 
 /// Elements handed to a thread at a time: enough work to outweigh the handing.
 const CHUNK: usize = 64;
+/// Change of an element's displacement gradient within a step up to which a tangent in single
+/// precision that was formed before is taken again: it is off by about as much, a hundredth of what
+/// the linear systems are solved to. What yields, or is about to, is always formed anew.
+const SAME_TANGENT: f64 = 1e-3;
 /// The same for tangents and block rows, which take longer and of which a wave has few: enough of
 /// them for many threads.
 const WAVE_CHUNK: usize = 16;
@@ -47,20 +51,49 @@ struct Case<R, T> {
     /// Weight c of each contact node.
     weight: Vec<R>,
     on_symmetry_plane: Vec<bool>,
+    /// Shortest distance from an element's first node to another of its nodes.
+    size: Vec<T>,
+    /// Counts the changes of what steps start from: tangents of another step are not taken again.
+    step: u64,
+}
+
+/// The tangent of an element, and where it was formed.
+#[derive(Clone)]
+struct Held<T> {
+    tangent: Tangent<T>,
+    step: u64,
+    increment: Nodal<T>,
+    /// How far a node may have moved since, against the first.
+    reach: T,
+}
+
+impl<T: Real> Held<T> {
+    const NONE: Self =
+        Self { tangent: [[T::ZERO; 9]; hex8::PAIRS], step: 0, increment: [[T::ZERO; 3]; NODES], reach: T::ZERO };
+
+    /// Whether it will do for an increment of a step.
+    #[inline(always)]
+    fn holds(&self, step: u64, increment: &Nodal<T>) -> bool {
+        let moved = |a: usize, i: usize| (increment[a][i] - increment[0][i]) - (self.increment[a][i] - self.increment[0][i]);
+        // Not so of a NaN.
+        self.step == step && (1..NODES).all(|a| (0..3).all(|i| moved(a, i).abs() < self.reach))
+    }
 }
 
 /// Evaluates a batch on the CPU's cores, residuals and states in `R` and tangents in `T`.
 ///
 /// A tangent in f32 costs two thirds of one in f64, and is as good: the multigrid levels are in f32
-/// anyway, and the residual alone decides what a converged step is.
+/// anyway, and the residual alone decides what a converged step is. For the same reason it is not
+/// formed for each iteration of a step where an elastic element has hardly moved since the last.
+/// Tangents in `R` are exact.
 pub struct Cpu<R, T = R> {
     models: Vec<CaseModel>,
     cases: Vec<Case<R, T>>,
     plan: GatherPlan,
     element_force: Vec<Nodal<R>>,
     sweep: Sweep,
-    /// Tangents of the elements within the sweep's front.
-    element_tangent: Vec<Tangent<T>>,
+    /// Tangents of the elements within the sweep's front, or of all elements, of each case.
+    element_tangent: Vec<Vec<Held<T>>>,
     /// State and elastic energy of each element at the end of a step, before it is committed.
     next: Vec<(State<R>, R)>,
 }
@@ -100,13 +133,15 @@ impl<R: Real, T: Real> Cpu<R, T> {
             }
         }
         let cases = models.iter().map(Case::new).collect::<Result<_, _>>()?;
-        let sweep = Sweep::new(&first.mesh);
+        // The front of one case has room for the next one's.
+        let (keep, kept) = if takes_again::<R, T>() { (Keep::All, models.len()) } else { (Keep::Front, 1) };
+        let sweep = Sweep::new(&first.mesh, keep);
         Ok(Self {
             models,
             cases,
             plan,
             element_force: vec![[[R::ZERO; 3]; NODES]; elements],
-            element_tangent: vec![[[T::ZERO; 9]; hex8::PAIRS]; sweep.slots()],
+            element_tangent: vec![vec![Held::NONE; sweep.slots()]; kept],
             sweep,
             next: Vec::new(),
         })
@@ -133,6 +168,8 @@ impl<R: Real, T: Real> Case<R, T> {
             committed: vec![0.0; 3 * mesh.nodes.len()],
             weight: mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect(),
             on_symmetry_plane: mesh.contact_nodes.iter().map(|&n| on_plane[n as usize]).collect(),
+            size: mesh.elements.iter().map(|nodes| T::of(size(&nodes.map(|n| mesh.nodes[n as usize])))).collect(),
+            step: 1,
             geometry: geometry_of(&mesh)?,
             tangent_geometry: geometry_of(&mesh)?,
             mesh,
@@ -171,7 +208,7 @@ impl<R: Real, T: Real> Case<R, T> {
     /// elements is there.
     fn tangent<B: Real>(
         &self,
-        (plan, sweep, tangents): (&GatherPlan, &Sweep, &mut [Tangent<T>]),
+        (plan, sweep, tangents): (&GatherPlan, &Sweep, &mut [Held<T>]),
         displacement: &[f64],
         blocks: &mut [[B; 9]],
     ) -> Outcome {
@@ -181,8 +218,16 @@ impl<R: Real, T: Real> Case<R, T> {
             let out = &mut tangents[slot..slot + elements.len()];
             let outcome =
                 self.each_element(elements.start, WAVE_CHUNK, displacement, out, |case, e, committed, increment, out| {
+                    if takes_again::<R, T>() && out.holds(case.step, increment) {
+                        return Ok(());
+                    }
                     let start = &case.start[e].map(|p| PointState { be: p.be.map(convert), alpha: convert(p.alpha) });
-                    hex8::tangent(&case.tangent_geometry[e], case.tangent_material(e), start, committed, increment, out)
+                    let (geometry, material) = (&case.tangent_geometry[e], case.tangent_material(e));
+                    out.step = 0;
+                    let margin = hex8::tangent(geometry, material, start, committed, increment, &mut out.tangent)?;
+                    (out.step, out.increment) = (case.step, *increment);
+                    out.reach = case.size[e] * margin.min(T::of(SAME_TANGENT));
+                    Ok(())
                 });
             if outcome != Outcome::Valid {
                 return outcome;
@@ -190,7 +235,7 @@ impl<R: Real, T: Real> Case<R, T> {
             let mut complete: Vec<_> = complete.iter().map(|&node| (node, std::mem::take(&mut rows[node as usize]))).collect();
             let tangents = &*tangents;
             complete.par_iter_mut().with_min_len(WAVE_CHUNK).for_each(|(node, row)| {
-                gather_row(plan, &self.mesh, *node as usize, |element| &tangents[sweep.slot(element)], row);
+                gather_row(plan, &self.mesh, *node as usize, |element| &tangents[sweep.slot(element)].tangent, row);
             });
         }
         Outcome::Valid
@@ -243,6 +288,7 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
         let case = &mut self.cases[case];
+        case.step += 1;
         let weight = R::of(weight);
         case.start.par_iter_mut().zip(&case.state).with_min_len(CHUNK).for_each(|(start, state)| *start = state.start(weight));
         Ok(())
@@ -284,7 +330,8 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
             let case = &self.cases[request.case];
-            let assembly = (&self.plan, &self.sweep, &mut *self.element_tangent);
+            let tangents = request.case.min(self.element_tangent.len() - 1);
+            let assembly = (&self.plan, &self.sweep, self.element_tangent[tangents].as_mut_slice());
             request.outcome = match &mut request.blocks {
                 Blocks::Double(blocks) => case.tangent(assembly, request.displacement, blocks),
                 Blocks::Single(blocks) => case.tangent(assembly, request.displacement, blocks),
@@ -339,6 +386,7 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
                     energies.plastic += next.plastic_work.to_f64();
                     energies.max_alpha = next.points.iter().fold(energies.max_alpha, |m, p| m.max(p.alpha.to_f64()));
                 }
+                case.step += 1;
                 case.committed.copy_from_slice(request.displacement);
                 request.energies = energies;
             }
@@ -393,6 +441,7 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
 
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         let case = &mut self.cases[case];
+        case.step += 1;
         case.committed.clone_from(&state.displacement);
         for (e, s) in case.state.iter_mut().enumerate() {
             s.points = state.points[e].map(|p| PointState { be: p.be.map(R::of), alpha: R::of(p.alpha) });
@@ -402,6 +451,17 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
         }
         Ok(())
     }
+}
+
+/// Whether a tangent may be taken again: where it is less exact than the residual anyway.
+fn takes_again<R: Real, T: Real>() -> bool {
+    R::EPSILON.to_f64() < T::EPSILON.to_f64()
+}
+
+/// The shortest distance from the first node to another.
+fn size(nodes: &[[f64; 3]; NODES]) -> f64 {
+    let distance = |a: usize| (0..3).map(|i| (nodes[a][i] - nodes[0][i]).powi(2)).sum::<f64>().sqrt();
+    (1..NODES).map(distance).fold(f64::INFINITY, f64::min)
 }
 
 /// A number in another precision, rounded once.

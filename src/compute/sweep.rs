@@ -11,6 +11,15 @@ use crate::mesh::Mesh;
 /// the waves before it.
 const WAVE: usize = 512;
 
+/// Which contributions a sweep leaves behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Keep {
+    /// Those of all elements.
+    All,
+    /// Those of the last waves.
+    Front,
+}
+
 /// Waves of successive elements; after each, the rows that are complete.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Sweep {
@@ -21,8 +30,9 @@ pub(super) struct Sweep {
 }
 
 impl Sweep {
-    /// Plans the sweep of a mesh.
-    pub fn new(mesh: &Mesh) -> Self {
+    /// Plans the sweep of a mesh; the contributions of all elements are kept, or of those alone
+    /// whose rows are not complete.
+    pub fn new(mesh: &Mesh, keep: Keep) -> Self {
         let elements = mesh.elements.len();
         let lists = &mesh.node_elements;
         let mut rows = vec![Vec::new(); elements.div_ceil(WAVE)];
@@ -37,7 +47,11 @@ impl Sweep {
             }
             depth = depth.max(last - first + 1);
         }
-        Self { elements, rows, slots: elements.min(depth * WAVE) }
+        let slots = match keep {
+            Keep::All => elements,
+            Keep::Front => elements.min(depth * WAVE),
+        };
+        Self { elements, rows, slots }
     }
 
     /// Contributions that are kept at a time.
@@ -67,7 +81,8 @@ mod tests {
     fn every_row_finds_the_contributions_of_its_elements() {
         let sphere = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 8, fine_zone: 1.3 }).unwrap();
         for mesh in [brick(4, 3, 5, [1.0; 3]).unwrap(), brick(40, 3, 30, [1.0; 3]).unwrap(), sphere] {
-            let sweep = Sweep::new(&mesh);
+            let sweep = Sweep::new(&mesh, Keep::Front);
+            assert_eq!(Sweep::new(&mesh, Keep::All).slots(), mesh.elements.len());
             let mut kept = vec![usize::MAX; sweep.slots()];
             let mut summed = vec![0; mesh.nodes.len()];
             for (elements, rows) in sweep.waves() {
@@ -90,7 +105,7 @@ mod tests {
     #[test]
     fn the_front_is_short() {
         let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 16, fine_zone: 1.3 }).unwrap();
-        let sweep = Sweep::new(&mesh);
+        let sweep = Sweep::new(&mesh, Keep::Front);
         assert!(4 * sweep.slots() < mesh.elements.len(), "{} of {}", sweep.slots(), mesh.elements.len());
     }
 }

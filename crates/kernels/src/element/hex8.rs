@@ -283,6 +283,9 @@ pub const fn pair(a: usize, b: usize) -> usize {
 
 /// Symmetric consistent tangent of [`internal_force`] (the deviatoric moduli are the symmetrised
 /// ones of Simo & Hughes, box 9.2).
+///
+/// Returns about how far the displacement gradient may change before a point begins to yield: 0
+/// where one does, infinite in an elastic material.
 pub fn tangent<R: Real>(
     geometry: &Geometry<R>,
     material: &Material<R>,
@@ -290,7 +293,7 @@ pub fn tangent<R: Real>(
     committed: &Nodal<R>,
     increment: &Nodal<R>,
     out: &mut Tangent<R>,
-) -> Result<(), Invalid> {
+) -> Result<R, Invalid> {
     let k = kinematics(geometry, committed, increment);
     k.check()?;
     let (p, dp) = pressure(&material.elasticity, k.theta_minus_1);
@@ -341,7 +344,9 @@ pub fn tangent<R: Real>(
             (0..=b).for_each(|a| out[pair(a, b)] = array(R::ZERO, |m| block[m][a]));
         }
     }
-    Ok(())
+    // Uniaxial strain by that much takes the whole reserve; d of a shear takes d E/(1 + nu).
+    let reserve = response.reserve.0.iter().fold(response.reserve.0[0], |least, &reserve| least.min(reserve));
+    Ok(reserve.max(R::ZERO) / (R::of(3.0) * material.elasticity.shear))
 }
 
 /// Blocks of several nodes a with one node b, `[3 i + j][a]`: the sum of `factor(q, k, i, j)

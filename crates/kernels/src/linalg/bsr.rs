@@ -76,6 +76,26 @@ impl<T: Real> BlockMatrix<T> {
         });
     }
 
+    /// r -= A x where few nodes of x are not 0: rows without such a node are left out. The pattern
+    /// must be symmetric.
+    pub(super) fn subtract_product_of_few<V: Real + Widen<V>>(&self, x: &[V], r: &mut [V])
+    where
+        T: Widen<V>,
+    {
+        let x = x.as_chunks::<3>().0;
+        let mut touched = vec![false; self.rows()];
+        for j in (0..self.rows()).filter(|&j| x[j] != [V::ZERO; 3]) {
+            self.pattern.column[self.pattern.row(j)].iter().for_each(|&i| touched[i as usize] = true);
+        }
+        let touched = touched.as_slice();
+        each(&mut r.as_chunks_mut::<3>().0[..self.rows()], |i, r| {
+            if touched[i] {
+                let y = self.row_times(i, x);
+                *r = [r[0] - y[0], r[1] - y[1], r[2] - y[2]];
+            }
+        });
+    }
+
     /// Row `i` of A times x.
     #[inline(always)]
     pub(super) fn row_times<X: Widen<V>, V: Real>(&self, i: usize, x: &[[X; 3]]) -> [V; 3]

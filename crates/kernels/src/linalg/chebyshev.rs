@@ -5,6 +5,7 @@ use wide::f32x4;
 use super::bsr::BlockMatrix;
 use super::kernel::{Inverse, Node, inverse_times, row_times};
 use super::parallel::{each, each_of_two};
+use crate::lanes::array;
 use crate::mesh::pattern::Pattern;
 
 /// The polynomial damps the eigenvalues of D^-1 A from a lower end to this.
@@ -53,10 +54,14 @@ impl Smoother {
         &self.inverse
     }
 
-    /// After the matrix changed.
-    pub fn update(&mut self) {
+    /// After rows of the matrix changed.
+    pub fn update(&mut self, changed: &[bool]) {
         let (blocks, diagonal) = (&self.matrix.blocks, &self.matrix.pattern.diagonal);
-        each(&mut self.inverse, |i, inverse| *inverse = invert(&blocks[diagonal[i] as usize]));
+        each(&mut self.inverse, |i, inverse| {
+            if changed[i] {
+                *inverse = invert(&blocks[diagonal[i] as usize]);
+            }
+        });
     }
 
     /// x = the polynomial applied to b from x = 0.
@@ -120,6 +125,16 @@ pub(super) fn shares(high: f32, low: f32) -> impl Iterator<Item = [f32; 2]> {
 pub(super) fn invert(block: &[f32; 9]) -> Inverse {
     let mut a = block.map(f64::from);
     let scale = a.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+    let (c, determinant) = cofactors(&a);
+    // Nearly always.
+    if determinant.abs() >= 1e-7 * scale * scale * scale && determinant.is_normal() {
+        let reciprocal = 1.0 / determinant;
+        let inverse: [f32; 9] = array(0.0, |m| (c[m] * reciprocal) as f32);
+        // A finite number times 0 is 0, all others give NaN.
+        if inverse.iter().map(|x| x * 0.0).sum::<f32>() == 0.0 {
+            return array([0.0; 4], |c| [inverse[c], inverse[3 + c], inverse[6 + c], 0.0]);
+        }
+    }
     if scale == 0.0 || !scale.is_finite() {
         return [[0.0; 4]; 3];
     }

@@ -130,10 +130,20 @@ impl Transfer {
     }
 
     /// coarse = P^T fine P, leaving out the identity rows of fixed unknowns: those whose bits
-    /// `identity` sets for a node.
-    pub fn update(&mut self, fine: &BlockMatrix<f32>, identity: impl Fn(usize) -> u8 + Sync, coarse: &mut BlockMatrix<f32>) {
+    /// `identity` sets for a node. What does not depend on the rows of `fine` that have changed is
+    /// left as it is, and the rows of `coarse` that were formed anew are told.
+    pub fn update(
+        &mut self,
+        (fine, changed): (&BlockMatrix<f32>, &[bool]),
+        identity: impl Fn(usize) -> u8 + Sync,
+        (coarse, coarse_changed): (&mut BlockMatrix<f32>, &mut [bool]),
+    ) {
         let (p, r) = (&self.prolongation, &self.restriction);
-        each_row(&mut self.product, &self.product_start, |i, sum| {
+        let mut nothing = vec![(); fine.rows()];
+        each_row(&mut self.product, &self.product_start, &mut nothing, |i, sum, ()| {
+            if !changed[i] {
+                return;
+            }
             sum.as_flattened_mut().fill(0.0);
             let mut places = self.fine_place[self.fine_start[i] as usize..].iter();
             let bits = identity(i);
@@ -148,7 +158,11 @@ impl Transfer {
             }
         });
         let (product, product_start) = (&self.product, &self.product_start);
-        each_row(&mut coarse.blocks, &coarse.pattern.row_start, |i, sum| {
+        each_row(&mut coarse.blocks, &coarse.pattern.row_start, coarse_changed, |i, sum, anew| {
+            *anew = r.row(i).any(|(k, _)| changed[k]);
+            if !*anew {
+                return;
+            }
             sum.as_flattened_mut().fill(0.0);
             let mut places = self.coarse_place[self.coarse_start[i] as usize..].iter();
             for (k, w) in r.row(i) {

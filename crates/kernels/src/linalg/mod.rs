@@ -287,11 +287,8 @@ impl<T: Real + Widen<f64>> LinearSolver<T> {
         let Self { method, matrix, fixed, reduced, free, fallback_limit, .. } = self;
         free.fill(0.0);
         fixed.copy(rhs, free);
-        if free.iter().any(|x| *x != 0.0) {
-            matrix.residual(free, rhs, reduced);
-        } else {
-            reduced.copy_from_slice(rhs);
-        }
+        reduced.copy_from_slice(rhs);
+        matrix.subtract_product_of_few(free, reduced);
         fixed.clear(reduced);
         free.copy_from_slice(x);
         fixed.clear(free);

@@ -10,6 +10,7 @@ use super::galerkin::{Transfer, mask};
 use super::kernel::{Node, row_times};
 use super::parallel::{each, each_row};
 use super::{LinalgError, size};
+use crate::lanes::array;
 use crate::mesh::Prolongation;
 use crate::real::Real;
 
@@ -27,6 +28,8 @@ struct Level {
     smoother: Smoother,
     /// To the next coarser level; none on the coarsest.
     transfer: Option<Transfer>,
+    /// Rows of the matrix that the last update changed.
+    changed: Vec<bool>,
     b: Vec<Node>,
     x: Vec<Node>,
     r: Vec<Node>,
@@ -51,6 +54,11 @@ pub struct OnLevel<'a> {
 pub struct Hierarchy {
     levels: Vec<Level>,
     fixed: Fixed,
+    /// The mask of the update before.
+    fixed_before: Fixed,
+    /// Whether all levels are those of the last matrix, so that rows that are as they were need no
+    /// work.
+    complete: bool,
 }
 
 impl Hierarchy {
@@ -69,7 +77,7 @@ impl Hierarchy {
             levels.push(Level::new(smoother, Some(transfer)));
         }
         levels.push(Level::new(Smoother::new(fine, COARSEST_DEGREE, COARSEST_LOW), None));
-        Ok(Self { levels, fixed: Fixed::default() })
+        Ok(Self { levels, fixed: Fixed::default(), fixed_before: Fixed::default(), complete: false })
     }
 
     /// Takes over a new matrix (on the pattern given to [`Hierarchy::new`]) in which `fixed`
@@ -83,47 +91,55 @@ impl Hierarchy {
         let finest = &self.levels[0].smoother.matrix;
         size("the matrix", matrix.blocks.len(), finest.blocks.len())?;
         size("the mask of fixed unknowns", fixed.len(), finest.unknowns())?;
+        std::mem::swap(&mut self.fixed, &mut self.fixed_before);
         self.fixed.set(fixed);
-        self.take(matrix)?;
+        let as_it_was = std::mem::replace(&mut self.complete, false);
+        self.take(matrix, as_it_was)?;
         for l in 0..self.levels.len() {
             let (fine, coarse) = self.levels.split_at_mut(l + 1);
             let level = &mut fine[l];
             if let (Some(transfer), Some(coarse)) = (&mut level.transfer, coarse.first_mut()) {
                 let identity = |i: usize| if l == 0 { self.fixed.node(i) } else { 0 };
-                transfer.update(&level.smoother.matrix, identity, &mut coarse.smoother.matrix);
+                let coarse = (&mut coarse.smoother.matrix, coarse.changed.as_mut_slice());
+                transfer.update((&level.smoother.matrix, &level.changed), identity, coarse);
             }
-            level.smoother.update();
+            level.smoother.update(&level.changed);
         }
+        self.complete = true;
         Ok(())
     }
 
-    /// Copies the matrix to the finest level, rows and columns of fixed unknowns replaced.
-    fn take<T: Real>(&mut self, matrix: &BlockMatrix<T>) -> Result<(), LinalgError> {
-        let fixed = &self.fixed;
-        let BlockMatrix { pattern, blocks } = &mut self.levels[0].smoother.matrix;
+    /// Copies the matrix to the finest level, rows and columns of fixed unknowns replaced, and
+    /// notes the rows that are not `as_it_was`.
+    fn take<T: Real>(&mut self, matrix: &BlockMatrix<T>, as_it_was: bool) -> Result<(), LinalgError> {
+        let (fixed, before) = (&self.fixed, &self.fixed_before);
+        let Level { smoother, changed, .. } = &mut self.levels[0];
+        let BlockMatrix { pattern, blocks } = &mut smoother.matrix;
         let not_finite = AtomicUsize::new(usize::MAX);
-        each_row(blocks, &pattern.row_start, |i, row| {
+        each_row(blocks, &pattern.row_start, changed, |i, row, changed| {
             let range = pattern.row(i);
             let rows = fixed.node(i);
             let columns = &pattern.column[range.clone()];
             // A finite number times 0 is 0, all others give NaN.
             let mut check = [0.0; 9];
+            *changed = !as_it_was || before.node(i) != rows;
             for ((block, a), &j) in row.iter_mut().zip(&matrix.blocks[range.clone()]).zip(columns) {
-                *block = a.map(|a| a.to_f64() as f32);
+                let mut new: [f32; 9] = array(0.0, |m| a[m].to_f64() as f32);
                 if rows != 0 {
-                    mask(block, rows, 0);
+                    mask(&mut new, rows, 0);
                 }
                 for m in 0..9 {
-                    check[m] += block[m] * 0.0;
+                    check[m] += new[m] * 0.0;
                 }
                 let columns = fixed.node(j as usize);
                 if columns != 0 {
-                    mask(block, 0, columns);
+                    mask(&mut new, 0, columns);
                 }
-            }
-            if rows != 0 {
-                let diagonal = &mut row[pattern.diagonal[i] as usize - range.start];
-                (0..3).filter(|c| rows >> c & 1 != 0).for_each(|c| diagonal[4 * c] = 1.0);
+                if rows != 0 && i == j as usize {
+                    (0..3).filter(|c| rows >> c & 1 != 0).for_each(|c| new[4 * c] = 1.0);
+                }
+                *changed |= !(0..9).fold(true, |same, m| same & (block[m].to_bits() == new[m].to_bits()));
+                *block = new;
             }
             if check.iter().any(|x| x.is_nan()) {
                 not_finite.fetch_min(i, Ordering::Relaxed);
@@ -194,7 +210,8 @@ impl Hierarchy {
 impl Level {
     fn new(smoother: Smoother, transfer: Option<Transfer>) -> Self {
         let zero = vec![[0.0; 4]; smoother.matrix.rows()];
-        Self { smoother, transfer, b: zero.clone(), x: zero.clone(), r: zero }
+        let changed = vec![true; zero.len()];
+        Self { smoother, transfer, changed, b: zero.clone(), x: zero.clone(), r: zero }
     }
 }
 

@@ -34,27 +34,33 @@ pub(super) fn each_of_two<Y: Send, Z: Send>(y: &mut [Y], z: &mut [Z], body: impl
     }
 }
 
-/// Hands the entries of every row to `body(i, entries)`; row i has `entries[start[i]..start[i +
-/// 1]]`.
+/// Hands the entries of every row, and what else there is of it, to `body(i, entries, &mut
+/// other[i])`; row i has `entries[start[i]..start[i + 1]]`.
 #[inline(always)]
-pub(super) fn each_row<B: Send>(entries: &mut [B], start: &[u32], body: impl Fn(usize, &mut [B]) + Sync) {
+pub(super) fn each_row<B: Send, O: Send>(
+    entries: &mut [B],
+    start: &[u32],
+    other: &mut [O],
+    body: impl Fn(usize, &mut [B], &mut O) + Sync,
+) {
     let rows = start.len() - 1;
-    let run = |range: std::ops::Range<usize>, entries: &mut [B]| {
-        let base = start[range.start];
-        for i in range {
-            body(i, &mut entries[(start[i] - base) as usize..(start[i + 1] - base) as usize]);
+    let run = |first: usize, entries: &mut [B], other: &mut [O]| {
+        let base = start[first];
+        for (k, other) in other.iter_mut().enumerate() {
+            let i = first + k;
+            body(i, &mut entries[(start[i] - base) as usize..(start[i + 1] - base) as usize], other);
         }
     };
     if !worth(rows) {
-        return run(0..rows, entries);
+        return run(0, entries, &mut other[..rows]);
     }
     let mut rest = entries;
     let mut tasks = Vec::with_capacity(rows / TASK + 1);
-    for first in (0..rows).step_by(TASK) {
-        let last = rows.min(first + TASK);
-        let (mine, others) = rest.split_at_mut((start[last] - start[first]) as usize);
-        tasks.push((first..last, mine));
+    for (task, other) in other[..rows].chunks_mut(TASK).enumerate() {
+        let first = task * TASK;
+        let (mine, others) = rest.split_at_mut((start[first + other.len()] - start[first]) as usize);
+        tasks.push((first, mine, other));
         rest = others;
     }
-    tasks.into_par_iter().for_each(|(range, entries)| run(range, entries));
+    tasks.into_par_iter().for_each(|(first, entries, other)| run(first, entries, other));
 }

@@ -34,6 +34,9 @@ pub struct Response<R: Number> {
     pub state: PointState<R>,
     /// Whether plastic strain grew.
     pub yielding: R::Mask,
+    /// By how much the flow stress before the increment exceeds the von Mises stress of the trial,
+    /// stress; negative where it yields, infinite in an elastic material.
+    pub reserve: R,
     /// mu_bar = mu tr(b_e_bar_trial)/3, stress.
     pub mu_bar: R,
     /// |s_trial|, the Frobenius norm of the trial deviator, stress.
@@ -62,6 +65,7 @@ impl<T: Number> Response<T> {
             stress: six(&self.stress),
             state: PointState { be: six(&self.state.be), alpha: self.state.alpha.lane(i) },
             yielding: T::is_set(self.yielding, i),
+            reserve: self.reserve.lane(i),
             mu_bar: self.mu_bar.lane(i),
             norm: self.norm.lane(i),
             normal: six(&self.normal),
@@ -257,10 +261,15 @@ fn respond<T: Number>(material: &Material<T::Scalar>, relative: &[[T; 3]; 3], st
     // mu_bar.
     let inverse = T::select(strain_norm.above(zero), one / strain_norm, zero);
     let normal = array(zero, |c| deviator[c] * inverse);
+    let hardening = &material.hardening;
+    let flow_stress = hardening.flow_stress(state.alpha);
+    let von_mises = T::of(1.224_744_871_391_589) * norm;
+    let nearly = one + T::of(8.0) * T::splat(T::Scalar::EPSILON);
     let mut response = Response {
         stress: array(zero, |c| mu * deviator[c]),
         state: PointState { be, alpha: state.alpha },
         yielding: zero.above(zero),
+        reserve: flow_stress - von_mises,
         mu_bar,
         norm,
         normal,
@@ -270,10 +279,6 @@ fn respond<T: Number>(material: &Material<T::Scalar>, relative: &[[T; 3]; 3], st
         delta_gamma: zero,
         plastic_work: zero,
     };
-    let hardening = &material.hardening;
-    let flow_stress = hardening.flow_stress(state.alpha);
-    let von_mises = T::of(1.224_744_871_391_589) * norm;
-    let nearly = one + T::of(8.0) * T::splat(T::Scalar::EPSILON);
     let yielding = T::not(von_mises.at_most(flow_stress * nearly));
     if !T::any(yielding) {
         return Some(response);
