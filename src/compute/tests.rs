@@ -14,7 +14,11 @@ use crate::mesh::{Mesh, brick};
 
 type Make = fn(Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError>;
 
-const BACKENDS: [Make; 2] = [|m| Ok(Box::new(Cpu::<f64>::new(m)?)), |m| Ok(Box::new(Cpu::<f32>::new(m)?))];
+const BACKENDS: [Make; 3] = [
+    |m| Ok(Box::new(Cpu::<f64>::new(m)?)),
+    |m| Ok(Box::new(Cpu::<f32>::new(m)?)),
+    |m| Ok(Box::new(Cpu::<f64, f32>::with_tangents(m)?)),
+];
 
 /// 300 elements: more than the chunk that one thread takes at a time.
 fn mesh(stretch: f64) -> Arc<Mesh> {
@@ -126,6 +130,66 @@ fn one_thread_and_two_give_the_same_bits() {
         assert!(one == two, "two threads");
         assert!(one == three, "three threads");
     }
+}
+
+fn tangent(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Vec<[f32; 9]> {
+    let mut handle = CaseHandle { backend, case };
+    let mesh = handle.model().mesh.clone();
+    let mut blocks = vec![[0.0_f32; 9]; Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries()];
+    assert_eq!(handle.tangent(u, (&mut blocks).into()).unwrap(), Outcome::Valid);
+    blocks
+}
+
+/// Largest difference of two tangents, of their largest number.
+fn difference(a: &[[f32; 9]], b: &[[f32; 9]]) -> f32 {
+    let largest = a.as_flattened().iter().fold(0.0_f32, |m, x| m.max(x.abs()));
+    a.as_flattened().iter().zip(b.as_flattened()).fold(0.0_f32, |m, (a, b)| m.max((a - b).abs())) / largest
+}
+
+#[test]
+fn a_tangent_in_single_precision_is_taken_again_within_a_step_and_close_by() {
+    let fresh = || Cpu::<f64, f32>::with_tangents(models()).unwrap();
+    let at = |size: f64| displacement(&models()[1].mesh, size);
+    // The elastic case: as it was, close by; anew, farther off.
+    let mut backend = fresh();
+    let first = tangent(&mut backend, 1, &at(1e-3));
+    assert!(first == tangent(&mut fresh(), 1, &at(1e-3)), "a first tangent is exact");
+    assert!(first == tangent(&mut backend, 1, &at(1.02e-3)), "hardly moved");
+    let exact = tangent(&mut fresh(), 1, &at(1.02e-3));
+    assert!(first != exact && difference(&exact, &first) < 1e-3, "what that costs: {}", difference(&exact, &first));
+    let far = tangent(&mut backend, 1, &at(5e-3));
+    assert!(difference(&tangent(&mut fresh(), 1, &at(5e-3)), &far) < 1e-3, "moved");
+    assert!(difference(&exact, &far) > 1e-3, "it is another");
+    // In another step, and from another state, it is formed anew.
+    backend.begin_step(1, 0.0).unwrap();
+    assert!(exact == tangent(&mut backend, 1, &at(1.02e-3)), "another step");
+    let state = backend.state(1).unwrap();
+    backend.restore(1, &state).unwrap();
+    assert!(first == tangent(&mut backend, 1, &at(1e-3)), "restored");
+    let mut other = fresh();
+    for backend in [&mut backend, &mut other] {
+        commit(backend, 1, &at(1.01e-3));
+    }
+    assert!(tangent(&mut other, 1, &at(1.02e-3)) == tangent(&mut backend, 1, &at(1.02e-3)), "committed");
+
+    // Where it flows or is about to, whatever its distance. What is elastic is 1e-3 off at most.
+    let at = |size: f64| displacement(&models()[0].mesh, size);
+    for size in [6e-4, 1e-3, 2e-3, 5e-3] {
+        let mut backend = fresh();
+        tangent(&mut backend, 0, &at(size));
+        let again = tangent(&mut backend, 0, &at(1.05 * size));
+        let exact = tangent(&mut fresh(), 0, &at(1.05 * size));
+        assert!(difference(&exact, &again) < 1e-3, "{size}: {}", difference(&exact, &again));
+    }
+    // A failure in between is not remembered.
+    let mut backend = fresh();
+    tangent(&mut backend, 1, &at(1e-3));
+    let mut torn = at(1e-3);
+    torn[7] = f64::NAN;
+    let mut blocks = vec![[0.0_f32; 9]; exact.len()];
+    let outcome = CaseHandle { backend: &mut backend, case: 1 }.tangent(&torn, (&mut blocks).into()).unwrap();
+    assert_ne!(outcome, Outcome::Valid);
+    assert!(tangent(&mut backend, 1, &at(1e-3)) == tangent(&mut fresh(), 1, &at(1e-3)), "after a failure");
 }
 
 #[test]

@@ -151,6 +151,51 @@ fn an_update_does_not_depend_on_earlier_ones() {
 }
 
 #[test]
+fn an_update_of_some_rows_leaves_the_bits_of_an_update_of_all() {
+    let problem = Brick::slipping(8).problem();
+    let (mut matrix, mut fixed) = (problem.matrix, problem.fixed);
+    let new = || Hierarchy::new(&matrix.pattern, &problem.prolongations).unwrap();
+    let mut hierarchy = new();
+    let check = |hierarchy: &Hierarchy, matrix: &BlockMatrix<f64>, fixed: &[bool], what: &str| {
+        let mut fresh = new();
+        fresh.update(matrix, fixed).unwrap();
+        let mut level = 0;
+        while let Some(expected) = fresh.on_level(level) {
+            let got = hierarchy.on_level(level).unwrap();
+            assert!(got.matrix == expected.matrix, "{what}: the matrix of level {level}");
+            assert!(got.inverse == expected.inverse, "{what}: the inverses of level {level}");
+            level += 1;
+        }
+        assert!(level > 1);
+    };
+    hierarchy.update(&matrix, &fixed).unwrap();
+    check(&hierarchy, &matrix, &fixed, "the first");
+    hierarchy.update(&matrix, &fixed).unwrap();
+    check(&hierarchy, &matrix, &fixed, "nothing new");
+    // Numbers of some rows.
+    for node in [3, 200, matrix.rows() - 1] {
+        let row = matrix.pattern.row(node);
+        matrix.blocks[row].iter_mut().for_each(|block| block[4] *= 1.01);
+    }
+    hierarchy.update(&matrix, &fixed).unwrap();
+    check(&hierarchy, &matrix, &fixed, "three rows");
+    // The mask: one that is let go, one that is held.
+    let held = fixed.iter().position(|fixed| *fixed).unwrap();
+    let free = fixed.iter().rposition(|fixed| !fixed).unwrap();
+    (fixed[held], fixed[free]) = (false, true);
+    hierarchy.update(&matrix, &fixed).unwrap();
+    check(&hierarchy, &matrix, &fixed, "the mask");
+    // An error in between, whatever it has left.
+    let good = matrix.blocks[500];
+    matrix.blocks[500][2] = f64::NAN;
+    matrix.blocks[900][0] *= 2.0;
+    assert!(hierarchy.update(&matrix, &fixed).is_err());
+    matrix.blocks[500] = good;
+    hierarchy.update(&matrix, &fixed).unwrap();
+    check(&hierarchy, &matrix, &fixed, "after an error");
+}
+
+#[test]
 fn several_right_hand_sides_and_a_guess() {
     let problem = Brick::elastic(8).problem();
     let mut solver = solver(&problem, SolverKind::Multigrid);
