@@ -56,6 +56,9 @@ struct Work {
     y: Vec<f64>,
     u: Vec<f64>,
     f: Vec<f64>,
+    r: Vec<f64>,
+    /// u and f in the precision of the basis.
+    single: [Vec<f32>; 2],
 }
 
 impl Body {
@@ -100,7 +103,7 @@ impl CoupleSolver {
             interface: Arc::default(),
             rows: Vec::new(),
             reduced: Reduced::new(n),
-            work: Work { y: zero(), u: zero(), f: zero() },
+            work: Work { y: zero(), u: zero(), f: zero(), r: zero(), single: [vec![0.0; n], vec![0.0; n]] },
         })
     }
 
@@ -173,19 +176,33 @@ impl Tied for CoupleSolver {
 impl System<f32> for CoupleSolver {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         let mut work = std::mem::take(&mut self.work);
-        let Work { y, u, f } = &mut work;
+        let Work { y, u, f, r, single: [u_single, f_single] } = &mut work;
         let (slave, master) = (self.slave, 1 - self.slave);
         y.fill(0.0);
-        let mut r: Vec<f64> = v.iter().map(|v| f64::from(*v)).collect();
-        self.cycle(master, &mut r, y);
-        // What the master's part leaves of the slave's equations.
-        self.apply(y, u, f);
+        r.iter_mut().zip(v).for_each(|(r, v)| *r = f64::from(*v));
+        self.cycle(master, r, y);
+        // What the master's part leaves of the slave's equations: it moves the slave's surface
+        // alone.
+        u.copy_from_slice(y);
+        self.interface.expand(u);
+        u[self.bodies[master].unknowns.clone()].fill(0.0);
+        f.fill(0.0);
+        self.matrix.subtract_product_of_few(u, f);
+        self.interface.reduce(f);
+        impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
         let range = self.bodies[slave].unknowns.clone();
-        r[range.clone()].iter_mut().zip(&f[range]).for_each(|(r, f)| *r -= f);
-        self.cycle(slave, &mut r, y);
+        r[range.clone()].iter_mut().zip(&f[range]).for_each(|(r, f)| *r += f);
+        self.cycle(slave, r, y);
         clear(&self.reduced.fixed, y);
         z.iter_mut().zip(&*y).for_each(|(z, y)| *z = *y as f32);
-        self.apply(y, u, f);
+        // The product that counts, in the precision of the basis.
+        u.copy_from_slice(y);
+        self.interface.expand(u);
+        u_single.iter_mut().zip(&*u).for_each(|(single, u)| *single = *u as f32);
+        self.matrix.multiply(u_single, f_single);
+        f.iter_mut().zip(&*f_single).for_each(|(f, single)| *f = f64::from(*single));
+        self.interface.reduce(f);
+        impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
         clear(&self.reduced.fixed, f);
         w.iter_mut().zip(&*f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;

@@ -78,7 +78,7 @@ impl<T: Real> BlockMatrix<T> {
 
     /// r -= A x where few nodes of x are not 0: rows without such a node are left out. The pattern
     /// must be symmetric.
-    pub(super) fn subtract_product_of_few<V: Real + Widen<V>>(&self, x: &[V], r: &mut [V])
+    pub fn subtract_product_of_few<V: Real + Widen<V>>(&self, x: &[V], r: &mut [V])
     where
         T: Widen<V>,
     {
