@@ -59,6 +59,7 @@ struct Work {
     r: Vec<f64>,
     /// u and f in the precision of the basis.
     single: [Vec<f32>; 2],
+    room: Vec<[f32; 4]>,
 }
 
 impl Body {
@@ -103,7 +104,7 @@ impl CoupleSolver {
             interface: Arc::default(),
             rows: Vec::new(),
             reduced: Reduced::new(n),
-            work: Work { y: zero(), u: zero(), f: zero(), r: zero(), single: [vec![0.0; n], vec![0.0; n]] },
+            work: Work { y: zero(), u: zero(), f: zero(), r: zero(), single: [vec![0.0; n], vec![0.0; n]], room: Vec::new() },
         })
     }
 
@@ -140,11 +141,8 @@ impl CoupleSolver {
         Ok(())
     }
 
-    /// f = A y; rows of fixed unknowns mean nothing.
-    fn apply(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
-        u.copy_from_slice(y);
-        self.interface.expand(u);
-        self.matrix.multiply(u, f);
+    /// Makes f = A y of f = K u.
+    fn carry_over(&self, y: &[f64], f: &mut [f64]) {
         self.interface.reduce(f);
         impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
     }
@@ -169,14 +167,26 @@ impl Tied for CoupleSolver {
     }
 
     fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
-        self.apply(y, u, f);
+        u.copy_from_slice(y);
+        self.interface.expand(u);
+        self.matrix.multiply(u, f);
+        self.carry_over(y, f);
+    }
+
+    fn product_of_few(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+        u.copy_from_slice(y);
+        self.interface.expand(u);
+        f.fill(0.0);
+        self.matrix.subtract_product_of_few(u, f);
+        f.iter_mut().for_each(|f| *f = -*f);
+        self.carry_over(y, f);
     }
 }
 
 impl System<f32> for CoupleSolver {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         let mut work = std::mem::take(&mut self.work);
-        let Work { y, u, f, r, single: [u_single, f_single] } = &mut work;
+        let Work { y, u, f, r, single: [u_single, f_single], room } = &mut work;
         let (slave, master) = (self.slave, 1 - self.slave);
         y.fill(0.0);
         r.iter_mut().zip(v).for_each(|(r, v)| *r = f64::from(*v));
@@ -188,8 +198,7 @@ impl System<f32> for CoupleSolver {
         u[self.bodies[master].unknowns.clone()].fill(0.0);
         f.fill(0.0);
         self.matrix.subtract_product_of_few(u, f);
-        self.interface.reduce(f);
-        impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
+        self.carry_over(y, f);
         let range = self.bodies[slave].unknowns.clone();
         r[range.clone()].iter_mut().zip(&f[range]).for_each(|(r, f)| *r += f);
         self.cycle(slave, r, y);
@@ -199,10 +208,9 @@ impl System<f32> for CoupleSolver {
         u.copy_from_slice(y);
         self.interface.expand(u);
         u_single.iter_mut().zip(&*u).for_each(|(single, u)| *single = *u as f32);
-        self.matrix.multiply(u_single, f_single);
+        self.matrix.multiply_in_single(u_single, room, f_single);
         f.iter_mut().zip(&*f_single).for_each(|(f, single)| *f = f64::from(*single));
-        self.interface.reduce(f);
-        impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
+        self.carry_over(y, f);
         clear(&self.reduced.fixed, f);
         w.iter_mut().zip(&*f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;

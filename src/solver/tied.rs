@@ -39,6 +39,11 @@ pub(super) trait Tied: System<f32> + Sized {
     /// f = A y in f64, with `u` to work in; rows of fixed unknowns mean nothing.
     fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]);
 
+    /// The same where few numbers of y are not 0.
+    fn product_of_few(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
+        self.product(y, u, f);
+    }
+
     /// Solves for y to |rhs - A y| <= tolerance |rhs| over the free unknowns, as
     /// [`crate::linalg::LinearSolver::solve`].
     ///
@@ -89,7 +94,7 @@ pub(super) trait Tied: System<f32> + Sized {
         load.copy_from_slice(rhs);
         if y.iter().any(|y| *y != 0.0) {
             let (mut u, mut f) = (vec![0.0; y.len()], vec![0.0; y.len()]);
-            self.product(&y, &mut u, &mut f);
+            self.product_of_few(&y, &mut u, &mut f);
             load.iter_mut().zip(&f).for_each(|(load, f)| *load -= f);
         }
         clear(self.fixed(), &mut load);
