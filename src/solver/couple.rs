@@ -14,7 +14,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::tied::{Reduced, Tied, clear, impose};
+use super::tied::{InSingle, Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;
@@ -57,9 +57,7 @@ struct Work {
     u: Vec<f64>,
     f: Vec<f64>,
     r: Vec<f64>,
-    /// u and f in the precision of the basis.
-    single: [Vec<f32>; 2],
-    room: Vec<[f32; 4]>,
+    single: InSingle,
 }
 
 impl Body {
@@ -104,7 +102,7 @@ impl CoupleSolver {
             interface: Arc::default(),
             rows: Vec::new(),
             reduced: Reduced::new(n),
-            work: Work { y: zero(), u: zero(), f: zero(), r: zero(), single: [vec![0.0; n], vec![0.0; n]], room: Vec::new() },
+            work: Work { y: zero(), u: zero(), f: zero(), r: zero(), single: InSingle::default() },
         })
     }
 
@@ -186,7 +184,7 @@ impl Tied for CoupleSolver {
 impl System<f32> for CoupleSolver {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         let mut work = std::mem::take(&mut self.work);
-        let Work { y, u, f, r, single: [u_single, f_single], room } = &mut work;
+        let Work { y, u, f, r, single } = &mut work;
         let (slave, master) = (self.slave, 1 - self.slave);
         y.fill(0.0);
         r.iter_mut().zip(v).for_each(|(r, v)| *r = f64::from(*v));
@@ -204,12 +202,9 @@ impl System<f32> for CoupleSolver {
         self.cycle(slave, r, y);
         clear(&self.reduced.fixed, y);
         z.iter_mut().zip(&*y).for_each(|(z, y)| *z = *y as f32);
-        // The product that counts, in the precision of the basis.
         u.copy_from_slice(y);
         self.interface.expand(u);
-        u_single.iter_mut().zip(&*u).for_each(|(single, u)| *single = *u as f32);
-        self.matrix.multiply_in_single(u_single, room, f_single);
-        f.iter_mut().zip(&*f_single).for_each(|(f, single)| *f = f64::from(*single));
+        single.multiply(&self.matrix, u, f);
         self.carry_over(y, f);
         clear(&self.reduced.fixed, f);
         w.iter_mut().zip(&*f).for_each(|(w, f)| *w = *f as f32);

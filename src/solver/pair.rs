@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::tied::{Reduced, Tied, clear, impose};
+use super::tied::{InSingle, Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::fgmres::System;
@@ -44,6 +44,7 @@ struct Work {
     z_odd: Vec<f32>,
     u: Vec<f64>,
     f: Vec<f64>,
+    single: InSingle,
 }
 
 /// The node opposite in x of each node of a mesh that is its own mirror image; `None` if it is not.
@@ -80,7 +81,16 @@ impl PairSolver {
             even_fixed: vec![false; n],
             odd_fixed: vec![false; n],
             reduced: Reduced::new(n),
-            work: Work { load: small(), even: small(), odd: small(), z_even: small(), z_odd: small(), u: zero(), f: zero() },
+            work: Work {
+                load: small(),
+                even: small(),
+                odd: small(),
+                z_even: small(),
+                z_odd: small(),
+                u: zero(),
+                f: zero(),
+                single: InSingle::default(),
+            },
         })
     }
 
@@ -149,11 +159,8 @@ impl PairSolver {
         if self.symmetric { Ok(()) } else { self.odd.update(&self.matrix, &self.odd_fixed) }
     }
 
-    /// f = A y; rows of fixed unknowns mean nothing.
-    fn apply(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
-        u.copy_from_slice(y);
-        self.interface.expand(u);
-        self.matrix.multiply(u, f);
+    /// Makes f = A y of f = K u.
+    fn carry_over(&self, y: &[f64], f: &mut [f64]) {
         self.symmetrise(f);
         self.interface.reduce(f);
         impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
@@ -170,7 +177,10 @@ impl Tied for PairSolver {
     }
 
     fn product(&self, y: &[f64], u: &mut [f64], f: &mut [f64]) {
-        self.apply(y, u, f);
+        u.copy_from_slice(y);
+        self.interface.expand(u);
+        self.matrix.multiply(u, f);
+        self.carry_over(y, f);
     }
 }
 
@@ -209,7 +219,10 @@ impl System<f32> for PairSolver {
         clear(&self.reduced.fixed, &mut work.u);
         z.iter_mut().zip(&work.u).for_each(|(z, u)| *z = *u as f32);
         let y: Vec<f64> = z.iter().map(|z| f64::from(*z)).collect();
-        self.apply(&y, &mut work.u, &mut work.f);
+        work.u.copy_from_slice(&y);
+        self.interface.expand(&mut work.u);
+        work.single.multiply(&self.matrix, &work.u, &mut work.f);
+        self.carry_over(&y, &mut work.f);
         clear(&self.reduced.fixed, &mut work.f);
         w.iter_mut().zip(&work.f).for_each(|(w, f)| *w = *f as f32);
         self.work = work;

@@ -3,7 +3,7 @@
 
 use crate::contact::coulomb::{Rows, Status};
 use crate::linalg::fgmres::{Fgmres, System};
-use crate::linalg::{LinalgError, SolveReport};
+use crate::linalg::{BlockMatrix, LinalgError, SolveReport};
 
 /// Iterations after which FGMRES starts over, and after which it gives up.
 const RESTART: usize = 60;
@@ -27,6 +27,25 @@ impl Reduced {
     /// For `n` unknowns, none of them fixed.
     pub fn new(n: usize) -> Self {
         Self { fixed: vec![false; n], load: vec![0.0; n], free: vec![0.0; n], krylov: Fgmres::new(n, RESTART) }
+    }
+}
+
+/// The product of an iteration: in the precision of FGMRES' basis.
+#[derive(Debug, Default)]
+pub(super) struct InSingle {
+    u: Vec<f32>,
+    f: Vec<f32>,
+    room: Vec<[f32; 4]>,
+}
+
+impl InSingle {
+    /// f = K u.
+    pub fn multiply(&mut self, matrix: &BlockMatrix<f32>, u: &[f64], f: &mut [f64]) {
+        self.u.clear();
+        self.u.extend(u.iter().map(|u| *u as f32));
+        self.f.resize(f.len(), 0.0);
+        matrix.multiply_in_single(&self.u, &mut self.room, &mut self.f);
+        f.iter_mut().zip(&self.f).for_each(|(f, single)| *f = f64::from(*single));
     }
 }
 
