@@ -4,8 +4,8 @@ use super::error::CaseError;
 use super::reader::Reader;
 use super::{Case, Opponent, Segment};
 
-/// Memory of an element with its share of the linear systems, in bytes: the 3x3 blocks in f64,
-/// their multigrid levels in f32, the Krylov basis and the state at the quadrature points.
+/// Memory of an element with its share of the linear systems, in bytes: its tangent and the 3x3
+/// blocks, twice, with their multigrid levels in f32, Krylov basis, states at quadrature points.
 pub const BYTES_PER_ELEMENT: f64 = 10_000.0;
 
 const GIB: f64 = 1024.0 * 1024.0 * 1024.0;

@@ -68,8 +68,7 @@ struct Held<T> {
 }
 
 impl<T: Real> Held<T> {
-    const NONE: Self =
-        Self { tangent: [[T::ZERO; 9]; hex8::PAIRS], step: 0, increment: [[T::ZERO; 3]; NODES], reach: T::ZERO };
+    const NONE: Self = Self { tangent: [[T::ZERO; 9]; hex8::PAIRS], step: 0, increment: [[T::ZERO; 3]; NODES], reach: T::ZERO };
 
     /// Whether it will do for an increment of a step.
     #[inline(always)]

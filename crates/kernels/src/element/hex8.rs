@@ -334,10 +334,15 @@ pub fn tangent<R: Real>(
         let volume = |i: usize, j: usize| (bulk * h[j][b], h[i]);
         // Nodes a after b are not asked for: up to the fourth, half a register will do.
         if b < 4 {
-            let block = row_blocks(R::mul_add_four, factor, |q, k| first_four(by_node.gradient[q][k]), |i, j| {
-                let (factor, h) = volume(i, j);
-                (factor, first_four(h))
-            });
+            let block = row_blocks(
+                R::mul_add_four,
+                factor,
+                |q, k| first_four(by_node.gradient[q][k]),
+                |i, j| {
+                    let (factor, h) = volume(i, j);
+                    (factor, first_four(h))
+                },
+            );
             (0..=b).for_each(|a| out[pair(a, b)] = array(R::ZERO, |m| block[m][a]));
         } else {
             let block = row_blocks(R::mul_add_eight, factor, |q, k| by_node.gradient[q][k], volume);
