@@ -6,8 +6,8 @@ use super::sliders::{AT_BOUND, extent, length, slide, slider_force, slider_limit
 use super::update::{ContactResponse, ContactState};
 use super::virgin::{ContactParameters, SLIDERS, Virgin};
 use super::yielding::{
-    AT_CAP, AT_SLIP, MOST, REVERSED, is_elastic, lower, normal_cap, pressed_cap, reversed_cap, yield_coefficient, yield_share,
-    yielding_at,
+    AT_CAP, AT_SLIP, MOST, is_elastic, lower, normal_cap, pressed_cap, reversed_cap, reversed_share, yield_coefficient,
+    yield_share, yielding_at,
 };
 
 /// x over which a sudden shear takes F_N from the yield curve of a press down to the virgin one.
@@ -52,7 +52,7 @@ fn reverse(
     let stands = reversed_cap(p, virgin, next.x);
     let above = if out.f_n > stands { out.f_n - stands } else { 0.0 };
     let mut rate = 4.0 * GATHERED * (k_t / (p.friction * virgin.point.f_n_slip));
-    let mut falling = REVERSED * virgin.point.f_n_slip;
+    let mut falling = reversed_share(virgin) * virgin.point.f_n_slip;
     if next.x < 1.0 {
         // Next to full slip alone: F_T/F_N over mu to the power 24.
         let near = tangential_shape(p, virgin, next.x)[0] * virgin.point.f_n_slip / stands;

@@ -17,8 +17,10 @@ pub(super) const AT_CAP: f64 = 1.0 - 1e-9;
 /// slips as a whole.
 pub(super) const AT_SLIP: f64 = 1.0 - 1e-13;
 
-/// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several.
-pub(super) const REVERSED: f64 = 0.05;
+/// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several,
+const REVERSED: f64 = 0.05;
+/// and its least, of a contact that loses nothing to slip.
+const LEAST_REVERSED: f64 = 1e-6;
 
 /// x after all of that loss.
 pub(super) const MOST: f64 = 2.0;
@@ -103,6 +105,13 @@ pub(super) fn yielding_at(virgin: &Virgin, share: f64, ratio: f64) -> f64 {
     virgin.point.f_n0 / (1.0 + share * (ratio * ratio))
 }
 
+/// Share of F_N_slip that reversals cost: no more than what the slip itself has cost.
+pub(super) fn reversed_share(virgin: &Virgin) -> f64 {
+    let lost = virgin.point.f_n0 / virgin.point.f_n_slip - 1.0;
+    let share = if lost < REVERSED { lost } else { REVERSED };
+    if share > LEAST_REVERSED { share } else { LEAST_REVERSED }
+}
+
 /// The x of the virgin curve that has the normal force `f_n`.
 pub(super) fn mobilisation(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> f64 {
     if f_n >= AT_CAP * virgin.point.f_n0 {
@@ -110,7 +119,7 @@ pub(super) fn mobilisation(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> 
     }
     if AT_SLIP * f_n <= virgin.point.f_n_slip {
         let lost = 1.0 - f_n / virgin.point.f_n_slip;
-        let x = if lost > 0.0 { 1.0 + lost / REVERSED } else { 1.0 };
+        let x = if lost > 0.0 { 1.0 + lost / reversed_share(virgin) } else { 1.0 };
         return if x < MOST { x } else { MOST };
     }
     normal_shape_inverse(p, virgin, (virgin.point.f_n0 - f_n) / (virgin.point.f_n0 - virgin.point.f_n_slip))
@@ -118,7 +127,7 @@ pub(super) fn mobilisation(p: &ContactParameters, virgin: &Virgin, f_n: f64) -> 
 
 /// F_N at `x`, with what a reversed slip costs.
 pub(super) fn reversed_cap(p: &ContactParameters, virgin: &Virgin, x: f64) -> f64 {
-    if x < 1.0 { normal_cap(p, virgin, x) } else { virgin.point.f_n_slip * (1.0 - REVERSED * (x - 1.0)) }
+    if x < 1.0 { normal_cap(p, virgin, x) } else { virgin.point.f_n_slip * (1.0 - reversed_share(virgin) * (x - 1.0)) }
 }
 
 /// F_N over the reach of a contact: 2 E* a/gamma.

@@ -47,6 +47,30 @@ fn a_known_law_is_interpolated() {
     }
 }
 
+/// The overlap of two spheres falls as they pass each other, and the update takes that for an
+/// unloading: no reason to lose more than Hertz's contact does.
+#[test]
+fn two_spheres_that_do_not_yield_keep_their_force() {
+    let law = LawFile::Interpolated(Box::new(Interpolated::built_in().expect("a law")));
+    for (hardening, friction, h) in [
+        ("law = \"elastic\"", 0.1, 0.0188),
+        ("law = \"elastic\"", 0.3, 0.05),
+        ("law = \"hollomon\", coefficient = 2.877e4, exponent = 2.84", 0.1, 0.005),
+    ] {
+        let text = format!(
+            "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\nhardening = {{ {hardening} }}\n\
+             [opponent]\nequal = true\n[contact]\nfriction = {friction}\n[[path]]\nindentation = {h}\n[[path]]\nshear = \"full-slip\"\n"
+        );
+        let (points, _) = law.follow(&Case::parse(&text, "case.toml", &[]).expect("a case")).expect("a path");
+        let pressed = points.iter().rfind(|point| point.segment == 0).expect("a press").f_n;
+        for point in points.iter().filter(|point| point.segment == 1) {
+            let lost = 1.0 - point.f_n / pressed;
+            let passed = 1.5 * point.delta_t.powi(2) / (4.0 * h);
+            assert!(lost < 1.1 * passed + 1e-3, "{hardening}, mu = {friction}: {lost} and {passed} at {}", point.delta_t);
+        }
+    }
+}
+
 #[test]
 fn it_is_used_with_a_case_and_refused_without() {
     let folder = tempfile::tempdir().expect("a folder");

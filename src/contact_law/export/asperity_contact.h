@@ -162,6 +162,7 @@ typedef struct asperity_tangent {
 #define ASPERITY_LEAST_TRAVEL ASPERITY_R(0.4)
 #define ASPERITY_RELAXATION ASPERITY_R(0.1)
 #define ASPERITY_REVERSED ASPERITY_R(0.05)
+#define ASPERITY_LEAST_REVERSED ASPERITY_R(1e-6)
 #define ASPERITY_SLIDING ASPERITY_R(0.98)
 #define ASPERITY_GATHERED ASPERITY_R(0.7)
 #define ASPERITY_ALL_LOST ASPERITY_R(2.0) /* x after all of what reversed slip costs */
@@ -807,13 +808,18 @@ ASPERITY_FN asperity_real asperity_normal_inverse(int form, const asperity_curve
     return inner > ASPERITY_R(0.0) ? asperity_power(inner, one / v->m) : ASPERITY_R(0.0);
 }
 
+/* Share of F_N_slip that reversals cost: no more than what the slip itself has cost. */
+ASPERITY_FN asperity_real asperity_reversed_share(const asperity_curve *v) {
+    return asperity_most(asperity_least(v->f_n0 / v->f_n_slip - ASPERITY_R(1.0), ASPERITY_REVERSED), ASPERITY_LEAST_REVERSED);
+}
+
 /* The x of the virgin curve that has the normal force f_n. */
 ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *v, asperity_real f_n) {
     if (f_n >= ASPERITY_AT_CAP * v->f_n0) {
         return ASPERITY_R(0.0);
     }
     if (ASPERITY_AT_SLIP * f_n <= v->f_n_slip) {
-        asperity_real x = ASPERITY_R(1.0) + asperity_most(ASPERITY_R(1.0) - f_n / v->f_n_slip, ASPERITY_R(0.0)) / ASPERITY_REVERSED;
+        asperity_real x = ASPERITY_R(1.0) + asperity_most(ASPERITY_R(1.0) - f_n / v->f_n_slip, ASPERITY_R(0.0)) / asperity_reversed_share(v);
         return x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
     }
     return asperity_normal_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
@@ -821,7 +827,7 @@ ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *
 
 /* F_N at x, with what a reversed slip costs. */
 ASPERITY_FN asperity_real asperity_reversed_cap(const asperity_curve *v, asperity_real x, const asperity_place *place) {
-    return x < ASPERITY_R(1.0) ? v->f_n0 - (v->f_n0 - v->f_n_slip) * place->f_n : v->f_n_slip * (ASPERITY_R(1.0) - ASPERITY_REVERSED * (x - ASPERITY_R(1.0)));
+    return x < ASPERITY_R(1.0) ? v->f_n0 - (v->f_n0 - v->f_n_slip) * place->f_n : v->f_n_slip * (ASPERITY_R(1.0) - asperity_reversed_share(v) * (x - ASPERITY_R(1.0)));
 }
 
 /* F_N over the reach of a contact: 2 E* a/gamma. */
@@ -1237,7 +1243,7 @@ ASPERITY_FN asperity_real asperity_reverse(
     cap = asperity_reversed_cap(v, s->x, &place);
     above = asperity_most(out->f_n - cap, zero);
     rate = ASPERITY_R(4.0) * ASPERITY_GATHERED * (v->k_t / (t->friction * v->f_n_slip));
-    falling = ASPERITY_REVERSED * v->f_n_slip;
+    falling = asperity_reversed_share(v) * v->f_n_slip;
     if (s->x < one) {
         /* Next to full slip alone: F_T/F_N over mu to the power 24. */
         near = place.f_t * v->f_n_slip / cap;

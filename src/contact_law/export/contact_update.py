@@ -140,6 +140,7 @@ GONE = 1e-5
 LEAST_TRAVEL = 0.4
 RELAXATION = 0.1
 REVERSED = 0.05
+LEAST_REVERSED = 1e-6
 SLIDING = 0.98
 GATHERED = 0.7
 MOST = 2.0  # x after all of what reversed slip costs
@@ -313,18 +314,23 @@ def yielding_at(v, share, ratio):
     return v.f_n0 / (1.0 + share * (ratio * ratio))
 
 
+def reversed_share(v):
+    """Share of F_N_slip that reversals cost: no more than what the slip itself has cost."""
+    return max(min(v.f_n0 / v.f_n_slip - 1.0, REVERSED), LEAST_REVERSED)
+
+
 def mobilisation(v, f_n):
     """The x of the virgin curve that has the normal force f_n."""
     if f_n >= AT_CAP * v.f_n0:
         return 0.0
     if AT_SLIP * f_n <= v.f_n_slip:
-        return min(MOST, 1.0 + max(0.0, 1.0 - f_n / v.f_n_slip) / REVERSED)
+        return min(MOST, 1.0 + max(0.0, 1.0 - f_n / v.f_n_slip) / reversed_share(v))
     return normal_shape_inverse(v, (v.f_n0 - f_n) / (v.f_n0 - v.f_n_slip))
 
 
 def reversed_cap(v, x):
     """F_N at x, with what a reversed slip costs."""
-    return normal_cap(v, x) if x < 1.0 else v.f_n_slip * (1.0 - REVERSED * (x - 1.0))
+    return normal_cap(v, x) if x < 1.0 else v.f_n_slip * (1.0 - reversed_share(v) * (x - 1.0))
 
 
 def per_reach(v):
@@ -564,7 +570,7 @@ def reverse(p, s, out, v, before, force_before, increment):
     stands = reversed_cap(v, s.x)
     above = max(out.f_n - stands, 0.0)
     rate = 4.0 * GATHERED * (v.k_t / (p.friction * v.f_n_slip))
-    falling = REVERSED * v.f_n_slip
+    falling = reversed_share(v) * v.f_n_slip
     if s.x < 1.0:
         # Next to full slip alone: F_T/F_N over mu to the power 24.
         near = tangential_shape(v, s.x)[0] * v.f_n_slip / stands

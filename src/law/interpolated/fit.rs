@@ -8,7 +8,7 @@ use super::components::{COMPONENTS, Components, Curve};
 use super::inputs::{self, INPUTS, inputs};
 use super::outputs::{self, NUMBERS, Outputs, outputs};
 use super::process::{Place, Process};
-use super::{FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies};
+use super::{FORMAT, Input, Interpolated, NormalErrors, Source, VERSION, bodies, keeps_its_force};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
 use crate::contact_law::{Frame, POINTS};
@@ -34,6 +34,7 @@ struct Sample {
     material: usize,
     sphere: ElasticSphere,
     friction: f64,
+    keeps: bool,
     lambda: [f64; 2],
     inputs: [f64; INPUTS],
     measured: Measured,
@@ -117,7 +118,7 @@ pub fn fit(dir: &Path, reversal: Option<&Interpolated>) -> Result<Interpolated, 
         .enumerate()
         .map(|(i, s)| {
             let values: Vec<f64> = unseen.iter().map(|column| column[i]).collect();
-            law.outputs_of(&values).level(&s.sphere, s.friction, s.measured.h)
+            law.outputs_of(&values).level(&s.sphere, s.friction, s.measured.h, s.keeps)
         })
         .collect();
     let rows: Vec<(f64, f64, f64, CaseErrors)> =
@@ -257,6 +258,7 @@ fn sample(
         material,
         sphere,
         friction,
+        keeps: keeps_its_force(&body, Against::of(case)),
         lambda: [body.lambda(measured.a0), yield_lambda(body.sphere.poissons_ratio)],
         inputs,
         measured,

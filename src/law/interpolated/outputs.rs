@@ -5,7 +5,7 @@ use crate::analytical::{ElasticSphere, cattaneo_mindlin, hertz};
 use crate::contact_law::POINTS;
 use crate::law::data::Point;
 use crate::law::tabulated::spline::Spline;
-use crate::law::tabulated::{Against, Level, Measured, cleaned, reversal, unloading_radius};
+use crate::law::tabulated::{Against, Level, Measured, backbone_of, cleaned, reversal, unloading_radius};
 
 /// Number of outputs that are no curves.
 pub const NUMBERS: usize = 6;
@@ -24,6 +24,8 @@ const SLIPPED: f64 = 0.99;
 /// and one of two spheres: elastic ones whose points all slide have up to 3 % less at mu above 0.6,
 /// since not all of them slide in one direction.
 const SLIPPED_PAIR: f64 = 0.95;
+/// Share of F_N0 below which the loss of a whole shear is that of an elastic contact, none.
+const NOTHING: f64 = 5e-3;
 /// Intervals of the integral that gives the length of the slip.
 const INTERVALS: usize = 400;
 /// Cattaneo and Mindlin's displacement at full slip is 5/2 of that integral; three keep the curves
@@ -97,19 +99,29 @@ impl Outputs {
         self.numbers[UNLOADING] = other.numbers[UNLOADING];
     }
 
-    /// The level of a table that has these at the indentation `h`.
-    pub fn level(&self, sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
+    /// The level of a table that has these at the indentation `h`. Where a shear takes none of F_N
+    /// (it is known to, `keeps`, or next to none is predicted) the update follows the sliders from
+    /// the start; so they are those of the first shear.
+    pub fn level(&self, sphere: &ElasticSphere, friction: f64, h: f64, keeps: bool) -> Level {
         let [f_n, a, stiffness] = elastic(sphere, h);
         let [f_n0, a0, length, unloading, k_t, backbone] = self.numbers;
         let f_n0 = f_n * f_n0.exp();
         // Without friction there is no displacement at full slip, and none is asked for.
-        let length = length.exp() * friction.max(1e-6) * f_n0 / stiffness;
+        let slip_force = friction.max(1e-6) * f_n0;
+        let length = length.exp() * slip_force / stiffness;
         // F_N falls.
         let mut kept = 1.0f64;
-        let normal = self.normal.map(|share| {
+        let mut normal = self.normal.map(|share| {
             kept = share.clamp(0.01, kept);
             kept
         });
+        let [mut k_t, mut backbone] = [stiffness * k_t.exp(), backbone];
+        if keeps || kept > 1.0 - NOTHING {
+            (kept, normal) = (1.0, [1.0; POINTS]);
+            let at = |j: usize| (END * (j + 1) as f64 / POINTS as f64).powi(2) * length;
+            let curve = self.ratio.iter().enumerate().map(|(j, ratio)| [at(j), ratio.clamp(0.0, 1.0) * slip_force]);
+            [k_t, backbone] = backbone_of(curve, slip_force, stiffness);
+        }
         cleaned(Level {
             h,
             f_n0,
@@ -117,7 +129,7 @@ impl Outputs {
             slip_share: kept,
             delta_t_slip: END * END * length,
             unloading_radius: a * unloading.exp(),
-            k_t: stiffness * k_t.exp(),
+            k_t,
             backbone,
             yield_coefficient: None,
             tangential: self.ratio.iter().zip(&normal).map(|(ratio, share)| ratio.clamp(0.0, 1.0) * share / kept).collect(),

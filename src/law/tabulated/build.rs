@@ -274,7 +274,7 @@ pub fn reversal(sphere: &ElasticSphere, friction: f64, one: &Measured) -> [f64; 
 
 /// k and b with which way [1 - (1 - k delta/(b way))^b] is nearest to a curve of (delta, F), whose
 /// k is near `stiffness`, up to most of the way.
-fn backbone_of(curve: impl Iterator<Item = [f64; 2]>, way: f64, stiffness: f64) -> [f64; 2] {
+pub fn backbone_of(curve: impl Iterator<Item = [f64; 2]>, way: f64, stiffness: f64) -> [f64; 2] {
     // Beyond, what it loses of F_N shows.
     let rows: Vec<[f64; 2]> = curve.take_while(|row| row[1] < MOST_OF_THE_WAY * way).collect();
     let misfit = |k: f64, b: f64| -> f64 {

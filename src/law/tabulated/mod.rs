@@ -30,7 +30,7 @@ use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINT
 
 pub use against::{Against, equivalent, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
-pub(super) use build::{reversal, scaled, unloading_radius};
+pub(super) use build::{backbone_of, reversal, scaled, unloading_radius};
 pub(super) use measure::Measured;
 pub use measure::Missing;
 #[cfg(feature = "plots")]
