@@ -17,9 +17,10 @@ pub(super) const AT_CAP: f64 = 1.0 - 1e-9;
 /// slips as a whole.
 pub(super) const AT_SLIP: f64 = 1.0 - 1e-13;
 
-/// Share of F_N_slip that is lost besides when the slip reverses, in one reversal or in several,
+/// Greatest share of F_N_slip that is lost besides when the slip reverses, in one reversal or in
+/// several.
 const REVERSED: f64 = 0.05;
-/// and its least, of a contact that loses nothing to slip.
+/// The least such share, of a contact that loses nothing to slip.
 const LEAST_REVERSED: f64 = 1e-6;
 
 /// x after all of that loss.
