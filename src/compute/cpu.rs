@@ -22,13 +22,16 @@ use crate::real::Real;
 
 /// Elements handed to a thread at a time: enough work to outweigh the handing.
 const CHUNK: usize = 64;
-/// Change of an element's displacement gradient within a step up to which a tangent in single
-/// precision that was formed before is taken again: it is off by about as much, a hundredth of what
-/// the linear systems are solved to. What yields, or is about to, is always formed anew.
-const SAME_TANGENT: f64 = 1e-3;
 /// The same for tangents and block rows, which take longer and of which a wave has few: enough of
 /// them for many threads.
 const WAVE_CHUNK: usize = 16;
+/// Change of an element's displacement gradient within a step up to which a tangent in single
+/// precision that was formed before is taken again: it is off by about as much, a hundredth of what
+/// linear systems are solved to. What yields, or is soon to, is formed anew.
+const SAME_TANGENT: f64 = 1e-3;
+/// Up to this bulk over shear modulus, that of nu = 0.3; beyond, the more volume outweighs shape,
+/// the less, as linear systems are solved to less (see `solver::loosest_linear`).
+const SAME_UP_TO: f64 = 13.0 / 6.0;
 
 /// One case as the CPU holds it; its tangents are formed in `T`.
 struct Case<R, T> {
@@ -51,7 +54,10 @@ struct Case<R, T> {
     /// Weight c of each contact node.
     weight: Vec<R>,
     on_symmetry_plane: Vec<bool>,
-    /// Shortest distance from an element's first node to another of its nodes.
+    /// How far the nodes of an element may move against its first before its tangent is formed
+    /// anew, if it does not yield before.
+    reach: Vec<T>,
+    /// Shortest distance between two of its nodes.
     size: Vec<T>,
     /// Counts the changes of what steps start from: tangents of another step are not taken again.
     step: u64,
@@ -83,7 +89,7 @@ impl<T: Real> Held<T> {
 ///
 /// A tangent in f32 costs two thirds of one in f64, and is as good: the multigrid levels are in f32
 /// anyway, and the residual alone decides what a converged step is. For the same reason it is not
-/// formed for each iteration of a step where an elastic element has hardly moved since the last.
+/// formed for each iteration of a step where an elastic element has hardly moved since it was.
 /// Tangents in `R` are exact.
 pub struct Cpu<R, T = R> {
     models: Vec<CaseModel>,
@@ -151,6 +157,11 @@ impl<R: Real, T: Real> Case<R, T> {
     fn new(model: &CaseModel) -> Result<Self, ComputeError> {
         let mesh = model.mesh.clone();
         let opponent = model.opponent.as_ref().unwrap_or(&model.material);
+        let size: Vec<f64> = mesh.elements.iter().map(|nodes| size(&nodes.map(|n| mesh.nodes[n as usize]))).collect();
+        let same = |element: usize| {
+            let Material { elasticity, .. } = if element < model.opponent_from() { &model.material } else { opponent };
+            SAME_TANGENT * (SAME_UP_TO * elasticity.shear / elasticity.bulk).min(1.0)
+        };
         let mut on_plane = vec![false; mesh.nodes.len()];
         mesh.symmetry_nodes.iter().for_each(|&n| on_plane[n as usize] = true);
         Ok(Self {
@@ -167,7 +178,8 @@ impl<R: Real, T: Real> Case<R, T> {
             committed: vec![0.0; 3 * mesh.nodes.len()],
             weight: mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect(),
             on_symmetry_plane: mesh.contact_nodes.iter().map(|&n| on_plane[n as usize]).collect(),
-            size: mesh.elements.iter().map(|nodes| T::of(size(&nodes.map(|n| mesh.nodes[n as usize])))).collect(),
+            reach: size.iter().enumerate().map(|(e, size)| T::of(size * same(e))).collect(),
+            size: size.iter().map(|size| T::of(*size)).collect(),
             step: 1,
             geometry: geometry_of(&mesh)?,
             tangent_geometry: geometry_of(&mesh)?,
@@ -225,7 +237,7 @@ impl<R: Real, T: Real> Case<R, T> {
                     out.step = 0;
                     let margin = hex8::tangent(geometry, material, start, committed, increment, &mut out.tangent)?;
                     (out.step, out.increment) = (case.step, *increment);
-                    out.reach = case.size[e] * margin.min(T::of(SAME_TANGENT));
+                    out.reach = case.reach[e].min(case.size[e] * margin);
                     Ok(())
                 });
             if outcome != Outcome::Valid {
@@ -457,10 +469,10 @@ fn takes_again<R: Real, T: Real>() -> bool {
     R::EPSILON.to_f64() < T::EPSILON.to_f64()
 }
 
-/// The shortest distance from the first node to another.
+/// The shortest distance between two nodes.
 fn size(nodes: &[[f64; 3]; NODES]) -> f64 {
-    let distance = |a: usize| (0..3).map(|i| (nodes[a][i] - nodes[0][i]).powi(2)).sum::<f64>().sqrt();
-    (1..NODES).map(distance).fold(f64::INFINITY, f64::min)
+    let distance = |a: usize, b: usize| (0..3).map(|i| (nodes[a][i] - nodes[b][i]).powi(2)).sum::<f64>().sqrt();
+    (1..NODES).flat_map(|a| (0..a).map(move |b| distance(a, b))).fold(f64::INFINITY, f64::min)
 }
 
 /// A number in another precision, rounded once.

@@ -120,7 +120,8 @@ pub struct StepFields {
 
 impl Simulation {
     /// A simulation of `case` in the pool of threads from which it is called, on a GPU if there is
-    /// one worth it, that writes nothing.
+    /// one worth it, that writes nothing. Simulations side by side should each have
+    /// [`Options::threads`] of their own: in one pool one may have to wait for another.
     ///
     /// # Errors
     /// [`SessionError`]: an invalid case, with the name of the key.

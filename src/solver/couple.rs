@@ -189,7 +189,7 @@ impl System<f32> for CoupleSolver {
         y.fill(0.0);
         r.iter_mut().zip(v).for_each(|(r, v)| *r = f64::from(*v));
         self.cycle(master, r, y);
-        // What the master's part leaves of the slave's equations: it moves the slave's surface
+        // What the master's part leaves of the slave's equations. Of the slave it moves the surface
         // alone.
         u.copy_from_slice(y);
         self.interface.expand(u);

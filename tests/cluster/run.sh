@@ -188,7 +188,7 @@ scancel "${array}_3"
 say "telling share 4 that its time is over"
 scancel --signal=USR1 --batch "${array}_4"
 sleep 1
-kill -CONT "$(process_of 4)"
+kill -CONT "$(process_of 4)" || fail "share 4 was gone before its time"
 wait_for 400 "the end of all jobs" all_gone
 say "the table's job said:"
 cat "$out/slurm/table.log"

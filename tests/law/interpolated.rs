@@ -63,6 +63,7 @@ fn two_spheres_that_do_not_yield_keep_their_force() {
         );
         let (points, _) = law.follow(&Case::parse(&text, "case.toml", &[]).expect("a case")).expect("a path");
         let pressed = points.iter().rfind(|point| point.segment == 0).expect("a press").f_n;
+        assert!(points.iter().filter(|point| point.segment == 1).count() > 5);
         for point in points.iter().filter(|point| point.segment == 1) {
             let lost = 1.0 - point.f_n / pressed;
             let passed = 1.5 * point.delta_t.powi(2) / (4.0 * h);

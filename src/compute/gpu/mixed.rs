@@ -18,7 +18,7 @@ use crate::compute::{
 
 /// Evaluates a batch in f64 on the CPU, and its tangents and linear systems in f32 on a device.
 pub struct Mixed {
-    residual: Cpu<f64, f32>,
+    residual: Cpu<f64>,
     tangent: Gpu<f32>,
 }
 
@@ -28,7 +28,7 @@ impl Mixed {
     /// # Errors
     /// As [`Gpu::new`].
     pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
-        Ok(Self { residual: Cpu::with_tangents(models.clone())?, tangent: Gpu::new(context, models)? })
+        Ok(Self { residual: Cpu::new(models.clone())?, tangent: Gpu::new(context, models)? })
     }
 
     /// As [`Gpu::notes`].

@@ -349,7 +349,7 @@ pub fn tangent<R: Real>(
             (0..=b).for_each(|a| out[pair(a, b)] = array(R::ZERO, |m| block[m][a]));
         }
     }
-    // Uniaxial strain by that much takes the whole reserve; d of a shear takes d E/(1 + nu).
+    // A stretch at constant volume by that much takes the whole reserve, a shear less of it.
     let reserve = response.reserve.0.iter().fold(response.reserve.0[0], |least, &reserve| least.min(reserve));
     Ok(reserve.max(R::ZERO) / (R::of(3.0) * material.elasticity.shear))
 }

@@ -131,7 +131,7 @@ impl Transfer {
 
     /// coarse = P^T fine P, leaving out the identity rows of fixed unknowns: those whose bits
     /// `identity` sets for a node. What does not depend on the rows of `fine` that have changed is
-    /// left as it is, and the rows of `coarse` that were formed anew are told.
+    /// left as it is; `coarse_changed` says which rows of `coarse` were formed anew.
     pub fn update(
         &mut self,
         (fine, changed): (&BlockMatrix<f32>, &[bool]),

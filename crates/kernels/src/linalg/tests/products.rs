@@ -36,6 +36,22 @@ fn products_match_plain_loops_in_every_precision() {
     assert!(near(&y, 1e-6));
     single.multiply(&x, &mut y);
     assert!(near(&y, 1e-6));
+    single.multiply_in_single(&x32, &mut Vec::new(), &mut y32);
+    assert!(near(&y32.iter().map(|&y| f64::from(y)).collect::<Vec<_>>(), 1e-5));
+}
+
+#[test]
+fn a_product_of_few_is_that_of_all() {
+    let matrix = Brick::slipping(7).problem().matrix;
+    let (mut x, b): (Vec<f64>, Vec<f64>) = (0..matrix.unknowns()).map(|i| (0.0, i as f64)).unzip();
+    for few in [&[][..], &[0], &[40, 41, 300], &[matrix.unknowns() - 1]] {
+        few.iter().for_each(|&i| x[i] = 1.0 + i as f64);
+        let (mut all, mut sparse) = (b.clone(), b.clone());
+        matrix.residual(&x, &b, &mut all);
+        matrix.subtract_product_of_few(&x, &mut sparse);
+        assert_eq!(all, sparse);
+    }
+    assert!(x.iter().filter(|x| **x != 0.0).count() == 5);
 }
 
 #[test]
