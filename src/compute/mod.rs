@@ -265,8 +265,8 @@ pub trait Compute: Send {
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError>;
     /// Internal forces.
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError>;
-    /// Tangents. In f32 beside residuals in f64 they may be, element by element, those of an earlier
-    /// request of the step that are as good.
+    /// Tangents. In f32 beside residuals in f64 they may be, element by element, those of an
+    /// earlier request of the step that are as good.
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError>;
     /// Contact conditions.
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError>;

@@ -25,14 +25,23 @@ fn can_trace() -> bool {
     Command::new("strace").args(["-f", "-qq", "-e", "trace=none", "true"]).output().is_ok_and(|output| output.status.success())
 }
 
-/// The calls of the main thread that touch the directory: the name, and the how many-eth of that
+/// The calls of the run's thread that touch the directory: the name, and the how many-eth of that
 /// name it is, counting all.
 fn calls(log: &str, out: &Path) -> Vec<(String, usize)> {
-    let main = log.split_whitespace().next().expect("a traced call").to_owned();
     let out = out.display().to_string();
-    let (mut counts, mut found) = (BTreeMap::new(), Vec::new());
-    for line in log.lines().filter_map(|line| line.strip_prefix(&main)) {
-        let Some((name, _)) = line.trim_start().split_once('(') else { continue };
+    let thread = |line: &str| line.split_whitespace().next().expect("a traced call").to_owned();
+    let mut writes: BTreeMap<String, usize> = BTreeMap::new();
+    log.lines().filter(|line| line.contains(&out)).for_each(|line| *writes.entry(thread(line)).or_default() += 1);
+    // The thread in which the run is.
+    let (writer, _) = writes.into_iter().max_by_key(|(_, writes)| *writes).expect("a thread that writes");
+    let (mut counts, mut others, mut found) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
+    for line in log.lines() {
+        let of = thread(line);
+        let Some((name, _)) = line[of.len()..].trim_start().split_once('(') else { continue };
+        if of != writer {
+            *others.entry((of, name.to_owned())).or_insert(0) += 1;
+            continue;
+        }
         let count: &mut usize = counts.entry(name.to_owned()).or_default();
         *count += 1;
         let reads = name.starts_with("open") && !line.contains("O_WRONLY") && !line.contains("O_RDWR");
@@ -40,6 +49,8 @@ fn calls(log: &str, out: &Path) -> Vec<(String, usize)> {
             found.push((name.to_owned(), *count));
         }
     }
+    // Calls are counted in each thread by itself: where another has as many, it is killed there.
+    found.retain(|(name, count)| !others.iter().any(|((_, other), most)| other == name && most >= count));
     found
 }
 

@@ -137,8 +137,8 @@ fn bodies(case: &Case) -> Result<(Body, ElasticSphere), LawError> {
 }
 
 /// Whether a shear takes none of F_N, whatever the samples make of it: two equal elastic spheres
-/// exert no friction on each other in a press. A sphere on a plane does, and at low nu a shear lets go of
-/// up to a tenth of F_N that this has added.
+/// exert no friction on each other in a press. A sphere on a plane does, and at low nu a shear lets
+/// go of up to a tenth of F_N that this has added.
 fn keeps_its_force(body: &Body, against: Against) -> bool {
     body.is_elastic() && against == Against::EqualSphere
 }
