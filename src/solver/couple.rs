@@ -14,7 +14,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::tied::{InSingle, Reduced, Tied, clear, impose};
+use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;
@@ -57,7 +57,6 @@ struct Work {
     u: Vec<f64>,
     f: Vec<f64>,
     r: Vec<f64>,
-    single: InSingle,
 }
 
 impl Body {
@@ -102,7 +101,7 @@ impl CoupleSolver {
             interface: Arc::default(),
             rows: Vec::new(),
             reduced: Reduced::new(n),
-            work: Work { y: zero(), u: zero(), f: zero(), r: zero(), single: InSingle::default() },
+            work: Work { y: zero(), u: zero(), f: zero(), r: zero() },
         })
     }
 
@@ -184,7 +183,7 @@ impl Tied for CoupleSolver {
 impl System<f32> for CoupleSolver {
     fn step(&mut self, v: &[f32], z: &mut [f32], w: &mut [f32]) {
         let mut work = std::mem::take(&mut self.work);
-        let Work { y, u, f, r, single } = &mut work;
+        let Work { y, u, f, r } = &mut work;
         let (slave, master) = (self.slave, 1 - self.slave);
         y.fill(0.0);
         r.iter_mut().zip(v).for_each(|(r, v)| *r = f64::from(*v));
@@ -204,7 +203,7 @@ impl System<f32> for CoupleSolver {
         z.iter_mut().zip(&*y).for_each(|(z, y)| *z = *y as f32);
         u.copy_from_slice(y);
         self.interface.expand(u);
-        single.multiply(&self.matrix, u, f);
+        self.matrix.multiply(u, f);
         self.carry_over(y, f);
         clear(&self.reduced.fixed, f);
         w.iter_mut().zip(&*f).for_each(|(w, f)| *w = *f as f32);
