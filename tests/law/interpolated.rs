@@ -59,7 +59,8 @@ fn two_spheres_that_do_not_yield_keep_their_force() {
     ] {
         let text = format!(
             "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 200e3\npoissons_ratio = 0.3\nhardening = {{ {hardening} }}\n\
-             [opponent]\nequal = true\n[contact]\nfriction = {friction}\n[[path]]\nindentation = {h}\n[[path]]\nshear = \"full-slip\"\n"
+             [opponent]\nequal = true\n[contact]\nfriction = {friction}\n[[path]]\nindentation = {h}\n\
+             [[path]]\nshear = \"full-slip\"\n"
         );
         let (points, _) = law.follow(&Case::parse(&text, "case.toml", &[]).expect("a case")).expect("a path");
         let pressed = points.iter().rfind(|point| point.segment == 0).expect("a press").f_n;
