@@ -78,7 +78,7 @@ fn without_double_precision_the_residual_comes_from_the_cpu() {
         let context = context.without_double_precision();
         let mut selected = select_on(Ok(Some(context)), device_choice, PrecisionChoice::Auto, models()).unwrap();
         let description = selected.backend.description();
-        assert!(description.device.contains("tangents in f32") && description.precision == "f64", "{description:?}");
+        assert!(description.device.contains("in f32; residuals on the CPU") && description.precision == "f64", "{description:?}");
         assert!(selected.notes.len() == 1 && selected.notes[0].contains("no double precision"), "{:?}", selected.notes);
         assert_eq!(force(selected.backend.as_mut()).unwrap(), force(reference.backend.as_mut()).unwrap());
     }

@@ -65,18 +65,35 @@ fn a_device_is_named_with_its_precision_and_gives_the_same_force() {
     let dir = tempfile::tempdir().unwrap();
     let (cpu, _) = done(dir.path(), &["--device", "cpu"], &[]);
     assert!(cpu.device.starts_with("CPU") && cpu.precision == "f64" && cpu.device_traffic.is_none());
-    for (precision, most) in [("f64", 1e-7), ("f32", 5e-4)] {
+    for (precision, most) in [("f64", 1e-7), ("f32", 5e-4), ("mixed", 1e-5)] {
         let options = ["--device", "gpu", "--precision", precision, "--set", "output.fields=segments"];
         let (gpu, _) = done(dir.path(), &options, &[]);
-        assert!(gpu.device.contains(&context.adapter().name) && gpu.precision == precision, "{gpu:?}");
+        let of_residual = if precision == "f32" { "f32" } else { "f64" };
+        assert!(gpu.device.contains(&context.adapter().name) && gpu.precision == of_residual, "{gpu:?}");
+        assert_eq!(gpu.confirming_iterations.is_some(), precision == "mixed");
         assert!(gpu.messages.is_empty(), "{:?}", gpu.messages);
         let ratio = gpu.f_n0.unwrap() / cpu.f_n0.unwrap();
         assert!((ratio - 1.0).abs() < most, "{precision}: {ratio}");
         // A row for each point of the whole contact, of which a half is meshed.
         let table = std::fs::read_dir(dir.path().join("out/contact")).unwrap().next().unwrap().unwrap().path();
         let points = std::fs::read_to_string(table).unwrap().lines().count() as u64;
-        check_traffic(&gpu, if precision == "f64" { 8 } else { 4 }, points);
+        match precision {
+            "f64" => check_traffic(&gpu, 8, points),
+            "f32" => check_traffic(&gpu, 4, points),
+            _ => check_traffic_of_steps(&gpu),
+        }
     }
+}
+
+/// Where steps are made in f32, vectors come down and states go up once a step: displacement, force
+/// and a mark a node; states committed and started from a point, and two displacements a node.
+fn check_traffic_of_steps(summary: &Summary) {
+    let DeviceTraffic { steps, .. } = summary.device_traffic.expect("the device's account");
+    let (iterations, accepted) = (summary.newton_iterations as u64, summary.steps as u64);
+    assert!(steps.waits <= 2 * iterations + 4 * accepted, "{steps:?}");
+    let (nodes, points) = (summary.unknowns as u64 / 2, 8 * summary.elements as u64);
+    assert!(steps.bytes_down <= 512 * steps.waits + 4 * 7 * nodes * accepted, "{steps:?}");
+    assert!(steps.bytes_up <= 512 * steps.submissions + 4 * (22 * points + 10 * nodes) * accepted, "{steps:?}");
 }
 
 /// In double precision Newton's iterates stay on the device: an iteration is a submission and a
@@ -176,20 +193,27 @@ fn gap(ours: &[StepRecord], reference: &[StepRecord]) -> f64 {
 fn a_device_lost_on_the_way_costs_no_step() {
     let Some(context) = device::device("a_device_lost_on_the_way_costs_no_step", Precision::F64) else { return };
     let adapter = context.adapter().name.as_str();
-    let after = LOST_AFTER.to_string();
     let dir = tempfile::tempdir().unwrap();
     let (output, reference, _) = with_shear(dir.path(), &tightly(&["--device", "cpu"]), &[]);
     assert_eq!(output.status.code(), Some(0));
     assert!(reference.len() > LOST_AFTER + 2, "{} steps: the device should be lost in the middle", reference.len());
 
+    for precision in ["auto", "mixed"] {
+        loses_its_device(adapter, precision, &reference);
+    }
+}
+
+fn loses_its_device(adapter: &str, precision: &str, reference: &[StepRecord]) {
+    let after = LOST_AFTER.to_string();
     let dir = tempfile::tempdir().unwrap();
     let environment = [("ASPERITY_ADAPTER", adapter), (LOSE_VARIABLE, &after)];
-    let (output, history, summary) = with_shear(dir.path(), &tightly(&["--device", "auto"]), &environment);
+    let options = ["--device", "auto", "--precision", precision];
+    let (output, history, summary) = with_shear(dir.path(), &tightly(&options), &environment);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert_eq!(summary.status, Status::Done);
     assert!(history.iter().enumerate().all(|(i, row)| row.step == i + 1), "a step is missing");
-    assert!(gap(&history, &reference) < 1e-7, "{:e}", gap(&history, &reference));
+    assert!(gap(&history, reference) < 1e-7, "{precision}: {:e}", gap(&history, reference));
     // told once, on stderr and in the summary
     let told = format!("{adapter} (");
     let [message] = &summary.messages[..] else { panic!("{:?}", summary.messages) };

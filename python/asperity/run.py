@@ -168,7 +168,7 @@ def run(
     :param threads: threads to use, by default all of the machine's; results do not depend on it.
     :param progress: by default a bar in terminals and notebooks; ``True`` or ``False``, or a function that is called with the share of the path that is
         behind, the number of the step and a text (a note has the share -1). What it raises ends the run like Ctrl-C.
-    :param precision: ``"auto"``, ``"f32"`` or ``"f64"``.
+    :param precision: ``"auto"``, ``"f32"``, ``"f64"`` or ``"mixed"`` (see ``asperity run --help``).
     :param resume: go on with an unfinished run of the same case in ``out``.
     :param force: replace an earlier result in ``out``.
     :raises CaseError: the case or an argument is refused.

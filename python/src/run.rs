@@ -28,7 +28,8 @@ fn precision(word: &str) -> PyResult<PrecisionChoice> {
         "auto" => Ok(PrecisionChoice::Auto),
         "f32" => Ok(PrecisionChoice::F32),
         "f64" => Ok(PrecisionChoice::F64),
-        other => Err(refused(format!("precision: is {other:?}. Allowed: \"auto\", \"f32\", \"f64\""))),
+        "mixed" => Ok(PrecisionChoice::Mixed),
+        other => Err(refused(format!("precision: is {other:?}. Allowed: \"auto\", \"f32\", \"f64\", \"mixed\""))),
     }
 }
 

@@ -19,6 +19,7 @@ pub fn precision_choice(args: &DeviceArgs) -> PrecisionChoice {
         Precision::Auto => PrecisionChoice::Auto,
         Precision::F32 => PrecisionChoice::F32,
         Precision::F64 => PrecisionChoice::F64,
+        Precision::Mixed => PrecisionChoice::Mixed,
     }
 }
 

@@ -31,6 +31,9 @@ pub enum Precision {
     F32,
     /// Double precision.
     F64,
+    /// Steps in f32 on the device, held to the CPU's residual in f64; what auto does where the
+    /// device has no f64.
+    Mixed,
 }
 
 /// The format of a picture's file.

@@ -2,7 +2,7 @@
 //! states.
 
 use super::cpu::Cpu;
-use super::iterate::{Ask, IterateRequest};
+use super::iterate::{Ask, IterateRequest, Keeps};
 use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
@@ -147,8 +147,8 @@ impl Compute for Fallback {
         self.knows(requests.iter().map(|request| request.case))
     }
 
-    fn keeps_iterates(&self) -> bool {
-        self.device.as_ref().is_some_and(|device| device.keeps_iterates())
+    fn keeps(&self) -> Keeps {
+        self.device.as_ref().map_or(Keeps::Nothing, |device| device.keeps())
     }
 
     /// Where the device fails its iterates are gone. No copy is taken at a commit: whoever follows

@@ -1,6 +1,6 @@
 //! One case of a batch, as its Newton iteration sees it.
 
-use super::iterate::{Answer, Ask, IterateRequest, Plate};
+use super::iterate::{Answer, Ask, IterateRequest, Keeps, Plate};
 use super::linear::LinearRequest;
 use super::{
     Blocks, CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
@@ -23,8 +23,8 @@ pub trait Evaluate {
     /// Linear systems with the tangent, where the backend solves them; the case is this one,
     /// whatever the request says.
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError>;
-    /// Whether the iterates stay where they are computed (see [`Compute::keeps_iterates`]).
-    fn keeps_iterates(&self) -> bool;
+    /// Which iterates stay where they are computed (see [`Compute::keeps`]).
+    fn keeps(&self) -> Keeps;
     /// Asks something of the iterates there. `kept` says that what was tried last is the current
     /// one from now on.
     fn iterate(&mut self, kept: bool, plate: Plate, ask: Ask) -> Result<Answer, ComputeError>;
@@ -72,8 +72,8 @@ impl Evaluate for CaseHandle<'_> {
         self.backend.linear(std::slice::from_mut(request))
     }
 
-    fn keeps_iterates(&self) -> bool {
-        self.backend.keeps_iterates()
+    fn keeps(&self) -> Keeps {
+        self.backend.keeps()
     }
 
     fn iterate(&mut self, kept: bool, plate: Plate, ask: Ask) -> Result<Answer, ComputeError> {

@@ -1,7 +1,7 @@
 //! The iterates of Newton's method, where they stay on the device: what is asked of one case, and
 //! the few numbers that come back.
 //!
-//! A backend that keeps iterates ([`super::Compute::keeps_iterates`]) has two for each case, the
+//! A backend that keeps iterates ([`super::Compute::keeps`]) has two for each case, the
 //! current one and a trial, both as increments since the committed state, and a correction that
 //! leads from the one to the other. Over a plane only.
 
@@ -9,6 +9,19 @@ use super::linear::SideReport;
 use super::{Energies, Outcome};
 use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
+
+/// Which of Newton's iterates a backend keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Keeps {
+    /// None: the host has them.
+    #[default]
+    Nothing,
+    /// Those of a step, and it commits the last one.
+    Steps,
+    /// The same in f32 where residuals are in f64 elsewhere: what a step ends with there is a first
+    /// iterate for the host, who holds it to the residual in f64 and has it committed.
+    Guesses,
+}
 
 /// Where the plate is, or is to be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

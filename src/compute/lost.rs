@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::gpu::GpuContext;
-use super::iterate::{Ask, IterateRequest};
+use super::iterate::{Ask, IterateRequest, Keeps};
 use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
@@ -87,8 +87,8 @@ impl Compute for LostAfter {
         self.backend.contact(requests)
     }
 
-    fn keeps_iterates(&self) -> bool {
-        self.backend.keeps_iterates()
+    fn keeps(&self) -> Keeps {
+        self.backend.keeps()
     }
 
     fn has_stand_in(&self) -> bool {

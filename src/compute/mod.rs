@@ -34,7 +34,7 @@ use crate::contact::coulomb::{Friction, Rows};
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState};
 use crate::mesh::Mesh;
-use iterate::IterateRequest;
+use iterate::{IterateRequest, Keeps};
 use linear::LinearRequest;
 use traffic::Traffic;
 
@@ -296,10 +296,10 @@ pub trait Compute: Send {
         let _ = requests;
         Ok(())
     }
-    /// Whether Newton's iterates stay where they are computed: then [`Compute::iterate`] is asked,
-    /// and nothing else up to the commit.
-    fn keeps_iterates(&self) -> bool {
-        false
+    /// Which of Newton's iterates stay where they are computed: [`Compute::iterate`] is asked for
+    /// those, and nothing else up to the commit.
+    fn keeps(&self) -> Keeps {
+        Keeps::Nothing
     }
     /// Newton's iterates, where they stay. All requests ask for the same.
     fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {

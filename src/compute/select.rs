@@ -25,14 +25,16 @@ pub enum DeviceChoice {
 /// The precision wished for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PrecisionChoice {
-    /// f64 for the residual, f32 for the linear systems. A device without f64 computes tangents and
-    /// solves with them; forces are the CPU's then.
+    /// f64 for the residual, f32 for the linear systems. On a device without f64 as `Mixed`.
     #[default]
     Auto,
     /// f32 for everything.
     F32,
     /// f64, as `Auto`.
     F64,
+    /// The device makes steps in f32, and the CPU holds each to the residual in f64. On the CPU as
+    /// `F64`.
+    Mixed,
 }
 
 /// A backend, with what the user should know of how it was chosen.
@@ -69,7 +71,9 @@ pub fn is_there(device: DeviceChoice) -> Result<bool, ComputeError> {
 fn cpu(precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
     Ok(match precision {
         PrecisionChoice::F32 => Box::new(Cpu::<f32>::new(models)?),
-        PrecisionChoice::Auto | PrecisionChoice::F64 => Box::new(Cpu::<f64, f32>::with_tangents(models)?),
+        PrecisionChoice::Auto | PrecisionChoice::F64 | PrecisionChoice::Mixed => {
+            Box::new(Cpu::<f64, f32>::with_tangents(models)?)
+        }
     })
 }
 
@@ -169,18 +173,20 @@ mod device {
             let notes = gpu.notes();
             return Ok((hooked(Box::new(gpu), context), notes));
         }
-        if context.supports(Precision::F64).is_ok() {
+        let has_double = context.supports(Precision::F64).is_ok();
+        if has_double && precision != PrecisionChoice::Mixed {
             let gpu = Gpu::<f64>::with_tangents_in_single(context.clone(), models)?;
             let notes = gpu.notes();
             return Ok((hooked(Box::new(gpu), context), notes));
         }
-        let note = format!(
-            "{} has no double precision in shaders: it computes the tangents in f32, the CPU the residuals in f64",
-            context.adapter().name
-        );
-        log::info!("{note}");
         let mixed = Mixed::new(context.clone(), models)?;
-        let notes = [vec![note], mixed.notes()].concat();
+        let mut notes = mixed.notes();
+        if !has_double {
+            let name = &context.adapter().name;
+            let note = format!("{name} has no double precision in shaders: it computes in f32, and the CPU the residuals in f64");
+            log::info!("{note}");
+            notes.insert(0, note);
+        }
         Ok((hooked(Box::new(mixed), context), notes))
     }
 }

@@ -22,6 +22,8 @@ pub struct Ledger {
     pub tables: Tables,
     /// Linear systems that multigrid left to the direct solver.
     pub fallbacks: usize,
+    /// Newton iterations in f64 after steps that a device made in f32, where one does.
+    pub confirming: Option<usize>,
     /// Time of the steps by phase.
     pub times: PhaseTimes,
     /// Time beside the steps.

@@ -291,6 +291,7 @@ impl ResultWriter {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.ledger.fallbacks,
+            confirming_iterations: self.ledger.confirming,
             device_traffic: self.ledger.traffic.sum(),
             wall_s,
             cpu_s,
@@ -389,6 +390,9 @@ impl Observer for ResultWriter {
         }
         self.ledger.rows.push(row);
         self.ledger.fallbacks += view.report.fallbacks;
+        if let Some(more) = view.report.confirming {
+            *self.ledger.confirming.get_or_insert(0) += more;
+        }
         self.ledger.times += view.report.times;
         self.ledger.traffic.step(view.report.traffic, view.traffic());
         if self.fields == Fields::All {
@@ -439,7 +443,7 @@ impl Observer for ResultWriter {
         self.setting.unknowns = unknowns;
         let ledger = &mut self.ledger;
         (ledger.rows, ledger.saved, ledger.panels, ledger.tables) = Default::default();
-        ledger.fallbacks = 0;
+        (ledger.fallbacks, ledger.confirming) = (0, None);
         ledger.traffic.starts_over();
         ledger.remeshed += 1;
         self.meshed(problem);

@@ -147,6 +147,9 @@ pub struct Summary {
     pub krylov_iterations: usize,
     /// Linear systems that multigrid left to the direct solver.
     pub linear_fallbacks: usize,
+    /// Of the Newton iterations those in f64, on the host, after steps that a device made in f32.
+    /// Null where none does.
+    pub confirming_iterations: Option<usize>,
     /// Greatest equivalent plastic strain at the end.
     pub max_alpha: Option<f64>,
     /// Time from start to end, seconds, that of earlier parts of a resumed run included.

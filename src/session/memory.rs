@@ -28,6 +28,7 @@ pub struct Memory {
     scout: Option<Scout>,
     remeshed: usize,
     fallbacks: usize,
+    confirming: Option<usize>,
     traffic: Account,
     times: PhaseTimes,
     outside: OutsideSteps,
@@ -57,6 +58,7 @@ impl Memory {
             scout: None,
             remeshed: 0,
             fallbacks: 0,
+            confirming: None,
             traffic: Account::default(),
             times: PhaseTimes::default(),
             outside: OutsideSteps { setup: clock.wall_seconds(), ..OutsideSteps::default() },
@@ -84,6 +86,7 @@ impl Memory {
             device: self.setting.computed_on.device,
             precision: self.setting.computed_on.precision.to_owned(),
             linear_fallbacks: self.fallbacks,
+            confirming_iterations: self.confirming,
             device_traffic: self.traffic.sum(),
             wall_s,
             cpu_s: self.clock.cpu_seconds(),
@@ -111,6 +114,9 @@ impl Observer for Memory {
             return Ok(());
         }
         self.fallbacks += view.report.fallbacks;
+        if let Some(more) = view.report.confirming {
+            *self.confirming.get_or_insert(0) += more;
+        }
         self.times += view.report.times;
         self.traffic.step(view.report.traffic, view.traffic());
         let row = view.record.in_units(&self.units);
@@ -140,7 +146,7 @@ impl Observer for Memory {
         self.setting.unknowns = unknowns;
         self.spacing = problem.spacing;
         self.share = PathShare::new(&self.path);
-        self.fallbacks = 0;
+        (self.fallbacks, self.confirming) = (0, None);
         self.traffic.starts_over();
         self.remeshed += 1;
         Ok(())

@@ -19,7 +19,7 @@ use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::{Scaled, Segment, ShearTarget};
 use crate::compute::handle::{CaseHandle, Evaluate};
-use crate::compute::iterate::{Ask, Plate, Settled};
+use crate::compute::iterate::{Ask, Keeps, Plate, Settled};
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseState, Compute, ComputeError};
 use crate::contact::coulomb::{Friction, Status};
@@ -27,7 +27,7 @@ use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
 use crate::solver::encounter::Encounter;
-use crate::solver::iterate::{Guess, SetOut};
+use crate::solver::iterate::{Extrapolation, SetOut};
 use crate::solver::newton::Newton;
 use crate::solver::phases::{Lap, Phase};
 use crate::solver::rigid::position;
@@ -117,7 +117,7 @@ impl<'a> Drive<'a> {
             self.safe.keep(snapshot.clone());
         }
         self.backend.restore(self.case, &snapshot.case)?;
-        if self.newton.stays_on(&CaseHandle { backend: &mut *self.backend, case: self.case }) {
+        if self.keeps() != Keeps::Nothing {
             self.handle().iterate(false, Plate::default(), Ask::SetEarlier(snapshot.state.u_before.clone()))?;
         }
         self.is_away = false;
@@ -394,9 +394,9 @@ impl<'a> Drive<'a> {
     /// One Newton solve towards a target; commits nothing, but where the iterates stay on a device.
     fn attempt(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         self.traffic_before = self.traffic_before.or_else(|| self.backend.traffic());
-        let stays = self.newton.stays_on(&CaseHandle { backend: &mut *self.backend, case: self.case });
+        let keeps = self.keeps();
         let ratio = self.extrapolation(target);
-        let mut guess = if stays { None } else { ratio.map(|ratio| self.guess(ratio)) };
+        let mut guess = if keeps == Keeps::Steps { None } else { ratio.map(|ratio| self.guess(ratio)) };
         let h = match (target.hold_force, self.state.last_increment) {
             // Where the force is held the indentation is an unknown, and goes on as the
             // displacements do.
@@ -440,12 +440,9 @@ impl<'a> Drive<'a> {
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;
         lap.end(&mut self.newton.times, Phase::Commit);
-        let first = match (ratio, &guess) {
-            (Some(ratio), None) => Some(Guess::Extrapolation { ratio, lift: !self.problem.fully_plastic }),
-            (_, guess) => guess.as_deref().map(Guess::At),
-        };
+        let extrapolation = ratio.map(|ratio| Extrapolation { ratio, lift: !self.problem.fully_plastic });
         let StepRecord { h, delta_t, .. } = self.state.record;
-        let start = SetOut { displacement: &self.state.u, h, delta_t, guess: first };
+        let start = SetOut { displacement: &self.state.u, h, delta_t, guess: guess.as_deref(), extrapolation };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
         let outcome = self.newton.solve(&mut handle, &start, &control)?;
         if let StepOutcome::Converged(_) = outcome {
@@ -454,6 +451,11 @@ impl<'a> Drive<'a> {
             lap.end(&mut self.newton.times, Phase::Commit);
         }
         Ok(outcome)
+    }
+
+    /// Which iterates stay on the device.
+    fn keeps(&mut self) -> Keeps {
+        self.newton.keeps_on(&CaseHandle { backend: &mut *self.backend, case: self.case })
     }
 
     /// How many times the last step of the segment is added to the committed displacement, if any:

@@ -13,7 +13,7 @@ use super::system::{Meeting, Trial};
 use super::systems::Systems;
 use super::{Control, Settings, SolverError};
 use crate::compute::handle::Evaluate;
-use crate::compute::iterate::{Reading, Settled};
+use crate::compute::iterate::{Keeps, Reading, Settled};
 use crate::contact::coulomb::{Friction, Status};
 use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
@@ -45,6 +45,9 @@ const LAST_ITERATIONS: usize = 3;
 const CONVERGING: f64 = 0.2;
 const FEW_ITERATIONS: usize = 10;
 
+/// Steps in f32 are made to this tolerance at the tightest; what is asked beyond is found in f64.
+const SINGLE: f64 = 1e-4;
+
 /// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times
 /// areas of the order of R^2.
 const ROUNDING: f64 = 1e-14;
@@ -62,6 +65,8 @@ pub struct Newton {
     /// The present step's are on the device.
     is_resident: bool,
     settings: Settings,
+    /// The present merit's: that of the settings, or what f32 can come to.
+    tolerance: f64,
     /// Force scale of the last accepted step, and the largest of any.
     last_scale: f64,
     largest_scale: f64,
@@ -79,6 +84,7 @@ impl Newton {
             iterates: ResidentIterate::new(HostIterate::new(mesh, linear.into())),
             is_resident: false,
             settings,
+            tolerance: settings.tolerance,
             last_scale: 0.0,
             largest_scale: 0.0,
             current: Reading::default(),
@@ -92,9 +98,9 @@ impl Newton {
         self
     }
 
-    /// Whether steps on this backend leave their vectors on the device.
-    pub fn stays_on(&self, case: &dyn Evaluate) -> bool {
-        case.keeps_iterates() && self.iterates.host.is_over_plane_by_multigrid()
+    /// Which iterates of the case stay on this backend.
+    pub fn keeps_on(&self, case: &dyn Evaluate) -> Keeps {
+        if self.iterates.host.is_over_plane_by_multigrid() { case.keeps() } else { Keeps::Nothing }
     }
 
     /// The last accepted trial, if its vectors are on the host.
@@ -199,11 +205,46 @@ impl Newton {
     /// On success the solution is the accepted trial ([`Newton::accepted`], [`Newton::settle`]);
     /// nothing is committed. A failure leaves the committed state as it was.
     pub fn solve(&mut self, case: &mut dyn Evaluate, start: &SetOut<'_>, control: &Control) -> Result<StepOutcome, SolverError> {
-        self.is_resident = self.stays_on(case);
-        match self.follow(case, start, control) {
+        let keeps = self.keeps_on(case);
+        self.is_resident = keeps != Keeps::Nothing;
+        self.tolerance = self.settings.tolerance.max(if keeps == Keeps::Guesses { SINGLE } else { 0.0 });
+        let mut followed = self.follow(case, start, control);
+        if keeps == Keeps::Guesses {
+            followed = self.confirm(case, start, control, followed);
+        }
+        match followed {
             Ok(report) => Ok(StepOutcome::Converged(report)),
             Err(Halt::Step(failure)) => Ok(StepOutcome::Failed(failure)),
             Err(Halt::Solver(error)) => Err(error),
+        }
+    }
+
+    /// Holds the step that a device has made in f32 to the residual in f64, and goes on from its
+    /// end on the host where that is not enough; from the start where it came to none.
+    fn confirm(
+        &mut self,
+        case: &mut dyn Evaluate,
+        start: &SetOut<'_>,
+        control: &Control,
+        made: Result<StepReport, Halt>,
+    ) -> Result<StepReport, Halt> {
+        let (made, brought, h) = match made {
+            Ok(made) => {
+                let brought = self.iterates.hand_over(case, control)?;
+                (made, Some(brought), self.iterates.h())
+            }
+            Err(Halt::Step(failure)) => {
+                log::debug!("  in f32: {failure}; the step is made in f64");
+                (StepReport { given_up: failure.iterations(), ..StepReport::default() }, None, control.h)
+            }
+            Err(fault) => return Err(fault),
+        };
+        (self.is_resident, self.tolerance) = (false, self.settings.tolerance);
+        let start = SetOut { guess: brought.as_deref().or(start.guess), ..*start };
+        match self.follow(case, &start, &Control { h, ..*control }) {
+            Ok(report) => Ok(report.after(made)),
+            Err(Halt::Step(failure)) => Err(failure.after(made.given_up).into()),
+            Err(fault) => Err(fault),
         }
     }
 
@@ -249,7 +290,7 @@ impl Newton {
             let may_stay = iteration >= self.settings.monotone_from
                 && self.iterate().plate_is_placed(control)
                 && self.holds_force(control, 2.0 * HELD_TOLERANCE)
-                && previous <= KINK * self.settings.tolerance * scale;
+                && previous <= KINK * self.tolerance * scale;
             let (step_length, found) = self.line_search(case, control, reference, slope, delta_h)?;
             if may_stay && found.merit >= previous {
                 report.iterations.push(Iteration { merit: before, step_length: 0.0, krylov, changed: 0 });
@@ -312,7 +353,7 @@ impl Newton {
     /// The merit is below the tolerance, the tangential residuals of the contact are against the
     /// friction that there can be, and a held normal force is met.
     fn has_converged(&mut self, case: &dyn Evaluate, control: &Control) -> bool {
-        let bound = (self.settings.tolerance * self.scale()).max(ROUNDING);
+        let bound = (self.tolerance * self.scale()).max(ROUNDING);
         if self.current.merit > bound || !self.iterate().plate_is_placed(control) {
             return false;
         }
@@ -340,7 +381,7 @@ impl Newton {
         if !previous.is_finite() {
             return loosest.min((self.settings.first_linear * self.scale() / merit).max(TIGHTEST_FIRST));
         }
-        let floor = 0.3 * self.settings.tolerance * self.scale() / merit;
+        let floor = 0.3 * self.tolerance * self.scale() / merit;
         let ratio = merit / previous;
         (FORCING_GAMMA * ratio * ratio).max(floor).clamp(1e-12, loosest)
     }

@@ -14,7 +14,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::compute::iterate::{self, IterateRequest};
+use crate::compute::iterate::{self, IterateRequest, Keeps};
 use crate::compute::linear::{LinearRequest, Side, SideReport};
 use crate::compute::traffic::Traffic;
 use crate::compute::{
@@ -150,7 +150,7 @@ struct Told {
     description: Description,
     notes: Vec<String>,
     traffic: Option<Traffic>,
-    keeps_iterates: bool,
+    keeps: Keeps,
     has_stand_in: bool,
 }
 
@@ -181,7 +181,7 @@ pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Guest>) {
         description: backend.description(),
         notes: Vec::new(),
         traffic: backend.traffic(),
-        keeps_iterates: backend.keeps_iterates(),
+        keeps: backend.keeps(),
         has_stand_in: backend.has_stand_in(),
     };
     let told = Arc::new(Mutex::new(told));
@@ -209,7 +209,7 @@ impl Host {
             let notes = self.backend.take_notes();
             let mut told = lock(&self.told);
             told.traffic = self.backend.traffic();
-            told.keeps_iterates = self.backend.keeps_iterates();
+            told.keeps = self.backend.keeps();
             told.has_stand_in = self.backend.has_stand_in();
             if !notes.is_empty() {
                 told.description = self.backend.description();
@@ -439,8 +439,8 @@ impl Compute for Guest {
         self.ask(case, Ask::Begin(weight)).map(drop)
     }
 
-    fn keeps_iterates(&self) -> bool {
-        lock(&self.told).keeps_iterates
+    fn keeps(&self) -> Keeps {
+        lock(&self.told).keeps
     }
 
     fn has_stand_in(&self) -> bool {

@@ -7,7 +7,9 @@ use crate::linear::mesh;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::gpu::{Gpu, Precision};
 use asperity::internals::compute::handle::CaseHandle;
-use asperity::internals::compute::iterate::{Answer, Ask, Begin, Correct, Corrected, From, IterateRequest, Plate, Reading};
+use asperity::internals::compute::iterate::{
+    Answer, Ask, Begin, Correct, Corrected, From, IterateRequest, Keeps, Plate, Reading,
+};
 use asperity::internals::compute::linear::Ended;
 use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::compute::{CaseModel, Compute, Outcome};
@@ -65,9 +67,9 @@ fn pressed(name: &str) -> Option<Pressed> {
         let linear = LinearSolver::<f32>::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy).unwrap();
         let mut newton = Newton::new(mesh, linear, settings);
         let zero = vec![0.0; 3 * mesh.nodes.len()];
-        let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None };
+        let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None };
         let mut handle = CaseHandle { backend: &mut gpu, case };
-        assert!(newton.stays_on(&handle));
+        assert_eq!(newton.keeps_on(&handle), Keeps::Steps);
         let outcome = newton.solve(&mut handle, &start, &control).unwrap();
         assert!(matches!(outcome, StepOutcome::Converged(_)), "{outcome:?}");
         let settled = newton.settle(&mut handle).unwrap().unwrap();

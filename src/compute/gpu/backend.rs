@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::batch::{Batch, Dispatch, Evaluation};
+use super::batch::{Batch, Dispatch, Evaluation, Parts};
 use super::buffers::DeviceReal;
 use super::context::GpuContext;
 use super::error::GpuError;
@@ -13,8 +13,9 @@ use super::linear::Linear;
 use super::linear::pack::Packed;
 use super::linear::parts::Part;
 use super::scratch::{CONTACT_ANSWER, CONTACT_TRIAL};
+use super::shader_sources::Precision;
 use crate::compute::cpu::Cpu;
-use crate::compute::iterate::IterateRequest;
+use crate::compute::iterate::{IterateRequest, Keeps};
 use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
@@ -56,7 +57,16 @@ impl<R: DeviceReal> Gpu<R> {
     /// [`ComputeError::Connectivity`], [`ComputeError::InvertedMesh`], [`ComputeError::Device`]:
     /// memory, limits, no double precision, or the device's fault.
     pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
-        Self::of(context, models, false)
+        let iterates = R::PRECISION == Precision::F64;
+        Self::of(context, models, Parts { tangents_in_single: false, iterates })
+    }
+
+    /// The same with Newton's iterates also in single precision.
+    ///
+    /// # Errors
+    /// As [`Gpu::new`].
+    pub fn with_iterates(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
+        Self::of(context, models, Parts { tangents_in_single: false, iterates: true })
     }
 
     /// The same with tangents in single precision, whatever the residual's: they decide how fast an
@@ -65,10 +75,10 @@ impl<R: DeviceReal> Gpu<R> {
     /// # Errors
     /// As [`Gpu::new`].
     pub fn with_tangents_in_single(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
-        Self::of(context, models, true)
+        Self::of(context, models, Parts { tangents_in_single: true, iterates: true })
     }
 
-    fn of(context: Arc<GpuContext>, models: Vec<CaseModel>, tangents_in_single: bool) -> Result<Self, ComputeError> {
+    fn of(context: Arc<GpuContext>, models: Vec<CaseModel>, parts: Parts) -> Result<Self, ComputeError> {
         let name = format!("{} ({})", context.adapter().name, context.adapter().kind);
         let Some(first) = models.first() else {
             let (committed, fresh, current, largest) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -80,7 +90,7 @@ impl<R: DeviceReal> Gpu<R> {
             }
         }
         context.supports(R::PRECISION)?;
-        let batch = Batch::new(context, &models, tangents_in_single)?;
+        let batch = Batch::new(context, &models, parts)?;
         let committed = models.iter().map(|m| vec![0.0; 3 * m.mesh.nodes.len()]).collect();
         let (fresh, current, largest) = (vec![true; models.len()], vec![0; models.len()], vec![[0.0; 2]; models.len()]);
         Ok(Self { models, committed, fresh, current, largest, batch: Some(batch), name })
@@ -261,8 +271,8 @@ impl<R: DeviceReal> Compute for Gpu<R> {
         Ok(())
     }
 
-    fn keeps_iterates(&self) -> bool {
-        self.batch.as_ref().is_some_and(Batch::keeps_iterates)
+    fn keeps(&self) -> Keeps {
+        if self.batch.as_ref().is_some_and(Batch::keeps_iterates) { Keeps::Steps } else { Keeps::Nothing }
     }
 
     fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {

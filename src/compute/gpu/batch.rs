@@ -40,10 +40,19 @@ pub struct Batch<R> {
     pub(super) tangents: Tangents<R>,
     /// How linear systems are solved, if the mesh has a hierarchy.
     pub(super) linear: Option<Linear>,
-    /// Newton's iterates, where residuals are in double precision and linear systems are solved.
+    /// Newton's iterates, where they are asked for and linear systems are solved.
     pub(super) iterates: Option<Iterates<R>>,
     /// What the user should know of it.
     pub(super) notes: Vec<String>,
+}
+
+/// What a batch has besides its residuals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// Tangents in single precision, whatever the residual's.
+    pub tangents_in_single: bool,
+    /// Newton's iterates, where linear systems are solved.
+    pub iterates: bool,
 }
 
 /// What a batch evaluates.
@@ -110,8 +119,8 @@ impl<R: DeviceReal> Batch<R> {
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; what the device says, above all [`GpuError::OutOfBudget`]
     /// and [`GpuError::TooLarge`].
-    pub fn new(context: Arc<GpuContext>, models: &[CaseModel], tangents_in_single: bool) -> Result<Self, ComputeError> {
-        let in_single = tangents_in_single && R::PRECISION != Precision::F32;
+    pub fn new(context: Arc<GpuContext>, models: &[CaseModel], parts: Parts) -> Result<Self, ComputeError> {
+        let in_single = parts.tangents_in_single && R::PRECISION != Precision::F32;
         let mesh = models[0].mesh.clone();
         let gather = GatherPlan::new(&mesh);
         let plan = BlockPlan::new(&mesh, &gather);
@@ -152,7 +161,7 @@ impl<R: DeviceReal> Batch<R> {
             fits.is_ok().then_some(plan)
         });
         let (widest, mut all) = needs(linear_plan.as_ref());
-        let keeps = R::PRECISION == Precision::F64 && linear_plan.is_some();
+        let keeps = parts.iterates && linear_plan.is_some();
         let of_kept = if keeps { Kept::<R>::bytes(sizes) * models.len() as u64 } else { 0 };
         if keeps {
             all += Told::<R>::bytes(sizes);

@@ -28,7 +28,7 @@ pub enum GpuError {
         reason: String,
     },
     /// Double precision asked of an adapter without it.
-    #[error("{adapter} has no double precision in shaders (SHADER_F64): use --precision f32 or auto, or --device cpu")]
+    #[error("{adapter} has no double precision in shaders (SHADER_F64): use --precision auto, mixed or f32, or --device cpu")]
     NoDoublePrecision {
         /// Name of the adapter.
         adapter: String,

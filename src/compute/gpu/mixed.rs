@@ -2,13 +2,15 @@
 //! systems on the device in f32.
 //!
 //! The residual decides what a converged step is, the tangent only how fast it is found: the answer
-//! does not depend on the device.
+//! does not depend on the device. Over a plane the device makes whole steps in f32, each a guess
+//! that the CPU's residual then confirms or that the host goes on from ([`Keeps::Guesses`]).
 
 use std::sync::Arc;
 
 use super::backend::Gpu;
 use super::context::GpuContext;
 use crate::compute::cpu::Cpu;
+use crate::compute::iterate::{Answer, Ask, IterateRequest, Keeps, Plate};
 use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
@@ -19,7 +21,7 @@ use crate::compute::{
 /// Evaluates a batch in f64 on the CPU, and its tangents and linear systems in f32 on a device.
 pub struct Mixed {
     residual: Cpu<f64>,
-    tangent: Gpu<f32>,
+    single: Gpu<f32>,
 }
 
 impl Mixed {
@@ -28,27 +30,24 @@ impl Mixed {
     /// # Errors
     /// As [`Gpu::new`].
     pub fn new(context: Arc<GpuContext>, models: Vec<CaseModel>) -> Result<Self, ComputeError> {
-        Ok(Self { residual: Cpu::new(models.clone())?, tangent: Gpu::new(context, models)? })
+        Ok(Self { residual: Cpu::new(models.clone())?, single: Gpu::with_iterates(context, models)? })
     }
 
     /// As [`Gpu::notes`].
     pub fn notes(&self) -> Vec<String> {
-        self.tangent.notes()
+        self.single.notes()
     }
 
     /// The device; none for an empty batch.
     pub fn context(&self) -> Option<&Arc<GpuContext>> {
-        self.tangent.context()
+        self.single.context()
     }
 }
 
 impl Compute for Mixed {
     fn description(&self) -> Description {
-        let (cpu, gpu) = (self.residual.description(), self.tangent.description());
-        Description {
-            device: format!("{}, tangents in f32; residuals on the {}", gpu.device, cpu.device),
-            precision: cpu.precision,
-        }
+        let (cpu, gpu) = (self.residual.description(), self.single.description());
+        Description { device: format!("{}, in f32; residuals on the {}", gpu.device, cpu.device), precision: cpu.precision }
     }
 
     fn models(&self) -> &[CaseModel] {
@@ -56,12 +55,12 @@ impl Compute for Mixed {
     }
 
     fn traffic(&self) -> Option<Traffic> {
-        self.tangent.traffic()
+        self.single.traffic()
     }
 
     fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
         self.residual.begin_step(case, weight)?;
-        self.tangent.begin_step(case, weight)
+        self.single.begin_step(case, weight)
     }
 
     fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
@@ -69,7 +68,7 @@ impl Compute for Mixed {
     }
 
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        self.tangent.tangent(requests)
+        self.single.tangent(requests)
     }
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
@@ -77,16 +76,33 @@ impl Compute for Mixed {
     }
 
     fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
-        self.tangent.linear(requests)
+        self.single.linear(requests)
+    }
+
+    fn keeps(&self) -> Keeps {
+        if self.single.keeps() == Keeps::Nothing { Keeps::Nothing } else { Keeps::Guesses }
+    }
+
+    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+        self.single.iterate(requests)
     }
 
     /// The device takes over the state that the CPU has found.
     fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
+        let keeps = self.keeps() != Keeps::Nothing;
+        let before: Vec<Vec<f64>> = requests.iter().filter(|_| keeps).map(|r| self.single.committed[r.case].clone()).collect();
         self.residual.commit(requests)?;
         for request in requests.iter().filter(|r| r.outcome == Outcome::Valid) {
-            self.tangent.restore(request.case, &self.residual.state(request.case)?)?;
+            self.single.restore(request.case, &self.residual.state(request.case)?)?;
         }
-        Ok(())
+        let valid = requests.iter().zip(before).filter(|(r, _)| r.outcome == Outcome::Valid);
+        let mut earlier: Vec<IterateRequest> = valid
+            .map(|(r, before)| {
+                let (plate, ask) = (Plate::default(), Ask::SetEarlier(before));
+                IterateRequest { case: r.case, kept: false, plate, ask, answer: Answer::Nothing }
+            })
+            .collect();
+        if earlier.is_empty() { Ok(()) } else { self.single.iterate(&mut earlier) }
     }
 
     fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
@@ -99,6 +115,6 @@ impl Compute for Mixed {
 
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         self.residual.restore(case, state)?;
-        self.tangent.restore(case, state)
+        self.single.restore(case, state)
     }
 }

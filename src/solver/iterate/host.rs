@@ -1,6 +1,6 @@
 //! Iterates whose vectors are on the host.
 
-use super::{Asked, Correction, Guess, Iterate, SetOut};
+use super::{Asked, Correction, Iterate, SetOut};
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::{Reading, Vectors};
 use crate::compute::{ComputeError, Outcome};
@@ -252,7 +252,7 @@ impl Iterate for HostIterate {
         if let Some(against) = &mut self.boundary.against {
             against.set_out(&mesh, start.displacement);
         }
-        if let Some(Guess::At(guess)) = start.guess {
+        if let Some(guess) = start.guess {
             self.current.h = control.h;
             self.current.u.copy_from_slice(guess);
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);

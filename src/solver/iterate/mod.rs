@@ -24,23 +24,19 @@ pub struct SetOut<'a> {
     pub h: f64,
     /// See `h`.
     pub delta_t: f64,
-    /// The first iterate, if there is a better one than the start.
-    pub guess: Option<Guess<'a>>,
+    /// The first iterate on the host, three a node, if there is a better one than the start.
+    pub guess: Option<&'a [f64]>,
+    /// The same where a device keeps iterates.
+    pub extrapolation: Option<Extrapolation>,
 }
 
-/// A first iterate.
-#[derive(Clone, Copy, Debug)]
-pub enum Guess<'a> {
-    /// These displacements, three a node.
-    At(&'a [f64]),
-    /// The committed ones and so many times the last step; `lift` puts points that come out below
-    /// the plane on it. For a device that keeps iterates.
-    Extrapolation {
-        /// Share of the last step.
-        ratio: f64,
-        /// Whether points are put on the plane.
-        lift: bool,
-    },
+/// A first iterate: the committed displacement and so many times the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extrapolation {
+    /// Share of the last step.
+    pub ratio: f64,
+    /// Whether points that come out below the plane are put on it.
+    pub lift: bool,
 }
 
 /// What is asked of a linear system.

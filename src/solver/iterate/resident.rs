@@ -2,7 +2,7 @@
 
 use super::host::HostIterate;
 use super::linearise::{EXPECTED, UNIT_RESPONSE, unit_share};
-use super::{Asked, Correction, Guess, Iterate, SetOut};
+use super::{Asked, Correction, Extrapolation, Iterate, SetOut};
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::{Answer, Ask, Begin, Correct, Corrected, From, Plate, Reading, Settled};
 use crate::compute::linear::Ended;
@@ -88,6 +88,21 @@ impl ResidentIterate {
         Ok(reading)
     }
 
+    /// The displacement of the current iterate, with which the host goes on; under full stick also
+    /// with the points that slide in it.
+    ///
+    /// # Errors
+    /// [`SolverError::Compute`].
+    pub fn hand_over(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Vec<f64>, SolverError> {
+        match self.ask(case, control, Ask::Bring)? {
+            Answer::Vectors(vectors) => {
+                self.host.set_sliding(&vectors.sliding);
+                Ok(vectors.displacement)
+            }
+            other => Err(unexpected(&other)),
+        }
+    }
+
     /// The current iterate on the host.
     fn bring(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<(), SolverError> {
         match self.ask(case, control, Ask::Bring)? {
@@ -124,7 +139,7 @@ impl Iterate for ResidentIterate {
         let mut lap = Lap::start();
         (self.kept, self.whole, self.tried) = (false, None, None);
         self.expected = [EXPECTED; 2];
-        if let Some(Guess::Extrapolation { ratio, lift }) = start.guess {
+        if let Some(Extrapolation { ratio, lift }) = start.extrapolation {
             self.h = control.h;
             let reading = self.begin_from(case, control, From::Extrapolation { ratio, lift })?;
             if reading.outcome == Outcome::Valid {

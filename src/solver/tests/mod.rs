@@ -3,12 +3,13 @@
 
 mod block;
 mod failure;
+mod guesses;
 mod patch;
 mod quadratic;
 
 use std::sync::Arc;
 
-use super::iterate::{Guess, SetOut};
+use super::iterate::SetOut;
 use super::newton::Newton;
 use super::{Control, Settings, StepFailure, StepOutcome, StepReport};
 use crate::compute::cpu::Cpu;
@@ -59,7 +60,7 @@ impl Rig {
     pub fn attempt_from(&mut self, guess: Option<&[f64]>, control: &Control) -> StepOutcome {
         let mut handle = CaseHandle { backend: &mut self.backend, case: 0 };
         let plate = self.mesh.plate_nodes.first().map_or(0, |&n| 3 * n as usize);
-        let start = SetOut { displacement: &self.u, h: self.h, delta_t: self.u[plate], guess: guess.map(Guess::At) };
+        let start = SetOut { displacement: &self.u, h: self.h, delta_t: self.u[plate], guess, extrapolation: None };
         self.newton.solve(&mut handle, &start, control).unwrap()
     }
 
