@@ -7,7 +7,7 @@ use crate::linear::{System, models, solve, system};
 use asperity::internals::compute::gpu::linear::inspect::OnLevel;
 use asperity::internals::compute::gpu::{Gpu, Precision};
 use asperity::internals::linalg::{BlockMatrix, Hierarchy};
-use asperity::internals::mesh::{Mesh, SphereSpec, sphere_mesh};
+use asperity::internals::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh};
 use rand::RngExt;
 use std::sync::Arc;
 
@@ -18,6 +18,34 @@ fn meshes() -> [Arc<Mesh>; 2] {
     [4, 8].map(|elements_per_contact_radius| {
         Arc::new(sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3 }).unwrap())
     })
+}
+
+/// A box whose levels are halved down to a single element.
+fn down_to_one_element() -> Arc<Mesh> {
+    let mut mesh = brick(8, 8, 8, [0.2; 3]).unwrap();
+    mesh.hierarchy = [8, 4, 2].map(halved).to_vec();
+    assert_eq!(mesh.hierarchy[2].coarse_nodes, 8);
+    Arc::new(mesh)
+}
+
+/// Trilinear interpolation to the nodes of a box of so many cells a side from every second one.
+fn halved(cells: usize) -> Prolongation {
+    let (fine, coarse) = (cells + 1, cells / 2 + 1);
+    let mut p = Prolongation { coarse_nodes: coarse.pow(3), row_start: vec![0], column: vec![], weight: vec![] };
+    for node in 0..fine.pow(3) {
+        let at = [node % fine, node / fine % fine, node / fine.pow(2)];
+        let is_between = at.map(|i| i % 2 == 1);
+        let weight = is_between.iter().filter(|between| **between).fold(1.0, |weight, _| 0.5 * weight);
+        for corner in [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]] {
+            if (0..3).all(|axis| is_between[axis] || corner[axis] == 0) {
+                let [i, j, k] = [0, 1, 2].map(|axis| at[axis] / 2 + corner[axis]);
+                p.column.push((i + coarse * (j + coarse * k)) as u32);
+                p.weight.push(weight);
+            }
+        }
+        p.row_start.push(p.column.len() as u32);
+    }
+    p
 }
 
 /// The largest difference over the largest number.
@@ -67,7 +95,7 @@ fn gaps(device: &OnLevel, hierarchy: &Hierarchy, l: usize, is_fixed: &dyn Fn(usi
 #[test]
 fn every_level_has_the_cpus_matrix_and_its_v_cycle() {
     let name = "every_level_has_the_cpus_matrix_and_its_v_cycle";
-    for mesh in meshes() {
+    for mesh in meshes().into_iter().chain([down_to_one_element()]) {
         let models = models(&mesh);
         for masked in [false, true] {
             for case in 0..models.len() {

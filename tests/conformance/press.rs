@@ -157,13 +157,13 @@ fn gpu_f32_stays_near_cpu_f64() {
     hold("gpu_f32", &history(&problem, &mut backend, None), &reference(&problem), 5e-4);
 }
 
-/// Residuals from the CPU and tangents from the device in f32: what a device without double
+/// Steps in f32 on the device, held to residuals of the CPU: what a device without double
 /// precision does. Solved tightly, so that what is left is no matter of which iterate was the first
 /// to be good enough.
 #[test]
-fn f32_tangents_do_not_change_the_answer() {
+fn steps_in_f32_do_not_change_the_answer() {
     let start = |context, models| Mixed::new(context, models).unwrap();
-    let Some((mut problem, mut backend)) = on_device("f32_tangents_do_not_change_the_answer", Precision::F32, start) else {
+    let Some((mut problem, mut backend)) = on_device("steps_in_f32_do_not_change_the_answer", Precision::F32, start) else {
         return;
     };
     problem.settings.tolerance = 1e-7;
