@@ -31,8 +31,8 @@ pub enum Precision {
     F32,
     /// Double precision.
     F64,
-    /// Steps in f32 on the device, held to the CPU's residual in f64; what auto does where the
-    /// device has no f64.
+    /// Steps in f32 on the device, checked by the CPU in f64: what auto does on a device without
+    /// f64.
     Mixed,
 }
 

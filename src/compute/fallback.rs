@@ -74,6 +74,11 @@ impl Fallback {
         if self.device.is_none() && cases.any(|case| self.is_away[case]) { Err(ComputeError::Gone) } else { Ok(()) }
     }
 
+    /// What is left of these cases without the device.
+    fn without_iterates(&self, requests: &[IterateRequest]) -> ComputeError {
+        self.knows(requests.iter().map(|request| request.case)).err().unwrap_or(ComputeError::Moved)
+    }
+
     /// Leaves the device for the CPU, which starts from the committed states.
     fn give_up(&mut self, reason: &str) -> Result<(), ComputeError> {
         self.traffic = self.traffic();
@@ -151,10 +156,11 @@ impl Compute for Fallback {
         self.device.as_ref().map_or(Keeps::Nothing, |device| device.keeps())
     }
 
-    /// Where the device fails its iterates are gone. No copy is taken at a commit: whoever follows
-    /// the path takes one from time to time, and goes back to it.
+    /// Where the device fails its iterates are gone; so are states that it has committed itself. No
+    /// copy is taken of those: whoever follows the path takes one from time to time, and goes back
+    /// to it.
     fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
-        let Some(device) = &mut self.device else { return Err(ComputeError::Gone) };
+        let Some(device) = &mut self.device else { return Err(self.without_iterates(requests)) };
         match device.iterate(requests) {
             Ok(()) => {
                 for request in requests.iter().filter(|request| request.ask == Ask::Commit) {
@@ -165,7 +171,7 @@ impl Compute for Fallback {
             }
             Err(ComputeError::Device(reason)) => {
                 self.give_up(&reason)?;
-                Err(ComputeError::Gone)
+                Err(self.without_iterates(requests))
             }
             Err(error) => Err(error),
         }

@@ -194,6 +194,8 @@ pub struct Vectors {
     pub force: Vec<f64>,
     /// Whether each contact point slides without friction in this step.
     pub sliding: Vec<bool>,
+    /// Under full stick: whether each contact point has come off in this step.
+    pub came_off: Vec<bool>,
 }
 
 /// What comes back.

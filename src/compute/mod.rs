@@ -250,6 +250,9 @@ pub enum ComputeError {
     /// given a state to go on from ([`Compute::restore`]).
     #[error("the device that had the state of the case failed, and nobody has given its stand-in an earlier one")]
     Gone,
+    /// The device that had Newton's iterates failed; its stand-in has the committed state.
+    #[error("the device that had the iterates of the step failed, and the step was not begun anew")]
+    Moved,
 }
 
 /// A batch of cases on some device.
@@ -297,7 +300,7 @@ pub trait Compute: Send {
         Ok(())
     }
     /// Which of Newton's iterates stay where they are computed: [`Compute::iterate`] is asked for
-    /// those, and nothing else up to the commit.
+    /// those, and nothing else up to the step's end.
     fn keeps(&self) -> Keeps {
         Keeps::Nothing
     }

@@ -22,7 +22,7 @@ pub struct Ledger {
     pub tables: Tables,
     /// Linear systems that multigrid left to the direct solver.
     pub fallbacks: usize,
-    /// Newton iterations in f64 after steps that a device made in f32, where one does.
+    /// Newton iterations on the host in f64 after a device's in f32, where a device works so.
     pub confirming: Option<usize>,
     /// Time of the steps by phase.
     pub times: PhaseTimes,

@@ -147,8 +147,8 @@ pub struct Summary {
     pub krylov_iterations: usize,
     /// Linear systems that multigrid left to the direct solver.
     pub linear_fallbacks: usize,
-    /// Of the Newton iterations those in f64, on the host, after steps that a device made in f32.
-    /// Null where none does.
+    /// Newton iterations made on the host in f64, after the device had converged the step in f32 or
+    /// failed to. Null where no device works so.
     pub confirming_iterations: Option<usize>,
     /// Greatest equivalent plastic strain at the end.
     pub max_alpha: Option<f64>,

@@ -300,7 +300,7 @@ impl<'a> Drive<'a> {
                 StepOutcome::Converged(report) => {
                     self.place.waiting.pop();
                     self.place.depth = self.place.depth.saturating_sub(1);
-                    self.pace(report.iterations.len());
+                    self.pace(report.effort());
                     self.accept(&next, report, observer)?;
                     self.checkpoint(false, observer);
                 }
@@ -442,9 +442,10 @@ impl<'a> Drive<'a> {
         lap.end(&mut self.newton.times, Phase::Commit);
         let extrapolation = ratio.map(|ratio| Extrapolation { ratio, lift: !self.problem.fully_plastic });
         let StepRecord { h, delta_t, .. } = self.state.record;
-        let start = SetOut { displacement: &self.state.u, h, delta_t, guess: guess.as_deref(), extrapolation };
+        let start = SetOut { displacement: &self.state.u, h, delta_t, guess: guess.as_deref(), extrapolation, came_off: &[] };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
         let outcome = self.newton.solve(&mut handle, &start, &control)?;
+        self.place.wasted += self.newton.take_given_up();
         if let StepOutcome::Converged(_) = outcome {
             let mut lap = Lap::start();
             self.settled = self.newton.settle(&mut handle)?;

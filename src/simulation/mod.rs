@@ -64,9 +64,11 @@ impl SimulationError {
     /// one.
     pub(crate) fn is_gone(&self) -> bool {
         match self {
-            Self::Compute(error) | Self::Solver(SolverError::Compute(error)) => matches!(error, ComputeError::Gone),
+            Self::Compute(error) | Self::Solver(SolverError::Compute(error)) => {
+                matches!(error, ComputeError::Gone | ComputeError::Moved)
+            }
             // Who watches the run had asked for fields.
-            Self::Observer(error) => matches!(error.downcast_ref(), Some(ComputeError::Gone)),
+            Self::Observer(error) => matches!(error.downcast_ref(), Some(ComputeError::Gone | ComputeError::Moved)),
             _ => false,
         }
     }

@@ -8,10 +8,11 @@ use super::iterate::host::HostIterate;
 use super::iterate::resident::ResidentIterate;
 use super::iterate::{Asked, Correction, Iterate, SetOut};
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
-use super::phases::PhaseTimes;
+use super::phases::{Lap, Phase, PhaseTimes};
 use super::system::{Meeting, Trial};
 use super::systems::Systems;
 use super::{Control, Settings, SolverError};
+use crate::compute::ComputeError;
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::{Keeps, Reading, Settled};
 use crate::contact::coulomb::{Friction, Status};
@@ -45,7 +46,7 @@ const LAST_ITERATIONS: usize = 3;
 const CONVERGING: f64 = 0.2;
 const FEW_ITERATIONS: usize = 10;
 
-/// Steps in f32 are made to this tolerance at the tightest; what is asked beyond is found in f64.
+/// Steps in f32 are converged to this tolerance at the tightest; f64 does the rest.
 const SINGLE: f64 = 1e-4;
 
 /// A merit that is rounding, whatever the normal force: forces are stresses of the order of E times
@@ -65,13 +66,15 @@ pub struct Newton {
     /// The present step's are on the device.
     is_resident: bool,
     settings: Settings,
-    /// The present merit's: that of the settings, or what f32 can come to.
+    /// Tolerance of the merit: that of the settings, in f32 no tighter than [`SINGLE`].
     tolerance: f64,
     /// Force scale of the last accepted step, and the largest of any.
     last_scale: f64,
     largest_scale: f64,
     /// What is known of the current iterate.
     current: Reading,
+    /// Iterations in f32 from which no step has come.
+    given_up: usize,
     /// Time spent since the last converged step; whoever drives the iteration adds what else a step
     /// takes.
     pub times: PhaseTimes,
@@ -88,6 +91,7 @@ impl Newton {
             last_scale: 0.0,
             largest_scale: 0.0,
             current: Reading::default(),
+            given_up: 0,
             times: PhaseTimes::default(),
         }
     }
@@ -159,6 +163,11 @@ impl Newton {
         self.iterates.host.set_sliding(points);
     }
 
+    /// Contact points that slide so.
+    pub fn sliding(&self) -> &[bool] {
+        &self.iterates.host.boundary().frictionless
+    }
+
     /// Sets the interface of an equal pair for the next step.
     pub fn meet(&mut self, meeting: Meeting) {
         self.iterates.host.meet(meeting);
@@ -208,10 +217,13 @@ impl Newton {
         let keeps = self.keeps_on(case);
         self.is_resident = keeps != Keeps::Nothing;
         self.tolerance = self.settings.tolerance.max(if keeps == Keeps::Guesses { SINGLE } else { 0.0 });
-        let mut followed = self.follow(case, start, control);
-        if keeps == Keeps::Guesses {
-            followed = self.confirm(case, start, control, followed);
-        }
+        let followed = if keeps == Keeps::Guesses {
+            let sliding = self.sliding().to_vec();
+            let made = self.follow(case, start, control);
+            self.confirm(case, start, control, &sliding, made)
+        } else {
+            self.follow(case, start, control)
+        };
         match followed {
             Ok(report) => Ok(StepOutcome::Converged(report)),
             Err(Halt::Step(failure)) => Ok(StepOutcome::Failed(failure)),
@@ -219,33 +231,55 @@ impl Newton {
         }
     }
 
-    /// Holds the step that a device has made in f32 to the residual in f64, and goes on from its
-    /// end on the host where that is not enough; from the start where it came to none.
+    /// Checks the step that a device has converged in f32 against the residual in f64, and goes on
+    /// from there on the host if that is above the tolerance. If f32 did not converge, the host
+    /// starts over, with these points sliding.
     fn confirm(
         &mut self,
         case: &mut dyn Evaluate,
         start: &SetOut<'_>,
         control: &Control,
+        sliding: &[bool],
         made: Result<StepReport, Halt>,
     ) -> Result<StepReport, Halt> {
-        let (made, brought, h) = match made {
-            Ok(made) => {
-                let brought = self.iterates.hand_over(case, control)?;
-                (made, Some(brought), self.iterates.h())
-            }
+        let mut lap = Lap::start();
+        let brought = made.and_then(|made| Ok((self.iterates.hand_over(case, control)?, made)));
+        lap.end(&mut self.times, Phase::Force);
+        (self.is_resident, self.tolerance) = (false, self.settings.tolerance);
+        let (vectors, made) = match brought {
+            Ok((vectors, made)) => (Some(vectors), made),
             Err(Halt::Step(failure)) => {
                 log::debug!("  in f32: {failure}; the step is made in f64");
-                (StepReport { given_up: failure.iterations(), ..StepReport::default() }, None, control.h)
+                self.given_up += failure.iterations();
+                (None, StepReport::default())
             }
+            // The device is lost, and the state is not.
+            Err(Halt::Solver(SolverError::Compute(ComputeError::Moved))) => (None, StepReport::default()),
             Err(fault) => return Err(fault),
         };
-        (self.is_resident, self.tolerance) = (false, self.settings.tolerance);
-        let start = SetOut { guess: brought.as_deref().or(start.guess), ..*start };
-        match self.follow(case, &start, &Control { h, ..*control }) {
+        let followed = match &vectors {
+            Some(vectors) => {
+                let start = SetOut { guess: Some(&vectors.displacement), came_off: &vectors.came_off, ..*start };
+                self.follow(case, &start, &Control { h: self.iterates.h(), ..*control })
+            }
+            None => {
+                self.iterates.host.set_sliding(sliding);
+                self.follow(case, start, control)
+            }
+        };
+        match followed {
             Ok(report) => Ok(report.after(made)),
-            Err(Halt::Step(failure)) => Err(failure.after(made.given_up).into()),
-            Err(fault) => Err(fault),
+            Err(halt) => {
+                self.given_up += made.iterations.len();
+                self.times += made.times;
+                Err(halt)
+            }
         }
+    }
+
+    /// Newton iterations in f32 since the last call from which no step has come.
+    pub fn take_given_up(&mut self) -> usize {
+        std::mem::take(&mut self.given_up)
     }
 
     fn follow(&mut self, case: &mut dyn Evaluate, start: &SetOut<'_>, control: &Control) -> Result<StepReport, Halt> {
@@ -253,7 +287,7 @@ impl Newton {
         let begun = self.iterate().begin(case, start, control, &mut times);
         self.times = times;
         self.current = begun?;
-        let mut report = StepReport::default();
+        let mut report = StepReport { landed_again: self.current.landed, ..StepReport::default() };
         let mut previous = f64::INFINITY;
         let mut highest = 0.0_f64;
         let mut at_kink = false;

@@ -24,11 +24,9 @@ pub struct StepReport {
     pub merit: f64,
     /// Times the linear solver fell back to the direct one.
     pub fallbacks: usize,
-    /// Newton iterations in f64, on the host, after a device had made the step in f32; `None` where
-    /// none does.
+    /// Newton iterations on the host in f64 after a device's in f32; `None` where no device works
+    /// so.
     pub confirming: Option<usize>,
-    /// Iterations in f32 that came to no end before it was made in f64.
-    pub given_up: usize,
     /// Accepted above the tolerance, at a kink of the merit.
     pub relaxed: bool,
     /// Under full stick: points that stuck when the step began, came off in it and came down again.
@@ -45,13 +43,19 @@ impl StepReport {
         self.iterations.iter().map(|i| i.krylov).sum()
     }
 
+    /// How hard the step was: its iterations; if some were in f32 and some in f64, the larger of the
+    /// two numbers.
+    pub fn effort(&self) -> usize {
+        let all = self.iterations.len();
+        self.confirming.map_or(all, |confirming| confirming.max(all - confirming))
+    }
+
     /// The report of a step that was `made` in f32 before it was confirmed, or gone on with, in
     /// f64.
     pub fn after(mut self, made: Self) -> Self {
         self.confirming = Some(self.iterations.len());
         self.iterations.splice(0..0, made.iterations);
         self.fallbacks += made.fallbacks;
-        self.given_up = made.given_up;
         self.landed_again += made.landed_again;
         self.times += made.times;
         self
@@ -104,14 +108,6 @@ impl StepFailure {
             Self::Iterations { iterations, .. } => *iterations,
             _ => 1,
         }
-    }
-
-    /// The same failure after so many iterations of another attempt.
-    pub(super) fn after(mut self, given_up: usize) -> Self {
-        if let Self::Iterations { iterations, .. } = &mut self {
-            *iterations += given_up;
-        }
-        self
     }
 }
 

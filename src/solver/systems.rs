@@ -6,7 +6,7 @@ use super::tied::Tied;
 use crate::linalg::{BlockMatrix, DEFAULT_FALLBACK_LIMIT, LinalgError, LinearSolver, SolveReport, SolverKind};
 
 /// The solver of one body's systems over a plane, made when it is first asked for: where a device
-/// solves them it never is, and its matrices take no memory.
+/// makes whole steps in f64 it never is, and its matrices take no memory.
 pub struct Unmade {
     kind: SolverKind,
     make: Box<dyn Fn() -> Result<Systems, LinalgError> + Send>,

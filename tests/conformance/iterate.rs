@@ -67,7 +67,7 @@ fn pressed(name: &str) -> Option<Pressed> {
         let linear = LinearSolver::<f32>::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy).unwrap();
         let mut newton = Newton::new(mesh, linear, settings);
         let zero = vec![0.0; 3 * mesh.nodes.len()];
-        let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None };
+        let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None, came_off: &[] };
         let mut handle = CaseHandle { backend: &mut gpu, case };
         assert_eq!(newton.keeps_on(&handle), Keeps::Steps);
         let outcome = newton.solve(&mut handle, &start, &control).unwrap();

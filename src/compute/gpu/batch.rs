@@ -161,7 +161,17 @@ impl<R: DeviceReal> Batch<R> {
             fits.is_ok().then_some(plan)
         });
         let (widest, mut all) = needs(linear_plan.as_ref());
-        let keeps = parts.iterates && linear_plan.is_some();
+        let mut keeps = parts.iterates && linear_plan.is_some();
+        if keeps && models.len() == 1 && R::PRECISION == Precision::F32 {
+            // What is missing here costs speed alone.
+            let steps = Kept::<R>::bytes(sizes) + Told::<R>::bytes(sizes);
+            if let Err(error) = context.has_room("the steps of one case", all + of_cases + steps + once) {
+                let note = format!("steps are made on the CPU, with tangents from the device: {error}");
+                log::info!("{note}");
+                notes.push(note);
+                keeps = false;
+            }
+        }
         let of_kept = if keeps { Kept::<R>::bytes(sizes) * models.len() as u64 } else { 0 };
         if keeps {
             all += Told::<R>::bytes(sizes);

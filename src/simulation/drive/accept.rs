@@ -87,7 +87,7 @@ impl Drive<'_> {
             f_t,
             a: size.radius,
             stick_radius: size.stick_radius,
-            newton_iterations: report.iterations.len() + report.given_up + wasted,
+            newton_iterations: report.iterations.len() + wasted,
             cutbacks,
             a_gap: size.radius_gap,
             krylov_iterations: report.krylov(),

@@ -218,6 +218,19 @@ impl HostIterate {
         Ok(())
     }
 
+    /// Lets the points of the current iterate slide that have come off and are down again; returns
+    /// how many.
+    fn let_landed_slide(&mut self) -> usize {
+        let mut landed = 0;
+        for ((slides, came_off), row) in self.boundary.frictionless.iter_mut().zip(&self.came_off).zip(&self.current.rows) {
+            if *came_off && row.status == Status::Stick && !*slides {
+                *slides = true;
+                landed += 1;
+            }
+        }
+        landed
+    }
+
     /// Evaluates the candidate at a step length.
     fn evaluate(
         &mut self,
@@ -247,6 +260,7 @@ impl Iterate for HostIterate {
         times: &mut PhaseTimes,
     ) -> Result<Reading, Halt> {
         self.came_off.fill(false);
+        self.came_off.iter_mut().zip(start.came_off).for_each(|(off, came_off)| *off = *came_off);
         let mesh = case.model().mesh.clone();
         self.furnish(&mesh)?;
         if let Some(against) = &mut self.boundary.against {
@@ -258,7 +272,11 @@ impl Iterate for HostIterate {
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
             let outcome = self.current.evaluate(case, &self.boundary, control, times)?;
             if outcome == Outcome::Valid {
-                return Ok(self.reading(&self.current, outcome, case, control));
+                let landed = self.let_landed_slide();
+                if landed > 0 {
+                    self.current.assess(case, &self.boundary, control, times)?;
+                }
+                return Ok(Reading { landed, ..self.reading(&self.current, outcome, case, control) });
             }
         }
         self.current.h = if control.normal_force.is_some() { start.h } else { control.h };
@@ -342,17 +360,11 @@ impl Iterate for HostIterate {
         _expected: usize,
         times: &mut PhaseTimes,
     ) -> Result<Option<(usize, Reading)>, Halt> {
-        let mut landed = 0;
         for (i, (before, after)) in self.best.rows.iter().zip(&self.current.rows).enumerate() {
-            if self.boundary.frictionless[i] {
-                continue;
-            }
-            self.came_off[i] |= before.status == Status::Stick && after.status == Status::Open;
-            if self.came_off[i] && after.status == Status::Stick {
-                self.boundary.frictionless[i] = true;
-                landed += 1;
-            }
+            let came_off = before.status == Status::Stick && after.status == Status::Open;
+            self.came_off[i] |= came_off && !self.boundary.frictionless[i];
         }
+        let landed = self.let_landed_slide();
         if landed == 0 {
             return Ok(None);
         }

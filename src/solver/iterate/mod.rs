@@ -28,6 +28,9 @@ pub struct SetOut<'a> {
     pub guess: Option<&'a [f64]>,
     /// The same where a device keeps iterates.
     pub extrapolation: Option<Extrapolation>,
+    /// Under full stick: the contact points that have come off on the way to the guess; none for an
+    /// empty list.
+    pub came_off: &'a [bool],
 }
 
 /// A first iterate: the committed displacement and so many times the last step.

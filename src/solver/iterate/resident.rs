@@ -4,7 +4,7 @@ use super::host::HostIterate;
 use super::linearise::{EXPECTED, UNIT_RESPONSE, unit_share};
 use super::{Asked, Correction, Extrapolation, Iterate, SetOut};
 use crate::compute::handle::Evaluate;
-use crate::compute::iterate::{Answer, Ask, Begin, Correct, Corrected, From, Plate, Reading, Settled};
+use crate::compute::iterate::{Answer, Ask, Begin, Correct, Corrected, From, Plate, Reading, Settled, Vectors};
 use crate::compute::linear::Ended;
 use crate::compute::{ComputeError, Outcome};
 use crate::contact::coulomb::Friction;
@@ -88,16 +88,19 @@ impl ResidentIterate {
         Ok(reading)
     }
 
-    /// The displacement of the current iterate, with which the host goes on; under full stick also
-    /// with the points that slide in it.
+    /// The current iterate, from which the host goes on; points that slide in it slide there too.
     ///
     /// # Errors
     /// [`SolverError::Compute`].
-    pub fn hand_over(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Vec<f64>, SolverError> {
+    pub fn hand_over(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Box<Vectors>, SolverError> {
+        if self.kept && case.model().friction == Friction::Stick {
+            // What came off last is noted with this request.
+            self.ask_reading(case, control, Ask::Land)?;
+        }
         match self.ask(case, control, Ask::Bring)? {
             Answer::Vectors(vectors) => {
                 self.host.set_sliding(&vectors.sliding);
-                Ok(vectors.displacement)
+                Ok(vectors)
             }
             other => Err(unexpected(&other)),
         }

@@ -11,10 +11,21 @@ const SETTINGS: Settings =
     Settings { tolerance: 1e-6, max_iterations: 30, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 };
 const CONTROL: Control = Control { h: 4e-3, delta_t: 0.0, normal_force: None };
 
-/// A device that says that this displacement is the step's end, or that its tangent is invalid.
+/// What a device makes of a step.
+#[derive(Clone)]
+enum Device {
+    /// It ends with this displacement; these contact points have come off on the way.
+    Ends(Vec<f64>, Vec<bool>),
+    /// Its tangent is invalid.
+    ComesToNothing,
+    /// It is lost, and the state is not.
+    Lost,
+}
+
+/// Such a device, and the CPU for everything else.
 struct Guesser<'a> {
     cpu: CaseHandle<'a>,
-    end: Option<Vec<f64>>,
+    device: Device,
 }
 
 impl Evaluate for Guesser<'_> {
@@ -47,19 +58,22 @@ impl Evaluate for Guesser<'_> {
     }
 
     fn iterate(&mut self, _kept: bool, _plate: Plate, ask: Ask) -> Result<Answer, ComputeError> {
-        let merit = if self.end.is_some() { 0.0 } else { 1.0 };
-        Ok(match ask {
-            Ask::Begin(_) => Answer::Reading(Reading { merit, ..Reading::default() }),
-            Ask::Correct(_) => {
+        let reading = |merit: f64| Answer::Reading(Reading { merit, ..Reading::default() });
+        Ok(match (&self.device, ask) {
+            (Device::Lost, _) => return Err(ComputeError::Moved),
+            (Device::Ends(..), Ask::Begin(_)) => reading(0.0),
+            (Device::Ends(displacement, came_off), Ask::Bring) => Answer::Vectors(Box::new(Vectors {
+                displacement: displacement.clone(),
+                force: vec![0.0; displacement.len()],
+                sliding: vec![false; came_off.len()],
+                came_off: came_off.clone(),
+            })),
+            (Device::ComesToNothing, Ask::Begin(_)) => reading(1.0),
+            (Device::ComesToNothing, Ask::Correct(_)) => {
                 let tangent = Outcome::Inverted { element: 3, point: 1 };
                 Answer::Corrected(Corrected { tangent, ..Corrected::default() })
             }
-            Ask::Bring => Answer::Vectors(Box::new(Vectors {
-                displacement: self.end.clone().unwrap(),
-                force: vec![0.0; 3 * self.cpu.model().mesh.nodes.len()],
-                sliding: vec![false; self.cpu.model().mesh.contact_nodes.len()],
-            })),
-            other => panic!("{other:?}"),
+            (_, other) => panic!("{other:?}"),
         })
     }
 
@@ -68,10 +82,10 @@ impl Evaluate for Guesser<'_> {
     }
 }
 
-fn model() -> CaseModel {
+fn model(friction: Friction<f64>) -> CaseModel {
     let spec = SphereSpec { contact_radius: 0.08, elements_per_contact_radius: 3, fine_zone: 1.3 };
     let material = Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::ideal(2e-3).unwrap() };
-    CaseModel { mesh: Arc::new(sphere_mesh(&spec).unwrap()), material, friction: Friction::Coulomb(0.3), opponent: None }
+    CaseModel { mesh: Arc::new(sphere_mesh(&spec).unwrap()), material, friction, opponent: None }
 }
 
 fn newton(mesh: &Mesh) -> Newton {
@@ -79,20 +93,39 @@ fn newton(mesh: &Mesh) -> Newton {
     Newton::new(mesh, LinearSolver::<f32>::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy).unwrap(), SETTINGS)
 }
 
-/// The step on the CPU alone, or after a device that ends it at `end` or nowhere.
-fn solved(device: Option<Option<Vec<f64>>>) -> (StepReport, Vec<f64>) {
-    let model = model();
+/// A step that was made.
+struct Made {
+    report: StepReport,
+    u: Vec<f64>,
+    given_up: usize,
+    statuses: Vec<Status>,
+    sliding: Vec<bool>,
+}
+
+/// The step on the CPU alone, or after a device.
+fn solved(friction: Friction<f64>, device: Option<Device>) -> Made {
+    let model = model(friction);
     let zero = vec![0.0; 3 * model.mesh.nodes.len()];
-    let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None };
+    let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None, came_off: &[] };
     let mut newton = newton(&model.mesh);
     let mut cpu = Cpu::<f64, f32>::with_tangents(vec![model]).unwrap();
     let mut cpu = CaseHandle { backend: &mut cpu, case: 0 };
     let outcome = match device {
         None => newton.solve(&mut cpu, &start, &CONTROL),
-        Some(end) => newton.solve(&mut Guesser { cpu, end }, &start, &CONTROL),
+        Some(device) => newton.solve(&mut Guesser { cpu, device }, &start, &CONTROL),
     };
     let StepOutcome::Converged(report) = outcome.unwrap() else { panic!("no convergence") };
-    (report, newton.accepted().u.clone())
+    let given_up = newton.take_given_up();
+    let (u, statuses) = (newton.accepted().u.clone(), newton.accepted().rows.iter().map(|row| row.status).collect());
+    Made { report, u, given_up, statuses, sliding: newton.sliding().to_vec() }
+}
+
+fn coulomb(device: Option<Device>) -> Made {
+    solved(Friction::Coulomb(0.3), device)
+}
+
+fn ends(u: &[f64], alone: &Made) -> Option<Device> {
+    Some(Device::Ends(u.to_vec(), vec![false; alone.statuses.len()]))
 }
 
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
@@ -101,28 +134,42 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn what_the_device_ends_with_is_taken_where_the_residual_bears_it_out() {
-    let (alone, u) = solved(None);
-    assert!(alone.confirming.is_none() && alone.iterations.len() > 2);
-    let (report, same) = solved(Some(Some(u.clone())));
-    assert_eq!((report.confirming, report.iterations.len(), report.given_up), (Some(0), 0, 0));
-    assert_eq!(same, u);
+    let alone = coulomb(None);
+    assert!(alone.report.confirming.is_none() && alone.report.iterations.len() > 2);
+    let made = coulomb(ends(&alone.u, &alone));
+    assert_eq!((made.report.confirming, made.report.iterations.len(), made.given_up), (Some(0), 0, 0));
+    assert_eq!(made.u, alone.u);
 }
 
 #[test]
 fn what_the_device_ends_with_is_gone_on_from_where_it_is_no_equilibrium() {
-    let (alone, u) = solved(None);
-    let off: Vec<f64> = u.iter().enumerate().map(|(i, u)| u + 1e-5 * (i as f64).sin()).collect();
-    let (report, found) = solved(Some(Some(off.clone())));
-    let more = report.confirming.unwrap();
-    assert!(more > 0 && more <= alone.iterations.len() && report.iterations.len() == more, "{report:?}");
-    assert_eq!(report.given_up, 0);
-    assert!(largest_difference(&found, &u) < 1e-3 * largest_difference(&off, &u), "{:e}", largest_difference(&found, &u));
+    let alone = coulomb(None);
+    let off: Vec<f64> = alone.u.iter().enumerate().map(|(i, u)| u + 1e-5 * (i as f64).sin()).collect();
+    let made = coulomb(ends(&off, &alone));
+    let (more, report) = (made.report.confirming.unwrap(), &made.report);
+    assert!(more > 0 && more <= alone.report.iterations.len() && report.iterations.len() == more, "{report:?}");
+    assert_eq!((made.given_up, report.effort()), (0, more));
+    let left = largest_difference(&made.u, &alone.u);
+    assert!(left < 1e-3 * largest_difference(&off, &alone.u), "{left:e}");
 }
 
 #[test]
-fn a_step_that_comes_to_nothing_in_f32_is_made_in_f64() {
-    let (alone, u) = solved(None);
-    let (report, found) = solved(Some(None));
-    assert_eq!((report.given_up, report.confirming), (1, Some(alone.iterations.len())));
-    assert_eq!(found, u);
+fn a_step_that_comes_to_nothing_in_f32_or_loses_its_device_is_made_in_f64() {
+    let alone = coulomb(None);
+    for (device, given_up) in [(Device::ComesToNothing, 1), (Device::Lost, 0)] {
+        let made = coulomb(Some(device));
+        assert_eq!((made.given_up, made.report.confirming), (given_up, Some(alone.report.iterations.len())));
+        assert_eq!(made.u, alone.u);
+    }
+}
+
+/// As on the CPU, where a point that came off has let go of its tangential force.
+#[test]
+fn under_full_stick_a_point_that_came_off_in_f32_and_is_down_in_f64_slides() {
+    let alone = solved(Friction::Stick, None);
+    let down = alone.statuses.iter().position(|status| *status == Status::Stick).unwrap();
+    let mut came_off = vec![false; alone.statuses.len()];
+    came_off[down] = true;
+    let made = solved(Friction::Stick, Some(Device::Ends(alone.u.clone(), came_off.clone())));
+    assert_eq!((made.report.landed_again, made.sliding), (1, came_off));
 }

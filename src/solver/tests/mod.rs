@@ -60,7 +60,8 @@ impl Rig {
     pub fn attempt_from(&mut self, guess: Option<&[f64]>, control: &Control) -> StepOutcome {
         let mut handle = CaseHandle { backend: &mut self.backend, case: 0 };
         let plate = self.mesh.plate_nodes.first().map_or(0, |&n| 3 * n as usize);
-        let start = SetOut { displacement: &self.u, h: self.h, delta_t: self.u[plate], guess, extrapolation: None };
+        let start =
+            SetOut { displacement: &self.u, h: self.h, delta_t: self.u[plate], guess, extrapolation: None, came_off: &[] };
         self.newton.solve(&mut handle, &start, control).unwrap()
     }
 

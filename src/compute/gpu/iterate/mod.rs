@@ -135,6 +135,8 @@ pub struct Brought<R> {
     pub forces: Vec<R>,
     /// Contact points that slide without friction.
     pub slides: Vec<u32>,
+    /// Contact points that have come off.
+    pub came_off: Vec<u32>,
 }
 
 /// The iterates of a batch: a part for each of its groups.
@@ -463,14 +465,15 @@ impl<R: DeviceReal> Batch<R> {
         let (kept, index) = self.kept(case)?;
         let (n, points) = (3 * self.sizes().nodes, self.sizes().contact_points);
         let (mut increments, mut forces) = (vec![R::ZERO; n], vec![R::ZERO; n]);
-        let mut slides = vec![0; points];
+        let (mut slides, mut came_off) = (vec![0; points], vec![0; points]);
         let first = (2 * index + iterate as usize) * n;
         self.context.record().submit_and_read(&mut [
             kept.increments.read(first, &mut increments)?,
             kept.forces.read(first, &mut forces)?,
             kept.slides.read(index * points, &mut slides)?,
+            kept.came_off.read(index * points, &mut came_off)?,
         ])?;
-        Ok(Brought { increments, forces, slides })
+        Ok(Brought { increments, forces, slides, came_off })
     }
 
     /// Sets the correction of a case.

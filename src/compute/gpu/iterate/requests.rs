@@ -258,10 +258,10 @@ impl<R: DeviceReal> Gpu<R> {
         request.answer = match &request.ask {
             Ask::Bring => {
                 self.refresh(case)?;
-                let Brought { increments, forces, slides } = self.batch()?.bring_iterate(case, self.current[case])?;
+                let Brought { increments, forces, slides, came_off } = self.batch()?.bring_iterate(case, self.current[case])?;
                 let displacement = increments.iter().zip(&self.committed[case]).map(|(d, u)| u + d.to_f64()).collect();
-                let sliding = slides.iter().map(|&slides| slides != 0).collect();
-                Answer::Vectors(Box::new(Vectors { displacement, force: numbers(forces), sliding }))
+                let [sliding, came_off] = [slides, came_off].map(|points| points.iter().map(|&point| point != 0).collect());
+                Answer::Vectors(Box::new(Vectors { displacement, force: numbers(forces), sliding, came_off }))
             }
             Ask::Give(correction) => {
                 self.batch()?.give_correction(case, correction)?;
