@@ -43,15 +43,14 @@ impl StepReport {
         self.iterations.iter().map(|i| i.krylov).sum()
     }
 
-    /// How hard the step was: its iterations; if some were in f32 and some in f64, the larger of the
-    /// two numbers.
+    /// How hard the step was: its iterations; if some were in f32 and some in f64, the larger of
+    /// the two numbers.
     pub fn effort(&self) -> usize {
         let all = self.iterations.len();
         self.confirming.map_or(all, |confirming| confirming.max(all - confirming))
     }
 
-    /// The report of a step that was `made` in f32 before it was confirmed, or gone on with, in
-    /// f64.
+    /// This report of iterations in f64, together with that of those in f32 before them.
     pub fn after(mut self, made: Self) -> Self {
         self.confirming = Some(self.iterations.len());
         self.iterations.splice(0..0, made.iterations);
