@@ -178,6 +178,29 @@ fn chunks_give_the_same_bits_as_one_piece() {
     }
 }
 
+/// Each has its own staging buffer and counters, and hears of its own numbers alone, whichever thread
+/// the driver tells.
+#[test]
+fn parts_of_a_device_are_used_side_by_side() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let work = |thread: usize| {
+        let part = context.part(8 << 20);
+        for round in 0..100 {
+            let numbers: Vec<f32> = (0..64).map(|i| (1000 * thread + 64 * round + i) as f32).collect();
+            let twice: Vec<f32> = numbers.iter().map(|x| 2.0 * x).collect();
+            assert_eq!(double(&part, &numbers, 1).unwrap(), twice, "thread {thread}, round {round}");
+        }
+        (part.traffic(), part.budget().used())
+    };
+    let work = &work;
+    let counted: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..3).map(|thread| scope.spawn(move || work(thread))).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    assert!(counted.iter().all(|of_part| *of_part == counted[0] && of_part.0.waits >= 100), "{counted:?}");
+    assert!(context.traffic().waits == 0 && context.check().is_ok());
+}
+
 /// Release builds compile without bounds checks.
 #[test]
 fn bounds_checks_do_not_change_a_bit() {

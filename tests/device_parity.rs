@@ -104,3 +104,69 @@ fn a_batch_in_f32_is_held_to_f64() {
         }
     }
 }
+
+/// Five cases of other yield stresses, meshes and tables, for a device that has room for some at a
+/// time.
+const FIVE: &str = r#"
+[base.sphere]
+radius = 2.0
+[base.material]
+youngs_modulus = 200e3
+poissons_ratio = 0.3
+[base.contact]
+friction = 0.3
+[base.mesh]
+elements_per_contact_radius = 4
+fine_zone = 1.6
+[base.solver]
+press_steps = 2
+shear_steps = 1
+error_estimate = false
+[base.output]
+fields = "none"
+plots = false
+[[base.path]]
+indentation = 0.004
+[[base.path]]
+shear = 0.0002
+[grid]
+"material.hardening" = [
+    { law = "ideal", yield_stress = 400.0 },
+    { law = "table", points = [[0.0, 400.0], [0.01, 500.0], [0.1, 600.0]] },
+    { law = "elastic" },
+    { law = "voce", yield_stress = 400.0, saturation_stress = 800.0, rate = 10.0 },
+    { law = "table", points = [[0.0, 800.0], [0.1, 900.0]] },
+]
+"#;
+
+/// Where a case ends the next one takes its place, and has the bits that it has with all in one
+/// batch.
+#[test]
+fn a_case_in_the_place_of_another_has_the_same_bits() {
+    let Some(_) = device::device("a_case_in_the_place_of_another_has_the_same_bits", Precision::F64) else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("study.toml");
+    std::fs::write(&file, FIVE).unwrap();
+    for precision in ["auto", "mixed"] {
+        let histories = |memory: &str| {
+            let out = dir.path().join(format!("{precision}-{memory}"));
+            let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
+            command.arg("study").arg(&file).arg("--out").arg(&out).env("ASPERITY_GPU_MEMORY", memory);
+            let output = command.args(["--device", "gpu", "--precision", precision, "-v"]).output().unwrap();
+            let text = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(0), "{text}");
+            let history = |case: usize| {
+                let path = out.join(format!("cases/c{case:04}"));
+                let summary = Summary::read(&OutputDirectory::existing(path.clone()).summary()).unwrap();
+                assert!(summary.messages.is_empty() && summary.device_traffic.is_some(), "{:?}", summary.messages);
+                std::fs::read(path.join("history.csv")).unwrap()
+            };
+            let histories: Vec<Vec<u8>> = (1..=5).map(history).collect();
+            (histories, text.matches("at a time are too many").count())
+        };
+        let (all, never) = histories("1000");
+        let (some, once) = histories(if precision == "auto" { "10" } else { "8" });
+        assert!(all == some, "{precision}");
+        assert!(never == 0 && once >= 1, "{precision}: {never}, {once}");
+    }
+}

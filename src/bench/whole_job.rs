@@ -11,7 +11,7 @@ use super::BenchError;
 use crate::compute::select::{DeviceChoice, PrecisionChoice};
 use crate::compute::traffic::Traffic;
 use crate::output::Summary;
-use crate::study::{Options, Study, StudyDirectory, StudyError, StudyProgress};
+use crate::study::{Options, Study, StudyDirectory, StudyError, StudyProgress, backends};
 
 /// The main job: ideal plasticity, pressed and sheared to full slip; friction coefficients a
 /// thousandth apart, so that a batch has as many cases.
@@ -64,8 +64,9 @@ pub struct WholeJob {
     pub krylov_iterations: usize,
     /// Seconds on the wall for all of them, setting up included.
     pub wall_s: f64,
-    /// What passed to the device and back in the steps; none on the CPU. Of a batch it is what was
-    /// counted while the case with the most of it ran: a lower bound of what all of them moved.
+    /// What passed to the device and back in the steps; none on the CPU. Of a batch it is what its
+    /// backend counted while the case with the most of it ran, times the number of backends: about
+    /// what all of them moved.
     pub traffic: Option<Traffic>,
 }
 
@@ -144,6 +145,10 @@ fn one(options: &WholeJobs, device: DeviceChoice, batch: usize) -> Result<WholeJ
                 *most = traffic.steps;
             }
         }
+    }
+    if let Some(WholeJob { traffic: Some(traffic), .. }) = &mut out {
+        // As much again in the other half.
+        *traffic = (1..backends(batch)).fold(*traffic, |sum, _| sum + *traffic);
     }
     out.ok_or(BenchError::Case { case: "1".to_owned(), why: "there is no case".to_owned() })
 }

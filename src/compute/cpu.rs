@@ -451,6 +451,20 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
         })
     }
 
+    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
+        let before = &self.models[case].mesh;
+        if model.mesh.elements != before.elements || model.mesh.contact_nodes != before.contact_nodes {
+            return Err(ComputeError::Connectivity { case });
+        }
+        self.cases[case] = Case::new(&model)?;
+        // Tangents are known by the step that they are of, which is counted anew.
+        if let Some(held) = self.element_tangent.get_mut(case) {
+            held.fill(Held::NONE);
+        }
+        self.models[case] = model;
+        Ok(true)
+    }
+
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         let case = &mut self.cases[case];
         case.step += 1;

@@ -222,6 +222,20 @@ impl Compute for Fallback {
         Ok(())
     }
 
+    /// The stand-in takes no more cases: it is slower than another device would be.
+    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
+        let Some(device) = &mut self.device else { return Ok(false) };
+        match device.replace(case, model.clone()) {
+            Ok(true) => {
+                self.models[case] = model;
+                (self.committed[case], self.is_away[case], self.weights[case]) = (None, false, 0.0);
+                Ok(true)
+            }
+            Err(ComputeError::Device(reason)) => self.give_up(&reason).map(|()| false),
+            answer => answer,
+        }
+    }
+
     fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
     }

@@ -123,6 +123,10 @@ impl Compute for LostAfter {
         self.backend.restore(case, state)
     }
 
+    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
+        self.backend.replace(case, model)
+    }
+
     fn take_notes(&mut self) -> Vec<String> {
         self.backend.take_notes()
     }

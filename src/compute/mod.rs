@@ -317,6 +317,13 @@ pub trait Compute: Send {
     fn state(&mut self, case: usize) -> Result<CaseState, ComputeError>;
     /// Replaces a committed state.
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError>;
+    /// Puts another case of the batch's connectivity, in its virgin state, in the place of one that
+    /// has ended; `false` where the backend has no place for it, and leaves things as they were.
+    /// The new case goes as in a batch that it was in from the beginning, to the last bit.
+    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
+        let _ = (case, model);
+        Ok(false)
+    }
     /// Whether another backend would stand in if this one failed: then copies of states are worth
     /// taking from time to time.
     fn has_stand_in(&self) -> bool {

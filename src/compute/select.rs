@@ -5,6 +5,8 @@ use super::cpu::Cpu;
 use super::{CaseModel, Compute, ComputeError};
 
 #[cfg(feature = "gpu")]
+pub use device::Devices;
+#[cfg(feature = "gpu")]
 pub use device::select_on;
 #[cfg(feature = "gpu")]
 use device::{on_device, opens};
@@ -77,6 +79,42 @@ fn cpu(precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Box<dyn Com
     })
 }
 
+/// A choice of device, opened once for all the backends that are made on it.
+#[cfg(not(feature = "gpu"))]
+pub struct Devices(DeviceChoice);
+
+#[cfg(not(feature = "gpu"))]
+impl Devices {
+    /// Opens the device of a choice.
+    ///
+    /// # Errors
+    /// [`ComputeError::Device`] if a GPU was asked for and cannot be had.
+    pub fn open(choice: DeviceChoice) -> Result<Self, ComputeError> {
+        opens(choice).map(|_| Self(choice))
+    }
+
+    /// Whether there is a device to be used.
+    pub fn is_there(&self) -> bool {
+        false
+    }
+
+    /// As [`select`].
+    ///
+    /// # Errors
+    /// As [`select`].
+    pub fn select(&self, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+        select(self.0, precision, models)
+    }
+
+    /// As [`select`].
+    ///
+    /// # Errors
+    /// As [`select`].
+    pub fn batch(&self, _: u64, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+        select(self.0, precision, models)
+    }
+}
+
 #[cfg(not(feature = "gpu"))]
 fn on_device(device: DeviceChoice, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
     opens(device)?;
@@ -96,7 +134,7 @@ fn opens(device: DeviceChoice) -> Result<bool, ComputeError> {
 /// What there is only with a GPU in the build.
 #[cfg(feature = "gpu")]
 mod device {
-    use std::sync::Arc;
+    use std::sync::{Arc, Mutex, PoisonError};
 
     use super::{DeviceChoice, PrecisionChoice, Selected, cpu};
     use crate::compute::fallback::Fallback;
@@ -130,6 +168,67 @@ mod device {
                 log::info!("the GPU could not be used ({error}); the CPU was taken instead");
                 Ok(false)
             }
+        }
+    }
+
+    /// A choice of device, opened once for all the backends that are made on it: they share its
+    /// compiled kernels.
+    pub struct Devices {
+        choice: DeviceChoice,
+        context: Mutex<Option<Arc<GpuContext>>>,
+    }
+
+    impl Devices {
+        /// Opens the device of a choice.
+        ///
+        /// # Errors
+        /// [`ComputeError::Device`] if a GPU was asked for and cannot be had.
+        pub fn open(choice: DeviceChoice) -> Result<Self, ComputeError> {
+            let context = match open(choice) {
+                Ok(None) if choice == DeviceChoice::Gpu => return Err(GpuError::NoAdapter.into()),
+                Err(error) if choice == DeviceChoice::Gpu => return Err(error.into()),
+                Ok(context) => context.map(Arc::new),
+                Err(error) => {
+                    log::info!("the GPU could not be used ({error}); the CPU was taken instead");
+                    None
+                }
+            };
+            Ok(Self { choice, context: Mutex::new(context) })
+        }
+
+        /// Whether there is a device to be used.
+        pub fn is_there(&self) -> bool {
+            self.context.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+        }
+
+        /// The device; opened anew where it was lost.
+        fn context(&self) -> Result<Option<Arc<GpuContext>>, GpuError> {
+            let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
+            if context.as_ref().is_some_and(|context| context.ask().is_err()) {
+                *context = open(self.choice)?.map(Arc::new);
+            }
+            Ok(context.clone())
+        }
+
+        /// As [`super::select`], with a memory budget for itself.
+        ///
+        /// # Errors
+        /// As [`super::select`].
+        pub fn select(&self, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+            let part = |context: Arc<GpuContext>| context.part(context.budget().limit());
+            select_on(self.context().map(|context| context.map(part)), self.choice, precision, models)
+        }
+
+        /// A batch on the device, for which there is one of `parts` parts of its memory.
+        ///
+        /// # Errors
+        /// [`ComputeError::Device`] where it does not fit, or there is no device any more.
+        pub fn batch(&self, parts: u64, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
+            let context = self.context()?.ok_or(GpuError::NoAdapter)?;
+            let part = context.part(context.budget().limit() / parts.max(1));
+            let (backend, notes) = gpu(Arc::new(part), precision, models)?;
+            let watched = self.choice != DeviceChoice::Gpu;
+            Ok(Selected { backend: if watched { Box::new(Fallback::new(backend)) } else { backend }, notes })
         }
     }
 

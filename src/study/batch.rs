@@ -36,6 +36,8 @@ enum Ask {
     Fields(Option<CaseFields>),
     State(Option<CaseState>),
     Restore(CaseState),
+    Replace(Box<CaseModel>),
+    Replaced(bool),
 }
 
 /// [`Blocks`] that own their numbers.
@@ -161,22 +163,33 @@ pub struct Host {
     told: Arc<Mutex<Told>>,
 }
 
-/// One case's way to a shared backend, which it takes for its own.
+/// The way to one of the places of a shared backend.
+pub struct Place {
+    slot: usize,
+    requests: Sender<Request>,
+    told: Arc<Mutex<Told>>,
+}
+
+/// One case at its place of a shared backend, which it takes for its own: there it is the only
+/// case.
 pub struct Guest {
-    models: Arc<Vec<CaseModel>>,
+    model: [CaseModel; 1],
+    slot: usize,
     requests: Sender<Request>,
     told: Arc<Mutex<Told>>,
     /// Notes heard so far.
     heard: usize,
+    /// What had passed to the device and back before this case.
+    before: Traffic,
     /// Buffers that go to the host and come back.
     displacement: Vec<f64>,
     force: Vec<f64>,
     blocks: OwnBlocks,
 }
 
-/// A host for a backend and a guest for each of its cases.
-pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Guest>) {
-    let models = Arc::new(backend.models().to_vec());
+/// A host for a backend and a place for each of its cases.
+pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Place>) {
+    let cases = backend.models().len();
     let told = Told {
         description: backend.description(),
         notes: Vec::new(),
@@ -186,21 +199,48 @@ pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Guest>) {
     };
     let told = Arc::new(Mutex::new(told));
     let (sender, requests) = channel();
-    let guest = |_| Guest {
-        models: models.clone(),
-        requests: sender.clone(),
-        told: told.clone(),
-        heard: 0,
-        displacement: Vec::new(),
-        force: Vec::new(),
-        blocks: OwnBlocks::default(),
-    };
-    let guests = (0..models.len()).map(guest).collect();
-    (Host { backend, requests, told }, guests)
+    let places = (0..cases).map(|slot| Place { slot, requests: sender.clone(), told: told.clone() }).collect();
+    (Host { backend, requests, told }, places)
+}
+
+impl Place {
+    /// The guest for the case that the backend has had here from the beginning.
+    pub fn first(&self, model: CaseModel) -> Guest {
+        self.guest(model, 0, Traffic::default())
+    }
+
+    /// The guest for a case that takes this place from the one before, whose guest has gone; `None`
+    /// where the backend does not take it (see [`Compute::replace`]).
+    ///
+    /// # Errors
+    /// [`ComputeError::Device`], also where nobody serves any more.
+    pub fn next(&self, model: &CaseModel) -> Result<Option<Guest>, ComputeError> {
+        let (heard, before) = {
+            let told = lock(&self.told);
+            (told.notes.len(), told.traffic.unwrap_or_default())
+        };
+        let ask = Ask::Replace(Box::new(model.clone()));
+        let taken = matches!(ask_host(&self.requests, self.slot, ask)?, Ask::Replaced(true));
+        Ok(taken.then(|| self.guest(model.clone(), heard, before)))
+    }
+
+    fn guest(&self, model: CaseModel, heard: usize, before: Traffic) -> Guest {
+        Guest {
+            model: [model],
+            slot: self.slot,
+            requests: self.requests.clone(),
+            told: self.told.clone(),
+            heard,
+            before,
+            displacement: Vec::new(),
+            force: Vec::new(),
+            blocks: OwnBlocks::default(),
+        }
+    }
 }
 
 impl Host {
-    /// Serves until the last guest has gone.
+    /// Serves until the last place and guest have gone.
     pub fn serve(mut self) {
         while let Ok(first) = self.requests.recv() {
             let mut waiting = vec![first];
@@ -241,7 +281,9 @@ impl Host {
                     Some(alike) => alike.push(request),
                     None => iterates.push(vec![request]),
                 },
-                Ask::Begin(_) | Ask::Fields(_) | Ask::State(_) | Ask::Restore(_) => others.push(request),
+                Ask::Begin(_) | Ask::Fields(_) | Ask::State(_) | Ask::Restore(_) | Ask::Replace(_) | Ask::Replaced(_) => {
+                    others.push(request)
+                }
             }
         }
         let backend = self.backend.as_mut();
@@ -392,6 +434,7 @@ fn single(backend: &mut dyn Compute, case: usize, ask: Ask) -> Result<Ask, Compu
             backend.restore(case, &state)?;
             Ask::Restore(state)
         }
+        Ask::Replace(model) => Ask::Replaced(backend.replace(case, *model)?),
         other => other,
     })
 }
@@ -404,13 +447,16 @@ fn gone() -> ComputeError {
     ComputeError::Device("whoever served the batch has gone".to_owned())
 }
 
+fn ask_host(host: &Sender<Request>, case: usize, ask: Ask) -> Result<Ask, ComputeError> {
+    // A channel for each request: it closes with the request if the host goes before it answers.
+    let (reply, answer) = channel();
+    host.send(Request { case, ask, reply }).map_err(|_| gone())?;
+    answer.recv().map_err(|_| gone())?
+}
+
 impl Guest {
-    fn ask(&self, case: usize, ask: Ask) -> Result<Ask, ComputeError> {
-        // A channel for each request: it closes with the request if the host goes before it
-        // answers.
-        let (reply, answer) = channel();
-        self.requests.send(Request { case, ask, reply }).map_err(|_| gone())?;
-        answer.recv().map_err(|_| gone())?
+    fn ask(&self, ask: Ask) -> Result<Ask, ComputeError> {
+        ask_host(&self.requests, self.slot, ask)
     }
 }
 
@@ -428,15 +474,15 @@ impl Compute for Guest {
     }
 
     fn models(&self) -> &[CaseModel] {
-        &self.models
+        &self.model
     }
 
     fn traffic(&self) -> Option<Traffic> {
-        lock(&self.told).traffic
+        lock(&self.told).traffic.map(|now| now - self.before)
     }
 
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
-        self.ask(case, Ask::Begin(weight)).map(drop)
+    fn begin_step(&mut self, _: usize, weight: f64) -> Result<(), ComputeError> {
+        self.ask(Ask::Begin(weight)).map(drop)
     }
 
     fn keeps(&self) -> Keeps {
@@ -449,7 +495,7 @@ impl Compute for Guest {
 
     fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
         for request in requests {
-            if let Ask::Iterate(answered) = self.ask(request.case, Ask::Iterate(Box::new(request.clone())))? {
+            if let Ask::Iterate(answered) = self.ask(Ask::Iterate(Box::new(request.clone())))? {
                 request.answer = answered.answer;
             }
         }
@@ -462,7 +508,7 @@ impl Compute for Guest {
             force.resize(request.force.len(), 0.0);
             let displacement = filled(&mut self.displacement, request.displacement);
             let ask = Ask::Force { displacement, force, outcome: Outcome::Valid };
-            if let Ask::Force { displacement, force, outcome } = self.ask(request.case, ask)? {
+            if let Ask::Force { displacement, force, outcome } = self.ask(ask)? {
                 request.force.copy_from_slice(&force);
                 request.outcome = outcome;
                 (self.displacement, self.force) = (displacement, force);
@@ -476,7 +522,7 @@ impl Compute for Guest {
             let blocks = std::mem::take(&mut self.blocks).like(&request.blocks);
             let displacement = filled(&mut self.displacement, request.displacement);
             let ask = Ask::Tangent { displacement, blocks, outcome: Outcome::Valid };
-            if let Ask::Tangent { displacement, blocks, outcome } = self.ask(request.case, ask)? {
+            if let Ask::Tangent { displacement, blocks, outcome } = self.ask(ask)? {
                 blocks.copy_to(&mut request.blocks)?;
                 request.outcome = outcome;
                 (self.displacement, self.blocks) = (displacement, blocks);
@@ -491,7 +537,7 @@ impl Compute for Guest {
             force.resize(request.force.len(), 0.0);
             let displacement = filled(&mut self.displacement, request.displacement);
             let ask = Ask::Trial { displacement, force, rows: request.rows.to_vec(), outcome: Outcome::Valid };
-            if let Ask::Trial { displacement, force, rows, outcome } = self.ask(request.case, ask)? {
+            if let Ask::Trial { displacement, force, rows, outcome } = self.ask(ask)? {
                 request.force.copy_from_slice(&force);
                 request.rows.copy_from_slice(&rows);
                 request.outcome = outcome;
@@ -503,7 +549,7 @@ impl Compute for Guest {
 
     fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
         for request in requests {
-            if let Ask::Linear(answer) = self.ask(request.case, Ask::Linear(LinearAsk::new(request)))? {
+            if let Ask::Linear(answer) = self.ask(Ask::Linear(LinearAsk::new(request)))? {
                 request.outcome = answer.outcome;
                 for (side, answer) in request.sides.iter_mut().zip(answer.sides) {
                     side.x.copy_from_slice(&answer.x);
@@ -519,7 +565,7 @@ impl Compute for Guest {
             let displacement = filled(&mut self.displacement, request.displacement);
             let force = filled(&mut self.force, request.force);
             let ask = Ask::Contact { displacement, force, rows: request.rows.to_vec() };
-            if let Ask::Contact { displacement, force, rows } = self.ask(request.case, ask)? {
+            if let Ask::Contact { displacement, force, rows } = self.ask(ask)? {
                 request.rows.copy_from_slice(&rows);
                 (self.displacement, self.force) = (displacement, force);
             }
@@ -531,7 +577,7 @@ impl Compute for Guest {
         for request in requests {
             let displacement = filled(&mut self.displacement, request.displacement);
             let ask = Ask::Commit { displacement, energies: Energies::default(), outcome: Outcome::Valid };
-            if let Ask::Commit { displacement, energies, outcome } = self.ask(request.case, ask)? {
+            if let Ask::Commit { displacement, energies, outcome } = self.ask(ask)? {
                 (request.energies, request.outcome) = (energies, outcome);
                 self.displacement = displacement;
             }
@@ -539,22 +585,22 @@ impl Compute for Guest {
         Ok(())
     }
 
-    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
-        match self.ask(case, Ask::Fields(None))? {
+    fn fields(&mut self, _: usize) -> Result<CaseFields, ComputeError> {
+        match self.ask(Ask::Fields(None))? {
             Ask::Fields(Some(fields)) => Ok(fields),
             _ => Err(gone()),
         }
     }
 
-    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
-        match self.ask(case, Ask::State(None))? {
+    fn state(&mut self, _: usize) -> Result<CaseState, ComputeError> {
+        match self.ask(Ask::State(None))? {
             Ask::State(Some(state)) => Ok(state),
             _ => Err(gone()),
         }
     }
 
-    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
-        self.ask(case, Ask::Restore(state.clone())).map(drop)
+    fn restore(&mut self, _: usize, state: &CaseState) -> Result<(), ComputeError> {
+        self.ask(Ask::Restore(state.clone())).map(drop)
     }
 
     fn take_notes(&mut self) -> Vec<String> {

@@ -1,13 +1,14 @@
 //! Grids of cases: read and checked as a whole, computed side by side, one row each.
 //!
 //! `file` reads a base case and a grid into cases; `shard` deals them out; `run` decides which
-//! there are to compute and on what; `schedule` gives each a core of its own, or `batch` lets them
-//! share a device; `simulate` takes one from its directory to its summary; `row` makes `study.csv`
+//! there are to compute and on what; `schedule` gives each a core of its own, or `device` forms
+//! batches of them, whose cases share a backend through `batch`; `simulate` takes one from its directory to its summary; `row` makes `study.csv`
 //! of the summaries; `place` knows the directory of each case; `slurm` writes the scripts of a
 //! cluster; `merge` joins directories; `report` draws them and writes `report.html`. What can go
 //! wrong with one case is a row; what can go wrong with all of them is a [`StudyError`].
 
 mod batch;
+mod device;
 mod directory;
 mod error;
 mod file;
@@ -28,6 +29,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
+pub use device::backends;
 pub use directory::{Earlier, StudyDirectory};
 pub use error::StudyError;
 pub use file::{Study, StudyCase};

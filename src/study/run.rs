@@ -1,32 +1,27 @@
 //! From a checked study to its directory: which cases there are to compute, on what, and their
 //! rows.
 
-use std::collections::BTreeMap;
 use std::io;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
-use rayon::prelude::*;
 
 use super::StudyError;
-use super::batch::{Guest, share};
+use super::device::on_device;
 use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::id::directory_of;
 use super::place::{Placed, alone};
 use super::progress::StudyProgress;
 use super::row::{Row, RowStatus, write_table};
-use super::schedule::{pools, side_by_side};
+use super::schedule::{in_order, pools, side_by_side};
 use super::shard::{Shard, by_descending_cost, cost};
 use super::simulate::Simulator;
 use crate::case::{Case, Linear};
-use crate::compute::select::{DeviceChoice, PrecisionChoice, Selected, is_there, select};
-use crate::compute::{CaseModel, Compute, ComputeError};
-use crate::mesh::Mesh;
+use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice, Selected, select};
 use crate::output::Summary;
 use crate::simulation::follow::seats;
 use crate::simulation::problem::Problem;
@@ -94,7 +89,8 @@ pub fn run(
     progress: Arc<StudyProgress>,
     stop: Arc<AtomicBool>,
 ) -> Result<Report, StudyError> {
-    let device = is_there(options.device)?;
+    let devices = Devices::open(options.device)?;
+    let device = devices.is_there();
     // Over a plane the device does nearly all of the work, and the threads of the cases wait for
     // it; the linear systems of two bodies, and those that are to be solved directly, take the
     // cores.
@@ -167,7 +163,7 @@ pub fn run(
         table.write_if_due()
     };
     let computed = if device {
-        on_device(&simulator, options, &pools, &order, &mut finished)
+        on_device(&simulator, (&devices, options.precision), &pools, &order, &mut finished)
     } else {
         on_cores(&simulator, options.precision, &pools, &order, &mut finished)
     };
@@ -301,7 +297,8 @@ impl Table<'_> {
     }
 }
 
-type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Result<(), StudyError> + 'a;
+/// Hears of a case that has ended.
+pub(super) type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Result<(), StudyError> + 'a;
 
 /// Every case on a core of its own.
 fn on_cores(
@@ -325,125 +322,7 @@ fn on_cores(
     };
     let work = |case: usize| {
         simulator.progress.started();
-        compute(case).unwrap_or_else(|error| simulator.broke_off(case, &error.to_string()))
+        Some(compute(case).unwrap_or_else(|error| simulator.broke_off(case, &error.to_string())))
     };
-    side_by_side(pools, order, &simulator.stop, work, finished)
-}
-
-/// Cases of one mesh connectivity share the device, as many at a time as there are pools.
-fn on_device(
-    simulator: &Simulator<'_>,
-    options: &Options,
-    pools: &[ThreadPool],
-    order: &[usize],
-    finished: &mut Finished<'_>,
-) -> Result<(), StudyError> {
-    let mut batches: Vec<Vec<usize>> = Vec::new();
-    for alike in by_connectivity(simulator, order) {
-        batches.extend(alike.chunks(pools.len()).map(<[usize]>::to_vec));
-    }
-    batches.reverse();
-    while let Some(batch) = batches.pop() {
-        if simulator.stop.load(Ordering::Relaxed) {
-            break;
-        }
-        let mut problems: Vec<(usize, Problem)> = Vec::new();
-        for &case in &batch {
-            let begun = simulator.begin(case).and_then(|_| simulator.problem(case));
-            match begun {
-                Ok(problem) => problems.push((case, problem)),
-                Err(error) => {
-                    simulator.progress.started();
-                    finished(case, Ok(simulator.broke_off(case, &error.to_string())))?;
-                }
-            }
-        }
-        let models: Vec<CaseModel> = problems.iter().map(|(_, problem)| problem.model.clone()).collect();
-        match select(options.device, options.precision, models) {
-            Ok(selected) => on_one_device(simulator, options, selected, pools, &problems, finished)?,
-            // Too large for the device, perhaps: halves may not be.
-            Err(ComputeError::Device(_)) if problems.len() > 1 => {
-                let cases: Vec<usize> = problems.iter().map(|(case, _)| *case).collect();
-                let (first, second) = cases.split_at(cases.len() / 2);
-                batches.extend([second.to_vec(), first.to_vec()]);
-            }
-            Err(error) => {
-                for (case, _) in &problems {
-                    simulator.progress.started();
-                    finished(*case, Ok(simulator.broke_off(*case, &error.to_string())))?;
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
-/// One batch: its cases are the guests of one backend, which this thread's scope serves.
-fn on_one_device(
-    simulator: &Simulator<'_>,
-    options: &Options,
-    selected: Selected,
-    pools: &[ThreadPool],
-    problems: &[(usize, Problem)],
-    finished: &mut Finished<'_>,
-) -> Result<(), StudyError> {
-    let Selected { backend, notes } = selected;
-    let (host, guests) = share(backend);
-    let guests: Vec<Mutex<Option<Guest>>> = guests.into_iter().map(|guest| Mutex::new(Some(guest))).collect();
-    let work = |slot: usize| {
-        let (case, problem) = &problems[slot];
-        simulator.progress.started();
-        // Each job is done once, so that its guest is there.
-        let guest = guests[slot].lock().unwrap_or_else(PoisonError::into_inner).take();
-        // A case that starts over on another mesh leaves the batch.
-        let open = |problem: &Problem| select(options.device, options.precision, vec![problem.model.clone()]);
-        let followed = match guest {
-            Some(guest) => {
-                let computed_on = guest.description();
-                let mut seat = seats((Box::new(guest), slot), problem.zone, open);
-                simulator.follow(*case, problem.clone(), &mut seat, computed_on, &notes)
-            }
-            None => Err(ComputeError::Device("the case was begun twice".to_owned()).into()),
-        };
-        followed.unwrap_or_else(|error| simulator.broke_off(*case, &error.to_string()))
-    };
-    let order: Vec<usize> = (0..problems.len()).collect();
-    std::thread::scope(|scope| {
-        // Should the backend panic, its guests find it gone, and that is their error.
-        scope.spawn(|| catch_unwind(AssertUnwindSafe(|| host.serve())));
-        let outcome = side_by_side(pools, &order, &simulator.stop, work, |slot, result| finished(problems[slot].0, result));
-        // Guests of cases that were not begun: with the last of them the host goes.
-        for guest in &guests {
-            drop(guest.lock().unwrap_or_else(PoisonError::into_inner).take());
-        }
-        outcome
-    })
-}
-
-/// The cases of `order` in groups of one mesh connectivity; groups and cases in the order in which
-/// they come. A case that has no mesh is a group of its own.
-fn by_connectivity(simulator: &Simulator<'_>, order: &[usize]) -> Vec<Vec<usize>> {
-    let key = |&case: &usize| match simulator.problem(case) {
-        Ok(problem) => connectivity(&problem.model.mesh),
-        Err(_) => (0, case as u64),
-    };
-    let keys: Vec<(usize, u64)> = order.par_iter().map(key).collect();
-    let mut groups: Vec<Vec<usize>> = Vec::new();
-    let mut group_of = BTreeMap::new();
-    for (&case, key) in order.iter().zip(keys) {
-        let group = *group_of.entry(key).or_insert_with(|| {
-            groups.push(Vec::new());
-            groups.len() - 1
-        });
-        groups[group].push(case);
-    }
-    groups
-}
-
-/// Number of elements and a hash of their nodes and the contact's (FNV-1a, Fowler, Noll & Vo 1991):
-/// equal where a batch can be shared.
-fn connectivity(mesh: &Mesh) -> (usize, u64) {
-    let nodes = mesh.elements.iter().flatten().chain(&mesh.contact_nodes);
-    let hash = nodes.fold(0xcbf2_9ce4_8422_2325u64, |hash, &node| (hash ^ u64::from(node)).wrapping_mul(0x0100_0000_01b3));
-    (mesh.elements.len(), hash)
+    side_by_side(pools, in_order(order), &simulator.stop, |_, case| work(case), finished)
 }

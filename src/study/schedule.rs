@@ -19,27 +19,38 @@ pub fn pools(count: usize) -> Result<Vec<ThreadPool>, StudyError> {
     (0..count).map(|_| ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| threads(&error))).collect()
 }
 
-/// Does the jobs of `order`, that many at a time as there are pools, the first ones first;
-/// `finished` hears of each, in this thread, as it ends: its result, or what it said when it
-/// panicked. Once `stop` is set no job is begun; an error of `finished` sets it.
+/// Gives out the jobs of `order`, the first ones first, whoever asks.
+pub fn in_order(order: &[usize]) -> impl Fn(usize) -> Option<usize> + Sync {
+    let next = AtomicUsize::new(0);
+    move |_| order.get(next.fetch_add(1, Ordering::Relaxed)).copied()
+}
+
+/// Does jobs, a worker in each pool: worker w does `work(w, job)` with what `next(w)` says, up to
+/// when that is nothing. `finished` hears of each, in this thread, as it ends: its result, or what
+/// it said when it panicked. A job of which `work` makes nothing is left to others, and its worker
+/// does no more. Once `stop` is set no job is begun; an error of `finished` sets it.
 ///
 /// # Errors
 /// The first error of `finished`; [`StudyError::Threads`].
 pub fn side_by_side<T: Send>(
     pools: &[ThreadPool],
-    order: &[usize],
+    next: impl Fn(usize) -> Option<usize> + Sync,
     stop: &AtomicBool,
-    work: impl Fn(usize) -> T + Sync,
+    work: impl Fn(usize, usize) -> Option<T> + Sync,
     mut finished: impl FnMut(usize, Result<T, String>) -> Result<(), StudyError>,
 ) -> Result<(), StudyError> {
-    let next = AtomicUsize::new(0);
     let (tell, results) = mpsc::channel();
-    let worker = |pool: &ThreadPool, tell: mpsc::Sender<(usize, Result<T, String>)>| {
+    let worker = |index: usize, pool: &ThreadPool, tell: mpsc::Sender<(usize, Result<T, String>)>| {
         while !stop.load(Ordering::Relaxed)
-            && let Some(&job) = order.get(next.fetch_add(1, Ordering::Relaxed))
+            && let Some(job) = next(index)
         {
             // What a panicked job leaves behind is its own: nobody looks at it again.
-            let result = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(job)))).map_err(|panic| words(panic.as_ref()));
+            let done = catch_unwind(AssertUnwindSafe(|| pool.install(|| work(index, job))));
+            let result = match done {
+                Ok(None) => break,
+                Ok(Some(result)) => Ok(result),
+                Err(panic) => Err(words(panic.as_ref())),
+            };
             if tell.send((job, result)).is_err() {
                 break;
             }
@@ -47,9 +58,9 @@ pub fn side_by_side<T: Send>(
     };
     std::thread::scope(|scope| {
         let mut outcome = Ok(());
-        for pool in pools.iter().take(order.len()) {
-            let tell = tell.clone();
-            let spawned = std::thread::Builder::new().spawn_scoped(scope, || worker(pool, tell));
+        for (index, pool) in pools.iter().enumerate() {
+            let (tell, worker) = (tell.clone(), &worker);
+            let spawned = std::thread::Builder::new().spawn_scoped(scope, move || worker(index, pool, tell));
             if let Err(error) = spawned {
                 stop.store(true, Ordering::Relaxed);
                 outcome = Err(StudyError::Threads { threads: pools.len(), what: error.to_string() });
@@ -81,8 +92,8 @@ mod tests {
         let (pools, stop) = (pools(3).unwrap(), AtomicBool::new(false));
         let order: Vec<usize> = (0..20).rev().collect();
         let mut seen = Vec::new();
-        let work = |job| (job * job, rayon::current_num_threads());
-        side_by_side(&pools, &order, &stop, work, |job, result| {
+        let work = |_, job| Some((job * job, rayon::current_num_threads()));
+        side_by_side(&pools, in_order(&order), &stop, work, |job, result| {
             assert_eq!(result, Ok((job * job, 1)));
             seen.push(job);
             Ok(())
@@ -96,13 +107,32 @@ mod tests {
     fn a_panic_is_a_result_like_any_other() {
         let (pools, stop) = (pools(2).unwrap(), AtomicBool::new(false));
         let mut failed = Vec::new();
-        let work = |job| assert!(job != 2, "job {job} is bad");
-        side_by_side(&pools, &[0, 1, 2, 3, 4], &stop, work, |job, result| {
+        let work = |_, job| {
+            assert!(job != 2, "job {job} is bad");
+            Some(job)
+        };
+        side_by_side(&pools, in_order(&[0, 1, 2, 3, 4]), &stop, work, |job, result| {
             failed.extend(result.err().map(|what| (job, what)));
             Ok(())
         })
         .unwrap();
         assert_eq!(failed, [(2, "job 2 is bad".to_owned())]);
+    }
+
+    #[test]
+    fn a_worker_that_makes_nothing_of_a_job_leaves_it_and_does_no_more() {
+        let (pools, stop) = (pools(2).unwrap(), AtomicBool::new(false));
+        let asked = [AtomicUsize::new(0), AtomicUsize::new(0)];
+        let next = |worker: usize| Some(asked[worker].fetch_add(1, Ordering::Relaxed)).filter(|job| *job < 5);
+        let mut heard = Vec::new();
+        let work = |worker, job| (worker == 0 || job < 2).then_some(worker);
+        side_by_side(&pools, next, &stop, work, |job, result| {
+            heard.push((result.unwrap(), job));
+            Ok(())
+        })
+        .unwrap();
+        heard.sort_unstable();
+        assert_eq!(heard, [(0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (1, 0), (1, 1)]);
     }
 
     #[test]
@@ -113,8 +143,11 @@ mod tests {
             heard += 1;
             Err(StudyError::Threads { threads: 1, what: "test".to_owned() })
         };
-        let slow = |_| std::thread::sleep(std::time::Duration::from_millis(20));
-        assert!(side_by_side(&pools, &(0..100).collect::<Vec<_>>(), &stop, slow, failing).is_err());
+        let slow = |_, job| {
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            Some(job)
+        };
+        assert!(side_by_side(&pools, in_order(&(0..100).collect::<Vec<_>>()), &stop, slow, failing).is_err());
         assert!(stop.load(Ordering::Relaxed) && heard < 50, "{heard}");
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use super::batch::share;
+use super::batch::{Guest, share};
 use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::row::{Row, RowStatus, write_table};
@@ -146,14 +146,12 @@ fn cases_that_share_a_backend_get_what_they_would_get_alone() {
     let (backend, calls, largest) = watched(models(&problems), usize::MAX);
     let note = backend.note.clone();
     note.lock().unwrap().push("a note of the device".to_owned());
-    let (host, guests) = share(backend);
+    let (host, places) = share(backend);
+    let guests: Vec<Guest> = places.iter().zip(models(&problems)).map(|(place, model)| place.first(model)).collect();
+    drop(places);
     let shared: Vec<_> = std::thread::scope(|scope| {
-        let drives: Vec<_> = problems
-            .iter()
-            .zip(guests)
-            .enumerate()
-            .map(|(slot, (problem, mut guest))| scope.spawn(move || follow(problem, &mut guest, slot)))
-            .collect();
+        let drives: Vec<_> =
+            problems.iter().zip(guests).map(|(problem, mut guest)| scope.spawn(move || follow(problem, &mut guest, 0))).collect();
         host.serve();
         drives.into_iter().map(|drive| drive.join().expect("no panic")).collect()
     });
@@ -176,13 +174,14 @@ fn cases_that_share_a_backend_get_what_they_would_get_alone() {
 fn a_backend_that_fails_or_goes_is_an_error_of_every_case_and_no_deadlock() {
     let problems = problems();
     let (backend, _, _) = watched(models(&problems), 3);
-    let (host, guests) = share(backend);
+    let (host, places) = share(backend);
+    let guests: Vec<Guest> = places.iter().zip(models(&problems)).map(|(place, model)| place.first(model)).collect();
+    drop(places);
     let endings: Vec<_> = std::thread::scope(|scope| {
         let drives: Vec<_> = problems
             .iter()
             .zip(guests)
-            .enumerate()
-            .map(|(slot, (problem, mut guest))| scope.spawn(move || follow(problem, &mut guest, slot).0))
+            .map(|(problem, mut guest)| scope.spawn(move || follow(problem, &mut guest, 0).0))
             .collect();
         host.serve();
         drives.into_iter().map(|drive| drive.join().expect("no panic")).collect()
@@ -190,10 +189,53 @@ fn a_backend_that_fails_or_goes_is_an_error_of_every_case_and_no_deadlock() {
     for ending in endings {
         assert!(ending.unwrap_err().contains("the compute device failed: lost"));
     }
-    let (host, mut guests) = share(watched(models(&problems), 0).0);
+    let (host, places) = share(watched(models(&problems), 0).0);
     drop(host);
-    let (ending, _) = follow(&problems[0], &mut guests[0], 0);
+    let (ending, _) = follow(&problems[0], &mut places[0].first(problems[0].model.clone()), 0);
     assert!(ending.unwrap_err().contains("has gone"));
+    assert!(places[0].next(&problems[1].model).is_err());
+}
+
+#[test]
+fn a_case_that_takes_the_place_of_another_goes_as_alone() {
+    let problems = problems();
+    let (host, mut places) = share(Box::new(Cpu::<f64, f32>::with_tangents(vec![problems[0].model.clone()]).expect("a batch")));
+    let place = places.remove(0);
+    let shared: Vec<_> = std::thread::scope(|scope| {
+        let drives = scope.spawn(|| {
+            let place = place;
+            let mut first = place.first(problems[0].model.clone());
+            let mut all = vec![follow(&problems[0], &mut first, 0)];
+            drop(first);
+            for problem in &problems[1..] {
+                let mut guest = place.next(&problem.model).expect("a host").expect("a place");
+                all.push(follow(problem, &mut guest, 0));
+            }
+            all
+        });
+        host.serve();
+        drives.join().expect("no panic")
+    });
+    for (problem, (ending, seen)) in problems.iter().zip(&shared) {
+        let mut alone = Cpu::<f64, f32>::with_tangents(vec![problem.model.clone()]).expect("a batch");
+        let (own_ending, own) = follow(problem, &mut alone, 0);
+        assert_eq!((ending, &own_ending), (&Ok(Ending::Done), &Ok(Ending::Done)));
+        assert_eq!((&seen.rows, &seen.fields), (&own.rows, &own.fields));
+    }
+    // What a device does not take is left to others, and so are cases of another mesh.
+    let (host, places) = share(watched(models(&problems), usize::MAX).0);
+    let (refused, other) = std::thread::scope(|scope| {
+        let places = places;
+        scope.spawn(|| host.serve());
+        let coarse = STUDY.replace("elements_per_contact_radius = 4", "elements_per_contact_radius = 5");
+        let coarse = Study::parse(&coarse, "study.toml").expect("a study");
+        let coarse = Problem::new(&coarse.cases[0].case).expect("a problem");
+        let mut cpu = Cpu::<f64>::new(vec![problems[0].model.clone()]).expect("a batch");
+        let refused = places[0].next(&problems[1].model).expect("a host").is_none();
+        drop(places);
+        (refused, cpu.replace(0, coarse.model))
+    });
+    assert!(refused && matches!(other, Err(ComputeError::Connectivity { case: 0 })));
 }
 
 #[test]

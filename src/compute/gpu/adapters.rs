@@ -139,6 +139,28 @@ pub fn adapters() -> Vec<Adapter> {
     enumerate(&instance()).iter().map(Adapter::of).collect()
 }
 
+/// Bytes of the largest heap of memory that an adapter calls its own; `None` where its interface is
+/// another than Vulkan, or has none.
+#[cfg(any(target_os = "linux", target_os = "windows"))]
+pub(super) fn own_memory(adapter: &wgpu::Adapter) -> Option<u64> {
+    const DEVICE_LOCAL: u32 = 1;
+    // SAFETY: the handles are asked about, and neither kept nor destroyed; both live as long as the
+    // adapter, which is borrowed.
+    #[allow(unsafe_code)]
+    let properties = unsafe {
+        let adapter = adapter.as_hal::<wgpu::hal::api::Vulkan>()?;
+        adapter.shared_instance().raw_instance().get_physical_device_memory_properties(adapter.raw_physical_device())
+    };
+    let heaps = properties.memory_heaps.iter().take(properties.memory_heap_count as usize);
+    heaps.filter(|heap| heap.flags.as_raw() & DEVICE_LOCAL != 0).map(|heap| heap.size).max()
+}
+
+/// As on Vulkan, where there is none.
+#[cfg(not(any(target_os = "linux", target_os = "windows")))]
+pub(super) fn own_memory(_: &wgpu::Adapter) -> Option<u64> {
+    None
+}
+
 /// The adapter named in the environment, if any.
 pub fn wanted_name() -> Option<String> {
     std::env::var(ADAPTER_VARIABLE).ok().filter(|name| !name.trim().is_empty())

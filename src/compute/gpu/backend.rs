@@ -46,7 +46,7 @@ pub struct Gpu<R> {
     pub(super) current: Vec<u32>,
     /// By case and iterate: the largest number of its right-hand side.
     pub(super) largest: Vec<[f64; 2]>,
-    batch: Option<Batch<R>>,
+    pub(super) batch: Option<Batch<R>>,
     name: String,
 }
 
@@ -335,6 +335,10 @@ impl<R: DeviceReal> Compute for Gpu<R> {
             flow: (0..elements).map(|e| std::array::from_fn(|q| flow(QUADRATURE_POINTS * e + q))).collect(),
             plastic_work: work.iter().map(|w| w.to_f64()).collect(),
         })
+    }
+
+    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
+        self.take_in(case, model)
     }
 
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {

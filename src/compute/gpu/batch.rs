@@ -22,7 +22,6 @@ use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
 use crate::compute::linear::SideReport;
 use crate::compute::{CaseModel, ComputeError, Outcome};
-use crate::contact::coulomb::CONTACT_WEIGHT;
 
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
@@ -131,7 +130,7 @@ impl<R: DeviceReal> Batch<R> {
         let chunks = context.chunks_of_bindings("the states of a case", models.len(), widest)?;
         let residents = chunks
             .iter()
-            .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count], CONTACT_WEIGHT))
+            .map(|c| Resident::new(&context, sizes, c.first, &models[c.first..c.first + c.count]))
             .collect::<Result<Vec<_>, _>>()?;
         let tangents = Tangents::<R>::bytes(sizes, in_single);
         let of_cases = tangents.of_case * models.len() as u64;
@@ -148,18 +147,23 @@ impl<R: DeviceReal> Batch<R> {
             (widest.max(array), own + pools + sum + down)
         };
         let mut notes = Vec::new();
-        let linear_plan = linear_plan.and_then(|plan| {
-            let ((widest, all), lists) = (needs(Some(&plan)), plan.shared_bytes());
+        let fits = linear_plan.as_ref().map_or(Ok(()), |plan| {
+            let ((widest, all), lists) = (needs(Some(plan)), plan.shared_bytes());
             let what = "the linear solver of one case";
-            let fits =
-                context.has_room(what, all + of_cases + once + lists).and_then(|()| context.chunks(what, 1, widest, 0).map(drop));
-            if let Err(error) = &fits {
+            context.has_room(what, all + of_cases + once + lists)?;
+            context.chunks(what, 1, widest, 0).map(drop)
+        });
+        let linear_plan = match fits {
+            Err(error) if models.len() == 1 => {
                 let note = format!("the linear systems are solved on the CPU: {error}");
                 log::info!("{note}");
                 notes.push(note);
+                None
             }
-            fits.is_ok().then_some(plan)
-        });
+            // Fewer cases have it.
+            Err(error) => return Err(error.into()),
+            Ok(()) => linear_plan,
+        };
         let (widest, mut all) = needs(linear_plan.as_ref());
         let mut keeps = parts.iterates && linear_plan.is_some();
         if keeps && models.len() == 1 && R::PRECISION == Precision::F32 {

@@ -1,6 +1,6 @@
 //! Typed arrays on the device, within a memory budget; reading back is proved fresh.
 
-use super::context::GpuContext;
+use super::context::{GpuContext, PATIENCE};
 use super::error::GpuError;
 use super::memory::{Reservation, Staging};
 use super::pools::ALIGNMENT;
@@ -8,7 +8,6 @@ use super::shader_sources::Precision;
 use crate::real::Real;
 use bytemuck::{Pod, cast_slice};
 use std::marker::PhantomData;
-use std::sync::Arc;
 
 /// Uploads go through pieces of this size, so that the driver's copy of what is on the way stays
 /// small.
@@ -315,14 +314,14 @@ impl GpuContext {
         self.meter.went_up(size_of_val(&ticket) as u64);
         self.meter.came_down(reads.iter().map(|read| read.out.len() as u64).sum::<u64>() + size_of_val(&ticket) as u64);
         let slice = staging.mapped.slice(..bytes + TICKET_BYTES);
-        let outcome = Arc::new(std::sync::OnceLock::new());
-        let report = Arc::clone(&outcome);
+        let (report, outcome) = std::sync::mpsc::channel();
         slice.map_async(wgpu::MapMode::Read, move |result| {
-            // set once by construction: a second value is dropped
-            let _ = report.set(result.is_ok());
+            // Nobody hears it who has given up.
+            let _ = report.send(result.is_ok());
         });
         let waited = self.wait(&what, submission);
-        if waited.is_err() || outcome.get() != Some(&true) {
+        // Another thread that waits for the device may be the one that is told.
+        if waited.is_err() || outcome.recv_timeout(PATIENCE) != Ok(true) {
             *slot = None; // its mapping is in an unknown state
             waited?;
             return Err(self.fault(GpuError::Lost { reason: format!("{what} cannot be mapped") }));

@@ -11,9 +11,9 @@ use crate::compute::traffic::Traffic;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Longest time that one submission may take before the device is given up, seconds. Software
-/// adapters compile for a quarter of a minute at a kernel's first dispatch.
-const PATIENCE_S: u64 = 300;
+/// Longest time that one submission may take before the device is given up. Software adapters
+/// compile for a quarter of a minute at a kernel's first dispatch.
+pub(super) const PATIENCE: Duration = Duration::from_secs(300);
 
 /// The words of wgpu and of drivers, which come in indented lines, as a part of one message.
 fn one_line(text: &str) -> String {
@@ -22,18 +22,30 @@ fn one_line(text: &str) -> String {
 
 /// An open device with its queue, its compiled kernels and its memory budget.
 ///
-/// May be shared between threads. Results are identical bits for identical input: kernels gather in
-/// fixed order and use no atomics.
+/// May be shared between threads; what is read back goes through one staging buffer, so that one
+/// thread at a time waits. Results are identical bits for identical input: kernels gather in fixed
+/// order and use no atomics.
 pub struct GpuContext {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) health: Arc<DeviceHealth>,
     pub(super) budget: Arc<MemoryBudget>,
-    pub(super) pipelines: PipelineCache,
+    pub(super) pipelines: Arc<PipelineCache>,
     pub(super) staging: Mutex<Option<Staging>>,
     pub(super) meter: Meter,
     pub(super) checked: bool,
     adapter: Adapter,
+    _closing: Arc<Closing>,
+}
+
+/// Closes the device with the last part of its context.
+struct Closing(wgpu::Device);
+
+impl Drop for Closing {
+    fn drop(&mut self) {
+        // Closing a device is not a loss: keep the callback from reporting one.
+        self.0.set_device_lost_callback(|_, _| ());
+    }
 }
 
 impl GpuContext {
@@ -90,10 +102,27 @@ impl GpuContext {
         device.set_device_lost_callback(move |reason, message| {
             on_loss.fail(GpuError::Lost { reason: one_line(&format!("it was lost ({reason:?}) {message}")) });
         });
-        let budget = Arc::new(MemoryBudget::for_adapter(description.kind));
-        let (pipelines, staging, checked) = (PipelineCache::default(), Mutex::new(None), cfg!(debug_assertions));
-        let meter = Meter::default();
-        Ok(Self { device, queue, health, budget, pipelines, staging, meter, checked, adapter: description })
+        let budget = Arc::new(MemoryBudget::for_adapter(description.kind, adapters::own_memory(adapter)));
+        let (pipelines, staging, checked) = (Arc::default(), Mutex::new(None), cfg!(debug_assertions));
+        let (meter, _closing) = (Meter::default(), Arc::new(Closing(device.clone())));
+        Ok(Self { device, queue, health, budget, pipelines, staging, meter, checked, adapter: description, _closing })
+    }
+
+    /// The same device and its compiled kernels for another user, with a memory budget of `bytes`,
+    /// a staging buffer and counters of its own: two of these do not wait for each other.
+    pub fn part(&self, bytes: u64) -> Self {
+        Self {
+            device: self.device.clone(),
+            queue: self.queue.clone(),
+            health: Arc::clone(&self.health),
+            budget: Arc::new(MemoryBudget::new(bytes)),
+            pipelines: Arc::clone(&self.pipelines),
+            staging: Mutex::new(None),
+            meter: Meter::default(),
+            checked: self.checked,
+            adapter: self.adapter.clone(),
+            _closing: Arc::clone(&self._closing),
+        }
     }
 
     /// The same with kernels compiled with or without bounds checks; the default is with in debug
@@ -101,7 +130,7 @@ impl GpuContext {
     /// private arrays.
     pub fn with_checks(mut self, checked: bool) -> Self {
         self.checked = checked;
-        self.pipelines = PipelineCache::default();
+        self.pipelines = Arc::default();
         self
     }
 
@@ -129,7 +158,7 @@ impl GpuContext {
         &self.budget
     }
 
-    /// What has passed between the host and this device since it was opened.
+    /// What has passed between the host and this device, or this part of it, since it was opened.
     pub fn traffic(&self) -> Traffic {
         self.meter.read()
     }
@@ -140,6 +169,15 @@ impl GpuContext {
     /// The first fault since it was opened.
     pub fn check(&self) -> Result<(), GpuError> {
         self.health.check()
+    }
+
+    /// As [`GpuContext::check`], after having heard what the driver has to say.
+    ///
+    /// # Errors
+    /// The first fault since it was opened.
+    pub fn ask(&self) -> Result<(), GpuError> {
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.check()
     }
 
     /// Whether kernels in `precision` run here.
@@ -182,13 +220,15 @@ impl GpuContext {
 
     /// Waits for a submission and checks that the device survived it.
     pub(super) fn wait(&self, what: &str, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
-        let poll = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(Duration::from_secs(PATIENCE_S)) };
+        let poll = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
         self.meter.waited();
         let waited = self.device.poll(poll);
         self.check()?;
         match waited {
             Ok(_) => Ok(()),
-            Err(wgpu::PollError::Timeout) => Err(self.fault(GpuError::Timeout { what: what.to_owned(), seconds: PATIENCE_S })),
+            Err(wgpu::PollError::Timeout) => {
+                Err(self.fault(GpuError::Timeout { what: what.to_owned(), seconds: PATIENCE.as_secs() }))
+            }
             // To a lost device nothing is submitted any more, without a word.
             Err(wgpu::PollError::WrongSubmissionIndex(..)) => {
                 Err(self
@@ -205,13 +245,6 @@ impl GpuContext {
 
     pub(super) fn staging(&self) -> std::sync::MutexGuard<'_, Option<Staging>> {
         self.staging.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Drop for GpuContext {
-    fn drop(&mut self) {
-        // Closing a device is not a loss: keep the callback from reporting one.
-        self.device.set_device_lost_callback(|_, _| ());
     }
 }
 

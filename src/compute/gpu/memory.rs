@@ -23,11 +23,15 @@ impl MemoryBudget {
         Self { limit, used: AtomicU64::new(0) }
     }
 
-    /// The budget from `ASPERITY_GPU_MEMORY` (MiB), else what devices of this kind have today at
-    /// the least: wgpu cannot say how much there is. 4 GiB for a GPU with its own memory, 2 GiB
-    /// where memory is shared with the CPU.
-    pub fn for_adapter(kind: AdapterKind) -> Self {
-        let default = if matches!(kind, AdapterKind::Discrete | AdapterKind::Virtual) { 4096 } else { 2048 };
+    /// The budget from `ASPERITY_GPU_MEMORY` (MiB). Else, of a GPU with its own memory, four fifths
+    /// of that, or 4 GiB where the driver does not tell `own`; and 2 GiB where memory is shared with
+    /// the CPU.
+    pub fn for_adapter(kind: AdapterKind, own: Option<u64>) -> Self {
+        let default = match (kind, own) {
+            (AdapterKind::Discrete | AdapterKind::Virtual, Some(own)) => own / MIB * 4 / 5,
+            (AdapterKind::Discrete | AdapterKind::Virtual, None) => 4096,
+            _ => 2048,
+        };
         let mib: u64 = match std::env::var(MEMORY_VARIABLE) {
             Err(_) => default,
             Ok(text) => text.trim().parse().unwrap_or_else(|_| {
@@ -91,6 +95,18 @@ pub(super) struct Staging {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_device_with_memory_of_its_own_is_used_nearly_whole() {
+        if std::env::var_os(MEMORY_VARIABLE).is_some() {
+            return;
+        }
+        let limit = |kind, own| MemoryBudget::for_adapter(kind, own).limit();
+        assert_eq!(limit(AdapterKind::Discrete, Some(80 << 30)), 64 << 30);
+        assert_eq!(limit(AdapterKind::Virtual, None), 4 << 30);
+        assert_eq!(limit(AdapterKind::Integrated, Some(80 << 30)), 2 << 30);
+        assert_eq!(limit(AdapterKind::Software, Some(80 << 30)), 2 << 30);
+    }
 
     #[test]
     fn a_reservation_is_given_back() {

@@ -117,4 +117,8 @@ impl Compute for Mixed {
         self.residual.restore(case, state)?;
         self.single.restore(case, state)
     }
+
+    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
+        Ok(self.single.replace(case, model.clone())? && self.residual.replace(case, model)?)
+    }
 }

@@ -31,6 +31,7 @@ mod meter;
 pub mod mixed;
 pub mod pipelines;
 mod pools;
+mod replace;
 pub mod report;
 pub mod resident;
 pub mod scratch;

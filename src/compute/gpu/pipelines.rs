@@ -173,6 +173,21 @@ impl Recorder<'_> {
         Ok(())
     }
 
+    /// Appends that `count` elements of an array become zero, after the kernels before it. Elements
+    /// of less than four bytes are not supported by wgpu.
+    ///
+    /// # Errors
+    /// [`GpuError::Length`] beyond the end.
+    pub fn clear<T>(&mut self, array: &StorageBuffer<T>, first: usize, count: usize) -> Result<(), GpuError> {
+        if first.checked_add(count).is_none_or(|end| end > array.len()) {
+            return Err(GpuError::Length { what: array.what().to_owned(), expected: array.len(), given: first + count });
+        }
+        let size = size_of::<T>() as u64;
+        self.encoder.clear_buffer(&array.raw, array.first + first as u64 * size, Some(count as u64 * size));
+        self.commands += 1;
+        Ok(())
+    }
+
     /// Sends the list off, waits for it and reads arrays back as it leaves them: one submission,
     /// one wait.
     ///

@@ -8,7 +8,7 @@ use super::context::GpuContext;
 use super::error::GpuError;
 use super::material::flatten;
 use crate::compute::{CaseModel, ComputeError};
-use crate::contact::coulomb::Friction;
+use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
 use crate::element::hex8::{Geometry, Invalid, NODES, QUADRATURE_POINTS};
 use crate::material::Material;
 use crate::mesh::Mesh;
@@ -19,8 +19,13 @@ pub const STATE: usize = super::material::STATE;
 pub const HISTORY: usize = 2 * STATE;
 /// Coordinates of an element's nodes.
 pub const COORDINATES: usize = 3 * NODES;
+/// Rows of hardening tables that there is room for, a material: those of the batch may be replaced.
+const TABLE_ROOM: usize = 64;
 /// The coefficient of friction that stands for full stick in `coulomb.wgsl`.
 const FULL_STICK: f64 = -1.0;
+
+/// Numbers of a material, with those of its table.
+pub const MATERIAL_ROOM: usize = 32 + 3 * TABLE_ROOM;
 
 /// Sizes that all cases of a batch share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +61,7 @@ impl Sizes {
             + (COORDINATES + 1) * self.elements
             + 3 * self.nodes
             + 2 * self.contact_points
-            + 32 * self.bodies();
+            + MATERIAL_ROOM * self.bodies();
         ((widest * size_of::<R>()) as u64, (all * size_of::<R>()) as u64)
     }
 }
@@ -139,18 +144,11 @@ pub struct Resident<R> {
 }
 
 impl<R: DeviceReal> Resident<R> {
-    /// Sends `models`, the cases from `first` on, in their virgin state; `weights` are the contact
-    /// weights of each case.
+    /// Sends `models`, the cases from `first` on, in their virgin state.
     ///
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; what [`GpuContext::array`] says.
-    pub fn new(
-        context: &GpuContext,
-        sizes: Sizes,
-        first: usize,
-        models: &[CaseModel],
-        contact_weight: f64,
-    ) -> Result<Self, ComputeError> {
+    pub fn new(context: &GpuContext, sizes: Sizes, first: usize, models: &[CaseModel]) -> Result<Self, ComputeError> {
         let count = models.len();
         let mut meshes: Vec<&Arc<Mesh>> = Vec::new();
         let geometry_of: Vec<u32> = models
@@ -167,17 +165,10 @@ impl<R: DeviceReal> Resident<R> {
         let (coordinates, volume) = send_geometry::<R>(context, sizes, &meshes)?;
         let weight = context.zeros("contact weights", meshes.len() * sizes.contact_points)?;
         for (index, mesh) in meshes.iter().enumerate() {
-            let weights: Vec<R> = mesh.contact_size.iter().map(|&h| R::of(contact_weight * h)).collect();
-            context.upload_at(&weight, index * sizes.contact_points, &weights)?;
+            context.upload_at(&weight, index * sizes.contact_points, &contact_weights::<R>(mesh))?;
         }
-        let (parameters, table) = flatten(&materials::<R>(sizes, models));
-        let friction: Vec<R> = models
-            .iter()
-            .map(|m| match m.friction {
-                Friction::Coulomb(mu) => R::of(mu),
-                Friction::Stick => R::of(FULL_STICK),
-            })
-            .collect();
+        let (parameters, table) = send_materials::<R>(context, sizes, models)?;
+        let friction: Vec<R> = models.iter().map(|m| friction(m.friction)).collect();
         let resident = Self {
             first,
             count,
@@ -186,8 +177,8 @@ impl<R: DeviceReal> Resident<R> {
             volume,
             weight,
             committed: context.zeros("committed displacements", count * 3 * sizes.nodes)?,
-            parameters: context.array("material parameters", &parameters)?,
-            table: context.array("hardening tables", &table)?,
+            parameters,
+            table,
             state: context.zeros("states at the start", count * STATE * points)?,
             history: context.zeros("committed states", count * HISTORY * points)?,
             anticipated: context.zeros("weights of the last flow", count)?,
@@ -200,6 +191,49 @@ impl<R: DeviceReal> Resident<R> {
             resident.set_displacement(context, sizes, index, &model.mesh, &still)?;
         }
         Ok(resident)
+    }
+
+    /// Puts another case in the place of the group's case `index`, in its virgin state; `models` are
+    /// the cases of the group with it. Its geometry is of the number that comes back: none where it
+    /// shares one with another case and there is no other, or where its hardening table is too long,
+    /// and then nothing was done.
+    ///
+    /// # Errors
+    /// [`ComputeError::InvertedMesh`]; the device's fault.
+    pub fn replace(
+        &mut self,
+        context: &GpuContext,
+        sizes: Sizes,
+        index: usize,
+        models: &[CaseModel],
+    ) -> Result<Option<usize>, ComputeError> {
+        let (mesh, points) = (&models[index].mesh, sizes.points());
+        let Some(geometry) = self.free_geometry(index, sizes) else { return Ok(None) };
+        let (positions, volumes) = flatten_geometry::<R>(mesh)?;
+        if !replace_materials(context, sizes, models, (&self.parameters, &self.table))? {
+            return Ok(None);
+        }
+        context.upload_at(&self.coordinates, geometry * COORDINATES * sizes.elements, &positions)?;
+        context.upload_at(&self.volume, geometry * points, &volumes)?;
+        context.upload_at(&self.weight, geometry * sizes.contact_points, &contact_weights::<R>(mesh))?;
+        context.upload_at(&self.friction, index, &[friction::<R>(models[index].friction)])?;
+        let mut list = context.record();
+        list.clear(&self.state, index * STATE * points, STATE * points)?;
+        list.clear(&self.history, index * HISTORY * points, HISTORY * points)?;
+        list.clear(&self.anticipated, index, 1)?;
+        list.clear(&self.plastic_work, index * sizes.elements, sizes.elements)?;
+        list.submit()?;
+        self.set_displacement(context, sizes, index, mesh, &vec![0.0; 3 * sizes.nodes])?;
+        self.geometry_of[index] = geometry as u32;
+        Ok(Some(geometry))
+    }
+
+    /// The geometry of a case, if no other case has it too, or one that no case has.
+    fn free_geometry(&self, index: usize, sizes: Sizes) -> Option<usize> {
+        let others = |geometry: u32| self.geometry_of.iter().enumerate().all(|(case, &g)| case == index || g != geometry);
+        let all = self.volume.len() / sizes.points().max(1);
+        let own = self.geometry_of[index];
+        std::iter::once(own).chain(0..all as u32).find(|&geometry| others(geometry)).map(|geometry| geometry as usize)
     }
 
     /// The geometries of the group in another precision; `models` are all cases of the batch.
@@ -242,8 +276,57 @@ impl<R: DeviceReal> Resident<R> {
     }
 }
 
+/// The weights of the contact conditions of a mesh's contact points.
+fn contact_weights<R: DeviceReal>(mesh: &Mesh) -> Vec<R> {
+    mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect()
+}
+
+fn friction<R: DeviceReal>(friction: Friction<f64>) -> R {
+    match friction {
+        Friction::Coulomb(mu) => R::of(mu),
+        Friction::Stick => R::of(FULL_STICK),
+    }
+}
+
+/// The parameters and hardening tables of cases, with room for those of others.
+///
+/// # Errors
+/// As [`GpuContext::array`].
+pub fn send_materials<T: DeviceReal>(
+    context: &GpuContext,
+    sizes: Sizes,
+    models: &[CaseModel],
+) -> Result<(StorageBuffer<T>, StorageBuffer<T>), GpuError> {
+    let (parameters, table) = flatten(&materials::<T>(sizes, models));
+    let room = 3 * TABLE_ROOM * sizes.bodies() * models.len();
+    let parameters = context.array("material parameters", &parameters)?;
+    let tables = context.zeros("hardening tables", table.len().max(room))?;
+    context.upload_at(&tables, 0, &table)?;
+    Ok((parameters, tables))
+}
+
+/// Writes those of other cases in their place; `false`, and nothing written, where their tables are
+/// too long.
+///
+/// # Errors
+/// The device's fault.
+pub fn replace_materials<T: DeviceReal>(
+    context: &GpuContext,
+    sizes: Sizes,
+    models: &[CaseModel],
+    (parameters, tables): (&StorageBuffer<T>, &StorageBuffer<T>),
+) -> Result<bool, GpuError> {
+    let (numbers, table) = flatten(&materials::<T>(sizes, models));
+    if table.len() > tables.len() {
+        return Ok(false);
+    }
+    context.upload(parameters, &numbers)?;
+    context.upload_at(tables, 0, &table)?;
+    Ok(true)
+}
+
 /// The materials of cases, then those of their opponents, if they have any that deform.
-pub fn materials<T: DeviceReal>(sizes: Sizes, models: &[CaseModel]) -> Vec<Material<T>> {
+fn materials<T: DeviceReal>(sizes: Sizes, models: &[CaseModel]) -> Vec<Material<T>> {
     let own = models.iter().map(|model| &model.material);
     let opponents = models.iter().map(|model| model.opponent.as_ref().unwrap_or(&model.material));
     own.chain(opponents).take(sizes.bodies() * models.len()).map(Material::cast).collect()
@@ -269,7 +352,7 @@ fn send_geometry<R: DeviceReal>(
 
 /// Positions of the nodes relative to the element's first one `[3 a + i][element]`, which keep
 /// their digits far from the origin, and volumes `[point]` of a mesh.
-fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
+pub fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
     let elements = mesh.elements.len();
     let mut coordinates = vec![R::ZERO; COORDINATES * elements];
     let mut volume = vec![R::ZERO; QUADRATURE_POINTS * elements];

@@ -6,12 +6,14 @@ use super::batch::Dispatch;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
-use super::material::flatten;
 use super::pipelines::{Bound, Recorder};
-use super::resident::{COORDINATES, Connectivity, Resident, STATE, Sizes, materials};
+use super::resident::{
+    COORDINATES, Connectivity, MATERIAL_ROOM, Resident, STATE, Sizes, flatten_geometry, replace_materials, send_materials,
+};
 use super::scratch::{MODULI, Scratch};
 use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_MODULI, Kernel, NARROW};
 use crate::compute::{CaseModel, ComputeError};
+use crate::mesh::Mesh;
 
 /// The arrays of which tangents are made, in one precision.
 struct Inputs<'a, T> {
@@ -105,7 +107,11 @@ impl<T: DeviceReal> Set<T> {
 struct Narrowed {
     /// Numbers of a case or slot, with the kernel that copies them.
     copies: Vec<(usize, Bound)>,
-    _arrays: [StorageBuffer<f32>; 6],
+    coordinates: StorageBuffer<f32>,
+    volume: StorageBuffer<f32>,
+    parameters: StorageBuffer<f32>,
+    table: StorageBuffer<f32>,
+    _copied: [StorageBuffer<f32>; 2],
 }
 
 /// Tangents in single precision beside residuals in another.
@@ -153,7 +159,7 @@ impl<R: DeviceReal> Tangents<R> {
         let (moduli, blocks, points) = (MODULI * sizes.points(), 9 * sizes.blocks, sizes.points());
         let of_slot = if in_single { points + 3 * sizes.nodes } else { 0 };
         let of_case = if in_single {
-            COORDINATES * sizes.elements + (1 + STATE) * points + 3 * sizes.nodes + 32 * sizes.bodies()
+            COORDINATES * sizes.elements + (1 + STATE) * points + 3 * sizes.nodes + MATERIAL_ROOM * sizes.bodies()
         } else {
             0
         };
@@ -208,9 +214,7 @@ impl<R: DeviceReal> Tangents<R> {
             let (coordinates, volume) = r.geometry::<f32>(context, sizes, models)?;
             let committed = context.zeros("committed displacements in f32", r.count * unknowns)?;
             let state = context.zeros("states in f32", r.count * STATE * points)?;
-            let (parameters, table) = flatten(&materials::<f32>(sizes, &models[r.first..r.first + r.count]));
-            let parameters = context.array("material parameters in f32", &parameters)?;
-            let table = context.array("hardening tables in f32", &table)?;
+            let (parameters, table) = send_materials::<f32>(context, sizes, &models[r.first..r.first + r.count])?;
             let inputs = Inputs {
                 coordinates: &coordinates,
                 volume: &volume,
@@ -234,9 +238,33 @@ impl<R: DeviceReal> Tangents<R> {
                     Ok((count, context.bind(&pipeline, [&dispatch[..], &arrays].concat())?))
                 })
                 .collect::<Result<Vec<_>, GpuError>>()?;
-            groups.push(Narrowed { copies, _arrays: [coordinates, volume, committed, state, parameters, table] });
+            let _copied = [committed, state];
+            groups.push(Narrowed { copies, coordinates, volume, parameters, table, _copied });
         }
         Ok(Self::Single(Box::new(Single { set, groups, _arrays: [increment, jacobian], _shapes: shapes })))
+    }
+
+    /// After [`Resident::replace`] with these `models`: sends what there is in single precision of
+    /// the new case, whose mesh has the number `geometry`.
+    ///
+    /// # Errors
+    /// [`ComputeError::InvertedMesh`]; the device's fault.
+    pub fn replace(
+        &self,
+        context: &GpuContext,
+        sizes: Sizes,
+        group: usize,
+        models: &[CaseModel],
+        (geometry, mesh): (usize, &Mesh),
+    ) -> Result<(), ComputeError> {
+        let Self::Single(single) = self else { return Ok(()) };
+        let narrowed = &single.groups[group];
+        let (positions, volumes) = flatten_geometry::<f32>(mesh)?;
+        context.upload_at(&narrowed.coordinates, geometry * COORDINATES * sizes.elements, &positions)?;
+        context.upload_at(&narrowed.volume, geometry * sizes.points(), &volumes)?;
+        // The tables fit: those in the residual's precision did, and are as long.
+        replace_materials(context, sizes, models, (&narrowed.parameters, &narrowed.table)).map(drop)?;
+        Ok(())
     }
 
     /// Appends the kernels that make the tangents at the increments that the slots have.

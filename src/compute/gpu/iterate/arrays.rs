@@ -67,8 +67,7 @@ impl<R: DeviceReal> Kept<R> {
         let of = |geometry: usize| resident.geometry_of.iter().position(|&g| g as usize == geometry).unwrap_or(0);
         let meshes: Vec<&Mesh> = (0..geometries).map(|geometry| &*models[of(geometry)].mesh).collect();
         let weights: Vec<R> = meshes.iter().map(|mesh| R::of(missing_weight(mesh))).collect();
-        let heights: Vec<R> =
-            meshes.iter().flat_map(|mesh| mesh.contact_nodes.iter().map(|&n| R::of(mesh.nodes[n as usize][2]))).collect();
+        let heights: Vec<R> = meshes.iter().flat_map(|mesh| heights(mesh)).collect();
         let plate: Vec<u32> =
             std::iter::once(meshes[0].plate_nodes.len() as u32).chain(meshes[0].plate_nodes.iter().copied()).collect();
         Ok(Self {
@@ -90,11 +89,50 @@ impl<R: DeviceReal> Kept<R> {
         })
     }
 
+    /// After [`Resident::replace`]: what there is here of the group's case `index` as in its virgin
+    /// state, on `mesh`, which has the number `geometry`.
+    ///
+    /// # Errors
+    /// The device's fault.
+    pub fn replace(
+        &self,
+        context: &GpuContext,
+        sizes: Sizes,
+        index: usize,
+        (geometry, mesh): (usize, &Mesh),
+    ) -> Result<(), GpuError> {
+        let (n, points) = (3 * sizes.nodes, sizes.contact_points);
+        context.upload_at(&self.plate_weight, geometry, &[R::of(missing_weight(mesh))])?;
+        context.upload_at(&self.height, geometry * points, &heights::<R>(mesh))?;
+        let mut list = context.record();
+        for (array, of_case) in [
+            (&self.increments, 2 * n),
+            (&self.forces, 2 * n),
+            (&self.correction, n),
+            (&self.by_residual, n),
+            (&self.before, n),
+            (&self.rows, 2 * ROWS * points),
+            (&self.largest, 2),
+        ] {
+            list.clear(array, index * of_case, of_case)?;
+        }
+        for (array, of_case) in [(&self.slides, points), (&self.came_off, points), (&self.codes, 2 * points)] {
+            list.clear(array, index * of_case, of_case)?;
+        }
+        list.clear(&self.response, index * n, n)?;
+        list.submit()
+    }
+
     /// Bytes of a case.
     pub fn bytes(sizes: Sizes) -> u64 {
         let (n, points) = (3 * sizes.nodes, sizes.contact_points);
         (size_of::<R>() * (7 * n + 2 * ROWS * points) + size_of::<u32>() * (n + 4 * points)) as u64
     }
+}
+
+/// Heights of a mesh's contact points.
+fn heights<R: DeviceReal>(mesh: &Mesh) -> Vec<R> {
+    mesh.contact_nodes.iter().map(|&n| R::of(mesh.nodes[n as usize][2])).collect()
 }
 
 /// What each node is, as `node_info.wgsl` has it.
