@@ -178,8 +178,8 @@ fn chunks_give_the_same_bits_as_one_piece() {
     }
 }
 
-/// Each has its own staging buffer and counters, and hears of its own numbers alone, whichever thread
-/// the driver tells.
+/// Each has its own staging buffer and counters, and hears of its own numbers alone, whichever
+/// thread the driver tells.
 #[test]
 fn parts_of_a_device_are_used_side_by_side() {
     let Some(context) = device("device_layer", Precision::F32) else { return };

@@ -59,8 +59,8 @@ impl Sub for Traffic {
 /// The account of a run, as `summary.json` has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeviceTraffic {
-    /// Since the device was opened, what was needed to begin, to write fields and to keep a copy of
-    /// the state included. Where cases share a device, of all of them.
+    /// Since the case was given the device, what was needed to begin, to write fields and to keep a
+    /// copy of the state included. Where cases share a backend, of all of them.
     #[serde(flatten)]
     pub total: Traffic,
     /// Of the accepted steps, with the attempts that led to them.

@@ -1,5 +1,5 @@
-//! Cases on a device: those of one mesh connectivity share it, and where one ends the next takes its
-//! place.
+//! Cases on a device: those of one mesh connectivity share it, and where one ends the next takes
+//! its place.
 //!
 //! A batch of some size is two halves, each a backend of its own with half of the device's memory:
 //! while the host deals with what one has found, the other one has the device.
@@ -72,8 +72,8 @@ impl Waiting {
         self.left().push_front(case);
     }
 
-    /// Takes the next cases out, as many as `most`, and begins them; those of which there is nothing
-    /// to compute are `finished`.
+    /// Takes the next cases out, as many as `most`, and begins them; those of which there is
+    /// nothing to compute are `finished`.
     fn take(
         &self,
         simulator: &Simulator<'_>,

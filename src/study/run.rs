@@ -34,7 +34,7 @@ pub struct Options {
     /// Their precision.
     pub precision: PrecisionChoice,
     /// Cores to use: that many cases side by side. Where a device serves them it is twice as many,
-    /// or 64 where it solves their linear systems too.
+    /// or 256 where it solves their linear systems too.
     pub threads: usize,
     /// Only this share of the cases.
     pub shard: Option<Shard>,

@@ -24,8 +24,8 @@ impl MemoryBudget {
     }
 
     /// The budget from `ASPERITY_GPU_MEMORY` (MiB). Else, of a GPU with its own memory, four fifths
-    /// of that, or 4 GiB where the driver does not tell `own`; and 2 GiB where memory is shared with
-    /// the CPU.
+    /// of that, or 4 GiB where the driver does not tell `own`; and 2 GiB where memory is shared
+    /// with the CPU.
     pub fn for_adapter(kind: AdapterKind, own: Option<u64>) -> Self {
         let default = match (kind, own) {
             (AdapterKind::Discrete | AdapterKind::Virtual, Some(own)) => own / MIB * 4 / 5,

@@ -193,10 +193,10 @@ impl<R: DeviceReal> Resident<R> {
         Ok(resident)
     }
 
-    /// Puts another case in the place of the group's case `index`, in its virgin state; `models` are
-    /// the cases of the group with it. Its geometry is of the number that comes back: none where it
-    /// shares one with another case and there is no other, or where its hardening table is too long,
-    /// and then nothing was done.
+    /// Puts another case in the place of the group's case `index`, in its virgin state; `models`
+    /// are the cases of the group with it. What comes back is the number of its geometry: none
+    /// where the place shares one with another case and no other is free, or where its hardening
+    /// table is too long, and then nothing was done.
     ///
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; the device's fault.
