@@ -233,7 +233,10 @@ fn study_of_eight(dir: &Path, device: &str, environment: &[(&str, &str)]) -> Vec
         .replace("\n[", "\n[base.")
         .replace("[base.[base.", "[[base.");
     let solver = "[base.solver]\nshear_steps = 4\nerror_estimate = false\ntolerance = 1e-8\n";
-    let text = format!("{}\n[grid]\n\"contact.friction\" = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]\n", base.replace("[base.solver]\n", solver));
+    let text = format!(
+        "{}\n[grid]\n\"contact.friction\" = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]\n",
+        base.replace("[base.solver]\n", solver)
+    );
     fs::write(dir.join("study.toml"), text).unwrap();
     let out = dir.join(device);
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
