@@ -146,9 +146,10 @@ fn one(options: &WholeJobs, device: DeviceChoice, batch: usize) -> Result<WholeJ
             }
         }
     }
-    if let Some(WholeJob { traffic: Some(traffic), .. }) = &mut out {
-        // As much again in the other half.
-        *traffic = (1..backends(batch)).fold(*traffic, |sum, _| sum + *traffic);
+    if backends(batch) == 2
+        && let Some(WholeJob { traffic: Some(traffic), .. }) = &mut out
+    {
+        *traffic += *traffic;
     }
     out.ok_or(BenchError::Case { case: "1".to_owned(), why: "there is no case".to_owned() })
 }

@@ -134,7 +134,7 @@ impl<R: Real, T: Real> Cpu<R, T> {
         let plan = GatherPlan::new(&first.mesh);
         let elements = first.mesh.elements.len();
         for (case, model) in models.iter().enumerate() {
-            if model.mesh.elements != first.mesh.elements || model.mesh.contact_nodes != first.mesh.contact_nodes {
+            if !model.is_alike(first) {
                 return Err(ComputeError::Connectivity { case });
             }
         }
@@ -452,8 +452,7 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
     }
 
     fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
-        let before = &self.models[case].mesh;
-        if model.mesh.elements != before.elements || model.mesh.contact_nodes != before.contact_nodes {
+        if !model.is_alike(&self.models[case]) {
             return Err(ComputeError::Connectivity { case });
         }
         self.cases[case] = Case::new(&model)?;

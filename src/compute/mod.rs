@@ -56,6 +56,11 @@ impl CaseModel {
     pub fn opponent_from(&self) -> usize {
         self.mesh.own_elements()
     }
+
+    /// Whether the two have one mesh connectivity: they may be in one batch.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        self.mesh.elements == other.mesh.elements && self.mesh.contact_nodes == other.mesh.contact_nodes
+    }
 }
 
 /// Why a trial displacement could not be evaluated; the solver answers by backtracking.
@@ -319,7 +324,7 @@ pub trait Compute: Send {
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError>;
     /// Puts another case of the batch's connectivity, in its virgin state, in the place of one that
     /// has ended; `false` where the backend has no place for it, and leaves things as they were.
-    /// The new case goes as in a batch that it was in from the beginning, to the last bit.
+    /// The new case gets the bits that it would get in a batch that had it from the beginning.
     fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
         let _ = (case, model);
         Ok(false)

@@ -159,16 +159,7 @@ mod device {
     }
 
     pub(super) fn opens(device: DeviceChoice) -> Result<bool, ComputeError> {
-        match open(device) {
-            Ok(Some(_)) => Ok(true),
-            Ok(None) if device == DeviceChoice::Gpu => Err(GpuError::NoAdapter.into()),
-            Ok(None) => Ok(false),
-            Err(error) if device == DeviceChoice::Gpu => Err(error.into()),
-            Err(error) => {
-                log::info!("the GPU could not be used ({error}); the CPU was taken instead");
-                Ok(false)
-            }
-        }
+        Devices::open(device).map(|devices| devices.is_there())
     }
 
     /// A choice of device, opened once for all the backends that are made on it: they share its

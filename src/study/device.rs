@@ -24,7 +24,8 @@ use crate::output::Summary;
 use crate::simulation::follow::seats;
 use crate::simulation::problem::Problem;
 
-/// Cases from which on there are two halves: fewer take a device no less time than half as many.
+/// From this number of cases on a batch is two halves. A device takes about as long for fewer cases
+/// as for half of them.
 const HALVED_FROM: usize = 8;
 
 /// The backends that share so many cases.
@@ -66,7 +67,7 @@ impl Waiting {
         }
     }
 
-    /// A case that has begun has no place: it is the next one.
+    /// Puts a case that has begun back, in front of the others.
     fn put_back(&self, case: usize, problem: Problem) {
         self.problems().insert(case, problem);
         self.left().push_front(case);

@@ -139,8 +139,8 @@ pub fn adapters() -> Vec<Adapter> {
     enumerate(&instance()).iter().map(Adapter::of).collect()
 }
 
-/// Bytes of the largest heap of memory that an adapter calls its own; `None` where its interface is
-/// another than Vulkan, or has none.
+/// Bytes of an adapter's largest heap of device-local memory; `None` where its interface is not
+/// Vulkan, or there is no such heap.
 #[cfg(any(target_os = "linux", target_os = "windows"))]
 pub(super) fn own_memory(adapter: &wgpu::Adapter) -> Option<u64> {
     const DEVICE_LOCAL: u32 = 1;
@@ -155,7 +155,7 @@ pub(super) fn own_memory(adapter: &wgpu::Adapter) -> Option<u64> {
     heaps.filter(|heap| heap.flags.as_raw() & DEVICE_LOCAL != 0).map(|heap| heap.size).max()
 }
 
-/// As on Vulkan, where there is none.
+/// There is no Vulkan to ask here.
 #[cfg(not(any(target_os = "linux", target_os = "windows")))]
 pub(super) fn own_memory(_: &wgpu::Adapter) -> Option<u64> {
     None

@@ -85,7 +85,7 @@ impl<R: DeviceReal> Gpu<R> {
             return Ok(Self { models, committed, fresh, current, largest, batch: None, name });
         };
         for (case, model) in models.iter().enumerate() {
-            if model.mesh.elements != first.mesh.elements || model.mesh.contact_nodes != first.mesh.contact_nodes {
+            if !model.is_alike(first) {
                 return Err(ComputeError::Connectivity { case });
             }
         }

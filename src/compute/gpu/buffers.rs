@@ -316,7 +316,7 @@ impl GpuContext {
         let slice = staging.mapped.slice(..bytes + TICKET_BYTES);
         let (report, outcome) = std::sync::mpsc::channel();
         slice.map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody hears it who has given up.
+            // Whoever has given up does not listen any more.
             let _ = report.send(result.is_ok());
         });
         let waited = self.wait(&what, submission);

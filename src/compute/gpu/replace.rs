@@ -10,8 +10,7 @@ use crate::compute::{CaseModel, ComputeError};
 impl<R: DeviceReal> Gpu<R> {
     /// What [`crate::compute::Compute::replace`] asks for.
     pub(super) fn take_in(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
-        let before = &self.models[case].mesh;
-        if model.mesh.elements != before.elements || model.mesh.contact_nodes != before.contact_nodes {
+        if !model.is_alike(&self.models[case]) {
             return Err(ComputeError::Connectivity { case });
         }
         let before = std::mem::replace(&mut self.models[case], model);

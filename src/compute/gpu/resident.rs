@@ -343,16 +343,30 @@ fn send_geometry<R: DeviceReal>(
     let coordinates = context.zeros("reference positions", meshes.len() * COORDINATES * sizes.elements)?;
     let volume = context.zeros("reference volumes", meshes.len() * points)?;
     for (index, mesh) in meshes.iter().enumerate() {
-        let (positions, volumes) = flatten_geometry::<R>(mesh)?;
-        context.upload_at(&coordinates, index * COORDINATES * sizes.elements, &positions)?;
-        context.upload_at(&volume, index * points, &volumes)?;
+        write_geometry(context, sizes, (&coordinates, &volume), (index, mesh))?;
     }
     Ok((coordinates, volume))
 }
 
+/// Writes those of one mesh, the one of number `index`.
+///
+/// # Errors
+/// [`ComputeError::InvertedMesh`], and nothing written; the device's fault.
+pub fn write_geometry<R: DeviceReal>(
+    context: &GpuContext,
+    sizes: Sizes,
+    (coordinates, volume): (&StorageBuffer<R>, &StorageBuffer<R>),
+    (index, mesh): (usize, &Mesh),
+) -> Result<(), ComputeError> {
+    let (positions, volumes) = flatten_geometry::<R>(mesh)?;
+    context.upload_at(coordinates, index * COORDINATES * sizes.elements, &positions)?;
+    context.upload_at(volume, index * sizes.points(), &volumes)?;
+    Ok(())
+}
+
 /// Positions of the nodes relative to the element's first one `[3 a + i][element]`, which keep
 /// their digits far from the origin, and volumes `[point]` of a mesh.
-pub fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
+fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
     let elements = mesh.elements.len();
     let mut coordinates = vec![R::ZERO; COORDINATES * elements];
     let mut volume = vec![R::ZERO; QUADRATURE_POINTS * elements];

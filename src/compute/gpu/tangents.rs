@@ -8,7 +8,7 @@ use super::context::GpuContext;
 use super::error::GpuError;
 use super::pipelines::{Bound, Recorder};
 use super::resident::{
-    COORDINATES, Connectivity, MATERIAL_ROOM, Resident, STATE, Sizes, flatten_geometry, replace_materials, send_materials,
+    COORDINATES, Connectivity, MATERIAL_ROOM, Resident, STATE, Sizes, replace_materials, send_materials, write_geometry,
 };
 use super::scratch::{MODULI, Scratch};
 use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_MODULI, Kernel, NARROW};
@@ -245,7 +245,7 @@ impl<R: DeviceReal> Tangents<R> {
     }
 
     /// After [`Resident::replace`] with these `models`: sends what there is in single precision of
-    /// the new case, whose mesh has the number `geometry`.
+    /// the new case; `of_mesh` is its mesh with the number that it has.
     ///
     /// # Errors
     /// [`ComputeError::InvertedMesh`]; the device's fault.
@@ -255,13 +255,11 @@ impl<R: DeviceReal> Tangents<R> {
         sizes: Sizes,
         group: usize,
         models: &[CaseModel],
-        (geometry, mesh): (usize, &Mesh),
+        of_mesh: (usize, &Mesh),
     ) -> Result<(), ComputeError> {
         let Self::Single(single) = self else { return Ok(()) };
         let narrowed = &single.groups[group];
-        let (positions, volumes) = flatten_geometry::<f32>(mesh)?;
-        context.upload_at(&narrowed.coordinates, geometry * COORDINATES * sizes.elements, &positions)?;
-        context.upload_at(&narrowed.volume, geometry * sizes.points(), &volumes)?;
+        write_geometry(context, sizes, (&narrowed.coordinates, &narrowed.volume), of_mesh)?;
         // The tables fit: those in the residual's precision did, and are as long.
         replace_materials(context, sizes, models, (&narrowed.parameters, &narrowed.table)).map(drop)?;
         Ok(())

@@ -89,7 +89,7 @@ impl<R: DeviceReal> Kept<R> {
         })
     }
 
-    /// After [`Resident::replace`]: what there is here of the group's case `index` as in its virgin
+    /// After [`Resident::replace`]: puts the arrays of the group's case `index` in their virgin
     /// state, on `mesh`, which has the number `geometry`.
     ///
     /// # Errors
