@@ -36,7 +36,7 @@ pub struct RunArgs {
     /// Replace earlier results in DIR, of whatever case and however complete.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
-    /// Seconds between checkpoints, for tests.
+    /// Seconds between checkpoints, for tests; 0 is after every step.
     #[arg(long, value_name = "SECONDS", hide = true, value_parser = clap::value_parser!(u16))]
     pub checkpoint_every: Option<u16>,
     /// Device, precision, threads.

@@ -108,6 +108,8 @@ pub struct ResultWriter {
     /// Where the run began, as `setting` may not say any more.
     began_on: Description,
     checkpoint_interval: Duration,
+    /// [`CHECKPOINT_SHARE`], or 0 for no bound.
+    checkpoint_share: u32,
     next_checkpoint: Instant,
     /// The last checkpoint could not be written, and that has been told.
     checkpoint_failed: bool,
@@ -175,6 +177,7 @@ impl ResultWriter {
             path: case.path.clone(),
             case: case.to_toml(),
             checkpoint_interval: CHECKPOINT_INTERVAL,
+            checkpoint_share: CHECKPOINT_SHARE,
             next_checkpoint: Instant::now() + CHECKPOINT_INTERVAL,
             checkpoint_failed: false,
             failed: false,
@@ -195,9 +198,10 @@ impl ResultWriter {
         self
     }
 
-    /// Checkpoints every so often instead of every five seconds. Results do not depend on it.
+    /// Checkpoints every so often instead of every five seconds, whatever share of the run writing
+    /// them takes; zero is after every step. Results do not depend on it.
     pub fn with_checkpoints_every(mut self, interval: Duration) -> Self {
-        (self.checkpoint_interval, self.next_checkpoint) = (interval, Instant::now() + interval);
+        (self.checkpoint_interval, self.checkpoint_share, self.next_checkpoint) = (interval, 0, Instant::now() + interval);
         self
     }
 
@@ -475,7 +479,7 @@ impl Observer for ResultWriter {
         }
         self.checkpoint_failed = written.is_err();
         let took = begun.elapsed();
-        self.next_checkpoint = begun + self.checkpoint_interval.max(CHECKPOINT_SHARE * took);
+        self.next_checkpoint = begun + self.checkpoint_interval.max(self.checkpoint_share * took);
         self.ledger.outside.output += took.as_secs_f64();
     }
 }

@@ -56,7 +56,8 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// What to do with an earlier result there.
     pub earlier: Earlier,
-    /// Seconds between checkpoints instead of five. Results do not depend on it.
+    /// Time between checkpoints instead of five seconds; zero is after every step. Results do not
+    /// depend on it.
     pub checkpoint_every: Option<Duration>,
     /// Ends the run from elsewhere.
     pub canceller: Canceller,
