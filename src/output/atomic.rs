@@ -11,12 +11,19 @@ use std::path::Path;
 /// not take the name back. Folders above it are made. On an error the hidden file is removed and
 /// what stood under the name before stays.
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
+    let folder = folder_of(path);
+    make_folder(folder).map_err(OutputError::writing(folder))?;
+    replace_atomically(path, fill)
+}
+
+/// The same in a folder that is there: none is made, so that one which was removed while a run goes
+/// on does not come back.
+pub fn replace_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
     let name = path.file_name().ok_or_else(|| OutputError::Write {
         path: path.to_path_buf(),
         source: io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"),
     })?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    make_folder(folder).map_err(OutputError::writing(folder))?;
+    let folder = folder_of(path);
     // A name that nobody can have laid a link under, and a file that was not there.
     let number = RandomState::new().build_hasher().finish();
     let draft = folder.join(format!(".{}.{number}.tmp", name.to_string_lossy()));
@@ -40,6 +47,10 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Re
 pub fn draft_of(name: &str) -> Option<&str> {
     let (name, number) = name.strip_prefix('.')?.strip_suffix(".tmp")?.rsplit_once('.')?;
     number.bytes().all(|byte| byte.is_ascii_digit()).then_some(name)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Makes a folder and those above it, and brings their names to the disk.
@@ -71,6 +82,14 @@ mod tests {
             fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
         names.sort();
         names
+    }
+
+    #[test]
+    fn a_folder_that_is_gone_does_not_come_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let gone = folder.path().join("gone");
+        assert!(replace_atomically(&gone.join("file.txt"), |out| out.write_all(b"x")).is_err());
+        assert!(!gone.exists());
     }
 
     #[test]

@@ -10,8 +10,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::atomic::replace_atomically;
 use super::ledger::Ledger;
-use super::{OutputDirectory, OutputError, write_atomically};
+use super::{OutputDirectory, OutputError};
 use crate::bounded;
 use crate::case::{Case, Fields};
 use crate::compute::Description;
@@ -64,7 +65,7 @@ impl Checkpoint {
     /// # Errors
     /// [`OutputError::Write`]; an earlier checkpoint is then still there.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        write_atomically(path, |out| {
+        replace_atomically(path, |out| {
             let mut out = Checked { out, sum: crc32fast::Hasher::new(), failed: None };
             out.write_all(head().as_bytes())?;
             if let Err(error) = postcard::to_io(self, &mut out) {

@@ -467,7 +467,8 @@ impl Observer for ResultWriter {
     /// still there.
     fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
         let begun = Instant::now();
-        if !last && begun < self.next_checkpoint {
+        // Of a directory that was removed the next row tells, or the end.
+        if !last && begun < self.next_checkpoint || self.history.check_there().is_err() {
             return;
         }
         let taken = take().map_err(|error| error.to_string());
