@@ -1,6 +1,7 @@
-// The finest level's matrix: a thread a block. It is the tangent's upper triangle, or that
-// transposed; where a contact point slides, the rows of its node are their contact conditions.
-// Rows and columns of fixed unknowns are in it too: masks leave them out.
+// The finest level's matrix: a thread two blocks of a row, whose halves share words. It is the
+// tangent's upper triangle, or that transposed; where a contact point slides, the rows of its node
+// are their contact conditions. Rows and columns of fixed unknowns are in it too: masks leave them
+// out.
 
 @group(0) @binding(1) var<storage, read> source: array<u32>;        // [k][node]: 2 block, + 1 if transposed
 @group(0) @binding(2) var<storage, read> diagonal: array<u32>;      // [node]: k of its diagonal block
@@ -8,25 +9,38 @@
 @group(0) @binding(4) var<storage, read> blocks: array<real>;       // [slot][3 i + j][block]
 // [slot][slides, force rows, displacement rows][point], bits of f32
 @group(0) @binding(5) var<storage, read> rows: array<u32>;
-@group(0) @binding(6) var<storage, read_write> matrix: array<u32>;  // [slot][3 i + j][k][node], bits of f32
+@group(0) @binding(6) var<storage, read_write> matrix: array<u32>;  // see halves.wgsl
 @group(0) @binding(7) var<uniform> counts: vec4<u32>;               // upper blocks, contact points
 
 const NOWHERE: u32 = 0xffffffffu;
 
 @compute @workgroup_size(64)
 fn assemble(@builtin(global_invocation_id) id: vec3<u32>) {
-    let count = level.width * level.nodes;
-    if id.x >= count {
+    let words = words();
+    if id.x >= words {
         return;
     }
     let slot = id.y;
-    let out = 9u * slot * count + id.x;
-    let origin = source[id.x];
-    if origin == NOWHERE {
-        for (var m = 0u; m < 9u; m++) {
-            matrix[out + m * count] = 0u;
+    let node = id.x % level.nodes;
+    let block = 2u * id.x - node;
+    let first = block_of(slot, node, block);
+    let second = block_of(slot, node, block + level.nodes);
+    let out = 18u * slot * words + id.x;
+    for (var j = 0u; j < 3u; j++) {
+        for (var i = 0u; i < 3u; i++) {
+            let a = single_bits(first[j][i]);
+            let b = single_bits(second[j][i]);
+            matrix[out + (3u * i + j) * words] = upper_halves(a, b);
+            matrix[out + (9u + 3u * i + j) * words] = lower_halves(a, b);
         }
-        return;
+    }
+}
+
+// Block k of a node's row, which is number k nodes + node.
+fn block_of(slot: u32, node: u32, block: u32) -> mat3x3<real> {
+    let origin = source[block];
+    if origin == NOWHERE {
+        return mat3x3<real>();
     }
     let first = 9u * slot * counts.x + origin / 2u;
     // columns of the block
@@ -38,22 +52,17 @@ fn assemble(@builtin(global_invocation_id) id: vec3<u32>) {
     if origin % 2u == 1u {
         a = transpose(a);
     }
-    let node = id.x % level.nodes;
     let point = point_of[node];
     if point != NOWHERE {
         let at = 19u * slot * counts.y + point;
         if real_of_single(rows[at]) > 0.0 {
             a = transpose(row_block(at, 1u)) * a;
-            if id.x / level.nodes == diagonal[node] {
+            if block / level.nodes == diagonal[node] {
                 a += transpose(row_block(at, 10u));
             }
         }
     }
-    for (var j = 0u; j < 3u; j++) {
-        for (var i = 0u; i < 3u; i++) {
-            matrix[out + (3u * i + j) * count] = single_bits(a[j][i]);
-        }
-    }
+    return a;
 }
 
 // Three rows of a contact condition, as columns.

@@ -1,6 +1,6 @@
 // The first step of the polynomial from x = 0.
 
-@group(0) @binding(1) var<storage, read> inverse: array<real>;      // [slot][3 i + j][node]
+@group(0) @binding(1) var<storage, read> inverse: array<real>;      // see diagonal.wgsl
 @group(0) @binding(2) var<storage, read> b: array<real>;            // [slot][component][node]
 @group(0) @binding(3) var<storage, read_write> last_step: array<real>;   // [slot][component][node]
 @group(0) @binding(4) var<storage, read_write> next: array<real>;   // [slot][component][node]
@@ -15,7 +15,7 @@ fn smooth_start(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         return;
     }
     let component = local / NODES_IN_GROUP;
-    let first = (9u * slot + 3u * component) * level.nodes + node;
+    let first = (18u * slot + 3u * component) * level.nodes + node;
     let r = 3u * slot * level.nodes + node;
     let change = recurrence.y * (inverse[first] * b[r]
         + inverse[first + level.nodes] * b[r + level.nodes]

@@ -1,9 +1,9 @@
 // The coarsest level: the whole polynomial from x = 0, one workgroup a slot.
 
 @group(0) @binding(1) var<storage, read> column: array<u32>;        // [k][node]
-@group(0) @binding(2) var<storage, read> matrix: array<real>;       // [slot][3 i + j][k][node]
+@group(0) @binding(2) var<storage, read> matrix: array<u32>;        // see halves.wgsl
 @group(0) @binding(3) var<storage, read_write> x: array<real>;      // [slot][component][node]
-@group(0) @binding(4) var<storage, read> inverse: array<real>;      // [slot][3 i + j][node]
+@group(0) @binding(4) var<storage, read> inverse: array<real>;      // see diagonal.wgsl
 @group(0) @binding(5) var<storage, read> b: array<real>;            // [slot][component][node]
 @group(0) @binding(6) var<storage, read_write> last_step: array<real>;   // [slot][component][node]
 @group(0) @binding(7) var<storage, read> recurrence: array<vec2<real>>;     // shares of the last step and of D^-1 r
@@ -23,7 +23,7 @@ fn solve_coarsest(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
             if k > 0u {
                 r -= block_row_times(slot, node);
             }
-            let at = 9u * slot * level.nodes + node;
+            let at = 18u * slot * level.nodes + node;
             for (var i = 0u; i < 3u; i++) {
                 let of_row = at + 3u * i * level.nodes;
                 let of_inverse =
@@ -43,19 +43,32 @@ fn solve_coarsest(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invoca
     }
 }
 
+// As in rounded_row_times.wgsl, three rows at once.
 fn block_row_times(slot: u32, node: u32) -> vec3<real> {
-    let blocks = level.width * level.nodes;
-    var at = 9u * slot * blocks + node;
+    let words = words();
+    let lost = (18u * slot + 9u) * level.nodes + node;
+    let own = of_node(slot, node);
+    var at = 18u * slot * words + node;
     var sum = vec3<real>();
-    for (var k = 0u; k < level.width; k++) {
-        let j = 3u * slot * level.nodes + column[k * level.nodes + node];
-        let v = vec3<real>(x[j], x[j + level.nodes], x[j + 2u * level.nodes]);
-        sum += vec3<real>(
-            dot(vec3<real>(matrix[at], matrix[at + blocks], matrix[at + 2u * blocks]), v),
-            dot(vec3<real>(matrix[at + 3u * blocks], matrix[at + 4u * blocks], matrix[at + 5u * blocks]), v),
-            dot(vec3<real>(matrix[at + 6u * blocks], matrix[at + 7u * blocks], matrix[at + 8u * blocks]), v),
-        );
+    for (var i = 0u; i < 3u; i++) {
+        let row = lost + 3u * i * level.nodes;
+        sum[i] = dot(vec3<real>(inverse[row], inverse[row + level.nodes], inverse[row + 2u * level.nodes]), own);
+    }
+    for (var k = 0u; k < level.width; k += 2u) {
+        let first = of_node(slot, column[k * level.nodes + node]);
+        let second = of_node(slot, column[(k + 1u) * level.nodes + node]);
+        for (var i = 0u; i < 3u; i++) {
+            let row = at + 3u * i * words;
+            let upper = vec3<u32>(matrix[row], matrix[row + words], matrix[row + 2u * words]);
+            sum[i] += dot(vec3<real>(rounded(upper.x << 16u), rounded(upper.y << 16u), rounded(upper.z << 16u)), first)
+                + dot(vec3<real>(rounded(upper.x), rounded(upper.y), rounded(upper.z)), second);
+        }
         at += level.nodes;
     }
     return sum;
+}
+
+fn of_node(slot: u32, node: u32) -> vec3<real> {
+    let j = 3u * slot * level.nodes + node;
+    return vec3<real>(x[j], x[j + level.nodes], x[j + 2u * level.nodes]);
 }

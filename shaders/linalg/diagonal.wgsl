@@ -1,11 +1,13 @@
-// Inverses of a level's diagonal blocks, a thread a node. Components that are fixed, or whose row
+// Inverses of a level's diagonal blocks, and what rounding takes from each row (see
+// rounded_row_times.wgsl); a thread a node. Components that are fixed, or whose row
 // and column vanish, have none (it is 0: they receive no correction); a block that is singular to
 // rounding is shifted first.
 
-@group(0) @binding(1) var<storage, read> matrix: array<real>;           // [slot][3 i + j][k][node]
+@group(0) @binding(1) var<storage, read> matrix: array<u32>;            // see halves.wgsl
 @group(0) @binding(2) var<storage, read> diagonal: array<u32>;          // [node]: k of its diagonal block
 @group(0) @binding(3) var<storage, read> is_fixed: array<u32>;          // [slot][node]: a bit a component
-@group(0) @binding(4) var<storage, read_write> inverse: array<real>;    // [slot][3 i + j][node]
+@group(0) @binding(4) var<storage, read_write> inverse: array<real>;    // [slot][inverse, lost][3 i + j][node]
+@group(0) @binding(5) var<storage, read> column: array<u32>;            // [k][node]
 
 @compute @workgroup_size(64)
 fn invert_diagonal(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -14,20 +16,23 @@ fn invert_diagonal(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let node = id.x;
     let slot = id.y;
-    let count = level.width * level.nodes;
-    let at = 9u * slot * count + diagonal[node] * level.nodes + node;
+    let words = words();
+    let k = diagonal[node];
+    let at = 18u * slot * words + k / 2u * level.nodes + node;
+    let shift = 16u * (1u - k % 2u);
     let bits = is_fixed[slot * level.nodes + node];
     var a = mat3x3<real>();
     var scale: real = 0.0;
     for (var j = 0u; j < 3u; j++) {
         for (var i = 0u; i < 3u; i++) {
             if ((bits >> i) | (bits >> j)) % 2u == 0u {
-                a[j][i] = matrix[at + (3u * i + j) * count];
+                let m = at + (3u * i + j) * words;
+                a[j][i] = whole(matrix[m] << shift, matrix[m + 9u * words] << shift);
                 scale = max(scale, abs(a[j][i]));
             }
         }
     }
-    let out = 9u * slot * level.nodes + node;
+    let out = 18u * slot * level.nodes + node;
     var b = mat3x3<real>();
     if scale > 0.0 && is_finite(scale) {
         var empty = vec3<bool>();
@@ -77,4 +82,35 @@ fn invert_diagonal(@builtin(global_invocation_id) id: vec3<u32>) {
             inverse[out + (3u * i + j) * level.nodes] = b[j][i];
         }
     }
+    let lost = lost_of_row(slot, node);
+    for (var j = 0u; j < 3u; j++) {
+        for (var i = 0u; i < 3u; i++) {
+            inverse[out + (9u + 3u * i + j) * level.nodes] = lost[j][i];
+        }
+    }
+}
+
+// The sum of what rounding takes from the blocks of a row. Fixed columns have no part in products.
+fn lost_of_row(slot: u32, node: u32) -> mat3x3<real> {
+    let words = words();
+    var at = 18u * slot * words + node;
+    var sum = mat3x3<real>();
+    for (var k = 0u; k < level.width; k += 2u) {
+        let first = is_fixed[slot * level.nodes + column[k * level.nodes + node]];
+        let second = is_fixed[slot * level.nodes + column[(k + 1u) * level.nodes + node]];
+        for (var j = 0u; j < 3u; j++) {
+            for (var i = 0u; i < 3u; i++) {
+                let upper = matrix[at + (3u * i + j) * words];
+                let lower = matrix[at + (9u + 3u * i + j) * words];
+                if (first >> j) % 2u == 0u {
+                    sum[j][i] += whole(upper << 16u, lower << 16u) - rounded(upper << 16u);
+                }
+                if (second >> j) % 2u == 0u {
+                    sum[j][i] += whole(upper, lower) - rounded(upper);
+                }
+            }
+        }
+        at += level.nodes;
+    }
+    return sum;
 }

@@ -1,12 +1,17 @@
 // Row `component` of a node's block row times x.
 fn row_times(slot: u32, component: u32, node: u32) -> real {
-    let blocks = level.width * level.nodes;
+    let words = words();
     let of_slot = 3u * slot * level.nodes;
-    var at = 3u * (3u * slot + component) * blocks + node;
+    var at = (18u * slot + 3u * component) * words + node;
     var sum: real = 0.0;
-    for (var k = 0u; k < level.width; k++) {
-        let j = of_slot + column[k * level.nodes + node];
-        sum += matrix[at] * x[j] + matrix[at + blocks] * x[j + level.nodes] + matrix[at + 2u * blocks] * x[j + 2u * level.nodes];
+    for (var k = 0u; k < level.width; k += 2u) {
+        let first = of_slot + column[k * level.nodes + node];
+        let second = of_slot + column[(k + 1u) * level.nodes + node];
+        for (var j = 0u; j < 3u; j++) {
+            let upper = matrix[at + j * words];
+            let lower = matrix[at + (9u + j) * words];
+            sum += whole(upper << 16u, lower << 16u) * x[first + j * level.nodes] + whole(upper, lower) * x[second + j * level.nodes];
+        }
         at += level.nodes;
     }
     return sum;

@@ -2,8 +2,8 @@
 // and chebyshev.wgsl, without a dispatch for each.
 
 @group(0) @binding(1) var<storage, read> column: array<u32>;        // [k][node]
-@group(0) @binding(2) var<storage, read> matrix: array<real>;       // [slot][3 i + j][k][node]
-@group(0) @binding(3) var<storage, read> inverse: array<real>;      // [slot][3 i + j][node]
+@group(0) @binding(2) var<storage, read> matrix: array<u32>;        // see halves.wgsl
+@group(0) @binding(3) var<storage, read> inverse: array<real>;      // see diagonal.wgsl
 @group(0) @binding(4) var<storage, read> b: array<real>;            // [slot][component][node]
 @group(0) @binding(5) var<storage, read_write> x: array<real>;      // [slot][component][node]
 @group(0) @binding(6) var<storage, read_write> last_step: array<real>;      // [slot][component][node]
@@ -19,7 +19,7 @@ fn leave(slot: u32, local: u32, from_zero: bool) {
     for (var i = local; i < 3u * level.nodes; i += SMALL_THREADS) {
         var r = b[first + i];
         if !from_zero {
-            r -= row_times(slot, i / level.nodes, i % level.nodes);
+            r -= rounded_row_times(slot, i / level.nodes, i % level.nodes);
         }
         left[first + i] = r;
     }
@@ -33,7 +33,7 @@ fn smooth_once(slot: u32, local: u32, step: u32, from_zero: bool) {
     let shares = recurrence[step];
     for (var i = local; i < 3u * level.nodes; i += SMALL_THREADS) {
         let node = i % level.nodes;
-        let row = 9u * slot * level.nodes + 3u * (i - node) + node;
+        let row = 18u * slot * level.nodes + 3u * (i - node) + node;
         var change = shares.y * (inverse[row] * left[first + node]
             + inverse[row + level.nodes] * left[first + level.nodes + node]
             + inverse[row + 2u * level.nodes] * left[first + 2u * level.nodes + node]);

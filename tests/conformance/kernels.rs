@@ -104,7 +104,8 @@ fn every_level_has_the_cpus_matrix_and_its_v_cycle() {
                 let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
                 solve(&mut gpu, &[(0, &system)], 0.1);
                 let solver = gpu.solver().unwrap();
-                let mut hierarchy = Hierarchy::new(&system.matrix.pattern, &mesh.hierarchy).unwrap();
+                let hierarchy = Hierarchy::new(&system.matrix.pattern, &mesh.hierarchy).unwrap();
+                let mut hierarchy = hierarchy.with_rounded_smoothers();
                 hierarchy.update(&system.matrix, &system.fixed).unwrap();
                 let nodes = mesh.nodes.len();
                 let mut rng = crate::batch::random(7 + case as u64);

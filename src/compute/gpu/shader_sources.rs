@@ -132,6 +132,7 @@ pub static KERNELS: &[&Kernel] = &[
     &linear::PRESCRIBE,
     &linear::SMOOTH_START,
     &linear::SMOOTH_STEP,
+    &linear::CYCLE_RESIDUAL,
     &linear::SOLVE_COARSEST,
     &linear::SMALL_DOWN,
     &linear::SMALL_UP,

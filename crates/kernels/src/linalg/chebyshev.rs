@@ -29,6 +29,8 @@ pub(super) struct Smoother {
     degree: usize,
     /// Lower end of the eigenvalues that are damped.
     low: f32,
+    /// The matrix that it smooths with where that is rounded.
+    rounded: Option<BlockMatrix<f32>>,
     /// Inverses of the diagonal blocks.
     inverse: Vec<Inverse>,
     /// Last step of the recurrence, and the next iterate.
@@ -43,6 +45,7 @@ impl Smoother {
             matrix: BlockMatrix::zeros(pattern),
             degree: degree.max(1),
             low,
+            rounded: None,
             inverse: vec![[[0.0; 4]; 3]; rows],
             step: vec![[0.0; 4]; rows],
             next: vec![[0.0; 4]; rows],
@@ -54,8 +57,16 @@ impl Smoother {
         &self.inverse
     }
 
+    /// Smooths with the rounded matrix from now on: see [`rounded`].
+    pub fn round(&mut self) {
+        self.rounded = Some(self.matrix.clone());
+    }
+
     /// After rows of the matrix changed.
     pub fn update(&mut self, changed: &[bool]) {
+        if let Some(to) = &mut self.rounded {
+            round_rows(&self.matrix, to);
+        }
         let (blocks, diagonal) = (&self.matrix.blocks, &self.matrix.pattern.diagonal);
         each(&mut self.inverse, |i, inverse| {
             if changed[i] {
@@ -76,14 +87,14 @@ impl Smoother {
 
     /// r = b - A x.
     pub fn residual(&self, b: &[Node], x: &[Node], r: &mut [Node]) {
-        let matrix = &self.matrix;
+        let matrix = self.rounded.as_ref().unwrap_or(&self.matrix);
         each(r, |i, r| *r = (f32x4::new(b[i]) - row_times(matrix, i, x)).to_array());
     }
 
     /// The recurrence of Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003),
     /// Algorithm 12.1, for D^-1 A x = D^-1 b.
     fn smooth_with(&mut self, b: &[Node], x: &mut Vec<Node>, from_zero: bool) {
-        let (matrix, inverse) = (&self.matrix, &self.inverse);
+        let (matrix, inverse) = (self.rounded.as_ref().unwrap_or(&self.matrix), &self.inverse);
         for (k, [keep, add]) in shares(HIGH, self.low).take(self.degree).enumerate() {
             let (keep4, add4) = (f32x4::splat(keep), f32x4::splat(add));
             if k > 0 || !from_zero {
@@ -105,6 +116,30 @@ impl Smoother {
                 });
             }
         }
+    }
+}
+
+/// A number rounded to the upper half of its bits (bf16: 8 digits of the mantissa), away from 0 in
+/// the middle.
+fn rounded(x: f32) -> f32 {
+    f32::from_bits(x.to_bits().wrapping_add(0x8000) & 0xffff_0000)
+}
+
+/// Rounds the blocks of a matrix, and adds what that takes from a row to its diagonal block: a
+/// constant vector has the same product, and a smooth one nearly. Where material hardly changes its
+/// volume, half as many Krylov iterations again were needed without.
+fn round_rows(matrix: &BlockMatrix<f32>, to: &mut BlockMatrix<f32>) {
+    for i in 0..matrix.rows() {
+        let mut lost = [0.0; 9];
+        for k in matrix.pattern.row(i) {
+            let (whole, short) = (&matrix.blocks[k], &mut to.blocks[k]);
+            *short = whole.map(rounded);
+            for m in 0..9 {
+                lost[m] += whole[m] - short[m];
+            }
+        }
+        let diagonal = &mut to.blocks[matrix.pattern.diagonal[i] as usize];
+        diagonal.iter_mut().zip(lost).for_each(|(a, lost)| *a += lost);
     }
 }
 

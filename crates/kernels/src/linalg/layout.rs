@@ -38,7 +38,7 @@ pub struct Rows {
 pub struct LevelLayout {
     /// Nodes.
     pub nodes: usize,
-    /// Blocks in a row; rows with fewer end in zeros.
+    /// Blocks in a row, an even number: two share a word. Rows with fewer end in zeros.
     pub width: usize,
     /// Column node of each block; the row's own where there is none.
     pub column: Vec<u32>,
@@ -99,7 +99,7 @@ impl Layout {
 impl LevelLayout {
     fn new(pattern: &Pattern) -> Self {
         let nodes = pattern.rows();
-        let width = (0..nodes).map(|i| pattern.row(i).len()).max().unwrap_or(0);
+        let width = width(pattern);
         let mut column: Vec<u32> = (0..width).flat_map(|_| 0..nodes as u32).collect();
         let mut source = vec![NOWHERE; width * nodes];
         for i in 0..nodes {
@@ -132,8 +132,7 @@ impl TransferLayout {
                 }
             }
         }
-        let width = (0..coarse_nodes).map(|i| coarse.row(i).len()).max().unwrap_or(0);
-        let mut blocks: Vec<Vec<(u32, f32)>> = vec![Vec::new(); width * coarse_nodes];
+        let mut blocks: Vec<Vec<(u32, f32)>> = vec![Vec::new(); width(coarse) * coarse_nodes];
         for i in 0..coarse_nodes {
             let mut places = transfer.coarse_place[transfer.coarse_start[i] as usize..].iter();
             for (k, w) in r.row(i) {
@@ -156,6 +155,11 @@ impl Lists {
         }
         out
     }
+}
+
+/// Blocks of the longest row, or one more.
+fn width(pattern: &Pattern) -> usize {
+    (0..pattern.rows()).map(|i| pattern.row(i).len()).max().unwrap_or(0).next_multiple_of(2)
 }
 
 fn rows(weights: &Weights) -> Rows {

@@ -71,7 +71,9 @@ impl Linear {
             b: vec![0.0; 3 * nodes],
             x: vec![0.0; 3 * nodes],
         };
-        context.download_at(&level.matrix, 0, &mut out.matrix)?;
+        let mut halves = vec![0; out.matrix.len()];
+        context.download_at(&level.matrix, 0, &mut halves)?;
+        join(&halves, nodes, &mut out.matrix);
         context.download_at(&level.inverse, 0, &mut out.inverse)?;
         context.download_at(&level.b, 0, &mut out.b)?;
         context.download_at(&level.x, 0, &mut out.x)?;
@@ -104,5 +106,18 @@ impl Linear {
         context.download_at(&self.answer, 0, &mut out.answer)?;
         out.combination = small[small.len() - RESTART..][..steps].to_vec();
         Ok(out)
+    }
+}
+
+/// Numbers of halves that lie as `halves.wgsl` says.
+fn join(halves: &[u32], nodes: usize, to: &mut [f32]) {
+    let (upper, lower) = halves.split_at(halves.len() / 2);
+    for ((pair, upper), lower) in to.chunks_exact_mut(2 * nodes).zip(upper.chunks_exact(nodes)).zip(lower.chunks_exact(nodes)) {
+        let (first, second) = pair.split_at_mut(nodes);
+        for (node, (&u, &l)) in upper.iter().zip(lower).enumerate() {
+            let whole = |u: u32, l: u32| f32::from_bits((u & 0xffff_0000).wrapping_add((l.cast_signed() >> 16).cast_unsigned()));
+            first[node] = whole(u << 16, l << 16);
+            second[node] = whole(u, l);
+        }
     }
 }

@@ -9,7 +9,7 @@ use super::super::shader_sources::{Kernel, Precision};
 use super::RESTART;
 use super::parts::Account;
 use super::sources::{
-    GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESIDUAL, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
+    CYCLE_RESIDUAL, GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
     SMOOTH_STEP, SOLVE_COARSEST,
 };
 use crate::linalg::layout::{Layout, LevelLayout, Lists, Rows, TransferLayout};
@@ -128,15 +128,16 @@ pub struct Level {
     pub column: StorageBuffer<u32>,
     /// k of each diagonal block.
     pub diagonal: StorageBuffer<u32>,
-    /// The matrix, `[slot][3 i + j][k][node]`.
-    pub matrix: StorageBuffer<f32>,
+    /// The matrix, in halves of its numbers: see `halves.wgsl`.
+    pub matrix: StorageBuffer<u32>,
     /// Fixed components `[slot][node]`; nothing is fixed but on the finest level.
     pub fixed: StorageBuffer<u32>,
     /// Right-hand side.
     pub b: StorageBuffer<f32>,
     /// Where the cycle leaves its solution.
     pub x: StorageBuffer<f32>,
-    /// Inverses of the diagonal blocks, `[slot][3 i + j][node]`.
+    /// Inverses of the diagonal blocks, and what rounding takes from the rows,
+    /// `[slot][inverse, lost][3 i + j][node]`.
     pub inverse: StorageBuffer<f32>,
     other: StorageBuffer<f32>,
     last_step: StorageBuffer<f32>,
@@ -194,7 +195,7 @@ impl DeviceLists {
 
 /// Numbers that a slot takes on a level: the widest array, and all.
 pub fn slot_numbers(level: &LevelLayout) -> (usize, usize) {
-    (9 * level.blocks(), 9 * level.blocks() + (9 + 1 + 5 * 3) * level.nodes)
+    (9 * level.blocks(), 9 * level.blocks() + (2 * 9 + 1 + 5 * 3) * level.nodes)
 }
 
 /// Numbers of a level's A P.
@@ -255,11 +256,11 @@ impl Level {
             block,
             column: context.array("columns of a level", &layout.column)?,
             diagonal: context.array("diagonals of a level", &layout.diagonal)?,
-            matrix: zeros("matrices of a level", 9 * layout.blocks())?,
+            matrix: context.zeros("matrices of a level", slots * 9 * layout.blocks())?,
             fixed: context.zeros("fixed unknowns", slots * layout.nodes)?,
             b: zeros("right-hand sides of a level", vector)?,
             x: zeros("solutions of a level", vector)?,
-            inverse: zeros("diagonal blocks of a level", 9 * layout.nodes)?,
+            inverse: zeros("diagonal blocks of a level", 2 * 9 * layout.nodes)?,
             other: zeros("iterates of a level", vector)?,
             last_step: zeros("steps of a level", vector)?,
             residual: zeros("residuals of a level", vector)?,
@@ -280,9 +281,16 @@ impl Level {
         Account { numbers: 9 * blocks + (3 * 3 + 1) * nodes, shared: blocks, operations: 18 * blocks }
     }
 
-    /// A step of its smoother: a product, D^-1, right-hand side, last step and iterate.
-    pub fn step_account(&self) -> Account {
+    /// The same with the rounded matrix, whose numbers take half the bytes, and what it lacks.
+    fn rounded_account(&self) -> Account {
         let product = self.product_account();
+        let (nodes, blocks) = (self.nodes, self.width * self.nodes);
+        Account { numbers: product.numbers - 9 * blocks / 2 + 9 * nodes, operations: product.operations + 18 * nodes, ..product }
+    }
+
+    /// A step of its smoother: such a product, D^-1, right-hand side, last step and iterate.
+    pub fn step_account(&self) -> Account {
+        let product = self.rounded_account();
         let nodes = self.nodes;
         Account { numbers: product.numbers + (9 + 3 * 3) * nodes, operations: product.operations + 30 * nodes, ..product }
     }
@@ -422,7 +430,7 @@ impl Levels {
     pub fn cycle_account(&self) -> Account {
         let mut all = Account::default();
         for level in &self.levels {
-            let (product, step) = (level.product_account(), level.step_account());
+            let (product, step) = (level.rounded_account(), level.step_account());
             // From zero the first step needs no product; on the way up all do.
             let (products, steps) = match level.transfer {
                 Some(_) => (1, 2 * self.smoothing_steps - 1),
@@ -457,6 +465,7 @@ impl Binder<'_> {
             level.diagonal.binding(),
             level.fixed.binding(),
             level.inverse.binding(),
+            level.column.binding(),
         ];
         Call::new(self.context, &INVERT_DIAGONAL, level.nodes, arguments)
     }
@@ -469,7 +478,7 @@ impl Binder<'_> {
         coarse.extend([transfer.product.binding(), next.matrix.binding()]);
         Ok([
             Call::new(self.context, &GALERKIN_PRODUCT, transfer.products, product)?,
-            Call::new(self.context, &GALERKIN_COARSE, transfer.coarse_blocks, coarse)?,
+            Call::new(self.context, &GALERKIN_COARSE, transfer.coarse_blocks / 2, coarse)?,
         ])
     }
 
@@ -506,8 +515,14 @@ impl Binder<'_> {
             std::mem::swap(&mut x, &mut free);
         }
         let mut residual = level.product(x);
-        residual.extend([level.b.binding(), level.fixed.binding(), level.residual.binding(), self.records.binding()]);
-        out.push(Call::new(self.context, &RESIDUAL, level.threads(), residual)?);
+        residual.extend([
+            level.inverse.binding(),
+            level.b.binding(),
+            level.fixed.binding(),
+            level.residual.binding(),
+            self.records.binding(),
+        ]);
+        out.push(Call::new(self.context, &CYCLE_RESIDUAL, level.threads(), residual)?);
         out.push(self.restrict(level, transfer, next)?);
         Ok(out)
     }

@@ -225,7 +225,7 @@ impl Linear {
             level.matrix.binding(),
             counts.binding(),
         ];
-        let assemble = Call::of(context.bind(&assemble, arguments)?, finest.blocks());
+        let assemble = Call::of(context.bind(&assemble, arguments)?, finest.blocks() / 2);
         let call = |kernel, threads, arguments: Vec<wgpu::BindingResource<'_>>| {
             Call::new(context, kernel, threads, [vec![level.block.binding()], arguments].concat())
         };

@@ -5,8 +5,10 @@ use super::super::shader_sources::{Kernel, Source, source};
 
 const LEVEL: Source = source!("linalg/level.wgsl");
 const RECORD: Source = source!("linalg/record.wgsl");
+const HALVES: Source = source!("linalg/halves.wgsl");
 const PRODUCT: Source = source!("linalg/product.wgsl");
 const ROW_TIMES: Source = source!("linalg/row_times.wgsl");
+const ROUNDED_ROW_TIMES: Source = source!("linalg/rounded_row_times.wgsl");
 const GALERKIN: Source = source!("linalg/galerkin.wgsl");
 const TRANSFER: Source = source!("linalg/transfer.wgsl");
 const KRYLOV: Source = source!("linalg/krylov.wgsl");
@@ -17,23 +19,23 @@ const NORM: Source = source!("linalg/norm.wgsl");
 /// The tangent as the finest level's matrix.
 pub static ASSEMBLE: Kernel = Kernel {
     name: "assemble",
-    sources: &[LEVEL, source!("linalg/assemble.wgsl")],
+    sources: &[LEVEL, HALVES, source!("linalg/assemble.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, Uniform],
     workgroup: 64,
 };
 
-/// Inverses of a level's diagonal blocks.
+/// Inverses of a level's diagonal blocks, and what rounding takes from its rows.
 pub static INVERT_DIAGONAL: Kernel = Kernel {
     name: "invert_diagonal",
-    sources: &[LEVEL, source!("linalg/diagonal.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, ReadWrite],
+    sources: &[LEVEL, HALVES, source!("linalg/diagonal.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, ReadWrite, Read],
     workgroup: 64,
 };
 
 /// A P.
 pub static GALERKIN_PRODUCT: Kernel = Kernel {
     name: "galerkin_product",
-    sources: &[LEVEL, GALERKIN, source!("linalg/galerkin_product.wgsl")],
+    sources: &[LEVEL, HALVES, GALERKIN, source!("linalg/galerkin_product.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, Read, Read],
     workgroup: 64,
 };
@@ -41,7 +43,7 @@ pub static GALERKIN_PRODUCT: Kernel = Kernel {
 /// P^T (A P).
 pub static GALERKIN_COARSE: Kernel = Kernel {
     name: "galerkin_coarse",
-    sources: &[LEVEL, GALERKIN, source!("linalg/galerkin_coarse.wgsl")],
+    sources: &[LEVEL, HALVES, GALERKIN, source!("linalg/galerkin_coarse.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
     workgroup: 64,
 };
@@ -65,7 +67,7 @@ pub static SMOOTH_START: Kernel = Kernel {
 /// A step of the smoother.
 pub static SMOOTH_STEP: Kernel = Kernel {
     name: "smooth_step",
-    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, source!("linalg/chebyshev.wgsl")],
+    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROUNDED_ROW_TIMES, source!("linalg/chebyshev.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite, Uniform, Read],
     workgroup: 192,
 };
@@ -73,7 +75,7 @@ pub static SMOOTH_STEP: Kernel = Kernel {
 /// The coarsest level.
 pub static SOLVE_COARSEST: Kernel = Kernel {
     name: "solve_coarsest",
-    sources: &[LEVEL, RECORD, source!("linalg/coarsest.wgsl")],
+    sources: &[LEVEL, RECORD, HALVES, source!("linalg/coarsest.wgsl")],
     bindings: &[Uniform, Read, Read, ReadWrite, Read, Read, ReadWrite, Read, Read],
     workgroup: 256,
 };
@@ -81,7 +83,7 @@ pub static SOLVE_COARSEST: Kernel = Kernel {
 /// A small level on the way down.
 pub static SMALL_DOWN: Kernel = Kernel {
     name: "small_down",
-    sources: &[LEVEL, RECORD, SMALL, ROW_TIMES, source!("linalg/small_down.wgsl")],
+    sources: &[LEVEL, RECORD, HALVES, SMALL, ROUNDED_ROW_TIMES, source!("linalg/small_down.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read],
     workgroup: 256,
 };
@@ -89,7 +91,7 @@ pub static SMALL_DOWN: Kernel = Kernel {
 /// A small level on the way up.
 pub static SMALL_UP: Kernel = Kernel {
     name: "small_up",
-    sources: &[LEVEL, RECORD, SMALL, ROW_TIMES, source!("linalg/small_up.wgsl")],
+    sources: &[LEVEL, RECORD, HALVES, SMALL, ROUNDED_ROW_TIMES, source!("linalg/small_up.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite, ReadWrite, ReadWrite, Read, Read, Read, Read, Read, Read],
     workgroup: 256,
 };
@@ -97,8 +99,16 @@ pub static SMALL_UP: Kernel = Kernel {
 /// b - A x.
 pub static RESIDUAL: Kernel = Kernel {
     name: "residual",
-    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, source!("linalg/residual.wgsl")],
+    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, source!("linalg/residual.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, Read],
+    workgroup: 192,
+};
+
+/// The same of the rounded matrix, within a V-cycle.
+pub static CYCLE_RESIDUAL: Kernel = Kernel {
+    name: "cycle_residual",
+    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROUNDED_ROW_TIMES, source!("linalg/cycle_residual.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite, Read],
     workgroup: 192,
 };
 
@@ -121,7 +131,7 @@ pub static PROLONG: Kernel = Kernel {
 /// A times the preconditioned vector, which is kept.
 pub static KRYLOV_PRODUCT: Kernel = Kernel {
     name: "krylov_product",
-    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, source!("linalg/krylov_product.wgsl")],
+    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, source!("linalg/krylov_product.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 192,
 };
@@ -193,7 +203,7 @@ pub static KRYLOV_COMBINE: Kernel = Kernel {
 /// The plate's force along the solution.
 pub static PLATE_FORCE: Kernel = Kernel {
     name: "plate_force",
-    sources: &[LEVEL, RECORD, PRODUCT, ROW_TIMES, SUMS, source!("linalg/plate_force.wgsl")],
+    sources: &[LEVEL, RECORD, HALVES, PRODUCT, ROW_TIMES, SUMS, source!("linalg/plate_force.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
     workgroup: 256,
 };

@@ -1,0 +1,20 @@
+// What smoothing leaves to the next level: r = b - A x, A rounded, nothing at fixed unknowns.
+
+@group(0) @binding(4) var<storage, read> inverse: array<real>;      // see diagonal.wgsl
+@group(0) @binding(5) var<storage, read> b: array<real>;            // [slot][component][node]
+@group(0) @binding(6) var<storage, read> is_fixed: array<u32>;      // [slot][node]: a bit a component
+@group(0) @binding(7) var<storage, read_write> r: array<real>;      // [slot][component][node]
+@group(0) @binding(8) var<storage, read> records: array<Record>;
+
+@compute @workgroup_size(192)
+fn cycle_residual(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let slot = group.y;
+    let node = NODES_IN_GROUP * group.x + local % NODES_IN_GROUP;
+    if records[slot].done != RUNNING || node >= level.nodes {
+        return;
+    }
+    let component = local / NODES_IN_GROUP;
+    let at = (3u * slot + component) * level.nodes + node;
+    let free = (is_fixed[slot * level.nodes + node] >> component) % 2u == 0u;
+    r[at] = select(real(0.0), b[at] - rounded_row_times(slot, component, node), free);
+}
