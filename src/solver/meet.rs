@@ -3,12 +3,47 @@
 
 use super::encounter::Encounter;
 use super::rigid::{Against, position};
-use super::system::{Boundary, Trial};
+use super::system::{Boundary, Meeting, Trial};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Status, contact_rows};
 use crate::contact::frame::{from_frame, to_frame};
 use crate::contact::pair::leave_even;
 use crate::mesh::Mesh;
+
+fn between(start: &[f64; 3], end: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|c| end[c] - start[c])
+}
+
+/// Work of friction on a point that has moved along the interface, from what acts on it before and
+/// after, in the frame at the end. Where it has touched all the time, the frame has turned under the
+/// normal force: along the way that force does no work, so that of all three components is the
+/// friction's, to second order in the step. Else the normal part is of a gap that opens or closes.
+fn dissipated(before: &[f64; 3], after: &[f64; 3], moved: &[f64; 3]) -> f64 {
+    let components = if before[2] > 0.0 && after[2] > 0.0 { 3 } else { 2 };
+    -(0..components).map(|c| 0.5 * (before[c] + after[c]) * moved[c]).sum::<f64>()
+}
+
+impl Meeting {
+    /// See [`super::newton::Newton::interface_friction_work`]; of one of the two bodies, half of what
+    /// is dissipated between them.
+    pub(super) fn friction_work(&self, trial: &Trial, before: &[f64]) -> f64 {
+        let (after, w) = (trial.pair_forces(self), self.interface.relative(&trial.u));
+        let mut carried = before.to_vec();
+        self.interface.reduce(&mut carried);
+        let mut work = 0.0;
+        for (k, after) in after.iter().enumerate() {
+            let base = self.interface.base(k);
+            let before = [carried[base], carried[base + 1], carried[base + 2]];
+            let mut moved = between(&self.start[k], &w[k]);
+            if self.interface.is_free_along_y(k) {
+                // On the seam nothing slips along y, and the number there is no relative one.
+                moved[1] = 0.0;
+            }
+            work += dissipated(&before, after, &moved);
+        }
+        work
+    }
+}
 
 impl Encounter {
     /// See [`super::newton::Newton::interface_friction_work`].
@@ -18,15 +53,28 @@ impl Encounter {
         for (k, after) in after.iter().enumerate() {
             let node = self.interface.nodes()[k];
             let before = to_frame(&self.interface.frames[k], &[before[3 * node], before[3 * node + 1], before[3 * node + 2]]);
-            for c in 0..2 {
-                work -= 0.5 * (before[c] + after[c]) * (w[k][c] - self.start[k][c]);
-            }
+            work += dissipated(&before, after, &between(&self.start[k], &w[k]));
         }
         work
     }
 }
 
 impl Trial {
+    /// What the interface of an equal pair carries at its slaves, in their frames, as
+    /// [`Trial::point_force`] has the force of a plane.
+    pub(super) fn pair_forces(&self, pair: &Meeting) -> Vec<[f64; 3]> {
+        let interface = &pair.interface;
+        let projected = |(k, force): (usize, &[f64; 3])| {
+            let rows = &self.rows[interface.slaves[k]];
+            if rows.status == Status::Open {
+                return [0.0; 3];
+            }
+            let across = if interface.is_free_along_y(k) { 0.0 } else { force[1] - rows.residual[1] };
+            [force[0] - rows.residual[0], across, force[2].max(0.0)]
+        };
+        self.interface_force.iter().enumerate().map(projected).collect()
+    }
+
     /// Contact rows of two bodies at the slave nodes, and the residual of the unknowns y.
     pub(super) fn meet_body(&mut self, model: &CaseModel, boundary: &Boundary, encounter: &Encounter) {
         let (mesh, interface) = (&model.mesh, &encounter.interface);

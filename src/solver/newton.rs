@@ -182,8 +182,12 @@ impl Newton {
     /// the forces at the contact were `before` (three a node) at its start; between two bodies
     /// alone.
     pub fn interface_friction_work(&self, before: &[f64]) -> Option<f64> {
-        let host = &self.iterates.host;
-        host.boundary().encounter.as_ref().map(|encounter| encounter.friction_work(host.current(), before))
+        let (trial, boundary) = (self.iterates.host.current(), self.iterates.host.boundary());
+        match (&boundary.pair, &boundary.encounter) {
+            (Some(pair), _) => Some(pair.friction_work(trial, before)),
+            (None, Some(encounter)) => Some(encounter.friction_work(trial, before)),
+            (None, None) => None,
+        }
     }
 
     /// Leaves the even part of a guess where the step is symmetric.

@@ -374,17 +374,7 @@ impl Trial {
                 Some(_) => points.map(|i| self.rigid_point_force(mesh, i)).collect(),
             };
         };
-        let interface = &pair.interface;
-        let projected = |(k, force): (usize, &[f64; 3])| {
-            let rows = &self.rows[interface.slaves[k]];
-            if rows.status == Status::Open {
-                return [0.0; 3];
-            }
-            let across = if interface.is_free_along_y(k) { 0.0 } else { force[1] - rows.residual[1] };
-            [force[0] - rows.residual[0], across, force[2].max(0.0)]
-        };
-        let forces: Vec<[f64; 3]> = self.interface_force.iter().enumerate().map(projected).collect();
-        interface.nodal(&forces)
+        pair.interface.nodal(&self.pair_forces(pair))
     }
 
     /// Status of each contact node; a master has that of the slave that carries most of its load.

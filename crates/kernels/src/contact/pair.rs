@@ -166,7 +166,7 @@ impl Interface {
     }
 
     /// The unknown of component 0 of a slave.
-    fn base(&self, k: usize) -> usize {
+    pub fn base(&self, k: usize) -> usize {
         3 * self.nodes[self.slaves[k]]
     }
 
