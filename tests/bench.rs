@@ -216,8 +216,9 @@ fn whole_jobs_are_a_table_and_the_same_numbers() {
         for kernel in kernels {
             let known = !kernel["bytes"].is_null();
             assert!(known != kernel["share_of_copy"].is_null() && known != kernel["bytes_per_s"].is_null(), "{kernel}");
-            let line = format!("| {:<26} | {:<9} |", text(kernel, "kernel"), text(kernel, "precision"));
-            assert!(table.contains(line.trim_end_matches([' ', '|'])), "{line}\n{table}");
+            let names = [text(kernel, "kernel"), text(kernel, "precision")];
+            let has = |line: &str| line.split(['|', ' ']).filter(|word| !word.is_empty()).take(2).eq(names);
+            assert!(table.lines().any(has), "{names:?}\n{table}");
         }
     }
 }

@@ -124,7 +124,7 @@ pub fn table(of: &Kernels) -> String {
         Some(all) => writeln!(
             text,
             "kernels together: {dispatches} dispatches, {} s: {:.0} % of the {} s in which they were sent and {:.0} % of the {} s on \
-             the wall, set-up included; in the rest the device waited for the host",
+             the wall, set-up included; in the rest the device copied or waited for the host",
             number(all),
             100.0 * all / of.span_s,
             number(of.span_s),
@@ -168,7 +168,7 @@ mod tests {
         let text = table(&of);
         assert!(text.contains("| long   | f32       |          4 |  1.50 | 75.0 % | 3.00 | 2.00 | 25.0 % |"), "{text}");
         assert!(text.contains("| short  | f64       |         10 | 0.500 | 25.0 % |      |      |        |"), "{text}");
-        assert!(text.contains("14 dispatches, 2.00 s, 50 % of the 4.00 s") && text.contains("40 % of the 5.00 s"), "{text}");
+        assert!(text.contains("14 dispatches, 2.00 s: 50 % of the 4.00 s") && text.contains("40 % of the 5.00 s"), "{text}");
         assert!(text.contains("3 dispatches have timestamps that are zero or go backwards"), "{text}");
     }
 

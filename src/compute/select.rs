@@ -205,8 +205,8 @@ mod device {
             Ok(Self { choice, profiled, context: Mutex::new(context) })
         }
 
-        /// What the kernels came to since the device was opened, or opened anew after a loss; `None`
-        /// without a device or a profile.
+        /// What the kernels came to since the device was opened, or opened anew after a loss;
+        /// `None` without a device or a profile.
         pub fn kernel_times(&self) -> Option<KernelTimes> {
             self.context.lock().unwrap_or_else(PoisonError::into_inner).as_ref()?.kernel_times()
         }

@@ -3,8 +3,8 @@
 //!
 //! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory
 //! budget, [`shader_sources`] lists the WGSL of every kernel, [`pipelines`] compiles and dispatches
-//! it, [`validate`](mod@validate) says where a source does not compile, [`profile`] sums the times of
-//! dispatches and [`moves`] their bytes, where that is asked for.
+//! it, [`validate`](mod@validate) says where a source does not compile, [`profile`] sums the times
+//! of dispatches and [`moves`] their bytes, where that is asked for.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
 //! device and arrays in memory that they have in turn, [`linear`] solves their linear systems,

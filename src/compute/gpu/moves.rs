@@ -76,10 +76,17 @@ enum But {
 const BUT: &[(&str, usize, But)] = &[
     // The largest alpha alone.
     ("hex8_energies", 10, But::OneOf(super::resident::HISTORY as u64)),
-    // The contact's rows where points slide.
+    // The committed state, and not its last flow.
+    ("hex8_update", 12, But::OneOf(2)),
+    // The contact's rows where points slide, and the diagonals for them.
+    ("assemble", 2, But::Left),
     ("assemble", 5, But::Left),
     // The diagonal blocks.
     ("invert_diagonal", 1, But::As(4)),
+    // What is fixed.
+    ("prescribe", 1, But::Left),
+    // The first step of a polynomial reads none.
+    ("smooth_step", 6, But::Once),
     // Levels that one workgroup smooths stay in its caches.
     ("solve_coarsest", 3, But::Once),
     ("solve_coarsest", 6, But::Once),
@@ -98,6 +105,8 @@ const BUT: &[(&str, usize, But)] = &[
     ("iterate_place", 9, But::Left),
     ("iterate_place", 10, But::Once),
     // Of prescribed nodes and contact points.
+    ("iterate_contact", 11, But::Left),
+    ("iterate_contact", 12, But::Left),
     ("iterate_measure", 5, But::Left),
     ("iterate_measure", 7, But::Left),
     ("iterate_measure", 8, But::Left),
@@ -111,6 +120,8 @@ const BUT: &[(&str, usize, But)] = &[
     ("iterate_expand", 8, But::Left),
     ("iterate_expand", 10, But::Left),
     ("iterate_expand", 14, But::Once),
+    // From the second iteration of a step on.
+    ("iterate_unit", 7, But::Left),
     ("iterate_commit", 8, But::Left),
     ("iterate_commit", 9, But::Left),
 ];

@@ -73,7 +73,7 @@ struct Sums {
 #[derive(Debug, Default)]
 pub(super) struct Profile {
     timed: bool,
-    /// Nanoseconds of a tick.
+    /// Seconds of a tick.
     period: f64,
     sums: Mutex<Sums>,
     uses: Mutex<BTreeMap<&'static str, Option<Arc<[Use]>>>>,
@@ -180,7 +180,7 @@ fn add(sum: &mut Option<u64>, bytes: Option<u64>) {
 
 /// Seconds between two timestamps; `None` where a driver has left one out or they go backwards.
 fn seconds([begin, end]: [u64; 2], period: f64) -> Option<f64> {
-    (begin != 0 && end >= begin).then(|| (end - begin) as f64 * period * 1e-9)
+    (begin != 0 && end >= begin).then(|| (end - begin) as f64 * period)
 }
 
 impl GpuContext {
@@ -189,7 +189,7 @@ impl GpuContext {
     /// are summed alone.
     pub fn with_profile(mut self) -> Self {
         let timed = self.adapter().timestamps;
-        let period = f64::from(self.queue.get_timestamp_period());
+        let period = 1e-9 * f64::from(self.queue.get_timestamp_period());
         let profile = Arc::new(Profile { timed, period, ..Profile::default() });
         self.profiling = Some(Profiling { profile, ..Profiling::default() });
         self
@@ -342,11 +342,11 @@ mod tests {
 
     #[test]
     fn timestamps_of_no_use_are_counted_and_not_summed() {
-        assert_eq!(seconds([10, 30], 50.0), Some(1e-6));
+        assert_eq!(seconds([10, 30], 0.5), Some(10.0));
         assert_eq!(seconds([10, 10], 1.0), Some(0.0));
         assert_eq!((seconds([30, 10], 1.0), seconds([0, 10], 1.0), seconds([0, 0], 1.0)), (None, None, None));
 
-        let profile = Profile { timed: true, period: 1e9, ..Profile::default() };
+        let profile = Profile { timed: true, period: 1.0, ..Profile::default() };
         let (a, b) = (("a", Precision::F32), ("b", Precision::F64));
         let stamps = Stamps { sets: Vec::new(), dispatches: vec![(a, Some(8)), (b, None), (a, Some(3)), (a, Some(0))] };
         profile.sent(&stamps);
