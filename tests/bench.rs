@@ -185,10 +185,10 @@ fn bad_input_is_one_message() {
 fn whole_jobs_are_a_table_and_the_same_numbers() {
     let device = device::device("whole_jobs_are_a_table_and_the_same_numbers", Precision::F64).is_some();
     let place = if device { "gpu" } else { "cpu" };
-    let (table, _, rows) = measured(&["--whole-job", "--device", place, "--elements", "4", "--threads", "2"], &[]);
-    let rows = rows.as_array().unwrap();
+    let (table, _, report) = measured(&["--whole-job", "--device", place, "--elements", "4", "--threads", "2"], &[]);
+    let rows = report["jobs"].as_array().unwrap();
     assert_eq!(rows.len(), if device { 4 } else { 2 });
-    assert_eq!(table.lines().count(), rows.len() + 2);
+    assert_eq!(table.lines().take_while(|line| line.starts_with('|')).count(), rows.len() + 2);
     for (row, jobs) in rows.iter().zip([1, 2, 1, 2]) {
         assert!(row["batch"] == jobs && number(row, "wall_s") > 0.0 && number(row, "newton_iterations") > 30.0, "{row}");
         assert!(table.contains(&format!(" {} | ", row["unknowns"])) && table.contains(text(row, "device")), "{table}");
@@ -198,5 +198,27 @@ fn whole_jobs_are_a_table_and_the_same_numbers() {
         // One job is the same wherever it runs.
         let newton = [&rows[0], &rows[2]].map(|row| number(row, "newton_iterations"));
         assert!((newton[0] - newton[1]).abs() <= 0.05 * newton[0], "{newton:?}");
+    }
+    let profiles = report["kernels"].as_array().unwrap();
+    assert_eq!(profiles.len(), if device { 2 } else { 0 });
+    for (profile, jobs) in profiles.iter().zip([1, 2]) {
+        assert!(profile["batch"] == jobs && number(profile, "copy_bytes_per_s") > 0.0, "{profile}");
+        let kernels = profile["kernels"].as_array().unwrap();
+        assert!(kernels.len() > 30 && kernels.iter().all(|kernel| number(kernel, "dispatches") > 0.0), "{profile}");
+        if profile["kernels_s"].is_null() {
+            assert!(table.contains("NO TIMES BY KERNEL"), "{table}");
+            continue;
+        }
+        let seconds: Vec<f64> = kernels.iter().map(|kernel| number(kernel, "seconds")).collect();
+        assert!(seconds.is_sorted_by(|a, b| a >= b) && seconds.iter().all(|s| *s > 0.0), "{seconds:?}");
+        let (all, span, wall) = (number(profile, "kernels_s"), number(profile, "span_s"), number(profile, "wall_s"));
+        assert!((all - seconds.iter().sum::<f64>()).abs() <= 1e-9 * all && all <= span && span <= wall, "{all} {span} {wall}");
+        for kernel in kernels {
+            let known = !kernel["bytes"].is_null();
+            assert!(known != kernel["share_of_copy"].is_null() && known != kernel["bytes_per_s"].is_null(), "{kernel}");
+            let names = [text(kernel, "kernel"), text(kernel, "precision")];
+            let has = |line: &str| line.split(['|', ' ']).filter(|word| !word.is_empty()).take(2).eq(names);
+            assert!(table.lines().any(has), "{names:?}\n{table}");
+        }
     }
 }

@@ -3,13 +3,25 @@
 
 mod device;
 
+use asperity::case::Case;
+use asperity::internals::bench::input;
+use asperity::internals::bench::traffic::Sizes;
+use asperity::internals::compute::Compute;
+use asperity::internals::compute::gpu::linear::parts::Part;
 use asperity::internals::compute::gpu::material::{self, Answers};
 use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
-use asperity::internals::compute::gpu::{DeviceRequest, GpuContext, GpuError};
+use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, KernelTimes};
 use asperity::internals::compute::traffic::Traffic;
+use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
+use asperity::internals::simulation::problem::Problem;
 use asperity::material::{Elasticity, Hardening, Material};
 use device::device;
+use std::error::Error;
+use std::io::Write;
+use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
+use std::time::Instant;
 
 static DOUBLE: Kernel = Kernel {
     name: "double",
@@ -231,6 +243,154 @@ fn only_the_active_cases_are_touched() {
     assert_eq!(case(&first, 1), case(&second, 1));
     assert!(case(&first, 0) != case(&second, 0) && case(&first, 2) != case(&second, 2));
     assert!(matches!(kernel.run(&context, &[3], &relative(0.0), &committed), Err(GpuError::Length { .. })));
+}
+
+fn dispatches(times: &KernelTimes) -> u64 {
+    times.kernels.iter().map(|kernel| kernel.dispatches).sum()
+}
+
+/// More dispatches than a set of timestamps holds, in one list and with lists that nobody waits
+/// for.
+#[test]
+fn a_profile_has_every_dispatch() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    assert!(context.kernel_times().is_none());
+    let adapter = context.adapter().clone();
+    let start = [1.0f32; 1000];
+    let plain = context.traffic();
+    let expected = double(&context, &start, 5).unwrap();
+    let plain = context.traffic() - plain;
+    let context = context.with_profile();
+    let begun = Instant::now();
+    assert_eq!(double(&context, &start, 5).unwrap(), expected);
+    // What a profile reads is not in the account of the program's own traffic.
+    assert_eq!(context.traffic() - plain, plain);
+    let times = context.kernel_times().unwrap();
+    assert_eq!((times.timed, dispatches(&times), times.kernels.len()), (adapter.timestamps, 5, 1));
+    // `double` makes arrays of which nothing is declared.
+    assert_eq!((times.kernels[0].kernel, times.kernels[0].bytes), ("double", Some(0)));
+
+    let part = context.part(1 << 20);
+    let values = part.array("values", &start).unwrap().whole();
+    let bound = part.bind(&part.pipeline(&DOUBLE, Precision::F32).unwrap(), vec![values.binding()]).unwrap();
+    let mut list = part.record();
+    list.count_for(Some(0));
+    list.dispatch(&bound, start.len(), 1).unwrap();
+    list.submit().unwrap();
+    let mut list = part.record();
+    for _ in 0..5000 {
+        list.dispatch(&bound, start.len(), 1).unwrap();
+    }
+    list.submit().unwrap();
+    assert_eq!(context.kernel_times().unwrap().unread, if adapter.timestamps { 5001 } else { 0 });
+    part.download(&values).unwrap();
+    let wall = begun.elapsed().as_secs_f64();
+    let times = context.kernel_times().unwrap();
+    assert_eq!((dispatches(&times), times.unread, part.traffic().dispatches), (5006, 0, 5001));
+    // Read and written, but where it was said that nobody counts.
+    assert_eq!(times.kernels[0].bytes, Some(5000 * 2 * 4000));
+    let seconds = times.kernels[0].seconds;
+    eprintln!("{seconds} s of {wall} s, {} without", times.unusable);
+    assert!(!times.timed || (seconds > 0.0 && seconds <= wall && times.unusable < 5006), "{times:?}");
+}
+
+#[test]
+fn a_device_without_timestamps_has_no_times() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let context = context.without_timestamps().with_profile();
+    assert_eq!(double(&context, &[1.0; 100], 3).unwrap(), [8.0; 100]);
+    let times = context.kernel_times().unwrap();
+    assert_eq!((times.timed, times.unusable, times.unread, dispatches(&times)), (false, 0, 0, 3));
+    assert_eq!(times.kernels[0].seconds, 0.0);
+}
+
+/// Keeps displacements and what is recorded, bit by bit, and sums Krylov iterations.
+#[derive(Default)]
+struct Bits(Vec<u64>, usize);
+
+impl Observer for Bits {
+    fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        let r = view.record.0;
+        self.0.extend([r.h, r.f_n, r.f_t, r.a, r.merit, r.energy_elastic, r.work_plastic].map(f64::to_bits));
+        self.1 += r.krylov_iterations;
+        self.0.extend(view.displacement()?.iter().map(|u| u.to_bits()));
+        Ok(())
+    }
+
+    fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Box<dyn Error + Send + Sync>> {
+        Ok(())
+    }
+
+    fn note(&mut self, _: &str) {}
+
+    fn stop_requested(&self) -> bool {
+        false
+    }
+}
+
+/// Whole paths, one of which holds a force, with a profile and without: the same bits and the same
+/// traffic; every kernel has its time, and all of them no more than the run.
+#[test]
+fn a_profile_changes_no_bit_of_a_run() {
+    let Some(_) = device("device_layer", Precision::F64) else { return };
+    for name in ["ideal", "normal-force"] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("fixtures/cases/{name}.toml"));
+        let set = ["mesh.elements_per_contact_radius=4", "solver.press_steps=3", "solver.shear_steps=2"].map(String::from);
+        let problem = Problem::new(&Case::load(&file, &set).unwrap()).unwrap();
+        let run = |context: GpuContext| {
+            let (context, mut bits) = (Arc::new(context), Bits::default());
+            let begun = Instant::now();
+            let mut gpu = Gpu::<f64>::with_tangents_in_single(context.clone(), vec![problem.model.clone()]).unwrap();
+            let ending = Drive::new(&problem, &mut gpu, 0, problem.newton().unwrap()).run(&mut bits).unwrap();
+            assert!(matches!(ending, Ending::Done), "{name}: {ending:?}");
+            let product = gpu.solver().unwrap().account(Part::Product);
+            let product = bits.1 * 4 * (product.numbers + product.shared);
+            (bits.0, gpu.traffic().unwrap(), context.kernel_times(), (begun.elapsed().as_secs_f64(), product as u64))
+        };
+        let open = || GpuContext::open(DeviceRequest::Gpu).unwrap().unwrap();
+        let (bits, traffic, nothing, _) = run(open());
+        assert!(nothing.is_none() && bits.len() > 1000);
+        let (again, profiled, times, (wall, product)) = run(open().with_profile());
+        assert!(again == bits, "{name}: other bits with a profile");
+        assert_eq!(profiled, traffic, "{name}");
+        let times = times.unwrap();
+        assert_eq!((dispatches(&times), times.unread), (traffic.dispatches, 0), "{name}");
+        if !times.timed {
+            #[allow(clippy::explicit_write)] // the print macros are captured
+            writeln!(std::io::stderr(), "SKIPPED: no timestamps (times of {name})").unwrap();
+            continue;
+        }
+        assert_eq!(times.unusable, 0, "{name}");
+        let all: f64 = times.kernels.iter().map(|kernel| kernel.seconds).sum();
+        eprintln!("{name}: {all:.2} s of {:.2} s, {wall:.2} s with what came before", times.span);
+        assert!(all <= times.span && times.span <= wall, "{name}: {all} s in {} s of {wall} s", times.span);
+        for kernel in &times.kernels {
+            assert!(kernel.seconds > 0.0, "{name}: {kernel:?}");
+            assert!(kernel.bytes != Some(0), "{name}: {kernel:?}");
+        }
+        let bytes = |kernel: &str| times.kernels.iter().find(|k| k.kernel == kernel).unwrap().bytes.unwrap();
+        // Of every Krylov iteration that ran the product with the finest matrix, and not of those
+        // that were sent and left out. Where a force is held there are the responses too.
+        eprintln!("{name}: {} bytes in products, {product} in those of recorded iterations", bytes("krylov_product"));
+        assert!(if name == "ideal" { bytes("krylov_product") == product } else { bytes("krylov_product") >= product });
+    }
+}
+
+/// The bytes of the element's kernels are those that `asperity bench` counts for its evaluations.
+#[test]
+fn a_profile_counts_bytes_as_the_bench_does() {
+    let Some(context) = device("device_layer", Precision::F64) else { return };
+    let context = Arc::new(context.with_profile());
+    let mesh = input::mesh(4).unwrap();
+    let gpu = Gpu::<f64>::new(context.clone(), input::models(&mesh, 1).unwrap()).unwrap();
+    let bytes = || context.kernel_times().unwrap().kernels.iter().filter_map(|kernel| kernel.bytes).sum::<u64>();
+    // A list of starts has one more, which the bench leaves out.
+    for (evaluation, more) in [(Evaluation::InternalForce, 4), (Evaluation::Tangent, 4), (Evaluation::Update, 0)] {
+        let before = bytes();
+        gpu.repeat(evaluation, &[0], 2).unwrap();
+        let expected = 2 * (Sizes::of(&mesh).on_device(evaluation, 8) as u64 + more);
+        assert_eq!(bytes() - before, expected, "{evaluation:?}");
+    }
 }
 
 /// Runs one of the tests below in a process with another environment.

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::timing::{Patience, measure, of_kernels};
 use super::{BenchError, Options, Pools};
-use crate::compute::gpu::{GpuContext, GpuError};
+use crate::compute::gpu::{GpuContext, GpuError, StorageBuffer};
 
 /// Bytes a second, read and written together where both are in the same memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -22,6 +22,36 @@ pub struct CopyRates {
     pub to_device: Option<f64>,
     /// From the device to the program's memory.
     pub from_device: Option<f64>,
+}
+
+/// Words of the longest array that a copy on this device may take.
+fn longest(context: &GpuContext) -> usize {
+    (context.adapter().max_binding.min(context.adapter().max_buffer).min(context.budget().limit() / 4) / 4) as usize
+}
+
+/// Bytes a second, read and written together, of copies from array to array on a device; the arrays
+/// have `bytes` bytes, or what the device's limits allow.
+///
+/// # Errors
+/// The device's fault.
+pub fn on_device(context: &GpuContext, bytes: usize) -> Result<f64, GpuError> {
+    let words = (bytes / 4).min(longest(context));
+    let from: Vec<u32> = (0..words as u32).collect();
+    between(context, &context.array("what is copied", &from)?, &context.zeros("the copy", words)?)
+}
+
+fn between(context: &GpuContext, a: &StorageBuffer<u32>, b: &StorageBuffer<u32>) -> Result<f64, GpuError> {
+    let copies = |times: usize| {
+        let mut list = context.record();
+        for _ in 0..times {
+            list.copy(a, 0, b, 0, a.len())?;
+        }
+        list.submit()?;
+        context.download_at(b, 0, &mut [0u32])
+    };
+    // The first touches fresh memory.
+    copies(1)?;
+    Ok((8 * a.len()) as f64 / (1e-3 * of_kernels(copies)?))
 }
 
 /// Copies are short: enough of them for a steady median.
@@ -51,22 +81,10 @@ impl CopyRates {
         let (one_core, all_cores) = (on(&pools.one, words.max(1))?, on(&pools.all, piece)?);
         let mut rates = Self { length: 4 * words, one_core, all_cores, ..Self::default() };
         if let Some(context) = context {
-            let limit = context.adapter().max_binding.min(context.adapter().max_buffer).min(context.budget().limit() / 4);
-            let words = words.min((limit / 4) as usize);
+            let words = words.min(longest(context));
             let a = context.array("what is copied", &from[..words])?;
             let b = context.zeros::<u32>("the copy", words)?;
-            let copies = |times: usize| {
-                let mut list = context.record();
-                for _ in 0..times {
-                    list.copy(&a, 0, &b, 0, words)?;
-                }
-                list.submit()?;
-                context.download_at(&b, 0, &mut [0u32])
-            };
-            // The first touches fresh memory.
-            copies(1)?;
-            let kernel = of_kernels(copies)?;
-            rates.device = Some(rate(kernel, 8 * words));
+            rates.device = Some(between(context, &a, &b)?);
             let up = measure(PATIENCE, |_| {
                 context.upload(&a, &from[..words])?;
                 context.download_at(&a, 0, &mut [0u32])

@@ -5,12 +5,14 @@
 //! kernels alone beside that. A row is one evaluation in one precision at one batch size; its input
 //! is seeded and the same everywhere. [`element`], [`linear`] and [`material`] measure, [`traffic`]
 //! counts bytes, [`count`] operations, [`copy`] measures what memory could do, [`report`] holds the
-//! numbers and [`table`] shows them. [`whole_job`] runs whole simulations instead.
+//! numbers and [`table`] shows them. [`whole_job`] runs whole simulations instead, with the
+//! times of their kernels in [`kernels`].
 
 pub mod copy;
 pub mod count;
 pub mod element;
 pub mod input;
+pub mod kernels;
 pub mod linear;
 pub mod material;
 pub mod report;

@@ -169,7 +169,7 @@ fn line(group: &[&Row]) -> Vec<String> {
 }
 
 /// Three digits.
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     match x.abs() {
         size if !x.is_finite() || size == 0.0 => format!("{x}"),
         size if size < 1e-3 => format!("{x:.1e}"),

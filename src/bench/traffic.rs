@@ -62,7 +62,8 @@ impl Sizes {
             Evaluation::Contact => self.contact_points * (word * (3 + CONTACT_TRIAL + CONTACT_ANSWER) + 2 * INDEX),
             Evaluation::Update => {
                 let energies = word * (5 * points + 4 * self.elements);
-                jacobian + at_points + word * (2 * HISTORY + 2) * points + energies
+                // the committed state is read, and the new one written with its flow
+                jacobian + at_points + word * (STATE + HISTORY + 2) * points + energies
             }
         }
     }

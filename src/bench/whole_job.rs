@@ -1,4 +1,5 @@
-//! Whole simulations: one on all cores, then batches of them on a device, as a study computes them.
+//! Whole simulations: one on all cores, then batches of them on a device, as a study computes them;
+//! and, after these, the same on the device with timestamps around every kernel.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,11 +8,13 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::BenchError;
-use crate::compute::select::{DeviceChoice, PrecisionChoice};
+use super::kernels::{self, Kernels};
+use super::{BenchError, copy};
+use crate::compute::gpu::{DeviceRequest, GpuContext};
+use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice};
 use crate::compute::traffic::Traffic;
 use crate::output::Summary;
-use crate::study::{Options, Study, StudyDirectory, StudyError, StudyProgress, backends};
+use crate::study::{Options, Study, StudyDirectory, StudyError, StudyProgress, backends, run_on};
 
 /// The main job: ideal plasticity, pressed and sheared to full slip; friction coefficients a
 /// thousandth apart, so that a batch has as many cases.
@@ -81,29 +84,78 @@ pub struct WholeJobs {
     pub batches: Vec<usize>,
     /// Elements along the contact radius.
     pub elements: usize,
+    /// Length of the arrays of a copy on the device, bytes.
+    pub copied: usize,
+}
+
+/// What the jobs came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct WholeReport {
+    /// The jobs.
+    pub jobs: Vec<WholeJob>,
+    /// Their kernels on the device, of the smallest and the largest batch.
+    pub kernels: Vec<Kernels>,
 }
 
 /// Runs the jobs; `say` is told which.
 ///
 /// # Errors
 /// [`BenchError::Study`] if a study cannot be computed or a case fails.
-pub fn run(options: &WholeJobs, say: &mut dyn FnMut(&str)) -> Result<Vec<WholeJob>, BenchError> {
-    let mut rows = Vec::new();
+pub fn run(options: &WholeJobs, say: &mut dyn FnMut(&str)) -> Result<WholeReport, BenchError> {
+    let mut jobs = Vec::new();
     let cpu = if options.threads > 1 { vec![1, options.threads] } else { vec![1] };
     for batch in cpu {
         say(&format!("{batch} whole jobs on the CPU, a thread each"));
-        rows.push(one(options, DeviceChoice::Cpu, batch)?);
+        jobs.push(one(options, DeviceChoice::Cpu, batch)?);
     }
+    let mut kernels = Vec::new();
     if options.device != DeviceChoice::Cpu {
         for &batch in &options.batches {
             say(&format!("{batch} whole jobs on the device"));
-            rows.push(one(options, options.device, batch)?);
+            jobs.push(one(options, options.device, batch)?);
+        }
+        say("copies on the device");
+        let copied = copy_rate(options)?;
+        let mut batches = vec![options.batches.iter().min(), options.batches.iter().max()];
+        batches.dedup();
+        for &batch in batches.into_iter().flatten() {
+            say(&format!("{batch} whole jobs on the device, with timestamps"));
+            kernels.extend(profiled(options, batch, copied)?);
         }
     }
-    Ok(rows)
+    Ok(WholeReport { jobs, kernels })
 }
 
 fn one(options: &WholeJobs, device: DeviceChoice, batch: usize) -> Result<WholeJob, BenchError> {
+    let begun = Instant::now();
+    let devices = Devices::open(device).map_err(StudyError::from)?;
+    on(options, (device, &devices), batch, begun)
+}
+
+/// Bytes a second of a copy on the device.
+fn copy_rate(options: &WholeJobs) -> Result<f64, BenchError> {
+    let request = if options.device == DeviceChoice::Gpu { DeviceRequest::Gpu } else { DeviceRequest::Auto };
+    Ok(match GpuContext::open(request)? {
+        Some(context) => copy::on_device(&context, options.copied)?,
+        None => f64::NAN,
+    })
+}
+
+/// The kernels of a batch, which is computed for them alone: timestamps cost time.
+fn profiled(options: &WholeJobs, batch: usize, copied: f64) -> Result<Option<Kernels>, BenchError> {
+    let begun = Instant::now();
+    let devices = Devices::profiled(options.device).map_err(StudyError::from)?;
+    let job = on(options, (options.device, &devices), batch, begun)?;
+    Ok(devices.kernel_times().map(|times| Kernels::new((batch, job.device), job.wall_s, copied, &times)))
+}
+
+/// Whole jobs on a device that was opened at `begun`, or on the CPU.
+fn on(
+    options: &WholeJobs,
+    (device, devices): (DeviceChoice, &Devices),
+    batch: usize,
+    begun: Instant,
+) -> Result<WholeJob, BenchError> {
     let study = study(batch, options.elements)?;
     let dir = Scratch::new(batch);
     let how = Options {
@@ -115,8 +167,8 @@ fn one(options: &WholeJobs, device: DeviceChoice, batch: usize) -> Result<WholeJ
         retry: false,
         force: false,
     };
-    let begun = Instant::now();
-    let report = crate::study::run(&study, &dir.0, &how, Arc::new(StudyProgress::new(true)), Arc::new(AtomicBool::new(false)))?;
+    let watched = (Arc::new(StudyProgress::new(true)), Arc::new(AtomicBool::new(false)));
+    let report = run_on(devices, &study, &dir.0, &how, watched)?;
     let wall_s = begun.elapsed().as_secs_f64();
     if let Some((case, why)) = report.first_failure {
         return Err(BenchError::Case { case, why });
@@ -168,6 +220,16 @@ impl Drop for Scratch {
         // What cannot be removed is left to whoever tidies the temporary files.
         let _ = std::fs::remove_dir_all(&self.0);
     }
+}
+
+/// The jobs as a table, and their kernels as others.
+pub fn tables(report: &WholeReport) -> String {
+    let mut text = table(&report.jobs);
+    for of in &report.kernels {
+        text.push('\n');
+        text.push_str(&kernels::table(of));
+    }
+    text
 }
 
 /// The rows as a table: seconds of a job, iterations a second, and what passes to the device a

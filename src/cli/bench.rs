@@ -27,7 +27,8 @@ pub struct BenchArgs {
     #[arg(long)]
     pub quick: bool,
     /// Run whole simulations (the press and shear of ideal plasticity) instead: on one core, on all
-    /// cores, and on the device in batches of 1 to 256, with --quick 1 and 2.
+    /// cores, and on the device in batches of 1 to 256, with --quick 1 and 2; then the smallest and
+    /// the largest of these once more, for the time and bytes of each kernel.
     #[arg(long)]
     pub whole_job: bool,
     /// Elements along the contact radius of the mesh, 2 to 32; by default 8, with --quick 4.
@@ -93,13 +94,13 @@ fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> 
         Device::Gpu => DeviceChoice::Gpu,
     };
     let batches = if args.quick { vec![1, 2] } else { vec![1, 4, 16, 64, 256] };
-    let jobs = WholeJobs { device, threads: options.threads, batches, elements: options.elements };
-    let rows = whole_job::run(&jobs, say).map_err(|error| match error {
+    let jobs = WholeJobs { device, threads: options.threads, batches, elements: options.elements, copied: options.copied };
+    let report = whole_job::run(&jobs, say).map_err(|error| match error {
         BenchError::Study(error) => CliError::from(error),
         error => CliError::Bench(error),
     })?;
-    let json = || serde_json::to_string_pretty(&rows).unwrap_or_default() + "\n";
-    super::print(&if args.json { json() } else { whole_job::table(&rows) })?;
+    let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+    super::print(&if args.json { json() } else { whole_job::tables(&report) })?;
     if let Some(path) = &args.out {
         write_atomically(path, |file| file.write_all(json().as_bytes()))?;
     }

@@ -138,7 +138,7 @@ mod device {
 
     use super::{DeviceChoice, PrecisionChoice, Selected, cpu};
     use crate::compute::fallback::Fallback;
-    use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, Mixed, Precision};
+    use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, KernelTimes, Mixed, Precision};
     use crate::compute::lost::hooked;
     use crate::compute::{CaseModel, Compute, ComputeError};
 
@@ -148,6 +148,11 @@ mod device {
             DeviceChoice::Gpu => GpuContext::open(DeviceRequest::Gpu),
             DeviceChoice::Auto => GpuContext::open(DeviceRequest::Auto),
         }
+    }
+
+    fn opened(device: DeviceChoice, profiled: bool) -> Result<Option<GpuContext>, GpuError> {
+        let context = open(device)?;
+        Ok(if profiled { context.map(GpuContext::with_profile) } else { context })
     }
 
     pub(super) fn on_device(
@@ -166,6 +171,7 @@ mod device {
     /// compiled kernels.
     pub struct Devices {
         choice: DeviceChoice,
+        profiled: bool,
         context: Mutex<Option<Arc<GpuContext>>>,
     }
 
@@ -175,7 +181,19 @@ mod device {
         /// # Errors
         /// [`ComputeError::Device`] if a GPU was asked for and cannot be had.
         pub fn open(choice: DeviceChoice) -> Result<Self, ComputeError> {
-            let context = match open(choice) {
+            Self::new(choice, false)
+        }
+
+        /// The same with sums of the times and bytes of its kernels: [`Devices::kernel_times`].
+        ///
+        /// # Errors
+        /// As [`Devices::open`].
+        pub fn profiled(choice: DeviceChoice) -> Result<Self, ComputeError> {
+            Self::new(choice, true)
+        }
+
+        fn new(choice: DeviceChoice, profiled: bool) -> Result<Self, ComputeError> {
+            let context = match opened(choice, profiled) {
                 Ok(None) if choice == DeviceChoice::Gpu => return Err(GpuError::NoAdapter.into()),
                 Err(error) if choice == DeviceChoice::Gpu => return Err(error.into()),
                 Ok(context) => context.map(Arc::new),
@@ -184,7 +202,13 @@ mod device {
                     None
                 }
             };
-            Ok(Self { choice, context: Mutex::new(context) })
+            Ok(Self { choice, profiled, context: Mutex::new(context) })
+        }
+
+        /// What the kernels came to since the device was opened, or opened anew after a loss;
+        /// `None` without a device or a profile.
+        pub fn kernel_times(&self) -> Option<KernelTimes> {
+            self.context.lock().unwrap_or_else(PoisonError::into_inner).as_ref()?.kernel_times()
         }
 
         /// Whether there is a device to be used.
@@ -196,7 +220,7 @@ mod device {
         fn context(&self) -> Result<Option<Arc<GpuContext>>, GpuError> {
             let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
             if context.as_ref().is_some_and(|context| context.ask().is_err()) {
-                *context = open(self.choice)?.map(Arc::new);
+                *context = opened(self.choice, self.profiled)?.map(Arc::new);
             }
             Ok(context.clone())
         }

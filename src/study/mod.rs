@@ -38,5 +38,7 @@ pub use merge::{Merged, merge};
 pub use place::{Placed, alone};
 pub use progress::StudyProgress;
 pub use row::{FIRST_COLUMNS, NUMBERS, Row, RowStatus};
+#[cfg(feature = "cli")]
+pub(crate) use run::run_on;
 pub use run::{Options, Report, prepare, run};
 pub use shard::{Shard, cost, estimated_seconds};

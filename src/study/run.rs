@@ -89,7 +89,20 @@ pub fn run(
     progress: Arc<StudyProgress>,
     stop: Arc<AtomicBool>,
 ) -> Result<Report, StudyError> {
-    let devices = Devices::open(options.device)?;
+    run_on(&Devices::open(options.device)?, study, dir, options, (progress, stop))
+}
+
+/// As [`run`], on a device that was opened (or not) by the caller.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn run_on(
+    devices: &Devices,
+    study: &Study,
+    dir: &Path,
+    options: &Options,
+    (progress, stop): (Arc<StudyProgress>, Arc<AtomicBool>),
+) -> Result<Report, StudyError> {
     let device = devices.is_there();
     // Over a plane the device does nearly all of the work, and the threads of the cases wait for
     // it; the linear systems of two bodies, and those that are to be solved directly, take the
@@ -163,7 +176,7 @@ pub fn run(
         table.write_if_due()
     };
     let computed = if device {
-        on_device(&simulator, (&devices, options.precision), &pools, &order, &mut finished)
+        on_device(&simulator, (devices, options.precision), &pools, &order, &mut finished)
     } else {
         on_cores(&simulator, options.precision, &pools, &order, &mut finished)
     };

@@ -3,6 +3,7 @@
 use super::context::{GpuContext, PATIENCE};
 use super::error::GpuError;
 use super::memory::{Reservation, Staging};
+use super::moves::{Argument, Array, Extent};
 use super::pools::ALIGNMENT;
 use super::shader_sources::Precision;
 use crate::real::Real;
@@ -73,6 +74,7 @@ pub struct StorageBuffer<T> {
     len: usize,
     /// First byte in `raw`: 0 but of a view.
     pub(super) first: u64,
+    extent: Extent,
     /// None of a view.
     _reservation: Option<Reservation>,
     _type: PhantomData<T>,
@@ -102,6 +104,17 @@ impl<T> StorageBuffer<T> {
     /// Its name in errors.
     pub fn what(&self) -> &str {
         &self.what
+    }
+
+    /// The same, of which a kernel touches all, however many slots it serves: a list. This and
+    /// [`StorageBuffer::each`] are for counting bytes.
+    pub fn whole(self) -> Self {
+        Self { extent: Extent::Whole, ..self }
+    }
+
+    /// The same, of which a kernel touches one of so many equal parts for each slot that it serves.
+    pub fn each(self, parts: usize) -> Self {
+        Self { extent: Extent::Each(parts as u64), ..self }
     }
 
     /// What is to be read back into `out`, from element `offset` on.
@@ -146,13 +159,17 @@ impl<T> StorageBuffer<T> {
             let expected = self.raw.size().saturating_sub(first) as usize / size_of::<U>().max(1);
             return Err(GpuError::Length { what: what.to_owned(), expected, given: len });
         }
-        Ok(StorageBuffer { raw: self.raw.clone(), what: what.to_owned(), len, first, _reservation: None, _type: PhantomData })
+        let (raw, what) = (self.raw.clone(), what.to_owned());
+        Ok(StorageBuffer { raw, what, len, first, extent: Extent::Little, _reservation: None, _type: PhantomData })
     }
 
     /// The whole array, as a kernel's argument.
-    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+    pub fn binding(&self) -> Argument<'_> {
         let size = std::num::NonZeroU64::new(padded_bytes::<T>(self.len));
-        wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &self.raw, offset: self.first, size })
+        Argument {
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &self.raw, offset: self.first, size }),
+            array: Array { bytes: (self.len * size_of::<T>()) as u64, extent: self.extent },
+        }
     }
 }
 
@@ -206,7 +223,8 @@ impl GpuContext {
         let reservation = self.budget.reserve(what, bytes)?;
         let usage = kind | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let raw = self.buffer(what, bytes, usage)?;
-        Ok(StorageBuffer { raw, what: what.to_owned(), len, first: 0, _reservation: Some(reservation), _type: PhantomData })
+        let (what, extent) = (what.to_owned(), Extent::Little);
+        Ok(StorageBuffer { raw, what, len, first: 0, extent, _reservation: Some(reservation), _type: PhantomData })
     }
 
     /// An array with these elements.
@@ -292,7 +310,7 @@ impl GpuContext {
         mut encoder: wgpu::CommandEncoder,
         dispatches: u64,
         reads: &mut [Read<'_>],
-    ) -> Result<(), GpuError> {
+    ) -> Result<wgpu::SubmissionIndex, GpuError> {
         let what = reads.first().map_or("nothing", |read| read.what).to_owned();
         let padded = |read: &Read<'_>| (read.out.len() as u64).next_multiple_of(16);
         let bytes = reads.iter().map(padded).sum::<u64>();
@@ -319,7 +337,7 @@ impl GpuContext {
             // Whoever has given up does not listen any more.
             let _ = report.send(result.is_ok());
         });
-        let waited = self.wait(&what, submission);
+        let waited = self.wait(&what, submission.clone());
         // Another thread that waits for the device may be the one that is told.
         if waited.is_err() || outcome.recv_timeout(PATIENCE) != Ok(true) {
             *slot = None; // its mapping is in an unknown state
@@ -340,7 +358,7 @@ impl GpuContext {
             reads.iter_mut().for_each(|read| read.out.fill(0));
             return Err(self.fault(GpuError::Stale { what }));
         }
-        Ok(())
+        Ok(submission)
     }
 
     fn buffer(&self, what: &str, size: u64, usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, GpuError> {

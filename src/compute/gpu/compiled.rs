@@ -10,6 +10,7 @@ pub struct Pipeline {
     pub(super) raw: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) kernel: &'static Kernel,
+    pub(super) precision: Precision,
 }
 
 /// Compiled kernels by name and precision.

@@ -6,6 +6,7 @@ use super::error::GpuError;
 use super::health::DeviceHealth;
 use super::memory::{MemoryBudget, Staging};
 use super::meter::Meter;
+use super::profile::Profiling;
 use super::shader_sources::Precision;
 use crate::compute::traffic::Traffic;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -33,6 +34,7 @@ pub struct GpuContext {
     pub(super) pipelines: Arc<PipelineCache>,
     pub(super) staging: Mutex<Option<Staging>>,
     pub(super) meter: Meter,
+    pub(super) profiling: Option<Profiling>,
     pub(super) checked: bool,
     adapter: Adapter,
     _closing: Arc<Closing>,
@@ -103,13 +105,24 @@ impl GpuContext {
             on_loss.fail(GpuError::Lost { reason: one_line(&format!("it was lost ({reason:?}) {message}")) });
         });
         let budget = Arc::new(MemoryBudget::for_adapter(description.kind, adapters::own_memory(adapter)));
-        let (pipelines, staging, checked) = (Arc::default(), Mutex::new(None), cfg!(debug_assertions));
-        let (meter, _closing) = (Meter::default(), Arc::new(Closing(device.clone())));
-        Ok(Self { device, queue, health, budget, pipelines, staging, meter, checked, adapter: description, _closing })
+        Ok(Self {
+            health,
+            budget,
+            pipelines: Arc::default(),
+            staging: Mutex::new(None),
+            meter: Meter::default(),
+            profiling: None,
+            checked: cfg!(debug_assertions),
+            adapter: description,
+            _closing: Arc::new(Closing(device.clone())),
+            device,
+            queue,
+        })
     }
 
     /// The same device and its compiled kernels for another user, with a memory budget of `bytes`,
-    /// a staging buffer and counters of its own: two of these do not wait for each other.
+    /// a staging buffer and counters of its own: two of these do not wait for each other. A profile
+    /// has the sums of all parts.
     pub fn part(&self, bytes: u64) -> Self {
         Self {
             device: self.device.clone(),
@@ -119,6 +132,7 @@ impl GpuContext {
             pipelines: Arc::clone(&self.pipelines),
             staging: Mutex::new(None),
             meter: Meter::default(),
+            profiling: self.profile_of_part(),
             checked: self.checked,
             adapter: self.adapter.clone(),
             _closing: Arc::clone(&self._closing),
@@ -145,6 +159,12 @@ impl GpuContext {
     /// done then.
     pub fn without_double_precision(mut self) -> Self {
         self.adapter.double_precision = false;
+        self
+    }
+
+    /// The same without timestamps, as some drivers are. For tests of what is said then.
+    pub fn without_timestamps(mut self) -> Self {
+        self.adapter.timestamps = false;
         self
     }
 

@@ -141,12 +141,13 @@ impl<R: DeviceReal> ReturnMapping<R> {
         let (parameters, table) = flatten(materials);
         let parameters = context.array("material parameters", &parameters)?;
         let table = context.array("hardening table", &table)?;
-        let zeros = |what: &str, components: usize| context.zeros(what, cases * components * points);
-        let relative = zeros("relative displacement gradient", RELATIVE)?;
-        let committed = zeros("committed state", STATE)?;
-        let answer = zeros("material answers", ANSWER)?;
-        let tangent = zeros("material tangents", TANGENT)?;
-        let status = context.zeros("point status", cases * points)?;
+        let of_cases =
+            |what: &str, components: usize| Ok::<_, GpuError>(context.zeros(what, cases * components * points)?.each(cases));
+        let relative = of_cases("relative displacement gradient", RELATIVE)?;
+        let committed = of_cases("committed state", STATE)?;
+        let answer = of_cases("material answers", ANSWER)?;
+        let tangent = of_cases("material tangents", TANGENT)?;
+        let status = context.zeros("point status", cases * points)?.each(cases);
         let active = context.zeros("active cases", cases)?;
         let dimensions = context.block("dimensions")?;
         let arguments = vec![

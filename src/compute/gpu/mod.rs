@@ -3,7 +3,8 @@
 //!
 //! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory
 //! budget, [`shader_sources`] lists the WGSL of every kernel, [`pipelines`] compiles and dispatches
-//! it, [`validate`](mod@validate) says where a source does not compile.
+//! it, [`validate`](mod@validate) says where a source does not compile, [`profile`] sums the times
+//! of dispatches and [`moves`] their bytes, where that is asked for.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
 //! device and arrays in memory that they have in turn, [`linear`] solves their linear systems,
@@ -29,8 +30,10 @@ pub mod material;
 pub mod memory;
 mod meter;
 pub mod mixed;
+pub mod moves;
 pub mod pipelines;
 mod pools;
+pub mod profile;
 mod replace;
 pub mod report;
 pub mod resident;
@@ -46,4 +49,5 @@ pub use buffers::{Chunk, DeviceReal, StorageBuffer};
 pub use context::GpuContext;
 pub use error::GpuError;
 pub use mixed::Mixed;
+pub use profile::{KernelTime, KernelTimes};
 pub use shader_sources::{Kernel, Precision};

@@ -4,6 +4,8 @@ use super::buffers::{Read, StorageBuffer};
 use super::compiled::Pipeline;
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::moves::{Argument, Array};
+use super::profile::{Moved, Stamps};
 use super::shader_sources::{Assembled, Binding, Kernel, Precision};
 use super::validate::validate;
 use std::sync::{Arc, PoisonError};
@@ -14,6 +16,8 @@ use std::time::Instant;
 pub struct Bound {
     pipeline: Arc<Pipeline>,
     group: wgpu::BindGroup,
+    /// None without a profile.
+    pub(super) moved: Option<Moved>,
 }
 
 /// Kernels to be run one after the other, each seeing what those before it wrote.
@@ -22,6 +26,9 @@ pub struct Recorder<'a> {
     encoder: wgpu::CommandEncoder,
     commands: usize,
     dispatches: u64,
+    /// None without a profile.
+    stamps: Option<Stamps>,
+    counted: Option<usize>,
 }
 
 impl GpuContext {
@@ -66,7 +73,7 @@ impl GpuContext {
                 compilation_options: Default::default(),
                 cache: None,
             });
-            Pipeline { raw, layout, kernel }
+            Pipeline { raw, layout, kernel, precision: source.precision }
         })
     }
 
@@ -102,23 +109,33 @@ impl GpuContext {
     /// # Errors
     /// [`GpuError::Length`] for a wrong number of arguments, [`GpuError::Rejected`], or the
     /// device's fault.
-    pub fn bind(&self, pipeline: &Arc<Pipeline>, arguments: Vec<wgpu::BindingResource<'_>>) -> Result<Bound, GpuError> {
+    pub fn bind(&self, pipeline: &Arc<Pipeline>, arguments: Vec<Argument<'_>>) -> Result<Bound, GpuError> {
         let kernel = pipeline.kernel;
         if arguments.len() != kernel.bindings.len() {
             let what = format!("the argument list of {}", kernel.name);
             return Err(GpuError::Length { what, expected: kernel.bindings.len(), given: arguments.len() });
         }
+        let arrays: Vec<Array> = arguments.iter().map(|argument| argument.array).collect();
+        let resources = arguments.into_iter().map(|argument| argument.resource);
         let entries: Vec<wgpu::BindGroupEntry<'_>> =
-            (0u32..).zip(arguments).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+            (0u32..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
         let descriptor = wgpu::BindGroupDescriptor { label: Some(kernel.name), layout: &pipeline.layout, entries: &entries };
         let group = self.scoped(kernel.name, || self.device.create_bind_group(&descriptor))?;
-        Ok(Bound { pipeline: Arc::clone(pipeline), group })
+        let moved = self.moved(kernel, pipeline.precision, arrays);
+        Ok(Bound { pipeline: Arc::clone(pipeline), group, moved })
     }
 
     /// Starts a list of kernels to be run in one submission.
     pub fn record(&self) -> Recorder<'_> {
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("kernels") };
-        Recorder { context: self, encoder: self.device.create_command_encoder(&descriptor), commands: 0, dispatches: 0 }
+        Recorder {
+            context: self,
+            encoder: self.device.create_command_encoder(&descriptor),
+            commands: 0,
+            dispatches: 0,
+            stamps: self.stamps(),
+            counted: None,
+        }
     }
 }
 
@@ -139,14 +156,24 @@ impl Recorder<'_> {
         if groups == 0 || cases == 0 {
             return Ok(());
         }
+        let timestamp_writes = match (&mut self.stamps, &bound.moved) {
+            (Some(stamps), Some(moved)) => self.context.stamp(stamps, moved, self.counted.unwrap_or(cases).min(cases))?,
+            _ => None,
+        };
         let mut pass =
-            self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(kernel.name), timestamp_writes: None });
+            self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(kernel.name), timestamp_writes });
         pass.set_pipeline(&bound.pipeline.raw);
         pass.set_bind_group(0, &bound.group, &[]);
         pass.dispatch_workgroups(groups as u32, cases as u32, 1);
         self.commands += 1;
         self.dispatches += 1;
         Ok(())
+    }
+
+    /// Counts the bytes of the kernels that follow for so many slots; without a number for all that
+    /// they are dispatched for. It changes nothing but what a profile says of them.
+    pub fn count_for(&mut self, slots: Option<usize>) {
+        self.counted = slots;
     }
 
     /// Appends a copy of `count` elements from one array to another, after the kernels before it.
@@ -198,20 +225,29 @@ impl Recorder<'_> {
     /// # Errors
     /// [`GpuError::Stale`], [`GpuError::Lost`], [`GpuError::Timeout`], [`GpuError::Rejected`]: then
     /// no numbers come back at all.
-    pub fn submit_and_read(self, reads: &mut [Read<'_>]) -> Result<(), GpuError> {
-        self.context.read_after(self.encoder, self.dispatches, reads)
+    pub fn submit_and_read(mut self, reads: &mut [Read<'_>]) -> Result<(), GpuError> {
+        if let Some(stamps) = &self.stamps {
+            stamps.resolve(&mut self.encoder);
+        }
+        let submission = self.context.read_after(self.encoder, self.dispatches, reads)?;
+        self.context.waited_for(self.stamps, &submission);
+        Ok(())
     }
 
     /// Sends the list off. Errors of the kernels themselves show at the next download.
     ///
     /// # Errors
     /// [`GpuError::Rejected`], or the device's fault.
-    pub fn submit(self) -> Result<(), GpuError> {
+    pub fn submit(mut self) -> Result<(), GpuError> {
         if self.commands == 0 {
             return self.context.check();
         }
+        if let Some(stamps) = &self.stamps {
+            stamps.resolve(&mut self.encoder);
+        }
         self.context.scoped("a list of kernels", || self.context.queue.submit([self.encoder.finish()]))?;
         self.context.meter.submitted(self.dispatches);
+        self.context.sent(self.stamps);
         Ok(())
     }
 }

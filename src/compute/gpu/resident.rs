@@ -105,13 +105,13 @@ impl Connectivity {
                 contact_points: mesh.contact_nodes.len(),
                 blocks: plan.blocks(),
             },
-            element_nodes: context.array("element nodes", &nodes)?,
-            node_start: context.array("elements around nodes: starts", &mesh.node_elements.start)?,
-            node_entry: context.array("elements around nodes", &mesh.node_elements.entry)?,
-            block_start: context.array("blocks of the tangent: starts", &plan.start)?,
-            block_entry: context.array("blocks of the tangent", &plan.entry)?,
-            contact_node: context.array("contact nodes", &mesh.contact_nodes)?,
-            on_symmetry_plane: context.array("contact points on the symmetry plane", &on_plane)?,
+            element_nodes: context.array("element nodes", &nodes)?.whole(),
+            node_start: context.array("elements around nodes: starts", &mesh.node_elements.start)?.whole(),
+            node_entry: context.array("elements around nodes", &mesh.node_elements.entry)?.whole(),
+            block_start: context.array("blocks of the tangent: starts", &plan.start)?.whole(),
+            block_entry: context.array("blocks of the tangent", &plan.entry)?.whole(),
+            contact_node: context.array("contact nodes", &mesh.contact_nodes)?.whole(),
+            on_symmetry_plane: context.array("contact points on the symmetry plane", &on_plane)?.whole(),
         })
     }
 }
@@ -163,7 +163,7 @@ impl<R: DeviceReal> Resident<R> {
             .collect();
         let points = sizes.points();
         let (coordinates, volume) = send_geometry::<R>(context, sizes, &meshes)?;
-        let weight = context.zeros("contact weights", meshes.len() * sizes.contact_points)?;
+        let weight = context.zeros("contact weights", meshes.len() * sizes.contact_points)?.each(meshes.len());
         for (index, mesh) in meshes.iter().enumerate() {
             context.upload_at(&weight, index * sizes.contact_points, &contact_weights::<R>(mesh))?;
         }
@@ -176,15 +176,15 @@ impl<R: DeviceReal> Resident<R> {
             coordinates,
             volume,
             weight,
-            committed: context.zeros("committed displacements", count * 3 * sizes.nodes)?,
+            committed: context.zeros("committed displacements", count * 3 * sizes.nodes)?.each(count),
             parameters,
             table,
-            state: context.zeros("states at the start", count * STATE * points)?,
-            history: context.zeros("committed states", count * HISTORY * points)?,
+            state: context.zeros("states at the start", count * STATE * points)?.each(count),
+            history: context.zeros("committed states", count * HISTORY * points)?.each(count),
             anticipated: context.zeros("weights of the last flow", count)?,
-            plastic_work: context.zeros("plastic work", count * sizes.elements)?,
+            plastic_work: context.zeros("plastic work", count * sizes.elements)?.each(count),
             friction: context.array("coefficients of friction", &friction)?,
-            gap: context.zeros("gaps at the start of the step", count * sizes.contact_points)?,
+            gap: context.zeros("gaps at the start of the step", count * sizes.contact_points)?.each(count),
         };
         let still = vec![0.0; 3 * sizes.nodes];
         for (index, model) in models.iter().enumerate() {
@@ -340,8 +340,9 @@ fn send_geometry<R: DeviceReal>(
     meshes: &[&Arc<Mesh>],
 ) -> Result<(StorageBuffer<R>, StorageBuffer<R>), ComputeError> {
     let points = sizes.points();
-    let coordinates = context.zeros("reference positions", meshes.len() * COORDINATES * sizes.elements)?;
-    let volume = context.zeros("reference volumes", meshes.len() * points)?;
+    let zeros = |what: &str, of_mesh: usize| Ok::<_, GpuError>(context.zeros(what, meshes.len() * of_mesh)?.each(meshes.len()));
+    let coordinates = zeros("reference positions", COORDINATES * sizes.elements)?;
+    let volume = zeros("reference volumes", points)?;
     for (index, mesh) in meshes.iter().enumerate() {
         write_geometry(context, sizes, (&coordinates, &volume), (index, mesh))?;
     }

@@ -3,6 +3,7 @@
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::moves::Argument;
 use super::pipelines::Bound;
 use super::pools::{PoolBytes, Pools};
 use super::resident::{Connectivity, HISTORY, Resident, Sizes};
@@ -58,22 +59,22 @@ impl<R: DeviceReal> Scratch<R> {
     pub fn new(context: &GpuContext, sizes: Sizes, (slots, pools): (usize, PoolBytes)) -> Result<Self, GpuError> {
         let points = sizes.points();
         let pools = Pools::new(context, pools, slots)?;
-        let zeros = |what: &str, per_slot: usize| context.zeros(what, slots * per_slot);
+        let zeros = |what: &str, per_slot: usize| Ok::<_, GpuError>(context.zeros(what, slots * per_slot)?.each(slots));
         Ok(Self {
             dimensions: context.block("dimensions")?,
             active: context.zeros("active cases", slots)?,
             first_invalid: context.zeros("status", slots)?,
             increment: zeros("increments", 3 * sizes.nodes)?,
             jacobian: zeros("Jacobians", points)?,
-            stress: pools.blocks.view("stresses", slots * STRESS * points)?,
+            stress: pools.blocks.view("stresses", slots * STRESS * points)?.each(slots),
             force: zeros("internal forces", 3 * sizes.nodes)?,
-            next_history: pools.vectors.view("new states", slots * HISTORY * points)?,
+            next_history: pools.vectors.view("new states", slots * HISTORY * points)?.each(slots),
             pools,
             point_work: zeros("energies of points", 2 * points)?,
             energies: zeros("energies of elements", 3 * sizes.elements)?,
             contact_trial: zeros("contact points", CONTACT_TRIAL * sizes.contact_points)?,
             contact_answer: zeros("contact rows", CONTACT_ANSWER * sizes.contact_points)?,
-            contact_status: context.zeros("contact status", slots * sizes.contact_points)?,
+            contact_status: context.zeros("contact status", slots * sizes.contact_points)?.each(slots),
         })
     }
 
@@ -111,7 +112,7 @@ impl Kernels {
         ];
         let material = [r.parameters.binding(), r.table.binding()];
         let at_points = [r.state.binding(), s.jacobian.binding(), s.first_invalid.binding()];
-        let bind = |kernel: &'static Kernel, parts: &[&[wgpu::BindingResource<'_>]]| {
+        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| {
             let pipeline = c.pipeline(kernel, R::PRECISION)?;
             c.bind(&pipeline, parts.concat())
         };
@@ -133,8 +134,7 @@ impl Kernels {
             s.contact_status.binding(),
         ];
         let contact_trial = [mesh.contact_node.binding(), s.force.binding(), s.increment.binding(), s.contact_trial.binding()];
-        let at =
-            |kernel, outputs: &[wgpu::BindingResource<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
+        let at = |kernel, outputs: &[Argument<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
         Ok(Self {
             jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &[s.jacobian.binding()]])?,
             internal_force: at(&HEX8_INTERNAL_FORCE, &[s.stress.binding()])?,

@@ -6,6 +6,7 @@ use super::batch::Dispatch;
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::moves::Argument;
 use super::pipelines::{Bound, Recorder};
 use super::resident::{
     COORDINATES, Connectivity, MATERIAL_ROOM, Resident, STATE, Sizes, replace_materials, send_materials, write_geometry,
@@ -46,8 +47,8 @@ pub struct Set<T> {
 impl<T: DeviceReal> Set<T> {
     fn new<R>(sizes: Sizes, scratch: &Scratch<R>, slots: usize) -> Result<Self, GpuError> {
         Ok(Self {
-            moduli: scratch.pools.vectors.view("moduli", slots * MODULI * sizes.points())?,
-            blocks: scratch.pools.blocks.view("tangent blocks", slots * 9 * sizes.blocks)?,
+            moduli: scratch.pools.vectors.view("moduli", slots * MODULI * sizes.points())?.each(slots),
+            blocks: scratch.pools.blocks.view("tangent blocks", slots * 9 * sizes.blocks)?.each(slots),
             groups: Vec::new(),
         })
     }
@@ -77,7 +78,7 @@ impl<T: DeviceReal> Set<T> {
             self.moduli.binding(),
         ];
         let gather = [mesh.block_start.binding(), mesh.block_entry.binding(), self.moduli.binding(), self.blocks.binding()];
-        let bind = |kernel: &'static Kernel, rest: &[wgpu::BindingResource<'_>]| {
+        let bind = |kernel: &'static Kernel, rest: &[Argument<'_>]| {
             let pipeline = context.pipeline(kernel, T::PRECISION)?;
             context.bind(&pipeline, [&shape[..], rest].concat())
         };
@@ -147,7 +148,7 @@ pub struct Bytes {
 #[derive(Debug)]
 pub enum Tangents<R> {
     /// In the residual's precision.
-    Same(Set<R>),
+    Same(Box<Set<R>>),
     /// In single precision.
     Single(Box<Single>),
 }
@@ -195,7 +196,7 @@ impl<R: DeviceReal> Tangents<R> {
                 };
                 set.bind(context, mesh, scratch, &inputs)?;
             }
-            return Ok(Self::Same(set));
+            return Ok(Self::Same(Box::new(set)));
         }
         let (points, unknowns) = (sizes.points(), 3 * sizes.nodes);
         let shapes = [(unknowns, 1), (unknowns, 0), (STATE * points, 0)].map(|(count, by_slot)| {
@@ -206,14 +207,14 @@ impl<R: DeviceReal> Tangents<R> {
         let [of_increment, of_displacement, of_state] = shapes;
         let shapes = [of_increment?, of_displacement?, of_state?];
         let mut set = Set::new(sizes, scratch, slots)?;
-        let increment = context.zeros("increments in f32", slots * unknowns)?;
-        let jacobian = context.zeros("Jacobians in f32", slots * points)?;
+        let increment = context.zeros("increments in f32", slots * unknowns)?.each(slots);
+        let jacobian = context.zeros("Jacobians in f32", slots * points)?.each(slots);
         let pipeline = context.pipeline(&NARROW, R::PRECISION)?;
         let mut groups = Vec::with_capacity(residents.len());
         for r in residents {
             let (coordinates, volume) = r.geometry::<f32>(context, sizes, models)?;
-            let committed = context.zeros("committed displacements in f32", r.count * unknowns)?;
-            let state = context.zeros("states in f32", r.count * STATE * points)?;
+            let committed = context.zeros("committed displacements in f32", r.count * unknowns)?.each(r.count);
+            let state = context.zeros("states in f32", r.count * STATE * points)?.each(r.count);
             let (parameters, table) = send_materials::<f32>(context, sizes, &models[r.first..r.first + r.count])?;
             let inputs = Inputs {
                 coordinates: &coordinates,

@@ -4,6 +4,7 @@ use super::super::buffers::{DeviceReal, StorageBuffer};
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::linear::{Linear, POINT_ROWS, Record};
+use super::super::moves::Argument;
 use super::super::pipelines::Bound;
 use super::super::resident::{Connectivity, Resident, Sizes};
 use super::super::scratch::Scratch;
@@ -71,21 +72,21 @@ impl<R: DeviceReal> Kept<R> {
         let plate: Vec<u32> =
             std::iter::once(meshes[0].plate_nodes.len() as u32).chain(meshes[0].plate_nodes.iter().copied()).collect();
         Ok(Self {
-            increments: context.zeros("iterates", cases * 2 * n)?,
-            forces: context.zeros("forces of iterates", cases * 2 * n)?,
-            correction: context.zeros("corrections", cases * n)?,
-            by_residual: context.zeros("corrections at constant h", cases * n)?,
-            before: context.zeros("earlier displacements", cases * n)?,
-            slides: context.zeros("sliding points", cases * points)?,
-            came_off: context.zeros("points that came off", cases * points)?,
-            rows: context.zeros("contact rows of iterates", cases * 2 * ROWS * points)?,
-            codes: context.zeros("contact status of iterates", cases * 2 * points)?,
-            response: context.zeros("responses to a unit indentation", cases * n)?,
+            increments: context.zeros("iterates", cases * 2 * n)?.each(2 * cases),
+            forces: context.zeros("forces of iterates", cases * 2 * n)?.each(2 * cases),
+            correction: context.zeros("corrections", cases * n)?.each(cases),
+            by_residual: context.zeros("corrections at constant h", cases * n)?.each(cases),
+            before: context.zeros("earlier displacements", cases * n)?.each(cases),
+            slides: context.zeros("sliding points", cases * points)?.each(cases),
+            came_off: context.zeros("points that came off", cases * points)?.each(cases),
+            rows: context.zeros("contact rows of iterates", cases * 2 * ROWS * points)?.each(2 * cases),
+            codes: context.zeros("contact status of iterates", cases * 2 * points)?.each(2 * cases),
+            response: context.zeros("responses to a unit indentation", cases * n)?.each(cases),
             largest: context.zeros("largest right-hand sides", cases * 2)?,
-            node_info: context.array("what nodes are", &node_info(meshes[0]))?,
+            node_info: context.array("what nodes are", &node_info(meshes[0]))?.whole(),
             plate: context.array("plate nodes", &plate)?,
             plate_weight: context.array("weights of missing displacements", &weights)?,
-            height: context.array("heights of contact points", &heights)?,
+            height: context.array("heights of contact points", &heights)?.each(geometries),
         })
     }
 
@@ -192,8 +193,8 @@ impl<R: DeviceReal> Told<R> {
             counts: context.zeros("counts", slots)?,
             all_valid: context.array("status before", &vec![u32::MAX; slots])?,
             of_tangent: context.zeros("status of the tangent", slots)?,
-            at_points: zeros("recorded points", AT_POINT * sizes.contact_points)?,
-            status: context.zeros("recorded status", slots * sizes.contact_points)?,
+            at_points: zeros("recorded points", AT_POINT * sizes.contact_points)?.each(slots),
+            status: context.zeros("recorded status", slots * sizes.contact_points)?.each(slots),
             energies: zeros("energies of bodies", 3)?,
             partial_sums: zeros("partial sums of trials", PARTS * sizes.nodes.div_ceil(SUMMING))?,
             corrections: context.zeros("solves of corrections", slots)?,
@@ -255,7 +256,7 @@ impl Kernels {
             kept.rows.binding(),
             kept.codes.binding(),
         ];
-        let bind = |kernel: &'static Kernel, parts: &[&[wgpu::BindingResource<'_>]]| {
+        let bind = |kernel: &'static Kernel, parts: &[&[Argument<'_>]]| {
             let pipeline = context.pipeline(kernel, R::PRECISION)?;
             context.bind(&pipeline, [&shape[..], &parts.concat()].concat())
         };

@@ -239,7 +239,7 @@ impl<R: DeviceReal> Batch<R> {
     fn read_trials_and(
         &self,
         list: Recorder<'_>,
-        solves: Option<&mut Solves>,
+        mut solves: Option<&mut Solves>,
         back: &mut Back<R>,
         and: Option<Read<'_>>,
     ) -> Result<(), GpuError> {
@@ -250,12 +250,16 @@ impl<R: DeviceReal> Batch<R> {
             told.readings.read(0, &mut back.readings)?,
             told.counts.read(0, &mut back.counts)?,
         ];
-        if let Some(solves) = solves {
+        if let Some(solves) = &mut solves {
             reads.push(linear.read(solves)?);
             reads.push(told.of_tangent.read(0, &mut back.of_tangent)?);
         }
         reads.extend(and);
-        list.submit_and_read(&mut reads)
+        list.submit_and_read(&mut reads)?;
+        if let Some(solves) = solves {
+            linear.count(&self.context, solves);
+        }
+        Ok(())
     }
 
     /// Evaluates trials.
@@ -367,6 +371,7 @@ impl<R: DeviceReal> Batch<R> {
         linear.iterate(&mut list, units.first_list(), slots)?;
         of_response(&mut list)?;
         self.read_trials_and(list, Some(&mut units), back, Some(solves.read_kept(&told.corrections)?))?;
+        linear.count(&self.context, solves);
         self.finish(linear, &mut units, back, of_response)?;
         if solves.go_on() {
             // The responses have taken the place of vectors that were to be gone on with: the

@@ -3,6 +3,7 @@
 use super::super::buffers::StorageBuffer;
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
+use super::super::moves::Argument;
 use super::super::pipelines::{Bound, Recorder};
 use super::super::pools::Pools;
 use super::super::shader_sources::{Kernel, Precision};
@@ -70,7 +71,7 @@ pub struct Record {
 /// A kernel with the threads that it takes.
 #[derive(Debug)]
 pub struct Call {
-    bound: Bound,
+    pub(super) bound: Bound,
     threads: usize,
 }
 
@@ -83,7 +84,7 @@ impl Call {
         context: &GpuContext,
         kernel: &'static Kernel,
         threads: usize,
-        arguments: Vec<wgpu::BindingResource<'_>>,
+        arguments: Vec<Argument<'_>>,
     ) -> Result<Self, GpuError> {
         let pipeline = context.pipeline(kernel, Precision::F32)?;
         Ok(Self { bound: context.bind(&pipeline, arguments)?, threads })
@@ -174,9 +175,9 @@ struct DeviceLists {
 impl DeviceLists {
     fn new(context: &GpuContext, what: &str, start: &[u32], entry: &[u32], weight: &[f32]) -> Result<Self, GpuError> {
         Ok(Self {
-            start: context.array(&format!("{what}: starts"), start)?,
-            entry: context.array(what, entry)?,
-            weight: context.array(&format!("{what}: weights"), weight)?,
+            start: context.array(&format!("{what}: starts"), start)?.whole(),
+            entry: context.array(what, entry)?.whole(),
+            weight: context.array(&format!("{what}: weights"), weight)?.whole(),
         })
     }
 
@@ -188,7 +189,7 @@ impl DeviceLists {
         Self::new(context, what, &rows.start, &rows.column, &rows.weight)
     }
 
-    fn bindings(&self) -> [wgpu::BindingResource<'_>; 3] {
+    fn bindings(&self) -> [Argument<'_>; 3] {
         [self.start.binding(), self.entry.binding(), self.weight.binding()]
     }
 }
@@ -225,7 +226,7 @@ impl Level {
         common: Common<'_>,
     ) -> Result<Self, GpuError> {
         let slots = common.slots;
-        let zeros = |what: &str, numbers: usize| context.zeros(what, slots * numbers);
+        let zeros = |what: &str, numbers: usize| Ok::<_, GpuError>(context.zeros(what, slots * numbers)?.each(slots));
         let transfer = match (&layout.transfer, next) {
             (Some(transfer), Some(next)) => {
                 let numbers = slots * product_numbers(layout);
@@ -233,7 +234,7 @@ impl Level {
                     Some(pool) => pool.view("products A P", numbers)?,
                     None => context.zeros("products A P", numbers)?,
                 };
-                Some(Transfer::new(context, transfer, next, product)?)
+                Some(Transfer::new(context, transfer, next, product.each(slots))?)
             }
             _ => None,
         };
@@ -254,10 +255,10 @@ impl Level {
         let vector = 3 * layout.nodes;
         Ok(Self {
             block,
-            column: context.array("columns of a level", &layout.column)?,
-            diagonal: context.array("diagonals of a level", &layout.diagonal)?,
-            matrix: context.zeros("matrices of a level", slots * 9 * layout.blocks())?,
-            fixed: context.zeros("fixed unknowns", slots * layout.nodes)?,
+            column: context.array("columns of a level", &layout.column)?.whole(),
+            diagonal: context.array("diagonals of a level", &layout.diagonal)?.whole(),
+            matrix: context.zeros("matrices of a level", slots * 9 * layout.blocks())?.each(slots),
+            fixed: context.zeros("fixed unknowns", slots * layout.nodes)?.each(slots),
             b: zeros("right-hand sides of a level", vector)?,
             x: zeros("solutions of a level", vector)?,
             inverse: zeros("diagonal blocks of a level", 2 * 9 * layout.nodes)?,
@@ -313,7 +314,7 @@ impl Level {
     }
 
     /// Its sizes, columns and matrix, and a vector to be multiplied.
-    pub fn product<'a>(&'a self, x: &'a StorageBuffer<f32>) -> Vec<wgpu::BindingResource<'a>> {
+    pub fn product<'a>(&'a self, x: &'a StorageBuffer<f32>) -> Vec<Argument<'a>> {
         vec![self.block.binding(), self.column.binding(), self.matrix.binding(), x.binding()]
     }
 }
@@ -534,7 +535,7 @@ impl Binder<'_> {
         Call::new(self.context, &RESTRICT, row_threads(transfer.coarse_nodes), restrict)
     }
 
-    fn small<'a>(&'a self, level: &'a Level) -> Vec<wgpu::BindingResource<'a>> {
+    fn small<'a>(&'a self, level: &'a Level) -> Vec<Argument<'a>> {
         vec![
             level.block.binding(),
             level.column.binding(),

@@ -18,6 +18,7 @@ pub mod sources;
 use super::buffers::{DeviceReal, Read, StorageBuffer};
 use super::context::GpuContext;
 use super::error::GpuError;
+use super::moves::Argument;
 use super::pipelines::Recorder;
 use super::pools::Pools;
 use crate::compute::linear::{Ended, SideReport};
@@ -196,23 +197,25 @@ impl Linear {
         let finest = &plan.layout.levels[0];
         let unknowns = 3 * finest.nodes;
         let chunks = unknowns.div_ceil(CHUNK);
-        let zeros = |what: &str, numbers: usize| context.zeros::<f32>(what, slots * numbers);
+        let zeros = |what: &str, numbers: usize| Ok::<_, GpuError>(context.zeros::<f32>(what, slots * numbers)?.each(slots));
         let records = context.zeros("linear solves", slots)?;
         let levels = Levels::new(context, &plan.layout, (slots, pools), plan.plate.len(), &records)?;
         let level = &levels.levels[0];
-        let rows = context.zeros("contact rows of the matrix", slots * POINT_ROWS * plan.contact_points)?;
-        let source = context.array("blocks of the matrix", &plan.source)?;
-        let point_of = context.array("contact points by node", &plan.point_of)?;
+        let rows = context.zeros("contact rows of the matrix", slots * POINT_ROWS * plan.contact_points)?.each(slots);
+        let source = context.array("blocks of the matrix", &plan.source)?.whole();
+        let point_of = context.array("contact points by node", &plan.point_of)?.whole();
         let plate = context.array("plate nodes", &plan.plate)?;
         let counts = context.block("sizes of the tangent")?;
         context.upload(&counts, &[[plan.upper_blocks as u32, plan.contact_points as u32, 0, 0]])?;
         let (rhs, solution) = (zeros("right-hand sides", unknowns)?, zeros("solutions", unknowns)?);
         let (guess, answer) = (zeros("guesses", unknowns)?, zeros("answers", unknowns)?);
-        let basis = pools.vectors.view("Krylov vectors", slots * (RESTART + 1) * unknowns)?;
-        let preconditioned = pools.vectors.view_after(Some(&basis), "preconditioned vectors", slots * RESTART * unknowns)?;
-        let sums = zeros("partial sums", (RESTART + 2) * chunks)?;
-        let squares = zeros("partial squares", chunks)?;
-        let small = zeros("least-squares problems", small_numbers())?;
+        let vectors = slots * (RESTART + 1);
+        let basis = pools.vectors.view("Krylov vectors", vectors * unknowns)?.each(vectors);
+        let vectors = slots * RESTART;
+        let preconditioned = pools.vectors.view_after(Some(&basis), "preconditioned vectors", vectors * unknowns)?.each(vectors);
+        let sums = context.zeros("partial sums", slots * (RESTART + 2) * chunks)?;
+        let squares = context.zeros("partial squares", slots * chunks)?;
+        let small = context.zeros("least-squares problems", slots * small_numbers())?;
 
         let assemble = context.pipeline(&ASSEMBLE, T::PRECISION)?;
         let arguments = vec![
@@ -226,10 +229,10 @@ impl Linear {
             counts.binding(),
         ];
         let assemble = Call::of(context.bind(&assemble, arguments)?, finest.blocks() / 2);
-        let call = |kernel, threads, arguments: Vec<wgpu::BindingResource<'_>>| {
+        let call = |kernel, threads, arguments: Vec<Argument<'_>>| {
             Call::new(context, kernel, threads, [vec![level.block.binding()], arguments].concat())
         };
-        let with_product = |kernel, threads, x, arguments: Vec<wgpu::BindingResource<'_>>| {
+        let with_product = |kernel, threads, x, arguments: Vec<Argument<'_>>| {
             Call::new(context, kernel, threads, [level.product(x), arguments].concat())
         };
         let (r, w) = (records.binding(), &level.b);
@@ -337,10 +340,12 @@ impl Linear {
         let mut answer = vec![0.0; slots * self.unknowns];
         self.iterate(&mut list, solves.first_list(), slots)?;
         list.submit_and_read(&mut [self.read(&mut solves)?, self.answer.read(0, &mut answer)?, and.0.read(0, and.1)?])?;
+        self.count(context, &mut solves);
         while solves.go_on() {
             let mut list = context.record();
             self.take_up(context, &mut list, &mut solves)?;
             list.submit_and_read(&mut [self.read(&mut solves)?, self.answer.read(0, &mut answer)?])?;
+            self.count(context, &mut solves);
         }
         Ok((answer, solves.reports()))
     }
@@ -406,6 +411,7 @@ impl Linear {
             context.upload_at(&self.records, slot, &[records[slot]])?;
         }
         if !full.is_empty() {
+            list.count_for(Some(full.len()));
             append(&self.residual, list, slots)?;
             append(&self.begin, list, slots)?;
         }
@@ -418,6 +424,30 @@ impl Linear {
     /// [`GpuError::Length`] for more slots than there are.
     pub fn read<'a>(&'a self, solves: &'a mut Solves) -> Result<Read<'a>, GpuError> {
         self.records.read(0, &mut solves.records)
+    }
+
+    /// Has a profile count what the Krylov iterations moved that came back in `solves`, which are
+    /// those of one list, and the answers after them.
+    pub fn count(&self, context: &GpuContext, solves: &mut Solves) {
+        if !context.is_profiled() {
+            return;
+        }
+        let new = solves.records.iter().zip(&solves.counted).map(|(r, counted)| r.iterations.saturating_sub(*counted));
+        let new: Vec<u32> = new.collect();
+        for i in 0..new.iter().copied().max().unwrap_or(0) {
+            let running = || solves.records.iter().zip(&new).filter(|(_, new)| i < **new);
+            // Those that run are all in the same step, which takes one vector more than the last.
+            let vectors = running().map(|(r, new)| (r.steps + i).saturating_sub(*new) + 1).max().unwrap_or(0);
+            for call in self.levels.cycle.iter().chain(&self.iteration) {
+                context.credit(call.bound.moved.as_ref(), running().count(), vectors as usize);
+            }
+        }
+        for record in &solves.records {
+            for call in &self.finish {
+                context.credit(call.bound.moved.as_ref(), 1, record.steps as usize);
+            }
+        }
+        solves.counted = solves.records.iter().map(|record| record.iterations).collect();
     }
 
     /// The arrays that Newton's iterates fill and read.
@@ -436,11 +466,15 @@ impl Linear {
     /// # Errors
     /// The device's fault.
     pub fn iterate(&self, list: &mut Recorder<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
+        // Which slots leave them out is known when they have run: see `count`.
+        list.count_for(Some(0));
         for _ in 0..times {
             append(&self.levels.cycle, list, slots)?;
             append(&self.iteration, list, slots)?;
         }
-        append(&self.finish, list, slots)
+        append(&self.finish, list, slots)?;
+        list.count_for(None);
+        Ok(())
     }
 }
 
@@ -449,6 +483,8 @@ impl Linear {
 pub struct Solves {
     records: Vec<Record>,
     expected: usize,
+    /// Krylov iterations whose bytes a profile has, by slot.
+    counted: Vec<u32>,
 }
 
 impl Solves {
@@ -460,7 +496,8 @@ impl Solves {
             relative_to_start: relative.into(),
             ..Record::default()
         };
-        Self { records: tolerance.iter().zip(relative_to_guess).map(fresh).collect(), expected }
+        let records = tolerance.iter().zip(relative_to_guess).map(fresh).collect();
+        Self { records, expected, counted: vec![0; tolerance.len()] }
     }
 
     /// The same with `more` Krylov iterations in the first list.
