@@ -83,8 +83,8 @@ fn a_batch_takes_the_cpus_iterations() {
 fn a_batch_in_f32_is_held_to_f64() {
     let Some(_) = device::device("a_batch_in_f32_is_held_to_f64", Precision::F64) else { return };
     let dir = tempfile::tempdir().unwrap();
-    // At 1e-3 a linear solve that takes one Krylov iteration more or less ends Newton elsewhere: the
-    // CPU's own two linear solvers, multigrid and direct, are up to 4.2e-4 apart in these cases.
+    // At 1e-3 a linear solve that takes one Krylov iteration more or less ends Newton elsewhere:
+    // the CPU's own two linear solvers, multigrid and direct, are up to 4.2e-4 apart here.
     for (tolerance, most) in [(1e-3, 5e-4), (1e-8, 1e-7)] {
         let (cpu, gpu) = (cases(dir.path(), tolerance, CPU), cases(dir.path(), tolerance, MIXED));
         for (number, ((theirs, _), (ours, summary))) in cpu.iter().zip(&gpu).enumerate() {

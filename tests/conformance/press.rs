@@ -171,8 +171,8 @@ fn steps_in_f32_do_not_change_the_answer() {
 }
 
 /// On a healthy device first, then on one that is destroyed in mid-run: the CPU goes on, and the
-/// history is the same. Solved tightly: the device's smoother has other digits than the CPU's, so that
-/// each goes from iterate to iterate in its own way.
+/// history is the same. Solved tightly: the device's smoother has other digits than the CPU's, so
+/// that each goes from iterate to iterate in its own way.
 #[test]
 fn gpu_f64_has_the_cpus_history_even_if_it_is_lost_on_the_way() {
     let name = "gpu_f64_has_the_cpus_history_even_if_it_is_lost_on_the_way";
