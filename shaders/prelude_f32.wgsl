@@ -35,3 +35,5 @@ fn single_bits(x: real) -> u32 {
 fn real_of_single(bits: u32) -> real {
     return real(bitcast<f32>(bits));
 }
+
+const REAL_IS_SINGLE: bool = true;

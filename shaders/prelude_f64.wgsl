@@ -47,3 +47,5 @@ fn single_bits(x: real) -> u32 {
 fn real_of_single(bits: u32) -> real {
     return real(bitcast<f32>(bits));
 }
+
+const REAL_IS_SINGLE: bool = false;

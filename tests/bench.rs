@@ -141,7 +141,7 @@ fn what_does_not_fit_is_said_in_its_row() {
     if device::device("what_does_not_fit_is_said_in_its_row", Precision::F64).is_none() {
         return;
     }
-    let (table, _, report) = measured(&["--device", "gpu", "--quiet"], &[("ASPERITY_GPU_MEMORY", "8")]);
+    let (table, _, report) = measured(&["--device", "gpu", "--quiet"], &[("ASPERITY_GPU_MEMORY", "10")]);
     let skipped = complete(&report, &["device", "one-core", "all-cores"]);
     assert!(skipped > 0 && skipped < (2 * 11 + PARTS.len()) * BATCHES.len(), "{skipped}");
     let reasons: Vec<&str> = report["rows"].as_array().unwrap().iter().filter_map(|r| r["outcome"]["skipped"].as_str()).collect();

@@ -5,7 +5,7 @@
 use crate::compute::gpu::Evaluation;
 use crate::compute::gpu::material::{ANSWER, RELATIVE, STATE, TANGENT};
 use crate::compute::gpu::resident::{COORDINATES, HISTORY};
-use crate::compute::gpu::scratch::{CONTACT_ANSWER, CONTACT_TRIAL, MODULI};
+use crate::compute::gpu::scratch::{CONTACT_ANSWER, CONTACT_TRIAL, ELEMENT_BLOCKS};
 use crate::contact::coulomb::Rows;
 use crate::element::hex8::{Geometry, NODES, Nodal, Points, State, Tangent};
 use crate::mesh::Mesh;
@@ -56,8 +56,9 @@ impl Sizes {
                 jacobian + at_points + word * 9 * points + gather
             }
             Evaluation::Tangent => {
-                let gather = INDEX * (upper + PAIRS * self.elements) + word * (MODULI * points + 9 * upper);
-                jacobian + at_points + word * MODULI * points + gather
+                let elements = word * ELEMENT_BLOCKS * self.elements;
+                let gather = INDEX * (upper + PAIRS * self.elements) + elements + word * 9 * upper;
+                jacobian + at_points + elements + gather
             }
             Evaluation::Contact => self.contact_points * (word * (3 + CONTACT_TRIAL + CONTACT_ANSWER) + 2 * INDEX),
             Evaluation::Update => {

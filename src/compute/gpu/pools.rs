@@ -1,8 +1,8 @@
 //! Memory that arrays have in turn: what one leaves is lost when the next is written.
 //!
-//! An iteration makes moduli, gathers them into blocks, forms the finest matrix of these, takes A P
+//! An iteration makes the elements' tangents, gathers them into blocks, forms the finest matrix of these, takes A P
 //! of it on the way to the coarser ones, and iterates; then trials take stresses, of which there
-//! may be some between two lists of Krylov iterations. So Krylov vectors may lie where moduli were,
+//! may be some between two lists of Krylov iterations. So Krylov vectors may lie where elements were,
 //! but not where stresses come.
 
 use super::buffers::{DeviceReal, StorageBuffer};
@@ -28,7 +28,7 @@ impl PoolBytes {
     pub fn new<R: DeviceReal>(sizes: Sizes, tangents: &Bytes, linear: Option<&Plan>) -> Self {
         let numbers = |components: usize| (components * sizes.points() * size_of::<R>()) as u64;
         Self {
-            vectors: tangents.moduli.max(numbers(HISTORY)).max(linear.map_or(0, Plan::krylov_bytes)),
+            vectors: tangents.elements.max(numbers(HISTORY)).max(linear.map_or(0, Plan::krylov_bytes)),
             blocks: tangents.blocks.max(numbers(STRESS)).max(linear.map_or(0, Plan::product_bytes)),
         }
     }
@@ -42,7 +42,7 @@ impl PoolBytes {
 /// The memory of all slots.
 #[derive(Debug)]
 pub struct Pools {
-    /// Moduli of tangents, Krylov vectors, new states of a commit.
+    /// Tangents of elements, Krylov vectors, new states of a commit.
     pub vectors: StorageBuffer<u32>,
     /// Blocks of tangents, A P of the finest level, stresses of a force.
     pub blocks: StorageBuffer<u32>,
@@ -56,7 +56,7 @@ impl Pools {
     pub fn new(context: &GpuContext, bytes: PoolBytes, slots: usize) -> Result<Self, GpuError> {
         let words = |bytes: u64| (slots as u64 * bytes + ALIGNMENT) as usize / size_of::<u32>();
         Ok(Self {
-            vectors: context.zeros("moduli, Krylov vectors or new states", words(bytes.vectors))?,
+            vectors: context.zeros("elements' tangents, Krylov vectors or new states", words(bytes.vectors))?,
             blocks: context.zeros("blocks of tangents, A P or stresses", words(bytes.blocks))?,
         })
     }

@@ -12,8 +12,8 @@ use super::shader_sources::{
     HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_UPDATE, Kernel,
 };
 
-/// Components of `moduli` in `tangent.wgsl`.
-pub const MODULI: usize = 31;
+/// Numbers of an element's tangent in `tangent.wgsl`.
+pub const ELEMENT_BLOCKS: usize = 9 * crate::element::hex8::PAIRS;
 /// Components of the stresses that a force is gathered from.
 pub const STRESS: usize = 9;
 /// Numbers that go to a contact point: force, increment.

@@ -78,7 +78,8 @@ pub const HEX8: Source = source!("element/hex8.wgsl");
 /// The material of an element.
 pub const BODY: Source = source!("element/body.wgsl");
 /// A quadrature point at a trial displacement.
-pub const POINT: Source = source!("element/point.wgsl");
+pub const PAIRS: Source = source!("element/pairs.wgsl");
+const POINT: Source = source!("element/point.wgsl");
 /// Gap and slip.
 pub const PLANE: Source = source!("contact/plane.wgsl");
 /// The contact conditions of a point.
@@ -116,7 +117,7 @@ pub static KERNELS: &[&Kernel] = &[
     &RETURN_MAPPING,
     &HEX8_JACOBIAN,
     &HEX8_INTERNAL_FORCE,
-    &HEX8_MODULI,
+    &HEX8_TANGENT,
     &HEX8_BEGIN_STEP,
     &HEX8_UPDATE,
     &HEX8_ENERGIES,
@@ -202,10 +203,10 @@ pub static HEX8_INTERNAL_FORCE: Kernel = Kernel {
     workgroup: 64,
 };
 
-/// The weighted moduli of every quadrature point.
-pub static HEX8_MODULI: Kernel = Kernel {
-    name: "hex8_moduli",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, POINT, source!("element/tangent.wgsl")],
+/// The tangents of all elements, block by block.
+pub static HEX8_TANGENT: Kernel = Kernel {
+    name: "hex8_tangent",
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, POINT, PAIRS, source!("element/tangent.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
@@ -253,8 +254,8 @@ pub static GATHER_NODE_FORCE: Kernel = Kernel {
 /// Moduli into the tangent's upper block triangle.
 pub static GATHER_TANGENT_BLOCKS: Kernel = Kernel {
     name: "gather_tangent_blocks",
-    sources: &[BATCH, TENSOR, HEX8, source!("gather/tangent_blocks.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
+    sources: &[BATCH, PAIRS, source!("gather/tangent_blocks.wgsl")],
+    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
     workgroup: 64,
 };
 

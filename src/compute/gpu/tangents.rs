@@ -11,8 +11,8 @@ use super::pipelines::{Bound, Recorder};
 use super::resident::{
     COORDINATES, Connectivity, MATERIAL_ROOM, Resident, STATE, Sizes, replace_materials, send_materials, write_geometry,
 };
-use super::scratch::{MODULI, Scratch};
-use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_MODULI, Kernel, NARROW};
+use super::scratch::{ELEMENT_BLOCKS, Scratch};
+use super::shader_sources::{GATHER_TANGENT_BLOCKS, HEX8_JACOBIAN, HEX8_TANGENT, Kernel, NARROW};
 use crate::compute::{CaseModel, ComputeError};
 use crate::mesh::Mesh;
 
@@ -32,14 +32,14 @@ struct Inputs<'a, T> {
 #[derive(Debug)]
 struct Kernels {
     jacobian: Bound,
-    moduli: Bound,
+    elements: Bound,
     blocks: Bound,
 }
 
 /// Tangents of all slots, and the kernels that make them.
 #[derive(Debug)]
 pub struct Set<T> {
-    moduli: StorageBuffer<T>,
+    elements: StorageBuffer<T>,
     blocks: StorageBuffer<T>,
     groups: Vec<Kernels>,
 }
@@ -47,7 +47,7 @@ pub struct Set<T> {
 impl<T: DeviceReal> Set<T> {
     fn new<R>(sizes: Sizes, scratch: &Scratch<R>, slots: usize) -> Result<Self, GpuError> {
         Ok(Self {
-            moduli: scratch.pools.vectors.view("moduli", slots * MODULI * sizes.points())?.each(slots),
+            elements: scratch.pools.vectors.view("tangents of elements", slots * ELEMENT_BLOCKS * sizes.elements)?.each(slots),
             blocks: scratch.pools.blocks.view("tangent blocks", slots * 9 * sizes.blocks)?.each(slots),
             groups: Vec::new(),
         })
@@ -75,17 +75,17 @@ impl<T: DeviceReal> Set<T> {
             inputs.state.binding(),
             inputs.jacobian.binding(),
             scratch.first_invalid.binding(),
-            self.moduli.binding(),
+            self.elements.binding(),
         ];
-        let gather = [mesh.block_start.binding(), mesh.block_entry.binding(), self.moduli.binding(), self.blocks.binding()];
-        let bind = |kernel: &'static Kernel, rest: &[Argument<'_>]| {
+        let gather = [mesh.block_start.binding(), mesh.block_entry.binding(), self.elements.binding(), self.blocks.binding()];
+        let bind = |kernel: &'static Kernel, arguments: &[Argument<'_>]| {
             let pipeline = context.pipeline(kernel, T::PRECISION)?;
-            context.bind(&pipeline, [&shape[..], rest].concat())
+            context.bind(&pipeline, arguments.to_vec())
         };
         self.groups.push(Kernels {
-            jacobian: bind(&HEX8_JACOBIAN, &[inputs.jacobian.binding()])?,
-            moduli: bind(&HEX8_MODULI, &point)?,
-            blocks: bind(&GATHER_TANGENT_BLOCKS, &gather)?,
+            jacobian: bind(&HEX8_JACOBIAN, &[&shape[..], &[inputs.jacobian.binding()]].concat())?,
+            elements: bind(&HEX8_TANGENT, &[&shape[..], &point].concat())?,
+            blocks: bind(&GATHER_TANGENT_BLOCKS, &[&shape[..2], &gather].concat())?,
         });
         Ok(())
     }
@@ -93,7 +93,7 @@ impl<T: DeviceReal> Set<T> {
     fn append(&self, dispatch: &Dispatch, sizes: Sizes, list: &mut Recorder<'_>) -> Result<(), GpuError> {
         let (kernels, slots) = (&self.groups[dispatch.group], dispatch.cases.len());
         list.dispatch(&kernels.jacobian, sizes.points(), slots)?;
-        list.dispatch(&kernels.moduli, sizes.points(), slots)?;
+        list.dispatch(&kernels.elements, sizes.points(), slots)?;
         list.dispatch(&kernels.blocks, sizes.blocks, slots)
     }
 
@@ -134,8 +134,8 @@ impl Single {
 /// Memory of tangents.
 #[derive(Clone, Copy, Debug)]
 pub struct Bytes {
-    /// Moduli of a slot.
-    pub moduli: u64,
+    /// Tangents of a slot's elements.
+    pub elements: u64,
     /// Upper blocks of a slot.
     pub blocks: u64,
     /// What else there is of a slot.
@@ -157,15 +157,15 @@ impl<R: DeviceReal> Tangents<R> {
     /// What they take.
     pub fn bytes(sizes: Sizes, in_single: bool) -> Bytes {
         let number = if in_single { size_of::<f32>() } else { size_of::<R>() };
-        let (moduli, blocks, points) = (MODULI * sizes.points(), 9 * sizes.blocks, sizes.points());
+        let (elements, blocks, points) = (ELEMENT_BLOCKS * sizes.elements, 9 * sizes.blocks, sizes.points());
         let of_slot = if in_single { points + 3 * sizes.nodes } else { 0 };
         let of_case = if in_single {
             COORDINATES * sizes.elements + (1 + STATE) * points + 3 * sizes.nodes + MATERIAL_ROOM * sizes.bodies()
         } else {
             0
         };
-        let [moduli, blocks, of_slot, of_case] = [moduli, blocks, of_slot, of_case].map(|numbers| (number * numbers) as u64);
-        Bytes { moduli, blocks, of_slot, of_case }
+        let [elements, blocks, of_slot, of_case] = [elements, blocks, of_slot, of_case].map(|numbers| (number * numbers) as u64);
+        Bytes { elements, blocks, of_slot, of_case }
     }
 
     /// The arrays of so many slots, and the kernels for all groups of cases.
