@@ -65,7 +65,8 @@ fn a_device_is_named_with_its_precision_and_gives_the_same_force() {
     let dir = tempfile::tempdir().unwrap();
     let (cpu, _) = done(dir.path(), &["--device", "cpu"], &[]);
     assert!(cpu.device.starts_with("CPU") && cpu.precision == "f64" && cpu.device_traffic.is_none());
-    // Solved tightly it is the same force; at the default tolerance Newton may end at another iterate.
+    // Solved tightly it is the same force; at the default tolerance Newton may end at another
+    // iterate.
     let tight = |device: &str| done(dir.path(), &["--device", device, "--set", "solver.tolerance=1e-8"], &[]).0.f_n0.unwrap();
     let ratio = tight("gpu") / tight("cpu");
     assert!((ratio - 1.0).abs() < 1e-7, "{ratio}");

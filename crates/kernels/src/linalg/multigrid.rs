@@ -80,8 +80,8 @@ impl Hierarchy {
         Ok(Self { levels, fixed: Fixed::default(), fixed_before: Fixed::default(), complete: false })
     }
 
-    /// The same with smoothers that round their blocks to bf16, as those of a device do, which reads
-    /// them in half the time. On the CPU that saves nothing: it is for comparisons.
+    /// The same with smoothers that round their blocks to bf16, as those of a device do, which
+    /// reads them in half the time. On the CPU that saves nothing: it is for comparisons.
     pub fn with_rounded_smoothers(mut self) -> Self {
         self.levels.iter_mut().for_each(|level| level.smoother.round());
         self
