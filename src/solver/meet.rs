@@ -15,8 +15,8 @@ fn between(start: &[f64; 3], end: &[f64; 3]) -> [f64; 3] {
 }
 
 /// Work of friction on a point that has moved along the interface, from what acts on it before and
-/// after, in the frame at the end. Where it has touched all the time, the frame has turned under the
-/// normal force: along the way that force does no work, so that of all three components is the
+/// after, in the frame at the end. Where it has touched all the time, the frame has turned under
+/// the normal force: along the way that force does no work, so that of all three components is the
 /// friction's, to second order in the step. Else the normal part is of a gap that opens or closes.
 fn dissipated(before: &[f64; 3], after: &[f64; 3], moved: &[f64; 3]) -> f64 {
     let components = if before[2] > 0.0 && after[2] > 0.0 { 3 } else { 2 };
@@ -24,8 +24,8 @@ fn dissipated(before: &[f64; 3], after: &[f64; 3], moved: &[f64; 3]) -> f64 {
 }
 
 impl Meeting {
-    /// See [`super::newton::Newton::interface_friction_work`]; of one of the two bodies, half of what
-    /// is dissipated between them.
+    /// See [`super::newton::Newton::interface_friction_work`]; of one of the two bodies, half of
+    /// what is dissipated between them.
     pub(super) fn friction_work(&self, trial: &Trial, before: &[f64]) -> f64 {
         let (after, w) = (trial.pair_forces(self), self.interface.relative(&trial.u));
         let mut carried = before.to_vec();

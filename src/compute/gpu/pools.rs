@@ -1,9 +1,9 @@
 //! Memory that arrays have in turn: what one leaves is lost when the next is written.
 //!
-//! An iteration makes the elements' tangents, gathers them into blocks, forms the finest matrix of these, takes A P
-//! of it on the way to the coarser ones, and iterates; then trials take stresses, of which there
-//! may be some between two lists of Krylov iterations. So Krylov vectors may lie where elements were,
-//! but not where stresses come.
+//! An iteration makes the elements' tangents, gathers them into blocks, forms the finest matrix of
+//! these, takes A P of it on the way to the coarser ones, and iterates; then trials take stresses,
+//! of which there may be some between two lists of Krylov iterations. So Krylov vectors may lie
+//! where elements were, but not where stresses come.
 
 use super::buffers::{DeviceReal, StorageBuffer};
 use super::context::GpuContext;
