@@ -54,6 +54,20 @@ fn forwards_and_back_are_the_same() {
     }
 }
 
+/// The plane between them tilts, and the normal force on it has a share along x.
+#[test]
+fn without_friction_nothing_is_dissipated_however_far_they_pass() {
+    let (mesh, path) = ("mesh.contact_radius=0.1", "path=[{indentation=0.008},{shear=0.08}]");
+    let steps = follow(PAIR, &[COARSE, mesh, "contact.friction=0.0", "material.hardening={law=\"elastic\"}", path]);
+    let stored = steps.iter().fold(0.0, |most: f64, (row, _)| most.max(row.energy_elastic));
+    let (last, _) = steps.last().expect("steps");
+    eprintln!("F_T/F_N {}, friction {:e} of {stored:e}", last.f_t / last.f_n, last.work_friction);
+    assert!(last.f_t < -0.02 * last.f_n, "{} and {}", last.f_t, last.f_n);
+    assert!(last.work_friction.abs() < 0.03 * stored, "{:e} of {stored:e}", last.work_friction);
+    let left = last.work_external - last.energy_elastic - last.work_friction;
+    assert!(left.abs() < 0.03 * stored, "{left:e} of {stored:e}");
+}
+
 #[test]
 fn the_contact_carries_the_force_and_the_energies_balance() {
     let paths = [
