@@ -394,6 +394,7 @@ impl<'a> Drive<'a> {
     /// One Newton solve towards a target; commits nothing, but where the iterates stay on a device.
     fn attempt(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
         self.traffic_before = self.traffic_before.or_else(|| self.backend.traffic());
+        self.newton.set_may_miss(self.place.depth >= SHALLOW);
         let keeps = self.keeps();
         let ratio = self.extrapolation(target);
         let mut guess = if keeps == Keeps::Steps { None } else { ratio.map(|ratio| self.guess(ratio)) };

@@ -104,6 +104,35 @@ fn a_normal_force_that_nothing_carries_is_a_failure() {
     assert!(merit > 1e-10, "{failure}");
 }
 
+/// A held force that the last iteration has all but met: a failure, or at last a relaxed step.
+#[test]
+fn at_last_a_held_force_may_be_missed_by_a_little() {
+    let step = |raised: f64, may_miss: bool| {
+        let mut rig = Rig::new(brick(4, 3, 3, [1.0, 0.8, 0.6]).unwrap(), elastic(0.3), Friction::Stick, TIGHT);
+        rig.to(0.03, 0.0);
+        let force = raised * rig.forces().0;
+        let pattern = Pattern::from_elements(rig.mesh.nodes.len(), &rig.mesh.elements);
+        let linear = LinearSolver::<f64>::new(SolverKind::Direct, &pattern, &rig.mesh.hierarchy).unwrap();
+        rig.newton = Newton::new(&rig.mesh, linear, Settings { tolerance: 1e-3, max_iterations: 1, ..TIGHT });
+        rig.newton.set_may_miss(may_miss);
+        let taken = rig.attempt(&Control { h: 0.03, delta_t: 0.0, normal_force: Some(force) });
+        taken.map(|report| (report.relaxed, (rig.forces().0 / force - 1.0).abs()))
+    };
+    let mut missed = 0;
+    for raised in (0..32).map(|i| 1.0 + 1e-6 * 1.5_f64.powi(i)) {
+        match (step(raised, false), step(raised, true)) {
+            (Ok((false, gap)), Ok(same)) => assert!(gap <= 5e-5 && same == (false, gap), "{raised}: {gap}, {same:?}"),
+            (Err(_), Ok((true, gap))) => {
+                assert!(gap > 5e-5 && gap <= 2e-4, "{raised}: {gap}");
+                missed += 1;
+            }
+            (Err(_), Err(_)) => {}
+            other => panic!("{raised}: {other:?}"),
+        }
+    }
+    assert!(missed > 0 && step(1.5, true).is_err(), "{missed}");
+}
+
 #[test]
 fn linear_systems_are_solved_more_tightly_where_volume_is_stiff() {
     for poissons_ratio in [-0.9, 0.0, 0.2, 0.3] {
