@@ -7,7 +7,7 @@
 @group(0) @binding(5) var<storage, read> units: array<u32>;
 @group(0) @binding(6) var<storage, read_write> depth_changes: array<real>;  // [slot]
 
-const RECORD: u32 = 12;
+const RECORD: u32 = 13;
 const ALONG: u32 = 11;
 
 @compute @workgroup_size(64)

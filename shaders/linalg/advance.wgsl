@@ -8,7 +8,7 @@
 
 @compute @workgroup_size(64)
 fn krylov_advance(@builtin(global_invocation_id) id: vec3<u32>) {
-    let slot = id.y;
+    let slot = records[id.y].running;
     if id.x > 0u || records[slot].done != RUNNING {
         return;
     }

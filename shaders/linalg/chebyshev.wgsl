@@ -11,7 +11,7 @@ var<workgroup> residuals: array<real, ROWS_IN_GROUP>;
 
 @compute @workgroup_size(192)
 fn smooth_step(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let slot = group.y;
+    let slot = records[group.y].running;
     if records[slot].done != RUNNING {
         return;
     }

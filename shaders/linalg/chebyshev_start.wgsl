@@ -9,7 +9,7 @@
 
 @compute @workgroup_size(192)
 fn smooth_start(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let slot = group.y;
+    let slot = records[group.y].running;
     let node = NODES_IN_GROUP * group.x + local % NODES_IN_GROUP;
     if records[slot].done != RUNNING || node >= level.nodes {
         return;

@@ -7,7 +7,7 @@
 
 @compute @workgroup_size(256)
 fn krylov_dots(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let slot = group.y;
+    let slot = records[group.y].running;
     if records[slot].done != RUNNING {
         return;
     }

@@ -6,7 +6,7 @@
 
 @compute @workgroup_size(256)
 fn krylov_normalise(@builtin(global_invocation_id) id: vec3<u32>) {
-    let slot = id.y;
+    let slot = records[id.y].running;
     let n = 3u * level.nodes;
     if records[slot].done != RUNNING || id.x >= n {
         return;

@@ -12,7 +12,7 @@ var<workgroup> coefficients: array<real, THREADS>;
 
 @compute @workgroup_size(256)
 fn krylov_orthogonalise(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    let slot = group.y;
+    let slot = records[group.y].running;
     if records[slot].done != RUNNING {
         return;
     }

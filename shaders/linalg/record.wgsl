@@ -12,6 +12,7 @@ struct Record {
     residual: real,         // norm of the residual, by the recurrence
     scale: real,            // of the next basis vector
     along: real,            // plate force along the solution
+    running: u32,           // of the slots in a list, those that run first: which one is here
 }
 
 const RUNNING: u32 = 0u;

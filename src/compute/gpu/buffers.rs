@@ -227,6 +227,17 @@ impl GpuContext {
         Ok(StorageBuffer { raw, what, len, first: 0, extent, _reservation: Some(reservation), _type: PhantomData })
     }
 
+    /// An array with these numbers of workgroups along x, y and z, for
+    /// [`super::pipelines::Recorder::dispatch_as_told`].
+    ///
+    /// # Errors
+    /// As [`GpuContext::zeros`].
+    pub fn calls(&self, what: &str, data: &[u32]) -> Result<StorageBuffer<u32>, GpuError> {
+        let buffer = self.allocate(what, data.len(), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT)?;
+        self.upload(&buffer, data)?;
+        Ok(buffer)
+    }
+
     /// An array with these elements.
     ///
     /// # Errors

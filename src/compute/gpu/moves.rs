@@ -137,6 +137,7 @@ const UNKNOWN: &[&str] = &[
     "krylov_measure",
     "krylov_begin",
     "krylov_advance",
+    "krylov_running",
     "krylov_least_squares",
     "plate_force",
     "iterate_read",

@@ -11,6 +11,9 @@ use super::validate::validate;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
+/// Bytes of a number of workgroups.
+const INDEX: u64 = size_of::<u32>() as u64;
+
 /// A kernel with its arguments, ready to run; made once and run often.
 #[derive(Debug)]
 pub struct Bound {
@@ -18,6 +21,13 @@ pub struct Bound {
     group: wgpu::BindGroup,
     /// None without a profile.
     pub(super) moved: Option<Moved>,
+}
+
+impl Bound {
+    /// Workgroups of so many threads.
+    pub fn groups(&self, threads: usize) -> usize {
+        threads.div_ceil(self.pipeline.kernel.workgroup as usize)
+    }
 }
 
 /// Kernels to be run one after the other, each seeing what those before it wrote.
@@ -146,8 +156,33 @@ impl Recorder<'_> {
     /// # Errors
     /// [`GpuError::TooLarge`] beyond the device's number of workgroups.
     pub fn dispatch(&mut self, bound: &Bound, threads: usize, cases: usize) -> Result<(), GpuError> {
+        self.append(bound, threads, cases, None)
+    }
+
+    /// The same for as many of these cases as the numbers at `place` of `calls` say when the kernel's
+    /// turn comes (workgroups along x, y and z); along x they are those of so many threads.
+    ///
+    /// # Errors
+    /// As [`Recorder::dispatch`].
+    pub fn dispatch_as_told(
+        &mut self,
+        bound: &Bound,
+        threads: usize,
+        cases: usize,
+        calls: (&StorageBuffer<u32>, usize),
+    ) -> Result<(), GpuError> {
+        self.append(bound, threads, cases, Some(calls))
+    }
+
+    fn append(
+        &mut self,
+        bound: &Bound,
+        threads: usize,
+        cases: usize,
+        calls: Option<(&StorageBuffer<u32>, usize)>,
+    ) -> Result<(), GpuError> {
         let kernel = bound.pipeline.kernel;
-        let groups = threads.div_ceil(kernel.workgroup as usize);
+        let groups = bound.groups(threads);
         let limit = self.context.adapter().max_workgroups;
         if groups.max(cases) > limit as usize {
             let what = format!("the number of workgroups of {} (in place of bytes)", kernel.name);
@@ -164,7 +199,10 @@ impl Recorder<'_> {
             self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(kernel.name), timestamp_writes });
         pass.set_pipeline(&bound.pipeline.raw);
         pass.set_bind_group(0, &bound.group, &[]);
-        pass.dispatch_workgroups(groups as u32, cases as u32, 1);
+        match calls {
+            Some((calls, place)) => pass.dispatch_workgroups_indirect(&calls.raw, calls.first + place as u64 * INDEX),
+            None => pass.dispatch_workgroups(groups as u32, cases as u32, 1),
+        }
         self.commands += 1;
         self.dispatches += 1;
         Ok(())

@@ -146,6 +146,7 @@ pub static KERNELS: &[&Kernel] = &[
     &linear::KRYLOV_MEASURE,
     &linear::KRYLOV_BEGIN,
     &linear::KRYLOV_ADVANCE,
+    &linear::KRYLOV_RUNNING,
     &linear::KRYLOV_NORMALISE,
     &linear::KRYLOV_LEAST_SQUARES,
     &linear::KRYLOV_COMBINE,

@@ -66,6 +66,15 @@ pub struct Record {
     pub scale: f32,
     /// Plate force along the solution.
     pub along: f32,
+    /// Which slot is here in the list of those that run, and after them the others.
+    pub running: u32,
+}
+
+impl Record {
+    /// How each of so many slots begins, all of them running.
+    pub fn of_slots(slots: usize) -> Vec<Self> {
+        (0..slots as u32).map(|running| Self { running, ..Self::default() }).collect()
+    }
 }
 
 /// A kernel with the threads that it takes.
@@ -93,6 +102,24 @@ impl Call {
     /// One that takes its arguments in another precision.
     pub fn of(bound: Bound, threads: usize) -> Self {
         Self { bound, threads }
+    }
+
+    /// Workgroups of a slot.
+    pub fn groups(&self) -> usize {
+        self.bound.groups(self.threads)
+    }
+
+    /// Appends it for those of so many slots that run; the place is where `calls` has its workgroups.
+    ///
+    /// # Errors
+    /// As [`Recorder::dispatch`].
+    pub fn append_running(
+        &self,
+        list: &mut Recorder<'_>,
+        slots: usize,
+        calls: (&StorageBuffer<u32>, usize),
+    ) -> Result<(), GpuError> {
+        list.dispatch_as_told(&self.bound, self.threads, slots, calls)
     }
 
     /// Appends it for so many slots.

@@ -6,14 +6,16 @@
 //! Gram-Schmidt stand for the modified one, and that the tolerance is met is taken from the
 //! recurrence). Newton's residual decides what is a solution, the linear system only how fast it is
 //! found. The list of a solve has as many Krylov iterations as whoever asks expects it to take, and
-//! one more; slots that have finished leave out what remains, and where some have not, more is
-//! sent.
+//! one more. After each of them the device lists the slots that go on, and writes for how many the
+//! next kernels are dispatched; where some have not finished at the end of the list, more is sent.
 
 pub mod inspect;
 mod levels;
 pub mod pack;
 pub mod parts;
 pub mod sources;
+
+use std::collections::BTreeSet;
 
 use super::buffers::{DeviceReal, Read, StorageBuffer};
 use super::context::GpuContext;
@@ -25,10 +27,10 @@ use crate::compute::linear::{Ended, SideReport};
 use crate::linalg::layout::{Layout, NOWHERE};
 use crate::mesh::Mesh;
 pub use levels::Record;
-use levels::{Call, Levels, product_numbers, row_threads, shared_numbers, slot_numbers};
+use levels::{Call, LevelShape, Levels, product_numbers, row_threads, shared_numbers, slot_numbers};
 use sources::{
     ASSEMBLE, KRYLOV_ADVANCE, KRYLOV_BEGIN, KRYLOV_COMBINE, KRYLOV_DOTS, KRYLOV_LEAST_SQUARES, KRYLOV_MEASURE, KRYLOV_NORMALISE,
-    KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, PRESCRIBE, RESIDUAL,
+    KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, KRYLOV_RUNNING, PLATE_FORCE, PRESCRIBE, RESIDUAL,
 };
 
 /// Krylov vectors after which a cycle starts over.
@@ -148,6 +150,41 @@ struct Vectors {
     small: StorageBuffer<f32>,
 }
 
+/// What Krylov iterations are dispatched for: the slots that run.
+#[derive(Debug)]
+struct Running {
+    /// Workgroups along x, y and z, for each number of them along x.
+    calls: StorageBuffer<u32>,
+    /// The numbers along x, increasing.
+    groups: Vec<usize>,
+    /// Lists the slots, and writes how many there are.
+    list: Call,
+}
+
+impl Running {
+    /// That of kernels which have so many workgroups for a slot.
+    fn new(
+        context: &GpuContext,
+        groups: impl Iterator<Item = usize>,
+        level: &StorageBuffer<LevelShape>,
+        records: &StorageBuffer<Record>,
+    ) -> Result<Self, GpuError> {
+        let groups: Vec<usize> = groups.collect::<BTreeSet<_>>().into_iter().collect();
+        let numbers: Vec<u32> = groups.iter().flat_map(|&groups| [groups as u32, 0, 1]).collect();
+        let calls = context.calls("workgroups of slots that run", &numbers)?;
+        let list = Call::new(context, &KRYLOV_RUNNING, 1, vec![level.binding(), records.binding(), calls.binding()])?;
+        Ok(Self { calls, groups, list })
+    }
+
+    /// Appends kernels for the slots of the list.
+    fn append(&self, kernels: &[Call], list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
+        kernels.iter().try_for_each(|call| {
+            let place = self.groups.partition_point(|&groups| groups < call.groups());
+            call.append_running(list, slots, (&self.calls, 3 * place))
+        })
+    }
+}
+
 /// The linear solver of a batch's slots.
 #[derive(Debug)]
 pub struct Linear {
@@ -168,8 +205,12 @@ pub struct Linear {
     measure: Call,
     /// The first basis vector.
     begin: Vec<Call>,
-    /// A Krylov iteration after the V-cycle.
+    /// A Krylov iteration after the V-cycle, up to the decision which slots go on.
     iteration: Vec<Call>,
+    /// Which those are.
+    running: Running,
+    /// The next basis vector of those.
+    next: Call,
     /// The answer, from the vectors of a cycle.
     finish: Vec<Call>,
     unknowns: usize,
@@ -254,8 +295,10 @@ impl Linear {
             dots()?,
             orthogonalise()?,
             call(&KRYLOV_ADVANCE, 1, vec![r.clone(), squares.binding(), small.binding()])?,
-            normalise()?,
         ];
+        let next = normalise()?;
+        let kernels = levels.cycle.iter().chain(&iteration).chain([&next]);
+        let running = Running::new(context, kernels.map(Call::groups), &level.block, &records)?;
         let finish = vec![
             call(&KRYLOV_LEAST_SQUARES, 1, vec![r.clone(), small.binding()])?,
             call(&KRYLOV_COMBINE, unknowns, combine)?,
@@ -273,6 +316,8 @@ impl Linear {
             measure,
             begin,
             iteration,
+            running,
+            next,
             finish,
             levels,
             records,
@@ -438,7 +483,7 @@ impl Linear {
             let running = || solves.records.iter().zip(&new).filter(|(_, new)| i < **new);
             // Those that run are all in the same step, which takes one vector more than the last.
             let vectors = running().map(|(r, new)| (r.steps + i).saturating_sub(*new) + 1).max().unwrap_or(0);
-            for call in self.levels.cycle.iter().chain(&self.iteration) {
+            for call in self.levels.cycle.iter().chain(&self.iteration).chain([&self.next]) {
                 context.credit(call.bound.moved.as_ref(), running().count(), vectors as usize);
             }
         }
@@ -468,9 +513,13 @@ impl Linear {
     pub fn iterate(&self, list: &mut Recorder<'_>, times: usize, slots: usize) -> Result<(), GpuError> {
         // Which slots leave them out is known when they have run: see `count`.
         list.count_for(Some(0));
+        let running = &self.running;
+        running.list.append(list, slots)?;
         for _ in 0..times {
-            append(&self.levels.cycle, list, slots)?;
-            append(&self.iteration, list, slots)?;
+            running.append(&self.levels.cycle, list, slots)?;
+            running.append(&self.iteration, list, slots)?;
+            running.list.append(list, slots)?;
+            running.append(std::slice::from_ref(&self.next), list, slots)?;
         }
         append(&self.finish, list, slots)?;
         list.count_for(None);
@@ -491,12 +540,10 @@ impl Solves {
     /// Solutions to these relative residuals, of the right-hand side or of the residual at the
     /// guess; that which takes most will probably take `expected` Krylov iterations.
     pub fn new(tolerance: &[f32], relative_to_guess: &[bool], expected: usize) -> Self {
-        let fresh = |(&tolerance, &relative): (&f32, &bool)| Record {
-            tolerance,
-            relative_to_start: relative.into(),
-            ..Record::default()
-        };
-        let records = tolerance.iter().zip(relative_to_guess).map(fresh).collect();
+        let mut records = Record::of_slots(tolerance.len());
+        for ((record, &tolerance), &relative) in records.iter_mut().zip(tolerance).zip(relative_to_guess) {
+            (record.tolerance, record.relative_to_start) = (tolerance, relative.into());
+        }
         Self { records, expected, counted: vec![0; tolerance.len()] }
     }
 

@@ -49,7 +49,7 @@ impl Linear {
     /// The device's fault.
     pub fn repeat(&self, context: &GpuContext, part: Part, slots: usize, times: usize) -> Result<(), GpuError> {
         // Slots that are done would be left out.
-        context.upload_at(&self.records, 0, &vec![Record::default(); slots])?;
+        context.upload_at(&self.records, 0, &Record::of_slots(slots))?;
         let mut list = context.record();
         for _ in 0..times {
             match part {

@@ -184,6 +184,14 @@ pub static KRYLOV_NORMALISE: Kernel = Kernel {
     workgroup: 256,
 };
 
+/// The list of the slots that run.
+pub static KRYLOV_RUNNING: Kernel = Kernel {
+    name: "krylov_running",
+    sources: &[LEVEL, RECORD, source!("linalg/running.wgsl")],
+    bindings: &[Uniform, ReadWrite, ReadWrite],
+    workgroup: 64,
+};
+
 /// The combination of least residual.
 pub static KRYLOV_LEAST_SQUARES: Kernel = Kernel {
     name: "krylov_least_squares",
