@@ -80,7 +80,9 @@ fn a_directory_that_is_removed_in_the_middle_ends_the_run_with_3_and_stays_remov
     let scratch = scratch();
     let out = scratch.path("out");
     let child = started(&scratch, &out, &[&["-q"][..], &SLOW].concat());
-    fs::remove_dir_all(&out).expect("removed");
+    // At once: the run writes into it all the time, so that it is not to be emptied file by file.
+    fs::rename(&out, scratch.path("away")).expect("moved");
+    fs::remove_dir_all(scratch.path("away")).expect("removed");
     let output = child.wait_with_output().expect("it ends");
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(3), "{message}");
