@@ -159,8 +159,9 @@ impl Recorder<'_> {
         self.append(bound, threads, cases, None)
     }
 
-    /// The same for as many of these cases as the numbers at `place` of `calls` say when the kernel's
-    /// turn comes (workgroups along x, y and z); along x they are those of so many threads.
+    /// The same for as many of these cases as the numbers at a place of `calls` say when the
+    /// kernel's turn comes (workgroups along x, y and z); along x they are those of so many
+    /// threads.
     ///
     /// # Errors
     /// As [`Recorder::dispatch`].

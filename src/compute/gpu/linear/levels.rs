@@ -109,7 +109,8 @@ impl Call {
         self.bound.groups(self.threads)
     }
 
-    /// Appends it for those of so many slots that run; the place is where `calls` has its workgroups.
+    /// Appends it for those of so many slots that run; the place is where `calls` has its
+    /// workgroups.
     ///
     /// # Errors
     /// As [`Recorder::dispatch`].
