@@ -10,7 +10,8 @@ fn row_times(slot: u32, component: u32, node: u32) -> real {
         for (var j = 0u; j < 3u; j++) {
             let upper = matrix[at + j * words];
             let lower = matrix[at + (9u + j) * words];
-            sum += whole(upper << 16u, lower << 16u) * x[first + j * level.nodes] + whole(upper, lower) * x[second + j * level.nodes];
+            let of_component = j * level.nodes;
+            sum += whole(upper << 16u, lower << 16u) * x[first + of_component] + whole(upper, lower) * x[second + of_component];
         }
         at += level.nodes;
     }

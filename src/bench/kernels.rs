@@ -123,8 +123,8 @@ pub fn table(of: &Kernels) -> String {
     let _ = match of.kernels_s {
         Some(all) => writeln!(
             text,
-            "kernels together: {dispatches} dispatches, {} s: {:.0} % of the {} s in which they were sent and {:.0} % of the {} s on \
-             the wall, set-up included; in the rest the device copied or waited for the host",
+            "kernels together: {dispatches} dispatches, {} s: {:.0} % of the {} s in which they were sent and {:.0} % of the \
+             {} s on the wall, set-up included; in the rest the device copied or waited for the host",
             number(all),
             100.0 * all / of.span_s,
             number(of.span_s),

@@ -4,10 +4,9 @@ use super::super::buffers::StorageBuffer;
 use super::super::context::GpuContext;
 use super::super::error::GpuError;
 use super::super::moves::Argument;
-use super::super::pipelines::{Bound, Recorder};
 use super::super::pools::Pools;
-use super::super::shader_sources::{Kernel, Precision};
 use super::RESTART;
+use super::calls::Call;
 use super::parts::Account;
 use super::sources::{
     CYCLE_RESIDUAL, GALERKIN_COARSE, GALERKIN_PRODUCT, INVERT_DIAGONAL, PROLONG, RESTRICT, SMALL_DOWN, SMALL_UP, SMOOTH_START,
@@ -74,61 +73,6 @@ impl Record {
     /// How each of so many slots begins, all of them running.
     pub fn of_slots(slots: usize) -> Vec<Self> {
         (0..slots as u32).map(|running| Self { running, ..Self::default() }).collect()
-    }
-}
-
-/// A kernel with the threads that it takes.
-#[derive(Debug)]
-pub struct Call {
-    pub(super) bound: Bound,
-    threads: usize,
-}
-
-impl Call {
-    /// Binds a kernel, in single precision.
-    ///
-    /// # Errors
-    /// What the device says.
-    pub fn new(
-        context: &GpuContext,
-        kernel: &'static Kernel,
-        threads: usize,
-        arguments: Vec<Argument<'_>>,
-    ) -> Result<Self, GpuError> {
-        let pipeline = context.pipeline(kernel, Precision::F32)?;
-        Ok(Self { bound: context.bind(&pipeline, arguments)?, threads })
-    }
-
-    /// One that takes its arguments in another precision.
-    pub fn of(bound: Bound, threads: usize) -> Self {
-        Self { bound, threads }
-    }
-
-    /// Workgroups of a slot.
-    pub fn groups(&self) -> usize {
-        self.bound.groups(self.threads)
-    }
-
-    /// Appends it for those of so many slots that run; the place is where `calls` has its
-    /// workgroups.
-    ///
-    /// # Errors
-    /// As [`Recorder::dispatch`].
-    pub fn append_running(
-        &self,
-        list: &mut Recorder<'_>,
-        slots: usize,
-        calls: (&StorageBuffer<u32>, usize),
-    ) -> Result<(), GpuError> {
-        list.dispatch_as_told(&self.bound, self.threads, slots, calls)
-    }
-
-    /// Appends it for so many slots.
-    ///
-    /// # Errors
-    /// As [`Recorder::dispatch`].
-    pub fn append(&self, list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
-        list.dispatch(&self.bound, self.threads, slots)
     }
 }
 

@@ -9,13 +9,12 @@
 //! one more. After each of them the device lists the slots that go on, and writes for how many the
 //! next kernels are dispatched; where some have not finished at the end of the list, more is sent.
 
+mod calls;
 pub mod inspect;
 mod levels;
 pub mod pack;
 pub mod parts;
 pub mod sources;
-
-use std::collections::BTreeSet;
 
 use super::buffers::{DeviceReal, Read, StorageBuffer};
 use super::context::GpuContext;
@@ -26,11 +25,12 @@ use super::pools::Pools;
 use crate::compute::linear::{Ended, SideReport};
 use crate::linalg::layout::{Layout, NOWHERE};
 use crate::mesh::Mesh;
+use calls::{Call, Running};
 pub use levels::Record;
-use levels::{Call, LevelShape, Levels, product_numbers, row_threads, shared_numbers, slot_numbers};
+use levels::{Levels, product_numbers, row_threads, shared_numbers, slot_numbers};
 use sources::{
     ASSEMBLE, KRYLOV_ADVANCE, KRYLOV_BEGIN, KRYLOV_COMBINE, KRYLOV_DOTS, KRYLOV_LEAST_SQUARES, KRYLOV_MEASURE, KRYLOV_NORMALISE,
-    KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, KRYLOV_RUNNING, PLATE_FORCE, PRESCRIBE, RESIDUAL,
+    KRYLOV_ORTHOGONALISE, KRYLOV_PRODUCT, PLATE_FORCE, PRESCRIBE, RESIDUAL,
 };
 
 /// Krylov vectors after which a cycle starts over.
@@ -148,41 +148,6 @@ struct Vectors {
     preconditioned: StorageBuffer<f32>,
     /// See `krylov.wgsl`.
     small: StorageBuffer<f32>,
-}
-
-/// What Krylov iterations are dispatched for: the slots that run.
-#[derive(Debug)]
-struct Running {
-    /// Workgroups along x, y and z, for each number of them along x.
-    calls: StorageBuffer<u32>,
-    /// The numbers along x, increasing.
-    groups: Vec<usize>,
-    /// Lists the slots, and writes how many there are.
-    list: Call,
-}
-
-impl Running {
-    /// That of kernels which have so many workgroups for a slot.
-    fn new(
-        context: &GpuContext,
-        groups: impl Iterator<Item = usize>,
-        level: &StorageBuffer<LevelShape>,
-        records: &StorageBuffer<Record>,
-    ) -> Result<Self, GpuError> {
-        let groups: Vec<usize> = groups.collect::<BTreeSet<_>>().into_iter().collect();
-        let numbers: Vec<u32> = groups.iter().flat_map(|&groups| [groups as u32, 0, 1]).collect();
-        let calls = context.calls("workgroups of slots that run", &numbers)?;
-        let list = Call::new(context, &KRYLOV_RUNNING, 1, vec![level.binding(), records.binding(), calls.binding()])?;
-        Ok(Self { calls, groups, list })
-    }
-
-    /// Appends kernels for the slots of the list.
-    fn append(&self, kernels: &[Call], list: &mut Recorder<'_>, slots: usize) -> Result<(), GpuError> {
-        kernels.iter().try_for_each(|call| {
-            let place = self.groups.partition_point(|&groups| groups < call.groups());
-            call.append_running(list, slots, (&self.calls, 3 * place))
-        })
-    }
 }
 
 /// The linear solver of a batch's slots.
