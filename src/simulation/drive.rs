@@ -417,7 +417,9 @@ impl<'a> Drive<'a> {
             let expected = guess.as_deref().unwrap_or(&self.state.u);
             // Up to the first shear all is even in x.
             let meeting = Meeting::new(&self.mesh, &self.state.u, expected, self.state.direction == 0.0);
-            if let Some(guess) = &mut guess {
+            if let Some(guess) = &mut guess
+                && !self.problem.pressed_in_full
+            {
                 meeting.separate(&self.mesh, guess);
             }
             self.newton.meet(meeting);
@@ -441,7 +443,7 @@ impl<'a> Drive<'a> {
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;
         lap.end(&mut self.newton.times, Phase::Commit);
-        let extrapolation = ratio.map(|ratio| Extrapolation { ratio, lift: !self.problem.fully_plastic });
+        let extrapolation = ratio.map(|ratio| Extrapolation { ratio, lift: !self.problem.pressed_in_full });
         let StepRecord { h, delta_t, .. } = self.state.record;
         let start = SetOut { displacement: &self.state.u, h, delta_t, guess: guess.as_deref(), extrapolation, came_off: &[] };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
@@ -472,8 +474,8 @@ impl<'a> Drive<'a> {
     /// press took 2,200 iterations and 37 cuts, and takes 150 and one; an oblique press at
     /// E/sigma_Y = 9000, mu = 0.5, took 19,800 and 472, and takes 300 and none.
     ///
-    /// So is one of two bodies of which one is stiffer and one flows, and points that have passed
-    /// the other body are left there (see [`Problem::pressed_in_full`]).
+    /// So is one of nearly incompressible bodies, and of two of which one is stiffer and one flows
+    /// (see [`Problem::pressed_in_full`]).
     fn extrapolation(&self, target: &Target) -> Option<f64> {
         let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;
@@ -490,7 +492,7 @@ impl<'a> Drive<'a> {
     /// The displacements of such an extrapolation. A device that keeps iterates forms them itself.
     fn guess(&self, ratio: f64) -> Vec<f64> {
         let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
-        if self.problem.equal_pair || self.problem.couple.is_some() || self.problem.fully_plastic {
+        if self.problem.equal_pair || self.problem.couple.is_some() || self.problem.pressed_in_full {
             return guess;
         }
         if let Some(rigid) = self.problem.rigid {
