@@ -41,16 +41,16 @@ pub struct Problem {
     pub spacing: f64,
     /// The part of the surface that is finely meshed.
     pub zone: Zone,
-    /// A step of a press is guessed from all of the last one, not from a part of it, and points that
-    /// come out below what they meet are left there. So it is in three cases.
+    /// A step of a press is guessed from all of the last one, not from a part of it, and points
+    /// that come out below what they meet are left there. So it is in three cases.
     ///
     /// - The contact becomes fully plastic: what flows has to be found flowing.
-    /// - A body is nearly incompressible, `NEARLY_INCOMPRESSIBLE`: what a part leaves of the plate's
-    ///   motion, and each point that is put back by itself, changes the volume of the elements
-    ///   beside it. At nu = 0.49 and E/sigma_Y = 500 the residual was ten times the normal force;
-    ///   the main job on 6 elements took 795 iterations and 31 cuts so, and takes 131 and none (468
-    ///   and 12, 102 and none at 0.48; 133 and 103 at 0.45; at 0.4 they are alike, and at 0.3 a
-    ///   part is better by a tenth).
+    /// - A body is nearly incompressible, `NEARLY_INCOMPRESSIBLE`: what a part leaves of the
+    ///   plate's motion, and each point that is put back by itself, changes the volume of the
+    ///   elements beside it. At nu = 0.49 and E/sigma_Y = 500 the residual was ten times the
+    ///   normal force; the main job on 6 elements took 795 iterations and 31 cuts so, and takes
+    ///   131 and none (468 and 12, 102 and none at 0.48; 133 and 103 at 0.45; at 0.4 they are
+    ///   alike, and at 0.3 a part is better by a tenth).
     /// - One of two bodies is at least `UNLIKE_STIFFNESS` times as stiff as the other and Lambda at
     ///   least `UNLIKE_PLASTIC`: what a part leaves strains the sphere alone at first. A press of
     ///   `unlike.toml` takes 88, 120 and 153 iterations at 8, 12 and 16 elements, and took 95, 145
