@@ -146,7 +146,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "> -1 and < 0.5",
-        meaning: "Poisson's ratio nu; above 0.45 runs take longer, near 0.5 deep plastic ones may not converge",
+        meaning: "Poisson's ratio nu; above 0.45 runs take longer, at 0.499 twenty times",
         example: "0.3",
         ..key("material", "poissons_ratio", Number(Above(-1.0), Above(0.5), &[]), Required)
     },
