@@ -202,7 +202,7 @@ const HARD: &[Hard] = &[
         "",
         &["indentation = 4e-4", "indentation = 3.6e-4", "shear = 3e-5", "release = true"],
     ),
-    // So is it where the shape flows; a guess must not change the volume beside the plane.
+    // The same in plastic flow: the guess of a step must not change the volume beside the plane.
     ("nearly incompressible and plastic", 0.49, SOFT, "0.3", 4, "", PRESS_AND_SHEAR),
     ("the same between equal spheres", 0.49, SOFT, "0.3", 4, "[opponent]\nequal = true", PRESS_AND_SHEAR),
     ("the same on a rigid sphere", 0.49, SOFT, "0.3", 4, "[opponent]\nrigid = true\nradius = 2.0", PRESS_AND_SHEAR),
@@ -212,7 +212,7 @@ const HARD: &[Hard] = &[
 /// Ideally plastic at E/500.
 const SOFT: &str = "law = \"ideal\"\nyield_stress = 400.0";
 const PRESS_AND_SHEAR: &[&str] = &["indentation = 0.02", "shear = 0.004"];
-/// Newton iterations a step, on the average over a path.
+/// Newton iterations a step that a path may take on average.
 const ITERATIONS: usize = 8;
 
 #[test]

@@ -474,8 +474,8 @@ impl<'a> Drive<'a> {
     /// press took 2,200 iterations and 37 cuts, and takes 150 and one; an oblique press at
     /// E/sigma_Y = 9000, mu = 0.5, took 19,800 and 472, and takes 300 and none.
     ///
-    /// So is one of nearly incompressible bodies, and of two of which one is stiffer and one flows
-    /// (see [`Problem::pressed_in_full`]).
+    /// The same is done where a body is nearly incompressible, and between two bodies of which one
+    /// is stiffer and one flows (see [`Problem::pressed_in_full`]).
     fn extrapolation(&self, target: &Target) -> Option<f64> {
         let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;

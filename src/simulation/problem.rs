@@ -42,7 +42,7 @@ pub struct Problem {
     /// The part of the surface that is finely meshed.
     pub zone: Zone,
     /// A step of a press is guessed from all of the last one, not from a part of it, and points
-    /// that come out below what they meet are left there. So it is in three cases.
+    /// that come out below what they meet are left there, in three cases.
     ///
     /// - The contact becomes fully plastic: what flows has to be found flowing.
     /// - A body is nearly incompressible, `NEARLY_INCOMPRESSIBLE`: what a part leaves of the
