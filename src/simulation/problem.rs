@@ -19,7 +19,7 @@ use crate::mesh::{Mesh, MeshError};
 use crate::solver::couple::CoupleSolver;
 use crate::solver::encounter::Series;
 use crate::solver::newton::Newton;
-use crate::solver::pair::{PairSolver, mirror_nodes};
+use crate::solver::pair::PairSolver;
 use crate::solver::system::Boundary;
 use crate::solver::systems::Unmade;
 use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_linear, monotone_from};
@@ -299,9 +299,8 @@ impl Problem {
         let mesh = &self.model.mesh;
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         if self.equal_pair {
-            let mirror = mirror_nodes(mesh).ok_or(SimulationError::NotMirrored)?;
-            let solver = PairSolver::new(mesh, &pattern, mirror).map_err(SolverError::from)?;
-            return Ok(Newton::new(mesh, solver, self.settings));
+            let solver = PairSolver::new(mesh, &pattern).map_err(SolverError::from)?;
+            return Ok(Newton::new(mesh, solver.ok_or(SimulationError::NotMirrored)?, self.settings));
         }
         if let Some((slave, _)) = self.couple {
             let solver = CoupleSolver::new(mesh, &pattern, slave).map_err(SolverError::from)?;

@@ -5,7 +5,8 @@
 //! those of the one body. What preconditions it knows of a pair that has not slid: a field that is
 //! even in x touches its image along the normal alone and slides freely, an odd one is held along
 //! the plane alone. So the right-hand side is split into its even and odd parts, and each goes
-//! through a V-cycle of its own. Up to the first shear all is even.
+//! through a V-cycle of its own, on half of the body (see [`crate::linalg::fold`]). Up to the first
+//! shear all is even.
 
 use std::sync::Arc;
 
@@ -13,6 +14,7 @@ use super::tied::{InSingle, Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::fgmres::System;
+use crate::linalg::fold::{Fold, Parity};
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
 
@@ -22,6 +24,7 @@ pub struct PairSolver {
     matrix: BlockMatrix<f32>,
     /// The state and the step are even in x, and so are all corrections.
     symmetric: bool,
+    fold: Fold,
     even: Hierarchy,
     odd: Hierarchy,
     /// The node opposite in x.
@@ -29,6 +32,7 @@ pub struct PairSolver {
     contact_nodes: Vec<u32>,
     interface: Arc<Interface>,
     rows: Vec<Rows<f64>>,
+    /// Which unknowns of the half are fixed.
     even_fixed: Vec<bool>,
     odd_fixed: Vec<bool>,
     reduced: Reduced,
@@ -38,10 +42,7 @@ pub struct PairSolver {
 #[derive(Debug, Default)]
 struct Work {
     load: Vec<f32>,
-    even: Vec<f32>,
-    odd: Vec<f32>,
-    z_even: Vec<f32>,
-    z_odd: Vec<f32>,
+    z: Vec<f32>,
     u: Vec<f64>,
     f: Vec<f64>,
     single: InSingle,
@@ -60,38 +61,37 @@ pub fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
 }
 
 impl PairSolver {
-    /// Plans a solver for a mesh.
+    /// Plans a solver for a mesh that is its own mirror image; `None` if it is not.
     ///
     /// # Errors
     /// [`LinalgError::Hierarchy`] if its prolongations do not fit, or if it has none.
-    pub fn new(mesh: &Mesh, pattern: &Pattern, mirror: Vec<u32>) -> Result<Self, LinalgError> {
+    pub fn new(mesh: &Mesh, pattern: &Pattern) -> Result<Option<Self>, LinalgError> {
+        let (Some(mirror), Some(half)) = (mirror_nodes(mesh), &mesh.half) else { return Ok(None) };
+        let Some(fold) = Fold::new(pattern, &half.node, &mirror) else { return Ok(None) };
         let n = 3 * pattern.rows();
-        let hierarchy = Hierarchy::new(pattern, &mesh.hierarchy)?;
-        let zero = || vec![0.0; n];
-        let small = || vec![0.0; n];
-        Ok(Self {
+        let of_half = fold.matrix.unknowns();
+        let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
+        Ok(Some(Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
             symmetric: false,
+            fold,
             odd: hierarchy.clone(),
             even: hierarchy,
             mirror,
             contact_nodes: mesh.contact_nodes.clone(),
             interface: Arc::default(),
             rows: Vec::new(),
-            even_fixed: vec![false; n],
-            odd_fixed: vec![false; n],
+            even_fixed: vec![false; of_half],
+            odd_fixed: vec![false; of_half],
             reduced: Reduced::new(n),
             work: Work {
-                load: small(),
-                even: small(),
-                odd: small(),
-                z_even: small(),
-                z_odd: small(),
-                u: zero(),
-                f: zero(),
+                load: vec![0.0; of_half],
+                z: vec![0.0; of_half],
+                u: vec![0.0; n],
+                f: vec![0.0; n],
                 single: InSingle::default(),
             },
-        })
+        }))
     }
 
     /// The tangent of the body, to be written in place before [`PairSolver::refresh`].
@@ -134,29 +134,30 @@ impl PairSolver {
         self.rows.clear();
         self.rows.extend_from_slice(rows);
         self.reduced.fixed.copy_from_slice(fixed);
-        self.even_fixed.copy_from_slice(prescribed);
-        self.odd_fixed.copy_from_slice(prescribed);
-        for (i, &node) in self.contact_nodes.iter().enumerate() {
-            let Some(k) = interface.facing[i] else { continue };
-            let base = 3 * node as usize;
-            // Two masters opposite each other move each by itself.
-            let is_slave = |node: u32| self.contact_nodes.binary_search(&node).is_ok_and(|at| interface.slave_of[at].is_some());
-            if !is_slave(node) && !is_slave(self.mirror[node as usize]) {
-                continue;
+        self.fold.update(&self.matrix);
+        for (a, nodes) in self.fold.nodes().iter().enumerate() {
+            let base = 3 * nodes[0] as usize;
+            for c in 0..3 {
+                let is_free = |parity: Parity| !prescribed[base + c] && (nodes[0] != nodes[1] || parity.is_free_at_zero(c));
+                self.even_fixed[3 * a + c] = !is_free(Parity::Even);
+                self.odd_fixed[3 * a + c] = !is_free(Parity::Odd);
             }
-            match rows[interface.slaves[k]].status {
-                Status::Open => {}
-                status => {
-                    self.even_fixed[base + 2] = true;
-                    if status == Status::Stick {
-                        self.odd_fixed[base] = true;
-                        self.odd_fixed[base + 1] |= !interface.is_free_along_y(k);
+            for contact in nodes.map(|node| self.contact_nodes.binary_search(&node).ok()).into_iter().flatten() {
+                let Some(k) = interface.slave_of[contact] else { continue };
+                match rows[interface.slaves[k]].status {
+                    Status::Open => {}
+                    status => {
+                        self.even_fixed[3 * a + 2] = true;
+                        if status == Status::Stick {
+                            self.odd_fixed[3 * a] = true;
+                            self.odd_fixed[3 * a + 1] |= !interface.is_free_along_y(k);
+                        }
                     }
                 }
             }
         }
-        self.even.update(&self.matrix, &self.even_fixed)?;
-        if self.symmetric { Ok(()) } else { self.odd.update(&self.matrix, &self.odd_fixed) }
+        self.even.update(&self.fold.matrix, &self.even_fixed)?;
+        if self.symmetric { Ok(()) } else { self.odd.update(&self.fold.matrix, &self.odd_fixed) }
     }
 
     /// Makes f = A y of f = K u.
@@ -189,31 +190,14 @@ impl System<f32> for PairSolver {
         let mut work = std::mem::take(&mut self.work);
         work.f.iter_mut().zip(v).for_each(|(f, v)| *f = f64::from(*v));
         self.interface.loads(&work.f, &self.reduced.fixed, &mut work.u);
-        work.load.iter_mut().zip(&work.u).for_each(|(load, u)| *load = *u as f32);
-        for (n, &opposite) in self.mirror.iter().enumerate() {
-            for c in 0..3 {
-                let sign = if c == 0 { -1.0 } else { 1.0 };
-                let (own, other) = (work.load[3 * n + c], sign * work.load[3 * opposite as usize + c]);
-                work.even[3 * n + c] = 0.5 * (own + other);
-                work.odd[3 * n + c] = 0.5 * (own - other);
-            }
-        }
-        clear(&self.even_fixed, &mut work.even);
-        clear(&self.odd_fixed, &mut work.odd);
-        self.even.v_cycle(&work.even, &mut work.z_even);
-        if self.symmetric {
-            work.z_odd.fill(0.0);
-        } else {
-            self.odd.v_cycle(&work.odd, &mut work.z_odd);
-        }
-        for (n, &opposite) in self.mirror.iter().enumerate() {
-            for c in 0..3 {
-                let sign = if c == 0 { -1.0 } else { 1.0 };
-                let (i, j) = (3 * n + c, 3 * opposite as usize + c);
-                let even = work.z_even[i] + sign * work.z_even[j];
-                let odd = work.z_odd[i] - sign * work.z_odd[j];
-                work.u[i] = 0.5 * (f64::from(even) + f64::from(odd));
-            }
+        std::mem::swap(&mut work.u, &mut work.f);
+        work.u.fill(0.0);
+        let odd = (!self.symmetric).then_some((Parity::Odd, &mut self.odd, &self.odd_fixed));
+        for (parity, hierarchy, fixed) in [(Parity::Even, &mut self.even, &self.even_fixed)].into_iter().chain(odd) {
+            self.fold.fold(parity, &work.f, &mut work.load);
+            clear(fixed, &mut work.load);
+            hierarchy.v_cycle(&work.load, &mut work.z);
+            self.fold.unfold_add(parity, &work.z, &mut work.u);
         }
         self.interface.contract(&mut work.u);
         clear(&self.reduced.fixed, &mut work.u);

@@ -12,6 +12,7 @@ pub mod direct;
 mod dissection;
 pub mod fgmres;
 mod fixed;
+pub mod fold;
 mod galerkin;
 mod kernel;
 pub mod layout;

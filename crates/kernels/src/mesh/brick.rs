@@ -83,6 +83,7 @@ pub fn brick(nx: usize, ny: usize, nz: usize, lengths: [f64; 3]) -> Result<Mesh,
         plate_nodes: on(2, nz),
         symmetry_nodes: on(1, 0),
         hierarchy: hierarchy(blocks),
+        half: None,
         fine_radius: lengths[0].hypot(lengths[1]),
         couple: None,
     })

@@ -71,6 +71,7 @@ pub fn couple(sphere: Mesh, opponent: Mesh) -> Mesh {
         symmetry_nodes: after(sphere.symmetry_nodes, opponent.symmetry_nodes),
         // Each body has its own: see `Couple`.
         hierarchy: Vec::new(),
+        half: None,
         fine_radius: sphere.fine_radius.min(opponent.fine_radius),
         couple: Some(Box::new(couple)),
     }

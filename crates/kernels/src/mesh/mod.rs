@@ -82,6 +82,16 @@ impl NodeElements {
     }
 }
 
+/// The half at x >= 0 of a mesh that is its own mirror image in x: all of a body that moves evenly,
+/// or oddly, in x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Half {
+    /// Node of the whole mesh, for each node of the half.
+    pub node: Vec<u32>,
+    /// Interpolations of the half, finest first. Nodes at x = 0 take from nodes at x = 0 alone.
+    pub hierarchy: Vec<Prolongation>,
+}
+
 /// A hex8 mesh with what the solver needs to know of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
@@ -108,6 +118,8 @@ pub struct Mesh {
     pub symmetry_nodes: Vec<u32>,
     /// Interpolations, finest first; empty if the mesh has no hierarchy.
     pub hierarchy: Vec<Prolongation>,
+    /// The half at x >= 0, if no element crosses x = 0.
+    pub half: Option<Half>,
     /// Contact radius up to which the surface is finely meshed.
     pub fine_radius: f64,
     /// Where the opponent begins, if the mesh is of two bodies.

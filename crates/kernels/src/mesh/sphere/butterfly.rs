@@ -13,6 +13,9 @@
 //! The shell is this disc times the depth d, from the sphere's surface (d = 0) to the core's
 //! surface (d = nd); the core is the centre block times r: its floor r = 0 lies on the shell's
 //! centre, its walls on the shell's rings, its lid r = nr on the equator plane.
+//!
+//! Of a body whose state is even or odd in x the part at x >= 0 is enough: there the centre block
+//! begins at x = 0, and the perimeter ends there, at s = 2m.
 
 use crate::mesh::hierarchy::{Between, Blocks, ClassMap, Site};
 
@@ -34,12 +37,35 @@ pub struct Butterfly {
     pub nr: usize,
     /// Layers of the shell.
     pub nd: usize,
+    /// Only the part at x >= 0 is there: `nx` cells from the plane x = 0 outwards.
+    pub half: bool,
 }
 
 impl Butterfly {
     /// Cells around the perimeter of the centre block.
     pub fn perimeter_cells(&self) -> usize {
-        2 * self.ny + self.nx
+        if self.half { self.ny + self.nx } else { 2 * self.ny + self.nx }
+    }
+
+    /// The part at x >= 0 of whole blocks with an even `nx`.
+    pub fn right_half(&self) -> Self {
+        Self { nx: self.nx / 2, half: true, ..*self }
+    }
+
+    /// Of a site of [`Butterfly::right_half`], the node in these blocks.
+    pub fn number_of_half(&self, site: Site) -> u32 {
+        let [a, b, c] = site.at;
+        self.number(Site { block: site.block, at: [if site.block == SIDE { a } else { a + self.nx / 2 }, b, c] })
+    }
+
+    /// First index along x inside the core: at x = 0 a half has no wall.
+    fn first_in_core(&self) -> usize {
+        usize::from(!self.half)
+    }
+
+    /// Nodes of the core in a row along x.
+    fn core_row(&self) -> usize {
+        self.nx - self.first_in_core()
     }
 
     /// Number of elements.
@@ -66,7 +92,7 @@ impl Butterfly {
             Some(j)
         } else if j == ny {
             Some(ny + nx - i)
-        } else if i == 0 {
+        } else if i == 0 && !self.half {
             Some(2 * ny + nx - j)
         } else {
             None
@@ -152,7 +178,7 @@ impl Blocks for Butterfly {
     }
 
     fn with_cells(&self, cells: &[usize]) -> Self {
-        Butterfly { nx: cells[0], ny: cells[1], nr: cells[2], nd: cells[3] }
+        Butterfly { nx: cells[0], ny: cells[1], nr: cells[2], nd: cells[3], half: self.half }
     }
 
     fn sites(&self) -> Vec<Site> {
@@ -167,14 +193,14 @@ impl Blocks for Butterfly {
         }
         for r in 1..=self.nr {
             for j in 0..self.ny {
-                sites.extend((1..self.nx).map(|i| Site { block: CORE, at: [i, j, r] }));
+                sites.extend((self.first_in_core()..self.nx).map(|i| Site { block: CORE, at: [i, j, r] }));
             }
         }
         sites
     }
 
     fn node_count(&self) -> usize {
-        self.disc_nodes() * (self.nd + 1) + self.nr * (self.nx - 1) * self.ny
+        self.disc_nodes() * (self.nd + 1) + self.nr * self.core_row() * self.ny
     }
 
     fn number(&self, site: Site) -> u32 {
@@ -186,7 +212,7 @@ impl Blocks for Butterfly {
             _ if c == 0 => in_shell(a + (self.nx + 1) * b, self.nd),
             _ => match self.perimeter_of(a, b) {
                 Some(s) => in_shell(self.disc_number(s, c), self.nd),
-                None => in_shell(0, self.nd + 1) + (c - 1) * (self.nx - 1) * self.ny + (self.nx - 1) * b + a - 1,
+                None => in_shell(0, self.nd + 1) + ((c - 1) * self.ny + b) * self.core_row() + a - self.first_in_core(),
             },
         };
         n as u32

@@ -147,7 +147,7 @@ impl Layout {
         Ok(Layout {
             flat,
             m,
-            blocks: Butterfly { nx: 2 * m, ny: m, nr, nd },
+            blocks: Butterfly { nx: 2 * m, ny: m, nr, nd, half: false },
             spacing,
             radii,
             fine_rings,

@@ -10,7 +10,8 @@ mod tests;
 
 use super::connectivity::{contact_measures, node_elements, sweep_order};
 use super::hierarchy::{Blocks, hierarchy};
-use super::{Mesh, MeshError};
+use super::{Half, Mesh, MeshError};
+use butterfly::Butterfly;
 use geometry::Geometry;
 use layout::Layout;
 pub use layout::{FINE_ZONES, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
@@ -105,7 +106,14 @@ fn mesh_of(layout: &Layout) -> Mesh {
         contact_area,
         contact_size,
         hierarchy: hierarchy(blocks),
+        half: Some(half_of(&blocks)),
         fine_radius: layout.fine_radius,
         couple: None,
     }
+}
+
+/// The half at x >= 0.
+fn half_of(blocks: &Butterfly) -> Half {
+    let half = blocks.right_half();
+    Half { node: half.sites().into_iter().map(|site| blocks.number_of_half(site)).collect(), hierarchy: hierarchy(half) }
 }

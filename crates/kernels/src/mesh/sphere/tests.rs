@@ -81,7 +81,8 @@ fn halved(layout: &Layout) -> Layout {
     };
     let mut fine = layout.clone();
     fine.m *= 2;
-    fine.blocks = Butterfly { nx: 2 * fine.blocks.nx, ny: 2 * fine.blocks.ny, nr: 2 * fine.blocks.nr, nd: 2 * fine.blocks.nd };
+    let Butterfly { nx, ny, nr, nd, half } = fine.blocks;
+    fine.blocks = Butterfly { nx: 2 * nx, ny: 2 * ny, nr: 2 * nr, nd: 2 * nd, half };
     fine.spacing *= 0.5;
     fine.spread *= 2.0;
     fine.fine_rings *= 2;
@@ -227,10 +228,12 @@ fn contact_covers_the_fine_zone_with_its_areas() {
 /// Whatever is linear in a block's logical indices is interpolated exactly, on every level.
 #[test]
 fn interpolation_keeps_linear_functions_of_the_indices() {
-    for spec in [spec(0.2087, 16, 1.3), spec(0.01, 6, 1.3), spec(0.65, 4, 1.1), spec(0.3, 7, 2.0)] {
-        let mut fine = Layout::new(&spec).unwrap().blocks;
+    let layouts = [spec(0.2087, 16, 1.3), spec(0.01, 6, 1.3), spec(0.65, 4, 1.1), spec(0.3, 7, 2.0)];
+    let whole = layouts.map(|spec| Layout::new(&spec).unwrap().blocks);
+    for blocks in whole.into_iter().chain(whole.map(|blocks| blocks.right_half())) {
+        let mut fine = blocks;
         let levels = crate::mesh::hierarchy::hierarchy(fine);
-        assert!(!levels.is_empty() && levels.last().unwrap().coarse_nodes <= COARSEST_NODES);
+        assert!(levels.last().map_or(fine.node_count(), |p| p.coarse_nodes) <= COARSEST_NODES, "{blocks:?}");
         for p in &levels {
             let coarse = fine.with_cells(&fine.cells().iter().map(|&n| coarse_cells(n)).collect::<Vec<_>>());
             assert_eq!((p.coarse_nodes, p.row_start.len()), (coarse.node_count(), fine.node_count() + 1));
@@ -271,7 +274,7 @@ fn interpolation_keeps_linear_functions_of_the_indices() {
                     }
                     assert!((sum - 1.0).abs() < 1e-15);
                     for (f, expected) in found.iter().zip([i, j, q, c]) {
-                        assert!((f - expected as f64).abs() < 1e-12, "{spec:?} block {block} at {at:?}: {found:?}");
+                        assert!((f - expected as f64).abs() < 1e-12, "{blocks:?} block {block} at {at:?}: {found:?}");
                     }
                 }
             }
@@ -333,5 +336,30 @@ fn nodes_move_by_a_spacing_at_most_to_touch_evenly() {
         let layout = Layout::new(&spec).unwrap().touching_evenly();
         assert!(!layout.shifts.is_empty());
         assert!(layout.shifts.iter().all(|s| s.abs() < 1.0001 * layout.spacing), "{spec:?}");
+    }
+}
+
+#[test]
+fn the_half_has_the_nodes_at_positive_x_and_its_levels_keep_the_plane() {
+    for spec in specs() {
+        let mesh = sphere_mesh(&spec).unwrap();
+        let half = mesh.half.as_ref().unwrap();
+        let mut nodes = half.node.clone();
+        nodes.sort_unstable();
+        let expected: Vec<u32> = (0u32..).zip(&mesh.nodes).filter(|(_, x)| x[0] >= 0.0).map(|(n, _)| n).collect();
+        assert_eq!(nodes, expected, "{spec:?}");
+        let mut on_plane: Vec<bool> = half.node.iter().map(|&n| mesh.nodes[n as usize][0] == 0.0).collect();
+        for p in &half.hierarchy {
+            assert_eq!(p.row_start.len(), on_plane.len() + 1);
+            let mut coarse = vec![false; p.coarse_nodes];
+            for (i, _) in on_plane.iter().enumerate().filter(|(_, on)| **on) {
+                p.column[p.row_start[i] as usize..p.row_start[i + 1] as usize].iter().for_each(|&j| coarse[j as usize] = true);
+            }
+            // Coarse nodes are fine nodes: those that a node at x = 0 takes from are at x = 0.
+            for i in (0..on_plane.len()).filter(|&i| !on_plane[i] && p.row_start[i + 1] - p.row_start[i] == 1) {
+                assert!(!coarse[p.column[p.row_start[i] as usize] as usize], "{spec:?}");
+            }
+            on_plane = coarse;
+        }
     }
 }

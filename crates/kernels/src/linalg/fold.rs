@@ -1,0 +1,216 @@
+//! A body that is its own mirror image in x, folded at x = 0: what moves evenly in x, or oddly, is
+//! known from half of its nodes.
+//!
+//! An even field has `u(-x) = S u(x)` with S = diag(-1, 1, 1), and no u_x at x = 0; an odd one has
+//! -S, and u_x alone there. If E makes the whole field of the half, the half has the matrix
+//! `E^T A E` and the forces `E^T f`. An A that is not its own mirror image also makes odd forces of
+//! even fields: a folded matrix leaves them out.
+
+use super::bsr::{BlockMatrix, Pattern};
+use super::parallel::{each, each_row};
+
+/// How a field is carried over to the other side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    /// As by a mirror.
+    Even,
+    /// The opposite of that.
+    Odd,
+}
+
+impl Parity {
+    /// Sign of each component on the other side.
+    pub fn signs(self) -> [f32; 3] {
+        match self {
+            Self::Even => [-1.0, 1.0, 1.0],
+            Self::Odd => [1.0, -1.0, -1.0],
+        }
+    }
+
+    /// Whether a component is free at x = 0.
+    pub fn is_free_at_zero(self, component: usize) -> bool {
+        (component != 0) == (self == Self::Even)
+    }
+}
+
+/// A matrix folded at x = 0, and the plan by which it is.
+///
+/// One matrix serves both parities. Two nodes off x = 0, or two at it, are coupled alike in both.
+/// In a block of one of each the components that are free at x = 0 are those of the parity to which
+/// they belong; the others are fixed in that parity, and no use is made of them.
+#[derive(Clone, Debug)]
+pub struct Fold {
+    /// The folded matrix.
+    pub matrix: BlockMatrix<f32>,
+    /// Whole-mesh nodes of each node of the half: at x >= 0 and opposite; the same at x = 0.
+    nodes: Vec<[u32; 2]>,
+    /// Per block of the whole matrix, its place in the row of the half.
+    place: Vec<u16>,
+}
+
+impl Fold {
+    /// Plans the fold of matrices with a `pattern` to the nodes `half` (at x >= 0); `mirror` is the
+    /// node opposite in x of each node. `None` if they do not fit each other, or if blocks couple
+    /// the two sides.
+    pub fn new(pattern: &Pattern, half: &[u32], mirror: &[u32]) -> Option<Self> {
+        let mut folded = vec![u32::MAX; pattern.rows()];
+        let mut nodes = Vec::with_capacity(half.len());
+        for (a, &node) in half.iter().enumerate() {
+            let opposite = *mirror.get(node as usize)?;
+            *folded.get_mut(node as usize)? = a as u32;
+            *folded.get_mut(opposite as usize)? = a as u32;
+            nodes.push([node, opposite]);
+        }
+        if mirror.len() != pattern.rows() || folded.contains(&u32::MAX) {
+            return None;
+        }
+        let side = |node: u32| {
+            let [own, opposite] = nodes[folded[node as usize] as usize];
+            i32::from(node == own) - i32::from(node == opposite)
+        };
+        let columns = |node: u32| pattern.row(node as usize).map(|at| pattern.column[at]);
+        if (0..pattern.rows() as u32).any(|i| columns(i).any(|j| side(i) * side(j) < 0)) {
+            return None;
+        }
+        let rows = nodes.iter().map(|&[own, opposite]| {
+            let mut row: Vec<u32> = columns(own).chain(columns(opposite)).map(|j| folded[j as usize]).collect();
+            row.sort_unstable();
+            row.dedup();
+            row
+        });
+        let matrix = BlockMatrix::zeros(Pattern::from_rows(rows));
+        let mut place = Vec::with_capacity(pattern.entries());
+        for i in 0..pattern.rows() as u32 {
+            let row = &matrix.pattern.column[matrix.pattern.row(folded[i as usize] as usize)];
+            for j in columns(i) {
+                place.push(row.binary_search(&folded[j as usize]).ok()? as u16);
+            }
+        }
+        Some(Self { matrix, nodes, place })
+    }
+
+    /// Nodes of the whole mesh of a node of the half: at x >= 0 and opposite.
+    pub fn nodes(&self) -> &[[u32; 2]] {
+        &self.nodes
+    }
+
+    /// Folds a matrix.
+    pub fn update(&mut self, whole: &BlockMatrix<f32>) {
+        let (nodes, place) = (&self.nodes, &self.place);
+        let BlockMatrix { pattern, blocks } = &mut self.matrix;
+        let mut nothing = vec![(); nodes.len()];
+        let is_at_zero = |node: u32, [own, opposite]: [u32; 2]| node == own && node == opposite;
+        each_row(blocks, &pattern.row_start, &mut nothing, |a, row, ()| {
+            let columns = &pattern.column[pattern.row(a)];
+            row.as_flattened_mut().fill(0.0);
+            let [own, opposite] = nodes[a];
+            let sides = if own == opposite { 1 } else { 2 };
+            for &node in &nodes[a][..sides] {
+                for at in whole.pattern.row(node as usize) {
+                    let (b, j) = (place[at] as usize, whole.pattern.column[at]);
+                    let pair = nodes[columns[b] as usize];
+                    // Where a node at x = 0 is, the component tells the parity.
+                    let sign = |left: bool, component: usize, of: Option<usize>| match (left, of) {
+                        (false, _) => 1.0,
+                        (true, Some(0)) => Parity::Odd.signs()[component],
+                        (true, _) => Parity::Even.signs()[component],
+                    };
+                    let (left_row, left_column) = (node != own, j != pair[0]);
+                    let (row_at_zero, column_at_zero) = (sides == 1, is_at_zero(j, pair));
+                    for m in 0..9 {
+                        let (r, c) = (m / 3, m % 3);
+                        let by_row = sign(left_row, r, column_at_zero.then_some(c));
+                        let by_column = sign(left_column, c, row_at_zero.then_some(r));
+                        row[b][m] += by_row * by_column * whole.blocks[at][m];
+                    }
+                }
+            }
+        });
+    }
+
+    /// The forces `E^T f` of a whole body's `f` (three a node).
+    pub fn fold(&self, parity: Parity, f: &[f64], folded: &mut [f32]) {
+        let signs = parity.signs();
+        each(folded.as_chunks_mut::<3>().0, |a, folded| {
+            let [own, opposite] = self.nodes[a].map(|n| 3 * n as usize);
+            for c in 0..3 {
+                folded[c] = match own == opposite {
+                    true if parity.is_free_at_zero(c) => f[own + c] as f32,
+                    true => 0.0,
+                    false => (f[own + c] + f64::from(signs[c]) * f[opposite + c]) as f32,
+                };
+            }
+        });
+    }
+
+    /// Adds the whole body's displacements `E z` of a half's `z` to `u`.
+    pub fn unfold_add(&self, parity: Parity, z: &[f32], u: &mut [f64]) {
+        let signs = parity.signs();
+        for (z, nodes) in z.as_chunks::<3>().0.iter().zip(&self.nodes) {
+            let [own, opposite] = nodes.map(|n| 3 * n as usize);
+            for c in 0..3 {
+                if own != opposite {
+                    u[own + c] += f64::from(z[c]);
+                    u[opposite + c] += f64::from(signs[c] * z[c]);
+                } else if parity.is_free_at_zero(c) {
+                    u[own + c] += f64::from(z[c]);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{SphereSpec, sphere_mesh};
+
+    /// Numbers between -1 and 1 that have no pattern.
+    fn scattered(i: usize) -> f64 {
+        (1.7 * i as f64 + 0.3).sin() * 43758.5453 % 1.0
+    }
+
+    #[test]
+    fn a_folded_matrix_gives_what_is_even_or_odd_of_the_whole_ones_forces() {
+        let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 3, fine_zone: 1.3 }).unwrap();
+        let half = mesh.half.as_ref().unwrap();
+        let opposite = |x: [f64; 3]| mesh.nodes.iter().position(|y| *y == [0.0 - x[0], x[1], x[2]]).unwrap() as u32;
+        let mirror: Vec<u32> = mesh.nodes.iter().map(|&x| opposite(x)).collect();
+        let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
+        let mut whole = BlockMatrix::<f32>::zeros(pattern);
+        whole.blocks.as_flattened_mut().iter_mut().enumerate().for_each(|(i, a)| *a = scattered(i) as f32);
+        let mut fold = Fold::new(&whole.pattern, &half.node, &mirror).unwrap();
+        // Twice: nothing is left of the matrix before.
+        for _ in 0..2 {
+            fold.update(&whole);
+        }
+        for parity in [Parity::Even, Parity::Odd] {
+            let is_free = |a: usize, c: usize| fold.nodes[a][0] != fold.nodes[a][1] || parity.is_free_at_zero(c);
+            let free: Vec<bool> = (0..fold.matrix.unknowns()).map(|i| is_free(i / 3, i % 3)).collect();
+            let z: Vec<f32> = (0..free.len()).map(|i| if free[i] { scattered(7 * i) as f32 } else { 0.0 }).collect();
+            let mut u = vec![0.0; whole.unknowns()];
+            fold.unfold_add(parity, &z, &mut u);
+            for (n, &opposite) in mirror.iter().enumerate() {
+                for c in 0..3 {
+                    assert_eq!(u[3 * n + c], f64::from(parity.signs()[c]) * u[3 * opposite as usize + c]);
+                }
+            }
+            let mut f = vec![0.0; u.len()];
+            whole.multiply(&u, &mut f);
+            let (mut expected, mut got) = (vec![0.0; z.len()], vec![0.0f64; z.len()]);
+            fold.fold(parity, &f, &mut expected);
+            fold.matrix.multiply(&z, &mut got);
+            for i in (0..z.len()).filter(|&i| free[i]) {
+                assert!((got[i] - f64::from(expected[i])).abs() < 1e-5, "{parity:?} {i}: {} {}", got[i], expected[i]);
+            }
+            assert!(expected.iter().zip(&free).all(|(f, free)| *free || *f == 0.0), "nothing drives what is fixed at x = 0");
+        }
+        // Sides that touch cannot be folded.
+        let mut coupled: Vec<Vec<u32>> =
+            (0..mesh.nodes.len()).map(|i| whole.pattern.column[whole.pattern.row(i)].to_vec()).collect();
+        let right = (0..mirror.len()).find(|&n| mesh.nodes[n][0] > 0.0).unwrap();
+        coupled[right].push(mirror[right]);
+        coupled[right].sort_unstable();
+        assert!(Fold::new(&Pattern::from_rows(coupled.into_iter()), &half.node, &mirror).is_none());
+    }
+}
