@@ -121,8 +121,11 @@ fn which_body_has_the_slaves_hardly_matters() {
     let case = case(
         UNLIKE,
         &[
+            // As stiff as the sphere, which flows first. Slaves of the stiffer body make the
+            // iteration hard: steps are cut, and what those change of F_N is not meant here.
+            "opponent.material.youngs_modulus=200e3",
             "mesh.elements_per_contact_radius=8",
-            "solver.press_steps=12",
+            "solver.press_steps=24",
             "solver.shear_steps=6",
             "path=[{indentation=0.02},{shear=0.001}]",
         ],
@@ -140,7 +143,9 @@ fn which_body_has_the_slaves_hardly_matters() {
     let ends = |steps: &Steps, segment: usize| {
         steps.iter().rfind(|(row, _)| row.segment == segment).map(|(row, _)| *row).unwrap_or_default()
     };
-    // 0.10 % and 0.001 % in F_N: the ripple of the two, whose points enter the contact one by one.
+    assert!(both.iter().flatten().all(|(row, _)| row.cutbacks == 0));
+    // 0.16 % and 0.43 % in F_N: the two surfaces are as fine, and either's points do not touch the
+    // other between them. On 16 elements it is 0.18 % and 0.16 %.
     for segment in [0, 1] {
         let [one, other] = [&both[0], &both[1]].map(|steps| ends(steps, segment));
         assert!((one.f_n / other.f_n - 1.0).abs() < 5e-3, "{} and {}", one.f_n, other.f_n);

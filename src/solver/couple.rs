@@ -14,11 +14,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::half::HalfCycle;
+use super::pair::mirror_nodes;
 use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;
 use crate::linalg::fgmres::System;
+use crate::linalg::fold::{Fold, Parity};
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
 use crate::real::Real;
@@ -30,6 +33,8 @@ pub struct CoupleSolver {
     matrix: BlockMatrix<f32>,
     /// Which body is the slave.
     slave: usize,
+    /// The state and the step are even in x, and so are all corrections.
+    symmetric: bool,
     bodies: [Body; 2],
     contact_nodes: Vec<u32>,
     interface: Arc<Interface>,
@@ -47,6 +52,8 @@ struct Body {
     /// Its tangent; the slave's in the frames of its contact points, with their rows.
     matrix: BlockMatrix<f32>,
     hierarchy: Hierarchy,
+    /// What takes its place where all is even in x.
+    half: Option<(Fold, HalfCycle)>,
     fixed: Vec<bool>,
     z: Vec<f32>,
 }
@@ -60,10 +67,10 @@ struct Work {
 }
 
 impl Body {
-    fn new(mesh: &Mesh, body: usize, whole: &Pattern) -> Result<Self, LinalgError> {
-        let (node, element, prolongations) = match &mesh.couple {
-            Some(couple) => (couple.node, couple.element, couple.hierarchies[body].as_slice()),
-            None => (mesh.nodes.len(), mesh.elements.len(), mesh.hierarchy.as_slice()),
+    fn new(mesh: &Mesh, body: usize, whole: &Pattern, mirror: Option<&[u32]>) -> Result<Self, LinalgError> {
+        let (node, element, prolongations, half) = match &mesh.couple {
+            Some(couple) => (couple.node, couple.element, couple.hierarchies[body].as_slice(), &couple.halves[body]),
+            None => (mesh.nodes.len(), mesh.elements.len(), mesh.hierarchy.as_slice(), &mesh.half),
         };
         let (nodes, elements) = match body {
             0 => (0..node, 0..element),
@@ -73,7 +80,16 @@ impl Body {
         let pattern = Pattern::from_elements(nodes.len(), &own);
         let first = if nodes.is_empty() { 0 } else { whole.row(nodes.start).start };
         let unknowns = 3 * nodes.start..3 * nodes.end;
+        let half = match (half, mirror) {
+            (Some(half), Some(mirror)) => {
+                let own: Vec<u32> = mirror[nodes.clone()].iter().map(|n| n - nodes.start as u32).collect();
+                let fold = Fold::new(&pattern, &half.node, &own);
+                fold.map(|fold| HalfCycle::new(Parity::Even, &fold, half).map(|cycle| (fold, cycle))).transpose()?
+            }
+            _ => None,
+        };
         Ok(Self {
+            half,
             blocks: first..first + pattern.entries(),
             hierarchy: Hierarchy::new(&pattern, prolongations)?,
             matrix: BlockMatrix::zeros(pattern),
@@ -89,14 +105,17 @@ impl CoupleSolver {
     /// the slave.
     ///
     /// # Errors
-    /// [`LinalgError::Hierarchy`] if prolongations do not fit, or if there are none.
+    /// [`LinalgError::Hierarchy`] if prolongations do not fit.
     pub fn new(mesh: &Mesh, pattern: &Pattern, slave: usize) -> Result<Self, LinalgError> {
         let n = 3 * pattern.rows();
         let zero = || vec![0.0; n];
+        let mirror = mirror_nodes(mesh);
+        let body = |body| Body::new(mesh, body, pattern, mirror.as_deref());
         Ok(Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
             slave,
-            bodies: [Body::new(mesh, 0, pattern)?, Body::new(mesh, 1, pattern)?],
+            symmetric: false,
+            bodies: [body(0)?, body(1)?],
             contact_nodes: mesh.contact_nodes.clone(),
             interface: Arc::default(),
             rows: Vec::new(),
@@ -108,6 +127,12 @@ impl CoupleSolver {
     /// The tangent of both bodies, to be written in place before [`CoupleSolver::refresh`].
     pub fn matrix_mut(&mut self) -> &mut BlockMatrix<f32> {
         &mut self.matrix
+    }
+
+    /// Says whether the state and the step are even in x: half of each body is then enough for what
+    /// preconditions.
+    pub fn set_symmetric(&mut self, symmetric: bool) {
+        self.symmetric = symmetric;
     }
 
     /// Takes over the tangent, the interface, its rows and which unknowns y are fixed.
@@ -133,7 +158,14 @@ impl CoupleSolver {
             apply_rows(&mut body.matrix, node, &rows[slave]);
         }
         for body in &mut self.bodies {
-            body.hierarchy.update(&body.matrix, &body.fixed)?;
+            match &mut body.half {
+                Some((fold, cycle)) if self.symmetric => {
+                    fold.update(&body.matrix);
+                    cycle.fix(fold, &body.fixed);
+                    cycle.update(fold)?;
+                }
+                _ => body.hierarchy.update(&body.matrix, &body.fixed)?,
+            }
         }
         Ok(())
     }
@@ -157,8 +189,16 @@ impl CoupleSolver {
         let body = &mut self.bodies[body];
         let range = body.unknowns.clone();
         clear(&body.fixed, &mut r[range.clone()]);
-        body.hierarchy.v_cycle(&r[range.clone()], &mut body.z);
-        y[range].iter_mut().zip(&body.z).for_each(|(y, z)| *y = f64::from(*z));
+        match &mut body.half {
+            Some((fold, cycle)) if self.symmetric => {
+                y[range.clone()].fill(0.0);
+                cycle.add(fold, &r[range.clone()], &mut y[range]);
+            }
+            _ => {
+                body.hierarchy.v_cycle(&r[range.clone()], &mut body.z);
+                y[range].iter_mut().zip(&body.z).for_each(|(y, z)| *y = f64::from(*z));
+            }
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 
 pub mod couple;
 pub mod encounter;
+mod half;
 pub mod iterate;
 mod meet;
 pub mod newton;

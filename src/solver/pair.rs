@@ -10,12 +10,13 @@
 
 use std::sync::Arc;
 
+use super::half::HalfCycle;
 use super::tied::{InSingle, Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::fgmres::System;
 use crate::linalg::fold::{Fold, Parity};
-use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
+use crate::linalg::{BlockMatrix, LinalgError, Pattern};
 use crate::mesh::Mesh;
 
 /// Solves for the unknowns y of a pair.
@@ -25,24 +26,19 @@ pub struct PairSolver {
     /// The state and the step are even in x, and so are all corrections.
     symmetric: bool,
     fold: Fold,
-    even: Hierarchy,
-    odd: Hierarchy,
+    even: HalfCycle,
+    odd: HalfCycle,
     /// The node opposite in x.
     mirror: Vec<u32>,
     contact_nodes: Vec<u32>,
     interface: Arc<Interface>,
     rows: Vec<Rows<f64>>,
-    /// Which unknowns of the half are fixed.
-    even_fixed: Vec<bool>,
-    odd_fixed: Vec<bool>,
     reduced: Reduced,
     work: Work,
 }
 
 #[derive(Debug, Default)]
 struct Work {
-    load: Vec<f32>,
-    z: Vec<f32>,
     u: Vec<f64>,
     f: Vec<f64>,
     single: InSingle,
@@ -69,28 +65,18 @@ impl PairSolver {
         let (Some(mirror), Some(half)) = (mirror_nodes(mesh), &mesh.half) else { return Ok(None) };
         let Some(fold) = Fold::new(pattern, &half.node, &mirror) else { return Ok(None) };
         let n = 3 * pattern.rows();
-        let of_half = fold.matrix.unknowns();
-        let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
         Ok(Some(Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
             symmetric: false,
+            even: HalfCycle::new(Parity::Even, &fold, half)?,
+            odd: HalfCycle::new(Parity::Odd, &fold, half)?,
             fold,
-            odd: hierarchy.clone(),
-            even: hierarchy,
             mirror,
             contact_nodes: mesh.contact_nodes.clone(),
             interface: Arc::default(),
             rows: Vec::new(),
-            even_fixed: vec![false; of_half],
-            odd_fixed: vec![false; of_half],
             reduced: Reduced::new(n),
-            work: Work {
-                load: vec![0.0; of_half],
-                z: vec![0.0; of_half],
-                u: vec![0.0; n],
-                f: vec![0.0; n],
-                single: InSingle::default(),
-            },
+            work: Work { u: vec![0.0; n], f: vec![0.0; n], single: InSingle::default() },
         }))
     }
 
@@ -122,7 +108,7 @@ impl PairSolver {
     /// displacements are `prescribed` whatever the contact does.
     ///
     /// # Errors
-    /// As [`Hierarchy::update`].
+    /// As [`crate::linalg::Hierarchy::update`].
     pub fn refresh(
         &mut self,
         interface: &Arc<Interface>,
@@ -135,29 +121,25 @@ impl PairSolver {
         self.rows.extend_from_slice(rows);
         self.reduced.fixed.copy_from_slice(fixed);
         self.fold.update(&self.matrix);
+        self.even.fix(&self.fold, prescribed);
+        self.odd.fix(&self.fold, prescribed);
         for (a, nodes) in self.fold.nodes().iter().enumerate() {
-            let base = 3 * nodes[0] as usize;
-            for c in 0..3 {
-                let is_free = |parity: Parity| !prescribed[base + c] && (nodes[0] != nodes[1] || parity.is_free_at_zero(c));
-                self.even_fixed[3 * a + c] = !is_free(Parity::Even);
-                self.odd_fixed[3 * a + c] = !is_free(Parity::Odd);
-            }
             for contact in nodes.map(|node| self.contact_nodes.binary_search(&node).ok()).into_iter().flatten() {
                 let Some(k) = interface.slave_of[contact] else { continue };
                 match rows[interface.slaves[k]].status {
                     Status::Open => {}
                     status => {
-                        self.even_fixed[3 * a + 2] = true;
+                        self.even.fixed[3 * a + 2] = true;
                         if status == Status::Stick {
-                            self.odd_fixed[3 * a] = true;
-                            self.odd_fixed[3 * a + 1] |= !interface.is_free_along_y(k);
+                            self.odd.fixed[3 * a] = true;
+                            self.odd.fixed[3 * a + 1] |= !interface.is_free_along_y(k);
                         }
                     }
                 }
             }
         }
-        self.even.update(&self.fold.matrix, &self.even_fixed)?;
-        if self.symmetric { Ok(()) } else { self.odd.update(&self.fold.matrix, &self.odd_fixed) }
+        self.even.update(&self.fold)?;
+        if self.symmetric { Ok(()) } else { self.odd.update(&self.fold) }
     }
 
     /// Makes f = A y of f = K u.
@@ -192,12 +174,9 @@ impl System<f32> for PairSolver {
         self.interface.loads(&work.f, &self.reduced.fixed, &mut work.u);
         std::mem::swap(&mut work.u, &mut work.f);
         work.u.fill(0.0);
-        let odd = (!self.symmetric).then_some((Parity::Odd, &mut self.odd, &self.odd_fixed));
-        for (parity, hierarchy, fixed) in [(Parity::Even, &mut self.even, &self.even_fixed)].into_iter().chain(odd) {
-            self.fold.fold(parity, &work.f, &mut work.load);
-            clear(fixed, &mut work.load);
-            hierarchy.v_cycle(&work.load, &mut work.z);
-            self.fold.unfold_add(parity, &work.z, &mut work.u);
+        self.even.add(&self.fold, &work.f, &mut work.u);
+        if !self.symmetric {
+            self.odd.add(&self.fold, &work.f, &mut work.u);
         }
         self.interface.contract(&mut work.u);
         clear(&self.reduced.fixed, &mut work.u);

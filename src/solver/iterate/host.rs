@@ -110,6 +110,9 @@ impl HostIterate {
 
     /// Sets the interface with another body for the next step.
     pub fn encounter(&mut self, encounter: Encounter) {
+        if let Systems::Couple(solver) = &mut self.linear {
+            solver.set_symmetric(encounter.symmetric);
+        }
         self.boundary.encounter = Some(encounter);
     }
 

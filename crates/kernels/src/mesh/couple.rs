@@ -5,7 +5,7 @@
 //! mirror image of that, z to -z. No element touches both bodies, so what is formed from the
 //! elements (forces, tangents, patterns) falls into a part for each.
 
-use super::{Mesh, NodeElements, Prolongation};
+use super::{Half, Mesh, NodeElements, Prolongation};
 
 /// Where the opponent begins in the lists of a mesh of two bodies, and the interpolations of each.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,8 @@ pub struct Couple {
     pub contact_face: usize,
     /// Interpolations of the sphere and of the opponent, finest first.
     pub hierarchies: [Vec<Prolongation>; 2],
+    /// The half of each at x >= 0, in numbers of its own nodes.
+    pub halves: [Option<Half>; 2],
 }
 
 impl Couple {
@@ -49,6 +51,7 @@ pub fn couple(sphere: Mesh, opponent: Mesh) -> Mesh {
         contact: sphere.contact_nodes.len(),
         contact_face: sphere.contact_faces.len(),
         hierarchies: [sphere.hierarchy, opponent.hierarchy],
+        halves: [sphere.half, opponent.half],
     };
     let after = |first: Vec<u32>, second: Vec<u32>| -> Vec<u32> {
         first.into_iter().chain(second.into_iter().map(|n| n + nodes_before)).collect()

@@ -1,0 +1,57 @@
+//! A V-cycle on half of a body, for what is even in x or what is odd.
+
+use super::tied::clear;
+use crate::linalg::fold::{Fold, Parity};
+use crate::linalg::{Hierarchy, LinalgError};
+use crate::mesh::Half;
+
+/// The preconditioner of one parity, on a body folded at x = 0.
+#[derive(Debug)]
+pub(super) struct HalfCycle {
+    parity: Parity,
+    hierarchy: Hierarchy,
+    /// Which unknowns of the half are fixed.
+    pub fixed: Vec<bool>,
+    load: Vec<f32>,
+    z: Vec<f32>,
+}
+
+impl HalfCycle {
+    /// For matrices of `fold`.
+    ///
+    /// # Errors
+    /// [`LinalgError::Hierarchy`] if the half's prolongations do not fit.
+    pub fn new(parity: Parity, fold: &Fold, half: &Half) -> Result<Self, LinalgError> {
+        let n = fold.matrix.unknowns();
+        let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
+        Ok(Self { parity, hierarchy, fixed: vec![false; n], load: vec![0.0; n], z: vec![0.0; n] })
+    }
+
+    /// Fixes what is `prescribed` (of the whole body) on either side, and what the parity has none
+    /// of at x = 0.
+    pub fn fix(&mut self, fold: &Fold, prescribed: &[bool]) {
+        for (fixed, nodes) in self.fixed.as_chunks_mut::<3>().0.iter_mut().zip(fold.nodes()) {
+            let [own, opposite] = nodes.map(|n| 3 * n as usize);
+            for (c, fixed) in fixed.iter_mut().enumerate() {
+                let is_none = own == opposite && !self.parity.is_free_at_zero(c);
+                *fixed = is_none || prescribed[own + c] || prescribed[opposite + c];
+            }
+        }
+    }
+
+    /// Takes over the folded matrix, with what is fixed.
+    ///
+    /// # Errors
+    /// As [`Hierarchy::update`].
+    pub fn update(&mut self, fold: &Fold) -> Result<(), LinalgError> {
+        self.hierarchy.update(&fold.matrix, &self.fixed)
+    }
+
+    /// Adds to the whole body's `u` what a V-cycle makes of its forces `f`.
+    pub fn add(&mut self, fold: &Fold, f: &[f64], u: &mut [f64]) {
+        fold.fold(self.parity, f, &mut self.load);
+        clear(&self.fixed, &mut self.load);
+        self.hierarchy.v_cycle(&self.load, &mut self.z);
+        fold.unfold_add(self.parity, &self.z, u);
+    }
+}
