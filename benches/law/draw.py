@@ -158,6 +158,7 @@ def main():
     parser.add_argument("--wide", action="store_true", help="the study for interpolation")
     parser.add_argument("--equal", action="store_true", help="on an equal sphere instead of the plane")
     arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
     wide = arguments.wide
     seed = arguments.seed if arguments.seed is not None else (WIDE_SEED if wide else SEED)
     times = PAIR_TIMES if arguments.equal else TIMES

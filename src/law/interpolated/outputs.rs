@@ -52,9 +52,10 @@ fn elastic(sphere: &ElasticSphere, h: f64) -> [f64; 3] {
 
 /// The outputs of a simulated contact; `None` if it was not sheared to full slip.
 pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured, body: Against) -> Option<Outputs> {
-    let last = one.curve.last()?;
     let slip = |point: &Point| if point.delta_t > 0.0 { (point.f_t / (friction * point.f_n)).min(1.0) } else { 0.0 };
-    if one.curve.len() < 5 || slip(last) < if body == Against::Plane { SLIPPED } else { SLIPPED_PAIR } {
+    // The ratio may pass a peak at full slip and fall a little.
+    let most = one.curve.iter().map(slip).fold(0.0, f64::max);
+    if one.curve.len() < 5 || most < if body == Against::Plane { SLIPPED } else { SLIPPED_PAIR } {
         return None;
     }
     // Over the square root of delta_T the points of the curve are about even.
