@@ -1,7 +1,10 @@
 use super::*;
+use crate::analytical::hertz;
 use crate::contact_law::Centres;
 use crate::contact_law::path::follow;
 use crate::law::LawFile;
+use crate::law::data::Point;
+use crate::law::tabulated::Measured;
 
 fn fixture(name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/interpolated").join(name)
@@ -200,4 +203,29 @@ fn two_spheres_slide_at_mu_in_the_frame_of_their_centres() {
     let [n, t] = Centres::of(&case).turned([last.h, last.delta_t], [last.f_n, last.f_t]);
     assert!((t / (0.05 * n) - 1.0).abs() < 5e-3, "{}", t / n);
     assert!(last.f_t / (0.05 * last.f_n) < 0.995, "{}", last.f_t / last.f_n);
+}
+
+#[test]
+fn a_contact_whose_ratio_passes_a_peak_at_full_slip_has_slipped() {
+    let sphere = ElasticSphere::unit(0.1);
+    let (h, mu) = (0.01, 0.8);
+    let f_n0 = 0.5 * hertz::force(&sphere, h);
+    // F_T/F_N over mu rises to a peak at 0.9 of the shear and falls a little.
+    let sheared = |peak: f64| {
+        let at = |x: f64| {
+            let ratio = if x < 0.9 { peak * (1.0 - (1.0 - x / 0.9).powi(3)) } else { peak - 0.05 * (x - 0.9) };
+            let f_n = f_n0 * (1.0 - 0.2 * x);
+            Point { delta_t: 0.005 * x, f_t: mu * ratio * f_n, f_n }
+        };
+        let curve: Vec<Point> = (0..=20).map(|i| at(f64::from(i) / 20.0)).collect();
+        let end = curve[20];
+        let share = |i: i32| f64::from(i) / 20.0;
+        let back =
+            (0..=20).map(|i| Point { delta_t: end.delta_t * (1.0 - share(i)), f_t: end.f_t * (1.0 - 2.0 * share(i)), ..end });
+        let release = (0..=5).map(|i| [h * (1.0 - 0.1 * share(i)), end.f_n * (1.0 - 2.0 * share(i))]);
+        Measured { h, f_n0, a0: 0.1, back: back.collect(), release: release.collect(), curve }
+    };
+    assert!(sheared(0.992).curve.last().is_some_and(|end| end.f_t / end.f_n < 0.99 * mu));
+    assert!(outputs::outputs(&sphere, mu, &sheared(0.992), Against::Plane).is_some());
+    assert!(outputs::outputs(&sphere, mu, &sheared(0.985), Against::Plane).is_none());
 }
