@@ -20,6 +20,7 @@ use super::tied::{Reduced, Tied, clear, impose};
 use crate::contact::coulomb::{Rows, Status};
 use crate::contact::couple::Interface;
 use crate::contact::frame::Frame;
+use crate::contact::pair::leave_even;
 use crate::linalg::fgmres::System;
 use crate::linalg::fold::{Fold, Parity};
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
@@ -35,6 +36,8 @@ pub struct CoupleSolver {
     slave: usize,
     /// The state and the step are even in x, and so are all corrections.
     symmetric: bool,
+    /// The node opposite in x of each node; none if the mesh is not its own mirror image.
+    mirror: Vec<u32>,
     bodies: [Body; 2],
     contact_nodes: Vec<u32>,
     interface: Arc<Interface>,
@@ -83,8 +86,13 @@ impl Body {
         let half = match (half, mirror) {
             (Some(half), Some(mirror)) => {
                 let own: Vec<u32> = mirror[nodes.clone()].iter().map(|n| n - nodes.start as u32).collect();
-                let fold = Fold::new(&pattern, &half.node, &own);
-                fold.map(|fold| HalfCycle::new(Parity::Even, &fold, half).map(|cycle| (fold, cycle))).transpose()?
+                match Fold::new(&pattern, &half.node, &own) {
+                    Some(fold) => {
+                        let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
+                        Some((fold, HalfCycle::new(Parity::Even, hierarchy, half.node.len())))
+                    }
+                    None => None,
+                }
             }
             _ => None,
         };
@@ -116,6 +124,7 @@ impl CoupleSolver {
             slave,
             symmetric: false,
             bodies: [body(0)?, body(1)?],
+            mirror: mirror.unwrap_or_default(),
             contact_nodes: mesh.contact_nodes.clone(),
             interface: Arc::default(),
             rows: Vec::new(),
@@ -129,8 +138,8 @@ impl CoupleSolver {
         &mut self.matrix
     }
 
-    /// Says whether the state and the step are even in x: half of each body is then enough for what
-    /// preconditions.
+    /// Says whether the state and the step are even in x: so is then their solution, and half of
+    /// each body is enough for what preconditions.
     pub fn set_symmetric(&mut self, symmetric: bool) {
         self.symmetric = symmetric;
     }
@@ -178,8 +187,12 @@ impl CoupleSolver {
         self.carry_over(y, f);
     }
 
-    /// Makes f = A y of f = K u.
+    /// Makes f = A y of f = K u. Where all is even, so is f but for rounding and points that it
+    /// makes flow on one side alone, which half of a body cannot take away.
     fn carry_over(&self, y: &[f64], f: &mut [f64]) {
+        if self.symmetric {
+            leave_even(&self.mirror, f);
+        }
         self.interface.reduce(f);
         impose(&self.rows, &self.interface.slaves, &self.contact_nodes, y, f);
     }

@@ -3,7 +3,6 @@
 use super::tied::clear;
 use crate::linalg::fold::{Fold, Parity};
 use crate::linalg::{Hierarchy, LinalgError};
-use crate::mesh::Half;
 
 /// The preconditioner of one parity, on a body folded at x = 0.
 #[derive(Debug)]
@@ -17,24 +16,20 @@ pub(super) struct HalfCycle {
 }
 
 impl HalfCycle {
-    /// For matrices of `fold`.
-    ///
-    /// # Errors
-    /// [`LinalgError::Hierarchy`] if the half's prolongations do not fit.
-    pub fn new(parity: Parity, fold: &Fold, half: &Half) -> Result<Self, LinalgError> {
-        let n = fold.matrix.unknowns();
-        let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
-        Ok(Self { parity, hierarchy, fixed: vec![false; n], load: vec![0.0; n], z: vec![0.0; n] })
+    /// For folded matrices of that many nodes, on the half's `hierarchy`.
+    pub fn new(parity: Parity, hierarchy: Hierarchy, nodes: usize) -> Self {
+        let n = 3 * nodes;
+        Self { parity, hierarchy, fixed: vec![false; n], load: vec![0.0; n], z: vec![0.0; n] }
     }
 
-    /// Fixes what is `prescribed` (of the whole body) on either side, and what the parity has none
-    /// of at x = 0.
-    pub fn fix(&mut self, fold: &Fold, prescribed: &[bool]) {
-        for (fixed, nodes) in self.fixed.as_chunks_mut::<3>().0.iter_mut().zip(fold.nodes()) {
+    /// Fixes what the whole body has `fixed` on both sides, and what the parity has none of at x =
+    /// 0. What is fixed on one side alone has to be free here for the other.
+    pub fn fix(&mut self, fold: &Fold, fixed: &[bool]) {
+        for (to_fix, nodes) in self.fixed.as_chunks_mut::<3>().0.iter_mut().zip(fold.nodes()) {
             let [own, opposite] = nodes.map(|n| 3 * n as usize);
-            for (c, fixed) in fixed.iter_mut().enumerate() {
+            for (c, to_fix) in to_fix.iter_mut().enumerate() {
                 let is_none = own == opposite && !self.parity.is_free_at_zero(c);
-                *fixed = is_none || prescribed[own + c] || prescribed[opposite + c];
+                *to_fix = is_none || fixed[own + c] && fixed[opposite + c];
             }
         }
     }

@@ -16,7 +16,7 @@ use crate::contact::coulomb::{Rows, Status};
 use crate::contact::pair::{Interface, leave_even};
 use crate::linalg::fgmres::System;
 use crate::linalg::fold::{Fold, Parity};
-use crate::linalg::{BlockMatrix, LinalgError, Pattern};
+use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
 use crate::mesh::Mesh;
 
 /// Solves for the unknowns y of a pair.
@@ -45,7 +45,7 @@ struct Work {
 }
 
 /// The node opposite in x of each node of a mesh that is its own mirror image; `None` if it is not.
-pub fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
+pub(super) fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
     // + 0: no -0 among the keys.
     let key = |n: usize, sign: f64| {
         let x = mesh.nodes[n];
@@ -57,19 +57,21 @@ pub fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
 }
 
 impl PairSolver {
-    /// Plans a solver for a mesh that is its own mirror image; `None` if it is not.
+    /// Plans a solver for a mesh that is its own mirror image; `None` if it is not, or if elements
+    /// cross x = 0.
     ///
     /// # Errors
-    /// [`LinalgError::Hierarchy`] if its prolongations do not fit, or if it has none.
+    /// [`LinalgError::Hierarchy`] if the prolongations of its half do not fit.
     pub fn new(mesh: &Mesh, pattern: &Pattern) -> Result<Option<Self>, LinalgError> {
         let (Some(mirror), Some(half)) = (mirror_nodes(mesh), &mesh.half) else { return Ok(None) };
         let Some(fold) = Fold::new(pattern, &half.node, &mirror) else { return Ok(None) };
+        let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
         let n = 3 * pattern.rows();
         Ok(Some(Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
             symmetric: false,
-            even: HalfCycle::new(Parity::Even, &fold, half)?,
-            odd: HalfCycle::new(Parity::Odd, &fold, half)?,
+            even: HalfCycle::new(Parity::Even, hierarchy.clone(), half.node.len()),
+            odd: HalfCycle::new(Parity::Odd, hierarchy, half.node.len()),
             fold,
             mirror,
             contact_nodes: mesh.contact_nodes.clone(),
@@ -108,7 +110,7 @@ impl PairSolver {
     /// displacements are `prescribed` whatever the contact does.
     ///
     /// # Errors
-    /// As [`crate::linalg::Hierarchy::update`].
+    /// As [`Hierarchy::update`].
     pub fn refresh(
         &mut self,
         interface: &Arc<Interface>,

@@ -24,6 +24,8 @@ const SLIPPED: f64 = 0.99;
 /// and one of two spheres: elastic ones whose points all slide have up to 3 % less at mu above 0.6,
 /// since not all of them slide in one direction.
 const SLIPPED_PAIR: f64 = 0.95;
+/// What it may fall from there to the end: the ratio passes a peak where a contact has slipped.
+const FALL: f64 = 0.01;
 /// Share of F_N0 below which the loss of a whole shear is that of an elastic contact, none.
 const NOTHING: f64 = 5e-3;
 /// Intervals of the integral that gives the length of the slip.
@@ -52,10 +54,11 @@ fn elastic(sphere: &ElasticSphere, h: f64) -> [f64; 3] {
 
 /// The outputs of a simulated contact; `None` if it was not sheared to full slip.
 pub fn outputs(sphere: &ElasticSphere, friction: f64, one: &Measured, body: Against) -> Option<Outputs> {
+    let last = one.curve.last()?;
     let slip = |point: &Point| if point.delta_t > 0.0 { (point.f_t / (friction * point.f_n)).min(1.0) } else { 0.0 };
-    // The ratio may pass a peak at full slip and fall a little.
+    let slipped = if body == Against::Plane { SLIPPED } else { SLIPPED_PAIR };
     let most = one.curve.iter().map(slip).fold(0.0, f64::max);
-    if one.curve.len() < 5 || most < if body == Against::Plane { SLIPPED } else { SLIPPED_PAIR } {
+    if one.curve.len() < 5 || most < slipped || slip(last) < slipped - FALL {
         return None;
     }
     // Over the square root of delta_T the points of the curve are about even.

@@ -20,7 +20,7 @@ pub enum Parity {
 
 impl Parity {
     /// Sign of each component on the other side.
-    pub fn signs(self) -> [f32; 3] {
+    fn signs(self) -> [f32; 3] {
         match self {
             Self::Even => [-1.0, 1.0, 1.0],
             Self::Odd => [1.0, -1.0, -1.0],
@@ -36,8 +36,8 @@ impl Parity {
 /// A matrix folded at x = 0, and the plan by which it is.
 ///
 /// One matrix serves both parities. Two nodes off x = 0, or two at it, are coupled alike in both.
-/// In a block of one of each the components that are free at x = 0 are those of the parity to which
-/// they belong; the others are fixed in that parity, and no use is made of them.
+/// Between a node at x = 0 and one off it, each component of the former is free in one parity only,
+/// and has that parity's sign; in the other it is fixed, and no use is made of it.
 #[derive(Clone, Debug)]
 pub struct Fold {
     /// The folded matrix.
@@ -99,7 +99,6 @@ impl Fold {
         let (nodes, place) = (&self.nodes, &self.place);
         let BlockMatrix { pattern, blocks } = &mut self.matrix;
         let mut nothing = vec![(); nodes.len()];
-        let is_at_zero = |node: u32, [own, opposite]: [u32; 2]| node == own && node == opposite;
         each_row(blocks, &pattern.row_start, &mut nothing, |a, row, ()| {
             let columns = &pattern.column[pattern.row(a)];
             row.as_flattened_mut().fill(0.0);
@@ -109,14 +108,14 @@ impl Fold {
                 for at in whole.pattern.row(node as usize) {
                     let (b, j) = (place[at] as usize, whole.pattern.column[at]);
                     let pair = nodes[columns[b] as usize];
-                    // Where a node at x = 0 is, the component tells the parity.
-                    let sign = |left: bool, component: usize, of: Option<usize>| match (left, of) {
+                    // A component that a node at x = 0 has belongs to one parity.
+                    let sign = |left: bool, component: usize, component_at_zero: Option<usize>| match (left, component_at_zero) {
                         (false, _) => 1.0,
                         (true, Some(0)) => Parity::Odd.signs()[component],
                         (true, _) => Parity::Even.signs()[component],
                     };
                     let (left_row, left_column) = (node != own, j != pair[0]);
-                    let (row_at_zero, column_at_zero) = (sides == 1, is_at_zero(j, pair));
+                    let (row_at_zero, column_at_zero) = (own == opposite, pair[0] == pair[1]);
                     for m in 0..9 {
                         let (r, c) = (m / 3, m % 3);
                         let by_row = sign(left_row, r, column_at_zero.then_some(c));

@@ -113,14 +113,14 @@ impl Butterfly {
         }
     }
 
-    /// The site opposite in x.
+    /// The site opposite in x, in whole blocks.
     pub fn mirrored(&self, site: Site) -> Site {
         let [a, b, c] = site.at;
         let cells = if site.block == SIDE { self.perimeter_cells() } else { self.nx };
         Site { block: site.block, at: [cells - a, b, c] }
     }
 
-    /// Whether a site lies at x < 0 (for an even `nx`).
+    /// Whether a site of whole blocks lies at x < 0 (for an even `nx`).
     pub fn is_left(&self, site: Site) -> bool {
         let cells = if site.block == SIDE { self.perimeter_cells() } else { self.nx };
         if site.block == SIDE { 2 * site.at[0] > cells } else { 2 * site.at[0] < cells }

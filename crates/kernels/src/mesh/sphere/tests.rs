@@ -233,6 +233,7 @@ fn interpolation_keeps_linear_functions_of_the_indices() {
     for blocks in whole.into_iter().chain(whole.map(|blocks| blocks.right_half())) {
         let mut fine = blocks;
         let levels = crate::mesh::hierarchy::hierarchy(fine);
+        assert!(blocks.half || !levels.is_empty());
         assert!(levels.last().map_or(fine.node_count(), |p| p.coarse_nodes) <= COARSEST_NODES, "{blocks:?}");
         for p in &levels {
             let coarse = fine.with_cells(&fine.cells().iter().map(|&n| coarse_cells(n)).collect::<Vec<_>>());
