@@ -144,8 +144,8 @@ fn which_body_has_the_slaves_hardly_matters() {
         steps.iter().rfind(|(row, _)| row.segment == segment).map(|(row, _)| *row).unwrap_or_default()
     };
     assert!(both.iter().flatten().all(|(row, _)| row.cutbacks == 0));
-    // 0.16 % and 0.43 % in F_N, on 16 elements 0.18 % and 0.16 %: gaps are closed in the mean over
-    // a slave's surroundings, so that whose points are slaves counts as much as the mesh does.
+    // 0.16 % and 0.43 % in F_N, on 16 elements 0.18 % and 0.16 %. The gap is closed on average
+    // around each slave point, so which body has them matters about as much as the mesh.
     for segment in [0, 1] {
         let [one, other] = [&both[0], &both[1]].map(|steps| ends(steps, segment));
         assert!((one.f_n / other.f_n - 1.0).abs() < 5e-3, "{} and {}", one.f_n, other.f_n);

@@ -33,6 +33,16 @@ impl Parity {
     }
 }
 
+/// Sign that a component of a node gets when it is folded, if it is to the `left`. Coupled to a
+/// component of a node at x = 0 it has the parity in which that one is free; else either will do.
+fn sign(left: bool, component: usize, at_zero: Option<usize>) -> f32 {
+    match (left, at_zero) {
+        (false, _) => 1.0,
+        (true, Some(0)) => Parity::Odd.signs()[component],
+        (true, _) => Parity::Even.signs()[component],
+    }
+}
+
 /// A matrix folded at x = 0, and the plan by which it is.
 ///
 /// One matrix serves both parities. Two nodes off x = 0, or two at it, are coupled alike in both.
@@ -108,12 +118,6 @@ impl Fold {
                 for at in whole.pattern.row(node as usize) {
                     let (b, j) = (place[at] as usize, whole.pattern.column[at]);
                     let pair = nodes[columns[b] as usize];
-                    // A component that a node at x = 0 has belongs to one parity.
-                    let sign = |left: bool, component: usize, component_at_zero: Option<usize>| match (left, component_at_zero) {
-                        (false, _) => 1.0,
-                        (true, Some(0)) => Parity::Odd.signs()[component],
-                        (true, _) => Parity::Even.signs()[component],
-                    };
                     let (left_row, left_column) = (node != own, j != pair[0]);
                     let (row_at_zero, column_at_zero) = (own == opposite, pair[0] == pair[1]);
                     for m in 0..9 {
