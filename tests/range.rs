@@ -238,3 +238,29 @@ fn what_used_to_be_hard_is_followed_without_a_cutback() {
         assert!((last.work_external - found).abs() < 0.02 * most, "{what}: work {} against {found}", last.work_external);
     }
 }
+
+/// What a press starts from may carry no force, next to none, or lie far below: where it was
+/// before, it is as if it had been cut finely.
+#[test]
+fn a_press_after_a_release_does_not_depend_on_what_the_release_left() {
+    let pressed_again = |released: &[&str], again: &[f64]| {
+        let segments = ["indentation = 0.02"].iter().chain(released).map(|segment| (*segment).to_owned());
+        let again = again.iter().map(|h| format!("indentation = {h}"));
+        let path: String = segments.chain(again).map(|segment| format!("[[path]]\n{segment}\n")).collect();
+        let (ending, watch) = drive(&case_text(0.3, SOFT, "0.3", "elements_per_contact_radius = 6", &path));
+        assert_eq!(ending, Ending::Done);
+        let steps = watch.rows.iter().filter(|row| row.segment == released.len() + 1).count();
+        (steps, watch.rows[watch.rows.len() - 1].f_n)
+    };
+    let finely: Vec<f64> = (1..=40).map(|i| 0.0182 + (0.02 - 0.0182) * f64::from(i) / 40.0).collect();
+    let (_, fine) = pressed_again(&["release = true"], &finely);
+    let cases: [(&[&str], usize); 3] =
+        [(&["release = true"], 8), (&["release = 0.001"], 8), (&["release = true", "indentation = 0.012"], 9)];
+    for (released, least) in cases {
+        let again = [0.02];
+        let (steps, f_n) = pressed_again(released, &again);
+        println!("{released:?}: {steps} steps, F_N = {f_n:.6e}, finely {fine:.6e}");
+        assert!(steps >= least, "{released:?}: {steps} steps");
+        assert!((f_n / fine - 1.0).abs() < 5e-3, "{released:?}: F_N = {f_n} against {fine}");
+    }
+}

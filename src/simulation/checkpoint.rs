@@ -34,6 +34,8 @@ pub(super) struct Committed {
     pub points: Vec<ContactPoint>,
     pub record: StepRecord,
     pub h_max: f64,
+    /// Longest elastic recovery of any state so far.
+    pub longest_recovery: f64,
     /// Direction of the last shear.
     pub direction: f64,
 }

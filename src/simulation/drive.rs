@@ -261,6 +261,7 @@ impl<'a> Drive<'a> {
             delta_t: r.delta_t,
             f_n: r.f_n,
             a: r.a,
+            longest_recovery: self.state.longest_recovery,
             friction: match self.problem.model.friction {
                 Friction::Coulomb(mu) => mu,
                 Friction::Stick => f64::INFINITY,

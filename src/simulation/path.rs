@@ -28,6 +28,8 @@ pub struct Start {
     pub f_n: f64,
     /// Contact radius.
     pub a: f64,
+    /// Longest elastic recovery of any state so far (see [`Start::recovery`]).
+    pub longest_recovery: f64,
     /// Coefficient of friction; infinite for full stick.
     pub friction: f64,
     /// Poisson's ratio.
@@ -124,11 +126,27 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
     let target = |h, extrapolate| Target { h, delta_t: start.delta_t, hold_force: false, extrapolate };
     let mut targets = Vec::new();
     let mut from = start.h;
-    if h < from || from < start.h_max {
-        // Elastic: unloading, or loading again up to where it was.
-        let to = if h > from { h.min(start.h_max) } else { h };
+    if h > from && from < start.h_max {
+        // Loading again, up to where it was. What the press is released to may carry no force at all, so the
+        // steps are those of the release from the deepest state; before contact is near, one step does.
+        let to = h.min(start.h_max);
+        let recovery = start.longest_recovery;
+        let near = (start.h_max - 1.5 * recovery).clamp(from, to);
+        if near > from {
+            targets.push(target(near, false));
+        }
+        let n = (RELEASE_STEPS / resolution.coarseness * (to - near) / recovery.max(f64::MIN_POSITIVE)).ceil().max(1.0) as usize;
+        if to > near {
+            targets.extend((1..=n).map(|i| target(near + (to - near) * i as f64 / n as f64, false)));
+        }
+        if let Some(last) = targets.last_mut() {
+            last.h = to;
+        }
+        from = to;
+    } else if h < from {
+        let to = h;
         let recovery = start.recovery();
-        let length = (to - from).abs();
+        let length = from - to;
         // Beyond 1.5 recoveries nothing touches any more: one step does for the rest.
         let elastic = if recovery > 0.0 { length.min(1.5 * recovery) } else { 0.0 };
         let n = if recovery > 0.0 {
@@ -136,8 +154,7 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
         } else {
             0
         };
-        let sign = (to - from).signum();
-        targets.extend((1..=n).map(|i| target(from + sign * elastic * i as f64 / n as f64, false)));
+        targets.extend((1..=n).map(|i| target(from - elastic * i as f64 / n as f64, false)));
         if length > elastic {
             targets.push(target(to, false));
         } else if let Some(last) = targets.last_mut() {
@@ -273,6 +290,7 @@ mod tests {
             delta_t: 0.0,
             f_n: 7e-4 * (a / 0.2).powi(2),
             a,
+            longest_recovery: 0.002,
             friction,
             nu: 0.3,
             compliance: [1.0; 2],
@@ -306,6 +324,23 @@ mod tests {
         let half = Start { h: 0.01, h_max: 0.01, ..start(0.14, 0.3) };
         let targets = indentation_targets(&half, 0.02, &resolution(24));
         assert!(targets.len() == 14 && targets[0].h < 0.0102 && targets[13].h == 0.02, "{targets:?}");
+    }
+
+    #[test]
+    fn a_press_after_a_full_release_is_cut_as_the_release_was() {
+        let resolution = |coarseness| Resolution { press_steps: 20, shear_steps: 15, coarseness };
+        // The release ended where nothing touches, or went on into the air.
+        for (h, far) in [(0.0178, 0), (0.01, 1)] {
+            let released = Start { h, f_n: 0.0, a: 0.0, ..start(0.2, 0.3) };
+            let targets = indentation_targets(&released, 0.02, &resolution(1.0));
+            let ends: Vec<f64> = std::iter::once(h).chain(targets.iter().map(|t| t.h)).collect();
+            assert_eq!(ends.last(), Some(&0.02));
+            assert!(ends[1 + far..].windows(2).all(|w| w[1] > w[0] && w[1] - w[0] < 0.002 / 11.9), "{ends:?}");
+            // A force of next to nothing cuts it no otherwise.
+            let touching = Start { f_n: 1e-12, a: 1e-3, ..released };
+            assert_eq!(indentation_targets(&touching, 0.02, &resolution(1.0)), targets);
+            assert!(indentation_targets(&released, 0.02, &resolution(2.0)).len() < targets.len());
+        }
     }
 
     #[test]

@@ -25,7 +25,7 @@ fn one_line(text: &str) -> String {
 ///
 /// May be shared between threads; what is read back goes through one staging buffer, so that one
 /// thread at a time waits. Results are identical bits for identical input: kernels gather in fixed
-/// order and use no atomics.
+/// order and use atomics for the lowest number alone, which has no order (`atomicMin`).
 pub struct GpuContext {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,

@@ -108,6 +108,7 @@ impl Drive<'_> {
             work_plastic_opponent: 2.0 * energies.opponent_plastic,
             curvature,
         };
+        self.state.longest_recovery = self.state.longest_recovery.max(self.start().recovery());
         log::info!(
             "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
              contact {:.2}, linear update {:.2}, linear solve {:.2}, commit {:.2})",
