@@ -1,6 +1,7 @@
 //! What another opponent than a plane does to a trial: the rows of a plane in the frames of a rigid
 //! sphere's surface, or of the interface with another body.
 
+use super::dissipation::dissipated;
 use super::encounter::Encounter;
 use super::rigid::{Against, position};
 use super::system::{Boundary, Meeting, Trial};
@@ -14,19 +15,10 @@ fn between(start: &[f64; 3], end: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|c| end[c] - start[c])
 }
 
-/// Work of friction on a point that has moved along the interface, from what acts on it before and
-/// after, in the frame at the end. Where it has touched all the time, the frame has turned under
-/// the normal force: along the way that force does no work, so that of all three components is the
-/// friction's, to second order in the step. Else the normal part is of a gap that opens or closes.
-fn dissipated(before: &[f64; 3], after: &[f64; 3], moved: &[f64; 3]) -> f64 {
-    let components = if before[2] > 0.0 && after[2] > 0.0 { 3 } else { 2 };
-    -(0..components).map(|c| 0.5 * (before[c] + after[c]) * moved[c]).sum::<f64>()
-}
-
 impl Meeting {
     /// See [`super::newton::Newton::interface_friction_work`]; of one of the two bodies, half of
     /// what is dissipated between them.
-    pub(super) fn friction_work(&self, trial: &Trial, before: &[f64]) -> f64 {
+    pub(super) fn friction_work(&self, friction: Friction<f64>, trial: &Trial, before: &[f64]) -> f64 {
         let (after, w) = (trial.pair_forces(self), self.interface.relative(&trial.u));
         let mut carried = before.to_vec();
         self.interface.reduce(&mut carried);
@@ -34,12 +26,10 @@ impl Meeting {
         for (k, after) in after.iter().enumerate() {
             let base = self.interface.base(k);
             let before = [carried[base], carried[base + 1], carried[base + 2]];
-            let mut moved = between(&self.start[k], &w[k]);
-            if self.interface.is_free_along_y(k) {
-                // On the seam nothing slips along y, and the number there is no relative one.
-                moved[1] = 0.0;
-            }
-            work += dissipated(&before, after, &moved);
+            let [along, across, _] = between(&self.start[k], &w[k]);
+            // On the seam nothing slips along y, and the number there is no relative one.
+            let across = if self.interface.is_free_along_y(k) { 0.0 } else { across };
+            work += dissipated(friction, trial.rows[self.interface.slaves[k]].status, &before, after, [along, across]);
         }
         work
     }
@@ -47,13 +37,14 @@ impl Meeting {
 
 impl Encounter {
     /// See [`super::newton::Newton::interface_friction_work`].
-    pub(super) fn friction_work(&self, trial: &Trial, before: &[f64]) -> f64 {
+    pub(super) fn friction_work(&self, friction: Friction<f64>, trial: &Trial, before: &[f64]) -> f64 {
         let (after, w) = (trial.interface_forces(self), self.interface.relative(&trial.u));
         let mut work = 0.0;
         for (k, after) in after.iter().enumerate() {
             let node = self.interface.nodes()[k];
             let before = to_frame(&self.interface.frames[k], &[before[3 * node], before[3 * node + 1], before[3 * node + 2]]);
-            work += dissipated(&before, after, &between(&self.start[k], &w[k]));
+            let [along, across, _] = between(&self.start[k], &w[k]);
+            work += dissipated(friction, trial.rows[self.interface.slaves[k]].status, &before, after, [along, across]);
         }
         work
     }

@@ -8,6 +8,7 @@
 //! steps and bisecting them is the simulation's business.
 
 pub mod couple;
+pub mod dissipation;
 pub mod encounter;
 mod half;
 pub mod iterate;

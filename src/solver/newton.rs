@@ -192,11 +192,11 @@ impl Newton {
     /// Work that friction dissipates in the step to the accepted trial, on the meshed half, where
     /// the forces at the contact were `before` (three a node) at its start; between two bodies
     /// alone.
-    pub fn interface_friction_work(&self, before: &[f64]) -> Option<f64> {
+    pub fn interface_friction_work(&self, friction: Friction<f64>, before: &[f64]) -> Option<f64> {
         let (trial, boundary) = (self.iterates.host.current(), self.iterates.host.boundary());
         match (&boundary.pair, &boundary.encounter) {
-            (Some(pair), _) => Some(pair.friction_work(trial, before)),
-            (None, Some(encounter)) => Some(encounter.friction_work(trial, before)),
+            (Some(pair), _) => Some(pair.friction_work(friction, trial, before)),
+            (None, Some(encounter)) => Some(encounter.friction_work(friction, trial, before)),
             (None, None) => None,
         }
     }

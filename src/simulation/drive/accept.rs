@@ -12,6 +12,7 @@ use crate::simulation::footprint::{bulge, footprint};
 use crate::simulation::path::Target;
 use crate::simulation::record::StepRecord;
 use crate::solver::StepReport;
+use crate::solver::dissipation::dissipated;
 use crate::solver::phases::{Lap, Phase};
 use crate::solver::rigid::position;
 
@@ -56,9 +57,9 @@ impl Drive<'_> {
         let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
         let (contact_points, slipping_points) = (count(Status::Stick) + count(Status::Slip), count(Status::Slip));
         let length = self.state.length_to(target.h, target.delta_t);
-        let friction_work = match self.newton.interface_friction_work(&self.state.force) {
+        let friction_work = match self.newton.interface_friction_work(self.problem.model.friction, &self.state.force) {
             Some(work) => work,
-            None => self.friction_work(&displacement, &forces),
+            None => self.friction_work(&displacement, &forces, &statuses),
         };
         self.state.u_before = std::mem::replace(&mut self.state.u, displacement);
         self.state.force = internal_force;
@@ -171,24 +172,24 @@ impl Drive<'_> {
         }
     }
 
-    /// Dissipation by friction in a step: minus the mean traction force times the slip, summed over
-    /// the points of the meshed half.
-    fn friction_work(&self, u: &[f64], forces: &[[f64; 3]]) -> f64 {
+    /// Dissipation by friction in a step, summed over the points of the meshed half.
+    fn friction_work(&self, u: &[f64], forces: &[[f64; 3]], statuses: &[Status]) -> f64 {
+        let friction = self.problem.model.friction;
         let mut work = 0.0;
-        for ((point, force), &node) in self.state.points.iter().zip(forces).zip(&self.mesh.contact_nodes) {
+        for (((point, force), &status), &node) in self.state.points.iter().zip(forces).zip(statuses).zip(&self.mesh.contact_nodes)
+        {
             let base = 3 * node as usize;
             let Some(rigid) = self.problem.rigid else {
-                for i in 0..2 {
-                    work -= 0.5 * (point.force[i] + force[i]) * (u[base + i] - self.state.u[base + i]);
-                }
+                let slip = [0, 1].map(|i| u[base + i] - self.state.u[base + i]);
+                work += dissipated(friction, status, &point.force, force, slip);
                 continue;
             };
             // Along the surface half-way: across it points come down, and nothing is dissipated.
             let [before, after] = [&self.state.u, u].map(|u| position(&self.mesh, u, node));
             let frame = rigid.frame(&std::array::from_fn(|i| 0.5 * (before[i] + after[i])));
-            let slip = to_frame(&frame, &std::array::from_fn(|i| after[i] - before[i]));
-            let traction = to_frame(&frame, &std::array::from_fn(|i| 0.5 * (point.force[i] + force[i])));
-            work -= traction[0] * slip[0] + traction[1] * slip[1];
+            let [along, across, _] = to_frame(&frame, &std::array::from_fn(|i| after[i] - before[i]));
+            let [before, after] = [&point.force, force].map(|force| to_frame(&frame, force));
+            work += dissipated(friction, status, &before, &after, [along, across]);
         }
         work
     }
