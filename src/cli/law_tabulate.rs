@@ -13,7 +13,7 @@ use super::{CliError, Outcome, print};
 use crate::case::{Case, PictureFormat};
 use crate::law::LawError;
 use crate::law::tabulated::{Built, build, depths, picture, study_text};
-use crate::study::{Options, Study};
+use crate::study::{Options, Study, hold};
 
 /// The arguments of `law tabulate`.
 #[derive(Clone, Debug, Args)]
@@ -68,6 +68,8 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
         );
         return Ok(Outcome::Interrupted);
     }
+    // Nobody begins another study there before its table is written.
+    let _study = hold(&args.out, &study)?;
     let built = build(&args.out, &case, elements)?;
     let law = args.out.join("law.json");
     built.table.write(&law)?;

@@ -219,7 +219,7 @@ fn ours(folder: &str, name: &str) -> bool {
         let number = name.strip_prefix("step_").and_then(|name| name.strip_suffix(suffix));
         number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|byte| byte.is_ascii_digit()))
     };
-    let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || ours(folder, name));
+    let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || name == LOCK_NAME || ours(folder, name));
     let named = match folder {
         "" => matches!(name, "history.csv" | "history.parquet" | "summary.json" | "checkpoint.bin" | "run.log"),
         "fields" => name == "case.pvd" || step(".vtu"),

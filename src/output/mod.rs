@@ -46,7 +46,7 @@ pub use error::OutputError;
 pub use estimate::{ErrorEstimate, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, history_columns, read_history};
-pub use lock::{DirectoryLock, LOCK_NAME};
+pub use lock::{DirectoryLock, LOCK_NAME, STUDY_LOCK_NAME, TaskLock};
 pub use parquet::write_parquet;
 pub use path_share::PathShare;
 #[cfg(feature = "plots")]
