@@ -85,6 +85,7 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
 }
 
 fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
+    run.refuse_links()?;
     let case = Case::load(&run.case(), &[])?;
     let law = args.law.as_deref().map(LawFile::read_or_built_in).transpose()?;
     let history = read_history(&run.history())?;

@@ -65,6 +65,18 @@ pub enum OutputError {
         /// The link.
         path: PathBuf,
     },
+    /// A file that somebody else wrote has the name of one of ours.
+    #[error("{}: was not written by asperity, and is not replaced or removed. Move it away, or choose another place (nothing was changed)", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// What was read would be replaced.
+    #[error("{}: is an input, and results would take its place. Copy it elsewhere, or choose another --out (nothing was changed)", path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+    },
     /// What is being written was removed or replaced.
     #[error("{}: was removed or replaced while the run went on; leave the directory alone until the run has ended, and run again", path.display())]
     Gone {
@@ -137,6 +149,8 @@ impl OutputError {
             | Self::Malformed { path, .. }
             | Self::Checkpoint { path, .. }
             | Self::Link { path }
+            | Self::Foreign { path }
+            | Self::Input { path }
             | Self::Gone { path }
             | Self::Changed { path, .. }
             | Self::NotFinite { path, .. }

@@ -9,8 +9,11 @@ use super::StudyError;
 use super::file::Study;
 use super::id::is_case_id;
 use super::row::FIRST_COLUMNS;
+use crate::bounded;
 use crate::case::PictureFormat;
-use crate::output::{DirectoryLock, LOCK_NAME, OutputDirectory, OutputError, STUDY_LOCK_NAME, draft_of, write_atomically};
+use crate::output::{
+    DirectoryLock, LOCK_NAME, OutputDirectory, OutputError, STUDY_LOCK_NAME, draft_of, refuse_foreign, write_atomically,
+};
 
 /// Names of all pictures of a study, by which an earlier study's are removed.
 const STUDY_PICTURES: [&str; 8] =
@@ -137,6 +140,11 @@ impl StudyDirectory {
     /// Removes what earlier studies wrote.
     pub(super) fn clear(&self) -> Result<(), StudyError> {
         self.refuse_links()?;
+        let drawn = STUDY_PICTURES.into_iter().flat_map(|name| PictureFormat::ALL.map(|format| self.plot(name, format)));
+        drawn.chain([self.report()]).try_for_each(|path| refuse_foreign(&path))?;
+        for id in self.numbered()? {
+            self.case(&id).refuse_foreign()?;
+        }
         let cases = self.root.join("cases");
         let failed = |source| StudyError::Directory { dir: self.root.clone(), what: "be cleared", source };
         if cases.is_dir() {
@@ -173,7 +181,11 @@ impl StudyDirectory {
     /// # Errors
     /// [`StudyError::Output`].
     pub fn write_study(&self, study: &Study) -> Result<(), StudyError> {
-        Ok(write_atomically(&self.study(), |out| out.write_all(study.text.as_bytes()))?)
+        // It may be the file that was read.
+        match bounded::read_to_string(&self.study(), bounded::CASE) {
+            Ok(found) if found == study.text => Ok(()),
+            _ => Ok(write_atomically(&self.study(), |out| out.write_all(study.text.as_bytes()))?),
+        }
     }
 }
 
