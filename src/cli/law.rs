@@ -300,7 +300,9 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
     };
     let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
     fs::create_dir_all(dir).map_err(failed("be created"))?;
-    for file in law_files(&law, args.format, case.as_ref()).map_err(in_case)? {
+    let files = law_files(&law, args.format, case.as_ref()).map_err(in_case)?;
+    files.iter().try_for_each(|file| refuse_foreign(&dir.join(file.name)))?;
+    for file in files {
         let path = dir.join(file.name);
         write_own(&path, |out| out.write_all(file.content.as_bytes()))?;
         print(&format!("{}: {}\n", path.display(), purpose(file.name)))?;

@@ -14,7 +14,7 @@ use crate::law::plots::{law_beside_run, table_beside_run};
 use crate::law::{LawError, LawFile};
 use crate::output::plots::axes::Axes;
 use crate::output::plots::{Sheet, View, replot};
-use crate::output::{OutputDirectory, read_history};
+use crate::output::{OutputDirectory, read_history, refuse_foreign};
 use crate::study::{StudyDirectory, report};
 
 /// Draw the results in a directory: DIR/plots, and DIR/report.html for a study.
@@ -109,6 +109,7 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError>
         let _ = writeln!(std::io::stderr(), "warning: {} has no steps yet: there is nothing to draw", run.history().display());
     }
     let format = args.format.map_or(case.output.plot_format, PictureFormat::from);
+    pictures.iter().try_for_each(|picture| refuse_foreign(&run.plot(picture.name, format)))?;
     let mut written = Vec::new();
     for picture in &pictures {
         let path = run.plot(picture.name, format);
