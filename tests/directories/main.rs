@@ -3,4 +3,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod every_command;
+mod locks;
 mod study;
