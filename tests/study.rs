@@ -351,7 +351,10 @@ fn what_a_study_leaves_that_was_killed_at_its_first_file_is_no_hindrance() {
     let scratch = Scratch::new(GRID);
     fs::create_dir(scratch.out("out")).expect("a directory");
     fs::write(scratch.out("out").join(".study.csv.4711.tmp"), "").expect("a draft");
-    fs::write(scratch.out("out").join(".asperity.lock"), "process 4711 on node7\n").expect("a lock");
+    let lock = scratch.out("out").join(".asperity.lock");
+    fs::write(&lock, "process 4711 on node7\n").expect("a lock");
+    let hour_ago = std::time::SystemTime::now() - Duration::from_secs(3600);
+    fs::File::options().write(true).open(&lock).and_then(|file| file.set_modified(hour_ago)).expect("a time");
     scratch.ends_with(0, "out", &["-q", "--resume"]);
     assert_eq!(statuses(&scratch.out("out")), ["done"; 4]);
 }

@@ -16,7 +16,7 @@ use asperity::law::predict::{NormalSource, Prediction, predict};
 use asperity::law::prior::{self, Prior};
 use asperity::law::tabulated::{build, depths, study_text};
 use asperity::law::{Law, LawError, LawFile, fit};
-use asperity::output::{StepRecord, write_atomically};
+use asperity::output::{StepRecord, write_own};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -189,7 +189,7 @@ impl NativeLaw {
         let mut written = Vec::new();
         for file in files {
             let path = dir.join(file.name);
-            write_atomically(&path, |out| out.write_all(file.content.as_bytes())).map_err(failed)?;
+            write_own(&path, |out| out.write_all(file.content.as_bytes())).map_err(failed)?;
             written.push(path);
         }
         Ok(written)

@@ -11,7 +11,7 @@ use super::{CliError, Outcome};
 use crate::bench::whole_job::{self, WholeJobs};
 use crate::bench::{self, BenchError, Options, table};
 use crate::compute::select::{self, DeviceChoice};
-use crate::output::write_atomically;
+use crate::output::write_own;
 
 /// Measure the kernels (return mapping, internal force, tangent, contact, commit) on a GPU and on
 /// the CPU.
@@ -61,7 +61,7 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
     options.elements = args.elements.unwrap_or(options.elements);
     if let Some(path) = args.out.as_ref().filter(|path| !path.exists()) {
         // Minutes of measuring are not lost to a file that cannot be written.
-        write_atomically(path, |_| Ok(()))?;
+        write_own(path, |_| Ok(()))?;
     }
     let quiet = args.verbosity.quiet;
     let mut say = |text: &str| {
@@ -79,7 +79,7 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
     })?;
     super::print(&if args.json { report.to_json() } else { table::table(&report) })?;
     if let Some(path) = &args.out {
-        write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
+        write_own(path, |file| file.write_all(report.to_json().as_bytes()))?;
     }
     Ok(Outcome::Done)
 }
@@ -102,7 +102,7 @@ fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> 
     let json = || serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
     super::print(&if args.json { json() } else { whole_job::tables(&report) })?;
     if let Some(path) = &args.out {
-        write_atomically(path, |file| file.write_all(json().as_bytes()))?;
+        write_own(path, |file| file.write_all(json().as_bytes()))?;
     }
     Ok(Outcome::Done)
 }

@@ -24,7 +24,7 @@ use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
 use crate::law::{Law, LawError, LawFile, fit, report};
-use crate::output::write_atomically;
+use crate::output::{refuse_foreign, refuse_input, write_own};
 
 /// Make a contact law and use it.
 #[derive(Clone, Debug, Args)]
@@ -154,6 +154,10 @@ pub fn law(args: &LawArgs) -> Result<Outcome, CliError> {
 }
 
 fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
+    let path = args.dir.join("law.json");
+    let reversal_file = args.reversal.as_deref().unwrap_or(Path::new(BUILT_IN));
+    refuse_input(&path, &[Path::new(&args.prior), reversal_file])?;
+    refuse_foreign(&path)?;
     if args.interpolate {
         let reversal = match &args.reversal {
             Some(path) if path == Path::new(BUILT_IN) => Some(Interpolated::built_in()?),
@@ -161,7 +165,6 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
             None => None,
         };
         let law = interpolated::fit(&args.dir, reversal.as_ref())?;
-        let path = args.dir.join("law.json");
         law.write(&path)?;
         if args.json {
             print_json(&law)?;
@@ -171,7 +174,6 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
         return Ok(Outcome::Done);
     }
     let law = fit::fit(&args.dir, &Prior::from_option(&args.prior)?)?;
-    let path = args.dir.join("law.json");
     law.write(&path)?;
     if args.json {
         print_json(&law)?;
@@ -298,9 +300,11 @@ fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
     };
     let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
     fs::create_dir_all(dir).map_err(failed("be created"))?;
-    for file in law_files(&law, args.format, case.as_ref()).map_err(in_case)? {
+    let files = law_files(&law, args.format, case.as_ref()).map_err(in_case)?;
+    files.iter().try_for_each(|file| refuse_foreign(&dir.join(file.name)))?;
+    for file in files {
         let path = dir.join(file.name);
-        write_atomically(&path, |out| out.write_all(file.content.as_bytes()))?;
+        write_own(&path, |out| out.write_all(file.content.as_bytes()))?;
         print(&format!("{}: {}\n", path.display(), purpose(file.name)))?;
     }
     let dir = dir.display();

@@ -12,7 +12,7 @@ use super::{CliError, Outcome, print};
 use crate::case::Case;
 use crate::law::check::{AIMS, Checked, Errors, check, materials, table};
 use crate::law::{LawError, LawFile};
-use crate::output::write_atomically;
+use crate::output::write_own;
 
 /// The arguments of `law check`.
 #[derive(Clone, Debug, Args)]
@@ -98,7 +98,7 @@ fn write_curves(dir: &std::path::Path, material: &str, friction: &str, checked: 
     };
     for one in checked {
         let name = format!("{}.csv", plain(&format!("{material} {friction} {}", one.name)));
-        write_atomically(&dir.join(name), |out| out.write_all(one.csv().as_bytes()))?;
+        write_own(&dir.join(name), |out| out.write_all(one.csv().as_bytes()))?;
     }
     Ok(())
 }

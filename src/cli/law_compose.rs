@@ -13,6 +13,7 @@ use crate::case::Case;
 use crate::law::interpolated::Interpolated;
 use crate::law::tabulated::{Tabulated, compose};
 use crate::law::{LawError, LawFile};
+use crate::output::refuse_input;
 
 /// The arguments of `law compose`.
 #[derive(Clone, Debug, Args)]
@@ -81,6 +82,8 @@ pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
     if file.exists() && !args.force {
         return Err(CliError::FileThere { file });
     }
+    let opponent = args.opponent.as_deref().unwrap_or(&args.sphere);
+    refuse_input(&file, &[&args.case, &args.sphere, opponent])?;
     let table = law.table(&case).map_err(|source| CliError::LawCase { file: args.case.clone(), source: Box::new(source) })?;
     if let Given::Interpolated(law) = &law {
         let deepest = table.range.to * case.sphere.radius;

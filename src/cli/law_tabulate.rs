@@ -13,7 +13,8 @@ use super::{CliError, Outcome, print};
 use crate::case::{Case, PictureFormat};
 use crate::law::LawError;
 use crate::law::tabulated::{Built, build, depths, picture, study_text};
-use crate::study::{Options, Study};
+use crate::output::refuse_foreign;
+use crate::study::{Options, Study, hold};
 
 /// The arguments of `law tabulate`.
 #[derive(Clone, Debug, Args)]
@@ -55,6 +56,10 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     let elements = args.elements as usize;
     let depths = depths(&case).map_err(in_case)?;
     let study = Study::parse(&study_text(&case, elements, &depths), "tabulate")?;
+    // Before hours of simulations.
+    for name in ["law.json", "tabulated.svg"] {
+        refuse_foreign(&args.out.join(name))?;
+    }
     let options = Options { resume: args.resume, force: args.force, ..options(&args.device) };
     let (report, interrupted) = compute(&study, &args.out, &options, args.verbosity.quiet)?;
     if report.pending > 0 || interrupted {
@@ -68,6 +73,8 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
         );
         return Ok(Outcome::Interrupted);
     }
+    // Nobody begins another study there before its table is written.
+    let _study = hold(&args.out, &study)?;
     let built = build(&args.out, &case, elements)?;
     let law = args.out.join("law.json");
     built.table.write(&law)?;

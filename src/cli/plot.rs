@@ -14,7 +14,7 @@ use crate::law::plots::{law_beside_run, table_beside_run};
 use crate::law::{LawError, LawFile};
 use crate::output::plots::axes::Axes;
 use crate::output::plots::{Sheet, View, replot};
-use crate::output::{OutputDirectory, read_history};
+use crate::output::{OutputDirectory, read_history, refuse_foreign};
 use crate::study::{StudyDirectory, report};
 
 /// Draw the results in a directory: DIR/plots, and DIR/report.html for a study.
@@ -85,6 +85,7 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
 }
 
 fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
+    run.refuse_links()?;
     let case = Case::load(&run.case(), &[])?;
     let law = args.law.as_deref().map(LawFile::read_or_built_in).transpose()?;
     let history = read_history(&run.history())?;
@@ -108,6 +109,7 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError>
         let _ = writeln!(std::io::stderr(), "warning: {} has no steps yet: there is nothing to draw", run.history().display());
     }
     let format = args.format.map_or(case.output.plot_format, PictureFormat::from);
+    pictures.iter().try_for_each(|picture| refuse_foreign(&run.plot(picture.name, format)))?;
     let mut written = Vec::new();
     for picture in &pictures {
         let path = run.plot(picture.name, format);

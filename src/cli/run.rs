@@ -11,7 +11,7 @@ use super::input::Input;
 use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
 use super::{CliError, Outcome};
-use crate::output::{LoggedProgress, OutputDirectory, Status, progress};
+use crate::output::{LoggedProgress, OutputDirectory, RESULT_MARKER, Status, progress, refuse_input};
 use crate::session::{Canceller, Earlier, Options, SessionError, Simulation};
 
 /// Simulate one case.
@@ -54,6 +54,10 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     args.device.start_threads()?;
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
+    let written = OutputDirectory::existing(&args.out).case();
+    if input.text != format!("{RESULT_MARKER}\n{}", case.to_toml()) {
+        refuse_input(&written, &[&args.case])?;
+    }
     let options = Options {
         device: device_choice(&args.device),
         precision: precision_choice(&args.device),

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_complete::Shell;
 
+use crate::output::refuse_foreign;
+
 use super::{CliError, Outcome, command, print};
 
 /// Print completions for a shell.
@@ -39,6 +41,12 @@ pub fn completions(args: &CompletionsArgs) -> Result<Outcome, CliError> {
 pub fn man(args: &ManArgs) -> Result<Outcome, CliError> {
     let failed = |what| move |source| CliError::Out { dir: args.dir.clone(), what, source };
     fs::create_dir_all(&args.dir).map_err(failed("be created"))?;
+    for entry in fs::read_dir(&args.dir).map_err(failed("be read"))?.flatten() {
+        let name = entry.file_name();
+        if name.to_string_lossy().starts_with("asperity") && name.to_string_lossy().ends_with(".1") {
+            refuse_foreign(&entry.path())?;
+        }
+    }
     clap_mangen::generate_to(command(), &args.dir).map_err(failed("be written"))?;
     print(&format!("man pages in {0}; `man -l {0}/asperity.1` shows the first\n", args.dir.display()))?;
     Ok(Outcome::Done)

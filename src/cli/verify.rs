@@ -10,7 +10,7 @@ use super::backend::choose_backend;
 use super::options::{DeviceArgs, Verbosity};
 use super::{CliError, Outcome};
 use crate::compute::ComputeError;
-use crate::output::write_atomically;
+use crate::output::write_own;
 use crate::verify::{Check, FAMILIES, Level, Report, Runner, Verdict, VerifyError, names, table};
 
 /// Compare this build with closed-form solutions.
@@ -86,7 +86,7 @@ pub fn verify(args: &VerifyArgs) -> Result<Outcome, CliError> {
         super::print(&format!("\n{}\n", table::summary(&report)))?;
     }
     if let Some(path) = &args.out {
-        write_atomically(path, |file| file.write_all(report.to_json().as_bytes()))?;
+        write_own(path, |file| file.write_all(report.to_json().as_bytes()))?;
     }
     Ok(if report.passed() { Outcome::Done } else { Outcome::ChecksFailed })
 }

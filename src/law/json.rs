@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::LawError;
 use crate::bounded;
-use crate::output::write_atomically;
+use crate::output::write_own;
 
 /// Read first, so that a file of another kind or version is called that.
 #[derive(Deserialize)]
@@ -25,7 +25,7 @@ pub(super) fn head(text: &str) -> Result<Head, String> {
 
 /// Writes a law, whole or not at all.
 pub(super) fn write(path: &Path, law: &impl Serialize) -> Result<(), LawError> {
-    Ok(write_atomically(path, |out| {
+    Ok(write_own(path, |out| {
         serde_json::to_writer_pretty(&mut *out, law).map_err(io::Error::from)?;
         out.write_all(b"\n")
     })?)
@@ -33,7 +33,7 @@ pub(super) fn write(path: &Path, law: &impl Serialize) -> Result<(), LawError> {
 
 /// As [`write`], a line in all: of what nobody reads number by number.
 pub(super) fn write_compact(path: &Path, law: &impl Serialize) -> Result<(), LawError> {
-    Ok(write_atomically(path, |out| {
+    Ok(write_own(path, |out| {
         serde_json::to_writer(&mut *out, law).map_err(io::Error::from)?;
         out.write_all(b"\n")
     })?)

@@ -3,7 +3,7 @@
 use super::atomic::draft_of;
 use super::lock::LOCK_NAME;
 use super::tables::RUN_PICTURES;
-use super::{OutputError, write_atomically};
+use super::{OutputError, refuse_foreign, write_own};
 use crate::bounded;
 use crate::case::PictureFormat;
 use std::fs;
@@ -169,8 +169,22 @@ impl OutputDirectory {
         self.clear_but(|_, name| draft_of(name).is_none() && name != "checkpoint.bin")
     }
 
-    fn clear_but(&self, keep: impl Fn(&str, &str) -> bool) -> Result<(), OutputError> {
-        self.refuse_links()?;
+    /// Refuses a directory in which a file has the name of one of a run's and is not one.
+    ///
+    /// # Errors
+    /// [`OutputError::Foreign`] for the first, [`OutputError::Read`].
+    pub fn refuse_foreign(&self) -> Result<(), OutputError> {
+        let own = self.own_files()?;
+        // A damaged checkpoint is known by what lies beside it.
+        let begun = own.iter().any(|(_, name, _)| matches!(name.as_str(), "history.csv" | "summary.json"));
+        let drafted = |name: &str| draft_of(name).is_some();
+        let looked_at = own.iter().filter(|(_, name, _)| !drafted(name) && !(begun && name == "checkpoint.bin"));
+        looked_at.map(|(_, _, path)| path).chain([&self.case()]).try_for_each(|path| refuse_foreign(path))
+    }
+
+    /// The files with the names of a run's but `case.toml`, each with its folder and its name.
+    fn own_files(&self) -> Result<Vec<(&'static str, String, PathBuf)>, OutputError> {
+        let mut files = Vec::new();
         for folder in ["", "fields", "contact", "plots"] {
             let path = if folder.is_empty() { self.root.clone() } else { self.root.join(folder) };
             if !path.is_dir() {
@@ -179,17 +193,35 @@ impl OutputDirectory {
             for entry in fs::read_dir(&path).map_err(OutputError::reading(&path))? {
                 let name = entry.map_err(OutputError::reading(&path))?.file_name();
                 let file = path.join(&name);
-                if name.to_str().is_some_and(|name| ours(folder, name) && !keep(folder, name)) && file.is_file() {
-                    fs::remove_file(&file).map_err(OutputError::writing(&file))?;
+                if let Some(name) = name.to_str().filter(|name| ours(folder, name))
+                    && file.is_file()
+                {
+                    files.push((folder, name.to_owned(), file));
                 }
+            }
+        }
+        Ok(files)
+    }
+
+    fn clear_but(&self, keep: impl Fn(&str, &str) -> bool) -> Result<(), OutputError> {
+        self.refuse_links()?;
+        self.refuse_foreign()?;
+        for (folder, name, file) in self.own_files()? {
+            if !keep(folder, &name) {
+                fs::remove_file(&file).map_err(OutputError::writing(&file))?;
             }
         }
         Ok(())
     }
 
-    /// Writes `case.toml`, its first line the [`RESULT_MARKER`].
+    /// Writes `case.toml`, its first line the [`RESULT_MARKER`], unless it stands there already.
     pub fn write_case(&self, toml: &str) -> Result<(), OutputError> {
-        write_atomically(&self.case(), |out| write!(out, "{RESULT_MARKER}\n{toml}"))
+        let text = format!("{RESULT_MARKER}\n{toml}");
+        // It may be the case that was read.
+        match bounded::read_to_string(&self.case(), bounded::CASE) {
+            Ok(found) if found == text => Ok(()),
+            _ => write_own(&self.case(), |out| out.write_all(text.as_bytes())),
+        }
     }
 
     /// The text of `case.toml` without the [`RESULT_MARKER`]; `None` if the folder holds no result.
@@ -219,7 +251,7 @@ fn ours(folder: &str, name: &str) -> bool {
         let number = name.strip_prefix("step_").and_then(|name| name.strip_suffix(suffix));
         number.is_some_and(|number| number.len() >= 4 && number.bytes().all(|byte| byte.is_ascii_digit()))
     };
-    let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || ours(folder, name));
+    let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || name == LOCK_NAME || ours(folder, name));
     let named = match folder {
         "" => matches!(name, "history.csv" | "history.parquet" | "summary.json" | "checkpoint.bin" | "run.log"),
         "fields" => name == "case.pvd" || step(".vtu"),
@@ -235,6 +267,7 @@ fn ours(folder: &str, name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::write_atomically;
 
     #[test]
     fn names_and_listing() {

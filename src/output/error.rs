@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// A result file could not be written or read.
 #[derive(Debug, thiserror::Error)]
@@ -42,15 +43,21 @@ pub enum OutputError {
     },
     /// Somebody else writes there.
     #[error(
-        "--out {}: is being written by {}. Wait for it to end, or give another directory (nothing was changed)",
+        "--out {}: is being written by {}. Wait for it to end, or give another directory{} (nothing was changed)",
         dir.display(),
-        holder.as_deref().unwrap_or("another process")
+        holder.as_deref().unwrap_or("another process"),
+        wait.map_or(String::new(), |wait| format!(
+            ". If it was killed, start again in {} s: its lock is then taken over",
+            wait.as_secs() + 1
+        ))
     )]
     Locked {
         /// The directory.
         dir: PathBuf,
         /// Process and host, if they are known.
         holder: Option<String>,
+        /// Where it may have been killed: how long it still counts as being there.
+        wait: Option<Duration>,
     },
     /// A folder of results is a link to somewhere else.
     #[error("{}: is a link, and results are only written to folders of their own; remove it, or choose another --out", path.display())]
@@ -58,11 +65,37 @@ pub enum OutputError {
         /// The link.
         path: PathBuf,
     },
+    /// A file that somebody else wrote has the name of one of ours.
+    #[error("{}: was not written by asperity, and is not replaced or removed. Move it away, or choose another place (nothing was changed)", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+    },
+    /// What was read would be replaced.
+    #[error("{}: is an input, and results would take its place. Copy it elsewhere, or choose another --out (nothing was changed)", path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+    },
     /// What is being written was removed or replaced.
     #[error("{}: was removed or replaced while the run went on; leave the directory alone until the run has ended, and run again", path.display())]
     Gone {
         /// The file that is not there any more.
         path: PathBuf,
+    },
+    /// What is being written was cut or written to by somebody else.
+    #[error(
+        "{}: was changed while the run went on ({length} bytes are there, {written} were written); leave the directory alone until the run has ended, and \
+         go on with --resume",
+        path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// Its length now.
+        length: u64,
+        /// What it should be.
+        written: u64,
     },
     /// A result that is no number.
     #[error(
@@ -116,7 +149,10 @@ impl OutputError {
             | Self::Malformed { path, .. }
             | Self::Checkpoint { path, .. }
             | Self::Link { path }
+            | Self::Foreign { path }
+            | Self::Input { path }
             | Self::Gone { path }
+            | Self::Changed { path, .. }
             | Self::NotFinite { path, .. }
             | Self::Format { path, .. }
             | Self::Inconsistent { path, .. } => path,

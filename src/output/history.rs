@@ -19,6 +19,8 @@ const FIXED_COLUMNS: [&str; 10] =
 pub struct HistoryWriter {
     path: PathBuf,
     file: File,
+    /// Bytes written to it: as many as there have to be.
+    length: u64,
 }
 
 impl HistoryWriter {
@@ -35,25 +37,35 @@ impl HistoryWriter {
             rows.iter().try_for_each(|row| out.write_all(&encode(row)?))
         })?;
         let file = OpenOptions::new().append(true).open(path).map_err(OutputError::writing(path))?;
-        Ok(Self { path: path.to_path_buf(), file })
+        let length = file.metadata().map_err(OutputError::writing(path))?.len();
+        Ok(Self { path: path.to_path_buf(), file, length })
     }
 
     /// Appends a row and hands it to the system.
-    /// A value that is not a number is refused, and so is a file that has gone.
+    /// A value that is not a number is refused, and so is a file that has gone or was changed.
     pub fn append(&mut self, record: &StepRecord) -> Result<(), OutputError> {
         check_row(&self.path, record)?;
         self.check_there()?;
         let row = encode(record).map_err(OutputError::writing(&self.path))?;
-        self.file.write_all(&row).and_then(|()| self.file.flush()).map_err(OutputError::writing(&self.path))
+        self.file.write_all(&row).and_then(|()| self.file.flush()).map_err(OutputError::writing(&self.path))?;
+        self.length += row.len() as u64;
+        Ok(())
     }
 
-    /// Whether the file still stands where it was made: somebody may have removed the directory, or
-    /// moved it.
+    /// Whether the file still stands where it was made, as long as it was written: somebody may
+    /// have removed the directory, moved it, or cut the file.
     ///
     /// # Errors
-    /// [`OutputError::Gone`].
+    /// [`OutputError::Gone`], [`OutputError::Changed`].
     pub fn check_there(&self) -> Result<(), OutputError> {
-        if same_file(&self.file, &self.path) { Ok(()) } else { Err(OutputError::Gone { path: self.path.clone() }) }
+        if !same_file(&self.file, &self.path) {
+            return Err(OutputError::Gone { path: self.path.clone() });
+        }
+        let found = self.file.metadata().map_err(OutputError::writing(&self.path))?;
+        if found.is_file() && found.len() != self.length {
+            return Err(OutputError::Changed { path: self.path.clone(), length: found.len(), written: self.length });
+        }
+        Ok(())
     }
 }
 
@@ -219,11 +231,28 @@ mod tests {
         assert!(matches!(writer.check_there(), Err(OutputError::Gone { .. })));
     }
 
+    #[test]
+    fn a_history_that_was_cut_or_written_to_is_an_error_before_another_row_follows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        for text in ["", "another,header\n"] {
+            let mut writer = HistoryWriter::resume(&path, &[record(1)]).unwrap();
+            writer.append(&record(2)).unwrap();
+            writer.check_there().unwrap();
+            // The same file, as an editor or a full disk leaves it.
+            OpenOptions::new().write(true).truncate(true).open(&path).unwrap().write_all(text.as_bytes()).unwrap();
+            let message = writer.append(&record(3)).unwrap_err().to_string();
+            assert!(message.contains("history.csv: was changed") && message.contains("--resume"), "{message}");
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        }
+    }
+
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_is_an_error_with_a_remedy() {
         let file = OpenOptions::new().append(true).open("/dev/full").unwrap();
-        let error = HistoryWriter { path: PathBuf::from("/dev/full"), file }.append(&record(1)).unwrap_err().to_string();
+        let error =
+            HistoryWriter { path: PathBuf::from("/dev/full"), file, length: 0 }.append(&record(1)).unwrap_err().to_string();
         assert!(error.contains("/dev/full") && error.contains("free space"), "{error}");
     }
 }

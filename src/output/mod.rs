@@ -22,6 +22,7 @@ mod finite;
 mod history;
 mod ledger;
 mod lock;
+mod own;
 mod path_share;
 mod progress;
 mod recorder;
@@ -46,7 +47,8 @@ pub use error::OutputError;
 pub use estimate::{ErrorEstimate, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, history_columns, read_history};
-pub use lock::{DirectoryLock, LOCK_NAME};
+pub use lock::{DirectoryLock, LOCK_NAME, STUDY_LOCK_NAME, TaskLock};
+pub use own::{is_own, refuse_foreign, refuse_input, write_own};
 pub use parquet::write_parquet;
 pub use path_share::PathShare;
 #[cfg(feature = "plots")]

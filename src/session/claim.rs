@@ -43,6 +43,7 @@ impl Drop for Claim {
 /// [`SessionError::Earlier`], [`SessionError::Output`].
 pub fn claim(dir: &Path, case: &Case, earlier: Earlier) -> Result<Claim, SessionError> {
     prepare::recognise(dir)?;
+    prepare::refuse_case_alone(dir, case)?;
     let made = dir.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && is_absent(folder));
     let made = made.map(Path::to_path_buf).collect();
     let mut claim = Claim { lock: None, made };

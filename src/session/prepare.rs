@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::SessionError;
 use crate::case::Case;
-use crate::output::OutputDirectory;
+use crate::output::{LOCK_NAME, OutputDirectory, case_difference};
 
 /// Refuses a directory that is neither absent nor empty nor a result. Drafts and the lock of runs
 /// do not count: a run that was killed before its first file had its name leaves those alone.
@@ -27,8 +27,27 @@ pub fn recognise(dir: &Path) -> Result<(), SessionError> {
     let found = out.names().map_err(failed("be read"))?.into_iter().next();
     match found.filter(|_| !out.holds_result()) {
         Some(found) => Err(SessionError::NotAResult { dir: dir.to_owned(), found }),
-        None => Ok(out.refuse_links()?),
+        None => {
+            out.refuse_links()?;
+            Ok(out.refuse_foreign()?)
+        }
     }
+}
+
+/// Refuses a directory in which a `case.toml` of a run is all that is left of one, and another than
+/// this: it may have been copied there to be changed. To be asked before the directory is locked,
+/// as the lock of a killed run shows whose it is.
+///
+/// # Errors
+/// [`SessionError::NotAResult`].
+pub fn refuse_case_alone(dir: &Path, case: &Case) -> Result<(), SessionError> {
+    let out = OutputDirectory::existing(dir);
+    let Some(found) = out.read_case().filter(|found| *found != case.to_toml()) else { return Ok(()) };
+    let beside = [out.history(), out.summary(), out.checkpoint(), out.log(), dir.join(LOCK_NAME)];
+    if beside.iter().any(|path| path.exists()) || case_difference(&found, &case.to_toml()).is_none() {
+        return Ok(());
+    }
+    Err(SessionError::NotAResult { dir: dir.to_owned(), found: "case.toml".to_owned() })
 }
 
 /// Prepares `dir` for the results of `case` and writes the resolved case to `case.toml` there.
@@ -66,8 +85,12 @@ mod tests {
     fn replaces_an_earlier_result_and_keeps_what_is_not_its_own() {
         let scratch = tempfile::tempdir().expect("a scratch directory");
         prepare(scratch.path(), &case()).expect("an empty directory");
-        for name in ["history.csv", "summary.json", "notes.txt"] {
-            fs::write(scratch.path().join(name), "earlier").expect("a file");
+        for (name, text) in [
+            ("history.csv", "step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks\n"),
+            ("summary.json", "{\n  \"F_N0\": 148.8\n}\n"),
+            ("notes.txt", "earlier"),
+        ] {
+            fs::write(scratch.path().join(name), text).expect("a file");
         }
         prepare(scratch.path(), &case()).expect("an earlier result");
         assert!(!scratch.path().join("history.csv").exists());
@@ -97,6 +120,34 @@ mod tests {
         let refused = prepare(scratch.path(), &case()).expect_err("not a result");
         assert!(matches!(refused, SessionError::NotAResult { .. }), "{refused}");
         assert_eq!(fs::read_to_string(scratch.path().join("case.toml")).expect("the user's file"), "[sphere]\n");
+    }
+
+    #[test]
+    fn refuses_a_result_with_a_file_of_the_users_under_a_name_of_ours() {
+        for name in
+            ["run.log", "history.csv", "summary.json", "plots/forces.svg", "fields/step_0001.vtu", "contact/step_0001.csv"]
+        {
+            let scratch = tempfile::tempdir().expect("a scratch directory");
+            prepare(scratch.path(), &case()).expect("an empty directory");
+            let file = scratch.path().join(name);
+            fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+            fs::write(&file, "mine").expect("a file");
+            let message = prepare(scratch.path(), &case()).expect_err("refused").to_string();
+            assert!(message.contains(name) && message.contains("was not written by asperity"), "{message}");
+            assert_eq!(fs::read_to_string(&file).expect("the user's file"), "mine");
+        }
+    }
+
+    #[test]
+    fn refuses_another_case_that_lies_there_alone() {
+        let scratch = tempfile::tempdir().expect("a scratch directory");
+        prepare(scratch.path(), &case()).expect("an empty directory");
+        refuse_case_alone(scratch.path(), &case()).expect("this very case");
+        let mut other = case();
+        other.sphere.radius = 2.0;
+        assert!(matches!(refuse_case_alone(scratch.path(), &other), Err(SessionError::NotAResult { .. })));
+        fs::write(scratch.path().join("run.log"), "").expect("a file");
+        refuse_case_alone(scratch.path(), &other).expect("a run was there");
     }
 
     #[test]

@@ -9,8 +9,11 @@ use super::StudyError;
 use super::file::Study;
 use super::id::is_case_id;
 use super::row::FIRST_COLUMNS;
+use crate::bounded;
 use crate::case::PictureFormat;
-use crate::output::{DirectoryLock, LOCK_NAME, OutputDirectory, draft_of, write_atomically};
+use crate::output::{
+    DirectoryLock, LOCK_NAME, OutputDirectory, OutputError, STUDY_LOCK_NAME, draft_of, refuse_foreign, write_atomically,
+};
 
 /// Names of all pictures of a study, by which an earlier study's are removed.
 const STUDY_PICTURES: [&str; 8] =
@@ -70,7 +73,8 @@ impl StudyDirectory {
     /// Refuses a folder that is neither absent nor empty nor a study's.
     ///
     /// # Errors
-    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::Directory`].
+    /// [`StudyError::NotADirectory`], [`StudyError::NotAStudy`], [`StudyError::Directory`],
+    /// [`StudyError::Output`] for a folder that is a link.
     pub fn recognise(&self) -> Result<(), StudyError> {
         let dir = &self.root;
         let failed = |source: io::Error| StudyError::Directory { dir: dir.clone(), what: "be read", source };
@@ -81,21 +85,72 @@ impl StudyDirectory {
             Err(error) => return Err(failed(error)),
         }
         if self.holds_study() {
-            return Ok(());
+            return self.refuse_links();
         }
         // What a study leaves that was killed before its first file had its name is no hindrance.
-        let foreign = names(dir).map_err(failed)?.into_iter().filter(|name| name != LOCK_NAME && !own_draft(name)).min();
+        let own = |name: &String| name == LOCK_NAME || name == STUDY_LOCK_NAME || own_draft(name);
+        let foreign = names(dir).map_err(failed)?.into_iter().filter(|name| !own(name)).min();
         foreign.map_or(Ok(()), |found| Err(StudyError::NotAStudy { dir: dir.clone(), found }))
+    }
+
+    /// Refuses a study in which a folder, of a case too, is a link: what it leads to is not ours to
+    /// write to or to clear.
+    ///
+    /// # Errors
+    /// [`StudyError::Output`], [`StudyError::Directory`].
+    pub fn refuse_links(&self) -> Result<(), StudyError> {
+        let refuse = |path: PathBuf| if path.is_symlink() { Err(OutputError::Link { path }) } else { Ok(()) };
+        ["cases", "plots", "slurm"].into_iter().try_for_each(|folder| refuse(self.root.join(folder)))?;
+        for id in self.numbered()? {
+            let out = self.case(&id);
+            refuse(out.root().to_owned())?;
+            out.refuse_links()?;
+        }
+        Ok(())
+    }
+
+    /// The names in `cases/` that are those of directories of cases, in their order.
+    pub(super) fn numbered(&self) -> Result<Vec<String>, StudyError> {
+        let cases = self.root.join("cases");
+        if !cases.is_dir() {
+            return Ok(Vec::new());
+        }
+        let failed = |source| StudyError::Directory { dir: self.root.clone(), what: "be read", source };
+        let mut found = names(&cases).map_err(failed)?;
+        found.retain(|name| is_case_id(name));
+        found.sort();
+        Ok(found)
+    }
+
+    /// Makes the directory of a case, but not that of the study: one that was removed or moved
+    /// while the study goes on does not come back.
+    pub(super) fn make_case(&self, id: &str) -> Result<OutputDirectory, OutputError> {
+        let out = self.case(id);
+        for dir in [&self.root.join("cases"), out.root()] {
+            match fs::create_dir(dir) {
+                Err(source) if source.kind() != ErrorKind::AlreadyExists => {
+                    return Err(OutputError::Write { path: dir.to_owned(), source });
+                }
+                _ => {}
+            }
+        }
+        Ok(out)
     }
 
     /// Removes what earlier studies wrote.
     pub(super) fn clear(&self) -> Result<(), StudyError> {
+        self.refuse_links()?;
+        let drawn = STUDY_PICTURES.into_iter().flat_map(|name| PictureFormat::ALL.map(|format| self.plot(name, format)));
+        drawn.chain([self.report()]).try_for_each(|path| refuse_foreign(&path))?;
+        for id in self.numbered()? {
+            self.case(&id).refuse_foreign()?;
+        }
         let cases = self.root.join("cases");
         let failed = |source| StudyError::Directory { dir: self.root.clone(), what: "be cleared", source };
         if cases.is_dir() {
-            for name in names(&cases).map_err(failed)? {
-                let out = OutputDirectory::existing(cases.join(&name));
-                if is_case_id(&name) && out.holds_result() {
+            for name in self.numbered()? {
+                let out = self.case(&name);
+                if out.holds_result() {
                     let lock = DirectoryLock::take(out.root())?;
                     out.clear()?;
                     fs::remove_file(out.case()).map_err(failed)?;
@@ -126,7 +181,11 @@ impl StudyDirectory {
     /// # Errors
     /// [`StudyError::Output`].
     pub fn write_study(&self, study: &Study) -> Result<(), StudyError> {
-        Ok(write_atomically(&self.study(), |out| out.write_all(study.text.as_bytes()))?)
+        // It may be the file that was read.
+        match bounded::read_to_string(&self.study(), bounded::CASE) {
+            Ok(found) if found == study.text => Ok(()),
+            _ => Ok(write_atomically(&self.study(), |out| out.write_all(study.text.as_bytes()))?),
+        }
     }
 }
 

@@ -66,14 +66,14 @@ pub enum StudyError {
     },
     /// The directory holds results, and it was not said what is to become of them.
     #[error(
-        "--out {}: holds a study of which {done} cases are done. --resume goes on with it, --force replaces it; or give another directory (nothing was changed)",
+        "--out {}: holds a study of which {what}. --resume goes on with it, --force replaces it; or give another directory (nothing was changed)",
         .dir.display()
     )]
     Earlier {
         /// The directory.
         dir: PathBuf,
-        /// How many of its cases are done.
-        done: usize,
+        /// How far its cases are.
+        what: String,
     },
     /// What cannot be merged.
     #[error("--merge {}: {what} (nothing was changed)", .dir.display())]

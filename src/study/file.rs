@@ -13,6 +13,7 @@
 //! one by one (`[[list]]`), see [`super::sweep`]. A value may be a whole table, such as one
 //! hardening law for each kind of material. The last key of the file runs fastest.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 use super::StudyError;
@@ -111,6 +112,16 @@ impl Study {
     pub fn cases_are(&self, other: &Self) -> bool {
         let same = |(ours, theirs): (&StudyCase, &StudyCase)| ours.values == theirs.values && ours.case == theirs.case;
         self.keys == other.keys && self.cases.len() == other.cases.len() && self.cases.iter().zip(&other.cases).all(same)
+    }
+
+    /// A number by which this study is told from others: of its keys and its cases.
+    pub fn fingerprint(&self) -> String {
+        let mut hasher = DefaultHasher::new();
+        self.keys.hash(&mut hasher);
+        for case in &self.cases {
+            (&case.values, case.case.identity()).hash(&mut hasher);
+        }
+        format!("study {:016x}", hasher.finish())
     }
 
     /// The values of a case as `key = value, ...`.

@@ -35,7 +35,7 @@ pub use directory::{Earlier, StudyDirectory};
 pub use error::StudyError;
 pub use file::{Study, StudyCase};
 pub use merge::{Merged, merge};
-pub use place::{Placed, alone};
+pub use place::{Placed, alone, hold};
 pub use progress::StudyProgress;
 pub use row::{FIRST_COLUMNS, NUMBERS, Row, RowStatus};
 #[cfg(feature = "cli")]

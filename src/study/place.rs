@@ -3,7 +3,7 @@
 //! that are free.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::StudyError;
@@ -12,7 +12,7 @@ use super::file::Study;
 use super::id::{case_id, directory_of, is_case_id};
 use crate::case::Case;
 use crate::law::table::StudyTable;
-use crate::output::{DirectoryLock, OutputDirectory, OutputError};
+use crate::output::{DirectoryLock, OutputDirectory, OutputError, Status, Summary, TaskLock, read_history};
 
 /// A study and the directories of its cases.
 #[derive(Debug)]
@@ -42,10 +42,10 @@ impl StudyDirectory {
             Earlier::Keep => {}
             Earlier::Replace => self.clear()?,
             Earlier::Refuse => {
-                let done =
-                    StudyTable::read(&self.table()).map_or(0, |table| table.rows.iter().filter(|row| row.is_done()).count());
-                if done > 0 {
-                    return Err(StudyError::Earlier { dir: self.root().to_owned(), done });
+                let ids = numbered(self)?;
+                let computed: Vec<Computed> = ids.iter().filter_map(|id| computed(&self.case(id))).collect();
+                if !computed.is_empty() {
+                    return Err(earlier_results(self, &computed));
                 }
                 self.clear()?;
             }
@@ -60,8 +60,7 @@ impl StudyDirectory {
 /// [`StudyError::OtherStudy`] if there are results, and none of them is of this study;
 /// [`StudyError::Directory`].
 pub fn place(directory: &StudyDirectory, study: &Study) -> Result<Placed, StudyError> {
-    let failed = |source| StudyError::Directory { dir: directory.root().to_owned(), what: "be read", source };
-    let there = numbered(directory).map_err(failed)?;
+    let there = numbered(directory)?;
     let before = directory.study().exists().then(|| Study::load(&directory.study()));
     let same = before.as_ref().is_none_or(|before| before.as_ref().is_ok_and(|before| before.cases_are(study)));
     let told = if same { told(directory, study) } else { None };
@@ -84,20 +83,43 @@ pub fn place(directory: &StudyDirectory, study: &Study) -> Result<Placed, StudyE
 }
 
 /// The names of the directories in `cases/` that hold a result.
-fn numbered(directory: &StudyDirectory) -> std::io::Result<Vec<String>> {
-    let cases = directory.root().join("cases");
-    if !cases.is_dir() {
-        return Ok(Vec::new());
-    }
-    let mut names = Vec::new();
-    for entry in fs::read_dir(&cases)? {
-        let name = entry?.file_name().to_string_lossy().into_owned();
-        if is_case_id(&name) && OutputDirectory::existing(cases.join(&name)).holds_result() {
-            names.push(name);
+fn numbered(directory: &StudyDirectory) -> Result<Vec<String>, StudyError> {
+    let mut names = directory.numbered()?;
+    names.retain(|id| directory.case(id).holds_result());
+    Ok(names)
+}
+
+/// How far a case is of which there is something to lose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Computed {
+    /// To the end of its path.
+    Done,
+    /// It ended, but not well.
+    Ended,
+    /// It is unfinished.
+    Begun,
+}
+
+/// What is computed of the case in a directory; `None` if it is nothing.
+pub(super) fn computed(out: &OutputDirectory) -> Option<Computed> {
+    match Summary::read(&out.summary()).map(|summary| summary.status) {
+        Ok(Status::Done) => Some(Computed::Done),
+        Ok(Status::NotConverged | Status::ContactOutgrewMesh | Status::Failed) => Some(Computed::Ended),
+        Ok(Status::Interrupted) => Some(Computed::Begun),
+        Err(_) => {
+            let steps = || read_history(&out.history()).map_or(0, |rows| rows.len());
+            (out.checkpoint().exists() || steps() > 0).then_some(Computed::Begun)
         }
     }
-    names.sort();
-    Ok(names)
+}
+
+/// Refuses to begin where cases have been computed.
+pub(super) fn earlier_results(directory: &StudyDirectory, computed: &[Computed]) -> StudyError {
+    let count = |wanted| computed.iter().filter(|one| **one == wanted).count();
+    let rest = [(count(Computed::Ended), "failed or did not converge"), (count(Computed::Begun), "unfinished")];
+    let words = rest.into_iter().filter(|(number, _)| *number > 0).map(|(number, what)| format!(", {number} {what}"));
+    let what = format!("{} cases are done{}", count(Computed::Done), words.collect::<String>());
+    StudyError::Earlier { dir: directory.root().to_owned(), what }
 }
 
 /// The names that `study.csv` tells, if it is the table of this very study.
@@ -179,4 +201,25 @@ pub fn alone(directory: &StudyDirectory) -> Result<DirectoryLock, StudyError> {
             taken => return Ok(taken?),
         }
     }
+}
+
+/// The right to compute the study in its folder, with others who compute shares of it or, with
+/// `alone`, by oneself; nobody computes another study there as long as it is kept. To be taken by
+/// whoever is [`alone`] in the folder.
+///
+/// # Errors
+/// [`StudyError::Output`] with who is there.
+pub fn join(directory: &StudyDirectory, study: &Study, alone: bool) -> Result<TaskLock, StudyError> {
+    Ok(TaskLock::join(directory.root(), &study.fingerprint(), alone, ["this study", "another study"])?)
+}
+
+/// The right to work on with the results of a study in its folder: nobody begins another there as
+/// long as it is kept.
+///
+/// # Errors
+/// [`StudyError::Output`] with who computes another study there.
+pub fn hold(dir: &Path, study: &Study) -> Result<TaskLock, StudyError> {
+    let directory = StudyDirectory::new(dir);
+    let _alone = alone(&directory)?;
+    join(&directory, study, false)
 }

@@ -9,7 +9,7 @@ use super::file::{Study, StudyCase};
 use super::id::directory_of;
 use crate::case::{Case, Friction};
 use crate::law::variables::{Body, Variables};
-use crate::output::{OutputDirectory, Status, Summary, write_atomically};
+use crate::output::{OutputDirectory, Status, Summary, read_history, write_atomically};
 
 /// A column of text by its name, and how it is read.
 type TextColumn = (&'static str, fn(&StudyCase, &Row) -> String);
@@ -144,12 +144,20 @@ impl Row {
         Self { status, reason, summary: Some(summary) }
     }
 
-    /// The case as its directory shows it: pending, unless `case.toml` there is this very case and
-    /// there is a summary.
+    /// The case as its directory shows it: pending, unless `case.toml` there is this very case,
+    /// there is a summary, and the history has the steps that it counts.
     pub fn read(case: &Case, out: &OutputDirectory) -> Self {
         let same = |found: Case| found.identity() == case.identity();
         let this = out.holds_result() && Case::load(&out.case(), &[]).is_ok_and(same);
         match this.then(|| Summary::read(&out.summary())) {
+            Some(Ok(summary)) if summary.status != Status::Interrupted => {
+                let found = read_history(&out.history()).map_or(0, |rows| rows.len());
+                if found == summary.steps {
+                    return Self::of(summary);
+                }
+                let reason = format!("history.csv is missing or cut: {found} of {} steps", summary.steps);
+                Self { reason, ..Self::pending() }
+            }
             Some(Ok(summary)) => Self::of(summary),
             _ => Self::pending(),
         }

@@ -1,7 +1,6 @@
 //! From a checked study to its directory: which cases there are to compute, on what, and their
 //! rows.
 
-use std::io;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
@@ -14,7 +13,7 @@ use super::device::on_device;
 use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::id::directory_of;
-use super::place::{Placed, alone};
+use super::place::{Placed, alone, computed, earlier_results, join};
 use super::progress::StudyProgress;
 use super::row::{Row, RowStatus, write_table};
 use super::schedule::{in_order, pools, side_by_side};
@@ -22,7 +21,7 @@ use super::shard::{Shard, by_descending_cost, cost};
 use super::simulate::Simulator;
 use crate::case::{Case, Linear};
 use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice, Selected, select};
-use crate::output::Summary;
+use crate::output::{OutputDirectory, Summary, TaskLock};
 use crate::simulation::follow::seats;
 use crate::simulation::problem::Problem;
 
@@ -125,17 +124,18 @@ pub(crate) fn run_on(
         (false, true) => Earlier::Replace,
         (false, false) => Earlier::Refuse,
     };
-    let (study, mut rows) = begin(directory, study, earlier, |rows| {
-        let done = share.iter().filter(|&&case| rows[case].status == RowStatus::Done).count();
-        if !options.resume && !options.force && done > 0 {
-            return Err(StudyError::Earlier { dir: dir.to_owned(), done });
+    let Begun { study, mut rows, lock } = begin(directory, study, earlier, |study, rows| {
+        let there = |&case: &usize| Some(directory.case(&study.cases[case].id)).filter(OutputDirectory::holds_result);
+        let computed: Vec<_> = share.iter().filter_map(|case| computed(&there(case)?)).collect();
+        if !options.resume && !options.force && !computed.is_empty() {
+            return Err(earlier_results(directory, &computed));
         }
         if !options.resume {
             share.iter().for_each(|&case| rows[case] = Row::pending());
         }
         Ok(())
     })?;
-    let study = &study;
+    let (study, lock) = (&study, &lock);
     for &case in share.iter().filter(|&&case| rows[case].status == RowStatus::Done) {
         // Killed just before its checkpoint was removed; what cannot be removed does no harm.
         let _ = directory.case(&study.cases[case].id).tidy();
@@ -161,12 +161,13 @@ pub(crate) fn run_on(
     let simulator = Simulator {
         cases: &study.cases,
         directory,
+        lock,
         progress: progress.clone(),
         stop: stop.clone(),
         resume: options.resume,
         locks: Mutex::default(),
     };
-    let mut table = Table { study, directory, rows, written: Instant::now(), took: Duration::ZERO };
+    let mut table = Table { study, directory, lock, rows, written: Instant::now(), took: Duration::ZERO };
     let mut finished = |case: usize, result: Result<Summary, String>| {
         let fault = |what| format!("the program panicked: {what}. This is a fault of the program, please report it");
         let row = Row::of(result.unwrap_or_else(|what| simulator.broke_off(case, &fault(what))));
@@ -192,6 +193,16 @@ pub(crate) fn run_on(
     Ok(Report::of(study, &table.rows, &share))
 }
 
+/// A study whose folder is prepared.
+pub(super) struct Begun {
+    /// With the names of the directories of its cases.
+    pub study: Study,
+    /// How they stand.
+    pub rows: Vec<Row>,
+    /// To be kept as long as it is worked on.
+    pub lock: TaskLock,
+}
+
 /// Prepares the folder of a study, several processes one after the other: where its cases are, how
 /// they stand, what `adjust` makes of that, and the table and the study's copy, from which the
 /// others know it too.
@@ -199,8 +210,8 @@ pub(super) fn begin(
     directory: &StudyDirectory,
     study: &Study,
     earlier: Earlier,
-    adjust: impl FnOnce(&mut Vec<Row>) -> Result<(), StudyError>,
-) -> Result<(Study, Vec<Row>), StudyError> {
+    adjust: impl FnOnce(&Study, &mut Vec<Row>) -> Result<(), StudyError>,
+) -> Result<Begun, StudyError> {
     let mut made = None;
     if !directory.root().exists() {
         let failed = |source| StudyError::Directory { dir: directory.root().to_owned(), what: "be created", source };
@@ -211,9 +222,10 @@ pub(super) fn begin(
         // A folder of the user's own is refused before anything is written to it.
         directory.recognise()?;
         let _alone = alone(directory)?;
+        let lock = join(directory, study, earlier != Earlier::Keep)?;
         let Placed { study, strangers, begun } = directory.prepare(study, earlier)?;
         let mut rows = read_rows(&study, directory);
-        adjust(&mut rows)?;
+        adjust(&study, &mut rows)?;
         write_table(&directory.table(), &study, &rows)?;
         directory.write_study(&study)?;
         if !strangers.is_empty() {
@@ -226,7 +238,7 @@ pub(super) fn begin(
                 names.join(", ")
             );
         }
-        Ok((study, rows))
+        Ok(Begun { study, rows, lock })
     })();
     if let (Err(_), Some(root)) = (&begun, made) {
         // A folder in which there is something is not removed.
@@ -240,7 +252,7 @@ pub(super) fn begin(
 /// # Errors
 /// As [`run`], before anything is computed.
 pub fn prepare(study: &Study, dir: &Path) -> Result<(), StudyError> {
-    begin(&StudyDirectory::new(dir), study, Earlier::Keep, |_| Ok(())).map(drop)
+    begin(&StudyDirectory::new(dir), study, Earlier::Keep, |_, _| Ok(())).map(drop)
 }
 
 impl Report {
@@ -282,22 +294,18 @@ pub(super) fn read_rows(study: &Study, directory: &StudyDirectory) -> Vec<Row> {
 struct Table<'a> {
     study: &'a Study,
     directory: &'a StudyDirectory,
+    lock: &'a TaskLock,
     rows: Vec<Row>,
     written: Instant,
     took: Duration,
 }
 
 impl Table<'_> {
-    /// Not where the folder was removed in the meantime: a table without its cases would be of no
-    /// use.
+    /// Not where the folder was removed or moved in the meantime: a table without its cases would be
+    /// of no use.
     fn write(&self) -> Result<(), StudyError> {
-        let gone = || io::Error::new(io::ErrorKind::NotFound, "it was removed while the study went on");
-        let failed = |source| StudyError::Directory { dir: self.directory.root().to_owned(), what: "be found", source };
-        if self.directory.root().is_dir() {
-            write_table(&self.directory.table(), self.study, &self.rows)
-        } else {
-            Err(failed(gone()))
-        }
+        self.lock.check_there()?;
+        write_table(&self.directory.table(), self.study, &self.rows)
     }
 
     fn write_if_due(&mut self) -> Result<(), StudyError> {

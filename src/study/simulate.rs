@@ -12,7 +12,7 @@ use super::row::{Row, RowStatus};
 use crate::compute::Description;
 use crate::output::{
     Checkpoint, Clock, DirectoryLock, OutputDirectory, OutputError, ResultWriter, Setting, Status, Summary, SummaryInputs,
-    read_history,
+    TaskLock, read_history,
 };
 use crate::simulation::SimulationError;
 use crate::simulation::drive::{Ending, Observer};
@@ -25,6 +25,8 @@ pub struct Simulator<'a> {
     pub cases: &'a [StudyCase],
     /// Where their directories are.
     pub directory: &'a StudyDirectory,
+    /// The right to compute them there.
+    pub lock: &'a TaskLock,
     /// Who is told how far they are.
     pub progress: Arc<StudyProgress>,
     /// Asked after every step.
@@ -43,7 +45,8 @@ impl Simulator<'_> {
     /// [`StudyError::Output`].
     pub fn begin(&self, case: usize) -> Result<OutputDirectory, StudyError> {
         let StudyCase { id, case: in_units, .. } = &self.cases[case];
-        let out = OutputDirectory::create(self.directory.case(id).root())?;
+        self.lock.check_there()?;
+        let out = self.directory.make_case(id)?;
         let lock = DirectoryLock::take(out.root())?;
         lock.note().into_iter().for_each(|note| self.progress.message(id, &format!("note: {note}")));
         self.locks.lock().unwrap_or_else(PoisonError::into_inner).insert(case, lock);

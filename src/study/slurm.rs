@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::StudyError;
 use super::directory::StudyDirectory;
-use crate::output::write_atomically;
+use crate::output::write_own;
 
 /// How the study is to be handed over.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -132,7 +132,7 @@ pub fn write(directory: &StudyDirectory, slurm: &Slurm, program: &Path, options:
     };
     let folder = directory.root().join("slurm");
     for (file, text) in [("tasks.sh", TASKS), ("table.sh", TABLE), ("submit.sh", SUBMIT)] {
-        write_atomically(&folder.join(file), |out| out.write_all(fill(text).as_bytes()))?;
+        write_own(&folder.join(file), |out| out.write_all(fill(text).as_bytes()))?;
     }
     Ok(Scripts { submit: folder.join("submit.sh") })
 }

@@ -129,6 +129,21 @@ fn a_file_that_a_checkpoint_tells_of_and_that_is_gone_is_missed() {
 }
 
 #[test]
+fn a_history_that_is_cut_while_the_run_goes_on_ends_it_and_it_goes_on_from_the_checkpoint() {
+    let scratch = scratch();
+    let (out, alone) = (scratch.path("out"), scratch.path("alone"));
+    let child = started(&scratch, &out, &[&["-q"][..], &SLOW].concat());
+    fs::File::options().write(true).truncate(true).open(out.join("history.csv")).expect("cut");
+    let output = child.wait_with_output().expect("it ends");
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.contains("history.csv: was changed while the run went on (0 bytes are there"), "{message}");
+    assert_eq!(scratch.run(&out, &[&["-q", "--resume"][..], &SLOW].concat()).status.code(), Some(0));
+    assert_eq!(scratch.run(&alone, &[&["-q"][..], &SLOW].concat()).status.code(), Some(0));
+    assert_eq!(difference(&out, &alone), None);
+}
+
+#[test]
 fn what_was_left_by_a_kill_at_the_very_end_is_tidied_up() {
     let scratch = scratch();
     let out = scratch.path("out");

@@ -1,6 +1,6 @@
 //! Colours, the card and the writing of numbers, common to all plots.
 
-use super::super::{OutputError, write_atomically};
+use super::super::{OutputError, write_own};
 use super::canvas::{Canvas, Colour, Drawn, Paint};
 use super::print::print;
 use super::sheet::Size;
@@ -72,7 +72,7 @@ impl Picture {
     /// The place cannot be written; a program without the feature `print` makes SVG alone.
     pub fn write(&self, path: &Path, format: PictureFormat) -> Result<(), OutputError> {
         let bytes = print(&self.svg, format).map_err(|problem| OutputError::Format { path: path.to_owned(), problem })?;
-        write_atomically(path, |out| out.write_all(&bytes))
+        write_own(path, |out| out.write_all(&bytes))
     }
 }
 

@@ -17,7 +17,7 @@ use crate::law::data::StudyData;
 use crate::law::plots::{NormalContact, greatest_errors, study_pictures};
 use crate::law::table::{StudyRow, StudyTable};
 use crate::output::plots::Sheet;
-use crate::output::{OutputDirectory, Picture, write_atomically};
+use crate::output::{OutputDirectory, Picture, write_own};
 
 /// Draws a study into `plots` and `report.html` of its directory and returns their paths, the
 /// report last. The report has the pictures as SVG in their own widths, whatever those in `plots`
@@ -31,6 +31,7 @@ pub fn write_report(
     sheet: Sheet,
     format: PictureFormat,
 ) -> Result<Vec<PathBuf>, StudyError> {
+    directory.refuse_links()?;
     let root = directory.root();
     let table = StudyTable::read(&directory.table())?;
     let data = StudyData::read(root)?;
@@ -47,7 +48,7 @@ pub fn write_report(
         picture.write(&path, format)?;
         written.push(path);
     }
-    write_atomically(&directory.report(), |out| out.write_all(html.as_bytes()))?;
+    write_own(&directory.report(), |out| out.write_all(html.as_bytes()))?;
     written.push(directory.report());
     Ok(written)
 }
