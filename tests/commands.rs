@@ -284,3 +284,43 @@ fn shells_and_man_know_every_subcommand() {
         assert!(page.contains(".TH"), "{page}");
     }
 }
+
+/// E in MPa and sigma_Y in GPa: allowed, computed, and said to be odd.
+#[test]
+fn units_that_do_not_fit_together_are_noted_by_every_command() {
+    let text = fs::read_to_string("fixtures/cases/ideal.toml").expect("the fixture");
+    let text = text.replace("yield_stress = 400.0", "yield_stress = 0.4");
+    let scratch = Scratch::new(&text, &[]);
+    let file = scratch.path("case.toml").display().to_string();
+    let note = "material.hardening.yield_stress: puts E/sigma_Y at 5.000e5; known materials have 10 to 10,000";
+    let output = asperity(&["check", &file]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with(&format!("# note: {note}")), "{}", stdout(&output));
+    assert!(Case::parse(&stdout(&output), "checked", &[]).is_ok(), "a note is a comment");
+    let checked = json(&asperity(&["check", "--json", &file]));
+    assert!(checked["notes"][0].as_str().is_some_and(|told| told.starts_with(note)), "{checked}");
+    let sound = json(&asperity(&["check", "--json", "fixtures/cases/ideal.toml"]));
+    assert_eq!(sound["notes"], serde_json::json!([]));
+
+    // Elastic in so short a press: it is the note that counts.
+    let quick = [&QUICK[..], &["--set", "path=[{indentation=1e-4}]"]].concat();
+    let output = scratch.run("out", &quick);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains(&format!("note: {note}")), "{}", stderr(&output));
+    let summary = fs::read_to_string(scratch.path("out/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    let messages = summary["messages"].as_array().expect("messages");
+    assert_eq!(messages.iter().filter(|told| told.as_str().is_some_and(|told| told.contains(note))).count(), 1, "{summary}");
+
+    // Of a study each key once, with the first case that it is odd in.
+    let base = text.replace("[[path]]", "[[base.path]]").replace("\n[", "\n[base.").replace("[base.[base.", "[[base.");
+    let base = if base.starts_with('[') { base.replacen('[', "[base.", 1) } else { base };
+    let study = format!("{base}\n[grid]\n\"material.hardening.yield_stress\" = [400.0, 0.4, 0.2]\n");
+    fs::write(scratch.path("study.toml"), study).expect("a study");
+    let file = scratch.path("study.toml").display().to_string();
+    let checked = json(&asperity(&["check", "--json", &file]));
+    let notes = checked["notes"].as_array().expect("notes");
+    let told = notes[0].as_str().expect("text");
+    assert!(notes.len() == 1 && told.starts_with(&format!("case 0002: {note}")), "{checked}");
+    assert!(told.ends_with("(and 1 more cases)"), "{told}");
+}

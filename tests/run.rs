@@ -7,6 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use asperity::internals::compute::wrong::WRONG_VARIABLE;
 use asperity::output::{OutputDirectory, Status, StepRecord, Summary, TimeByPhase, read_contact, read_history};
 use common::{Scratch, program, stderr, stdout};
 
@@ -537,4 +538,29 @@ fn a_disk_that_fills_ends_with_3_and_leaves_nothing_half_written() {
     assert_eq!((history.len(), summary.status), (5, Status::Interrupted));
     assert!(summary.messages[0].contains("step_0005.vtu"), "{:?}", summary.messages);
     assert!(names(&scratch.path("out").join("fields")).is_empty());
+}
+
+/// From some step on the backend computes wrongly: the step is cut, the run ends, and says why.
+#[test]
+fn a_number_that_is_none_and_a_material_that_refuses_are_told_as_what_they_are() {
+    let scratch = scratch(SHEAR);
+    let options = ["-q", "--set", "solver.error_estimate=false", "--set", "solver.max_cutbacks=2"];
+    for (wrong, what) in [
+        ("contact:0", "step 1 of segment 0 "),
+        ("force:2", "the residual is not finite at node "),
+        ("tangential-force:3", "the residual is not finite at node "),
+        ("tangent:2", "a number that is not finite in the row of node "),
+        ("material:2", "the material refuses the deformation of element 7 at quadrature point 3: its stress or plastic strain"),
+        ("commit:2", "where the step is committed"),
+    ] {
+        let name = wrong.replace(':', "-after-");
+        let output = program().args(scratch.args(&name, &options)).env(WRONG_VARIABLE, wrong).output().expect("it runs");
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(3), "{wrong}: {message}");
+        assert!(message.starts_with("error: no convergence: step ") && message.contains(what), "{wrong}: {message}");
+        assert!(message.contains("the step was bisected 2 times") && !message.contains("inverts"), "{wrong}: {message}");
+        let (history, summary) = results(&scratch.path(&name));
+        assert_eq!(summary.status, Status::NotConverged, "{wrong}");
+        assert_eq!(history.len().to_string(), wrong.rsplit(':').next().expect("a number"), "{wrong}");
+    }
 }

@@ -88,6 +88,11 @@ class Case:
         """A copy with other values, by their dotted keys."""
         return self.parse(self.to_toml(), set=values)
 
+    @property
+    def notes(self) -> list[str]:
+        """What is allowed and yet odd about the case, two systems of units in it say; each begins with its key."""
+        return self._native.notes()
+
     def to_dict(self) -> dict[str, Any]:
         """The case with every default written out."""
         return self._native.to_dict()

@@ -155,6 +155,7 @@ def run(
     *,
     precision: str = "auto",
     resume: bool = False,
+    extend: bool = False,
     force: bool = False,
 ) -> Run:
     """Simulates a case, with the bits and files of ``asperity run``.
@@ -162,7 +163,7 @@ def run(
     Other threads of Python go on meanwhile. Ctrl-C ends the run after its present step and keeps what there is.
 
     :param case: a :class:`Case`, a dictionary, the path of a case file, or its text.
-    :param out: directory for the results: a new or an empty one, or one with an earlier result and ``resume`` or ``force``. Without one they are in a
+    :param out: directory for the results: a new or an empty one, or one with an earlier result and ``resume``, ``extend`` or ``force``. Without one they are in a
         temporary directory that lives as long as the answer.
     :param device: ``"auto"``, ``"cpu"`` or ``"gpu"``.
     :param threads: threads to use, by default all of the machine's; results do not depend on it.
@@ -170,6 +171,7 @@ def run(
         behind, the number of the step and a text (a note has the share -1). What it raises ends the run like Ctrl-C.
     :param precision: ``"auto"``, ``"f32"``, ``"f64"`` or ``"mixed"`` (see ``asperity run --help``).
     :param resume: go on with an unfinished run of the same case in ``out``.
+    :param extend: go on from the end of the finished run in ``out`` along a longer path: its case with segments added after the last one.
     :param force: replace an earlier result in ``out``.
     :raises CaseError: the case or an argument is refused.
     :raises NotConverged: a step failed, or the contact outgrew its mesh; the results up to there are in ``run`` of the exception.
@@ -184,7 +186,7 @@ def run(
     bar = Bar() if progress is True or (progress is None and bar_wanted()) else None
     listener: Listener | None = bar if bar is not None else (progress if callable(progress) else None)
     try:
-        status, message, raised = _asperity.run(case._native, os.fspath(out), device, precision, threads, resume, force, listener)
+        status, message, raised = _asperity.run(case._native, os.fspath(out), device, precision, threads, resume, extend, force, listener)
     finally:
         if bar is not None:
             bar.close()

@@ -43,6 +43,11 @@ impl NativeCase {
         }
     }
 
+    /// What is odd about the case.
+    fn notes(&self) -> Vec<String> {
+        self.case.doubts().iter().map(ToString::to_string).collect()
+    }
+
     /// The case as TOML, every default written out.
     fn to_toml(&self) -> String {
         self.case.to_toml()

@@ -48,7 +48,7 @@ fn threads(number: Option<usize>) -> PyResult<NonZeroUsize> {
 /// Simulates a case into a directory; gives the status, the message, and the exception that
 /// interrupted it.
 #[pyfunction]
-#[pyo3(signature = (case, out, device, precision, threads, resume, force, listener))]
+#[pyo3(signature = (case, out, device, precision, threads, resume, extend, force, listener))]
 #[allow(clippy::too_many_arguments)] // keywords in Python
 pub fn run(
     py: Python<'_>,
@@ -58,6 +58,7 @@ pub fn run(
     precision: &str,
     threads: Option<usize>,
     resume: bool,
+    extend: bool,
     force: bool,
     listener: Option<Py<PyAny>>,
 ) -> PyResult<(String, Option<String>, Option<PyErr>)> {
@@ -67,11 +68,14 @@ pub fn run(
         precision: self::precision(precision)?,
         threads: Some(self::threads(threads)?),
         out: Some(out),
-        earlier: match (force, resume) {
-            (true, false) => Earlier::Replace,
-            (false, true) => Earlier::Resume,
-            (false, false) => Earlier::Keep,
-            (true, true) => return Err(refused("force: stands beside resume. Allowed: one of resume and force")),
+        earlier: match (force, resume, extend) {
+            (true, false, false) => Earlier::Replace,
+            (false, true, false) => Earlier::Resume,
+            (false, false, true) => Earlier::Extend,
+            (false, false, false) => Earlier::Keep,
+            (false, true, true) => return Err(refused("extend: stands beside resume. Allowed: one of resume, extend and force")),
+            (true, false, true) => return Err(refused("force: stands beside extend. Allowed: one of resume, extend and force")),
+            (true, true, _) => return Err(refused("force: stands beside resume. Allowed: one of resume and force")),
         },
         canceller: canceller.clone(),
         ..Options::default()

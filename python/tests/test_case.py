@@ -74,3 +74,9 @@ def test_a_file_is_named_with_its_line(tmp_path) -> None:
         asperity.run(tmp_path / "nowhere.toml")
     with pytest.raises(asperity.CaseError, match="allowed: a Case, a dictionary"):
         asperity.run(7)
+
+
+def test_what_is_odd_is_noted() -> None:
+    assert asperity.Case(**TABLES).notes == []
+    (note,) = asperity.Case(**TABLES).replace({"material.hardening.yield_stress": 0.4}).notes
+    assert note.startswith("material.hardening.yield_stress: puts E/sigma_Y at 5.000e5")

@@ -2,12 +2,12 @@
 
 @group(0) @binding(9) var<storage, read> state: array<real>;            // [case][component][point]: b_e_bar - I (6), alpha
 @group(0) @binding(10) var<storage, read> jacobian: array<real>;        // [slot][point]: det F - 1
-// [slot]: smallest 16 element + 8 (refused by the material) + point of what has no answer; all ones
-// if there is none.
+// [slot]: smallest 32 element + 16 (refused by the material) + 2 point + 1 (not finite) of what has no
+// answer; all ones if there is none.
 @group(0) @binding(11) var<storage, read_write> first_invalid: array<atomic<u32>>;
 
 const REFUSED_BY_KINEMATICS: u32 = 0u;
-const REFUSED_BY_MATERIAL: u32 = 8u;
+const REFUSED_BY_MATERIAL: u32 = 16u;
 
 struct Kinematics {
     relative: mat3x3<real>,     // f - I, f = F F_n^-1
@@ -46,8 +46,8 @@ fn load_state(case_index: u32, point: u32) -> PointState {
     return PointState(be, state[s + 6u * points]);
 }
 
-fn refuse(at: Place, by: u32) {
-    atomicMin(&first_invalid[at.slot], 16u * at.element + by + at.point % 8u);
+fn refuse(at: Place, by: u32, is_not_finite: bool) {
+    atomicMin(&first_invalid[at.slot], 32u * at.element + by + 2u * (at.point % 8u) + u32(is_not_finite));
 }
 
 // What the point answers to the trial displacement; where it has no answer, the slot is told.
@@ -55,7 +55,7 @@ fn evaluate_point(at: Place, material: Material) -> PointAnswer {
     var answer: PointAnswer;
     let j = jacobian[at.slot * point_count() + at.point];
     if !(j > -1.0) || !is_finite(j) {
-        refuse(at, REFUSED_BY_KINEMATICS);
+        refuse(at, REFUSED_BY_KINEMATICS, !is_finite(j));
         return answer;
     }
     let g = displacement_gradients(at);
@@ -73,7 +73,7 @@ fn evaluate_point(at: Place, material: Material) -> PointAnswer {
     answer.k.total_volume = theta.y;
     answer.response = return_mapping(material, answer.k.relative, load_state(at.case_index, at.point));
     if answer.response.status >= STATUS_INVERTED {
-        refuse(at, REFUSED_BY_MATERIAL);
+        refuse(at, REFUSED_BY_MATERIAL, answer.response.status == STATUS_NOT_FINITE);
         return answer;
     }
     answer.valid = true;

@@ -27,7 +27,7 @@ fn hex8_update(@builtin(global_invocation_id) id: vec3<u32>) {
     );
     let done = complete(material, a.k.relative, committed, load_state(at.case_index, at.point), a.response);
     if done.response.status >= STATUS_INVERTED {
-        refuse(at, REFUSED_BY_MATERIAL);
+        refuse(at, REFUSED_BY_MATERIAL, done.response.status == STATUS_NOT_FINITE);
         return;
     }
     let s = done.response.state;

@@ -64,6 +64,13 @@ fn iterate_read(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
         let across = rows[row + points] * rows[row + points];
         let sticks = slides[case_index * points + k] == 0u;
         if status != OPEN {
+            // Forces at what contact prescribes are in no residual: what is not finite is not to be lost.
+            for (var i = 0u; i < 2u; i++) {
+                let along_plane = forces[of_forces + 3u * contact_node[k] + i];
+                if !is_finite(along_plane) {
+                    scale += along_plane;
+                }
+            }
             scale += abs(f_z);
             normal += max(f_z, real(0.0));
             tangential += along + across;

@@ -368,6 +368,12 @@ pub const KEYS: &[Key] = &[
         ..key("output", "parquet", Truth, Optional("history.csv alone"))
     },
     Key {
+        range: "true or false",
+        meaning: "whether checkpoint.bin stays when the run is done, about 1 kB for each element, so that run --extend can follow a longer path; in a study it never does",
+        example: "false",
+        ..key("output", "keep_checkpoint", Truth, Optional("it stays"))
+    },
+    Key {
         range: UNIT_LABEL,
         meaning: "unit of the radius and of displacements, as in \"mm\"",
         example: "\"mm\"",

@@ -15,6 +15,7 @@ mod mistakes;
 mod opponent;
 mod path;
 mod pictures;
+mod plausible;
 mod read;
 mod reader;
 mod scale;
@@ -32,6 +33,7 @@ pub use hardening::Hardening;
 pub use mistakes::mistakes;
 pub use path::{Hold, Segment, ShearTarget};
 pub use pictures::{PictureFormat, PictureWidth, UnitLabels, WIDTHS, WidthUnit};
+pub use plausible::Doubt;
 pub(crate) use read::CONTACT_RADII;
 pub use reader::{Field, Reader};
 pub use scale::Scaled;
@@ -231,6 +233,9 @@ pub struct Output {
     /// Whether the history is written as `history.parquet` too.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub parquet: bool,
+    /// Whether the last checkpoint of a run that is done is kept, for a longer path.
+    #[serde(skip_serializing_if = "Clone::clone")]
+    pub keep_checkpoint: bool,
 }
 
 /// The steps after which fields are written.
@@ -268,7 +273,14 @@ impl Default for Solver {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { fields: Fields::Segments, plots: true, plot_format: PictureFormat::Svg, plot_width: None, parquet: false }
+        Self {
+            fields: Fields::Segments,
+            plots: true,
+            plot_format: PictureFormat::Svg,
+            plot_width: None,
+            parquet: false,
+            keep_checkpoint: true,
+        }
     }
 }
 

@@ -195,7 +195,7 @@ fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
 }
 
 fn read_output(table: &Reader<'_>) -> Result<Output, CaseError> {
-    table.only(&["fields", "plots", "plot_format", "plot_width", "parquet"])?;
+    table.only(&["fields", "plots", "plot_format", "plot_width", "parquet", "keep_checkpoint"])?;
     let mut output = Output::default();
     if let Some(field) = table.get("fields") {
         output.fields = field.choice(&[("none", Fields::None), ("segments", Fields::Segments), ("all", Fields::All)])?;
@@ -209,6 +209,9 @@ fn read_output(table: &Reader<'_>) -> Result<Output, CaseError> {
     output.plot_width = table.get("plot_width").map(|field| pictures::read_width(&field)).transpose()?;
     if let Some(field) = table.get("parquet") {
         output.parquet = field.boolean()?;
+    }
+    if let Some(field) = table.get("keep_checkpoint") {
+        output.keep_checkpoint = field.boolean()?;
     }
     Ok(output)
 }

@@ -53,21 +53,31 @@ pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
 }
 
 fn study_text(study: &Study) -> String {
-    let first = |case: &StudyCase| format!("# case {}: {}\n{}", case.id, study.combination(case), case_text(&case.case));
+    let first = |case: &StudyCase| format!("# case {}: {}\n{}", case.id, study.combination(case), resolved(&case.case));
     let seconds = duration(study.cases.iter().map(|case| estimated_seconds(&case.case)).sum());
     let first = study.cases.first().map_or(String::new(), first);
-    format!("# {}\n# about {seconds} of processor time in all, to a factor of three\n{first}", study.size())
+    let notes: String = study.doubts().iter().map(|(id, doubt)| format!("# note: case {id}: {doubt}\n")).collect();
+    format!("# {}\n# about {seconds} of processor time in all, to a factor of three\n{notes}{first}", study.size())
 }
 
 fn study_json(study: &Study) -> Value {
     let seconds: f64 = study.cases.iter().map(|case| estimated_seconds(&case.case)).sum();
     let keys: Vec<Value> = study.axes.iter().map(|(key, values)| json!({ "key": key, "values": values })).collect();
     let first = study.cases.first().map(|case| case_json(&case.case));
-    json!({ "kind": "study", "cases": study.cases.len(), "grid": keys, "estimated_seconds": seconds, "first": first })
+    let notes: Vec<String> = study.doubts().iter().map(|(id, doubt)| format!("case {id}: {doubt}")).collect();
+    json!({
+        "kind": "study", "cases": study.cases.len(), "grid": keys, "estimated_seconds": seconds, "notes": notes, "first": first
+    })
 }
 
-/// The case under comments with its size and with what the mesh decides where no key does.
+/// The case under comments with what is odd about it, its size, and what the mesh decides where no
+/// key does.
 fn case_text(case: &Case) -> String {
+    let notes: String = case.doubts().iter().map(|doubt| format!("# note: {doubt}\n")).collect();
+    format!("{notes}{}", resolved(case))
+}
+
+fn resolved(case: &Case) -> String {
     format!(
         "# about {} elements, {:.2} GiB and {} of processor time (to a factor of three)\n\
          # press_steps = {} and shear_steps = {}\n{}",
@@ -89,6 +99,7 @@ fn case_json(case: &Case) -> Value {
         "estimated_elements": estimated_elements(case),
         "estimated_memory_gib": estimated_memory(case),
         "estimated_seconds": estimated_seconds(case),
+        "notes": case.doubts().iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
 

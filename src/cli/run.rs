@@ -20,8 +20,8 @@ pub struct RunArgs {
     /// The case file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Directory for the results: new or empty, or one with earlier results if --resume or --force
-    /// is given.
+    /// Directory for the results: new or empty, or one with earlier results if --resume, --extend or
+    /// --force is given.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
@@ -33,8 +33,14 @@ pub struct RunArgs {
     /// and a finished run is left as it is, so a batch script can always give this option.
     #[arg(long)]
     pub resume: bool,
-    /// Replace earlier results in DIR, of whatever case and however complete.
+    /// Go on from the end of the finished run in DIR along a longer path: the case is that of the
+    /// run with segments added after the last one. The results are those of the longer path from the
+    /// beginning; where that would need another mesh, the extension is refused. One that was
+    /// interrupted goes on, and one that is finished is left as it is.
     #[arg(long, conflicts_with = "resume")]
+    pub extend: bool,
+    /// Replace earlier results in DIR, of whatever case and however complete.
+    #[arg(long, conflicts_with_all = ["resume", "extend"])]
     pub force: bool,
     /// Seconds between checkpoints, for tests; 0 is after every step.
     #[arg(long, value_name = "SECONDS", hide = true, value_parser = clap::value_parser!(u16))]
@@ -64,9 +70,10 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         // The pool of the whole program has their number.
         threads: None,
         out: Some(args.out.clone()),
-        earlier: match (args.force, args.resume) {
-            (true, _) => Earlier::Replace,
-            (_, true) => Earlier::Resume,
+        earlier: match (args.force, args.resume, args.extend) {
+            (true, _, _) => Earlier::Replace,
+            (_, true, _) => Earlier::Resume,
+            (_, _, true) => Earlier::Extend,
             _ => Earlier::Keep,
         },
         checkpoint_every: args.checkpoint_every.map(|seconds| Duration::from_secs(seconds.into())),

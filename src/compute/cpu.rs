@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::gather::GatherPlan;
 use super::sweep::{Keep, Sweep};
 use super::{
-    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies,
+    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, Fault,
     ForceRequest, Outcome, TangentRequest,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
@@ -269,10 +269,8 @@ impl<R: Real, T: Real> Case<R, T> {
                 for (i, out) in out.iter_mut().enumerate() {
                     let element = first + chunk * at_a_time + i;
                     let (committed, increment) = self.nodal(element, displacement);
-                    if let Err(Invalid::Inverted(point) | Invalid::Material(point)) =
-                        f(self, element, &committed, &increment, out)
-                    {
-                        return Some((element, point));
+                    if let Err(invalid) = f(self, element, &committed, &increment, out) {
+                        return Some((element, invalid));
                     }
                 }
                 None
@@ -280,11 +278,11 @@ impl<R: Real, T: Real> Case<R, T> {
             .reduce(
                 || None,
                 |a, b| match (a, b) {
-                    (Some(x), Some(y)) => Some(x.min(y)),
+                    (Some(x), Some(y)) => Some(if x.0 <= y.0 { x } else { y }),
                     (x, y) => x.or(y),
                 },
             )
-            .map_or(Outcome::Valid, |(element, point)| Outcome::Inverted { element, point })
+            .map_or(Outcome::Valid, |(element, invalid)| Outcome::Invalid(Fault::of(element, invalid)))
     }
 }
 
@@ -423,9 +421,7 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
             }
             Ok(())
         });
-        if let Outcome::Inverted { element, point } = outcome {
-            return Err(ComputeError::Device(format!("the committed state is invalid at element {element}, point {point}")));
-        }
+        outcome.check().map_err(|fault| ComputeError::Device(format!("the committed state is invalid: {fault}")))?;
         Ok(CaseFields {
             stress: out.iter().map(|o| o.0).collect(),
             alpha: out.iter().map(|o| o.1).collect(),
@@ -497,10 +493,8 @@ fn convert<R: Real, T: Real>(x: R) -> T {
 
 fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<Geometry<R>>, ComputeError> {
     let of_element = |(element, nodes): (usize, &[u32; NODES])| {
-        Geometry::new(&nodes.map(|n| mesh.nodes[n as usize])).map_err(|invalid| {
-            let (Invalid::Inverted(point) | Invalid::Material(point)) = invalid;
-            ComputeError::InvertedMesh { element, point }
-        })
+        Geometry::new(&nodes.map(|n| mesh.nodes[n as usize]))
+            .map_err(|invalid| ComputeError::InvertedMesh { element, point: invalid.point() })
     };
     mesh.elements.iter().enumerate().map(of_element).collect()
 }

@@ -6,7 +6,7 @@
 //! leads from the one to the other. Over a plane only.
 
 use super::linear::SideReport;
-use super::{Energies, Outcome};
+use super::{Energies, Fault, Outcome};
 use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
 
@@ -143,6 +143,25 @@ pub struct Reading {
     pub changed: usize,
     /// Under full stick: points that would be let slide (see [`Ask::Land`]).
     pub landed: usize,
+}
+
+impl Reading {
+    /// Of a trial that could not be evaluated.
+    pub fn of_nothing(outcome: Outcome) -> Self {
+        Self { outcome, merit: f64::INFINITY, ..Self::default() }
+    }
+
+    /// Whether there is something to decide by: a valid trial whose numbers are all finite. Newton's
+    /// method compares them, and a NaN passes any comparison that is written the wrong way round.
+    ///
+    /// # Errors
+    /// The fault.
+    pub fn check(&self) -> Result<(), Fault> {
+        let Self { outcome, merit, force_scale, plate_force, tangential, normal_force, released, .. } = *self;
+        outcome.check()?;
+        let numbers = [merit, force_scale, plate_force, tangential, normal_force, released];
+        if numbers.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Fault::Residual { at: None }) }
+    }
 }
 
 /// How a linear system and its trial went.

@@ -2,7 +2,7 @@
 //! backend.
 
 use super::cpu::Cpu;
-use super::{CaseModel, Compute, ComputeError};
+use super::{CaseModel, Compute, ComputeError, wrong};
 
 #[cfg(feature = "gpu")]
 pub use device::Devices;
@@ -72,9 +72,9 @@ pub fn is_there(device: DeviceChoice) -> Result<bool, ComputeError> {
 
 fn cpu(precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
     Ok(match precision {
-        PrecisionChoice::F32 => Box::new(Cpu::<f32>::new(models)?),
+        PrecisionChoice::F32 => wrong::hooked(Cpu::<f32>::new(models)?),
         PrecisionChoice::Auto | PrecisionChoice::F64 | PrecisionChoice::Mixed => {
-            Box::new(Cpu::<f64, f32>::with_tangents(models)?)
+            wrong::hooked(Cpu::<f64, f32>::with_tangents(models)?)
         }
     })
 }

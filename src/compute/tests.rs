@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::cpu::Cpu;
 use super::handle::{CaseHandle, Evaluate};
-use super::{CaseModel, CommitRequest, Compute, ComputeError, Energies, ForceRequest, Outcome, TangentRequest};
+use super::{CaseModel, CommitRequest, Compute, ComputeError, Energies, Fault, ForceRequest, Outcome, TangentRequest};
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
 use crate::material::hardening::Hardening;
 use crate::material::{Elasticity, Material};
@@ -319,11 +319,12 @@ fn what_is_not_committed_leaves_no_trace() {
         let mut force = vec![0.0; inverted.len()];
         let mut handle = CaseHandle { backend: disturbed.as_mut(), case: 0 };
         let bad = handle.internal_force(&inverted, &mut force).unwrap();
-        assert!(matches!(bad, Outcome::Inverted { .. }));
+        assert!(matches!(bad, Outcome::Invalid(Fault::Inverted { .. })), "{bad:?}");
         assert_eq!(handle.commit(&inverted).unwrap().1, bad);
         let mut meaningless = displacement(&mesh, 4e-3);
         meaningless[7] = f64::NAN;
-        assert!(matches!(handle.commit(&meaningless).unwrap().1, Outcome::Inverted { .. }));
+        let refused = handle.commit(&meaningless).unwrap().1;
+        assert!(matches!(refused, Outcome::Invalid(Fault::Deformation { .. })), "{refused:?}");
         assert_eq!(disturbed.state(0).unwrap(), before);
         assert!(run(clean.as_mut(), 0) == run(disturbed.as_mut(), 0));
     }
@@ -343,7 +344,8 @@ fn the_first_inverted_element_is_named_at_any_thread_count() {
             let mut force = vec![0.0; u.len()];
             let outcome = CaseHandle { backend: &mut backend, case: 0 }.internal_force(&u, &mut force).unwrap();
             let first = mesh.elements.iter().position(|e| e.contains(&mesh.elements[70][6])).unwrap();
-            assert!(matches!(outcome, Outcome::Inverted { element, .. } if element == first), "{outcome:?}, {first} expected");
+            let named = matches!(outcome, Outcome::Invalid(Fault::Inverted { element, .. }) if element == first);
+            assert!(named, "{outcome:?}, {first} expected");
         });
     }
 }
@@ -404,7 +406,7 @@ fn a_refused_commit_keeps_its_neighbours_in_the_same_call() {
     backend.commit(&mut requests).unwrap();
     assert_eq!(requests[0].outcome, Outcome::Valid);
     assert!(requests[0].energies.plastic > 0.0);
-    assert!(matches!(requests[1].outcome, Outcome::Inverted { .. }));
+    assert!(matches!(requests[1].outcome, Outcome::Invalid(Fault::Deformation { .. })));
     assert_eq!(backend.state(0).unwrap().displacement, good);
     assert!(backend.state(1).unwrap().displacement.iter().all(|x| *x == 0.0));
 }

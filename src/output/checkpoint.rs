@@ -2,7 +2,8 @@
 //!
 //! A line of text with the version of format and program, the state in postcard's encoding (which
 //! keeps every number to the bit), and the CRC-32 of all that, four bytes, little-endian. It is
-//! replaced whole or not at all, and removed when the run has ended.
+//! replaced whole or not at all. That of a run that is done stays, if the case says so, and a longer
+//! path goes on from it; any other is removed when the run has ended.
 
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Write};
@@ -17,6 +18,7 @@ use crate::bounded;
 use crate::case::{Case, Fields};
 use crate::compute::Description;
 use crate::simulation::checkpoint::Snapshot;
+use crate::simulation::scout::Scout;
 use crate::simulation::zone::Zone;
 
 /// First words of the file.
@@ -58,6 +60,37 @@ impl Checkpoint {
     /// The finely meshed zone of the run.
     pub fn zone(&self) -> Option<Zone> {
         self.ledger.zone
+    }
+
+    /// What the coarse run before the run has found.
+    pub fn scout(&self) -> Option<&Scout> {
+        self.ledger.scout.as_ref()
+    }
+
+    /// Whether it is of this case.
+    pub fn is_of(&self, case: &Case) -> bool {
+        case_difference(&self.case, &case.to_toml()).is_none()
+    }
+
+    /// Segments of its path, if `case` is the same with a longer path that begins with it.
+    ///
+    /// # Errors
+    /// Why it is not.
+    pub fn extended_by(&self, case: &Case) -> Result<usize, String> {
+        shared_path(&self.case, &case.to_toml())
+    }
+
+    /// The same state as that of a run of `case`, whose longer path has been scouted in so many
+    /// seconds.
+    pub fn extended(mut self, case: &Case, scout: Option<Scout>, seconds: f64) -> Self {
+        self.case = case.to_toml();
+        let Ledger { outside, messages, .. } = &mut self.ledger;
+        outside.error_estimate += seconds;
+        outside.setup -= seconds;
+        let failed = scout.as_ref().and_then(no_estimate).map(|text| format!("note: {text}"));
+        messages.extend(failed.filter(|text| !messages.contains(text)));
+        self.ledger.scout = scout;
+        self
     }
 
     /// Writes it, whole or not at all.
@@ -166,12 +199,41 @@ fn head() -> String {
 /// case.
 pub fn case_difference(there: &str, here: &str) -> Option<String> {
     let (found, wanted) = (flat(there), flat(here));
-    // How pictures look changes no result.
-    let matters = |key: &&String| !(key.starts_with("units.") || key.starts_with("output.plot_"));
+    // How pictures look changes no result, nor does what is kept for later.
+    let matters = |key: &&String| {
+        !(key.starts_with("units.") || key.starts_with("output.plot_") || key.as_str() == "output.keep_checkpoint")
+    };
     let keys: std::collections::BTreeSet<&String> = found.keys().chain(wanted.keys()).filter(matters).collect();
     let told = |values: &BTreeMap<String, String>, key| values.get(key).map_or("absent", String::as_str).to_owned();
     let differs = keys.into_iter().find(|key| found.get(*key) != wanted.get(*key));
     differs.map(|key| format!("{key} is {} there and {} here", told(&found, key), told(&wanted, key)))
+}
+
+/// Segments of the path of `there`, if `here` is the same case with a longer path that begins with
+/// it.
+///
+/// # Errors
+/// Why it is not: a key in which they differ, or a path that is no longer.
+pub fn shared_path(there: &str, here: &str) -> Result<usize, String> {
+    let (Ok(found), Ok(mut wanted)) = (there.parse::<toml::Table>(), here.parse::<toml::Table>()) else {
+        return Err("the case there is unreadable".to_owned());
+    };
+    let segments = |case: &toml::Table| case.get("path").and_then(toml::Value::as_array).map_or(0, Vec::len);
+    let (shorter, longer) = (segments(&found), segments(&wanted));
+    if let Some(path) = wanted.get_mut("path").and_then(toml::Value::as_array_mut) {
+        path.truncate(shorter);
+    }
+    match case_difference(there, &wanted.to_string()) {
+        Some(difference) => Err(difference),
+        None if longer > shorter => Ok(shorter),
+        None => Err(format!("the path has {shorter} segments there and no more here")),
+    }
+}
+
+/// What the user is told where the coarse run says nothing of the errors.
+pub(super) fn no_estimate(scout: &Scout) -> Option<String> {
+    let reason = scout.failure.as_ref()?;
+    Some(format!("no error estimate: the coarse run before this one ended early: {reason}"))
 }
 
 /// Every value of a document by its dotted key. A text that is not TOML is one value.
@@ -234,6 +296,23 @@ mod tests {
             ("[contact]", "]", "contact.friction is 0.3 there and absent here"),
         ] {
             assert_eq!(case_difference(case, &case.replace(there, here)).as_deref(), Some(expected));
+        }
+    }
+
+    #[test]
+    fn a_longer_path_begins_with_the_shorter_one() {
+        let case = "[contact]\nfriction = 0.3\n[[path]]\nindentation = 0.02\n";
+        let more = format!("{case}[[path]]\nshear = 0.01\n");
+        assert_eq!(shared_path(case, &more), Ok(1));
+        assert_eq!(shared_path(case, &format!("{more}[output]\nkeep_checkpoint = false\n")), Ok(1));
+        for (there, here, why) in [
+            (case, case, "the path has 1 segments there and no more here"),
+            (&*more, case, "path.1.shear is 0.01 there and absent here"),
+            (case, &*more.replace("0.3", "0.2"), "contact.friction is 0.3 there and 0.2 here"),
+            (case, &*more.replace("0.02", "0.03"), "path.0.indentation is 0.02 there and 0.03 here"),
+            ("]", &*more, "the case there is unreadable"),
+        ] {
+            assert_eq!(shared_path(there, here), Err(why.to_owned()));
         }
     }
 

@@ -58,7 +58,7 @@ impl OutputDirectory {
         self.root.join("summary.json")
     }
 
-    /// `checkpoint.bin`, there while the run is unfinished.
+    /// `checkpoint.bin`, there while the run is unfinished, and afterwards for a longer path.
     pub fn checkpoint(&self) -> PathBuf {
         self.root.join("checkpoint.bin")
     }
@@ -164,9 +164,21 @@ impl OutputDirectory {
     }
 
     /// Removes what a run leaves that was killed between its last files: drafts, and the checkpoint
-    /// of a run that has ended.
-    pub fn tidy(&self) -> Result<(), OutputError> {
-        self.clear_but(|_, name| draft_of(name).is_none() && name != "checkpoint.bin")
+    /// of a run that has ended, unless that is to be kept.
+    pub fn tidy(&self, keeps_checkpoint: bool) -> Result<(), OutputError> {
+        self.clear_but(|_, name| draft_of(name).is_none() && (keeps_checkpoint || name != "checkpoint.bin"))
+    }
+
+    /// Makes a result one of another case that goes on from its checkpoint. The summary goes first:
+    /// whatever kills the program in between, nothing says that the other case is done.
+    ///
+    /// # Errors
+    /// [`OutputError::Write`].
+    pub fn go_over_to(&self, toml: &str) -> Result<(), OutputError> {
+        match fs::remove_file(self.summary()) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(OutputError::writing(&self.summary())(error)),
+            _ => self.write_case(toml),
+        }
     }
 
     /// Refuses a directory in which a file has the name of one of a run's and is not one.
@@ -330,7 +342,7 @@ mod tests {
         fs::create_dir(&foreign).unwrap();
         fs::write(foreign.join("step_0001.vtu"), "mine").unwrap();
         std::os::unix::fs::symlink(&foreign, out.root().join("fields")).unwrap();
-        for refused in [out.clear(), out.cut_back(&[], &[]), out.tidy()] {
+        for refused in [out.clear(), out.cut_back(&[], &[]), out.tidy(false)] {
             let message = refused.unwrap_err().to_string();
             assert!(message.contains("out/fields") && message.contains("is a link"), "{message}");
         }

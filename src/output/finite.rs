@@ -10,26 +10,7 @@ use crate::compute::CaseFields;
 /// # Errors
 /// [`OutputError::NotFinite`] with step and column.
 pub fn check_row(path: &Path, row: &StepRecord) -> Result<(), OutputError> {
-    let numbers = [
-        ("h", row.h),
-        ("delta_T", row.delta_t),
-        ("F_N", row.f_n),
-        ("F_T", row.f_t),
-        ("a", row.a),
-        ("stick_radius", row.stick_radius),
-        ("a_gap", row.a_gap),
-        ("merit", row.merit),
-        ("work_external", row.work_external),
-        ("energy_elastic", row.energy_elastic),
-        ("work_plastic", row.work_plastic),
-        ("work_friction", row.work_friction),
-        ("max_alpha", row.max_alpha),
-        ("reach", row.reach),
-        ("h_opponent", row.h_opponent),
-        ("work_plastic_opponent", row.work_plastic_opponent),
-        ("curvature", row.curvature),
-    ];
-    refuse(path, row.step, numbers.map(|(name, value)| (name, Some(value))))
+    row.not_finite().map_or(Ok(()), |(column, value)| refuse(path, row.step, [(column, Some(value))]))
 }
 
 /// Refuses a summary with such a number, which would be null in the file.

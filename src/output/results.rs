@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::checkpoint::Checkpoint;
+use super::checkpoint::{Checkpoint, no_estimate};
 use super::clock::Clock;
 use super::finite::{check_saved, check_summary};
 use super::ledger::Ledger;
@@ -113,6 +113,9 @@ pub struct ResultWriter {
     next_checkpoint: Instant,
     /// The last checkpoint could not be written, and that has been told.
     checkpoint_failed: bool,
+    /// The checkpoint of the path's end stays when the run is done; and it has been written.
+    keeps_checkpoint: bool,
+    end_is_kept: bool,
     /// A result was no number: to compute it again would be in vain.
     failed: bool,
 }
@@ -180,6 +183,8 @@ impl ResultWriter {
             checkpoint_share: CHECKPOINT_SHARE,
             next_checkpoint: Instant::now() + CHECKPOINT_INTERVAL,
             checkpoint_failed: false,
+            keeps_checkpoint: false,
+            end_is_kept: false,
             failed: false,
             out,
         };
@@ -205,6 +210,17 @@ impl ResultWriter {
         self
     }
 
+    /// Keeps the last checkpoint when the run is done, or not.
+    pub fn keeping_checkpoint(mut self, keeps: bool) -> Self {
+        self.keeps_checkpoint = keeps;
+        self
+    }
+
+    /// Keeps a note for the summary that the user has been told already.
+    pub fn remember(&mut self, note: &str) {
+        self.ledger.messages.push(format!("note: {note}"));
+    }
+
     /// Tells the user something that is not for the summary.
     pub fn tell(&mut self, text: &str) {
         self.progress.message(text);
@@ -220,9 +236,7 @@ impl ResultWriter {
     pub fn scouted(&mut self, scout: Scout, seconds: f64) {
         self.ledger.outside.error_estimate = seconds;
         self.ledger.outside.setup -= seconds;
-        if let Some(reason) = &scout.failure {
-            self.note(&format!("no error estimate: the coarse run before this one ended early: {reason}"));
-        }
+        no_estimate(&scout).iter().for_each(|text| self.note(text));
         self.ledger.scout = Some(scout);
     }
 
@@ -262,7 +276,8 @@ impl ResultWriter {
 
     /// Draws the plots and writes the summary of a run that ended as `status` for the reason
     /// `message`. The summary is written even if a plot fails, whose error is then returned. Of a
-    /// run that has ended for good the checkpoint is removed.
+    /// run that has ended for good the checkpoint is removed, unless it is done and the checkpoint is
+    /// to be kept.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
         self.history.check_there()?;
         self.progress.finish(&last_line(status, self.ledger.rows.len()));
@@ -310,7 +325,8 @@ impl ResultWriter {
         }
         summary.write(&self.out.summary())?;
         finite?;
-        if status != Status::Interrupted {
+        let stays = status == Status::Interrupted || status == Status::Done && self.keeps_checkpoint && self.end_is_kept;
+        if !stays {
             // The summary says that the run has ended, so that one which cannot be removed does no
             // harm.
             let _ = std::fs::remove_file(self.out.checkpoint());
@@ -463,6 +479,11 @@ impl Observer for ResultWriter {
         self.stop.load(Ordering::Relaxed)
     }
 
+    /// Whatever becomes of the pictures, the path has not to be followed again.
+    fn keeps_end(&self) -> bool {
+        self.plots || self.keeps_checkpoint
+    }
+
     /// A checkpoint that cannot be written is no reason to stop computing, and the one before is
     /// still there.
     fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
@@ -479,6 +500,7 @@ impl Observer for ResultWriter {
             self.progress.message(&format!("warning: no checkpoint, the run goes on without: {error}"));
         }
         self.checkpoint_failed = written.is_err();
+        self.end_is_kept = last && written.is_ok();
         let took = begun.elapsed();
         self.next_checkpoint = begun + self.checkpoint_interval.max(self.checkpoint_share * took);
         self.ledger.outside.output += took.as_secs_f64();

@@ -61,6 +61,14 @@ pub enum SessionError {
         /// A key in which they differ.
         difference: String,
     },
+    /// To be extended, and it cannot be.
+    #[error("--out {}: cannot be extended: {why} (nothing was changed)", .dir.display())]
+    NotExtended {
+        /// The directory.
+        dir: PathBuf,
+        /// Why not, and what to do.
+        why: String,
+    },
     /// The pool of threads.
     #[error("--threads {threads}: cannot start that many threads: {what}. Give fewer")]
     Threads {

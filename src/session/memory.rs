@@ -74,6 +74,11 @@ impl Memory {
         self.scout = Some(scout);
     }
 
+    /// Keeps a note for the summary that the user has been told already.
+    pub fn remember(&mut self, note: &str) {
+        self.messages.push(format!("note: {note}"));
+    }
+
     /// The summary of the run, as it would be written.
     pub fn finish(mut self, rows: &[StepRecord], status: Status, message: Option<&str>) -> Summary {
         self.progress.finish(&last_line(status, rows.len()));

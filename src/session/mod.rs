@@ -37,6 +37,9 @@ pub enum Earlier {
     Keep,
     /// Go on with it if it is unfinished, leave it if it is done, begin where there is none.
     Resume,
+    /// Go on with one that is done along a longer path, which begins with its own; go on with that
+    /// if it is unfinished, and leave it if it is done.
+    Extend,
     /// Replace it.
     Replace,
 }

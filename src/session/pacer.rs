@@ -83,6 +83,10 @@ impl Observer for Pacer<'_> {
         self.paused.get()
     }
 
+    fn keeps_end(&self) -> bool {
+        self.inner.keeps_end()
+    }
+
     fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
         if !self.paused.get() {
             self.inner.checkpoint(last, take);

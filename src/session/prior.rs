@@ -1,4 +1,4 @@
-//! `--resume`: what a directory holds of a run, and whether there is something to go on with.
+//! `--resume` and `--extend`: what a directory holds of a run, and whether there is something to go on with.
 
 use std::path::Path;
 
@@ -14,35 +14,86 @@ pub enum PriorRun {
     NotBegun,
     /// It is under way.
     Unfinished(Box<Checkpoint>),
+    /// It is done, its path is the beginning of this one, so many segments, and this is its end.
+    Extendable(Box<Checkpoint>, usize),
     /// It has ended for good: computed again it would be the same.
     Ended(Box<Summary>),
 }
 
-/// Looks into `dir`, and leaves it as it is.
+/// Looks into `dir`, and leaves it as it is. `extends` says whether a run of a path that this one
+/// begins with is to be gone on with.
 ///
 /// # Errors
-/// [`SessionError::OtherRun`] for the results of another case; [`SessionError::Output`] for a
-/// checkpoint that is damaged, of another version or another case.
-pub fn prior_run(dir: &Path, case: &Case) -> Result<PriorRun, SessionError> {
+/// [`SessionError::OtherRun`] for the results of another case; [`SessionError::NotExtended`];
+/// [`SessionError::Output`] for a checkpoint that is damaged, of another version or another case.
+pub fn prior_run(dir: &Path, case: &Case, extends: bool) -> Result<PriorRun, SessionError> {
     let out = OutputDirectory::existing(dir);
+    let not_extended = |why: String| SessionError::NotExtended { dir: dir.to_owned(), why };
+    let nothing = || match extends {
+        true => Err(not_extended("it holds no run that is done; leave out --extend to begin one".to_owned())),
+        false => Ok(PriorRun::NotBegun),
+    };
     // Anything that is not a result is left to those who prepare the directory.
-    let Some(found) = out.read_case() else { return Ok(PriorRun::NotBegun) };
+    let Some(found) = out.read_case() else { return nothing() };
     let ended = |summary: &Summary| match summary.status {
         Status::Done | Status::NotConverged | Status::ContactOutgrewMesh => true,
         Status::Interrupted | Status::Failed => false,
     };
+    let path = out.checkpoint();
     // A summary that cannot be read counts as missing.
     if let Some(summary) = Summary::read(&out.summary()).ok().filter(ended) {
-        return match case_difference(&found, &case.to_toml()) {
-            None => Ok(PriorRun::Ended(Box::new(summary))),
-            Some(difference) => Err(SessionError::OtherRun { dir: dir.to_owned(), difference }),
+        let Some(difference) = case_difference(&found, &case.to_toml()) else {
+            return Ok(PriorRun::Ended(Box::new(summary)));
+        };
+        // Killed where an extension had begun with its checkpoint and with nothing else.
+        if let Ok(Some(checkpoint)) = Checkpoint::read(&path)
+            && checkpoint.is_of(case)
+        {
+            checkpoint.check_files(&out, case)?;
+            return Ok(PriorRun::Unfinished(Box::new(checkpoint)));
+        }
+        return match extends {
+            true => extendable(&out, case, &summary).map_err(|problem| match problem {
+                NotExtendable::Why(why) => not_extended(why),
+                NotExtendable::Output(error) => error.into(),
+            }),
+            false => Err(SessionError::OtherRun { dir: dir.to_owned(), difference }),
         };
     }
-    let path = out.checkpoint();
-    let Some(checkpoint) = Checkpoint::read(&path)? else { return Ok(PriorRun::NotBegun) };
+    let Some(checkpoint) = Checkpoint::read(&path)? else { return nothing() };
+    if extends && !checkpoint.is_of(case) {
+        return Err(not_extended("its run is unfinished; go on with that one first, with its own case and --resume".to_owned()));
+    }
     checkpoint.check_case(&path, case)?;
     checkpoint.check_files(&out, case)?;
     Ok(PriorRun::Unfinished(Box::new(checkpoint)))
+}
+
+/// Why a run that has ended cannot be extended.
+enum NotExtendable {
+    Why(String),
+    Output(OutputError),
+}
+
+impl From<OutputError> for NotExtendable {
+    fn from(error: OutputError) -> Self {
+        Self::Output(error)
+    }
+}
+
+/// The end of a run with another case: where `case` goes on from it.
+fn extendable(out: &OutputDirectory, case: &Case, summary: &Summary) -> Result<PriorRun, NotExtendable> {
+    if summary.status != Status::Done {
+        return Err(NotExtendable::Why(format!("its run ended as {:?}, not at the end of its path", summary.status.to_string())));
+    }
+    let Some(checkpoint) = Checkpoint::read(&out.checkpoint())? else {
+        let why = "the last checkpoint of its run was not kept (output.keep_checkpoint); compute the longer path from the beginning, in another directory or with --force";
+        return Err(NotExtendable::Why(why.to_owned()));
+    };
+    let longer = "the case has to be the same, with segments after the last one of its path";
+    let segments = checkpoint.extended_by(case).map_err(|why| NotExtendable::Why(format!("{why}; {longer}")))?;
+    checkpoint.check_files(out, case)?;
+    Ok(PriorRun::Extendable(Box::new(checkpoint), segments))
 }
 
 /// An error of the checkpoint in `dir` that only the simulation can see.

@@ -23,7 +23,8 @@ use crate::simulation::SimulationError;
 use crate::simulation::drive::{Ending, Observer};
 use crate::simulation::follow::{Follower, Seat, seats};
 use crate::simulation::problem::Problem;
-use crate::simulation::scout::scout;
+use crate::simulation::scout::{Scout, first_zone, scout};
+use crate::simulation::zone::Zone;
 
 /// One case on its way along its path.
 ///
@@ -78,6 +79,8 @@ struct Ready {
     computed_on: Description,
     selection: Vec<String>,
     checkpoint: Option<Box<Checkpoint>>,
+    /// The checkpoint is the end of a path of so many segments, with which this one begins.
+    extends: Option<usize>,
 }
 
 struct Running {
@@ -97,6 +100,14 @@ impl Sink {
         match self {
             Self::Files(results) => results.as_mut(),
             Self::Memory(memory) => memory.as_mut(),
+        }
+    }
+
+    /// Keeps a note for the summary that the user has been told already.
+    fn remember(&mut self, note: &str) {
+        match self {
+            Self::Files(results) => results.remember(note),
+            Self::Memory(memory) => memory.remember(note),
         }
     }
 }
@@ -162,7 +173,7 @@ impl Simulation {
         self
     }
 
-    /// What the user should know of how the directory was taken.
+    /// What the user should know of how the directory was taken, and of what is odd about the case.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -276,18 +287,20 @@ impl Simulation {
     /// Takes the directory, meshes and finds a device.
     fn make_ready(&mut self) -> Result<Stage, SessionError> {
         let (case, options) = (&self.case, &self.options);
-        let mut checkpoint = None;
+        let (mut checkpoint, mut extends) = (None, None);
         if let Some(out) = &options.out {
             let claim = self.claim.insert(claim(out, case, options.earlier)?);
             self.notes.extend(claim.note().map(|note| format!("note: {note}")));
-            if options.earlier == Earlier::Resume {
-                match prior_run(out, case)? {
+            if matches!(options.earlier, Earlier::Resume | Earlier::Extend) {
+                match prior_run(out, case, options.earlier == Earlier::Extend)? {
                     PriorRun::Ended(summary) => return self.ended_before(*summary),
                     PriorRun::Unfinished(found) => checkpoint = Some(found),
+                    PriorRun::Extendable(found, segments) => (checkpoint, extends) = (Some(found), Some(segments)),
                     PriorRun::NotBegun => {}
                 }
             }
         }
+        self.notes.extend(case.doubts().iter().map(|doubt| format!("note: {doubt}")));
         let problem = Problem::on(case, checkpoint.as_deref().and_then(Checkpoint::zone)).map_err(SessionError::Simulation)?;
         let (device, precision) = (options.device, options.precision);
         let open = move |problem: &Problem| select(device, precision, vec![problem.model.clone()]);
@@ -301,24 +314,25 @@ impl Simulation {
                 Some(checkpoint) => {
                     checkpoint.check_precision(&OutputDirectory::existing(out).checkpoint(), computed_on.precision)?;
                     checkpoint.snapshot().check(&problem.model.mesh).map_err(|error| refused(out, &error.to_string()))?;
-                    // Labels of pictures may have changed since.
+                    // Labels of pictures may have changed since, or an extension was killed before it
+                    // got here.
                     let directory = OutputDirectory::existing(out);
-                    if directory.read_case().as_deref() != Some(&case.to_toml()) {
-                        directory.write_case(&case.to_toml())?;
+                    if extends.is_none() && directory.read_case().as_deref() != Some(&case.to_toml()) {
+                        directory.go_over_to(&case.to_toml())?;
                     }
                 }
                 None => prepare(out, case)?,
             }
         }
         let seats = Box::new(seats((backend, 0), problem.zone, open));
-        Ok(Stage::Ready(Box::new(Ready { problem, seats, computed_on, selection: notes, checkpoint })))
+        Ok(Stage::Ready(Box::new(Ready { problem, seats, computed_on, selection: notes, checkpoint, extends })))
     }
 
     /// A run that is not computed again.
     fn ended_before(&mut self, summary: Summary) -> Result<Stage, SessionError> {
         if let Some(out) = &self.options.out {
             self.history = read_history(&OutputDirectory::existing(out).history())?;
-            tidy(out);
+            tidy(out, summary.status == Status::Done && self.case.output.keep_checkpoint);
         }
         let message = summary.messages.last().filter(|_| summary.status != Status::Done).cloned();
         Ok(Stage::Ended(Box::new(Outcome { status: summary.status, message, summary, ended_before: true }), None))
@@ -367,14 +381,14 @@ impl Simulation {
 
     /// Makes the coarse run, meshes for what it has found, and begins the results.
     fn set_out(&mut self, ready: Ready) -> Result<Stage, SessionError> {
-        let Ready { mut problem, mut seats, computed_on, selection, checkpoint } = ready;
+        let Ready { mut problem, mut seats, computed_on, selection, mut checkpoint, extends } = ready;
         let case = &self.case;
         let canceller = self.options.canceller.clone();
         let mut progress = self.progress.take().unwrap_or_else(|| Box::new(SilentProgress));
         progress.message(&plan(case, &computed_on));
         let begun = std::time::Instant::now();
-        let scouts = checkpoint.is_none() && case.solver.error_estimate;
-        let scout = if scouts {
+        let scouts = (checkpoint.is_none() || extends.is_some()) && case.solver.error_estimate;
+        let mut scout = if scouts {
             progress.message("coarse run first, for the reach of the contact and the error estimate");
             scout(case, &canceller.flag).map_err(SessionError::Simulation)?
         } else {
@@ -382,6 +396,14 @@ impl Simulation {
         };
         let stopped = scouts && scout.is_none();
         let scout_took = begun.elapsed().as_secs_f64();
+        if let Some(segments) = extends
+            && let Some(found) = checkpoint.take()
+        {
+            if stopped {
+                return self.not_extended_yet();
+            }
+            checkpoint = Some(Box::new(self.extended(*found, segments, scout.take(), scout_took)?));
+        }
         if let Some(scout) = &scout {
             let zone = scout.zone(problem.zone, problem.spacing);
             if zone != problem.zone {
@@ -396,12 +418,14 @@ impl Simulation {
                 let found = checkpoint.as_deref();
                 let mut results = ResultWriter::create(case, out, setting, self.clock, progress, stop, found)?;
                 results.meshed(&problem);
+                results = results.keeping_checkpoint(case.output.keep_checkpoint);
                 if let Some(interval) = self.options.checkpoint_every {
                     results = results.with_checkpoints_every(interval);
                 }
                 match &checkpoint {
                     Some(checkpoint) => {
-                        results.tell(&format!("resumed after step {} of the run in {}", checkpoint.step(), out.display()));
+                        let how = if extends.is_some() { "extended" } else { "resumed" };
+                        results.tell(&format!("{how} after step {} of the run in {}", checkpoint.step(), out.display()));
                         self.history = read_history(&OutputDirectory::existing(out).history())?;
                     }
                     None if self.options.earlier == Earlier::Resume => {
@@ -414,6 +438,9 @@ impl Simulation {
             None => Sink::Memory(Box::new(Memory::new(case, &problem, setting, self.clock, progress, canceller))),
         };
         // A resumed run has noted them before.
+        if checkpoint.is_none() {
+            case.doubts().iter().for_each(|doubt| sink.remember(&doubt.to_string()));
+        }
         selection.iter().filter(|_| checkpoint.is_none()).for_each(|note| sink.observer().note(note));
         if let Some(scout) = scout {
             let asked = Problem::zone_of(case).map_err(SessionError::Simulation)?;
@@ -441,6 +468,56 @@ impl Simulation {
         }
     }
 
+    /// The checkpoint of a run that is done as one of this case, whose path begins with that of
+    /// `segments` segments: what goes on from it has the bits that it would have had from the
+    /// beginning. From here on the directory is one of an unfinished run of this case.
+    fn extended(
+        &self,
+        found: Checkpoint,
+        segments: usize,
+        scout: Option<Scout>,
+        seconds: f64,
+    ) -> Result<Checkpoint, SessionError> {
+        let case = &self.case;
+        let Some(dir) = &self.options.out else { return Err(SessionError::Over) };
+        let mut shorter = case.clone();
+        shorter.path.truncate(segments);
+        let zone = |case, scout| first_zone(case, scout).map_err(SessionError::Simulation);
+        let (there, here) = (zone(&shorter, found.scout())?, zone(case, scout.as_ref())?);
+        if there != here {
+            let size = |zone: &Zone| zone.contact_radius / case.mesh.elements_per_contact_radius as f64;
+            let why = format!(
+                "from the beginning, the longer path would have another mesh: fine to {:.4} R, with elements of {:.5} R, and its run is on one \
+                 fine to {:.4} R, with elements of {:.5} R. Compute it in another directory, or with --force; mesh.contact_radius and \
+                 mesh.fine_zone, given from the first run on, fix the mesh",
+                here.radius(),
+                size(&here),
+                there.radius(),
+                size(&there),
+            );
+            return Err(SessionError::NotExtended { dir: dir.clone(), why });
+        }
+        let directory = OutputDirectory::existing(dir);
+        let extended = found.extended(case, scout, seconds);
+        // In this order: killed in between, the run is the one that is done or one to be resumed.
+        extended.write(&directory.checkpoint())?;
+        directory.go_over_to(&case.to_toml())?;
+        Ok(extended)
+    }
+
+    /// Interrupted before an extension had begun: the directory is as it was.
+    fn not_extended_yet(&mut self) -> Result<Stage, SessionError> {
+        let Some(out) = self.options.out.as_ref().map(OutputDirectory::existing) else { return Err(SessionError::Over) };
+        let summary = Summary::read(&out.summary())?;
+        self.history = read_history(&out.history())?;
+        let by = self.options.canceller.by;
+        let message = format!(
+            "interrupted{by} before the extension began; the results are as they were. To extend them, run the same command again"
+        );
+        let outcome = Outcome { status: Status::Interrupted, message: Some(message), summary, ended_before: false };
+        Ok(Stage::Ended(Box::new(outcome), None))
+    }
+
     /// Writes the end of the results and says how it went.
     fn conclude(&self, followed: Result<Ending, SimulationError>, sink: Sink) -> Result<Outcome, SessionError> {
         let steps = self.history.len();
@@ -458,10 +535,12 @@ impl Simulation {
             }
             Err(error) => {
                 let what = error.to_string();
+                let not_finite = matches!(error, SimulationError::NotFinite { .. });
+                let status = if not_finite { Status::Failed } else { Status::Interrupted };
                 if let Sink::Files(results) = sink {
                     // The disk may be full: what can still be written is written, and the first
                     // error is the one to tell.
-                    let _ = results.finish(Status::Interrupted, Some(&what));
+                    let _ = results.finish(status, Some(&what));
                 }
                 return Err(broke_off(what));
             }

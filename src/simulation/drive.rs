@@ -32,7 +32,7 @@ use crate::solver::newton::Newton;
 use crate::solver::phases::{Lap, Phase};
 use crate::solver::rigid::position;
 use crate::solver::system::Meeting;
-use crate::solver::{Control, StepOutcome, StepReport};
+use crate::solver::{Control, StepFailure, StepOutcome, StepReport};
 pub use paused::Paused;
 use safe::{Muted, Safe};
 
@@ -297,46 +297,56 @@ impl<'a> Drive<'a> {
                 Friction::Stick => self.attempt_stuck(&next)?,
                 Friction::Coulomb(_) => self.attempt(&next)?,
             };
-            match attempted {
+            let failure = match attempted {
+                StepOutcome::Failed(failure) => failure,
                 StepOutcome::Converged(report) => {
-                    self.place.waiting.pop();
-                    self.place.depth = self.place.depth.saturating_sub(1);
-                    self.pace(report.effort());
-                    self.accept(&next, report, observer)?;
-                    self.checkpoint(false, observer);
-                }
-                StepOutcome::Failed(failure) => {
-                    let r = &self.state.record;
-                    log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
-                    self.place.cutbacks += 1;
-                    self.place.wasted += failure.iterations();
-                    self.place.pace = (self.place.pace + 1).min(FINEST);
-                    self.place.depth += 1;
-                    if self.place.depth > self.problem.max_cutbacks {
-                        return Ok(Ending::NotConverged(format!(
-                            "step {} of segment {} (from h = {:.6} R, delta_T = {:.6} R to h = {:.6} R, delta_T = {:.6} R): {failure}; \
-                             the step was bisected {} times. A finer mesh ([mesh] elements_per_contact_radius) or more steps ([solver] press_steps, \
-                             shear_steps) may help",
-                            r.step + 1,
-                            r.segment,
-                            self.problem.bodies * r.h,
-                            self.problem.bodies * r.delta_t,
-                            self.problem.bodies * next.h,
-                            self.problem.bodies * next.delta_t,
-                            self.problem.max_cutbacks,
-                        )));
+                    let effort = report.effort();
+                    match self.accept(&next, report, observer)? {
+                        None => {
+                            self.place.waiting.pop();
+                            self.place.depth = self.place.depth.saturating_sub(1);
+                            self.pace(effort);
+                            self.checkpoint(false, observer);
+                            continue;
+                        }
+                        Some(fault) => StepFailure::Invalid { fault, when: "where the step is committed" },
                     }
-                    self.place.waiting.push(Target {
-                        h: 0.5 * (r.h + next.h),
-                        delta_t: 0.5 * (r.delta_t + next.delta_t),
-                        ..next
-                    });
                 }
+            };
+            if let Some(ending) = self.bisect(&next, &failure) {
+                return Ok(ending);
             }
         }
         self.place.under_way = false;
         self.place.reached += 1;
         Ok(Ending::Done)
+    }
+
+    /// Puts half of a step that failed before what is left of it; ends the run where it has been
+    /// halved too often.
+    fn bisect(&mut self, next: &Target, failure: &StepFailure) -> Option<Ending> {
+        let r = &self.state.record;
+        log::info!("step to h = {:.5}, delta_T = {:.5} failed, bisecting: {failure}", next.h, next.delta_t);
+        self.place.cutbacks += 1;
+        self.place.wasted += failure.iterations();
+        self.place.pace = (self.place.pace + 1).min(FINEST);
+        self.place.depth += 1;
+        if self.place.depth > self.problem.max_cutbacks {
+            return Some(Ending::NotConverged(format!(
+                "step {} of segment {} (from h = {:.6} R, delta_T = {:.6} R to h = {:.6} R, delta_T = {:.6} R): {failure}; \
+                 the step was bisected {} times. {}",
+                r.step + 1,
+                r.segment,
+                self.problem.bodies * r.h,
+                self.problem.bodies * r.delta_t,
+                self.problem.bodies * next.h,
+                self.problem.bodies * next.delta_t,
+                self.problem.max_cutbacks,
+                failure.remedy(),
+            )));
+        }
+        self.place.waiting.push(Target { h: 0.5 * (r.h + next.h), delta_t: 0.5 * (r.delta_t + next.delta_t), ..*next });
+        None
     }
 
     /// Adapts the length of the next steps to the iterations of the last one.

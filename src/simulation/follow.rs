@@ -78,8 +78,7 @@ impl<'a> Follower<'a> {
             };
             let mut drive = paused.go_on(&self.problem, self.seat.0.as_mut(), self.seat.1);
             let ending = drive.run(observer)?;
-            if ending == Ending::Done && self.problem.case.0.output.plots {
-                // Whatever becomes of the pictures, the path has not to be followed again.
+            if ending == Ending::Done && observer.keeps_end() {
                 drive.checkpoint(true, observer);
             }
             self.paused = Some(drive.pause()?);

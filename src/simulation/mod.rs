@@ -44,6 +44,16 @@ pub enum SimulationError {
     /// The mesh has nodes without one opposite: an equal pair cannot be simulated on it.
     #[error("the mesh is not its own mirror image, which an equal pair needs")]
     NotMirrored,
+    /// An accepted step has a result that is no number: nothing can go on from it.
+    #[error("{what} of step {step} is {value}, which no result may be; --device cpu tells whether the device computes wrongly")]
+    NotFinite {
+        /// Number of the step.
+        step: usize,
+        /// Column of the history.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
     /// A snapshot is of a body with another mesh.
     #[error("the state to go on from has {found} {what} where the mesh has {expected}")]
     Snapshot {

@@ -30,6 +30,10 @@ pub trait Observer {
     fn stop_requested(&self) -> bool {
         false
     }
+    /// Whether a checkpoint is wanted at the end of the path.
+    fn keeps_end(&self) -> bool {
+        false
+    }
     /// Offers a checkpoint, after every accepted step; `take` copies the state that a run could go
     /// on from. `last`: no other is offered, because the run is interrupted or has followed its
     /// path.

@@ -85,6 +85,32 @@ pub struct StepRecord {
     pub curvature: f64,
 }
 
+impl StepRecord {
+    /// The first number of the row that is infinite or NaN, with the name of its column.
+    pub fn not_finite(&self) -> Option<(&'static str, f64)> {
+        let numbers = [
+            ("h", self.h),
+            ("delta_T", self.delta_t),
+            ("F_N", self.f_n),
+            ("F_T", self.f_t),
+            ("a", self.a),
+            ("stick_radius", self.stick_radius),
+            ("a_gap", self.a_gap),
+            ("merit", self.merit),
+            ("work_external", self.work_external),
+            ("energy_elastic", self.energy_elastic),
+            ("work_plastic", self.work_plastic),
+            ("work_friction", self.work_friction),
+            ("max_alpha", self.max_alpha),
+            ("reach", self.reach),
+            ("h_opponent", self.h_opponent),
+            ("work_plastic_opponent", self.work_plastic_opponent),
+            ("curvature", self.curvature),
+        ];
+        numbers.into_iter().find(|(_, number)| !number.is_finite())
+    }
+}
+
 /// A contact point of a committed state, scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {

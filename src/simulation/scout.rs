@@ -79,6 +79,16 @@ pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, Simul
     Ok(Some(Scout { rows, spacing, elements, mesh_elements, failure }))
 }
 
+/// The zone that a run of a case (in the user's units) begins with.
+///
+/// # Errors
+/// [`SimulationError::Hardening`].
+pub fn first_zone(case: &Case, scout: Option<&Scout>) -> Result<Zone, SimulationError> {
+    let asked = Problem::zone_of(case)?;
+    let spacing = asked.contact_radius / case.mesh.elements_per_contact_radius as f64;
+    Ok(scout.map_or(asked, |scout| scout.zone(asked, spacing)))
+}
+
 /// Elements by which the scout's zone is wider than the run's.
 const ROOM: f64 = 0.75;
 

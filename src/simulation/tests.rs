@@ -7,6 +7,7 @@ use super::problem::Problem;
 use super::record::StepRecord;
 use crate::case::{Case, Hold, Segment, ShearTarget};
 use crate::compute::cpu::Cpu;
+use crate::compute::wrong::{Kind, REFUSAL, Wrong};
 use crate::compute::{CaseState, Compute, ComputeError};
 use crate::contact::rigid::Rigid;
 use crate::real::Real;
@@ -195,4 +196,49 @@ fn a_snapshot_of_another_mesh_is_refused() {
     let refused = Drive::new(&other, &mut backend, 0, other.newton().unwrap()).resume(seen.snapshot.unwrap()).unwrap_err();
     assert!(matches!(refused, SimulationError::Snapshot { .. }), "{refused}");
     assert!(refused.to_string().contains("displacements where the mesh has"), "{refused}");
+}
+
+/// Follows the path on a backend that computes wrongly after so many steps.
+fn wrongly(kind: Kind, steps: usize, friction: &str) -> (Result<Ending, SimulationError>, Seen) {
+    let problem = problem(friction, "max_cutbacks = 2");
+    let cpu = Cpu::<f64, f32>::with_tangents(vec![problem.model.clone()]).unwrap();
+    let mut backend = Wrong::new(cpu, kind, steps);
+    let mut seen = Seen::default();
+    (Drive::new(&problem, &mut backend, 0, problem.newton().unwrap()).run(&mut seen), seen)
+}
+
+#[test]
+fn what_is_not_a_number_ends_the_run_and_is_called_what_it_is() {
+    let refused = REFUSAL.to_string();
+    let not_finite = "the residual is not finite at node ";
+    for friction in ["0.3", "0.0", "\"stick\""] {
+        // Where nothing touches yet, in the press, and in the shear at a held force.
+        for steps in [0, 3, 6] {
+            for (kind, what, remedy) in [
+                (Kind::Force, not_finite, "--device cpu"),
+                (Kind::NormalForce, not_finite, "--device cpu"),
+                (Kind::TangentialForce, not_finite, "--device cpu"),
+                (Kind::Contact, not_finite, "--device cpu"),
+                (Kind::Tangent, "the matrix has a number that is not finite in the row of node ", "A finer mesh"),
+                (Kind::Material, &refused, "--device cpu"),
+                (Kind::Commit, &refused, "--device cpu"),
+            ] {
+                let (ending, seen) = wrongly(kind, steps, friction);
+                let context = format!("{kind:?} after {steps} steps at friction {friction}: {ending:?}");
+                let Ok(Ending::NotConverged(reason)) = ending else { panic!("{context}") };
+                assert_eq!(seen.rows.len(), 1 + steps, "{context}");
+                assert!(reason.contains(what) && reason.contains(remedy) && !reason.contains("inverts"), "{context}");
+                assert!(reason.contains("the step was bisected 2 times"), "{context}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_result_that_is_not_a_number_is_none() {
+    let (ending, seen) = wrongly(Kind::Energy, 3, "0.3");
+    let error = ending.expect_err("there is no energy").to_string();
+    assert!(error.starts_with("energy_elastic of step 4 is NaN"), "{error}");
+    // The wrong call is the fourth commit's.
+    assert_eq!(seen.rows.len(), 4);
 }

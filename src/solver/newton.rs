@@ -302,6 +302,9 @@ impl Newton {
         let begun = self.iterate().begin(case, start, control, &mut times);
         self.times = times;
         self.current = begun?;
+        if let Err(fault) = self.current.check() {
+            return Err(self.refused(case, control, fault, "at the start of the step"));
+        }
         let mut report = StepReport { landed_again: self.current.landed, ..StepReport::default() };
         let mut previous = f64::INFINITY;
         let mut highest = 0.0_f64;
@@ -397,6 +400,9 @@ impl Newton {
         if let Some((landed, reading)) = kept? {
             report.landed_again += landed;
             self.current = reading;
+            if let Err(fault) = reading.check() {
+                return Err(self.refused(case, control, fault, "where points have come down again"));
+            }
         }
         Ok(())
     }
@@ -412,7 +418,8 @@ impl Newton {
     /// friction that there can be, and a held normal force is met to this share of it.
     fn has_converged(&mut self, case: &dyn Evaluate, control: &Control, held: f64) -> bool {
         let bound = (self.tolerance * self.scale()).max(ROUNDING);
-        if self.current.merit > bound || !self.iterate().plate_is_placed(control) {
+        // Written so that a NaN has not converged.
+        if !(self.current.merit <= bound) || !self.iterate().plate_is_placed(control) {
             return false;
         }
         let friction = match case.model().friction {

@@ -2,8 +2,8 @@
 
 use super::SolverError;
 use super::phases::PhaseTimes;
-use crate::compute::ComputeError;
 use crate::compute::traffic::Traffic;
+use crate::compute::{ComputeError, Fault};
 use crate::linalg::LinalgError;
 
 /// How an attempt at a step went.
@@ -87,13 +87,13 @@ pub enum StepFailure {
         /// Where the residual is largest.
         worst: Worst,
     },
-    /// No step length gave a valid deformation.
-    #[error("element {element} inverts at quadrature point {point} however short the step of the line search")]
-    Inverted {
-        /// Element index.
-        element: usize,
-        /// Quadrature point.
-        point: usize,
+    /// A trial or a tangent could not be evaluated.
+    #[error("{fault} {when}")]
+    Invalid {
+        /// Why not.
+        fault: Fault,
+        /// Where in the step: "however short the step of the line search", say.
+        when: &'static str,
     },
     /// The linear system could not be solved.
     #[error("the linear solver failed: {0}")]
@@ -101,6 +101,24 @@ pub enum StepFailure {
 }
 
 impl StepFailure {
+    /// A fault of a tangent.
+    pub fn of_tangent(fault: Fault) -> Self {
+        Self::Invalid { fault, when: "in the tangent" }
+    }
+
+    /// What may help where steps were bisected in vain.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Invalid { fault, .. } if fault.is_of_numbers() => {
+                "Numbers that are not finite come from extreme values in the case, or from a device that computes wrongly: --device cpu tells which"
+            }
+            _ => {
+                "A finer mesh ([mesh] elements_per_contact_radius) or more steps ([solver] press_steps, \
+                 shear_steps) may help"
+            }
+        }
+    }
+
     /// Iterations that were made, at least one.
     pub fn iterations(&self) -> usize {
         match self {
@@ -158,8 +176,15 @@ impl From<ComputeError> for Halt {
     }
 }
 
+/// A matrix that is singular or holds what is no number is one of this step; what else can be wrong
+/// with a linear system no smaller step cures.
 impl From<LinalgError> for Halt {
     fn from(error: LinalgError) -> Self {
-        Self::Solver(error.into())
+        match error {
+            LinalgError::NotFinite { .. } | LinalgError::Singular { .. } | LinalgError::Stalled { .. } => {
+                Self::Step(StepFailure::Linear(error.to_string()))
+            }
+            error => Self::Solver(error.into()),
+        }
     }
 }

@@ -12,7 +12,7 @@ use super::rigid::{Against, position};
 use super::{Control, Worst};
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::{missing_weight, prescribed};
-use crate::compute::{CaseModel, ComputeError, Outcome};
+use crate::compute::{CaseModel, ComputeError, Fault, Outcome};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::contact::frame::Frame;
 use crate::contact::pair::{Interface, leave_even};
@@ -196,7 +196,7 @@ impl Trial {
         self.meet_rows(&mesh, boundary);
         self.finish(boundary, control);
         lap.end(times, Phase::Contact);
-        Ok(self.finite())
+        Ok(self.finite(&mesh))
     }
 
     /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces
@@ -221,11 +221,21 @@ impl Trial {
         }
         self.finish(boundary, control);
         lap.end(times, Phase::Contact);
-        Ok(self.finite())
+        Ok(self.finite(&mesh))
     }
 
-    fn finite(&self) -> Outcome {
-        if self.merit.is_finite() { Outcome::Valid } else { Outcome::Inverted { element: 0, point: 0 } }
+    /// Whether all numbers are that decide on the trial or are recorded of it. The forces at points
+    /// in contact are looked at one by one: where contact prescribes displacements, they are in no
+    /// residual.
+    fn finite(&self, mesh: &Mesh) -> Outcome {
+        let at_contact = mesh.contact_nodes.iter().flat_map(|&n| &self.force[3 * n as usize..3 * n as usize + 3]);
+        let mut decisive = [self.merit, self.force_scale, self.plate_force].into_iter().chain(at_contact.copied());
+        if decisive.all(f64::is_finite) {
+            return Outcome::Valid;
+        }
+        let first = |numbers: &[f64]| numbers.iter().position(|x| !x.is_finite());
+        let at = first(&self.residual).or_else(|| first(&self.force)).map(|i| (i / 3, i % 3));
+        Outcome::Invalid(Fault::Residual { at })
     }
 
     /// Contact rows of the plane, and the residual with them in it.
@@ -460,8 +470,11 @@ impl Trial {
         let mut worst = Worst::default();
         for (i, &r) in self.residual.iter().enumerate() {
             let r = if boundary.prescribed[i] { r * boundary.weight } else { r } / scale.max(f64::MIN_POSITIVE);
-            if r.abs() > worst.residual.abs() {
+            if r.abs() > worst.residual.abs() || r.is_nan() {
                 worst = Worst { node: i / 3, direction: i % 3, position: mesh.nodes[i / 3], residual: r };
+            }
+            if r.is_nan() {
+                break;
             }
         }
         worst

@@ -63,6 +63,25 @@ impl Study {
         matches!(&document.root.value, Value::Table(table) if ["base", "grid", "zip"].iter().any(|name| table.contains_key(*name)))
     }
 
+    /// What is odd about its cases (see [`Case::doubts`]), each key once, with the number of the
+    /// first case that it is odd in.
+    pub fn doubts(&self) -> Vec<(String, String)> {
+        let mut found: Vec<(&str, crate::case::Doubt, usize)> = Vec::new();
+        for case in &self.cases {
+            for doubt in case.case.doubts() {
+                match found.iter_mut().find(|(_, earlier, _)| earlier.key == doubt.key) {
+                    Some((_, _, others)) => *others += 1,
+                    None => found.push((&case.id, doubt, 0)),
+                }
+            }
+        }
+        let told = |(id, doubt, others): (&str, crate::case::Doubt, usize)| {
+            let also = if others > 0 { format!(" (and {others} more cases)") } else { String::new() };
+            (id.to_owned(), format!("{doubt}{also}"))
+        };
+        found.into_iter().map(told).collect()
+    }
+
     /// Reads a study file and checks every combination of its grid.
     ///
     /// # Errors

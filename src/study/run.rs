@@ -113,6 +113,7 @@ pub(crate) fn run_on(
         (true, false) => (2 * options.threads).clamp(1, LARGEST_BATCH),
         (false, _) => options.threads.max(1),
     };
+    study.doubts().iter().for_each(|(id, doubt)| progress.message(id, &format!("note: {doubt}")));
     let directory = &StudyDirectory::new(dir);
     let costs: Vec<f64> = study.cases.iter().map(|case| cost(&case.case)).collect();
     let share = options.shard.map_or_else(|| (0..study.cases.len()).collect(), |shard| shard.of(&costs));
@@ -138,7 +139,7 @@ pub(crate) fn run_on(
     let (study, lock) = (&study, &lock);
     for &case in share.iter().filter(|&&case| rows[case].status == RowStatus::Done) {
         // Killed just before its checkpoint was removed; what cannot be removed does no harm.
-        let _ = directory.case(&study.cases[case].id).tidy();
+        let _ = directory.case(&study.cases[case].id).tidy(false);
     }
     let open = |row: &Row| match row.status {
         RowStatus::Done => false,

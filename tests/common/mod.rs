@@ -9,8 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use asperity::output::{Checkpoint, Summary, TimeByPhase};
 use asperity::output::{DeviceTraffic, Traffic};
-use asperity::output::{Summary, TimeByPhase};
 use tempfile::TempDir;
 
 /// The program.
@@ -87,7 +87,8 @@ pub fn timeless(dir: &Path) -> Summary {
 }
 
 /// In what two results differ, see [`timeless`]; `None` if they hold the same files with the same
-/// bits. The log has times, and tells of resuming.
+/// bits. The log has times, and tells of resuming; of checkpoints, which have times too, the states
+/// are compared.
 pub fn difference(found: &Path, expected: &Path) -> Option<String> {
     let [ours, theirs] = [found, expected].map(|dir| {
         let mut files = files(dir);
@@ -98,7 +99,14 @@ pub fn difference(found: &Path, expected: &Path) -> Option<String> {
     if names(&ours) != names(&theirs) {
         return Some(format!("{:?}, not {:?}", names(&ours), names(&theirs)));
     }
-    let differs = |name: &&String| *name != "summary.json" && ours[*name] != theirs[*name];
+    let state = |dir: &Path| {
+        let read = Checkpoint::read(&dir.join("checkpoint.bin")).unwrap_or_else(|error| panic!("{error}"));
+        read.map(|checkpoint| checkpoint.snapshot())
+    };
+    if state(found) != state(expected) {
+        return Some("the states of the checkpoints differ".to_owned());
+    }
+    let differs = |name: &&String| !["summary.json", "checkpoint.bin"].contains(&name.as_str()) && ours[*name] != theirs[*name];
     if let Some(name) = theirs.keys().find(differs) {
         return Some(format!("{name} differs"));
     }

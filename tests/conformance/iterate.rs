@@ -12,7 +12,7 @@ use asperity::internals::compute::iterate::{
 };
 use asperity::internals::compute::linear::Ended;
 use asperity::internals::compute::traffic::Traffic;
-use asperity::internals::compute::{CaseModel, Compute, Outcome};
+use asperity::internals::compute::{CaseModel, Compute, Fault, Outcome};
 use asperity::internals::contact::coulomb::{Friction, Status};
 use asperity::internals::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use asperity::internals::solver::iterate::SetOut;
@@ -172,7 +172,10 @@ fn a_trial_reads_as_on_the_cpu() {
             let far: Vec<f64> = (0..start.len()).map(|i| if i % 7 == 0 { 5.0 } else { 0.0 }).collect();
             ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Give(far))]);
             let tried = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), Ask::Try(1.0, 0.0))])[0]);
-            assert!(matches!(tried.outcome, Outcome::Inverted { .. }) && tried.merit == f64::INFINITY);
+            assert!(
+                matches!(tried.outcome, Outcome::Invalid(Fault::Inverted { .. })) && tried.merit == f64::INFINITY,
+                "{tried:?}"
+            );
         }
     }
 }

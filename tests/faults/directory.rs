@@ -148,12 +148,18 @@ fn what_was_left_by_a_kill_at_the_very_end_is_tidied_up() {
     let scratch = scratch();
     let out = scratch.path("out");
     assert_eq!(scratch.run(&out, &["-q"]).status.code(), Some(0));
-    for name in ["checkpoint.bin", ".summary.json.4711.tmp", "plots/.forces.svg.4711.tmp"] {
+    let left = [".checkpoint.bin.4711.tmp", ".summary.json.4711.tmp", "plots/.forces.svg.4711.tmp"];
+    for name in left {
         fs::write(out.join(name), "left").expect("a file");
     }
     let output = scratch.run(&out, &["--resume"]);
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
     assert_eq!(difference(&out, whole()), None);
+    // A checkpoint that is not to be kept goes too.
+    fs::write(out.join(left[0]), "left").expect("a file");
+    let output = scratch.run(&out, &["--resume", "--set", "output.keep_checkpoint=false"]);
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    assert!(!out.join("checkpoint.bin").exists() && !out.join(left[0]).exists());
 }
 
 /// In units so great that forces overflow; a case file with such is refused, so this one is made by

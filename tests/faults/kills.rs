@@ -8,7 +8,9 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::time::Instant;
 
-use super::common::{Scratch, difference, program, stderr};
+use asperity::output::read_history;
+
+use super::common::{Scratch, difference, files, program, stderr};
 use super::program::{scratch, skipped, whole};
 
 /// Those that change a file, or hold on to one; the question mark lets one be unknown to the
@@ -87,6 +89,67 @@ fn a_run_killed_at_any_call_that_changes_a_file_goes_on_to_the_same_bits() {
     println!("{killed} kills at {} calls of {}, of {kinds:?}; all went on to the same bits", chosen.len(), calls.len());
     // A checkpoint after every step: the same calls in every run, however fast the machine is.
     assert_eq!(killed, chosen.len(), "a call did not come");
+}
+
+/// The longer path of the extension.
+const LONGER: [&str; 3] = ["-q", "--set", "path=[{indentation=0.01},{shear=0.002},{shear=0.0005}]"];
+
+#[test]
+fn an_extension_killed_at_any_call_that_changes_a_file_loses_nothing() {
+    if !can_trace() {
+        return skipped("kills of extensions", "strace is not there, or may not trace");
+    }
+    let scratch = scratch();
+    let expected = scratch.path("expected");
+    assert_eq!(scratch.run(&expected, &LONGER).status.code(), Some(0));
+    let begun = |out: &Path| {
+        for (name, bytes) in files(whole()) {
+            let path = out.join(name);
+            fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+            fs::write(path, bytes).expect("a copy");
+        }
+    };
+    let extending = [&LONGER[..], &["--extend"]].concat();
+    let (traced, log) = (scratch.path("traced"), scratch.path("log").display().to_string());
+    begun(&traced);
+    let output = strace(&scratch, &traced, &extending, &["-e", &format!("trace={CALLS}"), "-o", &log]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(difference(&traced, &expected), None);
+    let calls = calls(&fs::read_to_string(&log).expect("a log"), &traced);
+    // The first ones are those that could lose the run that is done.
+    let share = if super::all() { 1 } else { calls.len() / 8 };
+    let chosen: Vec<_> = calls
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| *i < 20 || i % share == 0 || *i + 4 >= calls.len())
+        .map(|(_, call)| call)
+        .collect();
+    let (mut killed, mut kept) = (0, 0);
+    for (name, count) in &chosen {
+        let out = scratch.path("out");
+        begun(&out);
+        let inject = format!("inject={name}:signal=KILL:when={count}");
+        let output = strace(&scratch, &out, &extending, &["-e", &format!("trace={name}"), "-e", &inject, "-o", "/dev/null"]);
+        killed += usize::from(output.status.signal() == Some(9) || output.status.code() == Some(137));
+        // The run that is done is still that, or the extension goes on.
+        let output = scratch.run(&out, &["-q", "--resume"]);
+        if output.status.code() == Some(0) {
+            assert!(
+                read_history(&out.join("history.csv")).expect("a history")
+                    == read_history(&whole().join("history.csv")).expect("one")
+            );
+            kept += 1;
+            let output = scratch.run(&out, &extending);
+            assert_eq!(output.status.code(), Some(0), "killed at {name} {count}: {}", stderr(&output));
+        } else {
+            let output = scratch.run(&out, &[&LONGER[..], &["--resume"]].concat());
+            assert_eq!(output.status.code(), Some(0), "killed at {name} {count}: {}", stderr(&output));
+        }
+        assert_eq!(difference(&out, &expected), None, "killed at {name} {count}");
+        fs::remove_dir_all(&out).expect("removed");
+    }
+    println!("{killed} kills at {} calls of {}; {kept} left the run as it was", chosen.len(), calls.len());
+    assert!(killed == chosen.len() && kept > 0 && kept < killed, "{killed} kills, {kept} kept");
 }
 
 /// Many kills of one and the same run, wherever it stands; what comes to its end in between is

@@ -21,7 +21,9 @@ use super::shader_sources::Precision;
 use super::tangents::Tangents;
 use crate::compute::gather::GatherPlan;
 use crate::compute::linear::SideReport;
-use crate::compute::{CaseModel, ComputeError, Outcome};
+use crate::compute::{CaseModel, ComputeError, Fault, Outcome};
+use crate::element::hex8::Invalid;
+use crate::material::Refusal;
 
 /// The arrays and kernels of a batch.
 #[derive(Debug)]
@@ -562,11 +564,25 @@ fn same_bits<R: DeviceReal>(known: &[R], increments: &[R]) -> bool {
         .is_some_and(|known| bytemuck::cast_slice::<R, u8>(known) == bytemuck::cast_slice::<R, u8>(increments))
 }
 
+/// What a code in `first_invalid` stands for (see shaders/element/point.wgsl).
+fn fault(code: u32) -> Fault {
+    let (element, point, is_not_finite) = (code as usize / 32, code as usize / 2 % 8, code % 2 == 1);
+    Fault::of(
+        element,
+        match (code / 16 % 2, is_not_finite) {
+            (0, false) => Invalid::Inverted(point),
+            (0, true) => Invalid::NotFinite(point),
+            (_, false) => Invalid::Material(point, Refusal::Inverted),
+            (_, true) => Invalid::Material(point, Refusal::NotFinite),
+        },
+    )
+}
+
 /// How each slot went, from the first invalid point of each.
 pub(super) fn outcomes(first: &[u32]) -> Vec<Outcome> {
     let outcome = |&code: &u32| match code {
         u32::MAX => Outcome::Valid,
-        code => Outcome::Inverted { element: code as usize / 16, point: code as usize % 8 },
+        code => Outcome::Invalid(fault(code)),
     };
     first.iter().map(outcome).collect()
 }

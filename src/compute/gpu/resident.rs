@@ -9,7 +9,7 @@ use super::error::GpuError;
 use super::material::flatten;
 use crate::compute::{CaseModel, ComputeError};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
-use crate::element::hex8::{Geometry, Invalid, NODES, QUADRATURE_POINTS};
+use crate::element::hex8::{Geometry, NODES, QUADRATURE_POINTS};
 use crate::material::Material;
 use crate::mesh::Mesh;
 
@@ -373,10 +373,8 @@ fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), Comp
     let mut volume = vec![R::ZERO; QUADRATURE_POINTS * elements];
     for (e, nodes) in mesh.elements.iter().enumerate() {
         let positions = nodes.map(|n| mesh.nodes[n as usize]);
-        let geometry = Geometry::<R>::new(&positions).map_err(|invalid| {
-            let (Invalid::Inverted(point) | Invalid::Material(point)) = invalid;
-            ComputeError::InvertedMesh { element: e, point }
-        })?;
+        let geometry = Geometry::<R>::new(&positions)
+            .map_err(|invalid| ComputeError::InvertedMesh { element: e, point: invalid.point() })?;
         volume[QUADRATURE_POINTS * e..][..QUADRATURE_POINTS].copy_from_slice(&geometry.volume.0);
         for (a, position) in positions.iter().enumerate() {
             for i in 0..3 {

@@ -3,7 +3,7 @@
 use super::{Drive, Observer};
 use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::iterate::Settled;
-use crate::compute::{ComputeError, Energies, Outcome};
+use crate::compute::{Energies, Fault, Outcome};
 use crate::contact::coulomb::Status;
 use crate::contact::frame::to_frame;
 use crate::contact::plane::gap;
@@ -31,25 +31,26 @@ struct Taken {
 }
 
 impl Drive<'_> {
-    /// Commits the accepted trial and records it.
+    /// Commits the accepted trial and records it. What cannot be committed is a step that failed: its
+    /// fault is returned, and nothing has changed.
     pub(super) fn accept(
         &mut self,
         target: &Target,
         mut report: StepReport,
         observer: &mut dyn Observer,
-    ) -> Result<(), SimulationError> {
+    ) -> Result<Option<Fault>, SimulationError> {
         let before = self.state.record;
-        let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));
         let taken = match self.settled.take() {
             Some(settled) => self.take_from_device(settled),
             None => self.take_from_host(&mut report)?,
         };
         let Taken { energies, outcome, displacement, internal_force, forces, statuses, gaps } = taken;
+        if let Outcome::Invalid(fault) = outcome {
+            return Ok(Some(fault));
+        }
+        let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));
         if let (Some(before), Some(after)) = (self.traffic_before.take(), self.backend.traffic()) {
             report.traffic = after - before;
-        }
-        if let Outcome::Inverted { element, point } = outcome {
-            return Err(ComputeError::Device(format!("a converged state is invalid at element {element}, point {point}")).into());
         }
         let h = self.newton.accepted_h();
         let force: [f64; 3] = std::array::from_fn(|c| forces[..self.mesh.own_contacts()].iter().map(|f| f[c]).sum());
@@ -127,6 +128,9 @@ impl Drive<'_> {
             report.times.seconds(Phase::LinearSolve),
             report.times.seconds(Phase::Commit),
         );
+        if let Some((what, value)) = self.state.record.not_finite() {
+            return Err(SimulationError::NotFinite { step: self.state.record.step, what, value });
+        }
         if report.relaxed && !self.place.relaxed_told {
             self.place.relaxed_told = true;
             let r = &self.state.record;
@@ -137,7 +141,8 @@ impl Drive<'_> {
         }
         self.last_report = report;
         self.backend.take_notes().iter().for_each(|note| observer.note(note));
-        observer.step(&mut self.view()).map_err(SimulationError::Observer)
+        observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
+        Ok(None)
     }
 
     /// Commits the accepted trial, whose vectors are on the host.

@@ -97,6 +97,10 @@ impl Observer for Muted<'_> {
         self.observer.stop_requested()
     }
 
+    fn keeps_end(&self) -> bool {
+        self.observer.keeps_end()
+    }
+
     /// What has been shown is further on than what could be kept.
     fn checkpoint(&mut self, last: bool, take: &mut dyn FnMut() -> Result<Snapshot, ComputeError>) {
         if !self.is_repeating {

@@ -10,7 +10,7 @@ use crate::contact::rigid::Rigid;
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
 use crate::solver::encounter::Encounter;
-use crate::solver::outcome::{Halt, Worst};
+use crate::solver::outcome::{Halt, StepFailure, Worst};
 use crate::solver::pair::mirror_nodes;
 use crate::solver::phases::PhaseTimes;
 use crate::solver::rigid::Against;
@@ -128,7 +128,7 @@ impl HostIterate {
     /// What Newton's method decides by of a trial, as seen from the current iterate.
     fn reading(&self, trial: &Trial, outcome: Outcome, case: &dyn Evaluate, control: &Control) -> Reading {
         if outcome != Outcome::Valid {
-            return Reading { outcome, merit: f64::INFINITY, ..Reading::default() };
+            return Reading::of_nothing(outcome);
         }
         let held = || trial.contact_force(&case.model().mesh, &self.boundary)[2];
         let stick = case.model().friction == Friction::Stick;
@@ -204,21 +204,20 @@ impl HostIterate {
         Ok(())
     }
 
-    /// Takes over an iterate from a device.
+    /// Takes over an iterate from a device, and says whether it can be gone on from.
     pub(super) fn take_over(
         &mut self,
         case: &mut dyn Evaluate,
         vectors: &Vectors,
         h: f64,
         control: &Control,
-    ) -> Result<(), SolverError> {
+    ) -> Result<Outcome, SolverError> {
         self.furnish(&case.model().mesh.clone())?;
         self.current.u.copy_from_slice(&vectors.displacement);
         self.current.force.copy_from_slice(&vectors.force);
         self.current.h = h;
         self.boundary.frictionless.copy_from_slice(&vectors.sliding);
-        self.current.assess(case, &self.boundary, control, &mut PhaseTimes::default())?;
-        Ok(())
+        Ok(self.current.assess(case, &self.boundary, control, &mut PhaseTimes::default())?)
     }
 
     /// Lets the points of the current iterate slide that have come off and are down again; returns
@@ -273,21 +272,20 @@ impl Iterate for HostIterate {
             self.current.h = control.h;
             self.current.u.copy_from_slice(guess);
             self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
-            let outcome = self.current.evaluate(case, &self.boundary, control, times)?;
+            let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
+            let landed = if outcome == Outcome::Valid { self.let_landed_slide() } else { 0 };
+            if landed > 0 {
+                outcome = self.current.assess(case, &self.boundary, control, times)?;
+            }
             if outcome == Outcome::Valid {
-                let landed = self.let_landed_slide();
-                if landed > 0 {
-                    self.current.assess(case, &self.boundary, control, times)?;
-                }
                 return Ok(Reading { landed, ..self.reading(&self.current, outcome, case, control) });
             }
         }
         self.current.h = if control.normal_force.is_some() { start.h } else { control.h };
         self.current.u.copy_from_slice(start.displacement);
-        // The committed state can always be evaluated; the plate's increment enters through the
-        // linear system.
-        self.current.evaluate(case, &self.boundary, control, times)?;
-        if self.current.force_scale == 0.0 {
+        // The plate's increment enters through the linear system.
+        let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
+        if outcome == Outcome::Valid && self.current.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.
             let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
             let shift = [control.delta_t - start.displacement[plate], 0.0, -self.current.h - start.displacement[plate + 2]];
@@ -300,9 +298,9 @@ impl Iterate for HostIterate {
             // A shift leaves the forces as they are. Evaluated anew they would be those of an
             // unloaded body, nothing but rounding, and which points stick would hang on it: the
             // step would go another way on every device.
-            self.current.assess(case, &self.boundary, control, times)?;
+            outcome = self.current.assess(case, &self.boundary, control, times)?;
         }
-        Ok(self.reading(&self.current, Outcome::Valid, case, control))
+        Ok(self.reading(&self.current, outcome, case, control))
     }
 
     fn h(&self) -> f64 {
@@ -347,7 +345,8 @@ impl Iterate for HostIterate {
 
     fn keep(&mut self, case: &mut dyn Evaluate, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt> {
         if length != self.favoured {
-            self.evaluate(case, control, length, times)?;
+            let outcome = self.evaluate(case, control, length, times)?;
+            outcome.check().map_err(|fault| StepFailure::Invalid { fault, when: "at an iterate that was valid before" })?;
             std::mem::swap(&mut self.candidate, &mut self.best);
             self.favoured = length;
         }

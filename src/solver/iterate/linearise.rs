@@ -101,9 +101,7 @@ impl HostIterate {
             return Ok(There::NotSolved { krylov: 0 });
         }
         lap.end(times, Phase::LinearSolve);
-        if let Outcome::Inverted { element, point } = outcome {
-            return Err(StepFailure::Inverted { element, point }.into());
-        }
+        outcome.check().map_err(StepFailure::of_tangent)?;
         if let Some(unit) = reports.get(1).filter(|_| first) {
             self.unit_scale = if unit.rhs_norm > 0.0 { (unit.start_norm / unit.rhs_norm).min(1.0) } else { 1.0 };
         }
@@ -131,7 +129,7 @@ impl HostIterate {
     fn move_plate(&mut self, target: f64, by_correction: f64, by_unit: f64) -> Result<f64, Halt> {
         let delta_h = (target - self.current.plate_force + by_correction) / -by_unit;
         if !delta_h.is_finite() {
-            return Err(StepFailure::Linear("no contact carries the normal force that is to be held".into()).into());
+            return Err(no_depth(delta_h).into());
         }
         for (d, b) in self.correction.iter_mut().zip(&self.unit_response) {
             *d += delta_h * b;
@@ -241,9 +239,7 @@ where
 {
     let mesh = &case.model().mesh.clone();
     let mut lap = Lap::start();
-    if let Outcome::Inverted { element, point } = case.tangent(&current.u, (&mut matrix.blocks).into())? {
-        return Err(StepFailure::Inverted { element, point }.into());
-    }
+    case.tangent(&current.u, (&mut matrix.blocks).into())?.check().map_err(StepFailure::of_tangent)?;
     lap.end(times, Phase::Tangent);
     if let Some(functional) = held {
         plate_functional(matrix, &boundary.plate, functional);
@@ -256,6 +252,16 @@ where
     }
     lap.end(times, Phase::Contact);
     Ok(())
+}
+
+/// Why a held normal force says nothing of h: the plate does not feel a change of h, or the linear
+/// system's solutions are no numbers.
+pub(super) fn no_depth(delta_h: f64) -> StepFailure {
+    let why = match delta_h.is_nan() {
+        false => "no contact carries the normal force that is to be held",
+        true => "the change of h that the held normal force asks for is not a number",
+    };
+    StepFailure::Linear(why.to_owned())
 }
 
 /// The relative residual at which that of the contact's forces is `share`.

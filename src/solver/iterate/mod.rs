@@ -12,6 +12,7 @@ pub mod resident;
 use super::outcome::Halt;
 use super::phases::PhaseTimes;
 use super::{Control, Worst};
+use crate::compute::Fault;
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::Reading;
 
@@ -129,6 +130,16 @@ pub trait Iterate {
         expected: usize,
         times: &mut PhaseTimes,
     ) -> Result<Option<(usize, Reading)>, Halt>;
+
+    /// Where the residual of what was tried last is not finite, if that takes a closer look; the
+    /// step cannot go on after it.
+    ///
+    /// # Errors
+    /// What no smaller step cures.
+    fn locate(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Option<Fault>, Halt> {
+        let _ = (case, control);
+        Ok(None)
+    }
 
     /// The unknown of the current iterate with the largest residual, over the force `scale`.
     ///

@@ -1,12 +1,12 @@
 //! Iterates whose vectors stay on the device: few numbers go there, few come back.
 
 use super::host::HostIterate;
-use super::linearise::{EXPECTED, UNIT_RESPONSE, unit_share};
+use super::linearise::{EXPECTED, UNIT_RESPONSE, no_depth, unit_share};
 use super::{Asked, Correction, Extrapolation, Iterate, SetOut};
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::{Answer, Ask, Begin, Correct, Corrected, From, Plate, Reading, Settled, Vectors};
 use crate::compute::linear::Ended;
-use crate::compute::{ComputeError, Outcome};
+use crate::compute::{ComputeError, Fault, Outcome};
 use crate::contact::coulomb::Friction;
 use crate::solver::outcome::{Halt, StepFailure, Worst};
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
@@ -106,8 +106,8 @@ impl ResidentIterate {
         }
     }
 
-    /// The current iterate on the host.
-    fn bring(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<(), SolverError> {
+    /// The current iterate on the host, and whether it can be gone on from.
+    fn bring(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Outcome, SolverError> {
         match self.ask(case, control, Ask::Bring)? {
             Answer::Vectors(vectors) => self.host.take_over(case, &vectors, self.h, control),
             other => Err(unexpected(&other)),
@@ -116,7 +116,8 @@ impl ResidentIterate {
 
     /// The correction by the host, which has a direct solver to fall back on.
     fn correct_there(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
-        self.bring(case, asked.control)?;
+        let brought = self.bring(case, asked.control)?;
+        brought.check().map_err(|fault| StepFailure::Invalid { fault, when: "at an iterate from the device" })?;
         self.host.state_system(case, times);
         // The guess of a unit response is on the device.
         let found = self.host.solve_here(case, Asked { first: true, ..asked }, times)?;
@@ -145,7 +146,7 @@ impl Iterate for ResidentIterate {
         if let Some(Extrapolation { ratio, lift }) = start.extrapolation {
             self.h = control.h;
             let reading = self.begin_from(case, control, From::Extrapolation { ratio, lift })?;
-            if reading.outcome == Outcome::Valid {
+            if reading.check().is_ok() {
                 self.is_placed = true;
                 lap.end(times, Phase::Force);
                 return Ok(reading);
@@ -191,9 +192,7 @@ impl Iterate for ResidentIterate {
         };
         let Corrected { tangent, report, unit, delta_h, slope, trial } = corrected;
         lap.end(times, Phase::LinearSolve);
-        if let Outcome::Inverted { element, point } = tangent {
-            return Err(StepFailure::Inverted { element, point }.into());
-        }
+        tangent.check().map_err(StepFailure::of_tangent)?;
         if let Some(unit) = unit.filter(|_| first) {
             self.unit_scale = if unit.rhs_norm > 0.0 { (unit.start_norm / unit.rhs_norm).min(1.0) } else { 1.0 };
         }
@@ -207,7 +206,7 @@ impl Iterate for ResidentIterate {
             return Ok(Correction { krylov: krylov + found.krylov, ..found });
         }
         if !delta_h.is_finite() {
-            return Err(StepFailure::Linear("no contact carries the normal force that is to be held".into()).into());
+            return Err(no_depth(delta_h).into());
         }
         self.delta_h = delta_h;
         self.whole = Some(trial);
@@ -260,6 +259,11 @@ impl Iterate for ResidentIterate {
         }
         let reading = self.ask_reading(case, control, Ask::Land)?;
         Ok(Some((expected, reading)))
+    }
+
+    fn locate(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Option<Fault>, Halt> {
+        self.kept = true;
+        Ok(self.bring(case, control)?.check().err())
     }
 
     fn worst(&mut self, case: &mut dyn Evaluate, control: &Control, scale: f64) -> Result<Worst, Halt> {

@@ -4,7 +4,7 @@
 use super::super::Control;
 use super::super::outcome::{Halt, StepFailure};
 use super::Newton;
-use crate::compute::Outcome;
+use crate::compute::Fault;
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::Reading;
 use crate::contact::coulomb::Friction;
@@ -23,7 +23,7 @@ impl Newton {
     /// Backtracks along the correction until the merit falls below `reference`; otherwise takes the
     /// best there was, or the whole correction where that would creep while the energy falls all
     /// the way. `slope` is the work of the free residual on the correction, `delta_h` its change of
-    /// h. Every length may invert an element: the shortest one tells which. Returns the step length
+    /// h. No length may give a trial that can be evaluated: the shortest one tells why. Returns the step length
     /// and the trial there, which is not kept yet.
     pub(super) fn line_search(
         &mut self,
@@ -35,7 +35,7 @@ impl Newton {
     ) -> Result<(f64, Reading), Halt> {
         let mut best: Option<(f64, Reading)> = None;
         let mut best_merit = f64::INFINITY;
-        let mut inverted = (0, 0);
+        let mut refused = None;
         let stick = case.model().friction == Friction::Stick;
         // The slope of the potential energy along the correction, where there is one.
         let of_plate = |force: f64| control.normal_force.map_or(0.0, |held| delta_h * (force - held));
@@ -46,8 +46,8 @@ impl Newton {
             let tried = self.iterate().try_length(case, control, s, &mut times);
             self.times = times;
             let reading = tried?;
-            if let Outcome::Inverted { element, point } = reading.outcome {
-                inverted = (element, point);
+            if let Err(fault) = reading.check() {
+                refused = Some(fault);
                 continue;
             }
             if s == 1.0 && reading.merit < DOWNHILL_MERIT * self.current.merit {
@@ -65,10 +65,22 @@ impl Newton {
             }
         }
         let Some(best) = best else {
-            let (element, point) = inverted;
-            return Err(StepFailure::Inverted { element, point }.into());
+            let fault = refused.unwrap_or(Fault::Residual { at: None });
+            return Err(self.refused(case, control, fault, "however short the step of the line search"));
         };
         Ok(whole.filter(|_| best.0 <= CREEPING).unwrap_or(best))
+    }
+
+    /// A step that ends because what was tried last could not be evaluated.
+    pub(super) fn refused(&mut self, case: &mut dyn Evaluate, control: &Control, fault: Fault, when: &'static str) -> Halt {
+        let located = match fault {
+            Fault::Residual { at: None } => self.iterate().locate(case, control),
+            _ => Ok(None),
+        };
+        match located {
+            Ok(located) => StepFailure::Invalid { fault: located.unwrap_or(fault), when }.into(),
+            Err(halt) => halt,
+        }
     }
 }
 

@@ -27,7 +27,9 @@ fn control(h: f64, delta_t: f64) -> Control {
 fn a_plate_pushed_through_the_plane_is_reported() {
     for h in [0.6, 0.7, 3.0, 1e6] {
         let failure = rig(12).attempt(&control(h, 0.0)).expect_err("the brick has no height left");
-        let StepFailure::Inverted { element, point } = failure else { panic!("h = {h}: {failure}") };
+        let StepFailure::Invalid { fault: Fault::Inverted { element, point }, .. } = failure else {
+            panic!("h = {h}: {failure}")
+        };
         assert!(element < 36 && point < 8, "h = {h}: {failure}");
         let text = failure.to_string();
         assert!(text.contains(&format!("element {element} inverts")), "{text}");

@@ -3,7 +3,7 @@
 use super::*;
 use crate::compute::iterate::{Answer, Ask, Corrected, Keeps, Plate, Reading, Vectors};
 use crate::compute::linear::LinearRequest;
-use crate::compute::{Blocks, ComputeError};
+use crate::compute::{Blocks, ComputeError, Fault};
 use crate::contact::coulomb::Rows;
 use crate::mesh::{SphereSpec, sphere_mesh};
 
@@ -18,6 +18,8 @@ enum Device {
     Ends(Vec<f64>, Vec<bool>),
     /// Its tangent is invalid.
     ComesToNothing,
+    /// What it reads is not a number.
+    ReadsNaN,
     /// It is lost, and the state is not.
     Lost,
 }
@@ -68,9 +70,21 @@ impl Evaluate for Guesser<'_> {
                 sliding: vec![false; came_off.len()],
                 came_off: came_off.clone(),
             })),
+            (Device::ReadsNaN, Ask::Begin(_)) => reading(f64::NAN),
+            (Device::ReadsNaN, Ask::Bring) => {
+                let (nodes, points) = (self.model().mesh.nodes.len(), self.model().mesh.contact_nodes.len());
+                let forces = vec![f64::NAN; 3 * nodes];
+                let marks = vec![false; points];
+                Answer::Vectors(Box::new(Vectors {
+                    displacement: vec![0.0; 3 * nodes],
+                    force: forces,
+                    sliding: marks.clone(),
+                    came_off: marks,
+                }))
+            }
             (Device::ComesToNothing, Ask::Begin(_)) => reading(1.0),
             (Device::ComesToNothing, Ask::Correct(_)) => {
-                let tangent = Outcome::Inverted { element: 3, point: 1 };
+                let tangent = Outcome::Invalid(Fault::Inverted { element: 3, point: 1 });
                 Answer::Corrected(Corrected { tangent, ..Corrected::default() })
             }
             (_, other) => panic!("{other:?}"),
@@ -156,7 +170,7 @@ fn what_the_device_ends_with_is_gone_on_from_where_it_is_no_equilibrium() {
 #[test]
 fn a_step_that_comes_to_nothing_in_f32_or_loses_its_device_is_made_in_f64() {
     let alone = coulomb(None);
-    for (device, given_up) in [(Device::ComesToNothing, 1), (Device::Lost, 0)] {
+    for (device, given_up) in [(Device::ComesToNothing, 1), (Device::ReadsNaN, 1), (Device::Lost, 0)] {
         let made = coulomb(Some(device));
         assert_eq!((made.given_up, made.report.confirming), (given_up, Some(alone.report.iterations.len())));
         assert_eq!(made.u, alone.u);

@@ -14,7 +14,7 @@ use super::newton::Newton;
 use super::{Control, Settings, StepFailure, StepOutcome, StepReport};
 use crate::compute::cpu::Cpu;
 use crate::compute::handle::{CaseHandle, Evaluate};
-use crate::compute::{CaseModel, Compute, Energies, Outcome};
+use crate::compute::{CaseModel, Compute, Energies, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{LinearSolver, Pattern, SolverKind};
 use crate::material::hardening::Hardening;

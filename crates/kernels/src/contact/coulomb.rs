@@ -96,7 +96,8 @@ pub fn contact_rows<R: Real>(friction: Friction<R>, point: &Point<R>) -> Rows<R>
         fix(&mut rows, 1, c * point.slip[1]);
     }
     let xi_n = f[2] - c * point.gap;
-    // Negated, so that a NaN does not open the point unnoticed: it stays in the residual.
+    // A NaN closes the point. Its force is then in no residual: whoever evaluates a trial looks at
+    // the forces too.
     if xi_n <= zero {
         return rows;
     }

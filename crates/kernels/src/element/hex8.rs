@@ -14,7 +14,7 @@
 use super::lanes::{Lanes, array};
 use crate::material::j2::{Response, deviatoric_tangent, return_mapping_of_eight};
 use crate::material::multistep::{Flow, anticipate, complete};
-use crate::material::{Material, PointState, elastic_energy_deviatoric, elastic_energy_volumetric, pressure};
+use crate::material::{Material, PointState, Refusal, elastic_energy_deviatoric, elastic_energy_volumetric, pressure};
 use crate::real::Real;
 
 /// Nodes of an element.
@@ -68,10 +68,21 @@ impl<R: Real> State<R> {
 /// error of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Invalid {
-    /// The Jacobian of the deformation is not positive (or not a number) at this quadrature point.
+    /// The Jacobian of the deformation is not positive at this quadrature point.
     Inverted(usize),
+    /// It is not a number, or infinite.
+    NotFinite(usize),
     /// The material refused the deformation at this quadrature point.
-    Material(usize),
+    Material(usize, Refusal),
+}
+
+impl Invalid {
+    /// The quadrature point.
+    pub fn point(self) -> usize {
+        match self {
+            Self::Inverted(point) | Self::NotFinite(point) | Self::Material(point, _) => point,
+        }
+    }
 }
 
 /// Symmetric pair of tensor indices to the index in [xx, yy, zz, xy, yz, zx].
@@ -214,13 +225,14 @@ fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: 
 }
 
 impl<R: Real> Kinematics<R> {
-    /// An error if a point is turned inside out: the rest means nothing then. It stands apart
+    /// An error if a point is turned inside out, or no number: the rest means nothing then. It stands apart
     /// because a `Result` of the whole would be copied, in every element.
     #[inline(always)]
     fn check(&self) -> Result<(), Invalid> {
         // The negated comparison catches NaN as well.
-        let inverted = self.j_minus_1.0.iter().position(|&j| !(j > -R::ONE));
-        inverted.map_or(Ok(()), |q| Err(Invalid::Inverted(q)))
+        let inverted = self.j_minus_1.0.iter().position(|&j| !(j > -R::ONE && j.is_finite()));
+        inverted
+            .map_or(Ok(()), |q| Err(if self.j_minus_1.0[q].is_finite() { Invalid::Inverted(q) } else { Invalid::NotFinite(q) }))
     }
 }
 
@@ -231,7 +243,8 @@ fn relative_gradient<R: Real>(k: &Kinematics<R>, q: usize) -> [[R; 3]; 3] {
 
 #[inline(always)]
 fn respond<R: Real>(material: &Material<R>, k: &Kinematics<R>, start: &Points<R>) -> Result<Response<Lanes<R>>, Invalid> {
-    return_mapping_of_eight(material, &k.relative, &PointState::of_eight(start)).map_err(|(q, _)| Invalid::Material(q))
+    return_mapping_of_eight(material, &k.relative, &PointState::of_eight(start))
+        .map_err(|(q, why)| Invalid::Material(q, why.into()))
 }
 
 /// f_a = sum_q V_q tau_q . grad N_a with the Kirchhoff stress [xx, yy, zz, xy, yz, zx] already
@@ -433,7 +446,7 @@ pub fn update<R: Real>(
     for q in 0..QUADRATURE_POINTS {
         let response = responses.point(q);
         let (response, flow) = complete(material, &relative_gradient(&k, q), &state.points[q], &start[q], response)
-            .map_err(|_| Invalid::Material(q))?;
+            .map_err(|why| Invalid::Material(q, why.into()))?;
         next.points[q] = response.state;
         next.flow[q] = flow;
         next.plastic_work += response.plastic_work * geometry.volume.0[q];

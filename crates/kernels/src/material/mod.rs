@@ -50,6 +50,26 @@ pub enum PointError {
     NotFinite,
 }
 
+/// [`PointError`] without its number: what an element passes on of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// See [`PointError::Inverted`].
+    #[error("the relative deformation of the step turns it inside out")]
+    Inverted,
+    /// See [`PointError::NotFinite`].
+    #[error("its stress or plastic strain is not finite")]
+    NotFinite,
+}
+
+impl From<PointError> for Refusal {
+    fn from(error: PointError) -> Self {
+        match error {
+            PointError::Inverted { .. } => Self::Inverted,
+            PointError::NotFinite => Self::NotFinite,
+        }
+    }
+}
+
 /// The two elastic constants of an isotropic solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elasticity<R> {

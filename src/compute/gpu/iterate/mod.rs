@@ -163,11 +163,6 @@ impl<R: DeviceReal> Back<R> {
     fn readouts(&self) -> Vec<Readout> {
         let readout = |(slot, outcome): (usize, Outcome)| {
             let numbers: [f64; READINGS] = std::array::from_fn(|i| self.readings[READINGS * slot + i].to_f64());
-            // A merit that is not a number is as an inverted element.
-            let outcome = match outcome {
-                Outcome::Valid if !numbers[0].is_finite() => Outcome::Inverted { element: 0, point: 0 },
-                outcome => outcome,
-            };
             Readout { outcome, numbers, counts: self.counts[slot] }
         };
         outcomes(&self.first).into_iter().enumerate().map(readout).collect()

@@ -88,11 +88,12 @@ impl<R: DeviceReal> Gpu<R> {
                     gpu.batch()?.try_iterates(dispatch, &marks)?
                 };
                 for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
-                    if readout.outcome == Outcome::Valid {
+                    let read = reading(&readout);
+                    if read.outcome == Outcome::Valid {
                         gpu.current[request.case] = mark.trial;
                     }
                     gpu.note(request.case, mark, &readout);
-                    request.answer = Answer::Reading(alone(reading(&readout)));
+                    request.answer = Answer::Reading(alone(read));
                 }
                 Ok(())
             })?;
@@ -312,9 +313,9 @@ fn alone(reading: Reading) -> Reading {
 fn reading(readout: &Readout) -> Reading {
     let Readout { outcome, numbers, counts } = readout;
     if *outcome != Outcome::Valid {
-        return Reading { outcome: *outcome, merit: f64::INFINITY, ..Reading::default() };
+        return Reading::of_nothing(*outcome);
     }
-    Reading {
+    let read = Reading {
         outcome: *outcome,
         merit: numbers[0],
         force_scale: numbers[1],
@@ -325,5 +326,6 @@ fn reading(readout: &Readout) -> Reading {
         released: numbers[7],
         changed: counts[0] as usize,
         landed: counts[1] as usize,
-    }
+    };
+    read.check().map_or_else(|fault| Reading::of_nothing(Outcome::Invalid(fault)), |()| read)
 }
