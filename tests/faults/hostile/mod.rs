@@ -1,295 +1,322 @@
-//! Hostile input: what is in the corpus and the fixtures, changed at random, through every parser.
-//! No panic, none takes two seconds, all together no gigabyte.
+//! Hostile input: what is in the corpus and the fixtures, changed at random, through everything that
+//! reads it, and what was taken through what uses it. No panic, none takes two seconds, all together
+//! no 256 MiB.
+//!
+//! `ASPERITY_FUZZ=100000 cargo test --test faults hostile -- --nocapture` makes so many inputs of each
+//! kind and tells how many were taken. An input with a fault is kept in `target/tmp/hostile`.
+
+mod corpus;
+mod mutate;
+mod runner;
+mod uses;
 
 use std::fs;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use asperity::case::Case;
-use asperity::law::Law;
+use asperity::case::{Case, estimated_memory};
+use asperity::internals::cli::point::read_path;
+use asperity::law::LawFile;
 use asperity::law::table::StudyTable;
+use asperity::material::point::along;
+use asperity::output::plots::Sheet;
 use asperity::output::{Checkpoint, Summary, read_contact, read_history};
-use asperity::study::Study;
+use asperity::session::{Canceller, Earlier, Options};
+use asperity::study::{Study, StudyDirectory, report};
+use asperity::{Simulation, case::PictureFormat};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
 
+use self::runner::fuzz;
 use super::common::{program, stderr};
-use super::program::{CASE, scratch, whole};
+use super::program::{CASE, scratch};
 
 const SEED: u64 = 15;
 const PATIENCE: Duration = Duration::from_secs(2);
-const MEMORY_KIB: usize = 1 << 20;
-/// What a changed input may have; larger ones are read no otherwise, only slower.
-const LARGEST: usize = 1 << 18;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Case,
-    Study,
-    Law,
-    History,
-    Contact,
-    Summary,
-    Table,
-    Checkpoint,
+fn any<'a, T>(rng: &mut ChaCha8Rng, all: &'a [T]) -> &'a T {
+    &all[rng.random_range(0..all.len())]
 }
 
-/// Put in place of what stands there, or beside it.
-const WORDS: [&str; 40] = [
-    "nan",
-    "-nan",
-    "inf",
-    "-inf",
-    "0",
-    "-0.0",
-    "1e308",
-    "-1e308",
-    "1e-308",
-    "5e-324",
-    "1e999",
-    "9223372036854775807",
-    "-9223372036854775808",
-    "99999999999999999999",
-    "0x7fffffffffffffff",
-    "0b1",
-    "1_000_000",
-    "true",
-    "\"stick\"",
-    "\"full-slip\"",
-    "[",
-    "]",
-    "{",
-    "}",
-    "[[",
-    "]]",
-    "[[path]]\n",
-    "[grid]\n",
-    "=",
-    ",",
-    ".",
-    "\"",
-    "\"\"\"",
-    "'",
-    "\\u0000",
-    "\u{0}",
-    "1979-05-27T07:32:00Z",
-    "a.b.c.d",
-    "null",
-    "\r\n",
-];
-
-fn seeds(kind: Kind, dirs: &[&str], ends: &str) -> Vec<(Kind, Vec<u8>)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut found = Vec::new();
-    for dir in dirs {
-        let mut paths: Vec<PathBuf> =
-            fs::read_dir(root.join(dir)).expect("a corpus").map(|entry| entry.expect("an entry").path()).collect();
-        paths.sort();
-        for path in paths.iter().filter(|path| path.to_string_lossy().ends_with(ends)) {
-            found.push((kind, fs::read(path).expect("a file")));
+/// A changed TOML file: its bytes, or its tree where it is one.
+fn changed_toml(rng: &mut ChaCha8Rng, from: &[Vec<u8>], others: &[Vec<u8>]) -> Vec<u8> {
+    let (seed, other) = (any(rng, from), any(rng, others));
+    let tree = std::str::from_utf8(seed).ok().and_then(|text| toml::from_str::<Value>(text).ok());
+    match tree {
+        Some(mut tree) if rng.random_range(0..2) == 0 => {
+            mutate::tree(rng, &mut tree);
+            // TOML has no null.
+            toml::to_string(&tree).map_or_else(|_| mutate::bytes(rng, seed, other), String::into_bytes)
         }
+        _ => mutate::bytes(rng, seed, other),
     }
-    found
 }
 
-/// The corpus: fixtures, files that are hostile as they stand, and what a run leaves.
-fn corpus() -> Vec<(Kind, Vec<u8>)> {
-    let mut all = seeds(Kind::Case, &["fixtures/cases", "fixtures/cases/bad", "tests/faults/corpus"], ".toml");
-    // Without the study of 240 cases, which takes as long as the rest together.
-    all.extend(seeds(Kind::Study, &["fixtures/studies", "fixtures/studies/bad", "tests/faults/corpus"], ".toml"));
-    all.retain(|(kind, bytes)| *kind != Kind::Study || bytes.len() < 2000);
-    all.push((Kind::Law, small_law()));
-    let read = |path: PathBuf| fs::read(path).expect("a file of the run");
-    all.push((Kind::History, read(whole().join("history.csv"))));
-    all.push((Kind::Summary, read(whole().join("summary.json"))));
-    let contact = fs::read_dir(whole().join("contact")).expect("tables").next().expect("a table").expect("an entry").path();
-    all.push((Kind::Contact, read(contact)));
-    let table = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/study.csv")).expect("a table");
-    all.push((Kind::Table, table.lines().take(6).collect::<Vec<_>>().join("\n").into_bytes()));
-    all.push((Kind::Checkpoint, checkpoint()));
-    all
-}
-
-/// The law of the fixtures without the cases it was fitted to, which are most of it.
-fn small_law() -> Vec<u8> {
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/law.json")).expect("a law");
-    let mut law: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    for value in law.as_object_mut().expect("an object").values_mut() {
-        if let Some(items) = value.as_array_mut() {
-            items.truncate(2);
-        }
+/// A changed JSON file, more often of its tree than of its bytes.
+fn changed_json(rng: &mut ChaCha8Rng, seeds: &[Value]) -> Vec<u8> {
+    let seed = any(rng, seeds);
+    if rng.random_range(0..4) == 0 {
+        return mutate::bytes(rng, &serde_json::to_vec_pretty(seed).expect("JSON"), b"");
     }
-    serde_json::to_vec_pretty(&law).expect("JSON")
+    let mut tree = seed.clone();
+    mutate::tree(rng, &mut tree);
+    serde_json::to_vec(&tree).expect("JSON")
 }
 
-/// That of a run that was interrupted.
-fn checkpoint() -> Vec<u8> {
-    let scratch = scratch();
-    let out = scratch.path("out");
-    let args = scratch.args(&out, &["-q", "--set", "solver.press_steps=60"]);
-    let mut child = program().args(args).stderr(std::process::Stdio::null()).spawn().expect("it runs");
-    while !out.join("checkpoint.bin").exists() {
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    kill_process(Pid::from_child(&child), Signal::TERM).expect("a signal is sent");
-    child.wait().expect("it ends");
-    fs::read(out.join("checkpoint.bin")).expect("a checkpoint")
+/// A changed table, more often of its cells than of its bytes.
+fn changed_table(rng: &mut ChaCha8Rng, seed: &[u8]) -> Vec<u8> {
+    if rng.random_range(0..3) == 0 { mutate::bytes(rng, seed, b"") } else { mutate::table(rng, seed) }
 }
 
-fn mutated(rng: &mut ChaCha8Rng, seed: &[u8], other: &[u8]) -> Vec<u8> {
-    let mut bytes = seed.to_vec();
-    for _ in 0..rng.random_range(1..=4) {
-        let length = bytes.len();
-        let at = rng.random_range(0..=length);
-        let end = (at + rng.random_range(0..=16)).min(length);
-        match rng.random_range(0..9) {
-            0 if at < length => bytes[at] ^= 1 << rng.random_range(0..8),
-            1 if at < length => bytes[at] = rng.random(),
-            2 => drop(bytes.splice(at..end, [])),
-            3 => drop(bytes.splice(at..at, WORDS[rng.random_range(0..WORDS.len())].bytes())),
-            4 => {
-                // In place of a number or a word.
-                let word = |byte: &u8| byte.is_ascii_alphanumeric() || b".+-_\"".contains(byte);
-                let end = at + bytes[at..].iter().take_while(|byte| word(byte)).count();
-                drop(bytes.splice(at..end, WORDS[rng.random_range(0..WORDS.len())].bytes()));
-            }
-            5 => bytes.truncate(at),
-            6 => {
-                let from = rng.random_range(0..=other.len());
-                let to = (from + rng.random_range(0..=200)).min(other.len());
-                drop(bytes.splice(at..at, other[from..to].iter().copied()));
-            }
-            7 => {
-                let end = (at + rng.random_range(0..=64)).min(length);
-                let times = 1 << rng.random_range(0..=10);
-                let piece = bytes[at..end].repeat(times);
-                drop(bytes.splice(at..at, piece));
-            }
-            _ => {
-                let line = bytes[..at].iter().rposition(|byte| *byte == b'\n').map_or(0, |line| line + 1);
-                let piece: Vec<u8> = bytes[line..].iter().copied().take_while(|byte| *byte != b'\n').collect();
-                drop(bytes.splice(line..line, piece.into_iter().chain([b'\n'])));
-            }
-        }
-        bytes.truncate(LARGEST);
-    }
-    bytes
-}
-
-/// Through its parser; true if it was taken.
-fn parse(kind: Kind, bytes: &[u8], path: &Path) -> bool {
-    let text = || String::from_utf8_lossy(bytes).into_owned();
-    match kind {
-        Kind::Case => Case::parse(&text(), "case.toml", &[]).is_ok_and(|case| {
+#[test]
+fn changed_cases() {
+    let all = corpus::toml_files(&["fixtures/cases", "fixtures/cases/bad", "tests/faults/corpus"]);
+    let is_right = |bytes: &&Vec<u8>| Case::parse(&String::from_utf8_lossy(bytes), "case.toml", &[]).is_ok();
+    let right: Vec<Vec<u8>> = all.iter().filter(is_right).cloned().collect();
+    assert!(right.len() >= 10, "{}", right.len());
+    let law = LawFile::Interpolated(Box::new(
+        serde_json::from_value(corpus::interpolated("fixtures/law/interpolated/plane.json")).expect("a law"),
+    ));
+    let next = move |rng: &mut ChaCha8Rng| {
+        // What is right as it stands comes more often: what is wrong already ends early.
+        let from = if rng.random_range(0..3) > 0 { &right } else { &all };
+        changed_toml(rng, from, &all)
+    };
+    fuzz("case", 0.05, next, move |bytes, _| {
+        Case::parse(&String::from_utf8_lossy(bytes), "case.toml", &[]).is_ok_and(|case| {
             let again = Case::parse(&case.to_toml(), "again.toml", &[]).expect("a resolved case is a case");
             assert_eq!(again, case);
-            let _ = case.material.constants::<f64>();
+            let _ = (case.material.constants::<f64>(), case.scaled(), estimated_memory(&case));
+            uses::law(&law, &[case], false);
             true
-        }),
-        Kind::Study => Study::parse(&text(), "study.toml").is_ok(),
-        _ => {
-            fs::write(path, bytes).expect("a file");
-            match kind {
-                Kind::Law => Law::read(path).is_ok(),
-                Kind::History => read_history(path).is_ok(),
-                Kind::Contact => read_contact(path).is_ok(),
-                Kind::Summary => Summary::read(path).is_ok(),
-                Kind::Table => StudyTable::read(path).is_ok(),
-                _ => matches!(Checkpoint::read(path), Ok(Some(_))),
-            }
-        }
+        })
+    });
+}
+
+#[test]
+fn changed_studies() {
+    // Without the study of 240 cases, which takes as long as the rest together.
+    let mut all = corpus::toml_files(&["fixtures/studies", "fixtures/studies/bad", "tests/faults/corpus"]);
+    all.retain(|bytes| bytes.len() < 2000);
+    let next = move |rng: &mut ChaCha8Rng| changed_toml(rng, &all, &all);
+    fuzz("study", 0.02, next, |bytes, _| {
+        Study::parse(&String::from_utf8_lossy(bytes), "study.toml").is_ok_and(|study| {
+            let _ = (study.size(), study.cases.iter().map(|case| case.case.to_toml().len()).sum::<usize>());
+            true
+        })
+    });
+}
+
+/// Law files of a kind: read, and then followed along cases, exported and drawn.
+fn changed_laws(kind: &'static str, least: f64, seeds: Vec<Value>, opponents: &[&str]) {
+    let cases: Vec<Case> = opponents.iter().map(|opponent| corpus::case(opponent)).collect();
+    let next = move |rng: &mut ChaCha8Rng| changed_json(rng, &seeds);
+    fuzz(kind, least, next, move |bytes, path| {
+        LawFile::read(path).map(|law| uses::law(&law, &cases, bytes.len() % 16 == 0)).is_ok()
+    });
+}
+
+const EQUAL: &str = "[opponent]\nequal = true\n";
+const LIKE_ITSELF: &str = "[opponent]\nradius = 1.0\n";
+
+#[test]
+fn changed_laws_of_formulas() {
+    changed_laws("law", 0.1, vec![corpus::formulas()], &[""]);
+}
+
+#[test]
+fn changed_tables() {
+    changed_laws("table", 0.1, corpus::tables(), &[LIKE_ITSELF]);
+}
+
+#[test]
+fn changed_laws_by_interpolation() {
+    let seeds = ["plane", "pair"].map(|name| corpus::interpolated(&format!("fixtures/law/interpolated/{name}.json")));
+    changed_laws("interpolated", 0.1, seeds.to_vec(), &["", EQUAL]);
+}
+
+#[test]
+fn changed_histories() {
+    let seed = corpus::of_run("history.csv");
+    let case = Case::parse(CASE, "case.toml", &[]).expect("a case");
+    let laws = [corpus::formulas(), corpus::tables().swap_remove(0)].map(|law| {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile-law.json");
+        fs::write(&path, law.to_string()).expect("a law");
+        LawFile::read(&path).expect("a law")
+    });
+    fuzz(
+        "history",
+        0.1,
+        move |rng| changed_table(rng, &seed),
+        move |_, path| read_history(path).map(|rows| uses::history(&rows, &case, &laws)).is_ok(),
+    );
+}
+
+#[test]
+fn changed_contact_tables() {
+    let seed = corpus::contact();
+    let history = read_history(&super::program::whole().join("history.csv")).expect("a history");
+    let case = Case::parse(CASE, "case.toml", &[]).expect("a case");
+    fuzz(
+        "contact",
+        0.1,
+        move |rng| changed_table(rng, &seed),
+        move |_, path| read_contact(path).map(|points| uses::contact(points, &history, &case)).is_ok(),
+    );
+}
+
+#[test]
+fn changed_summaries() {
+    let seed = [corpus::json(&String::from_utf8(corpus::of_run("summary.json")).expect("text"))];
+    let folder = tempfile::tempdir().expect("a scratch directory");
+    fuzz(
+        "summary",
+        0.1,
+        move |rng| changed_json(rng, &seed),
+        move |_, path| {
+            Summary::read(path).is_ok_and(|summary| {
+                let again = folder.path().join("again.json");
+                summary.write(&again).expect("it is written");
+                assert_eq!(Summary::read(&again).expect("a summary"), summary);
+                true
+            })
+        },
+    );
+}
+
+#[test]
+fn changed_tables_of_studies() {
+    let folder = tempfile::tempdir().expect("a scratch directory");
+    let seed = corpus::study(folder.path());
+    fuzz(
+        "study-table",
+        0.1,
+        move |rng| changed_table(rng, &seed),
+        move |bytes, path| {
+            StudyTable::read(path).is_ok_and(|table| {
+                for row in &table.rows {
+                    let _ = table.header.iter().filter_map(|column| table.number(row, column)).sum::<f64>();
+                }
+                fs::write(folder.path().join("study.csv"), bytes).expect("a file");
+                drop(report::write_report(&StudyDirectory::new(folder.path()), None, Sheet::default(), PictureFormat::Svg));
+                true
+            })
+        },
+    );
+}
+
+#[test]
+fn changed_paths_of_a_point() {
+    let mut seed = "F11,F12,F13,F21,F22,F23,F31,F32,F33\n".to_owned();
+    for i in 0..20 {
+        let x = 1e-3 * f64::from(i);
+        seed.push_str(&format!("{:?},{x:?},0,0,{:?},0,0,0,1.0\n", 1.0 + x, 1.0 - 0.4 * x));
     }
+    let material = Case::parse(CASE, "case.toml", &[]).expect("a case").material.constants::<f64>().expect("a material");
+    fuzz(
+        "path",
+        0.1,
+        move |rng| changed_table(rng, seed.as_bytes()),
+        move |_, path| {
+            read_path(path).is_ok_and(|gradients| {
+                let _ = along(&material, gradients).take(200).filter(Result::is_ok).count();
+                true
+            })
+        },
+    );
 }
 
 /// With the sum that belongs to it, so that what is behind the sum sees it.
 fn summed(mut bytes: Vec<u8>) -> Vec<u8> {
-    let stored = bytes.len().saturating_sub(4);
-    let sum = crc32fast::hash(&bytes[..stored]);
-    bytes.truncate(stored);
+    let sum = crc32fast::hash(&bytes);
     bytes.extend(sum.to_le_bytes());
     bytes
 }
 
-fn greatest_memory_kib() -> usize {
-    let status = fs::read_to_string("/proc/self/status").expect("the state of this process");
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("its greatest size");
-    line.trim().trim_end_matches(" kB").trim().parse().expect("a number")
-}
-
-#[test]
-fn changed_inputs_are_refused_or_taken_but_never_a_panic_a_hang_or_all_memory() {
-    let corpus = corpus();
-    let of = |kind: Kind| corpus.iter().filter(|(k, _)| *k == kind).map(|(_, bytes)| bytes.as_slice()).collect::<Vec<_>>();
-    let kinds = [Kind::Case, Kind::Study, Kind::Law, Kind::History, Kind::Contact, Kind::Summary, Kind::Table, Kind::Checkpoint];
-    let seeds = kinds.map(of);
-    let is_right = |bytes: &&&[u8]| Case::parse(&String::from_utf8_lossy(bytes), "case.toml", &[]).is_ok();
-    let right: Vec<&[u8]> = seeds[0].iter().filter(is_right).copied().collect();
-    assert!(right.len() >= 10, "{}", right.len());
-    let scratch = tempfile::tempdir().expect("a scratch directory");
-    let path = scratch.path().join("input");
-    let total = if super::all() { 1_000_000 } else { 20_000 };
-    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
-    let (mut taken, mut slowest) = ([0usize; 8], Duration::ZERO);
-    let mut counts = [0usize; 8];
-    let keep = |bytes: &[u8]| {
-        let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile-input");
-        fs::write(&kept, bytes).expect("the input");
-        kept
-    };
-    for number in 0..total {
-        // Mostly cases, as that is what people write; few of what is large.
-        let kind = match rng.random_range(0..1000) {
-            0..830 => 0,
-            830..860 => 1,
-            860..870 => 2,
-            870..900 => 3,
-            900..920 => 4,
-            920..960 => 5,
-            960..998 => 6,
-            _ => 7,
-        };
-        // What is right as it stands comes more often: what is wrong already ends early.
-        let from = if kind == 0 && rng.random_range(0..3) > 0 { &right } else { &seeds[kind] };
-        let seed = from[rng.random_range(0..from.len())];
-        let (_, other) = &corpus[rng.random_range(0..corpus.len() - 1)];
-        // Checkpoints are larger than the rest and come whole.
-        let mut bytes = if kind == 7 { seed.to_vec() } else { mutated(&mut rng, seed, other) };
-        if kind == 7 {
-            let line = bytes.iter().position(|byte| *byte == b'\n').expect("a first line");
-            for _ in 0..rng.random_range(1..=4) {
-                let at = rng.random_range(line + 1..bytes.len());
-                bytes[at] = rng.random();
-            }
-            if rng.random_range(0..2) == 0 {
-                bytes.truncate(rng.random_range(line + 5..bytes.len()));
-            }
-            bytes = summed(bytes);
-        }
-        let begun = Instant::now();
-        let parsed = catch_unwind(AssertUnwindSafe(|| parse(kinds[kind], &bytes, &path)));
-        let took = begun.elapsed();
-        let name = || format!("{:?}, input {number} of seed {SEED}, kept in {}", kinds[kind], keep(&bytes).display());
-        taken[kind] += usize::from(parsed.unwrap_or_else(|_| panic!("a panic: {}", name())));
-        counts[kind] += 1;
-        assert!(took < PATIENCE, "{took:?}: {}", name());
-        slowest = slowest.max(took);
-        if number % 256 == 0 {
-            assert!(greatest_memory_kib() < MEMORY_KIB, "{} KiB: {}", greatest_memory_kib(), name());
+/// The bytes of a changed checkpoint.
+fn changed_checkpoint(rng: &mut ChaCha8Rng, good: &[u8], tree: &Value, place: &Path) -> Vec<u8> {
+    if rng.random_range(0..2) == 0 {
+        let mut tree = tree.clone();
+        mutate::tree(rng, &mut tree);
+        if let Ok(changed) = serde_json::from_value::<Checkpoint>(tree) {
+            changed.write(place).expect("it is written");
+            return fs::read(place).expect("a checkpoint");
         }
     }
-    println!(
-        "{total} inputs: {kinds:?} {counts:?}, taken {taken:?}; slowest {slowest:?}, greatest memory {} KiB",
-        greatest_memory_kib()
-    );
-    assert!(taken.iter().zip(&counts).all(|(taken, count)| taken < count), "{taken:?} of {counts:?}");
-    assert!(taken[0] > counts[0] / 50, "the changes are too great: {taken:?} of {counts:?}");
+    let mut bytes = good[..good.len() - 4].to_vec();
+    let line = bytes.iter().position(|byte| *byte == b'\n').expect("a first line");
+    for _ in 0..rng.random_range(1..=4) {
+        let at = rng.random_range(line + 1..bytes.len());
+        bytes[at] = rng.random();
+    }
+    if rng.random_range(0..4) == 0 {
+        bytes.truncate(rng.random_range(line + 1..bytes.len()));
+    }
+    summed(bytes)
+}
+
+/// A resumed run: its state is put back; `steps` says whether a step is made from it, which takes
+/// longer.
+fn resume(case: &Case, out: &Path, steps: bool) {
+    let canceller = Canceller::default();
+    if !steps {
+        canceller.cancel();
+    }
+    let options = Options {
+        out: Some(out.to_owned()),
+        earlier: Earlier::Resume,
+        threads: std::num::NonZeroUsize::new(1),
+        canceller,
+        ..Options::default()
+    };
+    // What it refuses is refused with an error.
+    if let Ok(mut run) = Simulation::with(case, options) {
+        drop(run.step());
+    }
+}
+
+/// Some of those that are taken are resumed: that takes as long as a thousand of the others.
+#[test]
+fn changed_checkpoints() {
+    const RESUMED: usize = 20;
+    let (scratch, whole) = corpus::interrupted();
+    let good = fs::read(whole.join("checkpoint.bin")).expect("a checkpoint");
+    let read = Checkpoint::read(&whole.join("checkpoint.bin")).expect("it can be read").expect("it is there");
+    let tree = serde_json::to_value(&read).expect("JSON");
+    let case = Case::load(&whole.join("case.toml"), &[]).expect("a case");
+    let (place, out): (PathBuf, PathBuf) = (scratch.path("changed.bin"), scratch.path("resumed"));
+    let number = std::sync::atomic::AtomicUsize::new(0);
+    let next = move |rng: &mut ChaCha8Rng| changed_checkpoint(rng, &good, &tree, &place);
+    fuzz("checkpoint", 0.1, next, move |bytes, path| {
+        let _owned = &scratch;
+        if !matches!(Checkpoint::read(path), Ok(Some(_))) {
+            return false;
+        }
+        let number = number.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        if number % RESUMED == 0 {
+            fs::remove_dir_all(&out).or_else(|_| fs::create_dir(&out)).expect("a folder");
+            copy(&whole, &out);
+            fs::write(out.join("checkpoint.bin"), bytes).expect("a checkpoint");
+            resume(&case, &out, number % (2 * RESUMED) == 0);
+        }
+        true
+    });
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let entry = entry.expect("an entry").path();
+        let place = to.join(entry.file_name().expect("a name"));
+        if entry.is_dir() { copy(&entry, &place) } else { fs::copy(&entry, &place).map(drop).expect("a copy") }
+    }
 }
 
 #[test]
 fn every_damaged_checkpoint_is_refused() {
-    let good = checkpoint();
+    let (_run, out) = corpus::interrupted();
+    let good = fs::read(out.join("checkpoint.bin")).expect("a checkpoint");
     let scratch = tempfile::tempdir().expect("a scratch directory");
     let path = scratch.path().join("checkpoint.bin");
     fs::write(&path, &good).expect("a file");
