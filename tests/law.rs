@@ -203,7 +203,7 @@ fn what_is_no_study_and_no_law_is_refused() {
         ("{", "is not a law"),
         ("{\"format\": \"other\", \"version\": 1}", "its format is \"other\""),
         ("{\"format\": \"asperity-law\", \"version\": 7}", "version 7"),
-        ("{\"format\": \"asperity-law\", \"version\": 2}", "missing field"),
+        ("{\"format\": \"asperity-law\", \"version\": 2}", "forms is missing"),
     ] {
         fs::write(&law, content).expect("law.json");
         refuse(&["law", "predict", text(&law), text(&case)], told);

@@ -89,6 +89,34 @@ fn a_given_path_is_followed_and_a_bad_row_keeps_what_was_computed() {
 }
 
 #[test]
+fn a_row_of_names_says_which_column_is_which() {
+    let (folder, material) = folder();
+    let file = folder.path().join("path.csv");
+    let followed = |text: &str| {
+        fs::write(&file, text).unwrap();
+        let run = point(&material, &["--path", file.to_str().unwrap()]);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        run.rows
+    };
+    let in_order = followed("1.01,0.02,0,0,1,0,0,0,0.99\n");
+    assert_eq!(followed("F33,F11,F12,F13,F21,F22,F23,F31,F32\n0.99,1.01,0.02,0,0,1,0,0,0\n"), in_order);
+    assert_eq!(followed("F11,F12,F13,F21,F22,F23,F31,F32,F33\n1.01,0.02,0,0,1,0,0,0,0.99\n"), in_order);
+}
+
+/// A path is read whole, up to a limit: a device without an end takes neither all memory nor for
+/// ever.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_path_without_an_end_is_refused() {
+    let (_folder, material) = folder();
+    let begun = std::time::Instant::now();
+    let run = point(&material, &["--path", "/dev/zero"]);
+    assert_eq!((run.code, run.rows.len()), (2, 0), "{}", run.stderr);
+    assert!(run.stderr.contains("/dev/zero") && run.stderr.contains("more than 256 MiB"), "{}", run.stderr);
+    assert!(begun.elapsed() < std::time::Duration::from_secs(20), "{:?}", begun.elapsed());
+}
+
+#[test]
 fn bad_input_names_the_place_and_the_remedy() {
     let (folder, material) = folder();
     let file = folder.path().join("path.csv");
@@ -104,6 +132,11 @@ fn bad_input_names_the_place_and_the_remedy() {
     refused(&["--path", path], &["path.csv", "line 2", "column 5", "\"x\""]);
     fs::write(&file, "\n").unwrap();
     refused(&["--path", path], &["no rows"]);
+    let row = "1,0,0,0,1,0,0,0,1\n";
+    fs::write(&file, format!("F11,F12,F13,F21,F22,F23,F31,F32,G33\n{row}")).unwrap();
+    refused(&["--path", path], &["path.csv", "line 1", "column 9 is called \"G33\"", "in any order"]);
+    fs::write(&file, format!("F11,F12,F13,F21,F22,F23,F31,F11,F33\n{row}")).unwrap();
+    refused(&["--path", path], &["path.csv", "line 1", "two columns are called F11"]);
     refused(&["--path", "nowhere.csv"], &["nowhere.csv", "cannot be read"]);
     refused(&["--mode", "path"], &["--path"]);
     refused(&["--mode", "shear", "--path", path], &["--path", "shear"]);

@@ -1,12 +1,14 @@
 //! `asperity point`: one material point along a path of deformation, as CSV.
 
+use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::{CliError, Outcome};
-use crate::case;
+use crate::bounded;
+use crate::case::{self, short};
 use crate::material::MaterialError;
 use crate::material::point::{PointRecord, along, simple_shear, uniaxial};
 
@@ -47,8 +49,8 @@ pub struct PointArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub steps: Option<u32>,
     /// CSV file of deformation gradients, counted from the undeformed point, a row for each step:
-    /// F11,F12,F13,F21,F22,F23,F31,F32,F33. A row of names may come first; lines that start with #
-    /// are comments.
+    /// F11,F12,F13,F21,F22,F23,F31,F32,F33, or in the order of a first row of these names; lines
+    /// that start with # are comments.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["strain", "steps"], required_if_eq("mode", "path"))]
     pub path: Option<PathBuf>,
     /// Replace a value of the file, as in material.hardening.yield_stress=300. May be repeated.
@@ -80,36 +82,42 @@ pub fn point(args: &PointArgs) -> Result<Outcome, CliError> {
     }
 }
 
-/// The rows of a CSV file of deformation gradients.
+/// The names of the components of a deformation gradient, row by row.
+const COMPONENTS: [&str; 9] = ["F11", "F12", "F13", "F21", "F22", "F23", "F31", "F32", "F33"];
+
+/// The rows of a CSV file of deformation gradients. A row of names says which column is which.
 pub fn read_path(file: &Path) -> Result<Vec<[[f64; 3]; 3]>, CliError> {
     let refuse =
         |place: String, what: String| CliError::Deformation { what: format!("--path {}{place}: {what}", file.display()) };
+    let unreadable = |error: &dyn Display| refuse(String::new(), format!("cannot be read: {error}. Give a CSV file"));
+    let text = bounded::read_to_string(file, bounded::RESULT).map_err(|error| unreadable(&error))?;
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
-        .from_path(file)
-        .map_err(|error| refuse(String::new(), format!("cannot be read: {error}. Give a CSV file")))?;
+        .from_reader(text.as_bytes());
     let mut gradients = Vec::new();
+    let mut places: [usize; 9] = std::array::from_fn(|i| i);
     for (index, row) in reader.records().enumerate() {
-        let row = row.map_err(|error| refuse(String::new(), format!("cannot be read: {error}. Give a CSV file")))?;
-        let line = row.position().map_or(0, csv::Position::line);
+        let row = row.map_err(|error| unreadable(&error))?;
+        let at_line = format!(", line {}", row.position().map_or(0, csv::Position::line));
         let columns = "Give 9 numbers, F11,F12,F13,F21,F22,F23,F31,F32,F33";
         if row.len() != 9 {
-            return Err(refuse(format!(", line {line}"), format!("has {} columns. {columns}", row.len())));
+            return Err(refuse(at_line, format!("has {} columns. {columns}", row.len())));
         }
         // A first row without a single number is a row of names.
         if index == 0 && row.iter().all(|cell| cell.parse::<f64>().is_err()) {
+            places = named(&row).map_err(|what| refuse(at_line, what))?;
             continue;
         }
         let mut gradient = [[0.0; 3]; 3];
-        for (i, cell) in row.iter().enumerate() {
-            gradient[i / 3][i % 3] = cell
+        for (i, (cell, place)) in row.iter().zip(places).enumerate() {
+            gradient[place / 3][place % 3] = cell
                 .parse()
                 .ok()
                 .filter(|x: &f64| x.is_finite())
-                .ok_or_else(|| refuse(format!(", line {line}"), format!("column {} is {cell:?}. {columns}", i + 1)))?;
+                .ok_or_else(|| refuse(at_line.clone(), format!("column {} is {:?}. {columns}", i + 1, short(cell))))?;
         }
         gradients.push(gradient);
     }
@@ -117,6 +125,22 @@ pub fn read_path(file: &Path) -> Result<Vec<[[f64; 3]; 3]>, CliError> {
         return Err(refuse(String::new(), "has no rows. Give one deformation gradient a row".to_owned()));
     }
     Ok(gradients)
+}
+
+/// Which component each column is, by a row of names; the error is what is wrong with it.
+fn named(row: &csv::StringRecord) -> Result<[usize; 9], String> {
+    let mut places = [0; 9];
+    for (i, name) in row.iter().enumerate() {
+        let remedy = format!("Name each of {} once, in any order, or leave the row of names out", COMPONENTS.join(", "));
+        let Some(place) = COMPONENTS.iter().position(|known| *known == name) else {
+            return Err(format!("column {} is called {:?}. {remedy}", i + 1, short(name)));
+        };
+        if places[..i].contains(&place) {
+            return Err(format!("two columns are called {name}. {remedy}"));
+        }
+        places[i] = place;
+    }
+    Ok(places)
 }
 
 /// Prints the records, stresses and energies times `unit`.

@@ -59,7 +59,10 @@ pub enum LawError {
         problem: String,
     },
     /// A law file that is none.
-    #[error("{}: {problem}. Give a law.json that `asperity law fit` of this version wrote", .path.display())]
+    #[error(
+        "{}: {problem}. Restore the file, or make it anew with `asperity law fit`, `law tabulate` or `law compose` of this version",
+        .path.display()
+    )]
     BadLaw {
         /// The file.
         path: PathBuf,
@@ -123,6 +126,15 @@ pub enum LawError {
         has: f64,
         /// h/R that the pair needs, of the table's contact.
         needs: f64,
+    },
+    /// A law that has no sound numbers for a contact which is far from all that it was made from.
+    #[error(
+        "there is no sound table for this case: {problem}. Check its material, friction and indentation against the range of the \
+         law, or the results that the table is made from"
+    )]
+    NoTable {
+        /// The key and the number of the table that it would be.
+        problem: String,
     },
     /// The contact update has no numbers for a material.
     #[error(transparent)]

@@ -1,4 +1,6 @@
-//! How laws of either kind are kept in a file: as JSON that begins with its format and version.
+//! How laws of any kind are kept in a file: as JSON that begins with its format and version, and
+//! that is checked as it is read. What has been read has no number that the code after it would
+//! have to doubt.
 
 use std::io;
 use std::path::Path;
@@ -7,8 +9,24 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::LawError;
+use super::bounds::Checked;
 use crate::bounded;
-use crate::output::write_own;
+use crate::case::short;
+use crate::output::{plain_json, write_own};
+
+/// A kind of law file.
+pub(super) trait LawKind: DeserializeOwned {
+    /// What it is called in messages.
+    const NAME: &'static str;
+    /// Its first key, by which it is recognised.
+    const FORMAT: &'static str;
+    /// Version of its layout.
+    const VERSION: u32;
+
+    /// Refuses whatever the code that uses it takes for granted and is not so; the error begins
+    /// with the key.
+    fn check(&self) -> Checked;
+}
 
 /// Read first, so that a file of another kind or version is called that.
 #[derive(Deserialize)]
@@ -20,7 +38,7 @@ pub(super) struct Head {
 
 /// The format and version of a text.
 pub(super) fn head(text: &str) -> Result<Head, String> {
-    serde_json::from_str(text).map_err(|error| format!("is not a law: {error}"))
+    plain_json::from_str(text).map_err(|flaw| format!("line {}: is not a law file: {flaw}", flaw.line))
 }
 
 /// Writes a law, whole or not at all.
@@ -46,14 +64,16 @@ pub(super) fn read<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T, String>
     parse(&text).map_err(bad)
 }
 
-/// The law in a text of this format and version; `kind` is its name in what is wrong.
-pub(super) fn parse<T: DeserializeOwned>(text: &str, kind: &str, format: &str, version: u32) -> Result<T, String> {
-    let head = head(text)?;
-    if head.format != format {
-        return Err(format!("is not a {kind}: its format is {:?}", head.format));
+/// The law of this kind in a text, checked.
+pub(super) fn parse<T: LawKind>(text: &str) -> Result<T, String> {
+    let (head, name) = (head(text)?, T::NAME);
+    if head.format != T::FORMAT {
+        return Err(format!("is not a {name}: its format is {:?}", short(&head.format)));
     }
-    if head.version != version {
-        return Err(format!("is a {kind} of version {}, and this program reads version {version}", head.version));
+    if head.version != T::VERSION {
+        return Err(format!("is a {name} of version {}, and this program reads version {}", head.version, T::VERSION));
     }
-    serde_json::from_str(text).map_err(|error| format!("is not a {kind}: {error}"))
+    let law: T = plain_json::from_str(text).map_err(|flaw| format!("line {}: is not a {name}: {flaw}", flaw.line))?;
+    law.check()?;
+    Ok(law)
 }

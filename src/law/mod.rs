@@ -32,6 +32,7 @@ pub mod tabulated;
 pub mod variables;
 
 mod baseline;
+mod bounds;
 mod contact_parameters;
 mod error;
 mod folds;

@@ -6,8 +6,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::LawError;
+use super::bounds::{Bounds, Checked, TOLD};
 use super::forms::{self, Constants, Forms, Plasticity};
-use super::json;
+use super::json::{self, LawKind};
+use super::least_squares::Sign;
 use super::normal::NormalModel;
 use super::report::{Candidate, FittedCase, NormalCandidate, RegionError};
 use super::variables::{c_squared, yield_lambda};
@@ -265,14 +267,58 @@ impl Law {
 
     /// A law from the text of its file; the error is what is wrong, in words.
     pub(super) fn from_json(text: &str) -> Result<Self, String> {
-        let law: Self = json::parse(text, "law", FORMAT, VERSION)?;
-        if !law.constants.all().all(|x| x > 0.0 && x.is_finite()) {
-            return Err("has a constant that is not a positive number".to_owned());
+        json::parse(text)
+    }
+}
+
+/// What the constants of the forms may be, which are of order one: positive, since the search has
+/// their logarithms.
+const CONSTANT: Bounds = Bounds { least: 1e-9, most: 1e9 };
+/// Those of the normal forms that may have either sign.
+const SIGNED: Bounds = Bounds { least: -1e9, most: 1e9 };
+/// Ends of the ranges of what a law was fitted to.
+const RANGE: Bounds = Bounds { least: 0.0, most: 1e9 };
+
+impl LawKind for Law {
+    const NAME: &'static str = "law of formulas";
+    const FORMAT: &'static str = FORMAT;
+    const VERSION: u32 = VERSION;
+
+    fn check(&self) -> Checked {
+        let Self { constants, normal, validity, .. } = self;
+        for (key, values) in [
+            ("constants.fall", &constants.fall[..]),
+            ("constants.exponent", &constants.exponent),
+            ("constants.slip", &constants.slip),
+            ("constants.curve", &constants.curve),
+        ] {
+            CONSTANT.hold(key, values)?;
         }
-        if !law.normal.is_complete() {
-            return Err("has not as many constants for the normal problem as its form needs".to_owned());
+        let bounds = if normal.form.sign() == Sign::Positive { CONSTANT } else { SIGNED };
+        for (key, values, wanted) in [
+            ("normal.radius", &normal.radius, normal.form.radius_start().len()),
+            ("normal.force", &normal.force, normal.form.force_start().len()),
+        ] {
+            if values.len() != wanted {
+                return Err(format!("{key} has {} constants, and its form has {wanted}", values.len()));
+            }
+            bounds.hold(key, values)?;
         }
-        Ok(law)
+        for (key, range) in [
+            ("validity.lambda", validity.lambda),
+            ("validity.friction", validity.friction),
+            ("validity.relative_radius", validity.relative_radius),
+            ("validity.c_squared", validity.c_squared),
+            ("validity.poissons_ratio", validity.poissons_ratio),
+            ("validity.hardening_exponent", validity.hardening_exponent),
+        ] {
+            RANGE.hold_interval(key, range)?;
+        }
+        TOLD.hold_all("errors", &self.errors)?;
+        TOLD.hold_all("errors_predicted", &self.errors_predicted)?;
+        TOLD.hold_all("candidates", &self.candidates)?;
+        TOLD.hold_all("normal_candidates", &self.normal_candidates)?;
+        TOLD.hold_all("cases", &self.cases)
     }
 }
 

@@ -127,11 +127,6 @@ impl NormalModel {
         Self { form: NormalForm::Published, radius: Vec::new(), force: Vec::new() }
     }
 
-    /// Whether there are as many constants as the form has.
-    pub fn is_complete(&self) -> bool {
-        self.radius.len() == self.form.radius_start().len() && self.force.len() == self.form.force_start().len()
-    }
-
     /// a0 and F_N0 at the indentation `h`, pressed with Coulomb's coefficient `friction`; zero for
     /// h <= 0. Hertz below first yield, but for F_N0 of the composed form.
     pub fn state(&self, body: &Body, friction: f64, h: f64) -> NormalState {

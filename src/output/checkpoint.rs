@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::atomic::replace_atomically;
 use super::ledger::Ledger;
-use super::{OutputDirectory, OutputError};
+use super::{OutputDirectory, OutputError, sound};
 use crate::bounded;
 use crate::case::{Case, Fields};
 use crate::compute::Description;
@@ -133,7 +133,13 @@ impl Checkpoint {
         if crc32fast::hash(stored) != u32::from_le_bytes(*sum) {
             return Err(damaged());
         }
-        postcard::from_bytes(&stored[line.len()..]).map(Some).map_err(|_| damaged())
+        let read: Self = postcard::from_bytes(&stored[line.len()..]).map_err(|_| damaged())?;
+        match read.run.flaw().or_else(|| sound::flaw(&read.ledger)) {
+            None => Ok(Some(read)),
+            Some(flaw) => Err(refused(format!(
+                "it holds what no run can have written, {flaw}; restore it, or run with --force and without --resume to begin anew"
+            ))),
+        }
     }
 
     /// Refuses a checkpoint of another case.

@@ -5,7 +5,8 @@
 //! Sums over all rows are therefore of the whole sphere: F_N of pressure times area, -F_T of
 //! traction_x times area.
 
-use super::history::row_problem;
+use super::finite::none_in_point;
+use super::history::read_rows;
 use super::{OutputError, write_atomically};
 use crate::bounded;
 use serde::{Deserialize, Serialize};
@@ -114,7 +115,7 @@ pub fn read_contact(path: &Path) -> Result<Vec<ContactPoint>, OutputError> {
         // Without `half` it is a table of the meshed half alone, whose sums are half of the forces.
         return Err(malformed((1, format!("no column {missing}: a table of another version; run the case again"))));
     }
-    reader.deserialize().map(|row| row.map_err(|error| malformed(row_problem(&error, &columns)))).collect()
+    read_rows(&mut reader, &columns, none_in_point).map_err(malformed)
 }
 
 #[cfg(test)]

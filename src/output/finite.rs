@@ -2,8 +2,21 @@
 
 use std::path::Path;
 
+use super::sound::MOST;
 use super::{ContactPoint, OutputError, StepRecord, Summary};
 use crate::compute::CaseFields;
+
+/// The numbers of a contact point that follow from the state, by their columns.
+fn numbers_of_point(point: &ContactPoint) -> [(&'static str, f64); 6] {
+    [
+        ("x", point.current_x),
+        ("y", point.current_y),
+        ("gap", point.gap),
+        ("pressure", point.pressure),
+        ("traction_x", point.traction_x),
+        ("traction_y", point.traction_y),
+    ]
+}
 
 /// Refuses a row of the history with such a number.
 ///
@@ -11,6 +24,41 @@ use crate::compute::CaseFields;
 /// [`OutputError::NotFinite`] with step and column.
 pub fn check_row(path: &Path, row: &StepRecord) -> Result<(), OutputError> {
     row.not_finite().map_or(Ok(()), |(column, value)| refuse(path, row.step, [(column, Some(value))]))
+}
+
+/// Of a row that was read, the first column without a number, or with a count that no run can have,
+/// in words.
+pub fn none_in_row(row: &StepRecord) -> Option<String> {
+    let counts = [
+        ("step", row.step),
+        ("segment", row.segment),
+        ("newton_iterations", row.newton_iterations),
+        ("cutbacks", row.cutbacks),
+        ("krylov_iterations", row.krylov_iterations),
+        ("contact_points", row.contact_points),
+        ("slipping_points", row.slipping_points),
+        ("relaxed", row.relaxed),
+        ("landed_again", row.landed_again),
+    ];
+    let too_many = || {
+        let (name, count) = counts.into_iter().find(|(_, count)| *count as u64 > MOST)?;
+        Some(format!("column {name}: {count} is more than any run can count"))
+    };
+    row.not_finite().map(none).or_else(too_many)
+}
+
+/// Of a contact point that was read likewise.
+pub fn none_in_point(point: &ContactPoint) -> Option<String> {
+    let mesh = [("X", point.reference_x), ("Y", point.reference_y), ("area", point.area)];
+    none_in(&mesh).or_else(|| none_in(&numbers_of_point(point)))
+}
+
+fn none_in(numbers: &[(&str, f64)]) -> Option<String> {
+    numbers.iter().find(|(_, value)| !value.is_finite()).copied().map(none)
+}
+
+fn none((column, value): (&str, f64)) -> String {
+    format!("column {column}: {value} is not a finite number")
 }
 
 /// Refuses a summary with such a number, which would be null in the file.
@@ -42,15 +90,7 @@ pub fn check_summary(path: &Path, summary: &Summary) -> Result<(), OutputError> 
 /// [`OutputError::NotFinite`] with the step and what it is of.
 pub fn check_saved(path: &Path, step: usize, fields: &CaseFields, contact: &[ContactPoint]) -> Result<(), OutputError> {
     for point in contact {
-        let numbers = [
-            ("x", point.current_x),
-            ("y", point.current_y),
-            ("gap", point.gap),
-            ("pressure", point.pressure),
-            ("traction_x", point.traction_x),
-            ("traction_y", point.traction_y),
-        ];
-        refuse(path, step, numbers.map(|(name, value)| (name, Some(value))))?;
+        refuse(path, step, numbers_of_point(point).map(|(name, value)| (name, Some(value))))?;
     }
     for (stress, alpha) in fields.stress.iter().zip(&fields.alpha) {
         let worst = stress.iter().find(|stress| !stress.is_finite()).copied();

@@ -1,10 +1,11 @@
 //! `history.csv`: one row for every accepted step, in the user's units, appended as the run goes.
 
-use super::finite::check_row;
+use super::finite::{check_row, none_in_row};
 use super::lock::same_file;
 use super::{OutputError, write_atomically};
 use crate::bounded;
 use crate::simulation::record::StepRecord;
+use serde::de::DeserializeOwned;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -102,15 +103,30 @@ pub fn read_history(path: &Path) -> Result<Vec<StepRecord>, OutputError> {
     if columns.iter().take(FIXED_COLUMNS.len()).ne(FIXED_COLUMNS) {
         return Err(malformed(1, format!("the columns should start with {}", FIXED_COLUMNS.join(","))));
     }
+    read_rows(&mut reader, &columns, none_in_row).map_err(|(line, problem)| malformed(line, problem))
+}
+
+/// All rows of a table; what is wrong with one is told with its line. `flaw` says what is wrong with
+/// the values of a row.
+pub(super) fn read_rows<T: DeserializeOwned>(
+    reader: &mut csv::Reader<&[u8]>,
+    columns: &csv::StringRecord,
+    flaw: impl Fn(&T) -> Option<String>,
+) -> Result<Vec<T>, (u64, String)> {
     let mut rows = Vec::new();
-    for row in reader.deserialize() {
-        rows.push(row.map_err(|error| row_problem(&error, &columns)).map_err(|(line, problem)| malformed(line, problem))?);
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record).map_err(|error| row_problem(&error, columns))? {
+        let row: T = record.deserialize(Some(columns)).map_err(|error| row_problem(&error, columns))?;
+        if let Some(problem) = flaw(&row) {
+            return Err((record.position().map_or(0, csv::Position::line), problem));
+        }
+        rows.push(row);
     }
     Ok(rows)
 }
 
 /// Line and plain words for what the CSV reader says of a row.
-pub(super) fn row_problem(error: &csv::Error, columns: &csv::StringRecord) -> (u64, String) {
+fn row_problem(error: &csv::Error, columns: &csv::StringRecord) -> (u64, String) {
     let line = error.position().map_or(0, csv::Position::line);
     let problem = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {

@@ -1,6 +1,6 @@
 //! `summary.json`: one run in some numbers, and how they are read off its history.
 
-use super::{OutputError, StepRecord, TimeByPhase, write_atomically};
+use super::{OutputError, StepRecord, TimeByPhase, plain_json, write_atomically};
 use crate::bounded;
 use crate::compute::traffic::DeviceTraffic;
 use serde::{Deserialize, Serialize};
@@ -233,10 +233,10 @@ impl Summary {
     /// Reads it back; keys that are missing get their defaults.
     pub fn read(path: &Path) -> Result<Self, OutputError> {
         let text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
-        serde_json::from_str(&text).map_err(|error| OutputError::Malformed {
+        plain_json::from_str(&text).map_err(|flaw| OutputError::Malformed {
             path: path.to_path_buf(),
-            line: error.line() as u64,
-            problem: error.to_string(),
+            line: flaw.line as u64,
+            problem: flaw.to_string(),
         })
     }
 }

@@ -15,6 +15,14 @@ use crate::contact::coulomb::Status;
 use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
 
+/// Greatest number that a state may have, which is scaled: displacements are over R, forces over E
+/// R^2.
+const LARGEST: f64 = 1e9;
+/// Most of what is counted along a path.
+const MOST_COUNTED: usize = 1_000_000_000;
+/// Targets are never taken in more than 2^2 parts.
+const MOST_PACE: u32 = 2;
+
 /// The committed state of the drive, scaled.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Committed {
@@ -145,6 +153,42 @@ impl Snapshot {
     /// Number of the last accepted step.
     pub fn step(&self) -> usize {
         self.state.record.step
+    }
+
+    /// Why no run can have been in this state, in words. [`check`](Self::check) compares it with a
+    /// mesh.
+    pub fn flaw(&self) -> Option<String> {
+        let Self { state, place, force_scales, case } = self;
+        let sound = |value: &f64| value.abs() <= LARGEST;
+        let start = place.start.iter().flat_map(|start| {
+            // Under full stick the coefficient of friction is infinite.
+            let friction = if start.friction == f64::INFINITY { 0.0 } else { start.friction };
+            let [own, both] = start.compliance;
+            [start.h, start.h_max, start.delta_t, start.f_n, start.a, friction, start.nu, own, both]
+        });
+        let targets = place.waiting.iter().flat_map(|target| [target.h, target.delta_t]);
+        let points = case.points.iter().flatten().flat_map(|point| point.be.iter().chain([&point.alpha]));
+        let flow = case.flow.iter().flatten().flat_map(|flow| flow.strain.iter().chain([&flow.alpha]));
+        let record = [state.record.h, state.record.delta_t, state.record.f_n, state.record.f_t, state.record.a];
+        let single = [state.last_length, state.h_max, state.direction, place.force_before];
+        let wrong = |what: &str| Some(format!("{what} beyond {LARGEST:e}, or none"));
+        if !state.u.iter().chain(&state.u_before).chain(&case.displacement).chain(&state.gaps).all(sound) {
+            return wrong("a displacement or a gap");
+        }
+        if !state.force.iter().chain(force_scales).all(sound) || !points.chain(flow).chain(&case.plastic_work).all(sound) {
+            return wrong("a force, a strain or a work");
+        }
+        let increment = state.last_increment.iter().flatten().copied();
+        if !start.chain(targets).chain(record).chain(single).chain(increment).all(|value| sound(&value)) {
+            return wrong("a number of its place on the path");
+        }
+        let Place { segment, reached, wasted, cutbacks, depth, pace, .. } = *place;
+        let counts = [segment, reached, wasted, cutbacks, depth, state.record.step, place.waiting.len()];
+        let most = counts.into_iter().max().unwrap_or(0);
+        if most > MOST_COUNTED || pace > MOST_PACE {
+            return Some(format!("a count of {} on its path", most.max(pace as usize)));
+        }
+        None
     }
 
     /// Whether this is a state of a body with that mesh.

@@ -34,6 +34,13 @@ impl Zone {
         Self { contact_radius: contact_radius.clamp(SMALLEST_CONTACT, LARGEST_CONTACT), fine_zone }
     }
 
+    /// Why no mesh can have been made for this zone, in words.
+    pub fn flaw(self) -> Option<String> {
+        let Self { contact_radius, fine_zone } = self;
+        let sound = (SMALLEST_CONTACT..=LARGEST_CONTACT).contains(&contact_radius) && FINE_ZONES.contains(&fine_zone);
+        (!sound).then(|| format!("a zone of {fine_zone:?} contact radii of {contact_radius:?} R"))
+    }
+
     /// The zone as far as a sphere of this radius, the smaller one of two, can have it.
     pub fn within(self, radius: f64) -> Self {
         let contact_radius = self.contact_radius.min((LARGEST_CONTACT * radius).max(SMALLEST_CONTACT));

@@ -53,8 +53,8 @@ fn a_file_comes_back_and_others_are_refused() {
     let text = std::fs::read_to_string(&path).unwrap();
     for (from, to, words) in [
         ("\"version\":1", "\"version\":9", "version 9"),
-        ("\"weights\":[", "\"weights\":[0.0,", "lacks some of its numbers"),
-        ("asperity-law-interpolated", "asperity-law-other", "not a law"),
+        ("\"weights\":[", "\"weights\":[0.0,", "processes[0].weights has 1052 numbers, and has to have 1051"),
+        ("asperity-law-interpolated", "asperity-law-other", "is not a law of formulas"),
     ] {
         std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
         let refused = LawFile::read(&path).unwrap_err().to_string();

@@ -5,7 +5,9 @@ use std::path::Path;
 use super::against::first_yield;
 use super::measure::{Measured, Missing, Study, measured};
 use super::spline::{Spline, smooth};
-use super::{Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, columns_of, equivalent, level_of, straight};
+use super::{
+    Against, BACKBONE, DepthErrors, FORMAT, Level, Tabulated, VERSION, check_levels, columns_of, equivalent, level_of, straight,
+};
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
@@ -168,6 +170,7 @@ pub(super) fn of_levels(scaled: Case, mut levels: Vec<Level>, elements: usize) -
     if let Some(yielding) = first_yield(&scaled)?.filter(|&h| NEAR * h < levels[0].h) {
         levels.insert(0, hertzian(&equivalent(&scaled), friction_of(&scaled), yielding));
     }
+    check_levels(&levels).map_err(|problem| LawError::NoTable { problem })?;
     let (from, to) = (levels[0].h, levels[levels.len() - 1].h);
     Ok(Tabulated {
         format: FORMAT.to_owned(),

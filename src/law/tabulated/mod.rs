@@ -11,6 +11,7 @@
 
 mod against;
 mod build;
+mod checked;
 mod measure;
 #[cfg(feature = "plots")]
 mod picture;
@@ -31,6 +32,7 @@ use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINT
 pub use against::{Against, equivalent, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
 pub(super) use build::{backbone_of, reversal, scaled, unloading_radius};
+pub(super) use checked::check_levels;
 pub(super) use measure::Measured;
 pub use measure::Missing;
 #[cfg(feature = "plots")]
@@ -141,7 +143,7 @@ impl Tabulated {
     /// The table of levels that come from elsewhere than from simulated depths of `case`.
     ///
     /// # Errors
-    /// A hardening law whose numbers make no law.
+    /// A hardening law whose numbers make no law; [`LawError::NoTable`] for levels that are none.
     pub(super) fn interpolated(case: &Case, levels: Vec<Level>, elements: usize) -> Result<Self, LawError> {
         build::of_levels(build::scaled(case), levels, elements)
     }
@@ -170,48 +172,12 @@ impl Tabulated {
 
     /// A table from the text of its file; the error is what is wrong, in words.
     pub(super) fn from_json(text: &str) -> Result<Self, String> {
-        let table: Self = json::parse(text, "tabulated law", FORMAT, VERSION)?;
-        table.check()?;
-        Ok(table)
-    }
-
-    fn check(&self) -> Result<(), String> {
-        let case = self.case()?;
-        if !matches!(case.contact.friction, Friction::Coefficient(_)) {
-            return Err("is a tabulated law without a friction coefficient".to_owned());
-        }
-        let body = Against::of(&case);
-        if body != self.body {
-            return Err(format!("says that it is against {}, and its case is against {body}", self.body));
-        }
-        frame_of_the_centres(self.frame, Centres::of(&case).frame(), "law tabulate")?;
-        if self.levels.len() < 3 || !self.levels.windows(2).all(|pair| pair[0].h < pair[1].h) {
-            return Err("has fewer than three levels, or they do not increase".to_owned());
-        }
-        for level in &self.levels {
-            let numbers = [
-                level.h,
-                level.f_n0,
-                level.a0,
-                level.slip_share,
-                level.delta_t_slip,
-                level.unloading_radius,
-                level.k_t,
-                level.backbone - 1.0,
-                level.yield_coefficient.unwrap_or(1.0),
-            ];
-            let shapes = level.tangential.iter().chain(&level.normal);
-            let complete = level.tangential.len() == POINTS && level.normal.len() == POINTS;
-            if !complete || !numbers.iter().all(|x| *x > 0.0 && x.is_finite()) || !shapes.clone().all(|x| x.is_finite()) {
-                return Err(format!("has a number that is missing or none at h/R = {}", level.h));
-            }
-        }
-        Ok(())
+        json::parse(text)
     }
 
     /// The case of the table, R = 1 and E = 1.
     fn case(&self) -> Result<Case, String> {
-        Case::parse(&self.case, "case", &[]).map_err(|error| format!("holds an invalid case: {error}"))
+        Case::parse(&self.case, "case", &[]).map_err(|error| format!("case is no case: {error}"))
     }
 
     /// mu.
@@ -345,10 +311,7 @@ impl Tabulated {
     /// # Errors
     /// [`LawError::BadLaw`], after reading it never.
     pub fn deepest_case(&self) -> Result<Case, LawError> {
-        let bad = |problem| LawError::BadLaw { path: "law.json".into(), problem };
-        let mut case = self.case().map_err(bad)?;
-        case.path = vec![case::Segment::Indentation { indentation: self.range.to / 1.1 }];
-        Ok(case)
+        Ok(self.pressed_to_its_end(self.scaled_case()?))
     }
 
     /// What of a contact at the indentation `h` over R lies outside of the table.

@@ -19,7 +19,7 @@
 
 use super::against::{Against, equivalent};
 use super::build::{LENGTH, NEARLY_SLIPPING, depths, hertzian, points};
-use super::{Curves, FORMAT, Level, Tabulated, VERSION};
+use super::{Curves, FORMAT, Level, Tabulated, VERSION, check_levels};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Material, Opponent, Segment, Sphere};
 use crate::contact_law::{Centres, POINTS, unloading_exponent};
@@ -474,6 +474,7 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
         }
         levels.push(Series::new(&sheared, radius, friction, h).level(&sphere).pressed_as(&series));
     }
+    check_levels(&levels).map_err(|problem| LawError::NoTable { problem })?;
     let range = Interval { from: levels[0].h, to: levels[levels.len() - 1].h };
     let elements = tables.map(|table| table.elements_per_contact_radius);
     Ok(Tabulated {

@@ -154,11 +154,11 @@ fn a_file_is_read_back_and_others_are_refused() {
     let text = std::fs::read_to_string(&path).unwrap();
     for (from, to, told) in [
         ("\"version\": 1", "\"version\": 9", "tabulated law of version 9"),
-        ("\"body\": \"plane\"", "\"body\": \"cube\"", "unknown variant `cube`"),
+        ("\"body\": \"plane\"", "\"body\": \"cube\"", "body is \"cube\", and has to be \"plane\", \"equal pair\""),
         ("\"body\": \"plane\"", "\"body\": \"equal pair\"", "its case is against a rigid plane"),
         ("\"asperity-law-table\"", "\"asperity-law-3\"", "its format is \"asperity-law-3\""),
-        ("\"levels\"", "\"lewels\"", "is not a tabulated law"),
-        ("friction = 0.3", "friction = -0.3", "holds an invalid case"),
+        ("\"levels\"", "\"lewels\"", "lewels is no key of this file"),
+        ("friction = 0.3", "friction = -0.3", "case is no case"),
     ] {
         assert!(text.contains(from), "{from}");
         std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
