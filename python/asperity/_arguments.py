@@ -86,7 +86,7 @@ def as_array(name: str, value: Any) -> np.ndarray:
     try:
         # Lists may have masked values in them, which NumPy itself makes NaN.
         return np.ma.asarray(value) if isinstance(value, (list, tuple)) else np.asanyarray(value)
-    except (TypeError, ValueError, RecursionError) as error:
+    except (TypeError, ValueError, RecursionError, UserWarning) as error:
         raise CaseError(f"{name}: is no array ({error}). Allowed: an array") from None
 
 

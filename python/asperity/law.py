@@ -246,7 +246,8 @@ class Law:
         :param h: one number for all contacts, or one a contact, (n,).
         :param delta: the two components (x, y) for all contacts, or those of each, (n, 2). A single number is refused: an increment along x alone is (x, 0).
         :returns: ``F_N`` (n,), compression positive; ``F_T`` (n, 2), along the displacement; the contact radius ``a`` (n,); and the tangents ``dF_N_dh`` (n,),
-            ``dF_N_ddelta`` (n, 2), ``dF_T_ddelta`` (n, 2, 2). Where ``h`` or ``delta`` is infinite or NaN the whole answer of that contact is NaN, and it stays as it was.
+            ``dF_N_ddelta`` (n, 2), ``dF_T_ddelta`` (n, 2, 2). Where ``h`` or ``delta`` is infinite or NaN, or so large that the forces
+            overflow, the whole answer of that contact is NaN, and it stays as it was.
         :raises CaseError: another shape, or what is not a number (masked, ``None``, text, complex, a boolean), with the argument and the first index; nothing has
             moved. So it is with the ``MemoryError`` of an answer that does not fit, and where another thread moves these contacts.
         """

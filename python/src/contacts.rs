@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-use asperity::contact_law::{ContactParameters, ContactState};
+use asperity::contact_law::{ContactParameters, ContactResponse, ContactState};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -146,8 +146,7 @@ impl Contacts {
             let tangential = (f_t.par_chunks_exact_mut(2), df_t_ddelta.par_chunks_exact_mut(4), a.par_iter_mut());
             let all = (states.par_iter_mut(), normal.into_par_iter(), tangential.into_par_iter()).into_par_iter();
             all.enumerate().with_min_len(CHUNK).for_each(|(i, (state, normal, tangential))| {
-                let (next, response) = parameters.update(state, h[i], [delta[[i, 0]], delta[[i, 1]]]);
-                *state = next;
+                let response = moved(parameters, state, h[i], [delta[[i, 0]], delta[[i, 1]]]);
                 (*normal.0, *normal.1, *tangential.2) = (response.f_n, response.df_n_dh, response.a);
                 normal.2.copy_from_slice(&response.df_n_ddelta);
                 tangential.0.copy_from_slice(&response.f_t);
@@ -165,6 +164,18 @@ impl Contacts {
         out.set_item("dF_T_ddelta", flat(df_t_ddelta).reshape([number, 2, 2])?)?;
         Ok(out)
     }
+}
+
+/// Moves one contact. Where numbers overflow it stays as it was, and nothing in the answer is a
+/// number, as for an `h` that is not finite.
+fn moved(parameters: &ContactParameters, state: &mut ContactState, h: f64, delta: [f64; 2]) -> ContactResponse {
+    let (next, response) = parameters.update(state, h, delta);
+    let answer = [response.f_n, response.f_t[0], response.f_t[1], response.a];
+    if row(&next).chain(answer).all(f64::is_finite) {
+        *state = next;
+        return response;
+    }
+    parameters.update(state, f64::NAN, delta).1
 }
 
 fn check_length(name: &str, found: usize, wanted: usize) -> PyResult<()> {

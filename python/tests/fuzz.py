@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from hostile import TEXTS, Own, array, damaged, mutated, value
+from hostile import TEXTS, Own, array, damaged, mutated, numbers, value
 
 import asperity
 
@@ -112,7 +112,7 @@ class Fuzz:
             "Case.replace": lambda dice: case.replace(self.settings(dice)),
             "Case.to_dict": lambda dice: Case.from_dict(mutated(dice, self.tables)).to_dict(),
             "Case.to_toml": lambda dice: case.replace(self.settings(dice)).to_toml(),
-            "Case.__getitem__": lambda dice: case[value(dice)],
+            "Case.__getitem__": lambda dice: case[dice.choice([value(dice), "path.0.indentation", "path.-1", "path.0.0.0", "sphere", "sphere.radius.x", "path.99999999999999999999"])],
             "Case.__eq__": lambda dice: isinstance(case == value(dice), bool),
         }
 
@@ -220,22 +220,30 @@ class Fuzz:
         }
 
     def update(self, dice: random.Random) -> object:
-        """A number of moves, of which any may be hostile; what is kept stays finite, and so does what is answered to finite numbers."""
+        """A number of moves, of which any may be hostile; what is kept stays finite, and so is the answer, or it is none at all."""
         law = dice.choice([self.table, self.formulas])
         count = dice.choice([0, 1, 2, 3, 300])
         state = law.contacts(self.case, count)
         for _ in range(dice.randrange(1, 5)):
             before = state.array
-            h, delta = dice.choice([0.01, array(dice, count), value(dice, count)]), dice.choice([(0.0, 1e-4), array(dice, count), value(dice, count)])
+            h: Any = dice.choice([0.01, numbers(dice, (count,), ())])
+            delta: Any = dice.choice([(0.0, 1e-4), numbers(dice, (count, 2), (2,))])
+            if dice.random() < 0.2:
+                h, delta = dice.choice([(value(dice, count), delta), (h, array(dice, count)), (array(dice, count), delta)])
             try:
                 answer = law.update(dice.choice([state] * 20 + [value(dice)]), h, delta)
             except BaseException:
                 assert np.array_equal(state.array, before), "a refused update has moved contacts"
                 raise
             assert np.isfinite(state.array).all(), f"a state that is not finite after h = {h!r}, delta = {delta!r}"
-            given = np.isfinite(np.broadcast_to(np.asarray(h, dtype=float), (count,))) & np.isfinite(np.broadcast_to(np.asarray(delta, dtype=float), (count, 2))).all(axis=1)
-            for name in ("F_N", "F_T", "a"):
-                assert np.isfinite(answer[name][given]).all(), f"{name} is not finite for h = {h!r}, delta = {delta!r}"
+            h, delta = (np.broadcast_to(np.asarray(given, dtype=float), shape) for given, shape in ((h, (count,)), (delta, (count, 2))))
+            forces = np.column_stack([answer["F_N"], answer["F_T"], answer["a"]])
+            none = np.isnan(forces).all(axis=1)
+            assert (none | np.isfinite(forces).all(axis=1)).all(), f"half an answer to h = {h}, delta = {delta}"
+            assert np.array_equal(state.array[none], before[none]), "a contact without an answer has moved"
+            # A sphere of radius 1: nothing overflows here.
+            small = (np.abs(h) < 1e100) & (np.abs(delta) < 1e100).all(axis=1)
+            assert not none[small].any(), f"no answer to h = {h}, delta = {delta}"
         return state
 
     def of_contacts(self) -> dict[str, Call]:
@@ -248,8 +256,8 @@ class Fuzz:
             state = contacts(dice)
             memory = state.array
             memory[:, dice.randrange(memory.shape[1])] = dice.choice([-1.0, 1.0]) * 10.0 ** dice.uniform(-300, 300)
-            state.array = dice.choice([memory, memory, value(dice, memory.shape[0]), memory.tolist(), memory.astype(">f8"), memory[::-1]])
-            return self.table.update(state, array(dice, 3), (1e-4, 0.0))
+            state.array = dice.choice([memory, memory, numbers(dice, memory.shape), value(dice, memory.shape[0]), memory.tolist(), memory.astype(">f8"), memory[::-1]])
+            return self.table.update(state, numbers(dice, (3,)), numbers(dice, (2,), (3, 2)))
 
         def thread(dice: random.Random) -> object:
             """Moved by two threads at once: the second one is refused."""
@@ -270,7 +278,7 @@ class Fuzz:
         return {
             "Contacts": lambda dice: asperity.Contacts(value(dice)),
             "Contacts.array": remember,
-            "Contacts.rotate": lambda dice: contacts(dice).rotate(dice.choice([array(dice, 3), value(dice)])),
+            "Contacts.rotate": lambda dice: contacts(dice).rotate(dice.choice([numbers(dice, (3,), ()), array(dice, 3), value(dice)])),
             "Contacts.copy": lambda dice: contacts(dice).copy(),
             "Contacts.__len__": thread,
         }

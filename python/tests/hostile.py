@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import fractions
 import itertools
+import math
 import os
 import random
 from collections.abc import Callable, Iterator, Mapping
@@ -133,13 +134,16 @@ def value(dice: random.Random, count: int = 3) -> Any:
 
 
 def array(dice: random.Random, count: int) -> Any:
-    """An array for so many contacts, usually not fit for them; or numbers of any size, one of which is wrong."""
-    if dice.random() < 0.5:
-        return dice.choice(ARRAYS)(count)
-    shape = dice.choice([(count,), (count, 2), (2,), ()])
-    found = np.array([dice.choice([-1.0, 1.0]) * 10.0 ** dice.uniform(-6, dice.choice([0, 0, 300])) for _ in range(int(np.prod(shape)))]).reshape(shape)
-    if dice.random() < 0.3 and found.size:
-        found.flat[dice.randrange(found.size)] = dice.choice([np.nan, np.inf, -np.inf, 0.0, 5e-324])
+    """An array for so many contacts, usually not fit for them."""
+    return dice.choice(ARRAYS)(count)
+
+
+def numbers(dice: random.Random, *shapes: tuple[int, ...]) -> np.ndarray:
+    """Numbers of a shape that fits, of any size."""
+    shape, greatest = dice.choice(shapes), dice.choice([-1, -1, -1, 0, 10, 150, 308])
+    found = np.array([dice.choice([-1.0, 1.0, 1.0]) * 10.0 ** dice.uniform(dice.choice([-4, -320]), greatest) for _ in range(math.prod(shape))]).reshape(shape)
+    if dice.random() < 0.2 and found.size:
+        found.flat[dice.randrange(found.size)] = dice.choice([np.nan, np.inf, -np.inf, 0.0, 5e-324, 1.7976931348623157e308])
     return found
 
 
