@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -11,7 +12,10 @@ import numpy as np
 
 from .errors import CaseError
 
-__all__ = ["as_array", "described", "numbers", "path", "text", "truth"]
+__all__ = ["as_array", "described", "items", "numbers", "path", "text", "truth"]
+
+# Most keys of a mapping.
+_MOST = 10_000
 
 
 def described(value: Any) -> str:
@@ -51,6 +55,16 @@ def truth(name: str, value: Any) -> bool:
     return bool(value)
 
 
+def items(name: str, value: Any, allowed: str) -> list[tuple[Any, Any]]:
+    """What is in a mapping, if that has an end."""
+    if not isinstance(value, Mapping):
+        raise CaseError(f"{name}: is {described(value)}. Allowed: {allowed}")
+    keys = list(itertools.islice(value, _MOST + 1))
+    if len(keys) > _MOST:
+        raise CaseError(f"{name}: has more than {_MOST} keys. Allowed: {allowed}")
+    return [(key, value[key]) for key in keys]
+
+
 def numbers(name: str, value: Any, shape: tuple[int, ...], *, one: str | None = None, finite: bool = False) -> np.ndarray:
     """Real numbers as float64 of a shape, in a row in memory.
 
@@ -63,8 +77,8 @@ def numbers(name: str, value: Any, shape: tuple[int, ...], *, one: str | None = 
         whole = str(shape).replace(" ", "") if len(shape) == 1 else str(shape)
         allowed = whole if one is None else f"{one}, or an array of the shape {whole}"
         raise CaseError(f"{name}: {_shape(array)}. Allowed: {allowed}")
-    mask = np.ma.getmask(array)
-    if mask is not np.ma.nomask and mask.any():
+    mask = np.asarray(np.ma.getmask(array))
+    if mask.any():
         raise CaseError(f"{_at(name, mask)}: is masked. Allowed: numbers")
     array = np.asarray(array)
     if array.dtype.kind == "O":

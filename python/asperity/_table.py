@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arguments import as_array, described
+from ._arguments import as_array, items
 from ._optional import need
 from .errors import AsperityError, CaseError
 
@@ -23,9 +23,9 @@ class Table(Mapping[str, np.ndarray]):
     """
 
     def __init__(self, columns: Mapping[str, Any]) -> None:
-        if not isinstance(columns, Mapping):
-            raise CaseError(f"columns: is {described(columns)}. Allowed: a mapping of names to columns")
-        self._columns: dict[str, np.ndarray] = {name: np.asarray(as_array(f"columns.{name}", column)) for name, column in columns.items()}
+        self._columns: dict[str, np.ndarray] = {
+            name: np.asarray(as_array(f"columns.{name}", column)) for name, column in items("columns", columns, "a mapping of names to columns")
+        }
         if any(not column.ndim for column in self._columns.values()) or len({len(column) for column in self._columns.values()}) > 1:
             raise CaseError("columns: are not of one length. Allowed: one value a row in each")
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._arguments import described, path
+from ._arguments import described, items, path
 from ._arguments import text as _text
 from ._asperity import NativeCase, toml_value
 from .errors import CaseError
@@ -17,8 +17,6 @@ __all__ = ["Case"]
 def _settings(settings: Mapping[str, Any] | None) -> list[str]:
     if settings is None:
         return []
-    if not isinstance(settings, Mapping):
-        raise CaseError(f"set: is {described(settings)}. Allowed: a dictionary of values by their dotted keys")
 
     def setting(key: Any, value: Any) -> str:
         key = _text("set", key)
@@ -27,7 +25,7 @@ def _settings(settings: Mapping[str, Any] | None) -> list[str]:
         # What stands alone may be without quotes, as on the command line.
         return f"{key}={_text(key, value) if isinstance(value, str) else toml_value(value, key)}"
 
-    return [setting(key, value) for key, value in settings.items()]
+    return [setting(key, value) for key, value in items("set", settings, "a dictionary of values by their dotted keys")]
 
 
 class Case:

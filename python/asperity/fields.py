@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
-from ._arguments import as_array, described
+from ._arguments import as_array, items
 from ._optional import need
 from .errors import AsperityError, CaseError
 
@@ -32,9 +31,7 @@ def _rows(name: str, value: Any, width: tuple[int, ...] | None, kinds: str, coun
 
 
 def _data(name: str, data: Any, count: int) -> dict[str, np.ndarray]:
-    if not isinstance(data, Mapping):
-        raise CaseError(f"{name}: is {described(data)}. Allowed: a dictionary of arrays")
-    return {key: _rows(f"{name}.{key}", values, None, "fiu", count) for key, values in data.items()}
+    return {key: _rows(f"{name}.{key}", values, None, "fiu", count) for key, values in items(name, data, "a dictionary of arrays")}
 
 
 class Mesh:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _asperity, _table
-from ._arguments import described, path, text, truth
+from ._arguments import items, path, text, truth
 from ._asperity import toml_value
 from ._kept import Directory, Scratch
 from ._progress import bar_wanted
@@ -53,7 +53,7 @@ class Study(Directory):
 
     def __getitem__(self, row: int) -> Run:
         """The run of a row of the table."""
-        where = str(self.table["directory"][operator.index(row)])
+        where = str(self.table["directory"][range(len(self))[operator.index(row)]])
         if not self.directory.is_dir():
             raise self._gone()
         return Run(self.directory / where)
@@ -67,17 +67,16 @@ class Study(Directory):
         return f"<Study: {done} of {len(self)} cases done, in {self.directory}>"
 
 
-def _lines(table: Mapping[str, Any], name: str) -> str:
+def _lines(name: str, table: Mapping[str, Any], allowed: str) -> str:
     """A table as lines of a TOML file, in its order."""
-    keys = {key: text(name, key) for key in table}
-    return "\n".join(f"{json.dumps(key, ensure_ascii=False)} = {toml_value(table[given], key)}" for given, key in keys.items() if table[given] is not None)
+    values = [(text(name, key), value) for key, value in items(name, table, allowed)]
+    return "\n".join(f"{json.dumps(key, ensure_ascii=False)} = {toml_value(value, key)}" for key, value in values if value is not None)
 
 
 def _text(base: Case | Mapping[str, Any] | str | os.PathLike[str], grid: Mapping[str, Sequence[Any]]) -> str:
-    if not isinstance(grid, Mapping):
-        raise CaseError(f"grid: is {described(grid)}. Allowed: a dictionary of lists of values by their dotted keys")
+    values = _lines("grid", grid, "a dictionary of lists of values by their dotted keys")
     case = base if isinstance(base, Mapping) else as_case(base).to_dict()
-    return f"[base]\n{_lines(case, 'base')}\n\n[grid]\n{_lines(grid, 'grid')}\n"
+    return f"[base]\n{_lines('base', case, 'a dictionary of tables')}\n\n[grid]\n{values}\n"
 
 
 def _read(file: Path) -> str:

@@ -64,13 +64,24 @@ impl NativeCase {
 /// A value as TOML has it, in one line: for the text of a study, and for a setting.
 #[pyfunction]
 pub fn toml_value(value: &Bound<'_, PyAny>, at: &str) -> PyResult<String> {
+    check_key(at)?;
     Reading::default().value(value, at).map(|value| value.to_string())
 }
 
 /// Most values of a case, of which the points of a table have the most.
-const MOST: usize = 1_000_000;
+const MOST: usize = 100_000;
+/// Most bytes of a key.
+const LONGEST: usize = 1000;
 /// Most tables and lists within each other.
 const DEEPEST: usize = 64;
+
+fn check_key(key: &str) -> PyResult<()> {
+    if key.len() <= LONGEST {
+        return Ok(());
+    }
+    let (start, bytes) = (key.chars().take(20).collect::<String>(), key.len());
+    Err(refused(format!("case: the key {start:?}... has {bytes} bytes. Allowed: at most {LONGEST}")))
+}
 
 /// How far a value has been read: one that contains itself, or another without end, is refused.
 #[derive(Default)]
@@ -90,6 +101,7 @@ impl Reading {
             let name = name
                 .ok_or_else(|| refused(format!("case: {place}has a key that is not a string. Allowed: strings")))?
                 .into_owned();
+            check_key(&name)?;
             let below = if at.is_empty() { name.clone() } else { format!("{at}.{name}") };
             let value = table.get_item(&key)?;
             if !value.is_none() {

@@ -112,7 +112,9 @@ class Fuzz:
             "Case.replace": lambda dice: case.replace(self.settings(dice)),
             "Case.to_dict": lambda dice: Case.from_dict(mutated(dice, self.tables)).to_dict(),
             "Case.to_toml": lambda dice: case.replace(self.settings(dice)).to_toml(),
-            "Case.__getitem__": lambda dice: case[dice.choice([value(dice), "path.0.indentation", "path.-1", "path.0.0.0", "sphere", "sphere.radius.x", "path.99999999999999999999"])],
+            "Case.__getitem__": lambda dice: case[
+                dice.choice([value(dice), "path.0.indentation", "path.-1", "path.0.0.0", "sphere", "sphere.radius.x", "path.99999999999999999999"])
+            ],
             "Case.__eq__": lambda dice: isinstance(case == value(dice), bool),
         }
 
@@ -256,7 +258,9 @@ class Fuzz:
             state = contacts(dice)
             memory = state.array
             memory[:, dice.randrange(memory.shape[1])] = dice.choice([-1.0, 1.0]) * 10.0 ** dice.uniform(-300, 300)
-            state.array = dice.choice([memory, memory, numbers(dice, memory.shape), value(dice, memory.shape[0]), memory.tolist(), memory.astype(">f8"), memory[::-1]])
+            state.array = dice.choice(
+                [memory, memory, numbers(dice, memory.shape), value(dice, memory.shape[0]), memory.tolist(), memory.astype(">f8"), memory[::-1]]
+            )
             return self.table.update(state, numbers(dice, (3,)), numbers(dice, (2,), (3, 2)))
 
         def thread(dice: random.Random) -> object:
@@ -361,7 +365,8 @@ def main() -> int:
             wrong += 1
             print(f"WRONG {name} {i}: {problem[:600]}", flush=True)
         if i % 500 == 0:
-            sys.modules["matplotlib.pyplot"].close("all") if "matplotlib.pyplot" in sys.modules else None
+            if "matplotlib.pyplot" in sys.modules:
+                sys.modules["matplotlib.pyplot"].close("all")
     more = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss << 10) - before
     if more > MEMORY:
         print(f"WRONG memory: {more >> 20} MiB more than before", flush=True)

@@ -83,7 +83,18 @@ def test_the_fuzz_sees_a_panic_an_end_a_stop_and_memory(place: Path) -> None:
 def test_the_fuzz_has_every_public_name(place: Path) -> None:
     called = set(fuzz.Fuzz(place).calls)
     # Without arguments, or asked for by others.
-    plain = {"Run.history", "Run.summary", "Run.mesh", "Run.contact_steps", "Run.field_steps", "Study.table", "Table.keys", "Table.items", "Table.values", "Table.get"}
+    plain = {
+        "Run.history",
+        "Run.summary",
+        "Run.mesh",
+        "Run.contact_steps",
+        "Run.field_steps",
+        "Study.table",
+        "Table.keys",
+        "Table.items",
+        "Table.values",
+        "Table.get",
+    }
     for name in asperity.__all__:
         thing = getattr(asperity, name)
         if not callable(thing):
@@ -128,9 +139,7 @@ def test_the_fuzz_has_every_public_name(place: Path) -> None:
         ("angle", np.zeros(2), r"angle: has the shape \(2,\)"),
     ],
 )
-def test_what_is_no_array_of_numbers_is_refused_with_its_first_index(
-    law: asperity.Law, case: asperity.Case, argument: str, given: Any, text: str
-) -> None:
+def test_what_is_no_array_of_numbers_is_refused_with_its_first_index(law: asperity.Law, case: asperity.Case, argument: str, given: Any, text: str) -> None:
     state = law.contacts(case, 3)
     law.update(state, 0.01, (1e-4, 0.0))
     before = state.array
@@ -152,11 +161,11 @@ def test_the_memory_of_contacts_is_finite(law: asperity.Law, case: asperity.Case
     assert (state.array == before).all()
 
 
-def test_a_number_that_overflows_leaves_the_contact(law: asperity.Law, case: asperity.Case) -> None:
-    state = law.contacts(case, 2)
-    law.update(state, 0.01, (1e-4, 0.0))
+def test_a_number_that_overflows_leaves_the_contact(table: asperity.Law, case: asperity.Case) -> None:
+    state = table.contacts(case, 2)
+    table.update(state, 0.01, (1e-4, 0.0))
     before = state.array
-    answer = law.update(state, [sys.float_info.max, 0.01], (1e-4, 0.0))
+    answer = table.update(state, [sys.float_info.max, 0.01], (1e-4, 0.0))
     assert all(np.isnan(column[0]).all() for column in answer.values()) and np.isfinite(answer["F_T"][1]).all()
     assert (state.array[0] == before[0]).all() and np.isfinite(state.array).all()
 
