@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ._arguments import as_array, items
 from ._optional import need
+from .errors import AsperityError, CaseError
 
 __all__ = ["Table"]
 
@@ -21,7 +23,11 @@ class Table(Mapping[str, np.ndarray]):
     """
 
     def __init__(self, columns: Mapping[str, Any]) -> None:
-        self._columns: dict[str, np.ndarray] = {name: np.asarray(column) for name, column in columns.items()}
+        self._columns: dict[str, np.ndarray] = {
+            name: np.asarray(as_array(f"columns.{name}", column)) for name, column in items("columns", columns, "a mapping of names to columns")
+        }
+        if any(not column.ndim for column in self._columns.values()) or len({len(column) for column in self._columns.values()}) > 1:
+            raise CaseError("columns: are not of one length. Allowed: one value a row in each")
 
     def __getitem__(self, name: str) -> np.ndarray:
         try:
@@ -66,13 +72,22 @@ def read(path: Path, whole: Sequence[str] = (), words: Sequence[str] = ()) -> Ta
 
     A column that holds something else is text as a whole.
     """
-    with path.open(newline="", encoding="utf-8") as file:
-        names, *rows = list(csv.reader(file))
+    bad = AsperityError(f"{path}: is not a table as Asperity writes it. Compute it again")
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            names, *rows = list(csv.reader(file))
+    except (ValueError, csv.Error):
+        raise bad from None
+    if any(len(row) != len(names) for row in rows):
+        raise bad
     columns: dict[str, Any] = {}
     for name, values in zip(names, zip(*rows) if rows else [()] * len(names)):
-        if name in whole:
-            columns[name] = np.array([int(value) for value in values], dtype=np.int64)
-            continue
+        try:
+            if name in whole:
+                columns[name] = np.array([int(value) for value in values], dtype=np.int64)
+                continue
+        except (ValueError, OverflowError):
+            raise bad from None
         try:
             if name in words:
                 raise ValueError(name)

@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._asperity import NativeCase
+from ._arguments import described, items, path
+from ._arguments import text as _text
+from ._asperity import NativeCase, toml_value
 from .errors import CaseError
 
 __all__ = ["Case"]
 
 
 def _settings(settings: Mapping[str, Any] | None) -> list[str]:
-    def toml(value: Any, inner: bool = True) -> str:
-        if isinstance(value, bool):
-            return "true" if value else "false"
-        if isinstance(value, Mapping):
-            return "{" + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + "}"
-        if isinstance(value, (list, tuple)):
-            return "[" + ", ".join(toml(item) for item in value) + "]"
-        # What stands alone may be without quotes, as on the command line.
-        return json.dumps(value) if inner and isinstance(value, str) else str(value)
+    if settings is None:
+        return []
 
-    return [f"{key}={toml(value, inner=False)}" for key, value in (settings or {}).items()]
+    def setting(key: Any, value: Any) -> str:
+        key = _text("set", key)
+        if "=" in key:
+            raise CaseError(f"set: has the key {key!r}. Allowed: dotted keys, as in contact.friction")
+        # What stands alone may be without quotes, as on the command line.
+        return f"{key}={_text(key, value) if isinstance(value, str) else toml_value(value, key)}"
+
+    return [setting(key, value) for key, value in items("set", settings, "a dictionary of values by their dotted keys")]
 
 
 class Case:
@@ -61,7 +62,7 @@ class Case:
     ) -> None:
         tables = {"sphere": sphere, "material": material, "contact": contact, "path": path}
         tables |= {"mesh": mesh, "solver": solver, "output": output} | others
-        self._native = NativeCase.from_dict(_plain(tables))
+        self._native = NativeCase.from_dict(tables)
 
     @classmethod
     def _of(cls, native: NativeCase) -> Case:
@@ -72,17 +73,17 @@ class Case:
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any]) -> Case:
         """A case from a dictionary with the keys of a case file."""
-        return cls._of(NativeCase.from_dict(_plain(tables)))
+        return cls._of(NativeCase.from_dict(tables))
 
     @classmethod
     def parse(cls, text: str, set: Mapping[str, Any] | None = None, name: str = "case") -> Case:
         """A case from the text of a case file; ``set`` replaces values, as in ``{"contact.friction": 0.1}``."""
-        return cls._of(NativeCase.parse(text, name, _settings(set)))
+        return cls._of(NativeCase.parse(_text("case", text), _text("name", name), _settings(set)))
 
     @classmethod
     def load(cls, file: str | os.PathLike[str], set: Mapping[str, Any] | None = None) -> Case:
         """A case from a case file; ``set`` replaces values, as in ``{"path.0.indentation": 0.01}``."""
-        return cls._of(NativeCase.load(os.fspath(file), _settings(set)))
+        return cls._of(NativeCase.load(path("case", file), _settings(set)))
 
     def replace(self, values: Mapping[str, Any]) -> Case:
         """A copy with other values, by their dotted keys."""
@@ -104,6 +105,8 @@ class Case:
     def __getitem__(self, key: str) -> Any:
         """A value by its dotted key, as in ``case["path.0.indentation"]``."""
         value: Any = self.to_dict()
+        if not isinstance(key, str):
+            raise KeyError(key)
         for part in key.split("."):
             try:
                 value = value[int(part)] if isinstance(value, list) else value[part]
@@ -117,17 +120,11 @@ class Case:
     def __hash__(self) -> int:
         return hash(self.to_toml())
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self).parse, (self.to_toml(),)
+
     def __repr__(self) -> str:
         return f"Case.parse('''{self.to_toml()}''')"
-
-
-def _plain(value: Any) -> Any:
-    """Mappings and sequences as dictionaries and lists."""
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    return value
 
 
 def as_case(case: Case | Mapping[str, Any] | str | os.PathLike[str]) -> Case:
@@ -138,6 +135,6 @@ def as_case(case: Case | Mapping[str, Any] | str | os.PathLike[str]) -> Case:
         return Case.from_dict(case)
     if isinstance(case, str) and "\n" in case:
         return Case.parse(case)
-    if isinstance(case, (str, os.PathLike)):
+    if isinstance(case, (str, bytes, os.PathLike)):
         return Case.load(case)
-    raise CaseError(f"case: is a {type(case).__name__}. allowed: a Case, a dictionary, the path of a case file, or its text")
+    raise CaseError(f"case: is {described(case)}. Allowed: a Case, a dictionary, the path of a case file, or its text")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .run import Run
@@ -26,6 +26,9 @@ class NotConverged(AsperityError):
         super().__init__(message)
         self.run = run
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (*self.args, self.run)
+
 
 class MissingPackage(AsperityError, ImportError):
     """An optional package that is not installed."""
@@ -38,3 +41,6 @@ class Interrupted(KeyboardInterrupt):
         super().__init__(message)
         self.run = run
         self.study = study
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (*self.args, self.run, self.study)

@@ -9,12 +9,29 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ._arguments import as_array, items
 from ._optional import need
+from .errors import AsperityError, CaseError
 
 __all__ = ["Fields", "Mesh"]
 
 _VTK_HEXAHEDRON = 12
 _TYPES = {"Float64": "<f8", "Int64": "<i8", "Int32": "<i4", "UInt8": "u1"}
+
+
+def _rows(name: str, value: Any, width: tuple[int, ...] | None, kinds: str, count: int | None = None) -> np.ndarray:
+    """An array of numbers, a row for each of something."""
+    array = np.asarray(as_array(name, value))
+    fits = array.ndim > 0 and array.dtype.kind in kinds and (width is None or array.shape[1:] == width) and count in (None, len(array))
+    if not fits:
+        shape = "" if width is None else f" of {width[0]} in a row"
+        rows = "" if count is None else f", {count} rows"
+        raise CaseError(f"{name}: is {array.dtype.name} of the shape {array.shape}. Allowed: numbers{shape}{rows}")
+    return array
+
+
+def _data(name: str, data: Any, count: int) -> dict[str, np.ndarray]:
+    return {key: _rows(f"{name}.{key}", values, None, "fiu", count) for key, values in items(name, data, "a dictionary of arrays")}
 
 
 class Mesh:
@@ -24,8 +41,8 @@ class Mesh:
     """
 
     def __init__(self, points: np.ndarray, cells: np.ndarray) -> None:
-        self.points = points
-        self.cells = cells
+        self.points = _rows("points", points, (3,), "f")
+        self.cells = _rows("cells", cells, (8,), "iu")
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {len(self.points)} points, {len(self.cells)} hexahedra>"
@@ -50,8 +67,8 @@ class Fields(Mesh):
 
     def __init__(self, points: np.ndarray, cells: np.ndarray, point_data: dict[str, np.ndarray], cell_data: dict[str, np.ndarray]) -> None:
         super().__init__(points, cells)
-        self.point_data = point_data
-        self.cell_data = cell_data
+        self.point_data = _data("point_data", point_data, len(self.points))
+        self.cell_data = _data("cell_data", cell_data, len(self.cells))
 
     def __getitem__(self, name: str) -> np.ndarray:
         for data in (self.point_data, self.cell_data):
@@ -76,9 +93,16 @@ class Fields(Mesh):
 
 def read_vtu(path: Path) -> Fields:
     """Reads a ``.vtu`` file of a run: inline base64, uncompressed, little-endian, with 64-bit lengths."""
+    try:
+        return _read(path)
+    except (ElementTree.ParseError, ValueError, KeyError, RecursionError) as error:
+        raise AsperityError(f"{path}: is not a file of fields of an Asperity run ({error}). Run the case again") from None
+
+
+def _read(path: Path) -> Fields:
     piece = ElementTree.parse(path).getroot().find("UnstructuredGrid/Piece")
     if piece is None:
-        raise ValueError(f"{path}: is not a file of fields of an Asperity run")
+        raise ValueError("it has no grid")
 
     def arrays(part: str) -> dict[str, np.ndarray]:
         read: dict[str, np.ndarray] = {}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,10 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._arguments import described, numbers, path, text, truth
 from ._asperity import NativeContacts, NativeLaw, fit_law, interpolate_law, table_law, table_study
+from ._kept import Scratch
 from ._table import Table
 from .case import Case, as_case
-from .errors import Interrupted
+from .errors import CaseError, Interrupted
 from .study import Study
 from .study import study as run_study
 
@@ -42,11 +43,16 @@ class Check:
 
 
 class Contacts:
-    """The memory of many contacts of one pair of materials, for :meth:`Law.update`; made by :meth:`Law.contacts`."""
+    """The memory of many contacts of one pair of materials, for :meth:`Law.update`; made by :meth:`Law.contacts`.
+
+    Copied and pickled they are independent of each other, and go on bit by bit alike. One thread at a time moves them.
+    """
 
     __slots__ = ("_native",)
 
     def __init__(self, native: NativeContacts) -> None:
+        if not isinstance(native, NativeContacts):
+            raise CaseError(f"contacts: are made of {described(native)}. Allowed: those of Law.contacts()")
         self._native = native
 
     def __len__(self) -> int:
@@ -54,22 +60,37 @@ class Contacts:
 
     def copy(self) -> Contacts:
         """A copy, to try a step on."""
-        return Contacts(self._native.copy())
+        return type(self)(self._native.copy())
+
+    __copy__ = copy
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Contacts:
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (type(self), self._native.parameters(), self.array)
 
     @property
     def array(self) -> np.ndarray:
         """A copy of the memory, a row a contact: h, the greatest h, the elastic approach and the one it is released from, lengths; x and the place of
-        hardening, on the virgin curves; how far its slip was reversed; the deflections of the sliders, lengths. What is assigned here is put back."""
+        hardening, on the virgin curves; how far its slip was reversed; the deflections of the sliders, lengths. What is assigned here is put back; all of
+        it must be finite."""
         return self._native.to_array()
 
     @array.setter
     def array(self, memory: ArrayLike) -> None:
-        self._native.set_array(np.ascontiguousarray(memory, dtype=np.float64))
+        self._native.set_array(numbers("state", memory, (len(self), NativeContacts.width()), finite=True))
 
     def rotate(self, angle: ArrayLike) -> None:
-        """Turns the tangential memory into axes that are turned by ``angle`` (radians), where the frame follows the contact's normal."""
-        angles = np.broadcast_to(np.asarray(angle, dtype=np.float64), (len(self),))
+        """Turns the tangential memory into axes that are turned by ``angle`` (radians; one number, or one a contact), where the frame follows the contact's
+        normal. An angle that is not finite is refused, and nothing is turned."""
+        angles = numbers("angle", angle, (len(self),), one="a number", finite=True)
         self._native.rotate(np.cos(angles), np.sin(angles))
+
+
+def _restored(kind: type[Contacts], parameters: np.ndarray, memory: np.ndarray) -> Contacts:
+    """Contacts of a pickle."""
+    return kind(NativeContacts.restore(parameters, memory))
 
 
 class Law:
@@ -78,7 +99,19 @@ class Law:
     __slots__ = ("_native",)
 
     def __init__(self, native: NativeLaw) -> None:
+        if not isinstance(native, NativeLaw):
+            raise CaseError(f"law: is made of {described(native)}. Allowed: what Law.built_in(), load(), fit() and tabulate() give")
         self._native = native
+
+    def __copy__(self) -> Law:
+        # It never changes.
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Law:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _of_json, (type(self), self._native.to_json())
 
     @classmethod
     def fit(cls, study: Study | str | os.PathLike[str], prior: str = "built-in", *, interpolate: bool = False, reversal: Law | None = None) -> Law:
@@ -89,12 +122,15 @@ class Law:
         :param reversal: with ``interpolate``, where cases were not sheared back or released: the law by interpolation that knows the stiffness of a reversal and
             of an unloading, as :meth:`built_in` does.
         """
+        interpolate = truth("interpolate", interpolate)
+        if reversal is not None and not isinstance(reversal, Law):
+            raise CaseError(f"reversal: is {described(reversal)}. Allowed: a Law, None")
         if reversal is not None and not interpolate:
-            raise ValueError("reversal: is given, and interpolate is False. Allowed: None")
-        directory = os.fspath(study.directory if isinstance(study, Study) else study)
+            raise CaseError("reversal: is given, and interpolate is False. Allowed: None")
+        directory = path("study", study.directory if isinstance(study, Study) else study)
         if interpolate:
             return cls(interpolate_law(directory, None if reversal is None else reversal._native))
-        return cls(fit_law(directory, prior))
+        return cls(fit_law(directory, text("prior", prior)))
 
     @classmethod
     def tabulate(
@@ -120,11 +156,11 @@ class Law:
         :raises Interrupted: as :func:`asperity.study`; with ``resume`` it goes on.
         """
         native = as_case(case)._native
-        text = table_study(native, elements)
-        with tempfile.TemporaryDirectory(prefix="asperity-") as scratch:
-            directory = Path(scratch) / "table" if out is None else Path(out)
-            run_study(text, None, directory, device, threads, progress, precision=precision, resume=resume, force=force)
-            law, missing = table_law(os.fspath(directory), native, elements)
+        written = table_study(native, elements)
+        with Scratch() as scratch:
+            directory = Path(scratch) / "table" if out is None else path("out", out)
+            run_study(written, None, directory, device, threads, progress, precision=precision, resume=resume, force=force)
+            law, missing = table_law(directory, native, elements)
         if missing:
             warnings.warn(f"the table does without depths that were not reached: {'; '.join(missing)}", stacklevel=2)
         return cls(law)
@@ -132,7 +168,7 @@ class Law:
     @classmethod
     def load(cls, file: str | os.PathLike[str]) -> Law:
         """Reads a ``law.json``, of ``asperity law fit`` or ``law tabulate``."""
-        return cls(NativeLaw.load(os.fspath(file)))
+        return cls(NativeLaw.load(path("law", file)))
 
     @classmethod
     def built_in(cls, formulas: bool = False) -> Law:
@@ -140,11 +176,11 @@ class Law:
 
         :param formulas: the one with formulas instead, fitted to 240 cases of 15 materials, Poisson's ratio 0.3.
         """
-        return cls(NativeLaw.built_in(formulas))
+        return cls(NativeLaw.built_in(truth("formulas", formulas)))
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes a ``law.json``."""
-        self._native.save(os.fspath(file))
+        self._native.save(path("file", file))
 
     def to_dict(self) -> dict[str, Any]:
         """The content of ``law.json``: forms, constants, where they come from, where they hold and how well."""
@@ -167,7 +203,7 @@ class Law:
         :param press: take F_N0 and a0 from a simulation of the press, not from the law's formulas, and give the shear alone; for a case that is pressed once and
             sheared once at constant indentation.
         """
-        columns, outside = self._native.predict(as_case(case)._native, press)
+        columns, outside = self._native.predict(as_case(case)._native, truth("press", press))
         if outside:
             warnings.warn(f"the case lies outside of what the law was fitted to: {', '.join(outside)}. compare with a run", stacklevel=2)
         return Table(columns)
@@ -182,8 +218,8 @@ class Law:
         there, with test vectors."""
         native = None if case is None else as_case(case)._native
         if out is None:
-            return self._native.source(format, native)
-        return [Path(file) for file in self._native.export(format, os.fspath(out), native)]
+            return self._native.source(text("format", format), native)
+        return [Path(file) for file in self._native.export(text("format", format), path("out", out), native)]
 
     def check(self, case: Case | Mapping[str, Any] | str | os.PathLike[str] | None = None, elements: int = 6) -> Check:
         """Simulates eleven paths (presses, shears, reversals, unloadings, oblique ones) with the material, the friction and the greatest indentation of a case, and
@@ -199,19 +235,27 @@ class Law:
         return Check(paths)
 
     def contacts(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], number: int = 1) -> Contacts:
-        """``number`` contacts of a case's sphere, material and friction, before first touch."""
+        """``number`` contacts of a case's sphere, material and friction, before first touch; a ``MemoryError`` if they do not fit."""
         return Contacts(self._native.contacts(as_case(case)._native, number))
 
     def update(self, state: Contacts, h: ArrayLike, delta: ArrayLike) -> Table:
-        """Moves every contact to the indentation ``h`` (n,) and then along the plane by the increment ``delta`` (n, 2), lengths, and keeps that in ``state``.
+        """Moves every contact to the indentation ``h`` and then along the plane by the increment ``delta``, lengths, and keeps that in ``state``.
 
-        Contacts are independent of each other and computed side by side. Gives ``F_N`` (n,), compression positive; ``F_T`` (n, 2), along the displacement; the
-        contact radius ``a`` (n,); and the tangents ``dF_N_dh`` (n,), ``dF_N_ddelta`` (n, 2), ``dF_T_ddelta`` (n, 2, 2). Where ``h`` or ``delta`` is not finite, neither is
-        the answer, and that contact stays as it was.
+        Contacts are independent of each other and computed side by side, with the material, the friction and the law that ``state`` was made for.
+
+        :param h: one number for all contacts, or one a contact, (n,).
+        :param delta: the two components (x, y) for all contacts, or those of each, (n, 2). A single number is refused: an increment along x alone is (x, 0).
+        :returns: ``F_N`` (n,), compression positive; ``F_T`` (n, 2), along the displacement; the contact radius ``a`` (n,); and the tangents ``dF_N_dh`` (n,),
+            ``dF_N_ddelta`` (n, 2), ``dF_T_ddelta`` (n, 2, 2). Where ``h`` or ``delta`` is infinite or NaN, or so large that the forces
+            overflow, the whole answer of that contact is NaN, and it stays as it was.
+        :raises CaseError: another shape, or what is not a number (masked, ``None``, text, complex, a boolean), with the argument and the first index; nothing has
+            moved. So it is with the ``MemoryError`` of an answer that does not fit, and where another thread moves these contacts.
         """
+        if not isinstance(state, Contacts):
+            raise CaseError(f"state: is {described(state)}. Allowed: Contacts, as Law.contacts() makes them")
         number = len(state)
-        depth = np.ascontiguousarray(np.broadcast_to(np.asarray(h, dtype=np.float64), (number,)))
-        increment = np.ascontiguousarray(np.broadcast_to(np.asarray(delta, dtype=np.float64), (number, 2)))
+        depth = numbers("h", h, (number,), one="a number")
+        increment = numbers("delta", delta, (number, 2), one="the two components (x, y)")
         return Table(state._native.update(depth, increment))
 
     def __repr__(self) -> str:
@@ -222,3 +266,8 @@ class Law:
             return f"<Law: by interpolation between {law['source']['cases']} contacts of {law['source']['materials']} materials>"
         provenance = law["provenance"]
         return f"<Law: fitted to {provenance['cases']} cases of {provenance['materials']} materials>"
+
+
+def _of_json(kind: type[Law], law: str) -> Law:
+    """The law of a pickle."""
+    return kind(NativeLaw.from_json(law))

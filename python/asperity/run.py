@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
-import tempfile
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
@@ -13,29 +13,35 @@ from typing import Any
 import numpy as np
 
 from . import _asperity, _table
+from ._arguments import described, path, text, truth
+from ._kept import Directory, Scratch
 from ._optional import need
 from ._progress import Bar, Listener, bar_wanted
 from ._table import Table
 from .case import Case, as_case
-from .errors import AsperityError, Interrupted, NotConverged
+from .errors import AsperityError, CaseError, Interrupted, NotConverged
 from .fields import Fields, Mesh, read_vtu
 
 __all__ = ["Run", "run"]
 
 
-class Run:
+class Run(Directory):
     """The results of a run: a view of its directory.
 
-    Forces are of the whole sphere, normal ones positive in compression. Everything is in the units of the case.
+    Forces are of the whole sphere, normal ones positive in compression. Everything is in the units of the case. A pickle has ``case``, ``summary`` and ``history``;
+    contact tables and fields stay in the directory, and so are gone where that was a temporary one of another process.
     """
 
+    _carried = ("summary", "history")
+
     def __init__(self, directory: str | os.PathLike[str]) -> None:
-        self.directory = Path(directory)
-        text = _asperity.resolved_case(self.directory)
-        if text is None:
-            raise AsperityError(f"{self.directory}: is not a result of an Asperity run. give the directory of `asperity run --out`")
-        self.case = Case.parse(text, name=str(self.directory / "case.toml"))
-        self._kept: tempfile.TemporaryDirectory[str] | None = None
+        self.directory = path("directory", directory)
+        case = _asperity.resolved_case(self.directory)
+        if case is None:
+            raise AsperityError(f"{self.directory}: is not a result of an Asperity run. Give the directory of `asperity run --out`")
+        # A name of any bytes is shown as well as can be.
+        self.case = Case.parse(case, name=os.fsencode(self.directory / "case.toml").decode(errors="replace"))
+        self._kept: Scratch | None = None
 
     @classmethod
     def load(cls, directory: str | os.PathLike[str]) -> Run:
@@ -48,17 +54,24 @@ class Run:
     @cached_property
     def history(self) -> Table:
         """A row a step: ``h``, ``delta_T``, ``a``, lengths; ``F_N``, ``F_T``, forces; ``segment``, iterations, energies, ..."""
+        self._file("history.csv")
         return Table(dict(_asperity.history(self.directory)))
 
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The run in some numbers: ``F_N0``, ``a0``, ``F_N_slip``, ``F_T_max``, ``delta_T_slip``, ``k_T0``, their estimated errors, ``status``, ..."""
-        summary: dict[str, Any] = json.loads((self.directory / "summary.json").read_text(encoding="utf-8"))
+        file = self._file("summary.json")
+        try:
+            summary = json.loads(file.read_text(encoding="utf-8"))
+        except (ValueError, RecursionError) as error:
+            raise AsperityError(f"{file}: is not the summary of a run ({error}). Run the case again") from None
+        if not isinstance(summary, dict):
+            raise AsperityError(f"{file}: is not the summary of a run. Run the case again")
         return summary
 
     def _steps(self, folder: str, suffix: str) -> list[int]:
-        names = (self.directory / folder).glob(f"step_*{suffix}")
-        return sorted(int(name.stem.removeprefix("step_")) for name in names)
+        names = [name.stem.removeprefix("step_") for name in (self.directory / folder).glob(f"step_*{suffix}")]
+        return sorted(int(name) for name in names if name.isascii() and name.isdecimal())
 
     @property
     def contact_steps(self) -> list[int]:
@@ -71,9 +84,13 @@ class Run:
         return self._steps("fields", ".vtu")
 
     def _choose(self, step: int | None, steps: list[int], what: str) -> int:
+        if not self.directory.is_dir():
+            raise self._gone()
         if not steps:
             raise AsperityError(f'{self.directory}: has no {what}. run the case with output.fields = "segments" or "all"')
-        chosen = steps[-1] if step is None else step
+        if step is not None and (isinstance(step, (bool, np.bool_)) or not hasattr(step, "__index__")):
+            raise CaseError(f"step: is {described(step)}. Allowed: the number of a step, None")
+        chosen = steps[-1] if step is None else operator.index(step)
         if chosen not in steps:
             raise AsperityError(f"{self.directory}: has no {what} of step {chosen}. there are those of {', '.join(map(str, steps))}")
         return chosen
@@ -179,20 +196,23 @@ def run(
     :raises AsperityError: anything else.
     """
     case = as_case(case)
-    kept = None
-    if out is None:
-        kept = tempfile.TemporaryDirectory(prefix="asperity-")
-        out = kept.name
+    if not (progress is None or callable(progress) or isinstance(progress, bool)):
+        raise CaseError(f"progress: is {described(progress)}. Allowed: True, False, or a function of a share, a step and a text")
+    words = text("device", device), text("precision", precision)
+    resume, extend, force = truth("resume", resume), truth("extend", extend), truth("force", force)
+    # One that is made here goes with the answer.
+    kept = Scratch() if out is None else None
+    directory = Path(kept.name) if kept is not None else path("out", out)
     bar = Bar() if progress is True or (progress is None and bar_wanted()) else None
     listener: Listener | None = bar if bar is not None else (progress if callable(progress) else None)
     try:
-        status, message, raised = _asperity.run(case._native, os.fspath(out), device, precision, threads, resume, extend, force, listener)
+        status, message, raised = _asperity.run(case._native, directory, *words, threads, resume, extend, force, listener)
     finally:
         if bar is not None:
             bar.close()
-    if status == "interrupted" and not (Path(out) / "summary.json").exists():
+    if status == "interrupted" and not (directory / "summary.json").exists():
         raise raised or Interrupted(message or "interrupted")
-    result = Run(out)
+    result = Run(directory)
     result._kept = kept
     if raised is not None:
         if isinstance(raised, KeyboardInterrupt):

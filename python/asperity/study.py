@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
+import json
+import operator
 import os
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from . import _asperity, _table
+from ._arguments import items, path, text, truth
+from ._asperity import toml_value
+from ._kept import Directory, Scratch
 from ._progress import bar_wanted
 from ._table import Table
 from .case import Case, as_case
-from .errors import AsperityError, Interrupted
+from .errors import AsperityError, CaseError, Interrupted
 from .run import Run
 
 __all__ = ["Study", "study"]
 
+# Most bytes of a study file.
+_MOST = 16 << 20
 
-class Study:
-    """The results of a study: a view of its directory."""
+
+class Study(Directory):
+    """The results of a study: a view of its directory. A pickle has ``table``; the runs stay in the directory."""
+
+    _carried = ("table",)
 
     def __init__(self, directory: str | os.PathLike[str]) -> None:
-        self.directory = Path(directory)
+        self.directory = path("directory", directory)
         if not (self.directory / "study.csv").is_file():
-            raise AsperityError(f"{self.directory}: is not a study. give the directory of `asperity study --out`, with its study.csv")
-        self._kept: tempfile.TemporaryDirectory[str] | None = None
+            raise AsperityError(f"{self.directory}: is not a study. Give the directory of `asperity study --out`, with its study.csv")
+        self._kept: Scratch | None = None
 
     @classmethod
     def load(cls, directory: str | os.PathLike[str]) -> Study:
@@ -37,14 +46,17 @@ class Study:
     def table(self) -> Table:
         """``study.csv``, a row a case: ``case``, ``directory``, ``status``, ``reason``, the grid's keys, and the numbers of the run in the units of the case.
         What does not exist is NaN."""
-        return _table.read(self.directory / "study.csv", words=["case", "directory", "status", "reason"])
+        return _table.read(self._file("study.csv"), words=["case", "directory", "status", "reason"])
 
     def __len__(self) -> int:
         return self.table.rows
 
     def __getitem__(self, row: int) -> Run:
         """The run of a row of the table."""
-        return Run(self.directory / str(self.table["directory"][row]))
+        where = str(self.table["directory"][range(len(self))[operator.index(row)]])
+        if not self.directory.is_dir():
+            raise self._gone()
+        return Run(self.directory / where)
 
     def __iter__(self) -> Iterator[Run]:
         """The runs that are done."""
@@ -55,26 +67,26 @@ class Study:
         return f"<Study: {done} of {len(self)} cases done, in {self.directory}>"
 
 
-def _toml(value: Any) -> str:
-    """A value of the grid as inline TOML."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_toml(str(key))} = {_toml(item)}" for key, item in value.items()) + " }"
-    if isinstance(value, Sequence):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if hasattr(value, "tolist"):
-        return _toml(value.tolist())
-    return repr(value)
+def _lines(name: str, table: Mapping[str, Any], allowed: str) -> str:
+    """A table as lines of a TOML file, in its order."""
+    values = [(text(name, key), value) for key, value in items(name, table, allowed)]
+    return "\n".join(f"{json.dumps(key, ensure_ascii=False)} = {toml_value(value, key)}" for key, value in values if value is not None)
 
 
 def _text(base: Case | Mapping[str, Any] | str | os.PathLike[str], grid: Mapping[str, Sequence[Any]]) -> str:
+    values = _lines("grid", grid, "a dictionary of lists of values by their dotted keys")
     case = base if isinstance(base, Mapping) else as_case(base).to_dict()
-    tables = "\n".join(f"{_toml(str(key))} = {_toml(value)}" for key, value in case.items())
-    keys = "\n".join(f"{_toml(key)} = {_toml(values)}" for key, values in grid.items())
-    return f"[base]\n{tables}\n\n[grid]\n{keys}\n"
+    return f"[base]\n{_lines('base', case, 'a dictionary of tables')}\n\n[grid]\n{values}\n"
+
+
+def _read(file: Path) -> str:
+    """A study file; a longer one than that would be refused is not read whole."""
+    with file.open("rb") as opened:
+        read = opened.read(_MOST + 1)
+    try:
+        return read.decode()
+    except UnicodeError:
+        raise CaseError(f"{file}: is not text in UTF-8. Give a study file") from None
 
 
 def study(
@@ -110,21 +122,23 @@ def study(
     """
     name = "study"
     if grid is not None:
-        text = _text(base, grid)
+        written = _text(base, grid)
     elif isinstance(base, str) and "\n" in base:
-        text = base
-    elif isinstance(base, (str, os.PathLike)):
-        name = os.fspath(base)
-        text = Path(base).read_text(encoding="utf-8")
+        written = text("study", base)
+    elif isinstance(base, (str, bytes, os.PathLike)):
+        file = path("study", base)
+        name, written = os.fsencode(file).decode(errors="replace"), _read(file)
     else:
-        raise AsperityError("study: has no grid. give a grid beside the case, or the path or the text of a study file")
-    kept = None
-    if out is None:
-        kept = tempfile.TemporaryDirectory(prefix="asperity-")
-        out = kept.name
-    quiet = not (bar_wanted() if progress is None else progress)
-    _, _, raised = _asperity.study(text, name, os.fspath(out), device, precision, threads, shard, resume, retry, force, quiet)
-    result = Study(out)
+        raise AsperityError("study: has no grid. Give a grid beside the case, or the path or the text of a study file")
+    words = text("device", device), text("precision", precision)
+    shard = None if shard is None else text("shard", shard)
+    again = truth("resume", resume), truth("retry", retry), truth("force", force)
+    quiet = not (bar_wanted() if progress is None else truth("progress", progress))
+    # One that is made here goes with the answer.
+    kept = Scratch() if out is None else None
+    directory = Path(kept.name) if kept is not None else path("out", out)
+    _, _, raised = _asperity.study(written, name, directory, *words, threads, shard, *again, quiet)
+    result = Study(directory)
     result._kept = kept
     if raised is not None:
         if isinstance(raised, KeyboardInterrupt):

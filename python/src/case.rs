@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use asperity::Case;
 use asperity::case::CaseError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 
+use crate::arguments::check_length;
 use crate::errors::refused;
 
 /// A case that has passed its checks.
@@ -20,13 +21,18 @@ pub struct NativeCase {
 impl NativeCase {
     /// Of a table with the keys of a case file.
     #[staticmethod]
-    fn from_dict(table: &Bound<'_, PyDict>) -> PyResult<Self> {
-        Case::from_table(&to_table(table, "")?).map(|case| Self { case }).map_err(refused)
+    fn from_dict(table: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let Ok(table) = table.cast::<PyMapping>() else {
+            let kind = table.get_type().name()?;
+            return Err(refused(format!("case: is a {kind}, which is the wrong type. Allowed: a dictionary of tables")));
+        };
+        Case::from_table(&Reading::default().table(table, "")?).map(|case| Self { case }).map_err(refused)
     }
 
     /// Of the text of a case file.
     #[staticmethod]
     fn parse(text: &str, name: &str, settings: Vec<String>) -> PyResult<Self> {
+        check_length(name, text)?;
         Case::parse(text, name, &settings).map(|case| Self { case }).map_err(refused)
     }
 
@@ -60,50 +66,117 @@ impl NativeCase {
     }
 }
 
-/// A dictionary as TOML has it. `None` is a key that is not there.
-pub fn to_table(table: &Bound<'_, PyDict>, at: &str) -> PyResult<toml::Table> {
-    let mut converted = toml::Table::new();
-    for (key, value) in table {
-        let key: String =
-            key.extract().map_err(|_| refused(format!("case: {at}: has a key that is not a string. Allowed: strings")))?;
-        let below = if at.is_empty() { key.clone() } else { format!("{at}.{key}") };
-        if !value.is_none() {
-            converted.insert(key, to_value(&value, &below)?);
-        }
-    }
-    Ok(converted)
+/// A value as TOML has it, in one line: for the text of a study, and for a setting.
+#[pyfunction]
+pub fn toml_value(value: &Bound<'_, PyAny>, at: &str) -> PyResult<String> {
+    check_key(at)?;
+    Reading::default().value(value, at).map(|value| value.to_string())
 }
 
-fn to_value(value: &Bound<'_, PyAny>, at: &str) -> PyResult<toml::Value> {
-    if let Ok(truth) = value.cast::<PyBool>() {
-        return Ok(toml::Value::Boolean(truth.is_true()));
+/// Most values of a case, of which the points of a table have the most.
+const MOST: usize = 100_000;
+/// Most bytes of a key.
+const LONGEST: usize = 1000;
+/// Most tables and lists within each other.
+const DEEPEST: usize = 64;
+
+fn check_key(key: &str) -> PyResult<()> {
+    if key.len() <= LONGEST {
+        return Ok(());
     }
-    if let Ok(text) = value.cast::<PyString>() {
-        return Ok(toml::Value::String(text.to_string()));
+    let (start, bytes) = (key.chars().take(20).collect::<String>(), key.len());
+    Err(refused(format!("case: the key {start:?}... has {bytes} bytes. Allowed: at most {LONGEST}")))
+}
+
+/// How far a value has been read: one that contains itself, or another without end, is refused.
+#[derive(Default)]
+struct Reading {
+    values: usize,
+    depth: usize,
+}
+
+impl Reading {
+    /// A mapping with names as keys. `None` is a key that is not there.
+    fn table(&mut self, table: &Bound<'_, PyMapping>, at: &str) -> PyResult<toml::Table> {
+        let mut converted = toml::Table::new();
+        for key in table.try_iter()? {
+            let key = key?;
+            let name = key.cast::<PyString>().ok().and_then(|name| name.to_cow().ok());
+            let place = if at.is_empty() { String::new() } else { format!("{at}: ") };
+            let name = name
+                .ok_or_else(|| refused(format!("case: {place}has a key that is not a string. Allowed: strings")))?
+                .into_owned();
+            check_key(&name)?;
+            let below = if at.is_empty() { name.clone() } else { format!("{at}.{name}") };
+            let value = table.get_item(&key)?;
+            if !value.is_none() {
+                converted.insert(name, self.value(&value, &below)?);
+            }
+        }
+        Ok(converted)
     }
-    if let Ok(table) = value.cast::<PyDict>() {
-        return Ok(toml::Value::Table(to_table(table, at)?));
+
+    fn value(&mut self, value: &Bound<'_, PyAny>, at: &str) -> PyResult<toml::Value> {
+        if self.depth >= DEEPEST {
+            return Err(refused(format!("case: {at}: is in more than {DEEPEST} tables and lists. Allowed: fewer")));
+        }
+        self.count(1, at)?;
+        self.depth += 1;
+        let read = self.within(value, at);
+        self.depth -= 1;
+        read
     }
-    if value.is_instance_of::<PyInt>() {
-        // An integer beyond 64 bits is still a number, as in a file.
-        let integer = value.extract::<i64>().map(toml::Value::Integer);
-        return integer.or_else(|_| value.extract::<f64>().map(toml::Value::Float));
+
+    /// Refuses more values than a case may have, before they are there.
+    fn count(&mut self, more: usize, at: &str) -> PyResult<()> {
+        self.values = self.values.saturating_add(more);
+        let few = self.values <= MOST;
+        if few { Ok(()) } else { Err(refused(format!("case: {at}: has too many values. Allowed: {MOST} in all"))) }
     }
-    if value.is_instance_of::<PyFloat>() {
-        return Ok(toml::Value::Float(value.extract()?));
+
+    fn within(&mut self, value: &Bound<'_, PyAny>, at: &str) -> PyResult<toml::Value> {
+        if let Ok(truth) = value.cast::<PyBool>() {
+            return Ok(toml::Value::Boolean(truth.is_true()));
+        }
+        if let Ok(text) = value.cast::<PyString>() {
+            let text = text.to_cow().map_err(|_| refused(format!("case: {at}: is no valid text. Allowed: Unicode")))?;
+            return Ok(toml::Value::String(text.into_owned()));
+        }
+        if value.is_instance_of::<PyInt>() {
+            // An integer beyond 64 bits is still a number, as in a file.
+            let integer = value.extract::<i64>().map(toml::Value::Integer);
+            let number = integer.or_else(|_| value.extract::<f64>().map(toml::Value::Float));
+            return number.map_err(|_| refused(format!("case: {at}: is a number beyond 1.8e308. Allowed: smaller ones")));
+        }
+        if value.is_instance_of::<PyFloat>() {
+            return Ok(toml::Value::Float(value.extract()?));
+        }
+        if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+            let item = |(i, item): (usize, PyResult<Bound<'_, PyAny>>)| self.value(&item?, &format!("{at}.{i}"));
+            return value.try_iter()?.enumerate().map(item).collect::<PyResult<Vec<_>>>().map(toml::Value::Array);
+        }
+        if let Ok(table) = value.cast::<PyMapping>() {
+            return self.table(table, at).map(toml::Value::Table);
+        }
+        self.of_numpy(value, at)
     }
-    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
-        let item = |(i, item): (usize, PyResult<Bound<'_, PyAny>>)| to_value(&item?, &format!("{at}.{i}"));
-        return value.try_iter()?.enumerate().map(item).collect::<PyResult<Vec<_>>>().map(toml::Value::Array);
+
+    /// NumPy's scalars and arrays.
+    fn of_numpy(&mut self, value: &Bound<'_, PyAny>, at: &str) -> PyResult<toml::Value> {
+        if let Ok(list) = value.getattr("tolist") {
+            let size = value.getattr("size").and_then(|size| size.extract::<usize>()).unwrap_or(0);
+            self.count(size, at)?;
+            self.values -= size;
+            if value.getattr("mask").and_then(|mask| mask.call_method0("any")?.is_truthy()).unwrap_or(false) {
+                return Err(refused(format!("case: {at}: has masked values. Allowed: numbers")));
+            }
+            return self.value(&list.call0()?, at);
+        }
+        let kind = value.get_type().name()?;
+        Err(refused(format!(
+            "case: {at}: is a {kind}, which is the wrong type. Allowed: numbers, strings, booleans, lists and dictionaries"
+        )))
     }
-    // NumPy's scalars and arrays.
-    if let Ok(list) = value.call_method0("tolist") {
-        return to_value(&list, at);
-    }
-    let kind = value.get_type().name()?;
-    Err(refused(format!(
-        "case: {at}: is a {kind}, which is the wrong type. Allowed: numbers, strings, booleans, lists and dictionaries"
-    )))
 }
 
 /// A TOML value as Python has it.

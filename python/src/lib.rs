@@ -1,9 +1,13 @@
 //! The native half of the Python package: cases, runs, studies and laws of the `asperity` library.
 //! What only reads files and shapes answers is Python.
 
+mod arguments;
 mod case;
+mod contacts;
 mod errors;
 mod law;
+mod memory;
+mod process;
 mod results;
 mod run;
 mod wait;
@@ -15,9 +19,11 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _asperity {
     #[pymodule_export]
-    use super::case::NativeCase;
+    use super::case::{NativeCase, toml_value};
     #[pymodule_export]
-    use super::law::{Contacts, NativeLaw, fit_law, interpolate_law, table_law, table_study};
+    use super::contacts::Contacts;
+    #[pymodule_export]
+    use super::law::{NativeLaw, fit_law, interpolate_law, table_law, table_study};
     #[pymodule_export]
     use super::results::{history, resolved_case};
     #[pymodule_export]

@@ -10,6 +10,7 @@ use asperity::study::{Shard, Study, StudyError, StudyProgress};
 use asperity::{Canceller, Earlier, Options, SessionError, Simulation};
 use pyo3::prelude::*;
 
+use crate::arguments::{check_length, whole};
 use crate::case::NativeCase;
 use crate::errors::{failed, refused};
 use crate::wait::{News, Told, wait};
@@ -34,15 +35,12 @@ fn precision(word: &str) -> PyResult<PrecisionChoice> {
 }
 
 /// All of the machine's, unless it is said how many.
-fn threads(number: Option<usize>) -> PyResult<NonZeroUsize> {
+fn threads(number: Option<&Bound<'_, PyAny>>) -> PyResult<NonZeroUsize> {
     let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let most = all.get().max(256);
-    match number {
-        None => Ok(all),
-        Some(number) => NonZeroUsize::new(number)
-            .filter(|number| number.get() <= most)
-            .ok_or_else(|| refused(format!("threads: is {number}. Allowed: a number of threads from 1 to {most}"))),
-    }
+    let Some(number) = number else { return Ok(all) };
+    let number = whole("threads", number, 1..=most, &format!("a number of threads from 1 to {most}"))?;
+    Ok(NonZeroUsize::new(number).unwrap_or(all))
 }
 
 /// Simulates a case into a directory; gives the status, the message, and the exception that
@@ -56,7 +54,7 @@ pub fn run(
     out: PathBuf,
     device: &str,
     precision: &str,
-    threads: Option<usize>,
+    threads: Option<&Bound<'_, PyAny>>,
     resume: bool,
     extend: bool,
     force: bool,
@@ -80,12 +78,14 @@ pub fn run(
         canceller: canceller.clone(),
         ..Options::default()
     };
-    let work = |news: std::sync::mpsc::Sender<News>| -> Result<asperity::Outcome, SessionError> {
-        let simulation = Simulation::with(&case.case, options)?;
+    let case = case.case.clone();
+    let work = move |news: std::sync::mpsc::Sender<News>| -> Result<asperity::Outcome, SessionError> {
+        let simulation = Simulation::with(&case, options)?;
         simulation.notes().iter().for_each(|note| drop(news.send(News::Message(note.clone()))));
         simulation.watched_by(Box::new(Told(news))).run()
     };
-    let (outcome, raised) = wait(py, listener.as_ref(), &canceller, work)?;
+    // The simulation has a pool of its own.
+    let (outcome, raised) = wait(py, listener.as_ref(), &canceller, Some(NonZeroUsize::MIN), work)?;
     let outcome = outcome.map_err(|error| match error {
         SessionError::Case(_) => refused(error),
         error => failed(error),
@@ -106,13 +106,14 @@ pub fn study(
     out: PathBuf,
     device: &str,
     precision: &str,
-    threads: Option<usize>,
+    threads: Option<&Bound<'_, PyAny>>,
     shard: Option<&str>,
     resume: bool,
     retry: bool,
     force: bool,
     quiet: bool,
 ) -> PyResult<((usize, usize, usize), Option<(String, String)>, Option<PyErr>)> {
+    check_length("study", text)?;
     let study = Study::parse(text, name).map_err(refused)?;
     let options = asperity::study::Options {
         device: self::device(device)?,
@@ -126,12 +127,13 @@ pub fn study(
     let stop = Arc::new(AtomicBool::new(false));
     let canceller = Canceller::on_signal(stop.clone());
     let progress = Arc::new(StudyProgress::new(quiet));
-    let work = |news: std::sync::mpsc::Sender<News>| {
+    let threads = NonZeroUsize::new(options.threads);
+    let work = move |news: std::sync::mpsc::Sender<News>| {
         // Let go of when the work has ended, which is how that is noticed.
         let _news = news;
         asperity::study::run(&study, &out, &options, progress, stop)
     };
-    let (report, raised) = wait(py, None, &canceller, work)?;
+    let (report, raised) = wait(py, None, &canceller, threads, work)?;
     let report = report.map_err(|error| match error {
         StudyError::File(_) | StudyError::Combination { .. } => refused(error),
         error => failed(error),

@@ -1,6 +1,7 @@
 //! Long work beside Python: the interpreter is free while it goes on, hears of its steps, and can
 //! end it with Ctrl-C.
 
+use std::num::NonZeroUsize;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
@@ -9,6 +10,7 @@ use asperity::output::{Position, Progress};
 use pyo3::prelude::*;
 
 use crate::errors::failed;
+use crate::process::{PANICKED, STACK, new_pool};
 
 /// How often Python is asked for signals.
 const TICK: Duration = Duration::from_millis(50);
@@ -37,38 +39,51 @@ impl Progress for Told {
     fn finish(&mut self, _: &str) {}
 }
 
-/// Does `work` in a thread of its own. Meanwhile `listener` is called with the share that is
-/// behind, the number of the step and a text (a message has the share -1). An exception of the
-/// listener, or of a signal handler of Python (Ctrl-C), cancels the work; once that has ended it is
-/// given beside the result.
-pub fn wait<T: Send>(
+/// How the waiting has ended.
+enum Heard {
+    /// The work has let go of its sender; an exception may have cancelled it.
+    Ended(Option<PyErr>),
+    /// The listener has called `fork`, and this is the child, which has no thread that works.
+    InChild,
+}
+
+/// Does `work` in a thread of its own, with so many threads at hand (without a number, all of the
+/// machine's). Meanwhile `listener` is called with the share that is behind, the number of the step
+/// and a text (a message has the share -1). An exception of the listener, or of a signal handler of
+/// Python (Ctrl-C), cancels the work; once that has ended it is given beside the result.
+pub fn wait<T: Send + 'static>(
     py: Python<'_>,
     listener: Option<&Py<PyAny>>,
     canceller: &Canceller,
-    work: impl FnOnce(Sender<News>) -> T + Send,
+    threads: Option<NonZeroUsize>,
+    work: impl FnOnce(Sender<News>) -> T + Send + 'static,
 ) -> PyResult<(T, Option<PyErr>)> {
+    let pool = new_pool(threads)?;
     let (sender, news) = channel();
     py.detach(move || {
-        std::thread::scope(|scope| {
-            // Results and meshes of a thousand elements are on the heap, but the parser and the
-            // direct solver recurse.
-            let worker = std::thread::Builder::new().name("asperity".to_owned()).stack_size(16 << 20);
-            let worker = worker.spawn_scoped(scope, move || work(sender)).map_err(failed)?;
-            let raised = listen(&news, listener, canceller);
-            let result = worker
-                .join()
-                .map_err(|_| failed("the computation panicked; this is a fault of the program, please report it"))?;
-            Ok((result, raised))
-        })
+        // Not a scoped one: that could not be left in a child of `fork`.
+        let worker = std::thread::Builder::new().name("asperity".to_owned()).stack_size(STACK);
+        let worker = worker.spawn(move || pool.install(|| work(sender))).map_err(failed)?;
+        match listen(&news, listener, canceller) {
+            Heard::Ended(raised) => {
+                let result = worker.join().map_err(|_| failed(PANICKED))?;
+                Ok((result, raised))
+            }
+            Heard::InChild => {
+                std::mem::forget((worker, news));
+                Err(failed("the process was forked while it told of its progress: the computation goes on in the parent alone"))
+            }
+        }
     })
 }
 
 /// Until the work has let go of its sender.
-fn listen(news: &Receiver<News>, listener: Option<&Py<PyAny>>, canceller: &Canceller) -> Option<PyErr> {
+fn listen(news: &Receiver<News>, listener: Option<&Py<PyAny>>, canceller: &Canceller) -> Heard {
+    let process = std::process::id();
     let mut raised = None;
     loop {
         let received = news.recv_timeout(TICK);
-        let heard = Python::attach(|py| {
+        let heard = Python::try_attach(|py| {
             match (&received, listener) {
                 (Ok(News::Step(share, step, text)), Some(listener)) if raised.is_none() => {
                     listener.call1(py, (*share, *step, text.as_str()))?;
@@ -80,12 +95,28 @@ fn listen(news: &Receiver<News>, listener: Option<&Py<PyAny>>, canceller: &Cance
             }
             py.check_signals()
         });
-        if let Err(error) = heard {
-            canceller.cancel();
-            raised.get_or_insert(error);
+        if std::process::id() != process {
+            return Heard::InChild;
+        }
+        match heard {
+            Some(Ok(())) => {}
+            Some(Err(error)) => {
+                canceller.cancel();
+                raised.get_or_insert(error);
+            }
+            None => leave(canceller),
         }
         if matches!(received, Err(RecvTimeoutError::Disconnected)) {
-            return raised;
+            return Heard::Ended(raised);
         }
+    }
+}
+
+/// The interpreter is closing, and this thread, a daemon's, must not go back to it: what was
+/// computed stays, as after Ctrl-C, and the thread ends with the process.
+fn leave(canceller: &Canceller) -> ! {
+    canceller.cancel();
+    loop {
+        std::thread::park();
     }
 }

@@ -72,7 +72,7 @@ def test_a_file_is_named_with_its_line(tmp_path) -> None:
         asperity.Case.load(file)
     with pytest.raises(FileNotFoundError, match="nowhere.toml"):
         asperity.run(tmp_path / "nowhere.toml")
-    with pytest.raises(asperity.CaseError, match="allowed: a Case, a dictionary"):
+    with pytest.raises(asperity.CaseError, match="Allowed: a Case, a dictionary"):
         asperity.run(7)
 
 

@@ -13,13 +13,6 @@ from conftest import ROOT
 
 import asperity
 
-GRID = {"material.hardening.yield_stress": [200.0, 800.0], "contact.friction": [0.1, "stick"], "path.1.shear": [0.002]}
-
-
-@pytest.fixture(scope="module")
-def study(case: asperity.Case) -> asperity.Study:
-    return asperity.study(case.replace({"output.fields": "none", "output.plots": False}), GRID)
-
 
 def test_a_study_is_a_table_and_its_runs(study: asperity.Study) -> None:
     assert len(study) == 4 and list(study.table["status"]) == ["done"] * 4
@@ -131,11 +124,6 @@ def test_a_case_that_goes_back_is_predicted_whole(law: asperity.Law, case: asper
     assert abs(curve["F_N"][-1]) < 1e-12 * curve["F_N"].max()
     with pytest.raises(asperity.AsperityError, match="goes on after its first shear"):
         law.predict(base, press=True)
-
-
-@pytest.fixture(scope="module")
-def table(case: asperity.Case, tmp_path_factory: pytest.TempPathFactory) -> asperity.Law:
-    return asperity.Law.tabulate(case, out=tmp_path_factory.mktemp("laws") / "table", elements=4)
 
 
 def test_a_table_is_a_law_of_one_material(table: asperity.Law, case: asperity.Case, done: asperity.Run, tmp_path: Path) -> None:

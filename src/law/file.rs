@@ -34,12 +34,22 @@ impl LawFile {
     /// # Errors
     /// [`LawError::BadLaw`] with what the file is instead.
     pub fn read(path: &Path) -> Result<Self, LawError> {
-        json::read(path, |text| {
-            Ok(match json::head(text)?.format.as_str() {
-                tabulated::FORMAT => Self::Table(Box::new(Tabulated::from_json(text)?)),
-                interpolated::FORMAT => Self::Interpolated(Box::new(Interpolated::from_json(text)?)),
-                _ => Self::Formulas(Box::new(Law::from_json(text)?)),
-            })
+        json::read(path, Self::of_text)
+    }
+
+    /// The same from a text in memory; `name` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(text: &str, name: &str) -> Result<Self, LawError> {
+        Self::of_text(text).map_err(|problem| LawError::BadLaw { path: name.into(), problem })
+    }
+
+    fn of_text(text: &str) -> Result<Self, String> {
+        Ok(match json::head(text)?.format.as_str() {
+            tabulated::FORMAT => Self::Table(Box::new(Tabulated::from_json(text)?)),
+            interpolated::FORMAT => Self::Interpolated(Box::new(Interpolated::from_json(text)?)),
+            _ => Self::Formulas(Box::new(Law::from_json(text)?)),
         })
     }
 

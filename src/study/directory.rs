@@ -202,7 +202,7 @@ pub enum Earlier {
 
 /// Whether a name is that of a draft of the study's own files.
 fn own_draft(name: &str) -> bool {
-    draft_of(name).is_some_and(|name| matches!(name, "study.csv" | "study.toml" | "report.html"))
+    draft_of(name).is_some_and(|name| matches!(name, "study.csv" | "study.toml" | "report.html" | LOCK_NAME))
 }
 
 fn names(dir: &Path) -> io::Result<Vec<String>> {
