@@ -370,7 +370,7 @@ pub const KEYS: &[Key] = &[
     Key {
         range: "true or false",
         meaning: "whether checkpoint.bin stays when the run is done, about 1 kB for each element, so that run --extend can follow a longer path; in a study it never does",
-        example: "false",
+        example: "true",
         ..key("output", "keep_checkpoint", Truth, Optional("it stays"))
     },
     Key {

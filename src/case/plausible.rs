@@ -27,8 +27,10 @@ const LARGEST_STRAIN: f64 = 10.0;
 const CONTRAST: f64 = 1000.0;
 /// Coefficients of friction of clean metals in vacuum and of rubber stay below.
 const LARGEST_FRICTION: f64 = 4.0;
-/// Of the indentation of first yield, by the closed form.
+/// Of the indentation of first yield, by the closed form; and of the radius: what is less was pressed
+/// to less than any indentation that is allowed, over 1000.
 const BELOW_YIELD: f64 = 0.5;
+const SHALLOW: f64 = 3e-4;
 /// Of the greatest indentation: even a contact that is about to slip everywhere is sheared further.
 const SHORTEST_SHEAR: f64 = 1e-3;
 /// Young's modulus in Pa, where the case names its unit of stress: from gels to diamond.
@@ -127,7 +129,7 @@ impl Case {
             let Material { youngs_modulus, poissons_ratio, .. } = self.material;
             let sphere = ElasticSphere { radius: self.sphere.radius, youngs_modulus, poissons_ratio };
             let first = critical_indentation(&sphere, yield_stress, first_yield(poissons_ratio.max(0.0)).pressure_ratio);
-            if deepest < BELOW_YIELD * first {
+            if deepest < (BELOW_YIELD * first).min(SHALLOW * self.sphere.radius) {
                 let what = format!(
                     "is {deepest:?}, the greatest of the path, and the sphere yields first at about {first:.3e}: it stays elastic. \
                      Check that h and radius are in one unit"

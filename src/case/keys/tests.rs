@@ -180,7 +180,7 @@ fn keys_are_found_by_whole_names_parts_and_tables() {
     assert_eq!(found("path.7.shear"), ["path.N.shear"]);
     assert_eq!(found("exponent").len(), 2);
     assert_eq!(found("hardening.law"), ["material.hardening.law"]);
-    assert_eq!(found("output").len(), 5);
+    assert_eq!(found("output").len(), 6);
     assert!(found("shear_").is_empty());
     assert_eq!(nearest("frictoin").as_deref(), Some("friction"));
 }
