@@ -209,3 +209,56 @@ fn what_is_no_study_and_no_law_is_refused() {
         refuse(&["law", "predict", text(&law), text(&case)], told);
     }
 }
+
+/// What a number of a law file may be is known before anything is computed from it.
+#[test]
+fn a_law_file_with_a_number_that_no_law_has_is_refused_by_its_key() {
+    let folder = tempfile::tempdir().expect("a scratch directory");
+    let (law, case) = (folder.path().join("law.json"), folder.path().join("case.toml"));
+    fs::write(&case, synthetic::case_text("law = \"ideal\"\nyield_stress = 400.0", 0.3, 0.02)).expect("case.toml");
+    let read = |name: &str| -> serde_json::Value {
+        let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law").join(name)).expect("a law");
+        serde_json::from_str(&text).expect("JSON")
+    };
+    let [table, plane, formulas] = ["pairs/steel.json", "interpolated/plane.json", "law.json"].map(read);
+    let refused = |changed: &serde_json::Value| {
+        fs::write(&law, changed.to_string()).expect("law.json");
+        let output = asperity(&["law", "predict", text(&law), text(&case)]).code(2).get_output().clone();
+        let message = String::from_utf8(output.stderr).expect("text");
+        assert!(message.contains("law.json: ") && message.contains("Restore the file, or make it anew"), "{message}");
+        assert!(!message.contains("panicked") && !message.contains("expected"), "{message}");
+        message
+    };
+    for (good, place, value, told) in [
+        (&table, "/range/to", 1e-6.into(), "range.from is 2.1599911290901404e-5, and has to be 1e-6, which is range.to, or less"),
+        (&table, "/range/from", 0.0.into(), "range.from is 0.0"),
+        (&table, "/range/to", 0.5.into(), "range has to lie within its levels"),
+        (&table, "/levels/2/normal/3", 1e308.into(), "levels[2].normal[3] is 1e308, and has to be a number from -0.1 to 1.1"),
+        (&table, "/levels/2/h", 1e-6.into(), "levels[2].h is 1e-6, and has to be more than that of the level before"),
+        (&table, "/levels/4/F_N0", (-1.0).into(), "levels[4].F_N0 is -1.0"),
+        (&table, "/levels/1/tangential", serde_json::json!([1.0, 2.0]), "levels[1].tangential has 2 numbers, and has to have 24"),
+        (&table, "/elements_per_contact_radius", 1000.into(), "elements_per_contact_radius"),
+        (&plane, "/samples/0/0", 1e308.into(), "samples[0][0] is 1e308, and has to be a number from -1000.0 to 1000.0"),
+        (&plane, "/inputs/1/range/to", (-1e3).into(), "inputs[1].range.from is 0.0"),
+        (&plane, "/processes/3/lengths/2", 0.0.into(), "processes[3].lengths[2] is 0.0"),
+        (&plane, "/ratio/mean/5", 1e20.into(), "ratio.mean[5] is 1e20"),
+        (&plane, "/inputs/1/name", "nu".into(), "inputs[1].name is \"nu\", and has to be \"hardening to 0\""),
+        (&formulas, "/constants/fall/2", 1e308.into(), "constants.fall[2] is 1e308"),
+        (&formulas, "/validity/lambda/to", (-1.0).into(), "validity.lambda.to is -1.0"),
+        (&formulas, "/normal/force", serde_json::json!([1.0]), "normal.force has 1 constants, and its form has 6"),
+        (&formulas, "/constants/slip/1", "x".into(), "constants.slip[1] is \"x\", and has to be a number"),
+    ] {
+        let mut changed = good.clone();
+        *changed.pointer_mut(place).expect(place) = value;
+        let message = refused(&changed);
+        assert!(message.contains(told), "{told}: {message}");
+    }
+    for (content, told) in [
+        (serde_json::json!([1]), "line 1: is not a law file: [0] is 1, and has to be a text"),
+        (serde_json::json!({}), "line 1: is not a law file: format is missing"),
+        (serde_json::json!({ "format": "asperity-law-table", "version": 1, "body": "cube" }), "body is \"cube\", and has to be"),
+    ] {
+        let message = refused(&content);
+        assert!(message.contains(told), "{told}: {message}");
+    }
+}
