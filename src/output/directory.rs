@@ -190,7 +190,7 @@ impl OutputDirectory {
         // A damaged checkpoint is known by what lies beside it.
         let begun = own.iter().any(|(_, name, _)| matches!(name.as_str(), "history.csv" | "summary.json"));
         let drafted = |name: &str| draft_of(name).is_some();
-        let looked_at = own.iter().filter(|(_, name, _)| !drafted(name) && !(begun && name == "checkpoint.bin"));
+        let looked_at = own.iter().filter(|(_, name, _)| !(drafted(name) || begun && name == "checkpoint.bin"));
         looked_at.map(|(_, _, path)| path).chain([&self.case()]).try_for_each(|path| refuse_foreign(path))
     }
 

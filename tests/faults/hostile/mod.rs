@@ -294,11 +294,11 @@ fn changed_checkpoints() {
             return false;
         }
         let number = number.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        if number % RESUMED == 0 {
+        if number.is_multiple_of(RESUMED) {
             fs::remove_dir_all(&out).or_else(|_| fs::create_dir(&out)).expect("a folder");
             copy(&whole, &out);
             fs::write(out.join("checkpoint.bin"), bytes).expect("a checkpoint");
-            resume(&case, &out, number % (2 * RESUMED) == 0);
+            resume(&case, &out, number.is_multiple_of(2 * RESUMED));
         }
         true
     });
