@@ -165,3 +165,21 @@ fn forwards_and_back_are_the_same() {
         assert!((forwards.f_t + back.f_t).abs() <= 1e-4 * forwards.f_n, "{} and {}", forwards.f_t, back.f_t);
     }
 }
+
+/// A step is not over before the contact carries its force, however small that is beside E R^2.
+#[test]
+fn a_light_contact_carries_its_force_from_the_first_step() {
+    let soft = "opponent.material={youngs_modulus=10e3,poissons_ratio=0.3,hardening={law=\"elastic\"}}";
+    let steps =
+        follow(UNLIKE, &["material.hardening={law=\"elastic\"}", soft, "opponent.radius=1.0", "path=[{indentation=1e-4}]"]);
+    let rows: Vec<_> = steps.iter().map(|(row, _)| *row).filter(|row| row.step > 0).collect();
+    let nu = case(UNLIKE, &[]).material.poissons_ratio;
+    let modulus = 1.0 / ((1.0 - nu * nu) / case(UNLIKE, &[]).material.youngs_modulus + (1.0 - 0.09) / 10e3);
+    for row in &rows {
+        assert!(row.newton_iterations > 0 && row.f_n > 0.0, "{row:?}");
+    }
+    let last = rows.last().expect("a step");
+    let hertz = 4.0 / 3.0 * modulus * 0.5_f64.sqrt() * last.h.powf(1.5);
+    assert!((last.f_n / hertz - 1.0).abs() < 0.05, "{} for {hertz}", last.f_n);
+    assert!((last.work_external / last.energy_elastic - 1.0).abs() < 0.03, "{last:?}");
+}

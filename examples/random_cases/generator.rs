@@ -5,9 +5,9 @@ use rand_chacha::ChaCha8Rng;
 
 /// Ranges of what is drawn.
 const YIELD_RATIO: [f64; 2] = [20.0, 20_000.0]; // E/sigma_Y, evenly in its logarithm
-const POISSON: [f64; 2] = [0.0, 0.45];
+const POISSON: [f64; 2] = [0.0, 0.49];
 const DEPTH: [f64; 2] = [1e-4, 0.1]; // h/R, evenly in its logarithm
-const FRICTION: [f64; 2] = [0.0, 1.0];
+const FRICTION: [f64; 2] = [0.0, 1.5];
 /// Displacements of a shear of given length over sqrt(2 R h), evenly in the logarithm: from well
 /// within stick to far into slip.
 const SHEAR: [f64; 2] = [2e-4, 0.5];
@@ -29,6 +29,29 @@ pub enum Against {
     Rigid,
     /// Another body of another material that deforms: a sphere, or one of the two a flat.
     Unlike,
+}
+
+impl Against {
+    /// The opponents in turn.
+    pub fn of(index: usize) -> Self {
+        [Self::Plane, Self::Equal, Self::Rigid, Self::Unlike][index % 4]
+    }
+}
+
+/// What is drawn, and from where to where.
+pub fn ranges() -> String {
+    let range = |[low, high]: [f64; 2]| format!("{low} to {high}");
+    format!(
+        "E/sigma_Y {}, or elastic; nu {}; h/R or h/R* {}; mu {}, one in ten 0, two in ten full stick; shear over sqrt(2 R h) {}; \
+         radius of the opponent {}, its E {} times the body's; seven hardening laws, twelve kinds of path",
+        range(YIELD_RATIO),
+        range(POISSON),
+        range(DEPTH),
+        range(FRICTION),
+        range(SHEAR),
+        range(OPPONENT),
+        range(STIFFNESS),
+    )
 }
 
 /// Case number `index` of a seed, as a case file; the same for ever.

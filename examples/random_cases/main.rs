@@ -6,8 +6,8 @@
 //! cargo run --release --example random_cases -- --seed 1 --only 17 > case.toml    # one of them, as a case file
 //! ```
 //! Each case is run as `asperity run` would: a scout first, then the case on a mesh that is large
-//! enough. Prints a row a case and a summary; exit code 1 if a case did not get to the end of its
-//! path.
+//! enough. Prints what is drawn from where to where, a row a case and a summary; exit code 1 if a
+//! case did not get to the end of its path, or said what cannot be true.
 
 mod generator;
 mod measure;
@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Parser;
 use rayon::prelude::*;
 
-use generator::{Against, case_text};
+use generator::{Against, case_text, ranges};
 use measure::{Measured, measure, summary};
 
 #[derive(Parser)]
@@ -33,14 +33,17 @@ struct Args {
     /// Elements along the contact radius.
     #[arg(long, default_value_t = 5)]
     elements: usize,
-    /// Between two equal spheres instead of against a plane.
+    /// Against a plane alone, instead of against all opponents in turn.
     #[arg(long)]
+    plane: bool,
+    /// Between two equal spheres alone.
+    #[arg(long, conflicts_with = "plane")]
     equal: bool,
-    /// Against a rigid sphere, every second body a flat.
-    #[arg(long, conflicts_with = "equal")]
+    /// Against a rigid sphere alone, every second body a flat.
+    #[arg(long, conflicts_with_all = ["plane", "equal"])]
     rigid: bool,
-    /// Against another body that deforms, some of them flats.
-    #[arg(long, conflicts_with_all = ["equal", "rigid"])]
+    /// Against another body that deforms alone, some of them flats.
+    #[arg(long, conflicts_with_all = ["plane", "equal", "rigid"])]
     unlike: bool,
     /// Write the measured numbers to this file, as JSON.
     #[arg(long)]
@@ -55,25 +58,26 @@ struct Args {
 
 fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let args = Args::parse();
-    let against = match (args.equal, args.rigid, args.unlike) {
-        (true, ..) => Against::Equal,
-        (_, true, _) => Against::Rigid,
+    let against = |index: usize| match (args.plane, args.equal, args.rigid, args.unlike) {
+        (true, ..) => Against::Plane,
+        (_, true, ..) => Against::Equal,
+        (_, _, true, _) => Against::Rigid,
         (.., true) => Against::Unlike,
-        _ => Against::Plane,
+        _ => Against::of(index),
     };
     if let Some(index) = args.only {
-        print!("{}", case_text(args.seed, index, args.elements, against));
+        print!("{}", case_text(args.seed, index, args.elements, against(index)));
         return Ok(ExitCode::SUCCESS);
     }
     rayon::ThreadPoolBuilder::new().num_threads(args.threads).build_global()?;
-    println!("{}", Measured::HEAD);
+    println!("{}\n{}", ranges(), Measured::HEAD);
     let ready = AtomicUsize::new(0);
     // Side by side: what a case gives does not depend on the others.
     let all: Vec<Measured> = (0..args.count)
         .into_par_iter()
         .with_max_len(1)
         .map(|index| {
-            let measured = measure(args.seed, index, args.elements, against);
+            let measured = measure(args.seed, index, args.elements, against(index));
             println!("{measured}");
             ready.fetch_add(1, Ordering::Relaxed);
             measured
@@ -83,5 +87,5 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     if let Some(path) = &args.json {
         std::fs::write(path, serde_json::to_string_pretty(&all)?)?;
     }
-    Ok(if all.iter().all(|one| one.ending == "done") { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if all.iter().all(|one| one.ending == "done" && one.wrong().is_none()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

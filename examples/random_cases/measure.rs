@@ -6,6 +6,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use asperity::case::{Case, Friction};
+use asperity::internals::contact::frame::to_frame;
+use asperity::internals::contact::rigid::Rigid;
 use asperity::internals::simulation::drive::{Ending, Observer, StepView};
 use asperity::internals::simulation::follow::{follow, on_cpu};
 use asperity::internals::simulation::problem::Problem;
@@ -30,8 +32,15 @@ pub struct Measured {
     /// Steps in which points under full stick came off and down again.
     pub landed_again: usize,
     pub remeshed: usize,
+    /// Over a plane; on another body the contact tilts, and F_T may be more than mu F_N.
+    pub on_plane: bool,
     /// Largest F_T/(mu F_N) of any row; none for full stick and without friction.
     pub worst_friction: Option<f64>,
+    /// The same of any contact point that carries more than a millionth of the normal force;
+    /// without friction its tangential over its normal force.
+    pub worst_point: Option<f64>,
+    /// The most that the work of friction has fallen by in a step over the largest work on the way.
+    pub friction_fall: f64,
     /// |work of the plate - stored - dissipated| at the end over the largest work on the way.
     pub energy_gap: f64,
     /// Largest |F_N - held|/held of the rows that hold the normal force.
@@ -49,6 +58,31 @@ pub struct Measured {
 struct Watch {
     rows: Vec<StepRecord>,
     remeshed: usize,
+    /// Coefficient of friction; none for full stick.
+    mu: Option<f64>,
+    rigid: Option<Rigid>,
+    worst_point: f64,
+}
+
+impl Watch {
+    fn note_points(&mut self, view: &StepView<'_>) {
+        let Some(mu) = self.mu else { return };
+        let forces = view.interface_forces().unwrap_or_else(|| {
+            let along_axes = view.points.iter().map(|point| match self.rigid {
+                None => point.force,
+                Some(rigid) => to_frame(&rigid.frame(&point.position), &point.force),
+            });
+            along_axes.collect()
+        });
+        let all: f64 = forces.iter().map(|force| force[2]).sum();
+        for [x, y, n] in forces {
+            if n > 1e-6 * all {
+                self.worst_point = self.worst_point.max(x.hypot(y) / (n * if mu > 0.0 { mu } else { 1.0 }));
+            } else if x.hypot(y) > 1e-6 * all * mu.max(1e-3) {
+                self.worst_point = f64::INFINITY;
+            }
+        }
+    }
 }
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
@@ -56,6 +90,7 @@ type Failed = Box<dyn std::error::Error + Send + Sync>;
 impl Observer for Watch {
     fn step(&mut self, view: &mut StepView<'_>) -> Result<(), Failed> {
         self.rows.push(view.record.0);
+        self.note_points(view);
         Ok(())
     }
     fn segment_end(&mut self, _: &mut StepView<'_>) -> Result<(), Failed> {
@@ -74,12 +109,17 @@ impl Observer for Watch {
 /// Runs case `index` of `seed`.
 pub fn measure(seed: u64, index: usize, elements: usize, against: Against) -> Measured {
     let text = case_text(seed, index, elements, against);
-    let mut measured = Measured { seed, index, ..Measured::default() };
+    let mut measured = Measured { seed, index, on_plane: against == Against::Plane, ..Measured::default() };
     let begun = Instant::now();
     let mut watch = Watch::default();
     let outcome = (|| -> Result<(Case, Ending), Failed> {
         let case = Case::parse(&text, "case.toml", &[])?;
         let mut problem = Problem::new(&case)?;
+        watch.mu = match case.contact.friction {
+            Friction::Coefficient(mu) => Some(mu),
+            Friction::Stick => None,
+        };
+        watch.rigid = problem.rigid;
         if let Some(scout) = scout(&case, &Arc::new(AtomicBool::new(false)))? {
             let zone = scout.zone(problem.zone, problem.spacing);
             if zone != problem.zone {
@@ -98,11 +138,14 @@ pub fn measure(seed: u64, index: usize, elements: usize, against: Against) -> Me
     measured.iterations = rows.iter().map(|row| row.newton_iterations).sum();
     measured.cuts = rows.iter().map(|row| row.cutbacks).sum();
     measured.relaxed_steps = rows.iter().filter(|row| row.relaxed > 0).count();
+    measured.worst_point = watch.mu.map(|_| watch.worst_point);
     measured.landed_again = rows.iter().filter(|row| row.landed_again > 0).count();
     let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external.abs()));
     if let Some(last) = rows.last().filter(|_| most > 0.0) {
         let kept = last.energy_elastic + last.work_plastic + last.work_friction;
         measured.energy_gap = (last.work_external - kept).abs() / most;
+        measured.friction_fall =
+            rows.windows(2).map(|two| two[0].work_friction - two[1].work_friction).fold(0.0, f64::max) / most;
     }
     match outcome {
         Ok((case, ending)) => {
@@ -170,8 +213,21 @@ fn describe(case: &Case) -> String {
 
 impl Measured {
     /// Column names of its row.
-    pub const HEAD: &'static str =
-        " case  steps  iter it/step cuts relaxed landed remesh  F_T/mu F_N  F_N held   energy       s  scout  ending; what";
+    pub const HEAD: &'static str = " case  steps  iter it/step cuts relaxed landed remesh  F_T/mu F_N  at a point  F_N held   energy  W_f falls       s  scout  ending; what";
+
+    /// What the case says that cannot be true.
+    pub fn wrong(&self) -> Option<String> {
+        let beyond = |what: &str, found: Option<f64>, most: f64| {
+            // Written so that a NaN is beyond.
+            found.filter(|found| !(*found <= most)).map(|found| format!("{what}: {found:.2e}, and at most {most:.0e} can be"))
+        };
+        let limit = if self.worst_friction.is_none() { 1e-6 } else { 1.0 + 1e-3 };
+        beyond("F_T over mu F_N", self.worst_friction.filter(|_| self.on_plane), 1.0 + 1e-3)
+            .or_else(|| beyond("friction of a point over its limit", self.worst_point, limit))
+            .or_else(|| beyond("F_N off what is held", self.held_gap, 1e-4))
+            .or_else(|| beyond("work of friction that comes back", Some(self.friction_fall), 1e-4))
+            .or_else(|| beyond("work that is neither stored nor dissipated", Some(self.energy_gap), 0.05))
+    }
 
     /// Iterations a step.
     pub fn per_step(&self) -> f64 {
@@ -181,12 +237,13 @@ impl Measured {
 
 impl fmt::Display for Measured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ratio = self.worst_friction.map_or_else(|| "-".to_owned(), |x| format!("{x:.5}"));
+        let ratio = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.5}"));
         let held = self.held_gap.map_or_else(|| "-".to_owned(), |x| format!("{x:.1e}"));
+        let wrong = self.wrong().map_or(String::new(), |what| format!(" WRONG: {what}"));
         let scout = self.scout_failure.as_ref().map_or(String::new(), |reason| format!(" [scout: {reason}]"));
         write!(
             f,
-            "{:>5} {:>6} {:>5} {:>7.2} {:>4} {:>7} {:>6} {:>6} {:>11} {:>9} {:>8.1e} {:>7.2} {:>6.2}  {}{scout}; {}",
+            "{:>5} {:>6} {:>5} {:>7.2} {:>4} {:>7} {:>6} {:>6} {:>11} {:>11} {:>9} {:>8.1e} {:>10.1e} {:>7.2} {:>6.2}  {}{scout}{wrong}; {}",
             self.index,
             self.steps,
             self.iterations,
@@ -195,9 +252,11 @@ impl fmt::Display for Measured {
             self.relaxed_steps,
             self.landed_again,
             self.remeshed,
-            ratio,
+            ratio(self.worst_friction),
+            ratio(self.worst_point),
             held,
             self.energy_gap,
+            self.friction_fall,
             self.seconds,
             self.scout_seconds,
             self.ending,
@@ -208,6 +267,7 @@ impl fmt::Display for Measured {
 
 /// All cases in some numbers.
 pub fn summary(all: &[Measured]) -> String {
+    let wrong = all.iter().filter(|one| one.wrong().is_some()).count();
     let done = all.iter().filter(|one| one.ending == "done").count();
     let mut per_step: Vec<f64> = all.iter().map(Measured::per_step).collect();
     per_step.sort_by(f64::total_cmp);
@@ -216,8 +276,8 @@ pub fn summary(all: &[Measured]) -> String {
     let worst = |of: fn(&Measured) -> f64| all.iter().map(of).fold(0.0, f64::max);
     let steps = sum(|one| one.steps);
     format!(
-        "{done} of {} done; iterations a step: median {:.2}, 95 % below {:.2}, worst {:.2}; {} iterations in {steps} steps; {} cuts in {} cases; \
-         {} relaxed steps ({:.2} %); {} remeshed; {} scouts failed\nF_T/(mu F_N) up to {:.5}; F_N held to {:.1e}; energy balance to {:.1e}; {:.0} s, {:.0} % of \
+        "{done} of {} done, {wrong} wrong; iterations a step: median {:.2}, 95 % below {:.2}, worst {:.2}; {} iterations in {steps} steps; {} cuts in {} cases; \
+         {} relaxed steps ({:.2} %); {} remeshed; {} scouts failed\nF_T/(mu F_N) up to {:.5}; F_N held to {:.1e}; energy balance to {:.1e}; work of friction falls by {:.1e}; {:.0} s, {:.0} % of \
          them for the scouts",
         all.len(),
         at(0.5),
@@ -233,6 +293,7 @@ pub fn summary(all: &[Measured]) -> String {
         worst(|one| one.worst_friction.unwrap_or(0.0)),
         worst(|one| one.held_gap.unwrap_or(0.0)),
         worst(|one| one.energy_gap),
+        worst(|one| one.friction_fall),
         all.iter().map(|one| one.seconds).sum::<f64>(),
         100.0 * all.iter().map(|one| one.scout_seconds).sum::<f64>() / all.iter().map(|one| one.seconds).sum::<f64>().max(1e-9),
     )

@@ -1,5 +1,5 @@
-//! Threads of this process. A process that `fork` has made has none of the threads of its parent, so
-//! a pool that was made there would wait for ever: each process makes its own.
+//! Threads of this process. A process that `fork` has made has none of the threads of its parent,
+//! so a pool that was made there would wait for ever: each process makes its own.
 
 use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind};

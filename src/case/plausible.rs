@@ -27,8 +27,8 @@ const LARGEST_STRAIN: f64 = 10.0;
 const CONTRAST: f64 = 1000.0;
 /// Coefficients of friction of clean metals in vacuum and of rubber stay below.
 const LARGEST_FRICTION: f64 = 4.0;
-/// Of the indentation of first yield, by the closed form; and of the radius: what is less was pressed
-/// to less than any indentation that is allowed, over 1000.
+/// Of the indentation of first yield, by the closed form; and of the radius: what is less was
+/// pressed to less than any indentation that is allowed, over 1000.
 const BELOW_YIELD: f64 = 0.5;
 const SHALLOW: f64 = 3e-4;
 /// Of the greatest indentation: even a contact that is about to slip everywhere is sheared further.
@@ -255,7 +255,7 @@ mod tests {
             (&["path=[{indentation=2e-6}]"], "path.0.indentation"),
             (&["path=[{indentation=0.02},{shear=3e-6}]"], "path.1.shear"),
             (&["opponent={rigid=true,radius=2000.0}"], "opponent.radius"),
-            (&["opponent={rigid=true,radius=5e-4}", "path=[{indentation=1e-5}]"], "opponent.radius"),
+            (&["opponent={radius=5e-4}", "path=[{indentation=1e-5}]"], "opponent.radius"),
             (
                 &[
                     "opponent={radius=2.0,material={youngs_modulus=70.0,poissons_ratio=0.3,hardening={law=\"ideal\",yield_stress=0.1}}}",

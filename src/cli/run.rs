@@ -20,8 +20,8 @@ pub struct RunArgs {
     /// The case file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Directory for the results: new or empty, or one with earlier results if --resume, --extend or
-    /// --force is given.
+    /// Directory for the results: new or empty, or one with earlier results if --resume, --extend
+    /// or --force is given.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
@@ -34,8 +34,8 @@ pub struct RunArgs {
     #[arg(long)]
     pub resume: bool,
     /// Go on from the end of the finished run in DIR along a longer path: the case is that of the
-    /// run with segments added after the last one. The results are those of the longer path from the
-    /// beginning; where that would need another mesh, the extension is refused. One that was
+    /// run with segments added after the last one. The results are those of the longer path from
+    /// the beginning; where that would need another mesh, the extension is refused. One that was
     /// interrupted goes on, and one that is finished is left as it is.
     #[arg(long, conflicts_with = "resume")]
     pub extend: bool,

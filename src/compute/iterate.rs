@@ -151,8 +151,9 @@ impl Reading {
         Self { outcome, merit: f64::INFINITY, ..Self::default() }
     }
 
-    /// Whether there is something to decide by: a valid trial whose numbers are all finite. Newton's
-    /// method compares them, and a NaN passes any comparison that is written the wrong way round.
+    /// Whether there is something to decide by: a valid trial whose numbers are all finite.
+    /// Newton's method compares them, and a NaN passes any comparison that is written the wrong way
+    /// round.
     ///
     /// # Errors
     /// The fault.

@@ -1,5 +1,5 @@
-//! A backend that computes wrongly from some step on: the way in which tests get one, in the program
-//! and by themselves.
+//! A backend that computes wrongly from some step on: the way in which tests get one, in the
+//! program and by themselves.
 
 use super::iterate::Keeps;
 use super::{
@@ -126,7 +126,8 @@ impl<C: Compute> Compute for Wrong<C> {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         self.backend.tangent(requests)?;
         for request in requests.iter_mut().filter(|_| self.is(Kind::Tangent)) {
-            // In the middle of the matrix: the first rows may be prescribed ones, which nobody reads.
+            // In the middle of the matrix: the first rows may be prescribed ones, which nobody
+            // reads.
             match &mut request.blocks {
                 Blocks::Double(blocks) => {
                     let middle = blocks.len() / 2;

@@ -2,8 +2,8 @@
 //!
 //! A line of text with the version of format and program, the state in postcard's encoding (which
 //! keeps every number to the bit), and the CRC-32 of all that, four bytes, little-endian. It is
-//! replaced whole or not at all. That of a run that is done stays, if the case says so, and a longer
-//! path goes on from it; any other is removed when the run has ended.
+//! replaced whole or not at all. That of a run that is done stays, if the case says so, and a
+//! longer path goes on from it; any other is removed when the run has ended.
 
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Write};

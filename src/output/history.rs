@@ -106,8 +106,8 @@ pub fn read_history(path: &Path) -> Result<Vec<StepRecord>, OutputError> {
     read_rows(&mut reader, &columns, none_in_row).map_err(|(line, problem)| malformed(line, problem))
 }
 
-/// All rows of a table; what is wrong with one is told with its line. `flaw` says what is wrong with
-/// the values of a row.
+/// All rows of a table; what is wrong with one is told with its line. `flaw` says what is wrong
+/// with the values of a row.
 pub(super) fn read_rows<T: DeserializeOwned>(
     reader: &mut csv::Reader<&[u8]>,
     columns: &csv::StringRecord,

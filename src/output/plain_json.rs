@@ -183,7 +183,7 @@ mod tests {
             (last("\"n\"", "true"), 2, "name is true, and has to be a text"),
             (last("[1, 2]", "[1, 1e999]"), 5, "has a number that is too large"),
             (last("]}", ""), 5, "ends too soon, and is not the whole of a JSON file"),
-            (last("]}", "]} x"), 5, "is not JSON: trailing characters in column 48"),
+            (last("]}", "]} x"), 5, "is not JSON: trailing characters in column 49"),
             ("7".to_owned(), 1, "is 7, and has to be an object"),
             (String::new(), 1, "ends too soon, and is not the whole of a JSON file"),
         ] {

@@ -276,8 +276,8 @@ impl ResultWriter {
 
     /// Draws the plots and writes the summary of a run that ended as `status` for the reason
     /// `message`. The summary is written even if a plot fails, whose error is then returned. Of a
-    /// run that has ended for good the checkpoint is removed, unless it is done and the checkpoint is
-    /// to be kept.
+    /// run that has ended for good the checkpoint is removed, unless it is done and the checkpoint
+    /// is to be kept.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
         self.history.check_there()?;
         self.progress.finish(&last_line(status, self.ledger.rows.len()));

@@ -1,4 +1,5 @@
-//! `--resume` and `--extend`: what a directory holds of a run, and whether there is something to go on with.
+//! `--resume` and `--extend`: what a directory holds of a run, and whether there is something to go
+//! on with.
 
 use std::path::Path;
 

@@ -314,8 +314,8 @@ impl Simulation {
                 Some(checkpoint) => {
                     checkpoint.check_precision(&OutputDirectory::existing(out).checkpoint(), computed_on.precision)?;
                     checkpoint.snapshot().check(&problem.model.mesh).map_err(|error| refused(out, &error.to_string()))?;
-                    // Labels of pictures may have changed since, or an extension was killed before it
-                    // got here.
+                    // Labels of pictures may have changed since, or an extension was killed before
+                    // it got here.
                     let directory = OutputDirectory::existing(out);
                     if extends.is_none() && directory.read_case().as_deref() != Some(&case.to_toml()) {
                         directory.go_over_to(&case.to_toml())?;

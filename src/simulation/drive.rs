@@ -534,6 +534,7 @@ impl<'a> Drive<'a> {
             displacement,
             points,
             opponent_points,
+            newton: &self.newton,
             backend: &mut *self.backend,
             case: self.case,
         }

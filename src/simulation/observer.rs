@@ -9,6 +9,7 @@ use crate::compute::traffic::Traffic;
 use crate::compute::{CaseFields, Compute, ComputeError};
 use crate::mesh::Mesh;
 use crate::solver::StepReport;
+use crate::solver::newton::Newton;
 use crate::solver::phases::PhaseTimes;
 
 /// Watches a run.
@@ -52,6 +53,7 @@ pub struct StepView<'a> {
     pub unfinished: PhaseTimes,
     /// The mesh.
     pub mesh: &'a Mesh,
+    pub(super) newton: &'a Newton,
     pub(super) displacement: Displacement<'a>,
     /// Every point of the sphere that can touch.
     pub points: &'a [ContactPoint],
@@ -95,6 +97,12 @@ impl StepView<'_> {
     pub fn displacement(&mut self) -> Result<&[f64], ComputeError> {
         self.displacement.fetch(self.backend, self.case)?;
         Ok(self.displacement.u)
+    }
+
+    /// What the interface of two bodies exerts at the points at which Coulomb's law is exact (see
+    /// [`Newton::interface_forces`]).
+    pub fn interface_forces(&self) -> Option<Vec<[f64; 3]>> {
+        self.newton.interface_forces()
     }
 
     /// What has passed to the device and back so far; `None` without a device.

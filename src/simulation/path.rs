@@ -127,8 +127,9 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
     let mut targets = Vec::new();
     let mut from = start.h;
     if h > from && from < start.h_max {
-        // Loading again, up to where it was. What the press is released to may carry no force at all, so the
-        // steps are those of the release from the deepest state; before contact is near, one step does.
+        // Loading again, up to where it was. What the press is released to may carry no force at
+        // all, so the steps are those of the release from the deepest state; before contact is
+        // near, one step does.
         let to = h.min(start.h_max);
         let recovery = start.longest_recovery;
         let near = (start.h_max - 1.5 * recovery).clamp(from, to);

@@ -223,7 +223,8 @@ fn what_is_not_a_number_ends_the_run_and_is_called_what_it_is() {
                 (Kind::Material, &refused, "--device cpu"),
                 (Kind::Commit, &refused, "--device cpu"),
             ] {
-                // Under full stick, the host states the conditions of points that come down in a step.
+                // Under full stick, the host states the conditions of points that come down in a
+                // step.
                 let is_seen = kind != Kind::Contact || steps > 0 || friction != "\"stick\"";
                 let (ending, seen) = wrongly(kind, steps, friction);
                 let context = format!("{kind:?} after {steps} steps at friction {friction}: {ending:?}");

@@ -2,14 +2,14 @@
 
 use crate::contact::coulomb::{Friction, Status};
 
-/// Work that friction dissipates at a point that slips by `slip` (along the surface) in a step, where
-/// contact exerts `before` at its start and `after` at its end (two tangential components and the
-/// normal one, in one frame). Never negative.
+/// Work that friction dissipates at a point that slips by `slip` (along the surface) in a step,
+/// where contact exerts `before` at its start and `after` at its end (two tangential components and
+/// the normal one, in one frame). Never negative.
 ///
 /// A point first takes its tangential force to the limit, which dissipates nothing, and then slips
-/// at it, against the direction of the slip: the work is |slip| times the mean of the limits at both
-/// ends, to second order in the step. A mean of the forces themselves gives work back where the
-/// slip has reversed within the step. A point that sticks at the end has not slipped.
+/// at it, against the direction of the slip: the work is |slip| times the mean of the limits at
+/// both ends, to second order in the step. A mean of the forces themselves gives work back where
+/// the slip has reversed within the step. A point that sticks at the end has not slipped.
 pub fn dissipated(friction: Friction<f64>, status: Status, before: &[f64; 3], after: &[f64; 3], slip: [f64; 2]) -> f64 {
     let along = |force: &[f64; 3]| -(force[0] * slip[0] + force[1] * slip[1]);
     let first = match (status, friction) {

@@ -139,8 +139,13 @@ impl Newton {
     /// being lost or is lost not less than what it was at the step's start, nor than a small share
     /// of what it ever was. Without contact there is no force to compare with.
     fn scale(&self) -> f64 {
-        let scale = self.current.force_scale.max(self.last_scale).max(LOST_SHARE * self.largest_scale);
+        let scale = self.loaded_scale();
         if scale > 0.0 { scale } else { UNLOADED_SCALE }
+    }
+
+    /// The same where there is such a force; 0 before anything has ever touched.
+    fn loaded_scale(&self) -> f64 {
+        self.current.force_scale.max(self.last_scale).max(LOST_SHARE * self.largest_scale)
     }
 
     /// Tells that the accepted trial has been committed: its normal force is what later steps are
@@ -197,6 +202,18 @@ impl Newton {
         match (&boundary.pair, &boundary.encounter) {
             (Some(pair), _) => Some(pair.friction_work(friction, trial, before)),
             (None, Some(encounter)) => Some(encounter.friction_work(friction, trial, before)),
+            (None, None) => None,
+        }
+    }
+
+    /// What the interface of two bodies exerts at the points at which Coulomb's law is exact, in
+    /// their frames (two tangential components and the normal one), on the meshed half; `None`
+    /// against what is rigid, where these are the contact nodes themselves.
+    pub fn interface_forces(&self) -> Option<Vec<[f64; 3]>> {
+        let (trial, boundary) = (self.iterates.host.current(), self.iterates.host.boundary());
+        match (&boundary.pair, &boundary.encounter) {
+            (Some(pair), _) => Some(trial.pair_forces(pair)),
+            (None, Some(encounter)) => Some(trial.interface_forces(encounter)),
             (None, None) => None,
         }
     }
@@ -417,7 +434,8 @@ impl Newton {
     /// The merit is below the tolerance, the tangential residuals of the contact are against the
     /// friction that there can be, and a held normal force is met to this share of it.
     fn has_converged(&mut self, case: &dyn Evaluate, control: &Control, held: f64) -> bool {
-        let bound = (self.tolerance * self.scale()).max(ROUNDING);
+        // Not by a force that is made up: a light contact would end the step before it carries any.
+        let bound = (self.tolerance * self.loaded_scale()).max(ROUNDING);
         // Written so that a NaN has not converged.
         if !(self.current.merit <= bound) || !self.iterate().plate_is_placed(control) {
             return false;

@@ -302,8 +302,8 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Not where the folder was removed or moved in the meantime: a table without its cases would be
-    /// of no use.
+    /// Not where the folder was removed or moved in the meantime: a table without its cases would
+    /// be of no use.
     fn write(&self) -> Result<(), StudyError> {
         self.lock.check_there()?;
         write_table(&self.directory.table(), self.study, &self.rows)

@@ -12,9 +12,9 @@ use super::common::{program, stderr, stdout};
 enum Writes {
     /// It prints, and has no option that names a file or a directory to be written.
     Nothing,
-    /// It is run with these arguments in a folder with the fixtures of [`folder`]. Each of the files
-    /// is one that it would write; where it holds something of the user's, the command must end with
-    /// 2 and leave it.
+    /// It is run with these arguments in a folder with the fixtures of [`folder`]. Each of the
+    /// files is one that it would write; where it holds something of the user's, the command must
+    /// end with 2 and leave it.
     Files { arguments: &'static [&'static str], files: &'static [&'static str] },
 }
 use Writes::{Files, Nothing};
@@ -25,7 +25,8 @@ const TABULATE: &[&str] = &["law", "tabulate", "case.toml", "--out", "study", "-
 
 /// The commands, as they are typed.
 const COMMANDS: &[(&str, Writes)] = &[
-    // The user names the very file, and --force says that it is to be replaced: without it nothing is.
+    // The user names the very file, and --force says that it is to be replaced: without it nothing
+    // is.
     ("init", Files { arguments: &["init", "mine"], files: &["mine.toml"] }),
     ("explain", Nothing),
     ("check", Nothing),

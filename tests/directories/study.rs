@@ -202,11 +202,10 @@ fn two_studies_that_start_together_are_never_mixed() {
 #[test]
 fn shares_of_one_study_are_computed_side_by_side() {
     let scratch = Scratch::new();
-    let share = |number: &str| {
-        let mut command = scratch.command(ONE, "out", &["-q", "--threads", "1", "--shard", number]);
-        command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program runs")
-    };
-    let shares = ["1/3", "2/3", "3/3"].map(share);
+    // The file is written before any of them reads it.
+    let commands = ["1/3", "2/3", "3/3"].map(|number| scratch.command(ONE, "out", &["-q", "--threads", "1", "--shard", number]));
+    let share = |mut command: Command| command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program runs");
+    let shares = commands.map(share);
     for child in shares {
         let output = child.wait_with_output().expect("it ends");
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

@@ -2,8 +2,8 @@
 //! the disk fills, its directory is removed, linked or written by another run, and what it is given
 //! is hostile.
 //!
-//! A share of the kills and 2,000 hostile inputs of each kind run by default; ASPERITY_FAULTS=all runs
-//! every kill and 100,000 inputs, ASPERITY_FUZZ as many inputs as it says.
+//! A share of the kills and 2,000 hostile inputs of each kind run by default; ASPERITY_FAULTS=all
+//! runs every kill and 100,000 inputs, ASPERITY_FUZZ as many inputs as it says.
 #![cfg(target_os = "linux")]
 
 #[path = "../common/mod.rs"]

@@ -31,8 +31,8 @@ struct Taken {
 }
 
 impl Drive<'_> {
-    /// Commits the accepted trial and records it. What cannot be committed is a step that failed: its
-    /// fault is returned, and nothing has changed.
+    /// Commits the accepted trial and records it. What cannot be committed is a step that failed:
+    /// its fault is returned, and nothing has changed.
     pub(super) fn accept(
         &mut self,
         target: &Target,

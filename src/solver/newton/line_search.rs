@@ -23,8 +23,8 @@ impl Newton {
     /// Backtracks along the correction until the merit falls below `reference`; otherwise takes the
     /// best there was, or the whole correction where that would creep while the energy falls all
     /// the way. `slope` is the work of the free residual on the correction, `delta_h` its change of
-    /// h. No length may give a trial that can be evaluated: the shortest one tells why. Returns the step length
-    /// and the trial there, which is not kept yet.
+    /// h. No length may give a trial that can be evaluated: the shortest one tells why. Returns the
+    /// step length and the trial there, which is not kept yet.
     pub(super) fn line_search(
         &mut self,
         case: &mut dyn Evaluate,

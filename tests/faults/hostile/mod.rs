@@ -1,9 +1,9 @@
-//! Hostile input: what is in the corpus and the fixtures, changed at random, through everything that
-//! reads it, and what was taken through what uses it. No panic, none takes two seconds, all together
-//! no 256 MiB.
+//! Hostile input: what is in the corpus and the fixtures, changed at random, through everything
+//! that reads it, and what was taken through what uses it. No panic, none takes two seconds, all
+//! together no 256 MiB.
 //!
-//! `ASPERITY_FUZZ=100000 cargo test --test faults hostile -- --nocapture` makes so many inputs of each
-//! kind and tells how many were taken. An input with a fault is kept in `target/tmp/hostile`.
+//! `ASPERITY_FUZZ=100000 cargo test --test faults hostile -- --nocapture` makes so many inputs of
+//! each kind and tells how many were taken. An input with a fault is kept in `target/tmp/hostile`.
 
 mod corpus;
 mod mutate;

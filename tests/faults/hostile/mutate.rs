@@ -167,7 +167,8 @@ pub fn tree(rng: &mut ChaCha8Rng, value: &mut Value) {
     }
 }
 
-/// A place in a tree; each step down goes to any child, and now and then the way ends before a leaf.
+/// A place in a tree; each step down goes to any child, and now and then the way ends before a
+/// leaf.
 fn somewhere<'a>(rng: &mut ChaCha8Rng, value: &'a mut Value) -> &'a mut Value {
     let mut place = value;
     loop {

@@ -37,8 +37,8 @@ fn greatest_memory_kib() -> usize {
     line.trim().trim_end_matches(" kB").trim().parse().expect("a number")
 }
 
-/// Makes inputs with `next` and hands each to `take`, as bytes and as a file; `take` says whether it
-/// was taken. No panic, none takes two seconds, all together take no 256 MiB; some are taken, at
+/// Makes inputs with `next` and hands each to `take`, as bytes and as a file; `take` says whether
+/// it was taken. No panic, none takes two seconds, all together take no 256 MiB; some are taken, at
 /// least the share `least` of them, or the changes are too great to find anything.
 pub fn fuzz(
     kind: &'static str,

@@ -1,5 +1,5 @@
-//! What a file that was taken is for: a law is followed and exported, a history drawn, a run resumed.
-//! Faults of what was read show there.
+//! What a file that was taken is for: a law is followed and exported, a history drawn, a run
+//! resumed. Faults of what was read show there.
 
 use asperity::case::{Case, Segment, ShearTarget};
 use asperity::contact_law::{ContactParameters, ContactState};

@@ -225,8 +225,8 @@ fn kinematics<R: Real>(geometry: &Geometry<R>, committed: &Nodal<R>, increment: 
 }
 
 impl<R: Real> Kinematics<R> {
-    /// An error if a point is turned inside out, or no number: the rest means nothing then. It stands apart
-    /// because a `Result` of the whole would be copied, in every element.
+    /// An error if a point is turned inside out, or no number: the rest means nothing then. It
+    /// stands apart because a `Result` of the whole would be copied, in every element.
     #[inline(always)]
     fn check(&self) -> Result<(), Invalid> {
         // The negated comparison catches NaN as well.
