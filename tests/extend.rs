@@ -8,6 +8,7 @@ use std::fs;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
+use asperity::internals::compute::wrong::WRONG_VARIABLE;
 use asperity::output::{Status, Summary, read_history};
 use common::{Scratch, difference, files, program, stderr, stdout};
 use rustix::process::{Pid, Signal, kill_process};
@@ -165,4 +166,24 @@ fn a_mesh_that_is_given_is_pressed_deeper() {
     done(&scratch, "whole", &with(deeper, &["-q"]));
     assert_eq!(difference(&scratch.path("out"), &scratch.path("whole")), None);
     assert_eq!(Summary::read(&scratch.path("out/summary.json")).expect("a summary").status, Status::Done);
+}
+
+/// Of an extension that does not converge the end before it is kept, and another one goes on from there.
+#[test]
+fn an_extension_that_fails_leaves_the_end_before_it() {
+    let scratch = scratch();
+    let with = |path, more: &[&'static str]| set(&["solver.error_estimate=false", "solver.max_cutbacks=1", path], more);
+    done(&scratch, "out", &with(PRESSED, &["-q"]));
+    let steps = read_history(&scratch.path("out/history.csv")).expect("a history").len();
+    // The other way, in which every step is refused.
+    let mut command = program();
+    let other = "path=[{indentation=0.02},{shear=-0.002}]";
+    let output = command.args(scratch.args("out", &with(other, &["--extend", "-q"]))).env(WRONG_VARIABLE, "force:1").output();
+    let output = output.expect("the program runs");
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(read_history(&scratch.path("out/history.csv")).expect("a history").len() > steps);
+    assert_eq!(Summary::read(&scratch.path("out/summary.json")).expect("a summary").status, Status::NotConverged);
+    done(&scratch, "out", &with(SHEARED, &["--extend", "-q"]));
+    done(&scratch, "whole", &with(SHEARED, &["-q"]));
+    assert_eq!(difference(&scratch.path("out"), &scratch.path("whole")), None);
 }

@@ -244,6 +244,7 @@ fn a_law_file_with_a_number_that_no_law_has_is_refused_by_its_key() {
         (&plane, "/ratio/mean/5", 1e20.into(), "ratio.mean[5] is 1e20"),
         (&plane, "/inputs/1/name", "nu".into(), "inputs[1].name is \"nu\", and has to be \"hardening to 0\""),
         (&formulas, "/constants/fall/2", 1e308.into(), "constants.fall[2] is 1e308"),
+        (&formulas, "/validity/poissons_ratio/from", (-1.5).into(), "validity.poissons_ratio.from is -1.5"),
         (&formulas, "/validity/lambda/to", (-1.0).into(), "validity.lambda.to is -1.0"),
         (&formulas, "/normal/force", serde_json::json!([1.0]), "normal.force has 1 constants, and its form has 6"),
         (&formulas, "/constants/slip/1", "x".into(), "constants.slip[1] is \"x\", and has to be a number"),

@@ -54,7 +54,7 @@ pub fn ranges() -> String {
     )
 }
 
-/// Case number `index` of a seed, as a case file; the same for ever.
+/// Case number `index` of a seed, as a case file; the same as long as the ranges are.
 pub fn case_text(seed: u64, index: usize, elements: usize, against: Against) -> String {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
     draw.0.set_stream(index as u64);

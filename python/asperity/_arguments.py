@@ -97,11 +97,19 @@ def as_array(name: str, value: Any) -> np.ndarray:
     # NumPy would take a mapping for a sequence, as long as it says that it is.
     if isinstance(value, Mapping):
         raise CaseError(f"{name}: is {described(value)}. Allowed: an array")
+    if isinstance(value, (list, tuple)) and _has_masked_row(value):
+        raise CaseError(f"{name}: is masked in one of its rows. Allowed: numbers")
     try:
         # Lists may have masked values in them, which NumPy itself makes NaN.
         return np.ma.asarray(value) if isinstance(value, (list, tuple)) else np.asanyarray(value)
     except (TypeError, ValueError, RecursionError, UserWarning) as error:
         raise CaseError(f"{name}: is no array ({error}). Allowed: an array") from None
+
+
+def _has_masked_row(value: list[Any] | tuple[Any, ...]) -> bool:
+    """A masked value in a list within the list, which NumPy makes NaN."""
+    rows = (row for row in value if isinstance(row, (list, tuple)))
+    return any(any(item is np.ma.masked for item in row) or _has_masked_row(row) for row in rows)
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:

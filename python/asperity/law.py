@@ -111,7 +111,7 @@ class Law:
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _of_json, (type(self), self._native.to_json())
+        return _of_json, (type(self), *self._native.to_json())
 
     @classmethod
     def fit(cls, study: Study | str | os.PathLike[str], prior: str = "built-in", *, interpolate: bool = False, reversal: Law | None = None) -> Law:
@@ -184,7 +184,7 @@ class Law:
 
     def to_dict(self) -> dict[str, Any]:
         """The content of ``law.json``: forms, constants, where they come from, where they hold and how well."""
-        law: dict[str, Any] = json.loads(self._native.to_json())
+        law: dict[str, Any] = json.loads(self._native.to_json()[0])
         return law
 
     def table(self, case: Case | Mapping[str, Any] | str | os.PathLike[str]) -> Law:
@@ -268,6 +268,6 @@ class Law:
         return f"<Law: fitted to {provenance['cases']} cases of {provenance['materials']} materials>"
 
 
-def _of_json(kind: type[Law], law: str) -> Law:
-    """The law of a pickle."""
-    return kind(NativeLaw.from_json(law))
+def _of_json(kind: type[Law], law: str, pair: str | None = None) -> Law:
+    """The law of a pickle, with that of equal spheres that the built-in one has beside it."""
+    return kind(NativeLaw.from_json(law, pair))

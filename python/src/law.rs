@@ -97,8 +97,14 @@ impl NativeLaw {
 
     /// Of the text of a `law.json`.
     #[staticmethod]
-    fn from_json(text: &str) -> PyResult<Self> {
-        LawFile::parse(text, "law").map(Self::of).map_err(failed)
+    #[pyo3(signature = (text, pair=None))]
+    fn from_json(text: &str, pair: Option<&str>) -> PyResult<Self> {
+        let mut law = LawFile::parse(text, "law").map_err(failed)?;
+        let pair = pair.map(|pair| LawFile::parse(pair, "law of equal spheres")).transpose().map_err(failed)?;
+        if let (LawFile::Interpolated(law), Some(LawFile::Interpolated(pair))) = (&mut law, pair) {
+            law.pair = Some(pair);
+        }
+        Ok(Self::of(law))
     }
 
     /// The law that comes with the program: by interpolation, or the formulas.
@@ -121,14 +127,19 @@ impl NativeLaw {
         self.law.write(&file).map_err(failed)
     }
 
-    /// The text of `law.json`.
-    fn to_json(&self) -> PyResult<String> {
-        match self.law.as_ref() {
+    /// The text of `law.json`, and that of the law of equal spheres that the built-in one has
+    /// beside it.
+    fn to_json(&self) -> PyResult<(String, Option<String>)> {
+        let pair = match self.law.as_ref() {
+            LawFile::Interpolated(law) => law.pair.as_ref().map(serde_json::to_string).transpose().map_err(failed)?,
+            LawFile::Formulas(_) | LawFile::Table(_) => None,
+        };
+        let text = match self.law.as_ref() {
             LawFile::Formulas(law) => serde_json::to_string(law),
             LawFile::Table(table) => serde_json::to_string(table),
             LawFile::Interpolated(law) => serde_json::to_string(law),
-        }
-        .map_err(failed)
+        };
+        Ok((text.map_err(failed)?, pair))
     }
 
     /// The formulas with their constants, as `law fit` prints them; a table has none.

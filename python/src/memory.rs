@@ -5,10 +5,16 @@ use asperity::contact_law::ContactState;
 use pyo3::PyResult;
 use pyo3::exceptions::PyMemoryError;
 
+/// So few bytes are not worth the question what is left.
+const SMALL: usize = 16 << 20;
+
 /// Refuses more bytes than the machine has left, before some of them are written to: a system that
 /// promises more than it has kills the process then.
 pub fn check(what: &str, count: usize, bytes_each: usize) -> PyResult<()> {
     let needed = count.checked_mul(bytes_each).filter(|bytes| isize::try_from(*bytes).is_ok());
+    if needed.is_some_and(|needed| needed < SMALL) {
+        return Ok(());
+    }
     if needed.is_some_and(|needed| available().is_none_or(|left| needed <= left)) {
         return Ok(());
     }
@@ -51,9 +57,12 @@ fn available() -> Option<usize> {
         line.trim().strip_suffix("kB")?.trim().parse::<usize>().ok().map(|kib| kib << 10)
     };
     let container = || {
-        number("/sys/fs/cgroup/memory.max")
-            .zip(number("/sys/fs/cgroup/memory.current"))
-            .map(|(most, used)| most.saturating_sub(used))
+        let (most, used) = number("/sys/fs/cgroup/memory.max").zip(number("/sys/fs/cgroup/memory.current"))?;
+        // Copies of files count as used, and are given up for whoever needs the room.
+        let told = read("/sys/fs/cgroup/memory.stat").unwrap_or_default();
+        let of = |name: &str| told.lines().find_map(|line| line.strip_prefix(name)?.trim().parse::<usize>().ok());
+        let files = of("inactive_file ").unwrap_or(0) + of("active_file ").unwrap_or(0);
+        Some(most.saturating_sub(used.saturating_sub(files)))
     };
     machine().into_iter().chain(container()).min()
 }

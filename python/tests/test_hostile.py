@@ -132,6 +132,7 @@ def test_the_fuzz_has_every_public_name(place: Path) -> None:
         ("delta", [1e-3], r"delta: has the shape \(1,\)"),
         ("delta", np.zeros(3), r"delta: has the shape \(3,\)"),
         ("delta", np.zeros((3, 1)), r"delta: has the shape \(3, 1\)"),
+        ("delta", [(0.0, np.ma.masked), (0.0, 0.0), (0.0, 0.0)], r"delta: is masked in one of its rows"),
         ("delta", np.ma.array(np.zeros((3, 2)), mask=[[0, 0], [0, 1], [0, 0]]), r"delta\[1, 1\]: is masked"),
         ("delta", [(0.0, 0.0), (0.0, None), (0.0, 0.0)], r"delta\[1, 1\]: is None"),
         ("angle", [0.0, np.nan, 0.0], r"angle\[1\]: is nan. Allowed: finite numbers"),

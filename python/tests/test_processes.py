@@ -56,7 +56,11 @@ def test_a_case_comes_back_as_it_was(file: Path) -> None:
 def test_a_law_comes_back_bit_by_bit(name: str, table: asperity.Law, case: asperity.Case) -> None:
     law = {"formulas": asperity.Law.built_in(formulas=True), "built_in": asperity.Law.built_in(), "table": table}[name]
     curve = law.predict(case)
+    equal = asperity.Case.parse(case.to_toml() + "[opponent]\nequal = true\n")
+    between = law.predict(equal) if name == "built_in" else None
     for again in kept(law):
+        # With the law of equal spheres that the built-in one has beside it.
+        assert between is None or same(again.predict(equal), between)
         assert same(again.predict(case), curve) and again.to_dict() == law.to_dict() and repr(again) == repr(law)
 
 

@@ -255,7 +255,6 @@ mod tests {
             (&["path=[{indentation=2e-6}]"], "path.0.indentation"),
             (&["path=[{indentation=0.02},{shear=3e-6}]"], "path.1.shear"),
             (&["opponent={rigid=true,radius=2000.0}"], "opponent.radius"),
-            (&["opponent={radius=5e-4}", "path=[{indentation=1e-5}]"], "opponent.radius"),
             (
                 &[
                     "opponent={radius=2.0,material={youngs_modulus=70.0,poissons_ratio=0.3,hardening={law=\"ideal\",yield_stress=0.1}}}",

@@ -278,6 +278,8 @@ const CONSTANT: Bounds = Bounds { least: 1e-9, most: 1e9 };
 const SIGNED: Bounds = Bounds { least: -1e9, most: 1e9 };
 /// Ends of the ranges of what a law was fitted to.
 const RANGE: Bounds = Bounds { least: 0.0, most: 1e9 };
+/// Of Poisson's ratio: what an isotropic solid can have.
+const POISSON: Bounds = Bounds { least: -1.0, most: 0.5 };
 
 impl LawKind for Law {
     const NAME: &'static str = "law of formulas";
@@ -309,11 +311,11 @@ impl LawKind for Law {
             ("validity.friction", validity.friction),
             ("validity.relative_radius", validity.relative_radius),
             ("validity.c_squared", validity.c_squared),
-            ("validity.poissons_ratio", validity.poissons_ratio),
             ("validity.hardening_exponent", validity.hardening_exponent),
         ] {
             RANGE.hold_interval(key, range)?;
         }
+        POISSON.hold_interval("validity.poissons_ratio", validity.poissons_ratio)?;
         TOLD.hold_all("errors", &self.errors)?;
         TOLD.hold_all("errors_predicted", &self.errors_predicted)?;
         TOLD.hold_all("candidates", &self.candidates)?;

@@ -83,8 +83,13 @@ impl Checkpoint {
     /// The same state as that of a run of `case`, whose longer path has been scouted in so many
     /// seconds.
     pub fn extended(mut self, case: &Case, scout: Option<Scout>, seconds: f64) -> Self {
-        self.case = case.to_toml();
+        let found = std::mem::replace(&mut self.case, case.to_toml());
         let Ledger { outside, messages, .. } = &mut self.ledger;
+        // What is odd about the shorter path may not be about the longer one.
+        let doubts = |case: &Case| case.doubts().iter().map(|doubt| format!("note: {doubt}")).collect::<Vec<_>>();
+        let before = Case::parse(&found, "case.toml", &[]).map(|case| doubts(&case)).unwrap_or_default();
+        messages.retain(|message| !before.contains(message));
+        messages.splice(0..0, doubts(case));
         outside.error_estimate += seconds;
         outside.setup -= seconds;
         let failed = scout.as_ref().and_then(no_estimate).map(|text| format!("note: {text}"));

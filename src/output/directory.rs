@@ -63,6 +63,11 @@ impl OutputDirectory {
         self.root.join("checkpoint.bin")
     }
 
+    /// `checkpoint-end.bin`, the end of the shorter path while an extension of it is not done.
+    pub fn end_checkpoint(&self) -> PathBuf {
+        self.root.join("checkpoint-end.bin")
+    }
+
     /// `run.log`, what the run said and when.
     pub fn log(&self) -> PathBuf {
         self.root.join("run.log")
@@ -121,7 +126,7 @@ impl OutputDirectory {
         let files: Vec<String> =
             saved.chain(panels.iter().map(|&step| self.contact(step))).map(|path| file_name(&path)).collect();
         self.clear_but(|folder, name| match folder {
-            "" => matches!(name, "history.csv" | "checkpoint.bin" | "run.log"),
+            "" => matches!(name, "history.csv" | "checkpoint.bin" | "checkpoint-end.bin" | "run.log"),
             "plots" => false,
             _ => name == "case.pvd" || files.iter().any(|file| file == name),
         })
@@ -186,12 +191,28 @@ impl OutputDirectory {
     /// # Errors
     /// [`OutputError::Foreign`] for the first, [`OutputError::Read`].
     pub fn refuse_foreign(&self) -> Result<(), OutputError> {
+        self.refuse_foreign_of(|_, _| true)
+    }
+
+    /// The same of the files that `wanted` names by folder and name, and of `case.toml`.
+    fn refuse_foreign_of(&self, wanted: impl Fn(&str, &str) -> bool) -> Result<(), OutputError> {
         let own = self.own_files()?;
         // A damaged checkpoint is known by what lies beside it.
         let begun = own.iter().any(|(_, name, _)| matches!(name.as_str(), "history.csv" | "summary.json"));
         let drafted = |name: &str| draft_of(name).is_some();
-        let looked_at = own.iter().filter(|(_, name, _)| !(drafted(name) || begun && name == "checkpoint.bin"));
+        let checkpoint = |name: &str| matches!(name, "checkpoint.bin" | "checkpoint-end.bin");
+        let looked_at =
+            own.iter().filter(|(folder, name, _)| wanted(folder, name) && !(drafted(name) || begun && checkpoint(name)));
         looked_at.map(|(_, _, path)| path).chain([&self.case()]).try_for_each(|path| refuse_foreign(path))
+    }
+
+    /// The files in `fields`, `contact` and `plots` with the names of a run's.
+    ///
+    /// # Errors
+    /// [`OutputError::Read`].
+    pub fn in_folders(&self) -> Result<Vec<PathBuf>, OutputError> {
+        let own = self.own_files()?.into_iter();
+        Ok(own.filter(|(folder, name, _)| !folder.is_empty() && draft_of(name).is_none()).map(|(_, _, path)| path).collect())
     }
 
     /// The files with the names of a run's but `case.toml`, each with its folder and its name.
@@ -217,7 +238,7 @@ impl OutputDirectory {
 
     fn clear_but(&self, keep: impl Fn(&str, &str) -> bool) -> Result<(), OutputError> {
         self.refuse_links()?;
-        self.refuse_foreign()?;
+        self.refuse_foreign_of(|folder, name| !keep(folder, name))?;
         for (folder, name, file) in self.own_files()? {
             if !keep(folder, &name) {
                 fs::remove_file(&file).map_err(OutputError::writing(&file))?;
@@ -265,7 +286,10 @@ fn ours(folder: &str, name: &str) -> bool {
     };
     let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || name == LOCK_NAME || ours(folder, name));
     let named = match folder {
-        "" => matches!(name, "history.csv" | "history.parquet" | "summary.json" | "checkpoint.bin" | "run.log"),
+        "" => matches!(
+            name,
+            "history.csv" | "history.parquet" | "summary.json" | "checkpoint.bin" | "checkpoint-end.bin" | "run.log"
+        ),
         "fields" => name == "case.pvd" || step(".vtu"),
         "contact" => step(".csv"),
         "plots" => name.rsplit_once('.').is_some_and(|(name, ending)| {

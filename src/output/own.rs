@@ -30,7 +30,7 @@ pub fn is_own(path: &Path) -> io::Result<bool> {
     Ok(match (name.as_str(), ending.as_str()) {
         ("case.toml", _) => first == RESULT_MARKER,
         ("run.log", _) => first.trim_start().split_once(" s  ").is_some_and(|(seconds, _)| seconds.parse::<f64>().is_ok()),
-        ("checkpoint.bin", _) => head.starts_with(b"asperity checkpoint"),
+        ("checkpoint.bin" | "checkpoint-end.bin", _) => head.starts_with(b"asperity checkpoint"),
         (_, "parquet") => head.starts_with(b"PAR1") && end(&mut file)?.contains("newton_iterations"),
         (_, "csv") => {
             let heads =

@@ -318,6 +318,9 @@ impl ResultWriter {
             messages: self.ledger.messages,
             ..Summary::from_history(&self.ledger.rows, &self.inputs)
         };
+        if status == Status::Done && self.keeps_checkpoint && !self.end_is_kept {
+            summary.messages.push("note: the last checkpoint could not be written: --extend is not possible".to_owned());
+        }
         let finite = check_summary(&self.out.summary(), &summary);
         if let Err(error) = &finite {
             summary.status = Status::Failed;
@@ -325,7 +328,15 @@ impl ResultWriter {
         }
         summary.write(&self.out.summary())?;
         finite?;
-        let stays = status == Status::Interrupted || status == Status::Done && self.keeps_checkpoint && self.end_is_kept;
+        let stays = match status {
+            // Of a result that was no number another device may make one, from the state before.
+            Status::Interrupted | Status::Failed => true,
+            Status::Done => self.keeps_checkpoint && self.end_is_kept,
+            Status::NotConverged | Status::ContactOutgrewMesh => false,
+        };
+        if status == Status::Done {
+            let _ = std::fs::remove_file(self.out.end_checkpoint());
+        }
         if !stays {
             // The summary says that the run has ended, so that one which cannot be removed does no
             // harm.

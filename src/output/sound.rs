@@ -43,7 +43,12 @@ fn greatest(value: &Value, key: &str) -> Option<(u64, String)> {
     match value {
         Value::Number(number) => Some((number.as_u64()?, key.to_owned())),
         Value::Array(values) => values.iter().filter_map(|value| greatest(value, key)).max_by_key(|found| found.0),
-        Value::Object(values) => values.iter().filter_map(|(name, value)| greatest(value, name)).max_by_key(|found| found.0),
+        // A device moves more bytes than anything else is counted, and their sums saturate.
+        Value::Object(values) => values
+            .iter()
+            .filter(|(name, _)| *name != "traffic")
+            .filter_map(|(name, value)| greatest(value, name))
+            .max_by_key(|found| found.0),
         Value::Null | Value::Bool(_) | Value::String(_) => None,
     }
 }

@@ -84,10 +84,14 @@ impl From<OutputError> for NotExtendable {
 
 /// The end of a run with another case: where `case` goes on from it.
 fn extendable(out: &OutputDirectory, case: &Case, summary: &Summary) -> Result<PriorRun, NotExtendable> {
-    if summary.status != Status::Done {
-        return Err(NotExtendable::Why(format!("its run ended as {:?}, not at the end of its path", summary.status.to_string())));
-    }
-    let Some(checkpoint) = Checkpoint::read(&out.checkpoint())? else {
+    let is_done = summary.status == Status::Done;
+    // An extension that did not converge leaves the end of the path before it.
+    let path = if is_done { out.checkpoint() } else { out.end_checkpoint() };
+    let Some(checkpoint) = Checkpoint::read(&path)? else {
+        if !is_done {
+            let ended = summary.status.to_string();
+            return Err(NotExtendable::Why(format!("its run ended as {ended:?}, not at the end of its path")));
+        }
         let why = "the last checkpoint of its run was not kept (output.keep_checkpoint); compute the longer path from the beginning, in another directory or with --force";
         return Err(NotExtendable::Why(why.to_owned()));
     };

@@ -498,8 +498,11 @@ impl Simulation {
             return Err(SessionError::NotExtended { dir: dir.clone(), why });
         }
         let directory = OutputDirectory::existing(dir);
+        let end = found.clone();
         let extended = found.extended(case, scout, seconds);
         // In this order: killed in between, the run is the one that is done or one to be resumed.
+        // If the longer path does not converge, the end of the shorter one is still there.
+        end.write(&directory.end_checkpoint())?;
         extended.write(&directory.checkpoint())?;
         directory.go_over_to(&case.to_toml())?;
         Ok(extended)

@@ -161,8 +161,8 @@ impl Snapshot {
         let Self { state, place, force_scales, case } = self;
         let sound = |value: &f64| value.abs() <= LARGEST;
         let start = place.start.iter().flat_map(|start| {
-            // Under full stick the coefficient of friction is infinite.
-            let friction = if start.friction == f64::INFINITY { 0.0 } else { start.friction };
+            // Under full stick the coefficient of friction is infinite, and it may be any number.
+            let friction = if start.friction > 0.0 { 0.0 } else { start.friction };
             let [own, both] = start.compliance;
             [start.h, start.h_max, start.delta_t, start.f_n, start.a, friction, start.nu, own, both]
         });

@@ -7,6 +7,7 @@ use crate::case::Scaled;
 use crate::compute::iterate::{Answer, Ask, IterateRequest, Plate};
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseFields, Compute, ComputeError};
+use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
 use crate::solver::StepReport;
 use crate::solver::newton::Newton;
@@ -99,10 +100,9 @@ impl StepView<'_> {
         Ok(self.displacement.u)
     }
 
-    /// What the interface of two bodies exerts at the points at which Coulomb's law is exact (see
-    /// [`Newton::interface_forces`]).
-    pub fn interface_forces(&self) -> Option<Vec<[f64; 3]>> {
-        self.newton.interface_forces()
+    /// What the bodies need at the points of contact (see [`Newton::needed_forces`]).
+    pub fn needed_forces(&self) -> Vec<([f64; 3], Status)> {
+        self.newton.needed_forces(self.mesh)
     }
 
     /// What has passed to the device and back so far; `None` without a device.

@@ -17,8 +17,8 @@ pub fn dissipated(friction: Friction<f64>, status: Status, before: &[f64; 3], af
         // Where it came off within the step nobody knows: with what it carried at the start.
         (Status::Open, _) => along(before).max(0.0),
         (Status::Slip, Friction::Coulomb(mu)) => mu * before[2].max(0.0) * slip[0].hypot(slip[1]),
-        // Under full stick a point that was let go slides at what it carried.
-        (Status::Slip, Friction::Stick) => before[0].hypot(before[1]) * slip[0].hypot(slip[1]),
+        // Under full stick a point that was let go slides by what it carried.
+        (Status::Slip, Friction::Stick) => along(before).max(0.0),
     };
     0.5 * (first + along(after).max(0.0))
 }
@@ -35,6 +35,13 @@ mod tests {
         assert!((work - 0.15).abs() < 1e-15);
         assert_eq!(dissipated(MU, Status::Stick, &[-1.0, 0.0, 2.0], &[-0.5, 0.0, 4.0], [1e-9, 0.0]), 0.0);
         assert_eq!(dissipated(Friction::Coulomb(0.0), Status::Slip, &[0.0, 0.0, 2.0], &[0.0, 0.0, 4.0], [0.1, 0.3]), 0.0);
+    }
+
+    #[test]
+    fn under_full_stick_a_point_that_is_let_go_gives_back_half_of_what_it_carried() {
+        let work = dissipated(Friction::Stick, Status::Slip, &[-1.0, 0.0, 2.0], &[0.0, 0.0, 2.0], [0.1, 0.0]);
+        assert!((work - 0.05).abs() < 1e-15);
+        assert_eq!(dissipated(Friction::Stick, Status::Slip, &[-1.0, 0.0, 2.0], &[0.0, 0.0, 2.0], [-0.1, 0.0]), 0.0);
     }
 
     #[test]

@@ -115,6 +115,23 @@ impl Trial {
 }
 
 impl Trial {
+    /// See [`super::newton::Newton::needed_forces`].
+    pub(super) fn needed_forces(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<([f64; 3], Status)> {
+        let of = |i: usize, [x, y, n]: [f64; 3], y_is_free: bool| ([x, if y_is_free { y } else { 0.0 }, n], self.rows[i].status);
+        if let Some(encounter) = &boundary.encounter {
+            let slaves = encounter.interface.slaves.iter().zip(&self.interface_force);
+            return slaves.map(|(&i, force)| of(i, *force, !encounter.interface.is_on_symmetry_plane(i))).collect();
+        }
+        if let Some(pair) = &boundary.pair {
+            let slaves = pair.interface.slaves.iter().zip(&self.interface_force).enumerate();
+            return slaves.map(|(k, (&i, force))| of(i, *force, !pair.interface.is_free_along_y(k))).collect();
+        }
+        let nodes = mesh.contact_nodes.iter().enumerate();
+        let force = |node: usize| [0, 1, 2].map(|c| self.force[3 * node + c]);
+        let in_frame = |i: usize, force: [f64; 3]| self.frames.get(i).map_or(force, |frame| to_frame(frame, &force));
+        nodes.map(|(i, &node)| of(i, in_frame(i, force(node as usize)), mesh.nodes[node as usize][1] != 0.0)).collect()
+    }
+
     /// Contact rows of a rigid sphere, and the residual with them in it.
     pub(super) fn meet_rigid(&mut self, model: &CaseModel, boundary: &Boundary, against: &Against) {
         let mesh = &model.mesh;

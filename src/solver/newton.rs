@@ -206,16 +206,12 @@ impl Newton {
         }
     }
 
-    /// What the interface of two bodies exerts at the points at which Coulomb's law is exact, in
-    /// their frames (two tangential components and the normal one), on the meshed half; `None`
-    /// against what is rigid, where these are the contact nodes themselves.
-    pub fn interface_forces(&self) -> Option<Vec<[f64; 3]>> {
-        let (trial, boundary) = (self.iterates.host.current(), self.iterates.host.boundary());
-        match (&boundary.pair, &boundary.encounter) {
-            (Some(pair), _) => Some(trial.pair_forces(pair)),
-            (None, Some(encounter)) => Some(trial.interface_forces(encounter)),
-            (None, None) => None,
-        }
+    /// What the bodies need at the points at which Coulomb's law is posed, in the frames in which it
+    /// is (two tangential components and the normal one), and what each point does: in equilibrium
+    /// the forces of contact, but not projected onto what contact can exert. Where the vectors are
+    /// on the host.
+    pub fn needed_forces(&self, mesh: &Mesh) -> Vec<([f64; 3], Status)> {
+        self.iterates.host.current().needed_forces(mesh, self.iterates.host.boundary())
     }
 
     /// Leaves the even part of a guess where the step is symmetric.

@@ -110,14 +110,8 @@ fn copy(from: &OutputDirectory, to: &OutputDirectory, case: &str) -> Result<bool
     to.clear()?;
     to.write_case(case)?;
     let mut files = vec![from.history(), from.parquet(), from.checkpoint()];
-    for folder in ["fields", "contact", "plots"] {
-        let path = from.root().join(folder);
-        if path.is_dir() && !path.is_symlink() {
-            for entry in fs::read_dir(&path).map_err(reading(&path))? {
-                files.push(entry.map_err(reading(&path))?.path());
-            }
-        }
-    }
+    from.refuse_links()?;
+    files.extend(from.in_folders()?);
     files.push(from.summary());
     for file in files.iter().filter(|file| file.is_file()) {
         let relative = file.strip_prefix(from.root()).unwrap_or(file);

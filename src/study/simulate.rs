@@ -53,7 +53,11 @@ impl Simulator<'_> {
         if self.done_meanwhile(case).is_some() {
             return Ok(out);
         }
-        if self.checkpoint(case).is_none() {
+        let checkpoint = self.checkpoint(case).unwrap_or_else(|error| {
+            self.progress.message(id, &format!("note: {error}; computed from its beginning"));
+            None
+        });
+        if checkpoint.is_none() {
             out.clear()?;
             out.write_case(&in_units.to_toml())?;
         }
@@ -74,24 +78,18 @@ impl Simulator<'_> {
     }
 
     /// The checkpoint of a case that is to go on. One that is of another case or version, or
-    /// damaged, is none: the case is computed from its beginning.
-    fn checkpoint(&self, case: usize) -> Option<Checkpoint> {
+    /// damaged, is an error: the case is computed from its beginning.
+    fn checkpoint(&self, case: usize) -> Result<Option<Checkpoint>, OutputError> {
         if !self.resume {
-            return None;
+            return Ok(None);
         }
         let StudyCase { id, case, .. } = &self.cases[case];
         let out = self.directory.case(id);
         let path = out.checkpoint();
-        let usable = || -> Result<Option<Checkpoint>, OutputError> {
-            let checkpoint = Checkpoint::read(&path)?.filter(|_| out.holds_result());
-            checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.check_case(&path, case))?;
-            checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.check_files(&out, case))?;
-            Ok(checkpoint)
-        };
-        usable().unwrap_or_else(|error| {
-            log::info!("{error}");
-            None
-        })
+        let checkpoint = Checkpoint::read(&path)?.filter(|_| out.holds_result());
+        checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.check_case(&path, case))?;
+        checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.check_files(&out, case))?;
+        Ok(checkpoint)
     }
 
     /// The mesh that a case asks for, or that of the checkpoint from which it will go on, with the
@@ -100,7 +98,7 @@ impl Simulator<'_> {
     /// # Errors
     /// [`StudyError::Simulation`].
     pub fn problem(&self, case: usize) -> Result<Problem, StudyError> {
-        Ok(Problem::on(&self.cases[case].case, self.checkpoint(case).and_then(|checkpoint| checkpoint.zone()))?)
+        Ok(Problem::on(&self.cases[case].case, self.checkpoint(case)?.and_then(|checkpoint| checkpoint.zone()))?)
     }
 
     /// Follows the path of a case that has begun, from its checkpoint if there is one. `seat` has
@@ -121,9 +119,11 @@ impl Simulator<'_> {
         let clock = Clock::start_for_thread();
         let StudyCase { id, case: in_units, .. } = &self.cases[case];
         let out = self.directory.case(id);
-        let same_precision =
-            |checkpoint: &Checkpoint| checkpoint.check_precision(&out.checkpoint(), computed_on.precision).is_ok();
-        let checkpoint = self.checkpoint(case).filter(same_precision);
+        let same_precision = |checkpoint: &Checkpoint| {
+            let checked = checkpoint.check_precision(&out.checkpoint(), computed_on.precision);
+            checked.inspect_err(|error| self.progress.message(id, &format!("note: {error}; computed from its beginning"))).is_ok()
+        };
+        let checkpoint = self.checkpoint(case)?.filter(same_precision);
         match &checkpoint {
             Some(checkpoint) => {
                 checkpoint.snapshot().check(&problem.model.mesh)?;
@@ -161,8 +161,9 @@ impl Simulator<'_> {
         let ours = self.locks.lock().unwrap_or_else(PoisonError::into_inner).contains_key(&case);
         let StudyCase { id, case, .. } = &self.cases[case];
         let out = self.directory.case(id);
-        if !ours || !out.holds_result() {
-            // Somebody else computes it, or its directory was removed: nothing is written there.
+        if !ours || !out.holds_result() || out.refuse_foreign().is_err() {
+            // Somebody else computes it, its directory was removed, or a file of the user's has the
+            // name of a result's: nothing is written there.
             let status = if ours { Status::Failed } else { Status::Interrupted };
             return Summary { status, messages: vec![reason.to_owned()], ..Summary::default() };
         }

@@ -15,7 +15,7 @@ use super::program::{scratch, skipped, whole};
 
 /// Those that change a file, or hold on to one; the question mark lets one be unknown to the
 /// system.
-const CALLS: &str = "?open,openat,write,?pwrite64,?rename,?renameat,renameat2,?unlink,unlinkat,?mkdir,mkdirat,?rmdir,fsync,fdatasync,ftruncate,flock";
+const CALLS: &str = "?open,openat,write,?pwrite64,?rename,?renameat,renameat2,?unlink,unlinkat,?link,linkat,?mkdir,mkdirat,?rmdir,fsync,fdatasync,ftruncate,flock";
 
 fn strace(scratch: &Scratch, out: &Path, options: &[&str], tracing: &[&str]) -> Output {
     let mut command = Command::new("strace");

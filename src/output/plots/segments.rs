@@ -74,7 +74,8 @@ impl SegmentColours {
     pub fn colour(&self, segment: &SegmentSteps<'_>) -> Colour {
         match &self.bar {
             Some(bar) => bar.colour(segment.number as f64),
-            None => GROUPS[(segment.number - self.first) % GROUPS.len()],
+            // A history that was changed by hand may go back to an earlier segment.
+            None => GROUPS[segment.number.abs_diff(self.first) % GROUPS.len()],
         }
     }
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rand::SeedableRng;
@@ -31,6 +32,14 @@ fn processor_time() -> Duration {
     Duration::new(now.tv_sec.try_into().expect("a time"), now.tv_nsec.try_into().expect("a time"))
 }
 
+/// One kind at a time, or the memory of all of them would be told of each.
+pub static ALONE: Mutex<()> = Mutex::new(());
+
+/// Forgets the greatest size that the process has had.
+fn forget_greatest_memory() {
+    fs::write("/proc/self/clear_refs", "5").expect("a process may forget its greatest size");
+}
+
 fn greatest_memory_kib() -> usize {
     let status = fs::read_to_string("/proc/self/status").expect("the state of this process");
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("its greatest size");
@@ -46,6 +55,8 @@ pub fn fuzz(
     mut next: impl FnMut(&mut ChaCha8Rng) -> Vec<u8> + Send + 'static,
     take: impl Fn(&[u8], &Path) -> bool + Send + 'static,
 ) {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    forget_greatest_memory();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile");
     fs::create_dir_all(&folder).expect("a folder");
     // Left there when the process itself dies.
