@@ -13,7 +13,7 @@ echo "share $share, start $((${SLURM_RESTART_COUNT:-0} + 1)), on $(hostname), $(
 # Slurm tells the script, not the program, that time is nearly over; by SIGUSR1 unless somebody changed that above.
 child=
 trap '[ -z "$child" ] || kill -USR1 "$child"' USR1 USR2 XCPU TERM INT HUP
-@PROGRAM@ study @DIR@/study.toml --out @DIR@ --shard "$share" --resume --threads "${SLURM_CPUS_PER_TASK:-1}"@OPTIONS@ &
+@PROGRAM@ study @STUDY@ --out @DIR@ --shard "$share" --resume --threads "${SLURM_CPUS_PER_TASK:-1}"@OPTIONS@ &
 child=$!
 wait "$child"
 code=$?
