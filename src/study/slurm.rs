@@ -10,6 +10,7 @@ use std::{fs, io};
 
 use super::StudyError;
 use super::directory::StudyDirectory;
+use crate::case::{nearest, short};
 use crate::output::write_own;
 use crate::quoting;
 
@@ -64,7 +65,7 @@ impl Slurm {
     pub fn parse(arguments: &[String]) -> Result<Self, StudyError> {
         let mut slurm = Self { tasks: 4, at_once: None, warning: 60, directives: Vec::new() };
         for argument in arguments {
-            let refuse = |what: String| StudyError::Slurm { argument: crate::case::short(argument).into_owned(), what };
+            let refuse = |what: String| StudyError::Slurm { argument: short(argument).into_owned(), what };
             let (key, value) =
                 argument.split_once('=').ok_or_else(|| refuse("has no `=`. Give key=value, as in time=02:00:00".to_owned()))?;
             let count = |most: usize| {
@@ -77,7 +78,12 @@ impl Slurm {
                 "warning" => slurm.warning = count(65535)?,
                 _ if !DIRECTIVES.contains(&key) => {
                     let known = DIRECTIVES.join(", ");
-                    return Err(refuse(format!("is unknown. Give tasks, at-once, warning or an option of sbatch: {known}")));
+                    let all: Vec<&str> = DIRECTIVES.into_iter().chain(["tasks", "at-once", "warning"]).collect();
+                    let meant = nearest(key, &all).map_or(String::new(), |key| format!(", did you mean `{key}`?"));
+                    let end = if meant.is_empty() { "." } else { "" };
+                    return Err(refuse(format!(
+                        "is unknown{meant}{end} Give tasks, at-once, warning or an option of sbatch: {known}"
+                    )));
                 }
                 _ if value.is_empty()
                     || !value.chars().all(|c| c.is_ascii_alphanumeric() || "-_.,:;@%/+=[]()*&|!".contains(c)) =>
@@ -208,6 +214,7 @@ mod tests {
             ("tasks=0", "from 1 to 1000"),
             ("tasks", "has no `=`"),
             ("array=1-4", "is unknown"),
+            ("partiton=long", "is unknown, did you mean `partition`? Give tasks"),
             ("time=", "no option of sbatch takes"),
             ("comment=a\nb", "no option of sbatch takes"),
         ] {
