@@ -5,6 +5,8 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+use crate::quoting;
+
 const MIB: u64 = 1 << 20;
 /// Most bytes of a case or study file.
 pub const CASE: u64 = 16 * MIB;
@@ -39,7 +41,7 @@ fn up_to(source: impl Read, most: u64, expected: usize) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`read`]; [`ErrorKind::InvalidData`] for what is not UTF-8.
 pub fn read_to_string(path: &Path, most: u64) -> io::Result<String> {
-    text(read(path, most)?)
+    text(read(path, most)?, Some(path))
 }
 
 /// [`read_to_string`] for what is open already, such as standard input.
@@ -47,11 +49,80 @@ pub fn read_to_string(path: &Path, most: u64) -> io::Result<String> {
 /// # Errors
 /// As [`read_to_string`].
 pub fn to_string(source: impl Read, most: u64) -> io::Result<String> {
-    text(up_to(source, most, 0)?)
+    text(up_to(source, most, 0)?, None)
 }
 
-fn text(bytes: Vec<u8>) -> io::Result<String> {
-    String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not text in UTF-8"))
+/// UTF-8, with or without its mark in front, which is left out.
+fn text(bytes: Vec<u8>, path: Option<&Path>) -> io::Result<String> {
+    let refuse = |bytes: &[u8], what: &str| {
+        let what = Encoding::of(bytes).map_or(what.to_owned(), |encoding| encoding.advice(what, path));
+        io::Error::new(ErrorKind::InvalidData, what)
+    };
+    if let Some(Encoding { name: "UTF-16", .. }) = Encoding::of(&bytes) {
+        // Without a mark it is UTF-8 too, of blanks and zeros.
+        return Err(refuse(&bytes, "it is not text in UTF-8"));
+    }
+    let mut text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count();
+        refuse(error.as_bytes(), &format!("it is not text in UTF-8, from line {line} on"))
+    })?;
+    if text.starts_with('\u{feff}') {
+        text.drain(..'\u{feff}'.len_utf8());
+    }
+    Ok(text)
+}
+
+/// What text is encoded in, if it is not UTF-8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Encoding {
+    /// What people call it.
+    name: &'static str,
+    /// What `iconv` calls it.
+    iconv: &'static str,
+}
+
+impl Encoding {
+    /// What bytes that are not UTF-8 look like; `None` if they do not look like text.
+    fn of(bytes: &[u8]) -> Option<Self> {
+        let some = |name, iconv| Some(Self { name, iconv });
+        let head = &bytes[..bytes.len().min(4096)];
+        if head.starts_with(b"\xff\xfe\0\0") || head.starts_with(b"\0\0\xfe\xff") {
+            return some("UTF-32", "UTF-32");
+        }
+        if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") {
+            return some("UTF-16", "UTF-16");
+        }
+        // Every other byte of what is mostly ASCII is zero there.
+        let zeros = |first: usize| head.iter().skip(first).step_by(2).filter(|byte| **byte == 0).count();
+        let (even, odd) = (zeros(0), zeros(1));
+        match (even.max(odd) * 4 > head.len(), even * 10 < odd, odd * 10 < even) {
+            (true, true, _) => return some("UTF-16", "UTF-16LE"),
+            (true, _, true) => return some("UTF-16", "UTF-16BE"),
+            _ => {}
+        }
+        let is_control = |byte: &u8| *byte < b' ' && !b"\t\n\r\x0c".contains(byte);
+        let beyond = head.iter().filter(|byte| !byte.is_ascii()).count();
+        if std::str::from_utf8(bytes).is_ok() || head.iter().any(is_control) || beyond * 3 > head.len() {
+            return None;
+        }
+        if bytes.iter().any(|byte| (0x80..0xa0).contains(byte)) {
+            return some("Windows-1252", "WINDOWS-1252");
+        }
+        some("Latin-1 (ISO 8859-1)", "ISO-8859-1")
+    }
+
+    /// What is wrong, what it looks like, and how it becomes UTF-8.
+    fn advice(self, what: &str, path: Option<&Path>) -> String {
+        let files = path.map_or(String::new(), |path| {
+            let end = path.extension().map_or("utf8".into(), |end| format!("utf8.{}", end.to_string_lossy()));
+            format!(" {} > {}", quoting::path(path), quoting::path(path.with_extension(end)))
+        });
+        format!(
+            "{what}; it looks like {}. Save it as UTF-8, or convert it with `iconv -f {} -t UTF-8{files}`",
+            self.name, self.iconv
+        )
+    }
 }
 
 fn too_large(most: u64) -> io::Error {
@@ -71,9 +142,37 @@ mod tests {
         assert_eq!(read(&path, 7).unwrap_err().kind(), ErrorKind::FileTooLarge);
         assert_eq!(to_string(&b"12345678"[..], 8).unwrap(), "12345678");
         assert_eq!(to_string(&b"12345678"[..], 7).unwrap_err().kind(), ErrorKind::FileTooLarge);
-        std::fs::write(&path, b"\xff\xfe").unwrap();
+        std::fs::write(&path, b"\xff\xfe1").unwrap();
         assert!(read_to_string(&path, 8).unwrap_err().to_string().contains("UTF-8"));
         assert_eq!(read(&folder.path().join("none"), 8).unwrap_err().kind(), ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn what_is_not_utf_8_is_told_with_what_it_looks_like() {
+        let ascii = "[sphere]\nradius = 1.0 # 1 mm\n";
+        let wide = |bytes: fn(u16) -> [u8; 2]| ascii.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
+        let (little, big) = (wide(u16::to_le_bytes), wide(u16::to_be_bytes));
+        for (bytes, name, command) in [
+            ([b"\xff\xfe", &little[..]].concat(), "UTF-16", "iconv -f UTF-16 -t UTF-8 'a b.toml' > 'a b.utf8.toml'"),
+            ([b"\xfe\xff", &big[..]].concat(), "UTF-16", "iconv -f UTF-16 -t"),
+            (little, "UTF-16", "iconv -f UTF-16LE -t"),
+            (big, "UTF-16", "iconv -f UTF-16BE -t"),
+            (b"a = 1\nb = \"K\xf6rper\"\n".to_vec(), "from line 2 on; it looks like Latin-1", "iconv -f ISO-8859-1 -t"),
+            (b"a = 1 # \x93x\x94\n".to_vec(), "Windows-1252", "iconv -f WINDOWS-1252 -t"),
+        ] {
+            let error = text(bytes, Some(Path::new("a b.toml"))).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::InvalidData);
+            let message = error.to_string();
+            assert!(message.contains(name) && message.contains(command) && message.contains("UTF-8"), "{message}");
+        }
+        for other in [&b"\xff"[..], b"\x7fELF\x02\x01\xff", b"\x80\x81\x82\x83"] {
+            let message = text(other.to_vec(), None).unwrap_err().to_string();
+            assert!(message.contains("UTF-8") && !message.contains("iconv"), "{message}");
+        }
+        // A mark in front, and zeros at the end of a file that was not brought to the disk.
+        assert_eq!(text(b"\xef\xbb\xbfa = 1".to_vec(), None).unwrap(), "a = 1");
+        assert_eq!(text("größe".into(), None).unwrap(), "größe");
+        assert_eq!(text(b"1,2,3\n\0\0\0\0".to_vec(), None).unwrap().len(), 10);
     }
 
     #[cfg(target_os = "linux")]

@@ -13,6 +13,8 @@ pub mod cli;
 pub mod compute;
 #[path = "processor.rs"]
 pub mod processor;
+#[path = "quoting.rs"]
+pub mod quoting;
 #[path = "simulation/mod.rs"]
 pub mod simulation;
 #[path = "solver/mod.rs"]

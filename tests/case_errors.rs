@@ -171,6 +171,27 @@ fn a_value_from_the_command_line_is_named_as_such() {
     for (argument, place, what) in [
         ("contact.friction=-1", "--set contact.friction: ", "is -1.0. Allowed: a number >= 0"),
         ("contact.friction=glue", "--set contact.friction: ", "is \"glue\""),
+        ("contact.friction=stik", "--set contact.friction: ", "is \"stik\" (did you mean \"stick\"?). Allowed"),
+        ("contact.friction=0,3", "--set contact.friction: ", "did you mean 0.3? A number has a decimal point, no comma"),
+        ("sphere.radius=0,5", "--set sphere.radius: ", "Did you mean 0.5? A number has a decimal point, no comma"),
+        ("sphere.radius=.5", "--set sphere.radius: ", "Did you mean 0.5?"),
+        ("path=[{indentation=0,01}]", "--set path=[{indentation=0,01}]: ", "did you mean 0.01?"),
+        ("friction=0.1", "--set friction: ", "unknown key, did you mean `contact.friction`?"),
+        ("frictoin=0.1", "--set frictoin: ", "unknown key, did you mean `contact.friction`?"),
+        ("indentation=0.1", "--set indentation: ", "unknown key, did you mean `path.0.indentation`?"),
+        ("shear=0.1", "--set shear: ", "unknown key, did you mean `path.1.shear`?"),
+        ("hardening.yield_stress=300", "--set hardening.yield_stress: hardening: ", "did you mean `material.hardening`?"),
+        ("material.yield_stress=300", "--set material.yield_stress: ", "did you mean `material.hardening.yield_stress`?"),
+        ("material.hardening.law=idela", "--set material.hardening.law: ", "(did you mean \"ideal\"?)"),
+        ("path.1.shear=full_slip", "--set path.1.shear: ", "(did you mean \"full-slip\"?)"),
+        ("path.1.hold=normal_force", "--set path.1.hold: ", "(did you mean \"normal-force\"?)"),
+        ("output.fields=segment", "--set output.fields: ", "(did you mean \"segments\"?)"),
+        ("output.plot_format=PNG", "--set output.plot_format: ", "(did you mean \"png\"?)"),
+        ("output.plots=False", "--set output.plots: ", "Did you mean false?"),
+        ("path.2.release=True", "--set path.2.release: ", "(did you mean \"true\"?)"),
+        ("solver.press_steps=5.5", "--set solver.press_steps: ", "is the number 5.5, which is the wrong type"),
+        ("solver.press_steps=-5.0", "--set solver.press_steps: ", "is -5.0. Allowed: a whole number from 1"),
+        ("solver.press_steps=1e300", "--set solver.press_steps: ", "is 1e300. Allowed: a whole number from 1"),
         ("solver.linear=multgrid", "--set solver.linear: ", "is \"multgrid\" (did you mean \"multigrid\"?). Allowed"),
         ("path.0.indentation=0.4", "--set path.0.indentation: ", "is 0.4"),
         ("mesh.elements=8", "--set mesh.elements: ", "unknown key, did you mean `elements_per_contact_radius`?"),
@@ -213,5 +234,137 @@ fn a_file_that_cannot_be_read_is_named() {
         let output = asperity(&["check", &file.to_string_lossy()]);
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).starts_with(&format!("error: {}: cannot be read: ", file.display())), "{}", stderr(&output));
+    }
+}
+
+/// The case of the tests as text.
+fn good() -> String {
+    std::fs::read_to_string("fixtures/cases/ideal.toml").expect("a case")
+}
+
+/// The same as the base of a study.
+fn study() -> String {
+    let base = good().replace("\n[", "\n[base.").replace("[base.[path]]", "[[base.path]]");
+    format!("{base}\n[grid]\n\"contact.friction\" = [0.1, 0.3]\n")
+}
+
+/// Runs a command of the program on a file with these bytes: its exit code and what it said, without
+/// the name of the file.
+fn said(command: &[&str], bytes: &[u8]) -> (Option<i32>, String) {
+    let scratch = tempfile::tempdir().expect("a scratch directory");
+    let file = scratch.path().join("a b.toml");
+    std::fs::write(&file, bytes).expect("a file");
+    let output = common::program().args(command).arg(&file).output().expect("it runs");
+    (output.status.code(), stderr(&output).replace(&*file.to_string_lossy(), "FILE"))
+}
+
+#[test]
+fn whole_numbers_may_be_written_with_a_point() {
+    let whole = asperity(&["check", "fixtures/cases/ideal.toml", "--set", "solver.press_steps=5"]);
+    for argument in ["solver.press_steps=5.0", "solver.press_steps=0.5e1"] {
+        let output = asperity(&["check", "fixtures/cases/ideal.toml", "--set", argument]);
+        assert_eq!(output.status.code(), Some(0), "{argument}: {}", stderr(&output));
+        assert_eq!(output.stdout, whole.stdout, "{argument}");
+    }
+    let text = format!("{}[mesh]\nelements_per_contact_radius = 8.0\n", good());
+    assert_eq!(said(&["check"], text.as_bytes()).0, Some(0));
+    let text = study() + "\"mesh.elements_per_contact_radius\" = [8.0, 9]\n";
+    assert_eq!(said(&["check"], text.as_bytes()), (Some(0), String::new()));
+}
+
+#[test]
+fn a_decimal_comma_and_a_typographic_quote_are_told_as_such() {
+    for (there, here, parts) in [
+        (
+            "friction = 0.3",
+            "friction = 0,3",
+            &["FILE:14: not valid TOML", "did you mean 0.3? A number has a decimal point, no comma"][..],
+        ),
+        ("radius = 1.0", "radius = 1.000,5", &["FILE:3: not valid TOML", "did you mean 1000.5?"]),
+        ("friction = 0.3", "friction = .3", &["FILE:14: not valid TOML", "did you mean 0.3?"]),
+        ("friction = 0.3", "friction = \u{201c}stick\u{201d}", &["FILE:14: not valid TOML", "a quote is \""]),
+        ("friction = 0.3", "friction = \"0,3\"", &["contact.friction: is \"0,3\"", "did you mean 0.3?"]),
+    ] {
+        for (command, text) in [("check", good()), ("point", good()), ("check", study())] {
+            let text = text.replacen(there, here, 1);
+            // A material alone is not asked for its friction.
+            if command == "point" && here.contains("\"0,3\"") {
+                continue;
+            }
+            let (code, message) = said(&[command], text.as_bytes());
+            assert_eq!(code, Some(2), "{message}");
+            assert!(parts.iter().all(|part| message.contains(part)), "{command} {here}: {message}");
+        }
+    }
+}
+
+#[test]
+fn an_encoding_is_told_with_how_to_convert_it_and_a_mark_is_harmless() {
+    let wide = |text: &str, bytes: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
+    for (command, text) in [("check", good()), ("check", study()), ("point", good())] {
+        let latin: Vec<u8> =
+            format!("# K\u{f6}rper\n{text}").chars().map(|c| u8::try_from(u32::from(c)).expect("Latin-1")).collect();
+        for (bytes, name, from) in [
+            (wide(&format!("\u{feff}{text}"), u16::to_le_bytes), "UTF-16", "UTF-16"),
+            (wide(&format!("\u{feff}{text}"), u16::to_be_bytes), "UTF-16", "UTF-16"),
+            (wide(&text, u16::to_le_bytes), "UTF-16", "UTF-16LE"),
+            (wide(&text, u16::to_be_bytes), "UTF-16", "UTF-16BE"),
+            (latin, "Latin-1", "ISO-8859-1"),
+        ] {
+            let (code, message) = said(&[command], &bytes);
+            assert_eq!(code, Some(2), "{message}");
+            assert!(message.starts_with("error: FILE: cannot be read: it is not text in UTF-8"), "{message}");
+            let advice = format!("it looks like {name}");
+            let convert = format!("`iconv -f {from} -t UTF-8 'FILE' > ");
+            assert!(message.contains(&advice) && message.contains(&convert), "{message}");
+            assert!(!message.contains("Give the path"), "{message}");
+        }
+        let marked = format!("\u{feff}{text}");
+        assert_eq!(said(&[command], marked.as_bytes()), said(&[command], text.as_bytes()));
+        // Carets are below what is wrong.
+        let wrong = |text: &str| said(&[command], text.replacen("poissons_ratio = 0.3", "poissons_ratio = 0.5", 1).as_bytes());
+        assert_eq!(wrong(&marked), wrong(&text));
+        assert_eq!(wrong(&text).0, Some(2));
+    }
+}
+
+#[test]
+fn a_key_in_a_wrong_table_is_told_by_its_whole_name() {
+    for (text, part) in [
+        (
+            format!("friction = 0.3\n{}", good().replace("friction = 0.3\n", "")),
+            "friction: unknown key, did you mean `contact.friction`?",
+        ),
+        (
+            good().replace("poissons_ratio = 0.3", "yield_stress = 300.0\npoissons_ratio = 0.3"),
+            "did you mean `material.hardening.yield_stress`?",
+        ),
+        (good().replace("[material.hardening]", "[hardening]"), "hardening: unknown key, did you mean `material.hardening`?"),
+        (study().replace("[base.contact]", "[contact]"), "contact: unknown key, did you mean `base.contact`?"),
+        (study().replace("\"contact.friction\"", "friction"), "friction: unknown key, did you mean `contact.friction`?"),
+    ] {
+        let (code, message) = said(&["check"], text.as_bytes());
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains(part) && message.matches("error: ").count() == 1, "{part}: {message}");
+    }
+    // What is set for a material alone is set.
+    let arguments = ["point", "fixtures/cases/ideal.toml", "--set", "yield_stress=300"];
+    let output = asperity(&arguments);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("unknown key, did you mean `material.hardening.yield_stress`?"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_misspelt_law_that_comes_with_the_program_is_told() {
+    for arguments in [
+        &["law", "predict", "bult-in", "fixtures/cases/voce.toml"][..],
+        &["law", "export", "builtin", "fixtures/cases/voce.toml", "--format", "c"],
+        &["law", "check", "built_in"],
+        &["law", "fit", "fixtures", "--prior", "bulit-in"],
+    ] {
+        let output = asperity(arguments);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("there is no such file, did you mean `built-in`?"), "{arguments:?}: {message}");
     }
 }

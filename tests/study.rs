@@ -224,9 +224,12 @@ fn an_interrupted_study_goes_on_where_it_was() {
 
     let scratch = Scratch::new(GRID);
     scratch.ends_with(0, "whole", &["-q"]);
-    for (name, signal, code) in
-        [("terminated", Signal::TERM, Some(75)), ("interrupted", Signal::INT, Some(75)), ("killed", Signal::KILL, None)]
-    {
+    for (name, signal, code) in [
+        ("terminated", Signal::TERM, Some(75)),
+        ("warned", Signal::USR2, Some(75)),
+        ("out-of-time", Signal::XCPU, Some(75)),
+        ("killed", Signal::KILL, None),
+    ] {
         let mut command = scratch.command(name, &["--threads", "1", "-q"]);
         let child = command.stderr(std::process::Stdio::piped()).stdout(std::process::Stdio::null()).spawn().expect("it runs");
         let table = scratch.out(name).join("study.csv");

@@ -12,6 +12,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{CaseError, Place, Spans};
+use super::hints::line_meant;
 
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +67,8 @@ pub struct Document {
 impl Document {
     /// Parses TOML; `file` is the name that errors give.
     pub fn parse(text: &str, file: &str) -> Result<Self, CaseError> {
+        // A mark of the byte order, which some editors put in front.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let lines = Lines::of(text, file);
         if let Some(offset) = too_deep(text) {
             let what = format!("tables within tables, more than {DEEPEST} deep");
@@ -73,7 +76,7 @@ impl Document {
         }
         let table = DeTable::parse(text).map_err(|error| CaseError::Syntax {
             place: error.span().map_or_else(|| lines.place(0..0, 0..0), |span| lines.place(span.clone(), span)),
-            what: one_line(error.message()),
+            what: told(&error, text),
         })?;
         Ok(Self {
             root: Entry {
@@ -100,7 +103,7 @@ impl Document {
             Ok(parsed) => value(parsed.get_ref(), &|_, _| place.clone())?,
             Err(_) if text.is_empty() => return Err(refuse("has no value".to_owned())),
             Err(error) if text.starts_with(['[', '{', '"', '\'']) => {
-                return Err(refuse(format!("the value is not valid TOML: {}", one_line(error.message()))));
+                return Err(refuse(format!("the value is not valid TOML: {}", told(&error, text))));
             }
             Err(_) => Value::String(text.to_owned()),
         };
@@ -270,6 +273,15 @@ fn given(value: &toml::Value) -> Entry {
         toml::Value::Table(table) => Value::Table(table.iter().map(|(key, item)| (key.clone(), given(item))).collect()),
     };
     Entry { place: Place::Given, value }
+}
+
+/// What the parser says, and what was probably meant.
+fn told(error: &toml::de::Error, text: &str) -> String {
+    let message = one_line(error.message());
+    match error.span().and_then(|span| line_meant(text, span.start)) {
+        Some(meant) => format!("{message}; {meant}"),
+        None => message,
+    }
 }
 
 fn one_line(message: &str) -> String {

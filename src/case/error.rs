@@ -56,7 +56,7 @@ impl fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 pub enum CaseError {
     /// The file cannot be read.
-    #[error("{}: cannot be read: {source}. Give the path of a readable case file", short(.file))]
+    #[error("{}: cannot be read: {source}{}", short(.file), reading_remedy(.source))]
     Unreadable {
         /// The file as the user named it.
         file: String,
@@ -78,7 +78,7 @@ pub enum CaseError {
         place: Place,
         /// The dotted key.
         key: String,
-        /// The known key that it resembles, if there is one.
+        /// The known key that was probably meant: of its own table, or with all its parts of another.
         nearest: Option<String>,
         /// The keys known here.
         allowed: String,
@@ -165,6 +165,11 @@ impl CaseError {
         };
         Some(wrong.clone())
     }
+}
+
+/// Of what is no text in UTF-8 the source says what to do.
+fn reading_remedy(source: &std::io::Error) -> &'static str {
+    if source.kind() == std::io::ErrorKind::InvalidData { "" } else { ". Give the path of a readable case file" }
 }
 
 /// A text as a message gives it: whole, or if it is long its beginning, its end and how much is

@@ -195,7 +195,8 @@ fn read_points(table: &Reader<'_>, youngs_modulus: f64) -> Result<Vec<[f64; 2]>,
     for row in field.array(POINTS)? {
         let pair = row.array(POINTS)?;
         let [alpha, stress] = pair.as_slice() else {
-            return Err(row.refuse(&format!("has {} numbers", pair.len()), POINTS));
+            let commas = if pair.len() == 4 { " (a number has a decimal point, no comma)" } else { "" };
+            return Err(row.refuse(&format!("has {} numbers{commas}", pair.len()), POINTS));
         };
         points.push(match points.last() {
             None => [alpha.number("alpha >= 0", |x| x >= 0.0)?, stress.number("a stress > 0", |x| x > 0.0)?],

@@ -441,7 +441,7 @@ pub fn find(name: &str) -> Vec<&'static Key> {
 /// The known name closest to an unknown one.
 pub fn nearest(name: &str) -> Option<String> {
     let names: Vec<String> = KEYS.iter().flat_map(|key| [key.dotted(), key.name.to_owned()]).collect();
-    super::reader::nearest(name, &names.iter().map(String::as_str).collect::<Vec<_>>())
+    super::hints::nearest(name, &names.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -72,9 +72,11 @@ fn rename(document: &mut Document, key: &str, meant: Option<&str>) -> bool {
         return false;
     }
     if let Some(meant) = meant {
-        let meant = key.rsplit_once('.').map_or(meant.to_owned(), |(table, _)| format!("{table}.{meant}"));
+        // One of another table has all its parts.
+        let own = key.rsplit_once('.').filter(|_| !meant.contains('.'));
+        let meant = own.map_or(meant.to_owned(), |(table, _)| format!("{table}.{meant}"));
         if document.at(&meant).is_none() {
-            // It stands in the table from which the key was just taken.
+            // Where something else stands on the way, it is told by itself.
             let _ = document.set(&meant, entry);
         }
     }

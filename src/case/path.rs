@@ -153,6 +153,8 @@ fn read_release(field: &Field<'_>, state: &mut State) -> Result<Segment, CaseErr
         0.0
     } else if field.truth() == Some(false) {
         return Err(field.refuse("is false", ALLOWED));
+    } else if let Some(text) = field.text() {
+        return Err(field.unknown_word(text, &["true"], ALLOWED));
     } else {
         field.number(ALLOWED, |share| share > 0.0 && share < 1.0)?
     };

@@ -8,10 +8,13 @@ use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
 use super::{
     Case, Contact, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere, UnitLabels,
-    estimate, opponent, path, pictures,
+    estimate, hints, opponent, path, pictures,
 };
 use crate::bounded;
 use crate::mesh::{FINE_ZONES, LARGEST_CONTACT};
+
+/// The tables of a case.
+const CASE_TABLES: [&str; 9] = ["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "units", "path"];
 
 /// Smallest and largest a/R that the sphere is meshed for.
 pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, LARGEST_CONTACT);
@@ -45,7 +48,7 @@ impl Case {
     /// The same for a case that may need more memory than it may take.
     pub(super) fn of_any_size(document: &Document) -> Result<Self, CaseError> {
         let root = Reader::new(document)?;
-        root.only(&["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "units", "path"])?;
+        root.only(&CASE_TABLES)?;
         let sphere = read_sphere(&root.require_table("sphere", "a table with radius")?)?;
         let material = read_material_of(&root)?;
         let opponent = opponent::read(&root, &sphere, &material)?;
@@ -110,9 +113,26 @@ impl Material {
         let mut document = Document::parse(&text, &name)?;
         for argument in settings {
             document.set_argument(argument)?;
+            refuse_unknown_table(argument)?;
         }
         read_material_of(&Reader::new(&document)?)
     }
+}
+
+/// Refuses a `--set` argument that sets nothing of a case. The file may have tables of other
+/// programs; what is typed is meant for this one.
+fn refuse_unknown_table(argument: &str) -> Result<(), CaseError> {
+    let key = argument.split('=').next().unwrap_or_default().trim();
+    let first = key.split('.').next().unwrap_or_default();
+    if CASE_TABLES.contains(&first) {
+        return Ok(());
+    }
+    Err(CaseError::UnknownKey {
+        place: Place::Set(key.into()),
+        key: first.to_owned(),
+        nearest: hints::key_meant(first, "", &CASE_TABLES, ""),
+        allowed: CASE_TABLES.join(", "),
+    })
 }
 
 fn read_material_of(root: &Reader<'_>) -> Result<Material, CaseError> {
@@ -132,7 +152,7 @@ fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
     let field = table.require("friction", allowed)?;
     let friction = match field.text() {
         Some("stick") => Friction::Stick,
-        Some(other) => return Err(field.refuse(&format!("is {other:?}"), allowed)),
+        Some(other) => return Err(field.unknown_word(other, &["stick"], allowed)),
         None => Friction::Coefficient(field.number(allowed, |mu| mu >= 0.0)?),
     };
     Ok(Contact { friction })

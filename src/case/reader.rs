@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 
 use super::document::{Document, Entry, Value};
 use super::error::{CaseError, Place};
+use super::hints::{key_meant, nearest, number_meant};
 
 /// One table of the document.
 pub struct Reader<'d> {
@@ -23,13 +24,19 @@ impl<'d> Reader<'d> {
     /// Refuses the first key, in the order of lines, that is not one of `known`; call it before
     /// reading, so that a misspelt key is reported as such and not as a missing one.
     pub fn only(&self, known: &[&str]) -> Result<(), CaseError> {
+        self.only_with(known, "")
+    }
+
+    /// [`only`](Self::only) in a file whose case stands below `root`, empty or `base.`: a key of the
+    /// case that stands here is told with it.
+    pub fn only_with(&self, known: &[&str], root: &str) -> Result<(), CaseError> {
         let unknown = self.table.into_iter().flatten().filter(|(name, _)| !known.contains(&name.as_str()));
         match unknown.min_by_key(|(_, entry)| entry.place.line()) {
             None => Ok(()),
             Some((name, entry)) => Err(CaseError::UnknownKey {
                 place: entry.place.clone(),
                 key: self.dotted(name),
-                nearest: nearest(name, known),
+                nearest: key_meant(name, &self.key, known, root),
                 allowed: known.join(", "),
             }),
         }
@@ -95,14 +102,21 @@ impl<'d> Field<'d> {
         if number.is_finite() && accept(number) { Ok(number) } else { Err(self.refuse(&format!("is {number:?}"), allowed)) }
     }
 
-    /// A whole number within a range.
+    /// A whole number within a range; `5.0` is one too.
     pub fn count(&self, range: RangeInclusive<usize>) -> Result<usize, CaseError> {
         let allowed = format!("a whole number from {} to {}", range.start(), range.end());
-        let Value::Integer(number) = self.entry.value else {
-            return Err(self.wrong_type(&allowed));
+        let (count, told) = match self.entry.value {
+            Value::Integer(number) => (usize::try_from(number).ok(), number.to_string()),
+            // One that is too large for a count is so for the range; the conversion saturates.
+            Value::Float(number) if number.fract() == 0.0 => (Some(number as usize), format!("{number:?}")),
+            _ => return Err(self.wrong_type(&allowed)),
         };
-        let count = usize::try_from(number).ok().filter(|count| range.contains(count));
-        count.ok_or_else(|| self.refuse(&format!("is {number}"), &allowed))
+        let within = |count: &usize| range.contains(count) && self.is_not_negative();
+        count.filter(within).ok_or_else(|| self.refuse(&format!("is {told}"), &allowed))
+    }
+
+    fn is_not_negative(&self) -> bool {
+        !matches!(self.entry.value, Value::Float(number) if number < 0.0)
     }
 
     /// The truth value, if it is one.
@@ -117,7 +131,7 @@ impl<'d> Field<'d> {
     pub fn boolean(&self) -> Result<bool, CaseError> {
         match self.entry.value {
             Value::Boolean(truth) => Ok(truth),
-            _ => Err(self.wrong_type("true or false")),
+            _ => Err(self.wrong_type_of_words("true or false", &["true", "false"])),
         }
     }
 
@@ -130,9 +144,15 @@ impl<'d> Field<'d> {
         let chosen = options.iter().find(|(word, _)| word == text);
         chosen.map(|(_, option)| *option).ok_or_else(|| {
             let known: Vec<&str> = options.iter().map(|(word, _)| *word).collect();
-            let meant = nearest(text, &known).map_or(String::new(), |word| format!(" (did you mean {word:?}?)"));
-            self.refuse(&format!("is {text:?}{meant}"), &words)
+            self.unknown_word(text, &known, &words)
         })
+    }
+
+    /// The refusal of a text that is none of the `known` words, with the one that was meant.
+    pub fn unknown_word(&self, text: &str, known: &[&str], allowed: &str) -> CaseError {
+        let meant = nearest(text, known).map(|word| format!("did you mean {word:?}?"));
+        let meant = meant.or_else(|| self.number_meant()).map_or(String::new(), |meant| format!(" ({meant})"));
+        self.refuse(&format!("is {text:?}{meant}"), allowed)
     }
 
     /// The text, if the value is a string.
@@ -175,18 +195,26 @@ impl<'d> Field<'d> {
     }
 
     fn wrong_type(&self, allowed: &str) -> CaseError {
+        self.wrong_type_of_words(allowed, &[])
+    }
+
+    /// A refusal of a value that is none of these `words` either, which have no quotes.
+    fn wrong_type_of_words(&self, allowed: &str, words: &[&str]) -> CaseError {
+        let word = self.text().and_then(|text| nearest(text, words));
+        let meant = match word {
+            Some(word) => format!(". Did you mean {word}?"),
+            None => self.number_meant().map_or(String::new(), |meant| format!(". {}", meant.replacen("did", "Did", 1))),
+        };
         CaseError::WrongType {
             place: self.entry.place.clone(),
             key: self.key.clone(),
             found: self.entry.value.describe(),
-            allowed: allowed.to_owned(),
+            allowed: format!("{allowed}{meant}"),
         }
     }
-}
 
-/// The known key most like `name`, unless they have little in common.
-pub(super) fn nearest(name: &str, known: &[&str]) -> Option<String> {
-    let likeness = |key: &&str| strsim::jaro_winkler(&name.to_lowercase(), key);
-    let best = known.iter().copied().max_by(|left, right| likeness(left).total_cmp(&likeness(right)))?;
-    (likeness(&best) > 0.75).then(|| best.to_owned())
+    /// The number that a text was meant to be.
+    fn number_meant(&self) -> Option<String> {
+        number_meant(self.text()?, matches!(self.entry.place, Place::Line { .. }))
+    }
 }

@@ -5,7 +5,8 @@ use super::keys::{KEYS, Key, Presence, TABLES};
 /// Width of the comments.
 const WIDTH: usize = 96;
 
-/// A commented case with this hardening law; `file` is how its first lines call it. Optional keys
+/// A commented case with this hardening law; `file` is how its first lines call it, as a
+/// shell reads it. Optional keys
 /// are there as comments, with their defaults.
 pub fn starter_case(law: &str, file: &str) -> String {
     let mut text = format!(

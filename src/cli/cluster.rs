@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::{CliError, Outcome};
+use crate::quoting;
 use crate::study::slurm::{self, Slurm};
 use crate::study::{self, Merged, Study, StudyDirectory};
 
@@ -14,9 +15,10 @@ pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String]
     let slurm = Slurm::parse(arguments)?;
     let program =
         std::env::current_exe().map_err(|source| CliError::Out { dir: out.to_owned(), what: "find this program", source })?;
+    slurm::check(out, &program)?;
     study::prepare(study, out)?;
     let scripts = slurm::write(&StudyDirectory::new(out), &slurm, &program, options)?;
-    let script = scripts.submit.display();
+    let script = quoting::path(&scripts.submit);
     if !submit {
         super::print(&format!("{}, {} tasks; to submit them: bash {script}\n", study.size(), slurm.tasks))?;
         return Ok(Outcome::Done);
@@ -49,10 +51,12 @@ pub fn merge(sources: &[PathBuf], out: &Path, quiet: bool) -> Result<Outcome, Cl
         let busy = if busy.is_empty() { String::new() } else { format!(" ({} are being computed)", busy.len()) };
         let _ = writeln!(
             std::io::stderr(),
-            "error: {} of {} cases are missing{busy}: {}{more}. `asperity study {dir}/study.toml --out {dir} --resume` computes them",
+            "error: {} of {} cases are missing{busy}: {}{more}. `asperity study {} --out {} --resume` computes them",
             missing.len(),
             report.done + report.failed + report.pending,
-            missing[..missing.len().min(MOST)].join(", ")
+            missing[..missing.len().min(MOST)].join(", "),
+            quoting::path(out.join("study.toml")),
+            quoting::path(out)
         );
         return Ok(Outcome::Interrupted);
     }

@@ -10,6 +10,7 @@ use crate::law::LawError;
 use crate::material::MaterialError;
 use crate::output::OutputError;
 use crate::processor::TooOld;
+use crate::quoting;
 use crate::session::SessionError;
 use crate::simulation::SimulationError;
 use crate::study::StudyError;
@@ -45,7 +46,7 @@ pub enum CliError {
         source: io::Error,
     },
     /// Scripts that cannot be submitted.
-    #[error("--submit: {what}. The scripts are written; submit them with `bash {}` where sbatch is", .script.display())]
+    #[error("--submit: {what}. The scripts are written; submit them with `bash {}` where sbatch is", quoting::path(.script))]
     Submit {
         /// The script that submits.
         script: PathBuf,
@@ -146,14 +147,19 @@ pub enum CliError {
     Study(#[from] StudyError),
     /// A study where a case is wanted.
     #[error(
-        "{file}: is a study, a grid of cases. `asperity study {file} --out DIR` computes it, `asperity check {file}` shows its first case"
+        "{file}: is a study, a grid of cases. `asperity study {} --out DIR` computes it, `asperity check {}` shows its first case",
+        quoting::input(.file),
+        quoting::input(.file)
     )]
     StudyGiven {
         /// The file.
         file: String,
     },
     /// A case where a study is wanted.
-    #[error("{file}: is a case, not a study (there is no [base] and no [grid]). `asperity run {file} --out DIR` computes it")]
+    #[error(
+        "{file}: is a case, not a study (there is no [base] and no [grid]). `asperity run {} --out DIR` computes it",
+        quoting::input(.file)
+    )]
     CaseGiven {
         /// The file.
         file: String,

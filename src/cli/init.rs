@@ -9,6 +9,7 @@ use super::{CliError, Outcome, print};
 use crate::case::keys::LAWS;
 use crate::case::starter_case;
 use crate::output::write_atomically;
+use crate::quoting;
 
 /// Write a commented case file that runs as it stands.
 ///
@@ -37,11 +38,11 @@ pub fn init(args: &InitArgs) -> Result<Outcome, CliError> {
     if file.extension().is_none() {
         file.set_extension("toml");
     }
-    let name = file.display().to_string();
+    let name = quoting::path(&file);
     if file.exists() && !args.force {
         return Err(CliError::FileThere { file });
     }
     write_atomically(&file, |out| out.write_all(starter_case(&args.material, &name).as_bytes()))?;
-    print(&format!("{name} written; `asperity run {name} --out out` runs it\n"))?;
+    print(&format!("{} written; `asperity run {name} --out out` runs it\n", file.display()))?;
     Ok(Outcome::Done)
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::CliError;
 use crate::bounded;
 use crate::case::{Case, CaseError, Document, Value, mistakes};
+use crate::quoting::STDIN;
 use crate::study::{Study, StudyError};
 
 /// A case or study file, read and not yet parsed.
@@ -23,7 +24,7 @@ impl Input {
     /// [`CaseError::Unreadable`].
     pub fn read(file: &Path) -> Result<Self, CliError> {
         let (name, text) = if file == Path::new("-") {
-            ("<stdin>".to_owned(), bounded::to_string(std::io::stdin().lock(), bounded::CASE))
+            (STDIN.to_owned(), bounded::to_string(std::io::stdin().lock(), bounded::CASE))
         } else {
             (file.display().to_string(), bounded::read_to_string(file, bounded::CASE))
         };

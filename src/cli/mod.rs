@@ -115,6 +115,7 @@ impl From<Outcome> for ExitCode {
 /// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with
 /// its exit code.
 pub fn main() -> ExitCode {
+    signals::begin();
     let checked = crate::processor::check().map_err(CliError::from).and_then(|()| environment::check());
     let outcome = checked.and_then(|()| match Cli::try_parse() {
         Ok(cli) => cli.command.run().map(ExitCode::from),

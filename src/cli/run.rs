@@ -12,6 +12,7 @@ use super::options::{DeviceArgs, Verbosity};
 use super::signals::stop_flag;
 use super::{CliError, Outcome};
 use crate::output::{LoggedProgress, OutputDirectory, RESULT_MARKER, Status, progress, refuse_input};
+use crate::quoting;
 use crate::session::{Canceller, Earlier, Options, SessionError, Simulation};
 
 /// Simulate one case.
@@ -99,8 +100,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
 
 /// The arguments of the program, as they would be typed.
 fn command_line() -> String {
-    let quoted = |arg: String| if arg.contains([' ', '"', '[', '{']) { format!("'{arg}'") } else { arg };
-    std::env::args_os().skip(1).map(|arg| quoted(arg.to_string_lossy().into_owned())).collect::<Vec<_>>().join(" ")
+    std::env::args_os().skip(1).map(quoting::word).collect::<Vec<_>>().join(" ")
 }
 
 /// Says how it went, and gives the exit code.

@@ -1,10 +1,15 @@
-//! SIGINT (Ctrl-C), SIGTERM and SIGUSR1 (a batch system's time limit, or its warning of it) and
-//! SIGHUP (a terminal that was closed): the run ends after its present step; a second signal ends
-//! it at once.
+//! What signals do. SIGINT (Ctrl-C), SIGTERM, SIGHUP (a terminal that was closed) and the warnings of
+//! batch systems (SIGUSR1, SIGUSR2, SIGXCPU): the run ends after its present step. SIGXFSZ (a file at
+//! the limit of its size): nothing, so that the write fails and is told as an error.
 
 use std::sync::Arc;
+#[cfg(unix)]
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+
+#[cfg(unix)]
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGXFSZ};
 
 use super::CliError;
 
@@ -12,23 +17,43 @@ use super::CliError;
 /// on, and to the program as well.
 const ONE_SIGNAL: Duration = Duration::from_millis(250);
 
-/// A flag that the first signal sets. SIGHUP is left alone where it is ignored, so that `nohup`
-/// means what it says.
+/// Signals that end a run after its present step; a second one ends it at once.
+#[cfg(unix)]
+const ENDING: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+/// Signals by which batch systems warn that time is nearly over. They end a run after its present
+/// step too, but never at once: some systems repeat them, and the kernel sends SIGXCPU every second.
+#[cfg(unix)]
+const WARNING: [i32; 3] = [SIGUSR1, SIGUSR2, SIGXCPU];
+
+/// To be called before anything else: notes which signals are ignored, and lets a write that would
+/// make a file larger than `ulimit -f` allows fail (EFBIG) rather than end the program.
+pub fn begin() {
+    #[cfg(unix)]
+    {
+        ignored_at_start();
+        // A handler that does nothing else. Where there can be none, such a write ends the program,
+        // which loses no more than a kill does.
+        let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
+    }
+}
+
+/// A flag that the first signal sets. A signal that was ignored when the program was started stays
+/// so, so that `nohup`, `trap '' INT` and the background of a script mean what they say.
 ///
 /// # Errors
 /// [`CliError::Signals`].
 #[cfg(unix)]
 pub fn stop_flag() -> Result<Arc<AtomicBool>, CliError> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
     let failed = |source| CliError::Signals { source };
-    let wanted = [SIGINT, SIGTERM, SIGUSR1].into_iter().chain((!is_ignored(SIGHUP)).then_some(SIGHUP));
+    let wanted = ENDING.into_iter().chain(WARNING).filter(|signal| !is_ignored(*signal));
     let mut signals = signal_hook::iterator::Signals::new(wanted).map_err(failed)?;
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let listen = move || {
         let mut first: Option<Instant> = None;
         for signal in signals.forever() {
-            if first.is_some_and(|first| first.elapsed() >= ONE_SIGNAL) {
+            let again = first.is_some_and(|first| first.elapsed() >= ONE_SIGNAL);
+            if again && !WARNING.contains(&signal) {
                 std::process::exit(128 + signal);
             }
             first.get_or_insert_with(Instant::now);
@@ -39,13 +64,22 @@ pub fn stop_flag() -> Result<Arc<AtomicBool>, CliError> {
     Ok(stop)
 }
 
-/// Whether a signal is ignored, as far as the system tells: where the program is started, by what
-/// started it (`nohup`).
+/// Whether a signal was ignored at [`begin`], or at the first question, as far as the system tells:
+/// where the program was started so (`nohup`).
 #[cfg(unix)]
 pub fn is_ignored(signal: i32) -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).map(str::trim);
-    mask.and_then(|mask| u64::from_str_radix(mask, 16).ok()).is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+    ignored_at_start() >> (signal - 1) & 1 == 1
+}
+
+/// A bit for each ignored signal, the lowest for signal 1; none on systems without `/proc`.
+#[cfg(unix)]
+fn ignored_at_start() -> u64 {
+    static MASK: OnceLock<u64> = OnceLock::new();
+    *MASK.get_or_init(|| {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).map(str::trim);
+        mask.and_then(|mask| u64::from_str_radix(mask, 16).ok()).unwrap_or(0)
+    })
 }
 
 /// A flag that the first Ctrl-C sets; the second ends the program.

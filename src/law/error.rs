@@ -69,6 +69,14 @@ pub enum LawError {
         /// What is wrong with it.
         problem: String,
     },
+    /// The name of no file that resembles a word.
+    #[error("{}: there is no such file, did you mean `{meant}`? Else give the path of a law.json", .path.display())]
+    Misspelt {
+        /// The name.
+        path: PathBuf,
+        /// The word.
+        meant: String,
+    },
     /// A case that the law says nothing about.
     #[error("{problem}. {remedy}")]
     NotCovered {

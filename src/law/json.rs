@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::LawError;
 use super::bounds::Checked;
+use super::file::BUILT_IN;
 use crate::bounded;
-use crate::case::short;
+use crate::case::{nearest, short};
 use crate::output::{plain_json, write_own};
 
 /// A kind of law file.
@@ -59,9 +60,20 @@ pub(super) fn write_compact(path: &Path, law: &impl Serialize) -> Result<(), Law
 
 /// Reads a file and makes of its text what `parse` does, whose error is what is wrong, in words.
 pub(super) fn read<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<T, LawError> {
+    refuse_misspelt(path, &[BUILT_IN])?;
     let bad = |problem: String| LawError::BadLaw { path: path.to_owned(), problem };
     let text = bounded::read_to_string(path, bounded::RESULT).map_err(|error| bad(format!("cannot be read: {error}")))?;
     parse(&text).map_err(bad)
+}
+
+/// Refuses the name of a file that is not there and resembles one of these words, which stand for
+/// something else than a file.
+pub(super) fn refuse_misspelt(path: &Path, words: &[&str]) -> Result<(), LawError> {
+    let name = path.to_str().filter(|name| !name.contains(['/', '.']) && !path.exists());
+    match name.and_then(|name| nearest(name, words)) {
+        Some(meant) => Err(LawError::Misspelt { path: path.to_owned(), meant }),
+        None => Ok(()),
+    }
 }
 
 /// The law of this kind in a text, checked.

@@ -7,8 +7,8 @@
 
 use std::path::Path;
 
-use super::LawError;
 use super::model::Law;
+use super::{LawError, json};
 
 /// The weights that are tried. The greatest all but keeps the prior's constants; the least decides
 /// only what the data leave open.
@@ -42,7 +42,10 @@ impl Prior {
         Ok(match text {
             "built-in" => Self::BuiltIn,
             "none" => Self::None,
-            path => Self::Law(Box::new(Law::read(Path::new(path))?)),
+            path => {
+                json::refuse_misspelt(Path::new(path), &["none"])?;
+                Self::Law(Box::new(Law::read(Path::new(path))?))
+            }
         })
     }
 

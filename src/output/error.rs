@@ -165,6 +165,9 @@ fn writing_remedy(error: &io::Error) -> &'static str {
     use io::ErrorKind as Kind;
     match error.kind() {
         Kind::StorageFull | Kind::QuotaExceeded => "free space there or choose another place with --out, and run again",
+        Kind::FileTooLarge => {
+            "it would be larger than files may be here: raise that limit (`ulimit -f`) or choose another place with --out, and run again"
+        }
         Kind::PermissionDenied | Kind::ReadOnlyFilesystem => "choose a folder that you may write to with --out",
         Kind::AlreadyExists | Kind::NotADirectory | Kind::IsADirectory => {
             "a file stands where a folder is needed, or the reverse: move it away or choose another --out"
@@ -190,6 +193,8 @@ mod tests {
         let full = OutputError::writing(Path::new("out/history.csv"))(io::Error::from(io::ErrorKind::StorageFull));
         let text = full.to_string();
         assert!(text.contains("out/history.csv") && text.contains("free space"), "{text}");
+        let limited = OutputError::writing(Path::new("out/history.csv"))(io::Error::from(io::ErrorKind::FileTooLarge));
+        assert!(limited.to_string().contains("out/history.csv") && limited.to_string().contains("`ulimit -f`"), "{limited}");
         let denied = OutputError::writing(Path::new("/summary.json"))(io::Error::from(io::ErrorKind::PermissionDenied));
         assert!(denied.to_string().contains("--out"));
         let missing = OutputError::reading(Path::new("x/history.csv"))(io::Error::from(io::ErrorKind::NotFound));

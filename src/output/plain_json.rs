@@ -6,7 +6,7 @@ use std::fmt;
 use serde::de::DeserializeOwned;
 use serde_json::error::Category;
 
-use crate::case::short;
+use crate::case::{nearest, short};
 
 /// What is wrong with a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -85,7 +85,9 @@ fn plainly(message: &str) -> (Option<&str>, String) {
     }
     if let (Some(name), Some((_, allowed))) = (quoted("unknown variant"), message.split_once(", expected ")) {
         let allowed = allowed.trim_start_matches("one of ").replace('`', "\"");
-        return (None, format!("is {:?}, and has to be {}", short(name), last_with_or(&allowed)));
+        let words: Vec<&str> = allowed.split('"').skip(1).step_by(2).collect();
+        let meant = nearest(name, &words).map_or(String::new(), |word| format!(" (did you mean {word:?}?)"));
+        return (None, format!("is {:?}{meant}, and has to be {}", short(name), last_with_or(&allowed)));
     }
     let wrong = ["invalid type: ", "invalid value: "].iter().find_map(|start| message.strip_prefix(start));
     if let Some((found, wanted)) = wrong.and_then(|rest| rest.rsplit_once(", expected ")) {

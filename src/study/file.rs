@@ -101,7 +101,7 @@ impl Study {
     pub fn parse(text: &str, file: &str) -> Result<Self, StudyError> {
         let document = Document::parse(text, file)?;
         let root = Reader::new(&document)?;
-        root.only(&["base", "grid", "zip", "list"])?;
+        root.only_with(&["base", "grid", "zip", "list"], "base.")?;
         root.require_table("base", BASE)?;
         require(&root)?;
         let sweep = Sweep::read(&document)?;

@@ -5,12 +5,14 @@
 //! that is warned of its time limit checkpoints, ends with 75 and goes back into the queue by
 //! itself; one that is cancelled stays so. `submit.sh` again computes what is left.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::StudyError;
 use super::directory::StudyDirectory;
+use crate::case::{nearest, short};
 use crate::output::write_own;
+use crate::quoting;
 
 /// How the study is to be handed over.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,7 +65,7 @@ impl Slurm {
     pub fn parse(arguments: &[String]) -> Result<Self, StudyError> {
         let mut slurm = Self { tasks: 4, at_once: None, warning: 60, directives: Vec::new() };
         for argument in arguments {
-            let refuse = |what: String| StudyError::Slurm { argument: crate::case::short(argument).into_owned(), what };
+            let refuse = |what: String| StudyError::Slurm { argument: short(argument).into_owned(), what };
             let (key, value) =
                 argument.split_once('=').ok_or_else(|| refuse("has no `=`. Give key=value, as in time=02:00:00".to_owned()))?;
             let count = |most: usize| {
@@ -76,7 +78,12 @@ impl Slurm {
                 "warning" => slurm.warning = count(65535)?,
                 _ if !DIRECTIVES.contains(&key) => {
                     let known = DIRECTIVES.join(", ");
-                    return Err(refuse(format!("is unknown. Give tasks, at-once, warning or an option of sbatch: {known}")));
+                    let all: Vec<&str> = DIRECTIVES.into_iter().chain(["tasks", "at-once", "warning"]).collect();
+                    let meant = nearest(key, &all).map_or(String::new(), |key| format!(", did you mean `{key}`?"));
+                    let end = if meant.is_empty() { "." } else { "" };
+                    return Err(refuse(format!(
+                        "is unknown{meant}{end} Give tasks, at-once, warning or an option of sbatch: {known}"
+                    )));
                 }
                 _ if value.is_empty()
                     || !value.chars().all(|c| c.is_ascii_alphanumeric() || "-_.,:;@%/+=[]()*&|!".contains(c)) =>
@@ -97,49 +104,93 @@ pub struct Scripts {
     pub submit: PathBuf,
 }
 
+/// Refuses a directory or a program with a path that scripts or Slurm cannot take. To be asked
+/// before anything is written; the directory need not be there.
+///
+/// # Errors
+/// [`StudyError::Slurm`], [`StudyError::Directory`].
+pub fn check(out: &Path, program: &Path) -> Result<(), StudyError> {
+    paths(out, program).map(drop)
+}
+
+/// The directory, without links and from the root on, and the program, as text.
+fn paths(out: &Path, program: &Path) -> Result<[String; 2], StudyError> {
+    let root = resolved(out).map_err(|source| StudyError::Directory { dir: out.to_owned(), what: "be found", source })?;
+    // A pattern of Slurm's, or the end of its quotes.
+    const FOR_SLURM: &str = "%\"\\";
+    let refuse = |path: &Path, what: &str| StudyError::Slurm { argument: format!("{path:?}"), what: what.to_owned() };
+    let text = |path: &Path, refused: &str| {
+        let text = path.to_str().filter(|text| !text.chars().any(|c| c.is_control() || refused.contains(c)));
+        text.map(str::to_owned)
+    };
+    let directory = text(&root, FOR_SLURM).ok_or_else(|| {
+        let what = "has characters that Slurm does not take in a path (%, \", \\, or such as no text has). Give another directory \
+                    with --out (nothing was written)";
+        refuse(&root, what)
+    })?;
+    let program = text(program, "")
+        .ok_or_else(|| refuse(program, "is this program, and no path of a script. Install it elsewhere (nothing was written)"))?;
+    Ok([directory, program])
+}
+
+/// A path without links and from the root on, as far as it is there.
+fn resolved(path: &Path) -> io::Result<PathBuf> {
+    let absolute = std::path::absolute(path)?;
+    let there = absolute.ancestors().find_map(|above| Some((above, fs::canonicalize(above).ok()?)));
+    Ok(match there {
+        Some((above, real)) => {
+            absolute.strip_prefix(above).map_or(absolute.clone(), |rest| real.components().chain(rest.components()).collect())
+        }
+        None => absolute,
+    })
+}
+
 /// Writes the scripts for the study in `directory`, which is prepared. `program` is this program,
 /// `options` are those of `asperity study` that the tasks are to have.
 ///
 /// # Errors
-/// [`StudyError::Slurm`] for a path that Slurm cannot take; [`StudyError::Output`],
-/// [`StudyError::Directory`].
+/// As [`check`]; [`StudyError::Output`].
 pub fn write(directory: &StudyDirectory, slurm: &Slurm, program: &Path, options: &[String]) -> Result<Scripts, StudyError> {
-    let failed = |source| StudyError::Directory { dir: directory.root().to_owned(), what: "be read", source };
-    let root = fs::canonicalize(directory.root()).map_err(failed)?;
-    let [dir, program] = [root.as_path(), program].map(|path| path.to_str().unwrap_or("\n").to_owned());
-    for path in [&dir, &program] {
-        if path.chars().any(|c| c.is_control() || "\"\\%".contains(c)) {
-            let what = "has characters that Slurm does not take in a path. Give another directory".to_owned();
-            return Err(StudyError::Slurm { argument: format!("{path:?}"), what });
-        }
-    }
-    let name = root.file_name().map_or("study".into(), |name| name.to_string_lossy());
+    let [dir, program] = paths(directory.root(), program)?;
+    let name = Path::new(&dir).file_name().map_or("study".into(), |name| name.to_string_lossy());
     let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     let directives = |keys: &[&str]| -> String {
         let wanted = slurm.directives.iter().filter(|(key, _)| keys.contains(&key.as_str()));
         wanted.map(|(key, value)| format!("#SBATCH --{key}={value}\n")).collect()
     };
-    let fill = |text: &str| {
-        let at_once = slurm.at_once.map_or(String::new(), |count| format!("%{count}"));
-        let text = text.replace("@NAME@", &name).replace("@TASKS@", &slurm.tasks.to_string()).replace("@AT_ONCE@", &at_once);
-        let text = text.replace("@WARNING@", &slurm.warning.to_string());
-        let text = text.replace("@ALL@\n", &directives(&DIRECTIVES)).replace("@FEW@\n", &directives(&FOR_THE_TABLE));
-        let options: String = options.iter().map(|option| format!(" {}", quoted(option))).collect();
-        text.replace("@OPTIONS@", &options)
-            .replace("@LOGS@", &format!("{dir}/slurm"))
-            .replace("@DIR@", &quoted(&dir))
-            .replace("@PROGRAM@", &quoted(&program))
-    };
+    let holes = [
+        ("@NAME@", name),
+        ("@TASKS@", slurm.tasks.to_string()),
+        ("@AT_ONCE@", slurm.at_once.map_or(String::new(), |count| format!("%{count}"))),
+        ("@WARNING@", slurm.warning.to_string()),
+        ("@ALL@\n", directives(&DIRECTIVES)),
+        ("@FEW@\n", directives(&FOR_THE_TABLE)),
+        ("@OPTIONS@", options.iter().map(|option| format!(" {}", quoting::word(option))).collect()),
+        ("@LOGS@", format!("{dir}/slurm")),
+        ("@DIR@", quoting::word(&dir)),
+        ("@STUDY@", quoting::word(format!("{dir}/study.toml"))),
+        ("@PROGRAM@", quoting::word(&program)),
+    ];
     let folder = directory.root().join("slurm");
     for (file, text) in [("tasks.sh", TASKS), ("table.sh", TABLE), ("submit.sh", SUBMIT)] {
-        write_own(&folder.join(file), |out| out.write_all(fill(text).as_bytes()))?;
+        write_own(&folder.join(file), |out| out.write_all(filled(text, &holes).as_bytes()))?;
     }
     Ok(Scripts { submit: folder.join("submit.sh") })
 }
 
-/// As one word of a shell.
-fn quoted(text: &str) -> String {
-    format!("'{}'", text.replace('\'', "'\\''"))
+/// A template with its holes filled, in one pass: what is filled in has no holes, whatever it looks
+/// like.
+fn filled(template: &str, holes: &[(&str, String)]) -> String {
+    let (mut text, mut rest) = (String::with_capacity(2 * template.len()), template);
+    while let Some(at) = rest.find('@') {
+        let (before, from) = rest.split_at(at);
+        text.push_str(before);
+        let found = holes.iter().find_map(|(hole, value)| Some((value.as_str(), from.strip_prefix(hole)?)));
+        let (value, after) = found.unwrap_or(from.split_at(1));
+        text.push_str(value);
+        rest = after;
+    }
+    text + rest
 }
 
 const TASKS: &str = include_str!("slurm/tasks.sh");
@@ -163,6 +214,7 @@ mod tests {
             ("tasks=0", "from 1 to 1000"),
             ("tasks", "has no `=`"),
             ("array=1-4", "is unknown"),
+            ("partiton=long", "is unknown, did you mean `partition`? Give tasks"),
             ("time=", "no option of sbatch takes"),
             ("comment=a\nb", "no option of sbatch takes"),
         ] {
@@ -171,42 +223,69 @@ mod tests {
         }
     }
 
+    /// All that a shell, Slurm's comments and the templates themselves could take for something else.
+    const NASTY: &str = "it's a \u{fc}ber $HOME `x` @PROGRAM@ @DIR@ @ALL@ #1 & (2); ~*?[!]{a,b}<>|";
+
     #[test]
     fn the_scripts_have_everything_filled_in_and_are_shell() {
         let scratch = tempfile::tempdir().unwrap();
-        let root = scratch.path().join("it's a study");
+        let root = scratch.path().join(NASTY);
         fs::create_dir(&root).unwrap();
         let slurm = parsed(&["tasks=3", "at-once=2", "partition=long", "time=10"]).unwrap();
-        let scripts =
-            write(&StudyDirectory::new(&root), &slurm, Path::new("/opt/a b/asperity"), &["--device".into(), "cpu".into()])
-                .unwrap();
+        let program = Path::new("/opt/a b/50% @LOGS@ \"x\"/asperity");
+        let scripts = write(&StudyDirectory::new(&root), &slurm, program, &["--device=cpu".into(), "--a b".into()]).unwrap();
         let read = |name: &str| fs::read_to_string(scripts.submit.with_file_name(name)).unwrap();
         let tasks = read("tasks.sh");
+        let quoted = fs::canonicalize(&root).unwrap().display().to_string().replace('\'', "'\\''");
         for part in [
             "--array=1-3%2\n",
             "--partition=long\n",
             "--time=10\n",
             "--signal=B:USR1@60\n",
-            "'/opt/a b/asperity'",
-            " '--device' 'cpu'",
-            "'\\''s a study'",
+            "'/opt/a b/50% @LOGS@ \"x\"/asperity' study ",
+            "\"${SLURM_CPUS_PER_TASK:-1}\" --device=cpu '--a b' &",
+            &format!("#SBATCH --output=\"{}/slurm/task-%a.log\"\n", fs::canonicalize(&root).unwrap().display()),
+            &format!("study '{quoted}/study.toml' --out '{quoted}' --shard"),
         ] {
             assert!(tasks.contains(part), "{part}: {tasks}");
         }
         let table = read("table.sh");
         assert!(table.contains("--partition=long\n") && !table.contains("--time="), "{table}");
         for name in ["tasks.sh", "table.sh", "submit.sh"] {
-            for hole in
-                ["@NAME@", "@TASKS@", "@AT_ONCE@", "@WARNING@", "@ALL@", "@FEW@", "@OPTIONS@", "@LOGS@", "@DIR@", "@PROGRAM@"]
-            {
-                assert!(!read(name).contains(hole), "{hole} in {}", read(name));
-            }
             let bash = std::process::Command::new("bash").arg("-n").arg(scripts.submit.with_file_name(name)).output();
             if let Ok(bash) = bash {
                 assert!(bash.status.success(), "{name}: {}", String::from_utf8_lossy(&bash.stderr));
             }
         }
-        let error = write(&StudyDirectory::new(&root), &slurm, Path::new("/opt/a%b/asperity"), &[]).unwrap_err();
-        assert!(error.to_string().contains("characters that Slurm does not take"), "{error}");
+    }
+
+    #[test]
+    fn every_hole_of_the_templates_is_filled() {
+        let scratch = tempfile::tempdir().unwrap();
+        let slurm = parsed(&["tasks=3"]).unwrap();
+        let scripts = write(&StudyDirectory::new(scratch.path()), &slurm, Path::new("/opt/asperity"), &[]).unwrap();
+        for name in ["tasks.sh", "table.sh", "submit.sh"] {
+            let text = fs::read_to_string(scripts.submit.with_file_name(name)).unwrap();
+            let left = text.replace("USR1@60", "").replace("$@", "");
+            assert!(!left.contains('@'), "{name}: {left}");
+        }
+    }
+
+    #[test]
+    fn what_is_filled_in_has_no_holes() {
+        let holes = [("@A@", "@B@".to_owned()), ("@B@", "@A@@".to_owned()), ("@C@\n", String::new())];
+        assert_eq!(filled("x@@A@y@B@@D@\n@C@\n@", &holes), "x@@B@y@A@@@D@\n@");
+    }
+
+    #[test]
+    fn a_path_that_slurm_cannot_take_is_refused_before_it_is_there() {
+        let scratch = tempfile::tempdir().unwrap();
+        for (wrong, program) in [("100%", "/a"), ("a\"b", "/a"), ("a\\b/new", "/a"), ("two\nlines", "/a"), ("out", "/a\nb")] {
+            let out = scratch.path().join(wrong);
+            let error = check(&out, Path::new(program)).unwrap_err().to_string();
+            assert!(error.starts_with("--slurm \"") && error.contains("nothing was written") && !error.contains('\n'), "{error}");
+            assert!(!out.exists());
+        }
+        check(&scratch.path().join("new/out"), Path::new("/a%b")).unwrap();
     }
 }

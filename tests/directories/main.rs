@@ -5,4 +5,5 @@
 mod common;
 mod every_command;
 mod locks;
+mod quoting;
 mod study;

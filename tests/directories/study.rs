@@ -9,7 +9,7 @@ use super::common::{files, program, stderr, stdout};
 use tempfile::TempDir;
 
 /// A fraction of a second a case.
-const BASE: &str = r#"
+pub const BASE: &str = r#"
 [base.sphere]
 radius = 1.0
 [base.material]

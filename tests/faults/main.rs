@@ -14,6 +14,7 @@ mod hostile;
 mod kills;
 mod profile;
 mod program;
+mod signals;
 
 /// Whether all is to be run and not a share.
 fn all() -> bool {

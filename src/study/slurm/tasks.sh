@@ -10,10 +10,10 @@
 share="${SLURM_ARRAY_TASK_ID:?this script is a task of a job array, see submit.sh}/@TASKS@"
 echo "share $share, start $((${SLURM_RESTART_COUNT:-0} + 1)), on $(hostname), $(date)"
 
-# Slurm tells the script, not the program, that time is nearly over.
+# Slurm tells the script, not the program, that time is nearly over; by SIGUSR1 unless somebody changed that above.
 child=
-trap '[ -z "$child" ] || kill -USR1 "$child"' USR1 TERM
-@PROGRAM@ study @DIR@/study.toml --out @DIR@ --shard "$share" --resume --threads "${SLURM_CPUS_PER_TASK:-1}"@OPTIONS@ &
+trap '[ -z "$child" ] || kill -USR1 "$child"' USR1 USR2 XCPU TERM INT HUP
+@PROGRAM@ study @STUDY@ --out @DIR@ --shard "$share" --resume --threads "${SLURM_CPUS_PER_TASK:-1}"@OPTIONS@ &
 child=$!
 wait "$child"
 code=$?
