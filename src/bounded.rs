@@ -36,6 +36,40 @@ fn up_to(source: impl Read, most: u64, expected: usize) -> io::Result<Vec<u8>> {
     if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
 }
 
+/// [`read`] for a file that a run or a study wrote. A device or a pipe under its name is none of
+/// theirs, and is not waited for.
+///
+/// # Errors
+/// As [`read`]; [`ErrorKind::InvalidInput`] for what is no ordinary file.
+pub fn read_result(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let found = std::fs::metadata(path)?.file_type();
+    if found.is_file() || found.is_dir() {
+        return read(path, most);
+    }
+    Err(io::Error::new(ErrorKind::InvalidInput, "it is no ordinary file but a device or a pipe"))
+}
+
+/// [`read_result`] for text.
+///
+/// # Errors
+/// As [`read_result`]; [`ErrorKind::InvalidData`] for what is not UTF-8.
+pub fn result_to_string(path: &Path, most: u64) -> io::Result<String> {
+    text(read_result(path, most)?)
+}
+
+/// The first bytes of a file that a run or a study wrote, `most` at most.
+///
+/// # Errors
+/// As [`read_result`].
+pub fn beginning(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(ErrorKind::InvalidInput.into());
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// [`read`] for text.
 ///
 /// # Errors
@@ -173,6 +207,23 @@ mod tests {
         assert_eq!(text(b"\xef\xbb\xbfa = 1".to_vec(), None).unwrap(), "a = 1");
         assert_eq!(text("größe".into(), None).unwrap(), "größe");
         assert_eq!(text(b"1,2,3\n\0\0\0\0".to_vec(), None).unwrap().len(), 10);
+    }
+
+    /// Nobody writes to the pipe: to open it would take for ever.
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_among_results_is_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        rustix::fs::mknodat(rustix::fs::CWD, &path, rustix::fs::FileType::Fifo, 0o600.into(), 0).unwrap();
+        let error = result_to_string(&path, 8).unwrap_err();
+        assert!(error.kind() == ErrorKind::InvalidInput && error.to_string().contains("a pipe"), "{error}");
+        assert!(beginning(&path, 8).is_err());
+        let path = folder.path().join("summary.json");
+        std::fs::write(&path, "12345678").unwrap();
+        assert_eq!(result_to_string(&path, 8).unwrap(), "12345678");
+        assert_eq!(beginning(&path, 3).unwrap(), b"123");
+        assert_eq!(read_result(&path, 7).unwrap_err().kind(), ErrorKind::FileTooLarge);
     }
 
     #[cfg(target_os = "linux")]

@@ -11,6 +11,8 @@ pub mod bounded;
 pub mod cli;
 #[path = "compute/mod.rs"]
 pub mod compute;
+#[path = "memory.rs"]
+pub mod memory;
 #[path = "processor.rs"]
 pub mod processor;
 #[path = "quoting.rs"]

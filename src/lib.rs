@@ -90,7 +90,7 @@ pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation
 
 #[cfg(feature = "cli")]
 pub(crate) use internals::{bench, processor, verify};
-pub(crate) use internals::{bounded, compute, contact, element, lanes, linalg, mesh, quoting, real, simulation, solver};
+pub(crate) use internals::{bounded, compute, contact, element, lanes, linalg, memory, mesh, quoting, real, simulation, solver};
 
 /// The Rust of the documents, which runs.
 #[cfg(doctest)]

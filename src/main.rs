@@ -1,5 +1,10 @@
 //! The `asperity` program; everything is in the library.
 
+mod out_of_memory;
+
+#[global_allocator]
+static ALLOCATOR: out_of_memory::Explained = out_of_memory::Explained;
+
 fn main() -> std::process::ExitCode {
     quiet_drivers();
     asperity::internals::cli::main()

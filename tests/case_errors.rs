@@ -39,7 +39,7 @@ const MISTAKES: &[(&str, usize, &str, &str, &str)] = &[
     ("opponent-stiff", 17, "opponent.material.youngs_modulus", "is 1000000000000.0", "1e-6 to 1e6 times material.youngs_modulus"),
     ("opponent-too-deep", 21, "path.0.indentation", "is 0.02", "< 0.3 effective radius = 0.01698"),
     ("opponent-yield-stress", 17, "opponent.material.hardening.yield_stress", "is -1.0", "a stress > 0"),
-    ("output-fields", 17, "output.fields", "is \"some\"", "\"none\", \"segments\", \"all\""),
+    ("output-fields", 17, "output.fields", "is \"some\"", "\"none\", \"contact\", \"segments\", \"all\""),
     ("output-plots", 17, "output.plots", "is the string \"yes\", which is the wrong type", "true or false"),
     ("overflow", 6, "material.youngs_modulus", "is inf", "a stress > 0"),
     ("path-empty", 2, "path", "is empty", "at least one [[path]] segment"),

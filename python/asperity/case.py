@@ -42,7 +42,7 @@ class Case:
         ``{"release": True}``; lengths.
     :param mesh: ``elements_per_contact_radius`` (16), ``fine_zone``, ``contact_radius``.
     :param solver: ``tolerance``, ``press_steps``, ``shear_steps``, ``error_estimate``, ...
-    :param output: ``fields`` (``"none"``, ``"segments"``, ``"all"``), ``plots``.
+    :param output: ``fields`` (``"none"``, ``"contact"``, ``"segments"``, ``"all"``), ``plots``.
     :raises CaseError: what is wrong, with the key and what is allowed.
     """
 

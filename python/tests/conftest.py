@@ -28,7 +28,7 @@ GRID = {"material.hardening.yield_stress": [200.0, 800.0], "contact.friction": [
 
 @pytest.fixture(scope="session")
 def study(case: asperity.Case) -> asperity.Study:
-    return asperity.study(case.replace({"output.fields": "none", "output.plots": False}), GRID)
+    return asperity.study(case.replace({"output.fields": "contact", "output.plots": False}), GRID)
 
 
 @pytest.fixture(scope="session")

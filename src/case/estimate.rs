@@ -1,14 +1,14 @@
 //! How large a case is, before it is meshed.
 
+use super::document::Document;
 use super::error::CaseError;
 use super::reader::Reader;
 use super::{Case, Opponent, Segment};
+use crate::memory::{GIB, Room};
 
 /// Memory of an element with its share of the linear systems, in bytes: its tangent and the 3x3
 /// blocks, twice, with their multigrid levels in f32, Krylov basis, states at quadrature points.
 pub const BYTES_PER_ELEMENT: f64 = 10_000.0;
-
-const GIB: f64 = 1024.0 * 1024.0 * 1024.0;
 
 /// An estimate of the number of elements of the case's mesh, from its keys alone, to about a fifth.
 ///
@@ -35,19 +35,46 @@ pub fn estimated_memory(case: &Case) -> f64 {
     estimated_elements(case) as f64 * BYTES_PER_ELEMENT / GIB
 }
 
-/// Refuses a case whose mesh would take more than `solver.max_memory_gib`.
+/// Refuses a case whose mesh would take more than its own `solver.max_memory_gib`.
 pub(super) fn check_memory(case: &Case, root: &Reader<'_>) -> Result<(), CaseError> {
-    let (needed, available) = (estimated_memory(case), case.solver.max_memory_gib);
-    if needed <= available {
+    match case.solver.max_memory_gib {
+        Some(limit) if estimated_memory(case) > limit => {
+            Err(too_large(case, root, &format!("{limit:?} GiB that solver.max_memory_gib allows"))?)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether the case is to be computed with this much memory: it fits, or it says itself how much it
+/// may take.
+pub fn fits(case: &Case, room: &Room) -> bool {
+    case.solver.max_memory_gib.is_some() || estimated_memory(case) <= room.gib
+}
+
+/// Refuses a case that does not fit (see [`fits`]), with its place in `document`, or without one.
+///
+/// # Errors
+/// [`CaseError::NotAllowed`], with what the case takes, how much there is, and what says so.
+pub fn check_room(case: &Case, document: Option<&Document>, room: &Room) -> Result<(), CaseError> {
+    if fits(case, room) {
         return Ok(());
     }
+    let table = toml::Table::try_from(case).unwrap_or_default();
+    let own = Document::from_table(&table);
+    Err(too_large(case, &Reader::new(document.unwrap_or(&own))?, &room.to_string())?)
+}
+
+/// The refusal of a case that takes more than `available`.
+fn too_large(case: &Case, root: &Reader<'_>, available: &str) -> Result<CaseError, CaseError> {
     let mesh = root.table("mesh")?;
-    let takes = format!("a mesh of about {} elements takes about {needed:.2} GiB", estimated_elements(case));
-    let allowed = "fewer mesh.elements_per_contact_radius, a smaller mesh.fine_zone, or a larger solver.max_memory_gib";
+    let (elements, gib) = (estimated_elements(case), estimated_memory(case));
+    let takes = format!("a mesh of about {elements} elements takes about {gib:.2} GiB, of {available}");
+    let allowed = "fewer mesh.elements_per_contact_radius, a smaller mesh.fine_zone, or a larger solver.max_memory_gib, \
+                   which is taken as it is given";
     // Named is what the user gave: the limit, or else the keys that make the mesh large.
     let blamed = [root.table("solver")?.get("max_memory_gib"), mesh.get("elements_per_contact_radius"), mesh.get("fine_zone")];
-    Err(match blamed.into_iter().flatten().next() {
-        Some(field) => field.refuse(&format!("{takes}, of {available:?} GiB that solver.max_memory_gib allows"), allowed),
-        None => root.refuse(&takes, allowed),
+    Ok(match blamed.into_iter().flatten().next() {
+        Some(field) => field.refuse(&takes, allowed),
+        None => mesh.refuse(&takes, allowed),
     })
 }

@@ -333,15 +333,15 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "GiB",
         range: "> 0",
-        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs",
+        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A value that is given is taken as it is",
         example: "8.0",
-        ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Defaults("8.0"))
+        ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Optional(ROOM))
     },
     Key {
-        range: "\"none\", \"segments\" or \"all\"",
-        meaning: "steps after which fields/*.vtu and contact/*.csv are written: none, the last of each segment (and contact/*.csv of up to four steps of the first shear, for plots/slip.svg), all; in a study, none",
+        range: "\"none\", \"contact\", \"segments\" or \"all\"",
+        meaning: "steps after which fields/*.vtu and contact/*.csv are written: none; with contact, contact/*.csv alone, after the last of each segment; with segments, both after that, and with either contact/*.csv of up to four steps of the first shear if there are plots, for plots/slip.svg; all. In a study the default is contact",
         example: "\"segments\"",
-        ..key("output", "fields", Word(&["none", "segments", "all"]), Defaults("\"segments\""))
+        ..key("output", "fields", Word(&["none", "contact", "segments", "all"]), Defaults("\"segments\""))
     },
     Key {
         range: "true or false",
@@ -424,6 +424,10 @@ pub const KEYS: &[Key] = &[
     },
 ];
 
+/// What stands for `solver.max_memory_gib`.
+const ROOM: &str = "what there is for the process, by the machine, its container or job, and ulimit -v, less a tenth and 64 MiB; \
+                    8 GiB where the system does not tell";
+
 /// The keys that a dotted name may mean: all of it, `path.0.shear` for any segment, a table, or its
 /// last parts.
 pub fn find(name: &str) -> Vec<&'static Key> {
@@ -436,6 +440,13 @@ pub fn find(name: &str) -> Vec<&'static Key> {
         dotted == wanted || key.table == wanted || dotted.ends_with(&format!(".{wanted}"))
     };
     KEYS.iter().filter(|key| meant(key)).collect()
+}
+
+/// Whether the value of a dotted key is any number, of which a whole one is only a way to write it.
+pub fn takes_decimals(name: &str) -> bool {
+    // Strain and stress of a point of a table.
+    let within_points = name.split('.').any(|part| part == "points");
+    find(name).first().map_or(within_points, |key| matches!(key.kind, Number(..) | ShareOrTrue))
 }
 
 /// The known name closest to an unknown one.

@@ -30,6 +30,7 @@ mod tests;
 pub use document::{Document, Entry, Value};
 pub use error::{CaseError, Place, short};
 pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
+pub(crate) use estimate::{check_room, fits};
 pub use hardening::Hardening;
 pub(crate) use hints::nearest;
 pub use mistakes::mistakes;
@@ -205,8 +206,10 @@ pub struct Solver {
     /// Whether a coarser run goes before a run, a tenth of its work: it finds how far the contact
     /// reaches, and the run's error is estimated from it.
     pub error_estimate: bool,
-    /// Memory that the mesh and the linear systems may take, in GiB.
-    pub max_memory_gib: f64,
+    /// Memory that the mesh and the linear systems may take, in GiB, whatever the machine has; by
+    /// default its share of what the machine has for this process.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_memory_gib: Option<f64>,
 }
 
 /// The solver of the linear systems.
@@ -244,12 +247,25 @@ pub struct Output {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fields {
-    /// Never.
+    /// Never, nor contact tables.
     None,
-    /// At the end of each segment.
+    /// Never, but contact tables at the end of each segment.
+    Contact,
+    /// At the end of each segment, with contact tables.
     Segments,
-    /// After every step.
+    /// After every step, with contact tables.
     All,
+}
+
+impl Fields {
+    /// Every value by its name in a case file.
+    pub const ALL: [(&'static str, Self); 4] =
+        [("none", Self::None), ("contact", Self::Contact), ("segments", Self::Segments), ("all", Self::All)];
+
+    /// Whether there are `fields/*.vtu`; contact tables go with them.
+    pub fn has_vtu(self) -> bool {
+        matches!(self, Self::Segments | Self::All)
+    }
 }
 
 impl Default for Mesh {
@@ -268,7 +284,7 @@ impl Default for Solver {
             max_iterations: 25,
             max_cutbacks: 8,
             error_estimate: true,
-            max_memory_gib: 8.0,
+            max_memory_gib: None,
         }
     }
 }

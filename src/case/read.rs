@@ -209,7 +209,7 @@ fn read_solver(table: &Reader<'_>) -> Result<Solver, CaseError> {
         solver.error_estimate = field.boolean()?;
     }
     if let Some(field) = table.get("max_memory_gib") {
-        solver.max_memory_gib = field.number("a number > 0, in GiB", |gib| gib > 0.0)?;
+        solver.max_memory_gib = Some(field.number("a number > 0, in GiB", |gib| gib > 0.0)?);
     }
     Ok(solver)
 }
@@ -218,7 +218,7 @@ fn read_output(table: &Reader<'_>) -> Result<Output, CaseError> {
     table.only(&["fields", "plots", "plot_format", "plot_width", "parquet", "keep_checkpoint"])?;
     let mut output = Output::default();
     if let Some(field) = table.get("fields") {
-        output.fields = field.choice(&[("none", Fields::None), ("segments", Fields::Segments), ("all", Fields::All)])?;
+        output.fields = field.choice(&Fields::ALL)?;
     }
     if let Some(field) = table.get("plots") {
         output.plots = field.boolean()?;

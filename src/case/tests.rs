@@ -31,7 +31,7 @@ fn the_reference_case_reads_with_the_documented_defaults() {
             max_iterations: 25,
             max_cutbacks: 8,
             error_estimate: true,
-            max_memory_gib: 8.0,
+            max_memory_gib: None,
         },
         output: Output::default(),
         units: UnitLabels::default(),

@@ -2,7 +2,7 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::{Case, Friction, Hold, Opponent, Output, Segment, ShearTarget, UnitLabels};
+use super::{Case, Friction, Hold, Opponent, Output, Segment, ShearTarget, Solver, UnitLabels};
 
 impl Case {
     /// The case as TOML.
@@ -17,7 +17,8 @@ impl Case {
     pub fn identity(&self) -> String {
         let Output { plot_format, plot_width, .. } = Output::default();
         let output = Output { plot_format, plot_width, ..self.output.clone() };
-        Self { units: UnitLabels::default(), output, ..self.clone() }.to_toml()
+        let solver = Solver { max_memory_gib: None, ..self.solver.clone() };
+        Self { units: UnitLabels::default(), output, solver, ..self.clone() }.to_toml()
     }
 }
 

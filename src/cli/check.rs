@@ -36,6 +36,7 @@ pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
             return Err(CliError::SetInStudy { argument: argument.clone(), file: args.case.clone() });
         }
         let study = input.study()?;
+        study.check_room(|_| true)?;
         if args.json {
             print_json(&study_json(&study))?
         } else {
@@ -44,6 +45,7 @@ pub fn check(args: &CheckArgs) -> Result<Outcome, CliError> {
         return Ok(Outcome::Done);
     }
     let case = input.case(&args.set)?;
+    input.check_room(&case, &args.set)?;
     if args.json {
         print_json(&case_json(&case))?
     } else {

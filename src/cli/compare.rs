@@ -53,7 +53,7 @@ impl Run {
         }
         Ok(Self {
             name: dir.display().to_string(),
-            case: Case::load(&out.case(), &[])?,
+            case: out.load_case()?,
             summary: Summary::read(&out.summary())?,
             history: read_history(&out.history())?,
         })

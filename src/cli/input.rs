@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::CliError;
 use crate::bounded;
-use crate::case::{Case, CaseError, Document, Value, mistakes};
+use crate::case::{Case, CaseError, Document, Value, check_room, mistakes};
+use crate::memory;
 use crate::quoting::STDIN;
 use crate::study::{Study, StudyError};
 
@@ -52,6 +53,17 @@ impl Input {
             errors if errors.is_empty() => first.into(),
             errors => told(errors),
         })
+    }
+
+    /// Refuses a case with these `--set` arguments that this machine has no memory for.
+    ///
+    /// # Errors
+    /// What the case takes and what there is, with line and key.
+    pub fn check_room(&self, case: &Case, settings: &[String]) -> Result<(), CliError> {
+        let mut document = Document::parse(&self.text, &self.name)?;
+        settings.iter().try_for_each(|argument| document.set_argument(argument))?;
+        let told = |error| CliError::Mistakes { errors: vec![error], text: self.text.clone() };
+        check_room(case, Some(&document), &memory::room()).map_err(told)
     }
 
     /// The study.

@@ -24,7 +24,7 @@ use crate::law::model::OutOfRange;
 use crate::law::predict::{NormalSource, Prediction, predict};
 use crate::law::prior::Prior;
 use crate::law::{Law, LawError, LawFile, fit, report};
-use crate::output::{refuse_foreign, refuse_input, write_own};
+use crate::output::{decimal, refuse_foreign, refuse_input, write_own};
 
 /// Make a contact law and use it.
 #[derive(Clone, Debug, Args)]
@@ -253,7 +253,8 @@ fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
     }
     let mut text = String::from("segment,h,delta_T,F_N,F_T\n");
     for point in &points {
-        let _ = writeln!(text, "{},{:?},{:?},{:?},{:?}", point.segment, point.h, point.delta_t, point.f_n, point.f_t);
+        let numbers = [point.h, point.delta_t, point.f_n, point.f_t].map(decimal);
+        let _ = writeln!(text, "{},{}", point.segment, numbers.join(","));
     }
     print(&text)?;
     Ok(Outcome::Done)

@@ -118,8 +118,9 @@ fn threads(text: &str) -> Result<NonZeroUsize, String> {
 impl DeviceArgs {
     /// Starts the pool of threads; to be called once, before anything uses it.
     pub fn start_threads(&self) -> Result<(), CliError> {
-        let Some(threads) = self.threads.map(NonZeroUsize::get) else { return Ok(()) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        // None is as many as the machine has.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, NonZeroUsize::get));
+        let threads = self.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
         pool.build_global().map_err(|error| CliError::Threads { threads, what: error.to_string() })
     }
 }

@@ -9,7 +9,7 @@ use clap::Args;
 
 use super::options::{Format, Units};
 use super::{CliError, Outcome, print};
-use crate::case::{Case, PictureFormat, PictureWidth};
+use crate::case::{PictureFormat, PictureWidth};
 use crate::law::plots::{law_beside_run, table_beside_run};
 use crate::law::{LawError, LawFile};
 use crate::output::plots::axes::Axes;
@@ -86,7 +86,7 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
 
 fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError> {
     run.refuse_links()?;
-    let case = Case::load(&run.case(), &[])?;
+    let case = run.load_case()?;
     let law = args.law.as_deref().map(LawFile::read_or_built_in).transpose()?;
     let history = read_history(&run.history())?;
     let width = args.width.or(case.output.plot_width);

@@ -11,6 +11,7 @@ use crate::bounded;
 use crate::case::{self, short};
 use crate::material::MaterialError;
 use crate::material::point::{PointRecord, along, simple_shear, uniaxial};
+use crate::output::decimal;
 
 /// Strain that is reached unless `--strain` says otherwise.
 const STRAIN: f64 = 0.1;
@@ -175,12 +176,13 @@ fn write(
         };
         write!(out, "{}", record.step)?;
         for x in record.deformation_gradient.iter().flatten() {
-            write!(out, ",{x:?}")?;
+            write!(out, ",{}", decimal(*x))?;
         }
         for x in record.cauchy.into_iter().chain([record.von_mises]) {
-            write!(out, ",{:?}", x * unit)?;
+            write!(out, ",{}", decimal(x * unit))?;
         }
-        writeln!(out, ",{:?},{:?},{:?}", record.alpha, record.plastic_work * unit, record.elastic_energy * unit)?;
+        let numbers = [record.alpha, record.plastic_work * unit, record.elastic_energy * unit].map(decimal);
+        writeln!(out, ",{}", numbers.join(","))?;
     }
     out.flush()?;
     Ok(None)

@@ -81,6 +81,8 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         canceller: Canceller::on_signal(stop_flag()?),
     };
     let in_case = |error: SessionError| match error {
+        // The same with its line.
+        SessionError::Case(error) => input.check_room(&case, &args.set).err().unwrap_or_else(|| error.into()),
         SessionError::Simulation(source) => CliError::Problem { file: input.name.clone().into(), source },
         error => error.into(),
     };

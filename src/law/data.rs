@@ -135,7 +135,7 @@ enum Usable {
 
 /// A sample from a run's directory.
 fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled<Case>>) -> Result<Usable, LawError> {
-    let case = Case::load(&directory.case(), &[])?;
+    let case = directory.load_case()?;
     if case.opponent.is_some() {
         return Ok(Usable::No("against another sphere, not a plane"));
     }

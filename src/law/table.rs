@@ -33,7 +33,7 @@ impl StudyTable {
     /// [`LawError::NoStudy`] if it is not there, [`LawError::Table`] if it is no table or lacks
     /// `case`, `directory` or `status`.
     pub fn read(path: &Path) -> Result<Self, LawError> {
-        let text = bounded::read_to_string(path, bounded::RESULT)
+        let text = bounded::result_to_string(path, bounded::RESULT)
             .map_err(|source| LawError::NoStudy { path: path.to_owned(), source })?;
         let malformed = |line: u64, problem: String| LawError::Table { path: path.to_owned(), line, problem };
         let mut reader = csv::Reader::from_reader(text.as_bytes());

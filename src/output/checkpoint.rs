@@ -15,7 +15,7 @@ use super::atomic::replace_atomically;
 use super::ledger::Ledger;
 use super::{OutputDirectory, OutputError, sound};
 use crate::bounded;
-use crate::case::{Case, Fields};
+use crate::case::Case;
 use crate::compute::Description;
 use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::scout::Scout;
@@ -119,7 +119,7 @@ impl Checkpoint {
     /// # Errors
     /// [`OutputError::Read`]; [`OutputError::Checkpoint`] if it is damaged or of another version.
     pub fn read(path: &Path) -> Result<Option<Self>, OutputError> {
-        let bytes = match bounded::read(path, bounded::CHECKPOINT) {
+        let bytes = match bounded::read_result(path, bounded::CHECKPOINT) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             read => read.map_err(OutputError::reading(path))?,
         };
@@ -168,7 +168,7 @@ impl Checkpoint {
     /// # Errors
     /// [`OutputError::Checkpoint`] with the file.
     pub fn check_files(&self, out: &OutputDirectory, case: &Case) -> Result<(), OutputError> {
-        let Some(missing) = out.missing(&self.ledger.saved, &self.ledger.panels, case.output.fields != Fields::None) else {
+        let Some(missing) = out.missing(&self.ledger.saved, &self.ledger.panels, case.output.fields.has_vtu()) else {
             return Ok(());
         };
         let problem = format!(
@@ -210,9 +210,11 @@ fn head() -> String {
 /// case.
 pub fn case_difference(there: &str, here: &str) -> Option<String> {
     let (found, wanted) = (flat(there), flat(here));
-    // How pictures look changes no result, nor does what is kept for later.
+    // How pictures look changes no result, nor does what is kept for later, nor how much memory there
+    // may be.
     let matters = |key: &&String| {
-        !(key.starts_with("units.") || key.starts_with("output.plot_") || key.as_str() == "output.keep_checkpoint")
+        let without_effect = matches!(key.as_str(), "output.keep_checkpoint" | "solver.max_memory_gib");
+        !(key.starts_with("units.") || key.starts_with("output.plot_") || without_effect)
     };
     let keys: std::collections::BTreeSet<&String> = found.keys().chain(wanted.keys()).filter(matters).collect();
     let told = |values: &BTreeMap<String, String>, key| values.get(key).map_or("absent", String::as_str).to_owned();

@@ -107,7 +107,7 @@ pub fn write_contact(path: &Path, points: &[ContactPoint]) -> Result<(), OutputE
 /// Reads the table back; errors name the line and the column. Columns that are not its own are left
 /// out.
 pub fn read_contact(path: &Path) -> Result<Vec<ContactPoint>, OutputError> {
-    let text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
+    let text = bounded::result_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
     let malformed = |(line, problem): (u64, String)| OutputError::Malformed { path: path.to_path_buf(), line, problem };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let columns = reader.headers().map_err(|error| malformed((1, error.to_string())))?.clone();

@@ -5,9 +5,8 @@ use super::lock::LOCK_NAME;
 use super::tables::RUN_PICTURES;
 use super::{OutputError, refuse_foreign, write_own};
 use crate::bounded;
-use crate::case::PictureFormat;
+use crate::case::{Case, CaseError, PictureFormat};
 use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a
@@ -251,7 +250,7 @@ impl OutputDirectory {
     pub fn write_case(&self, toml: &str) -> Result<(), OutputError> {
         let text = format!("{RESULT_MARKER}\n{toml}");
         // It may be the case that was read.
-        match bounded::read_to_string(&self.case(), bounded::CASE) {
+        match bounded::result_to_string(&self.case(), bounded::CASE) {
             Ok(found) if found == text => Ok(()),
             _ => write_own(&self.case(), |out| out.write_all(text.as_bytes())),
         }
@@ -259,18 +258,26 @@ impl OutputDirectory {
 
     /// The text of `case.toml` without the [`RESULT_MARKER`]; `None` if the folder holds no result.
     pub fn read_case(&self) -> Option<String> {
-        let text = bounded::read_to_string(&self.case(), bounded::CASE).ok()?;
+        let text = bounded::result_to_string(&self.case(), bounded::CASE).ok()?;
         let (first, toml) = text.split_once('\n')?;
         (first.trim_end() == RESULT_MARKER).then(|| toml.to_owned())
     }
 
+    /// The case of `case.toml`.
+    ///
+    /// # Errors
+    /// Those of a case file.
+    pub fn load_case(&self) -> Result<Case, CaseError> {
+        let file = self.case().display().to_string();
+        let text = bounded::result_to_string(&self.case(), bounded::CASE);
+        let text = text.map_err(|source| CaseError::Unreadable { file: file.clone(), source })?;
+        Case::parse(&text, &file, &[])
+    }
+
     /// Whether the folder holds a result: its `case.toml` begins with [`RESULT_MARKER`].
     pub fn holds_result(&self) -> bool {
-        let mut first = Vec::new();
-        let length = RESULT_MARKER.len() as u64 + 2;
-        let read = fs::File::open(self.case()).and_then(|file| file.take(length).read_to_end(&mut first));
-        read.is_ok()
-            && first.split(|byte| *byte == b'\n').next().is_some_and(|line| line.trim_ascii_end() == RESULT_MARKER.as_bytes())
+        let first = bounded::beginning(&self.case(), RESULT_MARKER.len() as u64 + 2).unwrap_or_default();
+        first.split(|byte| *byte == b'\n').next().is_some_and(|line| line.trim_ascii_end() == RESULT_MARKER.as_bytes())
     }
 }
 

@@ -95,7 +95,7 @@ pub fn history_columns() -> Vec<String> {
 /// Reads a `history.csv`. A last row without its line end, left by a killed job, is not counted;
 /// columns after the first ten may be missing or unknown. Errors name the line and the column.
 pub fn read_history(path: &Path) -> Result<Vec<StepRecord>, OutputError> {
-    let mut text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
+    let mut text = bounded::result_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
     text.truncate(text.rfind('\n').map_or(0, |end| end + 1));
     let malformed = |line: u64, problem: String| OutputError::Malformed { path: path.to_path_buf(), line, problem };
     let mut reader = csv::Reader::from_reader(text.as_bytes());

@@ -82,8 +82,6 @@ pub struct ResultWriter {
     out: OutputDirectory,
     units: Units,
     fields: Fields,
-    /// Write the contact table at the end of each segment though no fields are written.
-    contact_tables: bool,
     /// Keep what the pictures show, and draw them at the end where this build can.
     plots: bool,
     #[cfg(feature = "plots")]
@@ -149,7 +147,7 @@ impl ResultWriter {
                     share.after(row);
                 }
                 out.cut_back(&ledger.saved, &ledger.panels)?;
-                let saved = ledger.saved.iter().filter(|_| case.output.fields != Fields::None);
+                let saved = ledger.saved.iter().filter(|_| case.output.fields.has_vtu());
                 let collection =
                     Collection::resume(&out.collection(), saved.map(|&step| (ledger.path_length(step), out.fields(step))))?;
                 (HistoryWriter::resume(&out.history(), &ledger.rows)?, collection)
@@ -160,7 +158,6 @@ impl ResultWriter {
         let mut results = Self {
             units: Units::of(case),
             fields: case.output.fields,
-            contact_tables: false,
             plots: case.output.plots,
             #[cfg(feature = "plots")]
             pictures: Pictures::of(case),
@@ -194,13 +191,6 @@ impl ResultWriter {
             results.note(NO_PICTURES);
         }
         Ok(results)
-    }
-
-    /// Writes the contact table at the end of each segment even where the case wants no fields: a
-    /// few kilobytes.
-    pub fn with_contact_tables(mut self) -> Self {
-        self.contact_tables = true;
-        self
     }
 
     /// Checkpoints every so often instead of every five seconds, whatever share of the run writing
@@ -390,7 +380,7 @@ impl ResultWriter {
             return Ok(());
         }
         let (step, contact) = (view.record.0.step, self.contact(view));
-        if self.fields == Fields::Segments {
+        if matches!(self.fields, Fields::Segments | Fields::Contact) {
             write_contact(&self.out.contact(step), &contact)?;
             self.ledger.panels.push(step);
         }
@@ -451,11 +441,14 @@ impl Observer for ResultWriter {
         }
         let begun = Instant::now();
         let contact = self.contact(view);
-        if self.fields != Fields::None {
-            self.save(view, &contact)?;
-        } else if self.contact_tables {
-            write_contact(&self.out.contact(view.record.0.step), &contact)?;
-            self.ledger.saved.push(view.record.0.step);
+        match self.fields {
+            Fields::None => {}
+            // A few kilobytes.
+            Fields::Contact => {
+                write_contact(&self.out.contact(view.record.0.step), &contact)?;
+                self.ledger.saved.push(view.record.0.step);
+            }
+            Fields::Segments | Fields::All => self.save(view, &contact)?,
         }
         if self.plots {
             self.ledger.tables.add(&self.ledger.rows, contact);

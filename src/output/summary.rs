@@ -232,7 +232,7 @@ impl Summary {
 
     /// Reads it back; keys that are missing get their defaults.
     pub fn read(path: &Path) -> Result<Self, OutputError> {
-        let text = bounded::read_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
+        let text = bounded::result_to_string(path, bounded::RESULT).map_err(OutputError::reading(path))?;
         plain_json::from_str(&text).map_err(|flaw| OutputError::Malformed {
             path: path.to_path_buf(),
             line: flaw.line as u64,

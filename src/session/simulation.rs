@@ -11,9 +11,10 @@ use super::plan::{forecast, plan};
 use super::prepare::prepare;
 use super::prior::{PriorRun, prior_run, refused};
 use super::{Canceller, Earlier, Options, Outcome, SessionError};
-use crate::case::Case;
+use crate::case::{Case, check_room};
 use crate::compute::select::{Selected, select};
 use crate::compute::{ComputeError, Description};
+use crate::memory;
 use crate::output::space::{elements_in_space, stresses_in_space, vectors_in_space};
 use crate::output::{
     Checkpoint, Clock, ContactPoint, OutputDirectory, Progress, ResultWriter, Setting, SilentProgress, Status, StepRecord,
@@ -300,6 +301,7 @@ impl Simulation {
                 }
             }
         }
+        check_room(case, None, &memory::room())?;
         self.notes.extend(case.doubts().iter().map(|doubt| format!("note: {doubt}")));
         let problem = Problem::on(case, checkpoint.as_deref().and_then(Checkpoint::zone)).map_err(SessionError::Simulation)?;
         let (device, precision) = (options.device, options.precision);

@@ -12,6 +12,7 @@ use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
 use crate::linalg::{LinearSolver, SolverKind};
 use crate::material::{Hardening, Material, MaterialError};
+use crate::memory;
 use crate::mesh::couple::{self, couple};
 use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
@@ -207,6 +208,7 @@ impl Problem {
         let zone = zone.map_or_else(|| asked_zone(&scaled, &laws), |zone| zone.within(smaller_radius(&scaled)));
         let elements = case.mesh.elements_per_contact_radius;
         let mesh = mesh_of(&scaled, &zone)?;
+        memory::meshed(mesh.elements.len());
         // Of two spheres it knows R* alone.
         let lambda = johnson_parameter(&laws, case.compliance()[0], nu, zone.contact_radius / case.effective_radius());
         let two_bodies = opponent.is_some();

@@ -2,7 +2,7 @@
 //! run's directory; `plots/*.svg` and `report.html` of `asperity plot`.
 
 use std::fs;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::StudyError;
@@ -65,9 +65,7 @@ impl StudyDirectory {
     /// recognised as one that may be replaced.
     pub fn holds_study(&self) -> bool {
         let expected = format!("{},", FIRST_COLUMNS.join(","));
-        let mut head = Vec::new();
-        let read = fs::File::open(self.table()).and_then(|file| file.take(expected.len() as u64).read_to_end(&mut head));
-        read.is_ok() && head == expected.as_bytes()
+        bounded::beginning(&self.table(), expected.len() as u64).is_ok_and(|head| head == expected.as_bytes())
     }
 
     /// Refuses a folder that is neither absent nor empty nor a study's.
@@ -182,7 +180,7 @@ impl StudyDirectory {
     /// [`StudyError::Output`].
     pub fn write_study(&self, study: &Study) -> Result<(), StudyError> {
         // It may be the file that was read.
-        match bounded::read_to_string(&self.study(), bounded::CASE) {
+        match bounded::result_to_string(&self.study(), bounded::CASE) {
             Ok(found) if found == study.text => Ok(()),
             _ => Ok(write_atomically(&self.study(), |out| out.write_all(study.text.as_bytes()))?),
         }

@@ -53,7 +53,7 @@ pub struct Study {
     /// list.
     pub axes: Vec<(String, usize)>,
     /// Every combination, the last of those fastest. Where the base says nothing about it, a case
-    /// of a study writes no fields and no plots.
+    /// of a study writes contact tables, but no fields and no plots.
     pub cases: Vec<StudyCase>,
 }
 
@@ -164,10 +164,11 @@ fn values_of(value: &Value) -> usize {
     }
 }
 
-/// No fields and no plots for each of hundreds of cases, unless the base asks for them.
+/// Contact tables alone, no fields and no plots, for each of hundreds of cases, unless the base says
+/// otherwise.
 fn with_study_defaults(mut base: Document) -> Result<Document, CaseError> {
     let place = base.root.place.clone();
-    for (key, value) in [("fields", Value::String("none".to_owned())), ("plots", Value::Boolean(false))] {
+    for (key, value) in [("fields", Value::String("contact".to_owned())), ("plots", Value::Boolean(false))] {
         let given = Reader::new(&base)?.table("output")?.get(key).is_some();
         if !given {
             let entry = Entry { place: place.clone(), value };
@@ -266,7 +267,7 @@ indentation = 0.02
         assert_eq!(rows[5], ("c0006", "0.02 1".into()));
         assert_eq!(study.cases[1].case.contact.friction, Friction::Stick);
         assert_eq!(study.combination(&study.cases[5]), "path.0.indentation = 0.02, contact.friction = 1");
-        assert!(study.cases.iter().all(|case| case.case.output.fields == Fields::None && !case.case.output.plots));
+        assert!(study.cases.iter().all(|case| case.case.output.fields == Fields::Contact && !case.case.output.plots));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::StudyError;
 use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::id::{case_id, directory_of, is_case_id};
-use crate::case::Case;
+use super::row::cell;
 use crate::law::table::StudyTable;
 use crate::output::{DirectoryLock, OutputDirectory, OutputError, Status, Summary, TaskLock, read_history};
 
@@ -127,7 +127,7 @@ fn told(directory: &StudyDirectory, study: &Study) -> Option<Vec<String>> {
     let table = StudyTable::read(&directory.table()).ok().filter(|table| table.rows.len() == study.cases.len())?;
     let mut names = BTreeSet::new();
     for (row, case) in table.rows.iter().zip(&study.cases) {
-        let same = study.keys.iter().zip(&case.values).all(|(key, value)| table.cell(row, key) == value);
+        let same = study.keys.iter().zip(&case.values).all(|(key, value)| same_cell(table.cell(row, key), &cell(key, value)));
         let number = is_case_id(&row.id) && row.directory == directory_of(&row.id);
         if !(same && number && names.insert(row.id.clone())) {
             return None;
@@ -136,10 +136,16 @@ fn told(directory: &StudyDirectory, study: &Study) -> Option<Vec<String>> {
     Some(table.rows.into_iter().map(|row| row.id).collect())
 }
 
+/// Whether two cells say the same: an earlier version wrote whole numbers without a point.
+fn same_cell(one: &str, other: &str) -> bool {
+    let number = |text: &str| text.parse::<f64>().ok();
+    one == other || number(one).is_some_and(|one| number(other) == Some(one))
+}
+
 /// For each case the directory that holds it, if there is one: that of its own number rather than
 /// another.
 fn found(directory: &StudyDirectory, study: &Study, there: &[String]) -> Vec<Option<String>> {
-    let holds = |id: &str| Case::load(&directory.case(id).case(), &[]).ok().map(|case| case.identity());
+    let holds = |id: &str| directory.case(id).load_case().ok().map(|case| case.identity());
     let held: Vec<(&String, String)> = there.iter().filter_map(|id| Some((id, holds(id)?))).collect();
     let mut by_case: BTreeMap<&str, Vec<&String>> = BTreeMap::new();
     held.iter().for_each(|(id, case)| by_case.entry(case).or_default().push(id));

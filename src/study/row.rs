@@ -7,9 +7,10 @@ use std::path::Path;
 use super::StudyError;
 use super::file::{Study, StudyCase};
 use super::id::directory_of;
+use crate::case::keys::takes_decimals;
 use crate::case::{Case, Friction};
 use crate::law::variables::{Body, Variables};
-use crate::output::{OutputDirectory, Status, Summary, read_history, write_atomically};
+use crate::output::{OutputDirectory, Status, Summary, decimal, read_history, write_atomically};
 
 /// A column of text by its name, and how it is read.
 type TextColumn = (&'static str, fn(&StudyCase, &Row) -> String);
@@ -48,30 +49,40 @@ impl Numbers<'_> {
     }
 }
 
+/// How a column of numbers is read.
+enum Read {
+    /// A count, written as a whole number.
+    Count(fn(&Numbers<'_>) -> Option<usize>),
+    /// A number of [`decimal`].
+    Decimal(fn(&Numbers<'_>) -> Option<f64>),
+}
+
+use Read::{Count, Decimal};
+
 /// A column by its name, and how it is read.
-type Column = (&'static str, fn(&Numbers<'_>) -> Option<f64>);
+type Column = (&'static str, Read);
 
 const COLUMNS: [Column; 20] = [
-    ("E", |n| Some(n.case.material.youngs_modulus)),
-    ("nu", |n| Some(n.case.material.poissons_ratio)),
-    ("sigma_Y", |n| n.case.material.hardening.yield_stress(n.case.material.youngs_modulus)),
-    ("mu", |n| n.friction()),
-    ("R", |n| Some(n.case.sphere.radius)),
-    ("h0", |n| n.summary?.h0),
-    ("a0", |n| n.summary?.a0),
-    ("F_N0", |n| n.summary?.f_n0),
-    ("F_N_slip", |n| n.summary?.f_n_slip),
-    ("F_T_max", |n| n.summary?.f_t_max),
-    ("delta_T_slip", |n| n.summary?.delta_t_slip),
-    ("k_T0", |n| n.summary?.k_t0),
-    ("sigma_rep", |n| Some(n.variables?.sigma_rep)),
-    ("Lambda", |n| Some(n.variables?.lambda)),
-    ("Hbar", |n| Some(n.variables?.hardness)),
-    ("c2", |n| Some(n.variables?.c_squared)),
-    ("elements_per_contact_radius", |n| Some(n.case.mesh.elements_per_contact_radius as f64)),
-    ("newton_iterations", |n| Some(n.summary?.newton_iterations as f64)),
-    ("cutbacks", |n| Some(n.summary?.cutbacks as f64)),
-    ("cpu_s", |n| n.summary?.cpu_s),
+    ("E", Decimal(|n| Some(n.case.material.youngs_modulus))),
+    ("nu", Decimal(|n| Some(n.case.material.poissons_ratio))),
+    ("sigma_Y", Decimal(|n| n.case.material.hardening.yield_stress(n.case.material.youngs_modulus))),
+    ("mu", Decimal(|n| n.friction())),
+    ("R", Decimal(|n| Some(n.case.sphere.radius))),
+    ("h0", Decimal(|n| n.summary?.h0)),
+    ("a0", Decimal(|n| n.summary?.a0)),
+    ("F_N0", Decimal(|n| n.summary?.f_n0)),
+    ("F_N_slip", Decimal(|n| n.summary?.f_n_slip)),
+    ("F_T_max", Decimal(|n| n.summary?.f_t_max)),
+    ("delta_T_slip", Decimal(|n| n.summary?.delta_t_slip)),
+    ("k_T0", Decimal(|n| n.summary?.k_t0)),
+    ("sigma_rep", Decimal(|n| Some(n.variables?.sigma_rep))),
+    ("Lambda", Decimal(|n| Some(n.variables?.lambda))),
+    ("Hbar", Decimal(|n| Some(n.variables?.hardness))),
+    ("c2", Decimal(|n| Some(n.variables?.c_squared))),
+    ("elements_per_contact_radius", Count(|n| Some(n.case.mesh.elements_per_contact_radius))),
+    ("newton_iterations", Count(|n| Some(n.summary?.newton_iterations))),
+    ("cutbacks", Count(|n| Some(n.summary?.cutbacks))),
+    ("cpu_s", Decimal(|n| n.summary?.cpu_s)),
 ];
 
 /// Last columns of `study.csv`, in the case's own units; the four normalised variables are those
@@ -148,7 +159,7 @@ impl Row {
     /// there is a summary, and the history has the steps that it counts.
     pub fn read(case: &Case, out: &OutputDirectory) -> Self {
         let same = |found: Case| found.identity() == case.identity();
-        let this = out.holds_result() && Case::load(&out.case(), &[]).is_ok_and(same);
+        let this = out.holds_result() && out.load_case().is_ok_and(same);
         match this.then(|| Summary::read(&out.summary())) {
             Some(Ok(summary)) if summary.status != Status::Interrupted => {
                 let found = read_history(&out.history()).map_or(0, |rows| rows.len());
@@ -163,18 +174,26 @@ impl Row {
         }
     }
 
+    /// Whether it was computed to the end.
+    pub fn is_done(&self) -> bool {
+        self.status == RowStatus::Done
+    }
+
     /// Whether it ended, but not well.
     pub fn has_failed(&self) -> bool {
         !matches!(self.status, RowStatus::Done | RowStatus::Pending)
     }
 
-    /// The numbers of [`NUMBERS`] for a case, in its own units.
-    fn numbers(&self, case: &Case) -> [Option<f64>; COLUMNS.len()] {
+    /// The cells of [`NUMBERS`] for a case, in its own units; empty where there is no number.
+    fn numbers(&self, case: &Case) -> [String; COLUMNS.len()] {
         let summary = self.summary.as_ref();
         let state = summary.and_then(|s| Some((s.h0?, s.a0?, s.f_n0?)));
         let variables = state.and_then(|(h, a, force)| Some(Body::from_case(case).ok()?.variables(h, a, force)));
         let numbers = Numbers { case, summary, variables };
-        COLUMNS.map(|(_, read)| read(&numbers))
+        COLUMNS.map(|(_, read)| match read {
+            Count(read) => read(&numbers).map_or(String::new(), |count| count.to_string()),
+            Decimal(read) => read(&numbers).filter(|x| x.is_finite()).map_or(String::new(), decimal),
+        })
     }
 }
 
@@ -188,21 +207,27 @@ pub fn write_table(table: &Path, study: &Study, rows: &[Row]) -> Result<(), Stud
         let keys = study.keys.iter().map(String::as_str);
         writer.write_record(FIRST_COLUMNS.into_iter().chain(keys).chain(NUMBERS)).map_err(io::Error::other)?;
         for (case, row) in study.cases.iter().zip(rows) {
-            writer.write_record(fields(case, row)).map_err(io::Error::other)?;
+            writer.write_record(fields(&study.keys, case, row)).map_err(io::Error::other)?;
         }
         writer.flush()
     };
     Ok(write_atomically(table, write)?)
 }
 
-fn fields(case: &StudyCase, row: &Row) -> Vec<String> {
+fn fields(keys: &[String], case: &StudyCase, row: &Row) -> Vec<String> {
     let mut fields: Vec<String> = TEXTS.iter().map(|(_, read)| read(case, row)).collect();
-    fields.extend(case.values.iter().cloned());
-    // The shortest digits that give the same number back.
-    let text =
-        |number: f64| if number.fract() == 0.0 && number.abs() < 1e15 { format!("{number}") } else { format!("{number:?}") };
-    fields.extend(row.numbers(&case.case).into_iter().map(|number| number.filter(|x| x.is_finite()).map_or(String::new(), text)));
+    fields.extend(keys.iter().zip(&case.values).map(|(key, value)| cell(key, value)));
+    fields.extend(row.numbers(&case.case));
     fields
+}
+
+/// The cell of a key of the study: its value, where whole numbers stand for any as those.
+pub(super) fn cell(key: &str, value: &str) -> String {
+    match value.parse::<i64>() {
+        // As the case reads it.
+        Ok(number) if takes_decimals(key) => decimal(number as f64),
+        _ => value.to_owned(),
+    }
 }
 
 fn one_line(text: &str) -> String {

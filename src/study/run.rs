@@ -15,12 +15,14 @@ use super::file::Study;
 use super::id::directory_of;
 use super::place::{Placed, alone, computed, earlier_results, join};
 use super::progress::StudyProgress;
+use super::room::at_a_time;
 use super::row::{Row, RowStatus, write_table};
 use super::schedule::{in_order, pools, side_by_side};
 use super::shard::{Shard, by_descending_cost, cost};
 use super::simulate::Simulator;
 use crate::case::{Case, Linear};
 use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice, Selected, select};
+use crate::memory;
 use crate::output::{OutputDirectory, Summary, TaskLock};
 use crate::simulation::follow::seats;
 use crate::simulation::problem::Problem;
@@ -117,7 +119,19 @@ pub(crate) fn run_on(
     let directory = &StudyDirectory::new(dir);
     let costs: Vec<f64> = study.cases.iter().map(|case| cost(&case.case)).collect();
     let share = options.shard.map_or_else(|| (0..study.cases.len()).collect(), |shard| shard.of(&costs));
-    let pools = pools(slots.min(share.len()))?;
+    let done =
+        |case: usize| options.resume && Row::read(&study.cases[case].case, &directory.case(&study.cases[case].id)).is_done();
+    study.check_room(|case| share.binary_search(&case).is_ok() && !done(case))?;
+    let wanted = slots.min(share.len());
+    // What the host holds of a case whose linear systems are on a device is small, and how many of
+    // those there are is for the device to say.
+    let room = (!(device && alone)).then(memory::room);
+    let slots = room.as_ref().map_or(wanted, |room| at_a_time(share.iter().map(|&case| &study.cases[case].case), wanted, room));
+    let pools = pools(slots)?;
+    memory::side_by_side(slots);
+    let short = room
+        .filter(|_| slots < wanted)
+        .map_or(String::new(), |room| format!(", not {wanted}: there is memory for no more, of {room}"));
     let earlier = match (options.resume || options.shard.is_some(), options.force) {
         // Shares run into one directory, side by side or one after the other: what the others left
         // stays.
@@ -151,7 +165,7 @@ pub(crate) fn run_on(
 
     let before = Report::of(study, &rows, &share);
     progress.begin(
-        &headline(study, options, to_compute.len(), &before, pools.len()),
+        &(headline(study, options, to_compute.len(), &before, pools.len()) + &short),
         &costs,
         &to_compute,
         before.done,

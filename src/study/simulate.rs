@@ -139,9 +139,8 @@ impl Simulator<'_> {
         }
         let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
         let progress = Box::new(CaseProgress { study: self.progress.clone(), case, id: id.clone() });
-        let results =
+        let mut results =
             ResultWriter::create(in_units, out.root(), setting, clock, progress, self.stop.clone(), checkpoint.as_ref())?;
-        let mut results = results.with_contact_tables();
         results.meshed(&problem);
         notes.iter().filter(|_| checkpoint.is_none()).for_each(|note| results.note(note));
         let followed = follow(problem, checkpoint.as_ref().map(Checkpoint::snapshot), seat, &mut results)?;

@@ -302,6 +302,8 @@ fn the_table_has_the_promised_columns_and_normalised_variables() {
     assert!((number("c2") / (a0 * a0 / (4.0 * h0)) - 1.0).abs() < 1e-12);
     assert_eq!([column(0, "F_N_slip"), column(1, "mu"), column(1, "F_N0"), column(1, "status")], ["", "", "", "pending"]);
     assert_eq!([column(1, "contact.friction"), column(1, "elements_per_contact_radius")], ["stick", "4"]);
+    // A count is a whole number, and every other number shows that it need not be one.
+    assert_eq!([column(0, "E"), column(0, "R"), column(0, "newton_iterations")], ["200000.0", "2.0", "12"]);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use super::{LawError, LawFile};
 use crate::case::Case;
 use crate::contact_law::path::{dissipated, drive_centres};
 use crate::contact_law::{Centres, ContactParameters};
-use crate::output::{Recorder, StepRecord};
+use crate::output::{Recorder, StepRecord, decimal};
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
@@ -91,11 +91,8 @@ impl Checked {
         let mut text = String::from("segment,h,delta_T,F_N,F_T,law_F_N,law_F_T\n");
         for (row, law) in self.rows.iter().zip(&self.law) {
             // Writing to a String cannot fail.
-            let _ = writeln!(
-                text,
-                "{},{:?},{:?},{:?},{:?},{:?},{:?}",
-                row.segment, row.h, row.delta_t, row.f_n, row.f_t, law[0], law[1]
-            );
+            let numbers = [row.h, row.delta_t, row.f_n, row.f_t, law[0], law[1]].map(decimal);
+            let _ = writeln!(text, "{},{}", row.segment, numbers.join(","));
         }
         text
     }

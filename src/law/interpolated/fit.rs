@@ -194,7 +194,7 @@ fn read(dir: &Path, reversal: Option<&Interpolated>) -> Result<Data, LawError> {
             continue;
         }
         let directory = OutputDirectory::existing(dir.join(&row.directory));
-        let case = Case::load(&directory.case(), &[])?;
+        let case = directory.load_case()?;
         if let Some(reason) = unusable(&case) {
             data.left_out.push((row.id, reason.to_owned()));
             continue;

@@ -20,7 +20,6 @@ pub use run::{law_beside_run, table_beside_run};
 use super::data::StudyData;
 use super::variables::{Body, Variables};
 use super::{Law, LawError};
-use crate::case::Case;
 use crate::output::plots::Sheet;
 use crate::output::{OutputDirectory, Picture, Summary, SummaryInputs, read_history};
 
@@ -46,7 +45,7 @@ impl NormalContact {
     /// # Errors
     /// A case or a history that cannot be read.
     pub fn read(directory: &OutputDirectory) -> Result<Option<Self>, LawError> {
-        let case = Case::load(&directory.case(), &[])?;
+        let case = directory.load_case()?;
         let summary = Summary::from_history(&read_history(&directory.history())?, &SummaryInputs::of(&case));
         let (Some(h0), Some(a0), Some(f_n0)) = (summary.h0, summary.a0, summary.f_n0) else { return Ok(None) };
         if !(h0 > 0.0 && a0 > 0.0 && f_n0 > 0.0) {

@@ -170,7 +170,7 @@ pub fn measured(dir: &Path) -> Result<Study, LawError> {
             continue;
         }
         let directory = OutputDirectory::existing(dir.join(&row.directory));
-        let case = Case::load(&directory.case(), &[])?;
+        let case = directory.load_case()?;
         let history = read_history(&directory.history())?;
         if let Some(Segment::Oblique { .. }) = case.path.first() {
             oblique = yielding(&case, &history);

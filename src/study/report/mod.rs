@@ -93,7 +93,7 @@ impl Report<'_> {
         html.push_str(&self.not_done());
         html.push_str("<h2>Cases</h2>\n");
         html.push_str(&self.cases());
-        if let Ok(text) = bounded::read_to_string(&self.directory.study(), bounded::CASE) {
+        if let Ok(text) = bounded::result_to_string(&self.directory.study(), bounded::CASE) {
             html.push_str(&format!("<h2>The study file</h2>\n<pre>{}</pre>\n", escape(&text)));
         }
         html + "</body>\n</html>\n"
