@@ -54,7 +54,7 @@ pub fn read_result(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`read_result`]; [`ErrorKind::InvalidData`] for what is not UTF-8.
 pub fn result_to_string(path: &Path, most: u64) -> io::Result<String> {
-    text(read_result(path, most)?)
+    text(read_result(path, most)?, Some(path))
 }
 
 /// The first bytes of a file that a run or a study wrote, `most` at most.

@@ -206,10 +206,10 @@ impl Newton {
         }
     }
 
-    /// What the bodies need at the points at which Coulomb's law is posed, in the frames in which it
-    /// is (two tangential components and the normal one), and what each point does: in equilibrium
-    /// the forces of contact, but not projected onto what contact can exert. Where the vectors are
-    /// on the host.
+    /// What the bodies need at the points at which Coulomb's law is posed, in the frames in which
+    /// it is (two tangential components and the normal one), and what each point does: in
+    /// equilibrium the forces of contact, but not projected onto what contact can exert. Where the
+    /// vectors are on the host.
     pub fn needed_forces(&self, mesh: &Mesh) -> Vec<([f64; 3], Status)> {
         self.iterates.host.current().needed_forces(mesh, self.iterates.host.boundary())
     }
