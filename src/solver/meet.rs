@@ -117,6 +117,9 @@ impl Trial {
 impl Trial {
     /// See [`super::newton::Newton::needed_forces`].
     pub(super) fn needed_forces(&self, mesh: &Mesh, boundary: &Boundary) -> Vec<([f64; 3], Status)> {
+        if self.rows.is_empty() {
+            return Vec::new();
+        }
         let of = |i: usize, [x, y, n]: [f64; 3], y_is_free: bool| ([x, if y_is_free { y } else { 0.0 }, n], self.rows[i].status);
         if let Some(encounter) = &boundary.encounter {
             let slaves = encounter.interface.slaves.iter().zip(&self.interface_force);

@@ -14,6 +14,8 @@ mod hostile;
 mod kills;
 mod profile;
 mod program;
+#[path = "../common/programs.rs"]
+mod programs;
 mod signals;
 
 /// Whether all is to be run and not a share.

@@ -1693,7 +1693,36 @@ static inline int asperity_read_number(FILE *file, const char *name, asperity_re
     return asperity_is_finite(*value);
 }
 
-/* Reads a file that `asperity law export` wrote. Returns 0; 1: it cannot be opened, 2: it is no such file or of another version, 3: it is cut short or damaged. */
+static inline int asperity_is_within(asperity_real x, double least, double most) {
+    return (double)x >= least && (double)x <= most; /* not, if it is no number */
+}
+
+/* Whether the numbers of a table are such that the update may count on them. */
+static inline int asperity_is_sound(const asperity_table *t) {
+    int i, j, k;
+    int good = asperity_is_within(t->share, 1e-6, 1e6) && asperity_is_within(t->poissons_ratio, -1.0, 0.5) &&
+               asperity_is_within(t->friction, 0.0, 1e9) && asperity_is_within(t->effective_modulus, 1e-30, 1e30) &&
+               asperity_is_within(t->effective_radius, 1e-30, 1e30) && asperity_is_within(t->deepest, 0.0, 10.0) &&
+               asperity_is_within(t->first, 1e-30, 10.0) && asperity_is_within(t->log_step, 1e-6, 10.0) &&
+               asperity_is_within(t->gentle, -1e9, 1e9);
+    for (i = 0; good && i < ASPERITY_KNOTS; i++) {
+        for (j = 0; good && j < 4; j++) {
+            for (k = 0; good && k < ASPERITY_COLUMNS; k++) {
+                good = asperity_is_within(t->knots[i][j][k], -1e15, 1e15);
+            }
+        }
+    }
+    for (i = 0; good && i < ASPERITY_LEVELS; i++) {
+        for (j = 0; good && j < 2; j++) {
+            for (k = 0; good && k < ASPERITY_POINTS; k++) {
+                good = asperity_is_within(t->shapes[i][j][k], -1e6, 1e6);
+            }
+        }
+    }
+    return good;
+}
+
+/* Reads a file that `asperity law export` wrote. Returns 0; 1: it cannot be opened, 2: it is no such file or of another version, 3: it is cut short, damaged, or has numbers that no law has. */
 static inline int asperity_read_table(const char *path, asperity_table *t) {
     char body[32];
     asperity_real form;
@@ -1714,6 +1743,7 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
            asperity_read_number(file, "deepest", &t->deepest) && asperity_read_number(file, "form", &form) &&
            asperity_read_number(file, "first", &t->first) && asperity_read_number(file, "log_step", &t->log_step) &&
            asperity_read_number(file, "gentle", &t->gentle);
+    good = good && (form == ASPERITY_R(0.0) || form == ASPERITY_R(1.0) || form == ASPERITY_R(2.0));
     t->form = good ? (int)form : 0;
     good = good && fscanf(file, " %31s", body) == 1 && strcmp(body, "knots") == 0;
     for (i = 0; good && i < ASPERITY_KNOTS; i++) {
@@ -1735,7 +1765,7 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
     }
     good = good && fscanf(file, " %31s", body) == 1 && strcmp(body, "end") == 0;
     fclose(file);
-    return good ? 0 : 3;
+    return good && asperity_is_sound(t) ? 0 : 3;
 }
 #endif
 

@@ -6,6 +6,7 @@
 //! each kind and tells how many were taken. An input with a fault is kept in `target/tmp/hostile`.
 
 mod corpus;
+mod engine;
 mod mutate;
 mod runner;
 mod uses;
