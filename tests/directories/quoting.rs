@@ -166,7 +166,8 @@ fn commands_that_are_printed_can_be_typed() {
     let output = scratch.asperity(&["study", "--merge", NASTY, "--out", NASTY]);
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(75), "{message}");
-    let output = scratch.typed(between(&message, "missing: c0002. `", "` computes them"));
+    let (_, command) = between(&message, "are missing: ", "` computes them").split_once(". `").expect("a command");
+    let output = scratch.typed(command);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(done(&scratch.root.join(NASTY).join("study.csv")), 2);
     // What a run was started with, in its log.

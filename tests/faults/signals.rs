@@ -20,11 +20,16 @@ fn after(commands: &str, scratch: &Scratch, out: &Path, options: &[&str]) -> Com
     command
 }
 
+/// Steps of the history, 0 if it cannot be read.
+fn steps(out: &Path) -> usize {
+    read_history(&out.join("history.csv")).map_or(0, |rows| rows.len())
+}
+
 /// Starts a run and waits until it has some steps.
 fn started(command: &mut Command, out: &Path) -> Child {
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
     let begun = Instant::now();
-    while read_history(&out.join("history.csv")).map_or(0, |rows| rows.len()) < 2 {
+    while steps(out) < 2 {
         assert!(begun.elapsed() < Duration::from_secs(120), "no steps");
         std::thread::sleep(Duration::from_millis(2));
     }
@@ -55,8 +60,8 @@ fn a_signal_that_is_ignored_at_the_start_stays_ignored() {
     let process: i32 = fs::read_to_string(scratch.path("process")).expect("a number").trim().parse().expect("a number");
     let process = Pid::from_raw(process).expect("a process");
     kill_process(process, Signal::INT).expect("a signal is sent");
-    let before = read_history(&out.join("history.csv")).expect("a history").len();
-    while read_history(&out.join("history.csv")).expect("a history").len() < before + 3 {
+    let before = steps(&out);
+    while steps(&out) < before + 3 {
         assert!(!out.join("summary.json").exists(), "SIGINT ended it");
         std::thread::sleep(Duration::from_millis(2));
     }
