@@ -1,7 +1,7 @@
 //! Where each result of a run lies in its folder.
 
-use super::atomic::draft_of;
-use super::lock::LOCK_NAME;
+use super::atomic::{draft_of, remove_if_there};
+use super::lock::{LOCK_NAME, is_left};
 use super::tables::RUN_PICTURES;
 use super::{OutputError, refuse_foreign, write_own};
 use crate::bounded;
@@ -179,10 +179,8 @@ impl OutputDirectory {
     /// # Errors
     /// [`OutputError::Write`].
     pub fn go_over_to(&self, toml: &str) -> Result<(), OutputError> {
-        match fs::remove_file(self.summary()) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(OutputError::writing(&self.summary())(error)),
-            _ => self.write_case(toml),
-        }
+        remove_if_there(&self.summary()).map_err(OutputError::writing(&self.summary()))?;
+        self.write_case(toml)
     }
 
     /// Refuses a directory in which a file has the name of one of a run's and is not one.
@@ -239,8 +237,9 @@ impl OutputDirectory {
         self.refuse_links()?;
         self.refuse_foreign_of(|folder, name| !keep(folder, name))?;
         for (folder, name, file) in self.own_files()? {
-            if !keep(folder, &name) {
-                fs::remove_file(&file).map_err(OutputError::writing(&file))?;
+            // One who waits for the directory makes drafts of a lock, and removes them.
+            if !keep(folder, &name) && (draft_of(&name) != Some(LOCK_NAME) || is_left(&file)) {
+                remove_if_there(&file).map_err(OutputError::writing(&file))?;
             }
         }
         Ok(())

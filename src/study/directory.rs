@@ -12,7 +12,8 @@ use super::row::FIRST_COLUMNS;
 use crate::bounded;
 use crate::case::PictureFormat;
 use crate::output::{
-    DirectoryLock, LOCK_NAME, OutputDirectory, OutputError, STUDY_LOCK_NAME, draft_of, refuse_foreign, write_atomically,
+    DirectoryLock, LOCK_NAME, OutputDirectory, OutputError, draft_of, is_left, is_study_lock, refuse_foreign, remove_if_there,
+    write_atomically,
 };
 
 /// Names of all pictures of a study, by which an earlier study's are removed.
@@ -86,7 +87,7 @@ impl StudyDirectory {
             return self.refuse_links();
         }
         // What a study leaves that was killed before its first file had its name is no hindrance.
-        let own = |name: &String| name == LOCK_NAME || name == STUDY_LOCK_NAME || own_draft(name);
+        let own = |name: &String| name == LOCK_NAME || is_study_lock(name) || own_draft(name);
         let foreign = names(dir).map_err(failed)?.into_iter().filter(|name| !own(name)).min();
         foreign.map_or(Ok(()), |found| Err(StudyError::NotAStudy { dir: dir.clone(), found }))
     }
@@ -135,43 +136,52 @@ impl StudyDirectory {
         Ok(out)
     }
 
-    /// Removes what earlier studies wrote.
+    /// Removes what earlier studies wrote, or refuses that and changes nothing.
     pub(super) fn clear(&self) -> Result<(), StudyError> {
         self.refuse_links()?;
-        let drawn = STUDY_PICTURES.into_iter().flat_map(|name| PictureFormat::ALL.map(|format| self.plot(name, format)));
-        drawn.chain([self.report()]).try_for_each(|path| refuse_foreign(&path))?;
-        for id in self.numbered()? {
-            self.case(&id).refuse_foreign()?;
-        }
-        let cases = self.root.join("cases");
+        let drawn = || STUDY_PICTURES.into_iter().flat_map(|name| PictureFormat::ALL.map(|format| self.plot(name, format)));
+        drawn().chain([self.report()]).try_for_each(|path| refuse_foreign(&path))?;
         let failed = |source| StudyError::Directory { dir: self.root.clone(), what: "be cleared", source };
-        if cases.is_dir() {
-            for name in self.numbered()? {
-                let out = self.case(&name);
-                if out.holds_result() {
-                    let lock = DirectoryLock::take(out.root())?;
-                    out.clear()?;
-                    fs::remove_file(out.case()).map_err(failed)?;
-                    for folder in ["fields", "contact", "plots"] {
-                        remove_if_empty(&out.root().join(folder)).map_err(failed)?;
-                    }
-                    drop(lock);
-                    remove_if_empty(out.root()).map_err(failed)?;
-                }
+        // Before any of them is removed nobody computes any of them.
+        for (out, lock) in self.lock_cases()? {
+            out.clear()?;
+            remove_if_there(&out.case()).map_err(failed)?;
+            for folder in ["fields", "contact", "plots"] {
+                remove_if_empty(&out.root().join(folder)).map_err(failed)?;
             }
-            remove_if_empty(&cases).map_err(failed)?;
+            drop(lock);
+            remove_if_empty(out.root()).map_err(failed)?;
         }
+        remove_if_empty(&self.root.join("cases")).map_err(failed)?;
         for name in names(&self.root).map_err(failed)?.iter().filter(|name| own_draft(name)) {
-            fs::remove_file(self.root.join(name)).map_err(failed)?;
+            let path = self.root.join(name);
+            let of_lock = draft_of(name).is_some_and(|name| name == LOCK_NAME || is_study_lock(name));
+            if !of_lock || is_left(&path) {
+                remove_if_there(&path).map_err(failed)?;
+            }
         }
-        let pictures = STUDY_PICTURES.into_iter().flat_map(|name| PictureFormat::ALL.map(|format| self.plot(name, format)));
-        for file in pictures.chain([self.report(), self.study(), self.table()]) {
+        for file in drawn().chain([self.report(), self.study(), self.table()]) {
             if file.is_file() {
-                fs::remove_file(&file).map_err(failed)?;
+                remove_if_there(&file).map_err(failed)?;
             }
         }
         remove_if_empty(&self.root.join("plots")).map_err(failed)?;
         Ok(())
+    }
+
+    /// Takes the locks of all directories in which there is a result of a case.
+    fn lock_cases(&self) -> Result<Vec<(OutputDirectory, DirectoryLock)>, StudyError> {
+        let mut cases: Vec<_> = self.numbered()?.iter().map(|id| self.case(id)).collect();
+        cases.iter().try_for_each(OutputDirectory::refuse_foreign)?;
+        cases.retain(OutputDirectory::holds_result);
+        let mut locked = Vec::with_capacity(cases.len());
+        for out in cases {
+            let mut lock = DirectoryLock::take(out.root())?;
+            // There may be more cases than files that may be open.
+            lock.close();
+            locked.push((out, lock));
+        }
+        Ok(locked)
     }
 
     /// Writes `study.toml`.
@@ -200,7 +210,8 @@ pub enum Earlier {
 
 /// Whether a name is that of a draft of the study's own files.
 fn own_draft(name: &str) -> bool {
-    draft_of(name).is_some_and(|name| matches!(name, "study.csv" | "study.toml" | "report.html" | LOCK_NAME))
+    let ours = |name| matches!(name, "study.csv" | "study.toml" | "report.html" | LOCK_NAME) || is_study_lock(name);
+    draft_of(name).is_some_and(ours)
 }
 
 fn names(dir: &Path) -> io::Result<Vec<String>> {
@@ -209,8 +220,10 @@ fn names(dir: &Path) -> io::Result<Vec<String>> {
 
 /// A folder in which the user keeps something of his own stays.
 fn remove_if_empty(dir: &Path) -> io::Result<()> {
-    if dir.is_dir() && fs::read_dir(dir)?.next().is_none() {
-        fs::remove_dir(dir)?;
+    let removed = || if dir.is_dir() && fs::read_dir(dir)?.next().is_none() { fs::remove_dir(dir) } else { Ok(()) };
+    match removed() {
+        // Somebody was faster, or makes a lock's draft in it.
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::DirectoryNotEmpty) => Ok(()),
+        done => done,
     }
-    Ok(())
 }

@@ -200,12 +200,14 @@ fn other_study(directory: &StudyDirectory, study: &Study, before: Option<Result<
 /// [`StudyError::Output`].
 pub fn alone(directory: &StudyDirectory) -> Result<DirectoryLock, StudyError> {
     const PATIENCE: Duration = Duration::from_secs(120);
-    let begun = Instant::now();
+    const LONGEST_PAUSE: Duration = Duration::from_millis(250);
+    let (begun, mut pause) = (Instant::now(), Duration::from_millis(20));
     loop {
         match DirectoryLock::take(directory.root()) {
-            Err(OutputError::Locked { .. }) if begun.elapsed() < PATIENCE => std::thread::sleep(Duration::from_millis(20)),
+            Err(OutputError::Locked { .. }) if begun.elapsed() < PATIENCE => std::thread::sleep(pause),
             taken => return Ok(taken?),
         }
+        pause = (2 * pause).min(LONGEST_PAUSE);
     }
 }
 

@@ -224,7 +224,8 @@ fn folders_that_are_links_are_refused_and_directories_are_locked() {
     }
     // As another host holds it.
     fs::write(path("run/.asperity.lock"), "process 4711 on node7\n").expect("a lock");
-    fs::write(path("study/.asperity.study"), "process 4711 on node7\nstudy 0123456789abcdef\n").expect("a lock");
+    fs::write(path("study/.asperity.study.0123456789abcdef.4711"), "process 4711 on node7\nstudy 0123456789abcdef\n")
+        .expect("a lock");
     for (arguments, code) in [(RUN, 2), (STUDY, 2), (TABULATE, 2)] {
         let output = asperity(dir.path(), arguments);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
