@@ -74,8 +74,8 @@ impl fmt::Write for Text {
     }
 }
 
-/// By the system alone: a lock of the standard library may be held, and what it runs at the end of a
-/// program may want memory.
+/// By the system alone: a lock of the standard library may be held, and what it runs at the end of
+/// a program may want memory.
 #[cfg(unix)]
 #[allow(unsafe_code)]
 fn say_and_exit(text: &[u8]) -> ! {

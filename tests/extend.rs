@@ -148,9 +148,9 @@ fn what_cannot_be_extended_is_refused_and_stays_as_it_is() {
     let deeper = "path=[{indentation=0.02},{shear=0.002},{indentation=0.04}]";
     refused("out", &[deeper], &["from the beginning, the longer path would have another mesh", "mesh.contact_radius"]);
     // So it would by what the coarse run finds, not by the closed form alone.
-    let far = "path=[{indentation=0.02},{shear=0.002},{shear=0.3}]";
-    let output = scratch.run("out", &set(&[far], &["--extend", "-q"]));
-    assert!(output.status.code() == Some(2) && stderr(&output).contains("another mesh"), "{}", stderr(&output));
+    let narrow = "mesh.contact_radius=0.12";
+    done(&scratch, "narrow", &set(&[narrow, "path=[{indentation=0.005}]"], &["-q"]));
+    refused("narrow", &[narrow, "path=[{indentation=0.005},{indentation=0.02}]"], &["another mesh"]);
 
     done(&scratch, "forgotten", &set(&[SHEARED, "output.keep_checkpoint=false"], &["-q"]));
     assert!(!scratch.path("forgotten/checkpoint.bin").exists());

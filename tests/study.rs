@@ -150,8 +150,8 @@ fn a_directory_and_a_row_for_every_case_and_shares_give_the_same() {
     ]) {
         assert_eq!([&row["case"], &row["material.hardening.yield_stress"], &row["contact.friction"]], [id, stress, friction]);
         assert_eq!((row["status"].as_str(), row["reason"].as_str()), ("done", ""));
-        // An ordinary run's directory, without fields and plots, but by default with the contact at the ends of
-        // the two segments.
+        // An ordinary run's directory, without fields and plots, but by default with the contact at
+        // the ends of the two segments.
         let out = scratch.case("whole", id);
         let case = Case::load(&out.case(), &[]).expect("a case");
         assert_eq!(case.material.hardening.yield_stress(200e3), stress.parse().ok());

@@ -210,8 +210,8 @@ fn head() -> String {
 /// case.
 pub fn case_difference(there: &str, here: &str) -> Option<String> {
     let (found, wanted) = (flat(there), flat(here));
-    // How pictures look changes no result, nor does what is kept for later, nor how much memory there
-    // may be.
+    // How pictures look changes no result, nor does what is kept for later, nor how much memory
+    // there may be.
     let matters = |key: &&String| {
         let without_effect = matches!(key.as_str(), "output.keep_checkpoint" | "solver.max_memory_gib");
         !(key.starts_with("units.") || key.starts_with("output.plot_") || without_effect)

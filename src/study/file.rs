@@ -164,8 +164,8 @@ fn values_of(value: &Value) -> usize {
     }
 }
 
-/// Contact tables alone, no fields and no plots, for each of hundreds of cases, unless the base says
-/// otherwise.
+/// Contact tables alone, no fields and no plots, for each of hundreds of cases, unless the base
+/// says otherwise.
 fn with_study_defaults(mut base: Document) -> Result<Document, CaseError> {
     let place = base.root.place.clone();
     for (key, value) in [("fields", Value::String("contact".to_owned())), ("plots", Value::Boolean(false))] {

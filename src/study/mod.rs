@@ -3,10 +3,11 @@
 //! `file` reads a base case and a grid into cases; `shard` deals them out; `run` decides which
 //! there are to compute and on what; `schedule` gives each a core of its own, or `device` forms
 //! batches of them, whose cases share a backend through `batch`; `simulate` takes one from its
-//! directory to its summary; `room` says for how many there is memory at a time; `row` makes `study.csv` of the summaries; `place` knows the directory
-//! of each case; `slurm` writes the scripts of a cluster; `merge` joins directories; `report` draws
-//! them and writes `report.html`. What can go wrong with one case is a row; what can go wrong with
-//! all of them is a [`StudyError`].
+//! directory to its summary; `room` says for how many there is memory at a time; `row` makes
+//! `study.csv` of the summaries; `place` knows the directory of each case; `slurm` writes the
+//! scripts of a cluster; `merge` joins directories; `report` draws them and writes `report.html`.
+//! What can go wrong with one case is a row; what can go wrong with all of them is a
+//! [`StudyError`].
 
 mod batch;
 mod device;
