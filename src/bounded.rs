@@ -88,18 +88,17 @@ pub fn to_string(source: impl Read, most: u64) -> io::Result<String> {
 
 /// UTF-8, with or without its mark in front, which is left out.
 fn text(bytes: Vec<u8>, path: Option<&Path>) -> io::Result<String> {
-    let refuse = |bytes: &[u8], what: &str| {
-        let what = Encoding::of(bytes).map_or(what.to_owned(), |encoding| encoding.advice(what, path));
+    let refuse = |what: &str, encoding: Option<Encoding>| {
+        let what = encoding.map_or(what.to_owned(), |encoding| encoding.advice(what, path));
         io::Error::new(ErrorKind::InvalidData, what)
     };
-    if let Some(Encoding { name: "UTF-16", .. }) = Encoding::of(&bytes) {
-        // Without a mark it is UTF-8 too, of blanks and zeros.
-        return Err(refuse(&bytes, "it is not text in UTF-8"));
+    if let Some(encoding) = Encoding::wide(&bytes) {
+        return Err(refuse("it is not text in UTF-8", Some(encoding)));
     }
     let mut text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count();
-        refuse(error.as_bytes(), &format!("it is not text in UTF-8, from line {line} on"))
+        refuse(&format!("it is not text in UTF-8, from line {line} on"), Encoding::narrow(error.as_bytes()))
     })?;
     if text.starts_with('\u{feff}') {
         text.drain(..'\u{feff}'.len_utf8());
@@ -117,33 +116,44 @@ struct Encoding {
 }
 
 impl Encoding {
-    /// What bytes that are not UTF-8 look like; `None` if they do not look like text.
-    fn of(bytes: &[u8]) -> Option<Self> {
-        let some = |name, iconv| Some(Self { name, iconv });
-        let head = &bytes[..bytes.len().min(4096)];
+    /// So many bytes are looked at.
+    const HEAD: usize = 4096;
+
+    /// Of text with two or four bytes for a letter. Without a mark in front it may be UTF-8 too, with
+    /// zeros in it.
+    fn wide(bytes: &[u8]) -> Option<Self> {
+        let head = &bytes[..bytes.len().min(Self::HEAD)];
         if head.starts_with(b"\xff\xfe\0\0") || head.starts_with(b"\0\0\xfe\xff") {
-            return some("UTF-32", "UTF-32");
+            return Some(Self { name: "UTF-32", iconv: "UTF-32" });
         }
         if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") {
-            return some("UTF-16", "UTF-16");
+            return Some(Self { name: "UTF-16", iconv: "UTF-16" });
         }
         // Every other byte of what is mostly ASCII is zero there.
         let zeros = |first: usize| head.iter().skip(first).step_by(2).filter(|byte| **byte == 0).count();
         let (even, odd) = (zeros(0), zeros(1));
-        match (even.max(odd) * 4 > head.len(), even * 10 < odd, odd * 10 < even) {
-            (true, true, _) => return some("UTF-16", "UTF-16LE"),
-            (true, _, true) => return some("UTF-16", "UTF-16BE"),
-            _ => {}
+        let many = even.max(odd) * 4 > head.len();
+        match (many && even * 10 < odd, many && odd * 10 < even) {
+            (true, _) => Some(Self { name: "UTF-16", iconv: "UTF-16LE" }),
+            (_, true) => Some(Self { name: "UTF-16", iconv: "UTF-16BE" }),
+            _ => None,
         }
+    }
+
+    /// Of what is not UTF-8, with a byte for a letter; `None` if it does not look like text.
+    fn narrow(bytes: &[u8]) -> Option<Self> {
+        let head = &bytes[..bytes.len().min(Self::HEAD)];
         let is_control = |byte: &u8| *byte < b' ' && !b"\t\n\r\x0c".contains(byte);
         let beyond = head.iter().filter(|byte| !byte.is_ascii()).count();
-        if std::str::from_utf8(bytes).is_ok() || head.iter().any(is_control) || beyond * 3 > head.len() {
+        if head.iter().any(is_control) || beyond * 3 > head.len() {
             return None;
         }
-        if bytes.iter().any(|byte| (0x80..0xa0).contains(byte)) {
-            return some("Windows-1252", "WINDOWS-1252");
-        }
-        some("Latin-1 (ISO 8859-1)", "ISO-8859-1")
+        let windows = bytes.iter().any(|byte| (0x80..0xa0).contains(byte));
+        Some(if windows {
+            Self { name: "Windows-1252", iconv: "WINDOWS-1252" }
+        } else {
+            Self { name: "Latin-1 (ISO 8859-1)", iconv: "ISO-8859-1" }
+        })
     }
 
     /// What is wrong, what it looks like, and how it becomes UTF-8.

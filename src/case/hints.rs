@@ -22,8 +22,9 @@ pub(super) fn key_meant(name: &str, table: &str, known: &[&str], root: &str) -> 
         let opponent = table.starts_with("opponent.material") && dotted.starts_with("material.");
         format!("{root}{}{dotted}", if opponent { "opponent." } else { "" })
     };
+    // Here is not elsewhere; below `root` everything is.
     let own = if table.is_empty() { String::new() } else { format!("{table}.") };
-    let elsewhere = || all_keys().filter(|(last, dotted)| *dotted != format!("{own}{last}"));
+    let elsewhere = || all_keys().filter(|(last, dotted)| !root.is_empty() || *dotted != format!("{own}{last}"));
     let same = elsewhere().find(|(last, _)| *last == name).map(|(_, dotted)| whole(&dotted));
     same.or_else(|| nearest(name, known)).or_else(|| {
         let (last, likeness) = most_like(name, elsewhere().map(|(last, _)| last))?;

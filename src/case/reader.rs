@@ -108,15 +108,10 @@ impl<'d> Field<'d> {
         let (count, told) = match self.entry.value {
             Value::Integer(number) => (usize::try_from(number).ok(), number.to_string()),
             // One that is too large for a count is so for the range; the conversion saturates.
-            Value::Float(number) if number.fract() == 0.0 => (Some(number as usize), format!("{number:?}")),
+            Value::Float(number) if number.fract() == 0.0 => ((number >= 0.0).then_some(number as usize), format!("{number:?}")),
             _ => return Err(self.wrong_type(&allowed)),
         };
-        let within = |count: &usize| range.contains(count) && self.is_not_negative();
-        count.filter(within).ok_or_else(|| self.refuse(&format!("is {told}"), &allowed))
-    }
-
-    fn is_not_negative(&self) -> bool {
-        !matches!(self.entry.value, Value::Float(number) if number < 0.0)
+        count.filter(|count| range.contains(count)).ok_or_else(|| self.refuse(&format!("is {told}"), &allowed))
     }
 
     /// The truth value, if it is one.
