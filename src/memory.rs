@@ -38,6 +38,14 @@ pub enum Origin {
     Assumed,
 }
 
+impl Room {
+    /// What each case side by side takes of it beside its own memory, in GiB: of an address space, two
+    /// threads with their stacks and what the system's allocator sets aside for each, unused.
+    pub fn of_each_worker(&self) -> f64 {
+        if self.from == Origin::AddressSpace { 2.0 * (64.0 + 2.0) / 1024.0 } else { 0.0 }
+    }
+}
+
 impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -63,8 +71,11 @@ pub fn room() -> Room {
 /// The same by what `read` says of files of the system.
 fn least(read: &dyn Fn(&Path) -> Option<String>) -> Room {
     let machine = read(Path::new("/proc/meminfo")).and_then(|text| total(&text)).map(|bytes| (bytes, Origin::Machine));
-    let address_space =
-        read(Path::new("/proc/self/limits")).and_then(|text| address_space(&text)).map(|bytes| (bytes, Origin::AddressSpace));
+    // Of that the program has a part already.
+    let taken = read(Path::new("/proc/self/status")).and_then(|text| kibibytes(&text, "VmSize:")).unwrap_or(0);
+    let address_space = read(Path::new("/proc/self/limits"))
+        .and_then(|text| address_space(&text))
+        .map(|bytes| (bytes.saturating_sub(taken), Origin::AddressSpace));
     let groups = read(Path::new("/proc/self/cgroup")).map_or(Vec::new(), |text| limit_files(&text));
     let groups = groups.into_iter().filter_map(|file| Some((bytes(&read(&file)?)?, Origin::ControlGroup(file))));
     let known = machine.into_iter().chain(groups).chain(address_space);
@@ -158,7 +169,7 @@ pub fn explain_failure(out: &mut dyn fmt::Write, bytes: usize) -> fmt::Result {
     }
     out.write_str(", or allow more memory (the machine, the job's or the container's limit, ulimit -v)")?;
     if elements > 0 {
-        out.write_str("; with the checkpoint that is kept, --resume goes on")?;
+        out.write_str("; what was computed is kept, and --resume goes on")?;
     }
     out.write_str("\n")
 }
@@ -235,8 +246,12 @@ mod tests {
             "1.74 GiB that there are for this process (what its container or job has, /sys/fs/cgroup/job/memory.max, less a margin)"
         );
         let limited = LIMITS.replace("space         unlimited ", "space         409600000 ");
-        let limited = of(&[machine, group, parent, ("/proc/self/limits", &limited)]);
+        let limits = limited;
+        let limited = of(&[machine, group, parent, ("/proc/self/limits", &limits)]);
         assert_eq!(limited, Room { gib: gib(409_600_000.0), from: Origin::AddressSpace });
+        assert!(limited.of_each_worker() > 0.1 && job.of_each_worker() == 0.0);
+        let status = ("/proc/self/status", "VmPeak:\t  300000 kB\nVmSize:\t  200000 kB\n");
+        assert_eq!(of(&[machine, ("/proc/self/limits", &limits), status]).gib, gib(409_600_000.0 - 204_800_000.0));
         // The first version says "no limit" with a number above all others.
         let none = [
             machine,

@@ -61,7 +61,7 @@ fn a_case_that_does_not_fit_is_refused_beforehand_with_what_says_so() {
         assert_eq!(output.status.code(), Some(2), "{message}");
         let place = format!("error: {}:{line}: mesh.elements_per_contact_radius: a mesh of about ", case.display());
         assert!(message.starts_with(&place), "{message}");
-        assert!(message.contains(" GiB, of 0.54 GiB that there are for this process"), "{message}");
+        assert!(message.contains(" GiB that there are for this process"), "{message}");
         assert!(
             message.contains("the limit of its address space, ulimit -v") && message.contains("Allowed: fewer mesh."),
             "{message}"
@@ -133,8 +133,8 @@ fn cases_of_a_study_share_what_there_is() {
         let out = scratch.path().join(name);
         within(kibibytes, &["study", text(&study), "--out", text(&out), "--device", "cpu", "--threads", "4"])
     };
-    // A quarter of a GiB is enough for one or two such meshes.
-    let output = run(230_000, "little");
+    // An address space takes what the allocator sets aside for each thread, beside the meshes.
+    let output = run(800_000, "little");
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{message}");
     assert!(

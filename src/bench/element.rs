@@ -16,6 +16,7 @@ use crate::compute::{
     CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome as Went, TangentRequest,
 };
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use crate::memory;
 use crate::mesh::Mesh;
 
 /// The evaluations in the order in which they are made, with the names of their rows and what they
@@ -262,9 +263,12 @@ fn memory_for(mesh: &Mesh, sizes: &Sizes, batch: usize, word: usize) -> Result<(
     }
 }
 
-/// Free memory of the machine in bytes, where the system tells it.
+/// Free memory of the machine in bytes, or what there is for this process if that is less, where
+/// the system tells it.
 fn available_memory() -> Option<usize> {
     let told = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = told.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<usize>().ok().map(|kib| kib << 10)
+    let free = line.trim().strip_suffix("kB")?.trim().parse::<usize>().ok()? << 10;
+    // A container, a job or a limit may allow less than what is free.
+    Some(free.min((memory::room().gib * memory::GIB) as usize))
 }

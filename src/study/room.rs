@@ -26,7 +26,7 @@ impl Study {
 /// the largest of them fit together. What says itself how much it may take is not counted.
 pub(super) fn at_a_time<'a>(cases: impl Iterator<Item = &'a Case>, most: usize, room: &Room) -> usize {
     let counted = cases.filter(|case| case.solver.max_memory_gib.is_none());
-    let mut gib: Vec<f64> = counted.map(estimated_memory).collect();
+    let mut gib: Vec<f64> = counted.map(|case| estimated_memory(case) + room.of_each_worker()).collect();
     gib.sort_by(|one, other| other.total_cmp(one));
     let mut taken = 0.0;
     let fitting = gib.iter().take_while(|&&gib| {

@@ -9,9 +9,10 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 
 use super::{LawError, LawFile};
-use crate::case::Case;
+use crate::case::{Case, check_room};
 use crate::contact_law::path::{dissipated, drive_centres};
 use crate::contact_law::{Centres, ContactParameters};
+use crate::memory;
 use crate::output::{Recorder, StepRecord, decimal};
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
@@ -115,7 +116,10 @@ pub fn check(law: &LawFile, case: &Case, elements: usize) -> Result<Vec<Checked>
 /// Those of [`check`].
 pub fn check_until(law: &LawFile, case: &Case, elements: usize, stop: &Arc<AtomicBool>) -> Result<Vec<Checked>, LawError> {
     let parameters = law.contact_parameters(case)?;
-    protocol(case, &parameters, elements).par_iter().with_max_len(1).map(|path| run(path, &parameters, stop)).collect()
+    let paths = protocol(case, &parameters, elements);
+    let room = memory::room();
+    paths.iter().try_for_each(|path| check_room(&path.case, None, &room))?;
+    paths.par_iter().with_max_len(1).map(|path| run(path, &parameters, stop)).collect()
 }
 
 fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> Result<Checked, LawError> {
