@@ -39,8 +39,8 @@ pub enum Origin {
 }
 
 impl Room {
-    /// What each case side by side takes of it beside its own memory, in GiB: of an address space, two
-    /// threads with their stacks and what the system's allocator sets aside for each, unused.
+    /// What each case side by side takes of it beside its own memory, in GiB: of an address space,
+    /// two threads with their stacks and what the system's allocator sets aside for each, unused.
     pub fn of_each_worker(&self) -> f64 {
         if self.from == Origin::AddressSpace { 2.0 * (64.0 + 2.0) / 1024.0 } else { 0.0 }
     }

@@ -222,7 +222,8 @@ mod tests {
     #[test]
     fn a_lock_that_was_touched_lately_is_refused_with_how_to_go_on() {
         let dir = tempfile::tempdir().unwrap();
-        // Of another host; of one with the name of ours, as containers may have it; of nobody knows.
+        // Of another host; of one with the name of ours, as containers may have it; of nobody
+        // knows.
         let here = format!("process 4194305 on {}\n", Holder::myself("").name.rsplit_once(' ').unwrap().1);
         for (text, who) in [("process 4711 on node7\n", "process 4711 on node7"), (&here, here.trim()), ("", "another process")] {
             lay(dir.path(), text, 20);

@@ -46,7 +46,8 @@ impl TaskLock {
     /// task is.
     ///
     /// # Errors
-    /// [`OutputError::Locked`] with one who is there; [`OutputError::Write`], [`OutputError::Read`].
+    /// [`OutputError::Locked`] with one who is there; [`OutputError::Write`],
+    /// [`OutputError::Read`].
     pub fn join(dir: &Path, task: &str, alone: bool, [this, another]: [&str; 2]) -> Result<Self, OutputError> {
         let same = format!("{STUDY_LOCK}{:016x}.", hash(task));
         // Where two come at once all the same, each sees the other.
