@@ -84,7 +84,7 @@ fn comma(text: &str) -> Option<String> {
 /// What is wrong with the line at `offset`, which is not TOML, if it is something that people from
 /// elsewhere write.
 pub(super) fn line_meant(text: &str, offset: usize) -> Option<String> {
-    let at = text.floor_char_boundary(offset);
+    let at = (0..=offset.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
     // A line may be found wrong at its end, which is the beginning of the next.
     let before = text[..at].strip_suffix('\n').filter(|_| !text[at..].lines().next().is_some_and(|line| line.contains('=')));
     let start = before.unwrap_or(&text[..at]).rfind('\n').map_or(0, |end| end + 1);
