@@ -71,8 +71,7 @@ fn comma(text: &str) -> Option<String> {
     let (whole, share) = (parts[..parts.len() - 1].concat(), parts[parts.len() - 1]);
     let separators = [mantissa.matches(',').count(), mantissa.matches('.').count()];
     let meant = match separators {
-        // Thousands, and a share or none after them.
-        [_, 0] if parts.len() > 2 => made(&parts.concat(), ""),
+        [_, 0] if parts.len() > 2 && parts[1..].iter().all(|part| part.len() == 3) => made(&parts.concat(), ""),
         [1, 0] if share.len() == 3 && !whole.starts_with('0') => {
             format!("{} or {}", made(&whole, share), made(&parts.concat(), ""))
         }
@@ -85,7 +84,7 @@ fn comma(text: &str) -> Option<String> {
 /// What is wrong with the line at `offset`, which is not TOML, if it is something that people from
 /// elsewhere write.
 pub(super) fn line_meant(text: &str, offset: usize) -> Option<String> {
-    let at = text.floor_char_boundary(offset);
+    let at = (0..=offset.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
     // A line may be found wrong at its end, which is the beginning of the next.
     let before = text[..at].strip_suffix('\n').filter(|_| !text[at..].lines().next().is_some_and(|line| line.contains('=')));
     let start = before.unwrap_or(&text[..at]).rfind('\n').map_or(0, |end| end + 1);
@@ -138,7 +137,7 @@ mod tests {
                 "{written}"
             );
         }
-        for other in ["0.3", "0,", ",3", "a,b", "1,2x", "", ",", "1,e", "stick", "1.2,3.4,5"] {
+        for other in ["0.3", "0,", ",3", "a,b", "1,2x", "", ",", "1,e", "stick", "1.2,3.4,5", "1,2,3"] {
             assert_eq!(comma(other), None, "{other}");
         }
         assert_eq!(number_meant("200e3", true).as_deref(), Some("did you mean 200000.0, without quotes?"));
