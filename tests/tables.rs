@@ -81,8 +81,17 @@ fn numbers_that_are_no_counts_have_a_point_in_every_table() {
     }
     let run = study.join("cases/c0001");
     let [whole, _] = kinds(&run.join("history.csv"));
-    let counts =
-        ["step", "segment", "newton_iterations", "cutbacks", "contact_points", "linear_iterations", "relaxed", "landed_again"];
+    let counts = [
+        "step",
+        "segment",
+        "newton_iterations",
+        "cutbacks",
+        "contact_points",
+        "slipping_points",
+        "krylov_iterations",
+        "relaxed",
+        "landed_again",
+    ];
     assert!(whole.iter().all(|name| counts.contains(&name.as_str())), "{whole:?}");
     let contact = fs::read_dir(run.join("contact")).expect("contact tables").map(|entry| entry.expect("an entry").path());
     let contact: Vec<_> = contact.collect();

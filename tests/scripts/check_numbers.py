@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 counts = {
-    "step", "segment", "newton_iterations", "cutbacks", "contact_points", "linear_iterations", "relaxed", "landed_again", "point",
+    "step", "segment", "newton_iterations", "cutbacks", "contact_points", "slipping_points", "krylov_iterations", "relaxed", "landed_again", "point",
     "elements_per_contact_radius", "mesh.elements_per_contact_radius",
 }
 for name in sys.argv[1:]:
