@@ -97,7 +97,7 @@ fn a_pipe_among_results_is_not_waited_for() {
     fs::write(&file, STUDY).expect("the study");
     let output = ended(&["study", text(&file), "--out", text(&study), "--device", "cpu", "-q"]);
     assert_eq!(output.status.code(), Some(0), "{}", common::stderr(&output));
-    let run = study.join("cases/c0001");
+    let (run, picture) = (study.join("cases/c0001"), scratch.path().join("compare.svg"));
     let names = ["study.csv", "study.toml", "case.toml", "history.csv", "summary.json"];
     for name in names {
         let path = [study.join(name), run.join(name)].into_iter().find(|path| path.exists()).expect(name);
@@ -113,7 +113,7 @@ fn a_pipe_among_results_is_not_waited_for() {
                 vec!["plot", text(&run)],
                 vec!["law", "fit", text(&study)],
                 vec!["law", "fit", text(&study), "--interpolate"],
-                vec!["compare", text(&run), text(&run)],
+                vec!["compare", text(&run), text(&run), "--out", text(&picture)],
                 vec!["study", text(&file), "--out", text(&study), "--device", "cpu", "-q"],
             ] {
                 // Some of them need others of the files: they end well, or say what they lack.
@@ -127,6 +127,6 @@ fn a_pipe_among_results_is_not_waited_for() {
         }
         fs::rename(&aside, &path).expect("a file");
     }
-    let output = ended(&["compare", text(&run), text(&run)]);
+    let output = ended(&["compare", text(&run), text(&run), "--out", text(&picture)]);
     assert_eq!(output.status.code(), Some(0), "{}", common::stderr(&output));
 }

@@ -118,7 +118,7 @@ fn how_much_there_is_makes_no_other_case() {
     }
     fs::write(&written, &resolved).expect("case.toml");
     assert!(files(&out) == before);
-    let output = within(150_000, &[&run[..], &["--force"]].concat());
+    let output = within(150_000, &[&run[..], &["--force", "--set", FINE]].concat());
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
 }
 
