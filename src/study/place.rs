@@ -82,10 +82,11 @@ pub fn place(directory: &StudyDirectory, study: &Study) -> Result<Placed, StudyE
     Ok(Placed { study: placed, strangers, begun })
 }
 
-/// The names of the directories in `cases/` that hold a result.
+/// The names of the directories in `cases/` that hold a result, or what is left of one whose
+/// `case.toml` is gone.
 fn numbered(directory: &StudyDirectory) -> Result<Vec<String>, StudyError> {
     let mut names = directory.numbered()?;
-    names.retain(|id| directory.case(id).holds_result());
+    names.retain(|id| directory.case(id).holds_result() || computed(&directory.case(id)).is_some());
     Ok(names)
 }
 
