@@ -85,8 +85,8 @@ impl Encoding {
     /// So many bytes are looked at.
     const HEAD: usize = 4096;
 
-    /// Of text with two or four bytes for a letter. Without a mark in front it may be UTF-8 too, with
-    /// zeros in it.
+    /// Of text with two or four bytes for a letter. Without a mark in front it may be UTF-8 too,
+    /// with zeros in it.
     fn wide(bytes: &[u8]) -> Option<Self> {
         let head = &bytes[..bytes.len().min(Self::HEAD)];
         if head.starts_with(b"\xff\xfe\0\0") || head.starts_with(b"\0\0\xfe\xff") {

@@ -248,8 +248,8 @@ fn study() -> String {
     format!("{base}\n[grid]\n\"contact.friction\" = [0.1, 0.3]\n")
 }
 
-/// Runs a command of the program on a file with these bytes: its exit code and what it said, without
-/// the name of the file.
+/// Runs a command of the program on a file with these bytes: its exit code and what it said,
+/// without the name of the file.
 fn said(command: &[&str], bytes: &[u8]) -> (Option<i32>, String) {
     let scratch = tempfile::tempdir().expect("a scratch directory");
     let file = scratch.path().join("a b.toml");

@@ -479,7 +479,7 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
         let output = child.wait_with_output().expect("it ends");
         let message = stderr(&output);
         if is_ignored(signal.as_raw()) {
-            // These tests were started by `nohup` or in the background, and so was the run: it goes on.
+            // These tests were started by `nohup` or in the background, and so was the run.
             assert_eq!(output.status.code(), Some(0), "{message}");
             continue;
         }

@@ -27,8 +27,8 @@ impl<'d> Reader<'d> {
         self.only_with(known, "")
     }
 
-    /// [`only`](Self::only) in a file whose case stands below `root`, empty or `base.`: a key of the
-    /// case that stands here is told with it.
+    /// [`only`](Self::only) in a file whose case stands below `root`, empty or `base.`: a key of
+    /// the case that stands here is told with it.
     pub fn only_with(&self, known: &[&str], root: &str) -> Result<(), CaseError> {
         let unknown = self.table.into_iter().flatten().filter(|(name, _)| !known.contains(&name.as_str()));
         match unknown.min_by_key(|(_, entry)| entry.place.line()) {
