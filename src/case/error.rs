@@ -78,8 +78,7 @@ pub enum CaseError {
         place: Place,
         /// The dotted key.
         key: String,
-        /// The known key that was probably meant: of its own table, or with all its parts of
-        /// another.
+        /// The known key that was probably meant: of its own table, or of another with all parts.
         nearest: Option<String>,
         /// The keys known here.
         allowed: String,

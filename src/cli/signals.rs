@@ -21,8 +21,7 @@ const ONE_SIGNAL: Duration = Duration::from_millis(250);
 #[cfg(unix)]
 const ENDING: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
 /// Signals by which batch systems warn that time is nearly over. They end a run after its present
-/// step too, but never at once: some systems repeat them, and the kernel sends SIGXCPU every
-/// second.
+/// step too, but never at once: some systems repeat them, and SIGXCPU comes every second.
 #[cfg(unix)]
 const WARNING: [i32; 3] = [SIGUSR1, SIGUSR2, SIGXCPU];
 

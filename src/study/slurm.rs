@@ -223,8 +223,7 @@ mod tests {
         }
     }
 
-    /// All that a shell, Slurm's comments and the templates themselves could take for something
-    /// else.
+    /// All that a shell, Slurm's comments and the templates could take for something else.
     const NASTY: &str = "it's a \u{fc}ber $HOME `x` @PROGRAM@ @DIR@ @ALL@ #1 & (2); ~*?[!]{a,b}<>|";
 
     #[test]
