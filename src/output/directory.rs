@@ -168,9 +168,13 @@ impl OutputDirectory {
     }
 
     /// Removes what a run leaves that was killed between its last files: drafts, and the checkpoint
-    /// of a run that has ended, unless that is to be kept.
-    pub fn tidy(&self, keeps_checkpoint: bool) -> Result<(), OutputError> {
-        self.clear_but(|_, name| draft_of(name).is_none() && (keeps_checkpoint || name != "checkpoint.bin"))
+    /// of a run that has ended and that of the end before it, unless they are to be kept.
+    pub fn tidy(&self, keeps_checkpoint: bool, keeps_end: bool) -> Result<(), OutputError> {
+        self.clear_but(|_, name| match name {
+            "checkpoint.bin" => keeps_checkpoint,
+            "checkpoint-end.bin" => keeps_end,
+            _ => draft_of(name).is_none(),
+        })
     }
 
     /// Makes a result one of another case that goes on from its checkpoint. The summary goes first:
@@ -372,7 +376,7 @@ mod tests {
         fs::create_dir(&foreign).unwrap();
         fs::write(foreign.join("step_0001.vtu"), "mine").unwrap();
         std::os::unix::fs::symlink(&foreign, out.root().join("fields")).unwrap();
-        for refused in [out.clear(), out.cut_back(&[], &[]), out.tidy(false)] {
+        for refused in [out.clear(), out.cut_back(&[], &[]), out.tidy(false, false)] {
             let message = refused.unwrap_err().to_string();
             assert!(message.contains("out/fields") && message.contains("is a link"), "{message}");
         }

@@ -99,9 +99,9 @@ fn ago(time: SystemTime) -> String {
 
 /// Removes from a run that has ended what is left there when it was killed just before its last
 /// file was removed.
-pub fn tidy(dir: &Path, keeps_checkpoint: bool) {
+pub fn tidy(dir: &Path, keeps_checkpoint: bool, keeps_end: bool) {
     // What cannot be removed does no harm.
-    let _ = OutputDirectory::existing(dir).tidy(keeps_checkpoint);
+    let _ = OutputDirectory::existing(dir).tidy(keeps_checkpoint, keeps_end);
 }
 
 /// Whether a directory is not there.

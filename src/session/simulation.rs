@@ -334,7 +334,8 @@ impl Simulation {
     fn ended_before(&mut self, summary: Summary) -> Result<Stage, SessionError> {
         if let Some(out) = &self.options.out {
             self.history = read_history(&OutputDirectory::existing(out).history())?;
-            tidy(out, summary.status == Status::Done && self.case.output.keep_checkpoint);
+            let is_done = summary.status == Status::Done;
+            tidy(out, is_done && self.case.output.keep_checkpoint, !is_done);
         }
         let message = summary.messages.last().filter(|_| summary.status != Status::Done).cloned();
         Ok(Stage::Ended(Box::new(Outcome { status: summary.status, message, summary, ended_before: true }), None))

@@ -153,7 +153,7 @@ pub(crate) fn run_on(
     let (study, lock) = (&study, &lock);
     for &case in share.iter().filter(|&&case| rows[case].status == RowStatus::Done) {
         // Killed just before its checkpoint was removed; what cannot be removed does no harm.
-        let _ = directory.case(&study.cases[case].id).tidy(false);
+        let _ = directory.case(&study.cases[case].id).tidy(false, false);
     }
     let open = |row: &Row| match row.status {
         RowStatus::Done => false,

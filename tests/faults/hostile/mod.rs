@@ -339,7 +339,6 @@ fn every_damaged_checkpoint_is_refused() {
 /// What took minutes, or all memory.
 #[test]
 fn great_inputs_take_time_in_proportion_or_are_refused() {
-    let _alone = runner::ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let head = CASE.split("[[path]]").next().expect("a head");
     let numbers = |count: usize, text: &dyn Fn(usize) -> String| (0..count).map(text).collect::<Vec<_>>().join(", ");
     let path: String = (0..16_000).map(|i| format!("[[path]]\nindentation = {:?}\n", 0.01 + 1e-4 * f64::from(i % 2))).collect();

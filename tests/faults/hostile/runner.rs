@@ -3,8 +3,8 @@
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rand::SeedableRng;
@@ -32,12 +32,19 @@ fn processor_time() -> Duration {
     Duration::new(now.tv_sec.try_into().expect("a time"), now.tv_nsec.try_into().expect("a time"))
 }
 
-/// One kind at a time, or the memory of all of them would be told of each.
-pub static ALONE: Mutex<()> = Mutex::new(());
+/// Set in the process that has one kind of input to itself.
+const ALONE: &str = "ASPERITY_FUZZ_ALONE";
 
-/// Forgets the greatest size that the process has had.
-fn forget_greatest_memory() {
-    fs::write("/proc/self/clear_refs", "5").expect("a process may forget its greatest size");
+/// Runs this very test in a process of its own, whose memory is that of one kind of input, and whose
+/// death is seen.
+fn alone() {
+    let name = std::thread::current().name().expect("a test has a name").to_owned();
+    let program = std::env::current_exe().expect("this program");
+    let output = Command::new(program).args(["--exact", &name, "--nocapture"]).env(ALONE, "1").output().expect("it runs");
+    let [out, errors] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+    println!("{}", out.lines().filter(|line| line.contains(" inputs in ")).collect::<Vec<_>>().join("\n"));
+    assert!(output.status.success(), "{name}: {}\n{out}{errors}", output.status);
+    assert!(out.contains("1 passed"), "{name}: no such test\n{out}");
 }
 
 fn greatest_memory_kib() -> usize {
@@ -55,8 +62,9 @@ pub fn fuzz(
     mut next: impl FnMut(&mut ChaCha8Rng) -> Vec<u8> + Send + 'static,
     take: impl Fn(&[u8], &Path) -> bool + Send + 'static,
 ) {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    forget_greatest_memory();
+    if std::env::var_os(ALONE).is_none() {
+        return alone();
+    }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile");
     fs::create_dir_all(&folder).expect("a folder");
     // Left there when the process itself dies.
