@@ -35,8 +35,8 @@ fn processor_time() -> Duration {
 /// Set in the process that has one kind of input to itself.
 const ALONE: &str = "ASPERITY_FUZZ_ALONE";
 
-/// Runs this very test in a process of its own, whose memory is that of one kind of input, and whose
-/// death is seen.
+/// Runs this very test in a process of its own, whose memory is that of one kind of input, and
+/// whose death is seen.
 fn alone() {
     let name = std::thread::current().name().expect("a test has a name").to_owned();
     let program = std::env::current_exe().expect("this program");
