@@ -333,7 +333,7 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "GiB",
         range: "> 0",
-        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A value that is given is taken as it is",
+        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A value that is given is taken as it is; where the system tells nothing, it is 8",
         example: "8.0",
         ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Optional(ROOM))
     },
@@ -425,8 +425,7 @@ pub const KEYS: &[Key] = &[
 ];
 
 /// What stands for `solver.max_memory_gib`.
-const ROOM: &str = "what there is for the process, by the machine, its container or job, and ulimit -v, less a tenth and 64 MiB; \
-                    8 GiB where the system does not tell";
+const ROOM: &str = "what there is for the process (machine, container or job, ulimit -v), less a tenth and 64 MiB";
 
 /// The keys that a dotted name may mean: all of it, `path.0.shear` for any segment, a table, or its
 /// last parts.

@@ -181,7 +181,11 @@ mod tests {
             (last("\"count\": 1, ", ""), 5, "list[1].count is missing"),
             (last("count", "cuont"), 5, "list[1].cuont is no key of this file"),
             (last("\"count\": 1", "\"count\": 1, \"count\": 2"), 5, "list[1].count is there twice"),
-            (last("\"first\"", "\"fifth\""), 5, "list[1].kind is \"fifth\", and has to be \"first\", \"second\" or \"third\""),
+            (
+                last("\"first\"", "\"fifth\""),
+                5,
+                "list[1].kind is \"fifth\" (did you mean \"first\"?), and has to be \"first\", \"second\" or \"third\"",
+            ),
             (last("\"n\"", "true"), 2, "name is true, and has to be a text"),
             (last("[1, 2]", "[1, 1e999]"), 5, "has a number that is too large"),
             (last("]}", ""), 5, "ends too soon, and is not the whole of a JSON file"),
