@@ -29,8 +29,10 @@ mod tests;
 
 pub use document::{Document, Entry, Value};
 pub use error::{CaseError, Place, short};
+pub(crate) use estimate::check_room;
+#[cfg(feature = "law")]
+pub(crate) use estimate::fits;
 pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
-pub(crate) use estimate::{check_room, fits};
 pub use hardening::Hardening;
 pub(crate) use hints::nearest;
 pub use mistakes::mistakes;

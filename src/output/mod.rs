@@ -41,6 +41,7 @@ mod vtu;
 
 pub use crate::compute::traffic::{DeviceTraffic, Traffic};
 pub use crate::simulation::record::StepRecord;
+#[cfg(feature = "law")]
 pub(crate) use atomic::remove_if_there;
 pub use atomic::{draft_of, write_atomically};
 pub use checkpoint::{Checkpoint, case_difference};
@@ -52,6 +53,7 @@ pub use error::OutputError;
 pub use estimate::{ErrorEstimate, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, history_columns, read_history};
+#[cfg(feature = "law")]
 pub(crate) use lock::is_left;
 pub use lock::{DirectoryLock, LOCK_NAME, TaskLock, is_study_lock};
 pub use own::{is_own, refuse_foreign, refuse_input, write_own};

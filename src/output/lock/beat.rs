@@ -39,6 +39,7 @@ impl Own {
 
     /// The same without an open file, of which a process cannot have many. Its text and time count
     /// from now on.
+    #[cfg(any(feature = "law", test))]
     pub fn closed(&self) -> Arc<Self> {
         Self { path: self.path.clone(), identity: self.identity, file: None, process: self.process }.kept()
     }
