@@ -103,7 +103,7 @@ impl DirectoryLock {
     }
 
     /// Keeps the right without an open file, for who has to have many at a time.
-    #[cfg(feature = "law")]
+    #[cfg(any(feature = "law", test))]
     pub(crate) fn close(&mut self) {
         if cfg!(unix) {
             self.own = self.own.closed();
