@@ -106,10 +106,10 @@ def as_array(name: str, value: Any) -> np.ndarray:
         raise CaseError(f"{name}: is no array ({error}). Allowed: an array") from None
 
 
-def _has_masked_row(value: list[Any] | tuple[Any, ...]) -> bool:
-    """A masked value in a list within the list, which NumPy makes NaN."""
+def _has_masked_row(value: list[Any] | tuple[Any, ...], deepest: int = 3) -> bool:
+    """A masked value in a list within the list, which NumPy makes NaN; no argument has more than two dimensions."""
     rows = (row for row in value if isinstance(row, (list, tuple)))
-    return any(any(item is np.ma.masked for item in row) or _has_masked_row(row) for row in rows)
+    return deepest > 0 and any(any(item is np.ma.masked for item in row) or _has_masked_row(row, deepest - 1) for row in rows)
 
 
 def _numbers(name: str, value: Any) -> np.ndarray:

@@ -112,6 +112,7 @@ class Fuzz:
             "Case.replace": lambda dice: case.replace(self.settings(dice)),
             "Case.to_dict": lambda dice: Case.from_dict(mutated(dice, self.tables)).to_dict(),
             "Case.to_toml": lambda dice: case.replace(self.settings(dice)).to_toml(),
+            "Case.notes": lambda dice: Case.from_dict(mutated(dice, self.tables)).notes(),
             "Case.__getitem__": lambda dice: case[
                 dice.choice([value(dice), "path.0.indentation", "path.-1", "path.0.0.0", "sphere", "sphere.radius.x", "path.99999999999999999999"])
             ],
