@@ -12,7 +12,6 @@ use asperity::internals::simulation::follow::{follow, on_cpu};
 use asperity::internals::simulation::problem::Problem;
 use asperity::internals::simulation::record::StepRecord;
 use asperity::internals::simulation::scout::scout;
-use asperity::output::energy_gap;
 use serde::Serialize;
 
 use crate::generator::{Against, case_text};
@@ -145,9 +144,10 @@ pub fn measure(seed: u64, index: usize, elements: usize, against: Against) -> Me
     measured.relaxed_steps = rows.iter().filter(|row| row.relaxed > 0).count();
     measured.worst_point = watch.mu.map(|_| watch.worst_point);
     measured.landed_again = rows.iter().filter(|row| row.landed_again > 0).count();
-    if let Some(gap) = energy_gap(rows) {
-        let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external.abs()));
-        measured.energy_gap = gap;
+    let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external.abs()));
+    if let Some(last) = rows.last().filter(|_| most > 0.0) {
+        let kept = last.energy_elastic + last.work_plastic + last.work_friction;
+        measured.energy_gap = (last.work_external - kept).abs() / most;
         measured.friction_fall =
             rows.windows(2).map(|two| two[0].work_friction - two[1].work_friction).fold(0.0, f64::max) / most;
     }

@@ -15,27 +15,6 @@ const RIPPLE_FROM: f64 = 0.25;
 /// Fewest steps by which a ripple is told from a trend.
 const RIPPLE_STEPS: usize = 6;
 
-/// Share of the greatest work above which an account of energy that does not close is told.
-const GAP: f64 = 0.05;
-
-/// What is neither stored nor dissipated at the end of a path over the greatest work on the way;
-/// `None` without work.
-pub fn energy_gap(rows: &[StepRecord]) -> Option<f64> {
-    let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external.abs()));
-    let last = rows.last().filter(|_| most > 0.0)?;
-    Some((last.work_external - last.energy_elastic - last.work_plastic - last.work_friction).abs() / most)
-}
-
-/// What is to be told of an account of energy that does not close: the works are sums over steps.
-pub fn doubt_of_steps(rows: &[StepRecord]) -> Option<String> {
-    let gap = energy_gap(rows).filter(|gap| *gap > GAP)?;
-    Some(format!(
-        "{:.1} % of the greatest work is neither stored nor dissipated: the steps are large for the way that the contact slips. \
-         Take more of them (solver.press_steps, solver.shear_steps)",
-        100.0 * gap
-    ))
-}
-
 /// Estimated errors, sizes, in the units of the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
@@ -155,15 +134,5 @@ mod tests {
             assert!((estimate.a0.unwrap() - 0.1 / n as f64).abs() < 1e-12);
             assert_eq!(estimate.f_t_max, None);
         }
-    }
-
-    #[test]
-    fn an_account_that_does_not_close_is_told() {
-        let row = |work_external: f64, work_friction: f64| StepRecord { work_external, work_friction, ..StepRecord::default() };
-        assert_eq!((energy_gap(&[]), energy_gap(&[row(0.0, 0.0)])), (None, None));
-        let rows = [row(2.0, 1.0), row(1.0, 0.8)];
-        assert!((energy_gap(&rows).unwrap() - 0.1).abs() < 1e-15);
-        assert!(doubt_of_steps(&rows).unwrap().starts_with("10.0 % of the greatest work"));
-        assert_eq!(doubt_of_steps(&[row(2.0, 1.95)]), None);
     }
 }

@@ -50,7 +50,7 @@ pub use contact_csv::{ContactPoint, ContactStatus, Half, read_contact, write_con
 pub use decimal::decimal;
 pub use directory::{OutputDirectory, RESULT_MARKER};
 pub use error::OutputError;
-pub use estimate::{ErrorEstimate, doubt_of_steps, energy_gap, ripple};
+pub use estimate::{ErrorEstimate, ripple};
 pub use fields::{mises, write_fields};
 pub use history::{HistoryWriter, history_columns, read_history};
 #[cfg(feature = "law")]

@@ -14,7 +14,7 @@ use super::tables::is_panel;
 use super::units::coefficient;
 use super::{
     Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, Position, Progress, Status, StepRecord,
-    Summary, SummaryInputs, TimeByPhase, Units, doubt_of_steps, last_line, write_contact, write_fields, write_parquet,
+    Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields, write_parquet,
 };
 use crate::case::{Case, Fields, PictureFormat, Segment};
 use crate::compute::{ComputeError, Description};
@@ -270,9 +270,6 @@ impl ResultWriter {
     /// is to be kept.
     pub fn finish(mut self, status: Status, message: Option<&str>) -> Result<Summary, OutputError> {
         self.history.check_there()?;
-        if let Some(text) = doubt_of_steps(&self.ledger.rows).filter(|_| status == Status::Done) {
-            self.note(&text);
-        }
         self.progress.finish(&last_line(status, self.ledger.rows.len()));
         self.ledger.messages.extend(message.map(str::to_owned));
         let begun = Instant::now();

@@ -5,7 +5,7 @@ use crate::case::{Case, Segment};
 use crate::compute::traffic::Account;
 use crate::output::{
     Clock, ErrorEstimate, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary, SummaryInputs,
-    TimeByPhase, Units, doubt_of_steps, last_line,
+    TimeByPhase, Units, last_line,
 };
 use crate::simulation::drive::{Observer, StepView};
 use crate::simulation::problem::Problem;
@@ -81,9 +81,6 @@ impl Memory {
 
     /// The summary of the run, as it would be written.
     pub fn finish(mut self, rows: &[StepRecord], status: Status, message: Option<&str>) -> Summary {
-        if let Some(text) = doubt_of_steps(rows).filter(|_| status == Status::Done) {
-            self.note(&text);
-        }
         self.progress.finish(&last_line(status, rows.len()));
         let wall_s = self.clock.wall_seconds();
         let mut summary = Summary {
