@@ -80,7 +80,8 @@ fn leaves_every_file_of_the_contract() {
     let output = scratch.run("out", &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let dir = scratch.path("out");
-    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "plots", "run.log", "summary.json"]);
+    let all = ["case.toml", "checkpoint.bin", "contact", "fields", "history.csv", "plots", "run.log", "summary.json"];
+    assert_eq!(names(&dir), all);
 
     let text = fs::read_to_string(dir.join("history.csv")).expect("a history");
     assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,"), "{text}");
@@ -207,7 +208,10 @@ fn fields_are_written_as_asked_and_an_earlier_result_is_replaced() {
     }
     assert_eq!(names(&dir.join("contact")).len(), 3);
     done(&scratch, "out", &[&fewer[..], &["--force"]].concat());
-    assert_eq!(names(&dir), ["case.toml", "contact", "fields", "history.csv", "notes.txt", "plots", "run.log", "summary.json"]);
+    assert_eq!(
+        names(&dir),
+        ["case.toml", "checkpoint.bin", "contact", "fields", "history.csv", "notes.txt", "plots", "run.log", "summary.json"]
+    );
     for folder in ["fields", "contact", "plots"] {
         assert!(names(&dir.join(folder)).is_empty(), "{folder}: {:?}", names(&dir.join(folder)));
     }
@@ -479,7 +483,8 @@ fn an_interrupted_run_ends_with_75_and_keeps_what_there_is() {
         let output = child.wait_with_output().expect("it ends");
         let message = stderr(&output);
         if is_ignored(signal.as_raw()) {
-            // These tests were started by `nohup` or in the background, and so was the run.
+            // These tests were started by `nohup` or in the background, and so was the run: it goes
+            // on.
             assert_eq!(output.status.code(), Some(0), "{message}");
             continue;
         }
@@ -568,4 +573,23 @@ fn a_number_that_is_none_and_a_material_that_refuses_are_told_as_what_they_are()
         assert_eq!(summary.status, Status::NotConverged, "{wrong}");
         assert_eq!(history.len().to_string(), wrong.rsplit(':').next().expect("a number"), "{wrong}");
     }
+}
+
+/// What is no number is not written, and the state before it is kept: another device may go on.
+#[test]
+fn a_result_that_is_no_number_ends_the_run_and_not_what_was_computed_before() {
+    let scratch = scratch(SHEAR);
+    let options = ["-q", "--set", "solver.error_estimate=false", "--checkpoint-every", "0"];
+    done(&scratch, "whole", &options);
+    let output = program().args(scratch.args("out", &options)).env(WRONG_VARIABLE, "energy:4").output().expect("it runs");
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(message.contains("--resume"), "{message}");
+    let (history, summary) = results(&scratch.path("out"));
+    assert_eq!(summary.status, Status::Failed);
+    assert!(!history.is_empty() && history.iter().all(|row| row.energy_elastic.is_finite()), "{history:?}");
+    let output = scratch.run("out", &[&options[..], &["--resume"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let [whole, resumed] = ["whole", "out"].map(|name| results(&scratch.path(name)));
+    assert!(resumed.0 == whole.0 && timeless(&resumed.1) == timeless(&whole.1), "{:?} {:?}", resumed.1, whole.1);
 }

@@ -53,6 +53,9 @@ pub struct Measured {
     pub what: String,
 }
 
+/// Forces that are rounding, over E R^2: where the bodies have parted there are no others.
+const ROUNDING: f64 = 1e-14;
+
 #[derive(Default)]
 struct Watch {
     rows: Vec<StepRecord>,
@@ -80,7 +83,7 @@ impl Watch {
                 Status::Open => x.hypot(y).hypot(n),
                 Status::Stick | Status::Slip => (-n).max(0.0) + (x.hypot(y) - mu * n.max(0.0)).max(0.0),
             };
-            if scale > 0.0 {
+            if scale > 0.0 && !(outside <= ROUNDING) {
                 // Written so that a NaN is kept.
                 let outside = outside / scale;
                 self.worst_point = if outside <= self.worst_point { self.worst_point } else { outside };
