@@ -9,6 +9,9 @@ use crate::case::{Case, CaseError, PictureFormat};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// Names of the checkpoints: of where a run goes on, and of the end before an extension.
+const CHECKPOINTS: [&str; 2] = ["checkpoint.bin", "checkpoint-end.bin"];
+
 /// First line of a result's `case.toml`: by it, and only by it, a directory is recognised as a
 /// result that may be replaced.
 pub const RESULT_MARKER: &str = "# The resolved case of an asperity run. Running into this directory again replaces its results.";
@@ -125,7 +128,7 @@ impl OutputDirectory {
         let files: Vec<String> =
             saved.chain(panels.iter().map(|&step| self.contact(step))).map(|path| file_name(&path)).collect();
         self.clear_but(|folder, name| match folder {
-            "" => matches!(name, "history.csv" | "checkpoint.bin" | "checkpoint-end.bin" | "run.log"),
+            "" => matches!(name, "history.csv" | "run.log") || CHECKPOINTS.contains(&name),
             "plots" => false,
             _ => name == "case.pvd" || files.iter().any(|file| file == name),
         })
@@ -201,9 +204,8 @@ impl OutputDirectory {
         // A damaged checkpoint is known by what lies beside it.
         let begun = own.iter().any(|(_, name, _)| matches!(name.as_str(), "history.csv" | "summary.json"));
         let drafted = |name: &str| draft_of(name).is_some();
-        let checkpoint = |name: &str| matches!(name, "checkpoint.bin" | "checkpoint-end.bin");
-        let looked_at =
-            own.iter().filter(|(folder, name, _)| wanted(folder, name) && !(drafted(name) || begun && checkpoint(name)));
+        let unknowable = |name: &str| drafted(name) || begun && CHECKPOINTS.contains(&name);
+        let looked_at = own.iter().filter(|(folder, name, _)| wanted(folder, name) && !unknowable(name));
         looked_at.map(|(_, _, path)| path).chain([&self.case()]).try_for_each(|path| refuse_foreign(path))
     }
 
@@ -296,10 +298,7 @@ fn ours(folder: &str, name: &str) -> bool {
     };
     let draft = || draft_of(name).is_some_and(|name| name == "case.toml" || name == LOCK_NAME || ours(folder, name));
     let named = match folder {
-        "" => matches!(
-            name,
-            "history.csv" | "history.parquet" | "summary.json" | "checkpoint.bin" | "checkpoint-end.bin" | "run.log"
-        ),
+        "" => matches!(name, "history.csv" | "history.parquet" | "summary.json" | "run.log") || CHECKPOINTS.contains(&name),
         "fields" => name == "case.pvd" || step(".vtu"),
         "contact" => step(".csv"),
         "plots" => name.rsplit_once('.').is_some_and(|(name, ending)| {
