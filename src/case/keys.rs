@@ -393,7 +393,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0",
+        range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one >= 1e-9 R",
         meaning: "press to this indentation h, a total from first touch, or unload to it if it is smaller than the present one",
         example: "0.02",
         ..key(

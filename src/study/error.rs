@@ -18,7 +18,7 @@ pub enum StudyError {
     #[error(transparent)]
     File(#[from] CaseError),
     /// Some of the combinations are no cases.
-    #[error("{source} (in the combination {combination}; {failing} of {count} combinations are refused)")]
+    #[error("{source} (in the combination {combination}; {failing} of {}{count} combinations are refused)", if *more { "the first " } else { "" })]
     Combination {
         /// What is wrong with the first of them.
         source: Box<CaseError>,
@@ -26,8 +26,10 @@ pub enum StudyError {
         combination: String,
         /// How many are refused.
         failing: usize,
-        /// How many there are.
+        /// Of how many.
         count: usize,
+        /// Whether there are more, which were not looked at.
+        more: bool,
     },
     /// The hardening law of a combination.
     #[error("{file}: {source} (in the combination {combination})")]

@@ -178,16 +178,44 @@ fn with_study_defaults(mut base: Document) -> Result<Document, CaseError> {
     Ok(base)
 }
 
-/// Every combination as a case. The first refusal is the one that is told; where all are refused
-/// alike, it is the base or a key that is wrong and not the combination.
+/// So many refusals are counted; what is wrong so often is the base, or a key.
+const MOST_REFUSALS: usize = 1000;
+
+/// What is refused of the combinations that were looked at.
+struct Refused {
+    first: CaseError,
+    combination: String,
+    count: usize,
+    /// Whether every combination so far was refused, in the same words.
+    alike: bool,
+}
+
+impl Refused {
+    /// The first refusal; where all are refused alike, it is the base or a key that is wrong and
+    /// not the combination.
+    fn told(self, looked_at: usize, of: usize) -> StudyError {
+        if self.alike && self.count == looked_at {
+            return self.first.into();
+        }
+        StudyError::Combination {
+            source: Box::new(self.first),
+            combination: self.combination,
+            failing: self.count,
+            count: looked_at,
+            more: looked_at < of,
+        }
+    }
+}
+
+/// Every combination as a case, or what is told of those that are refused.
 fn check_all(base: &Document, sweep: &Sweep, count: usize, file: &str) -> Result<Vec<StudyCase>, StudyError> {
     let width = count.to_string().len().max(4);
     let keys = &sweep.keys;
     // A table is set before a key within it, wherever they stand in the file.
     let mut order: Vec<usize> = (0..keys.len()).collect();
     order.sort_by_key(|&key| keys[key].name.split('.').count());
-    let mut cases = Vec::with_capacity(count);
-    let mut refused: Vec<(CaseError, String)> = Vec::new();
+    let mut cases = Vec::new();
+    let (mut refused, mut looked_at): (Option<Refused>, usize) = (None, count);
     for number in 0..count {
         let chosen = sweep.choice(number);
         let values: Vec<String> = chosen.iter().map(|entry| entry.map_or(String::new(), |entry| plain(&entry.value))).collect();
@@ -207,16 +235,23 @@ fn check_all(base: &Document, sweep: &Sweep, count: usize, file: &str) -> Result
                 })?;
                 cases.push(StudyCase { id: case_id(number + 1, width), values, case });
             }
-            Err(error) => refused.push((error, combination())),
+            Err(error) => {
+                let refused = match &mut refused {
+                    Some(earlier) => {
+                        earlier.alike &= error.to_string() == earlier.first.to_string();
+                        earlier.count += 1;
+                        earlier
+                    }
+                    none => none.insert(Refused { first: error, combination: combination(), count: 1, alike: number == 0 }),
+                };
+                if refused.count == MOST_REFUSALS {
+                    looked_at = number + 1;
+                    break;
+                }
+            }
         }
     }
-    let failing = refused.len();
-    let alike = failing == count && refused.windows(2).all(|pair| pair[0].0.to_string() == pair[1].0.to_string());
-    match refused.into_iter().next() {
-        None => Ok(cases),
-        Some((error, _)) if alike => Err(error.into()),
-        Some((error, combination)) => Err(StudyError::Combination { source: Box::new(error), combination, failing, count }),
-    }
+    refused.map_or(Ok(cases), |refused| Err(refused.told(looked_at, count)))
 }
 
 fn describe<'a>(pairs: impl Iterator<Item = (&'a str, &'a str)>) -> String {
@@ -285,6 +320,20 @@ indentation = 0.02
         assert_eq!(study.cases[3].values[1], "{ law = \"linear\", modulus = 50.0 }");
         assert_eq!(study.cases[1].case.material.hardening, Hardening::Linear { yield_stress: 100.0, modulus: 50.0 });
         assert_eq!(study.cases[2].case.material.hardening, Hardening::Ideal { yield_stress: 200.0 });
+    }
+
+    #[test]
+    fn what_is_wrong_in_every_combination_is_found_in_the_first_thousand() {
+        let values = |count: u32, text: &dyn Fn(u32) -> String| (0..count).map(text).collect::<Vec<_>>().join(", ");
+        let moduli = values(200, &|i| format!("{}.0", 200_000 + i));
+        let ratios = values(50, &|i| format!("{:?}", 0.0125 * f64::from(i)));
+        let grid = |key: &str| format!("\"material.youngs_modulus\" = [{moduli}]\n\"{key}\" = [{ratios}]");
+        let alike = refused(&grid("contact.frictoin"));
+        assert!(alike.contains("did you mean `friction`") && !alike.contains("combinations"), "{alike}");
+        let some = refused(&grid("material.poissons_ratio"));
+        let told = "(in the combination material.youngs_modulus = 200000.0, material.poissons_ratio = 0.5; \
+                    1000 of the first 5000 combinations are refused)";
+        assert!(some.ends_with(told), "{some}");
     }
 
     #[test]

@@ -18,7 +18,8 @@ impl Study {
         let Some(first) = large.first().map(|&case| &self.cases[case]) else { return Ok(()) };
         let Err(error) = check_room(&first.case, None, &room) else { return Ok(()) };
         let combination = self.combination(first);
-        Err(StudyError::Combination { source: Box::new(error), combination, failing: large.len(), count: self.cases.len() })
+        let (failing, count) = (large.len(), self.cases.len());
+        Err(StudyError::Combination { source: Box::new(error), combination, failing, count, more: false })
     }
 }
 
