@@ -65,24 +65,57 @@ impl fmt::Display for Room {
 
 /// The memory that there is for this process.
 pub fn room() -> Room {
-    least(&|path| std::fs::read_to_string(path).ok())
+    least(&of_system)
 }
 
-/// The same by what `read` says of files of the system.
+/// Bytes that this process may take now: what the machine has free, and of each of its control
+/// groups what is left. `None` where the system does not tell.
+pub fn left() -> Option<u64> {
+    left_of(&of_system)
+}
+
+fn of_system(path: &Path) -> Option<String> {
+    std::fs::read_to_string(path).ok()
+}
+
+/// [`room`], by what `read` says of files of the system.
 fn least(read: &dyn Fn(&Path) -> Option<String>) -> Room {
     let machine = read(Path::new("/proc/meminfo")).and_then(|text| total(&text)).map(|bytes| (bytes, Origin::Machine));
-    // Of that the program has a part already.
-    let taken = read(Path::new("/proc/self/status")).and_then(|text| kibibytes(&text, "VmSize:")).unwrap_or(0);
-    let address_space = read(Path::new("/proc/self/limits"))
-        .and_then(|text| address_space(&text))
-        .map(|bytes| (bytes.saturating_sub(taken), Origin::AddressSpace));
-    let groups = read(Path::new("/proc/self/cgroup")).map_or(Vec::new(), |text| limit_files(&text));
-    let groups = groups.into_iter().filter_map(|file| Some((bytes(&read(&file)?)?, Origin::ControlGroup(file))));
+    let groups = groups(read).into_iter().map(|(file, bytes)| (bytes, Origin::ControlGroup(file)));
+    let address_space = address_space_left(read).map(|bytes| (bytes, Origin::AddressSpace));
     let known = machine.into_iter().chain(groups).chain(address_space);
     match known.min_by_key(|(bytes, _)| *bytes) {
         Some((bytes, from)) => Room { gib: ((1.0 - MARGIN.0) * bytes as f64 - MARGIN.1).max(0.0) / GIB, from },
         None => Room { gib: ASSUMED_GIB, from: Origin::Assumed },
     }
+}
+
+/// [`left`], by what `read` says of files of the system.
+fn left_of(read: &dyn Fn(&Path) -> Option<String>) -> Option<u64> {
+    let machine = read(Path::new("/proc/meminfo")).and_then(|text| kibibytes(&text, "MemAvailable:"));
+    let groups = groups(read).into_iter().filter_map(|(file, limit)| {
+        let beside = |name: &str| read(&file.with_file_name(name));
+        let used = beside("memory.current").or_else(|| beside("memory.usage_in_bytes")).and_then(|text| bytes(&text))?;
+        // Copies of files count as used, and are given up for whoever needs the room.
+        let stat = beside("memory.stat").unwrap_or_default();
+        let of = |name: &str| stat.lines().find_map(|line| bytes(line.strip_prefix(name)?)).unwrap_or(0);
+        Some(limit.saturating_sub(used.saturating_sub(of("inactive_file ").saturating_add(of("active_file ")))))
+    });
+    machine.into_iter().chain(groups).chain(address_space_left(read)).min()
+}
+
+/// The control groups of the process that have a limit: the file that holds it, and its bytes.
+fn groups(read: &dyn Fn(&Path) -> Option<String>) -> Vec<(PathBuf, u64)> {
+    let files = read(Path::new("/proc/self/cgroup")).map_or(Vec::new(), |text| limit_files(&text));
+    files.into_iter().filter_map(|file| bytes(&read(&file)?).map(|bytes| (file, bytes))).collect()
+}
+
+/// What the limit of the address space leaves to the process, in bytes.
+fn address_space_left(read: &dyn Fn(&Path) -> Option<String>) -> Option<u64> {
+    let limit = read(Path::new("/proc/self/limits")).and_then(|text| address_space(&text))?;
+    // Of that the program has a part already.
+    let taken = read(Path::new("/proc/self/status")).and_then(|text| kibibytes(&text, "VmSize:")).unwrap_or(0);
+    Some(limit.saturating_sub(taken))
 }
 
 /// MemTotal of `/proc/meminfo`, in bytes.
@@ -261,6 +294,30 @@ mod tests {
         assert_eq!(of(&none).from, Origin::Machine);
         // No machine at all is left with less than nothing.
         assert_eq!(of(&[("/proc/meminfo", "MemTotal: 10 kB")]).gib, 0.0);
+    }
+
+    #[test]
+    fn what_is_left_is_that_of_the_machine_or_of_the_narrowest_group() {
+        let left = |files: &[(&str, &str)]| {
+            left_of(&|path| files.iter().find(|(name, _)| Path::new(name) == path).map(|(_, text)| (*text).to_owned()))
+        };
+        let machine = ("/proc/meminfo", MEMINFO);
+        assert_eq!(left(&[machine]), Some(13_113_804 * 1024));
+        let group = [
+            machine,
+            ("/proc/self/cgroup", "0::/job/step\n"),
+            ("/sys/fs/cgroup/job/memory.max", "2000000\n"),
+            ("/sys/fs/cgroup/job/memory.current", "1500000\n"),
+            ("/sys/fs/cgroup/job/memory.stat", "anon 1100000\ninactive_file 300000\nactive_file 100000\n"),
+        ];
+        assert_eq!(left(&group), Some(900_000));
+        let first = [
+            ("/proc/self/cgroup", "7:memory:/a\n"),
+            ("/sys/fs/cgroup/memory/a/memory.limit_in_bytes", "5000"),
+            ("/sys/fs/cgroup/memory/a/memory.usage_in_bytes", "4000"),
+        ];
+        assert_eq!(left(&first), Some(1000));
+        assert_eq!(left(&[]), None);
     }
 
     #[test]

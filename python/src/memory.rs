@@ -2,6 +2,7 @@
 //! allocation of Rust's would end the process.
 
 use asperity::contact_law::ContactState;
+use asperity::internals::memory::left;
 use pyo3::PyResult;
 use pyo3::exceptions::PyMemoryError;
 
@@ -15,10 +16,11 @@ pub fn check(what: &str, count: usize, bytes_each: usize) -> PyResult<()> {
     if needed.is_some_and(|needed| needed < SMALL) {
         return Ok(());
     }
-    if needed.is_some_and(|needed| available().is_none_or(|left| needed <= left)) {
+    let left = left();
+    if needed.is_some_and(|needed| left.is_none_or(|left| needed as u64 <= left)) {
         return Ok(());
     }
-    let left = available().map_or(String::new(), |left| format!(", and {:.1} are left", gib(left as f64)));
+    let left = left.map_or(String::new(), |left| format!(", and {:.1} are left", gib(left as f64)));
     let needed = gib(count as f64 * bytes_each as f64);
     Err(PyMemoryError::new_err(format!("{what}: {count} contacts need {needed:.1} GiB{left}. Take fewer at a time")))
 }
@@ -46,23 +48,3 @@ pub fn reserved<T>(what: &str, count: usize) -> PyResult<Vec<T>> {
 
 /// Bytes of the memory of a contact.
 pub const CONTACT: usize = size_of::<ContactState>();
-
-/// Free bytes of the machine, or of the container, where the system tells them.
-fn available() -> Option<usize> {
-    let read = |path: &str| std::fs::read_to_string(path).ok();
-    let number = |path: &str| read(path)?.trim().parse::<usize>().ok();
-    let machine = || {
-        let told = read("/proc/meminfo")?;
-        let line = told.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-        line.trim().strip_suffix("kB")?.trim().parse::<usize>().ok().map(|kib| kib << 10)
-    };
-    let container = || {
-        let (most, used) = number("/sys/fs/cgroup/memory.max").zip(number("/sys/fs/cgroup/memory.current"))?;
-        // Copies of files count as used, and are given up for whoever needs the room.
-        let told = read("/sys/fs/cgroup/memory.stat").unwrap_or_default();
-        let of = |name: &str| told.lines().find_map(|line| line.strip_prefix(name)?.trim().parse::<usize>().ok());
-        let files = of("inactive_file ").unwrap_or(0) + of("active_file ").unwrap_or(0);
-        Some(most.saturating_sub(used.saturating_sub(files)))
-    };
-    machine().into_iter().chain(container()).min()
-}

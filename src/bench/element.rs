@@ -254,21 +254,11 @@ fn memory_for(mesh: &Mesh, sizes: &Sizes, batch: usize, word: usize) -> Result<(
     // What a device sends back is there once more.
     let of_calls = sizes.blocks * 9 * (8 + word) + sizes.nodes * 3 * 8 * 2;
     let needed = batch * (of_mesh + of_case + of_calls);
-    match available_memory() {
-        Some(available) if needed > available / 10 * 7 => {
-            let [needed, available] = [needed, available].map(|bytes| bytes >> 20);
+    match memory::left() {
+        Some(available) if needed as u64 > available / 10 * 7 => {
+            let [needed, available] = [needed as u64, available].map(|bytes| bytes >> 20);
             Err(format!("does not fit: {needed} MiB of this machine's memory, of which {available} are free"))
         }
         _ => Ok(()),
     }
-}
-
-/// Free memory of the machine in bytes, or what there is for this process if that is less, where
-/// the system tells it.
-fn available_memory() -> Option<usize> {
-    let told = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = told.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let free = line.trim().strip_suffix("kB")?.trim().parse::<usize>().ok()? << 10;
-    // A container, a job or a limit may allow less than what is free.
-    Some(free.min((memory::room().gib * memory::GIB) as usize))
 }

@@ -65,8 +65,10 @@ const FRICTION_LIMIT: f64 = 0.3;
 const GROWING_STEPS: usize = 4;
 /// Steps of an unloading over its estimated elastic recovery.
 pub const RELEASE_STEPS: f64 = 12.0;
-/// Where everything slips the increments of a shear of given length go on growing, up to this share
-/// of the contact radius.
+/// No increment of a shear is longer than this share of the contact radius; where everything slips
+/// those of a shear of given length go on growing up to it. What comes into contact or leaves it
+/// while it slips makes an error of the first order in this share: with friction 0.95 and h/R = 0.07,
+/// where sticking contacts allow increments five times as long, F_T is 7 % off with those.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
 /// Most steps after the first part of a shear of given length: where nothing touches, say, the slip
 /// displacement says nothing.
@@ -241,6 +243,8 @@ pub struct ShearSteps {
     total: f64,
     /// Increments of the first, growing part.
     count: usize,
+    /// Greatest increment of that part.
+    longest: f64,
     /// Bounds of the increments after it.
     least: f64,
     largest: f64,
@@ -253,8 +257,8 @@ impl ShearSteps {
         let count = resolution.shear_steps.max(1);
         let range = (SHEAR_RANGE * start.slip_displacement()).min(length);
         let total: f64 = (1..=count).map(|i| (i as f64).powf(SHEAR_GROWTH)).sum();
-        let last = range * (count as f64).powf(SHEAR_GROWTH) / total;
-        let longest = LARGEST_SHEAR_STEP * resolution.coarseness * start.a;
+        let longest = (LARGEST_SHEAR_STEP * start.a).max(range / MOST_LATER_STEPS) * resolution.coarseness;
+        let last = (range * (count as f64).powf(SHEAR_GROWTH) / total).min(longest);
         let (least, largest) = if length.is_finite() {
             let least = last.max((length - range) / MOST_LATER_STEPS * resolution.coarseness);
             (least, least.max(longest))
@@ -265,13 +269,15 @@ impl ShearSteps {
         } else {
             (last, last)
         };
-        Self { range, total, count, least, largest }
+        Self { range, total, count, longest, least, largest }
     }
 
     /// Distance from the start of the segment at the end of step `i >= 1`.
     pub fn distance(&self, i: usize) -> f64 {
         let growing = |i: usize| self.range * (i as f64).powf(SHEAR_GROWTH) / self.total;
-        (1..=i).map(|i| if i <= self.count { growing(i) } else { growing(i).clamp(self.least, self.largest) }).sum()
+        let increment =
+            |i| if i <= self.count { growing(i).min(self.longest) } else { growing(i).clamp(self.least, self.largest) };
+        (1..=i).map(increment).sum()
     }
 
     /// A shear to full slip is given up beyond this distance.
@@ -397,6 +403,10 @@ mod tests {
         assert!((20..45).contains(&ends.len()), "{}", ends.len());
         let last: Vec<f64> = ends.windows(2).map(|w| w[1] - w[0]).collect();
         assert!(last.windows(2).all(|w| w[1] > w[0]) && last.iter().all(|d| *d <= 0.05 * 0.2 * 1.0001));
+        // A deep elastic contact, whose slip displacement is a large share of its radius.
+        let elastic = Start { f_n: 4.0 / 3.0 * 0.25_f64.powi(3), reversed: true, ..start(0.25, 0.95) };
+        let ends = self::ends(&elastic, 0.6);
+        assert!(ends.windows(2).all(|w| w[1] - w[0] <= 0.05 * 0.25 * 1.0001) && ends.len() < 80, "{ends:?}");
     }
 
     #[test]

@@ -68,7 +68,7 @@ pub fn fuzz(
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile");
     fs::create_dir_all(&folder).expect("a folder");
     // Left there when the process itself dies.
-    let path = folder.join(kind);
+    let path = folder.join(format!("{kind}.{}", std::process::id()));
     let (count, begun) = (count(), Instant::now());
     let (tell, told) = channel();
     let file = path.clone();
@@ -119,6 +119,7 @@ pub fn fuzz(
     drop(told);
     if faults.is_empty() {
         worker.join().expect("the inputs are made");
+        fs::remove_file(&path).expect("the last input");
     }
     let memory = greatest_memory_kib();
     println!(
