@@ -33,9 +33,15 @@ impl PoolBytes {
         }
     }
 
-    /// The wider one, and both.
+    /// The wider one, and both, of a slot; with what the last binding's alignment may take, of
+    /// which all slots together need one.
     pub fn widest_and_all(&self) -> (u64, u64) {
-        (self.vectors.max(self.blocks), self.vectors + self.blocks)
+        (self.vectors.max(self.blocks) + ALIGNMENT, self.vectors + self.blocks + 2 * ALIGNMENT)
+    }
+
+    /// What is made for so many slots: of each pool.
+    fn of_slots(&self, slots: usize) -> [u64; 2] {
+        [self.vectors, self.blocks].map(|bytes| slots as u64 * bytes + ALIGNMENT)
     }
 }
 
@@ -54,10 +60,26 @@ impl Pools {
     /// # Errors
     /// As [`GpuContext::zeros`].
     pub fn new(context: &GpuContext, bytes: PoolBytes, slots: usize) -> Result<Self, GpuError> {
-        let words = |bytes: u64| (slots as u64 * bytes + ALIGNMENT) as usize / size_of::<u32>();
+        let [vectors, blocks] = bytes.of_slots(slots).map(|bytes| bytes as usize / size_of::<u32>());
         Ok(Self {
-            vectors: context.zeros("elements' tangents, Krylov vectors or new states", words(bytes.vectors))?,
-            blocks: context.zeros("blocks of tangents, A P or stresses", words(bytes.blocks))?,
+            vectors: context.zeros("elements' tangents, Krylov vectors or new states", vectors)?,
+            blocks: context.zeros("blocks of tangents, A P or stresses", blocks)?,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_made_is_no_more_than_what_was_planned() {
+        let bytes = PoolBytes { vectors: 1000, blocks: 1024 };
+        let (widest, all) = bytes.widest_and_all();
+        for slots in [1, 2, 7, 1000] {
+            let made = bytes.of_slots(slots);
+            assert!(made.iter().all(|made| *made <= slots as u64 * widest), "{slots}: {made:?}");
+            assert!(made.iter().sum::<u64>() <= slots as u64 * all, "{slots}: {made:?}");
+        }
     }
 }
