@@ -264,3 +264,31 @@ fn a_press_after_a_release_does_not_depend_on_what_the_release_left() {
         assert!((f_n / fine - 1.0).abs() < 5e-3, "{released:?}: F_N = {f_n} against {fine}");
     }
 }
+
+/// Hertz's force, F = 4/3 E* (R* h^3)^(1/2), of the shallowest contacts that are meshed for: of a
+/// sphere on a plane, of two equal ones, and of a large one under a small one.
+#[test]
+fn the_shallowest_contacts_are_those_of_hertz() {
+    let modulus = E / (1.0 - 0.3f64.powi(2));
+    let contacts = [
+        ("", 1.0, modulus),
+        ("[opponent]\nequal = true\n", 0.5, 0.5 * modulus),
+        ("[opponent]\nradius = 0.1\n", 1.0 / 11.0, 0.5 * modulus),
+        ("[opponent]\nradius = 10.0\n", 10.0 / 11.0, 0.5 * modulus),
+    ];
+    contacts.par_iter().for_each(|&(opponent, radius, modulus)| {
+        let least: f64 = 2.5e-7 / radius;
+        for h in [1.001 * least, 10.0 * least].into_iter().take(if opponent.is_empty() { 2 } else { 1 }) {
+            let mesh = format!("elements_per_contact_radius = 6\n{opponent}");
+            let (ending, watch) =
+                drive(&case_text(0.3, "law = \"elastic\"", "0", &mesh, &format!("[[path]]\nindentation = {h:e}\n")));
+            assert_eq!(ending, Ending::Done, "{opponent}");
+            let last = watch.rows.last().expect("a step");
+            // Forces over E R^2.
+            let hertz = 4.0 / 3.0 * modulus / E * (radius * h.powi(3)).sqrt();
+            let error = last.f_n / hertz - 1.0;
+            println!("{opponent:?}, h = {h:e}: F_N {:+.2} %, a/a_Hertz {:.3}", 100.0 * error, last.a / (radius * h).sqrt());
+            assert!(error.abs() < 0.015, "{opponent:?}, h = {h:e}: {error}");
+        }
+    });
+}

@@ -282,7 +282,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: "0.005 R to 0.65 R",
+        range: "0.0005 R to 0.65 R",
         meaning: "contact radius to mesh for",
         example: "0.2",
         ..key("mesh", "contact_radius", Number(Above(0.0), Free, &[]), Optional("the one that closed forms predict"))
@@ -393,7 +393,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         unit: LENGTH,
-        range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one >= 1e-9 R",
+        range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0, the greatest >= 2.5e-7 R^2/R*",
         meaning: "press to this indentation h, a total from first touch, or unload to it if it is smaller than the present one",
         example: "0.02",
         ..key(

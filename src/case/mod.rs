@@ -166,6 +166,13 @@ impl Case {
         if self.sphere.flat { other } else { self.sphere.radius / (1.0 + self.sphere.radius / other) }
     }
 
+    /// The least that the greatest indentation of a path may be: an elastic contact there, of which
+    /// a^2 = R* h (Hertz), has the smallest radius that is meshed for.
+    pub(crate) fn least_indentation(&self) -> f64 {
+        let radius = self.effective_radius();
+        (CONTACT_RADII.0 * self.sphere.radius / radius).powi(2) * radius
+    }
+
     /// Radius of the sphere over a plane that one body of this case is pressed like: R* against
     /// another body; R in an equal pair too, of which each body is pressed by its share of h.
     pub fn body_radius(&self) -> f64 {

@@ -7,8 +7,7 @@ use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
 use super::{Material, Opponent, Sphere};
 
-/// Smallest radius of a rigid sphere over that of the body: a contact of 0.005 R, the smallest that
-/// is meshed for, should not be a large part of it.
+/// Smallest radius of a rigid sphere over that of the body.
 const SMALLEST_RIGID: f64 = 0.05;
 /// Radii of another sphere that deforms over that of the body: both are meshed, with elements of
 /// one size where they meet.

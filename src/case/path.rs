@@ -56,9 +56,6 @@ pub enum Hold {
 
 /// Largest indentation over the radius: beyond it the equator is no longer far from the contact.
 pub(super) const MAX_INDENTATION: f64 = 0.3;
-/// Smallest indentation over the radius of what is not in contact yet: of the coordinates' sixteen
-/// digits, seven are left to tell it.
-const MIN_INDENTATION: f64 = 1e-9;
 /// Largest tangential displacement over the radius.
 const MAX_SHEAR: f64 = 0.5;
 
@@ -200,8 +197,7 @@ fn read_indentation(field: &Field<'_>, state: &mut State, lengths: &Lengths) -> 
     let below = |h: f64| h / length < MAX_INDENTATION;
     let largest = format!("< {MAX_INDENTATION} {name} = {:?}", MAX_INDENTATION * length);
     let indentation = if !state.in_contact {
-        let allowed = format!("a length >= {:?} and {largest}, to come into contact", MIN_INDENTATION * length);
-        field.number(&allowed, |h| h / length >= MIN_INDENTATION && below(h))?
+        field.number(&format!("a length > 0 and {largest}, to come into contact"), |h| h / length > 0.0 && below(h))?
     } else {
         field.number(&format!("a length >= 0 and {largest}"), |h| h >= 0.0 && below(h))?
     };

@@ -7,8 +7,8 @@ use super::error::{CaseError, Place};
 use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
 use super::{
-    Case, Contact, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere, UnitLabels,
-    estimate, hints, opponent, path, pictures,
+    Case, Contact, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Segment, Solver, Sphere,
+    UnitLabels, estimate, hints, opponent, path, pictures,
 };
 use crate::bounded;
 use crate::mesh::{FINE_ZONES, LARGEST_CONTACT};
@@ -17,7 +17,7 @@ use crate::mesh::{FINE_ZONES, LARGEST_CONTACT};
 const CASE_TABLES: [&str; 9] = ["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "units", "path"];
 
 /// Smallest and largest a/R that the sphere is meshed for.
-pub(crate) const CONTACT_RADII: (f64, f64) = (0.005, LARGEST_CONTACT);
+pub(crate) const CONTACT_RADII: (f64, f64) = (0.0005, LARGEST_CONTACT);
 
 impl Case {
     /// Reads a case file, applies the `--set` arguments (`key=value`, in order) and checks the
@@ -71,6 +71,7 @@ impl Case {
                 field.refuse("is \"direct\", which solves for one body alone", "\"multigrid\" with an opponent that deforms")
             );
         }
+        check_deepest(&case, &root)?;
         Ok(case)
     }
 
@@ -117,6 +118,27 @@ impl Material {
         }
         read_material_of(&Reader::new(&document)?)
     }
+}
+
+/// Refuses a path whose contact, an elastic one at its greatest indentation, is smaller than the
+/// smallest that is meshed for.
+fn check_deepest(case: &Case, root: &Reader<'_>) -> Result<(), CaseError> {
+    let indentations = case.path.iter().enumerate().filter_map(|(i, segment)| match *segment {
+        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => Some((i, indentation)),
+        _ => None,
+    });
+    let Some((at, deepest)) = indentations.reduce(|most, next| if next.1 > most.1 { next } else { most }) else { return Ok(()) };
+    let least = case.least_indentation();
+    if deepest >= least * (1.0 - 1e-12) {
+        return Ok(());
+    }
+    let segments = root.require("path", "a path")?.array("a path")?;
+    let field = segments[at].table()?.require("indentation", "a length")?;
+    let allowed = format!(
+        "a greatest indentation of {least:?} or more: there the contact radius is {} R, the smallest that is meshed for",
+        CONTACT_RADII.0
+    );
+    Err(field.refuse(&format!("is {deepest:?}, the greatest of the path"), &allowed))
 }
 
 /// Refuses a `--set` argument that sets nothing of a case. The file may have tables of other

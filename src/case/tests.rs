@@ -231,3 +231,21 @@ fn both_at_once_and_a_share_of_the_force_read_back() {
     let scaled = ideal(&["sphere.radius=2", "path=[{indentation=0.02,shear=-0.01},{release=0.5}]"]).scaled().0;
     assert_eq!(scaled.path, [Segment::Oblique { indentation: 0.01, shear: -0.005 }, Segment::Release { share: 0.5 }]);
 }
+
+#[test]
+fn a_contact_that_is_too_small_for_any_mesh_is_refused() {
+    let refused = |settings: &[&str]| parse(IDEAL, settings).expect_err("too shallow").to_string();
+    let told = refused(&["path=[{indentation=1e-8},{indentation=2e-7}]"]);
+    assert_eq!(
+        told,
+        "--set path: path.1.indentation: is 2e-7, the greatest of the path. Allowed: a greatest indentation of 2.5e-7 or more: there the \
+         contact radius is 0.0005 R, the smallest that is meshed for"
+    );
+    // On its way down a contact may be of any size; R* counts, in any units.
+    ideal(&["path=[{indentation=1e-12},{indentation=2.5e-7}]"]);
+    ideal(&["sphere.radius=1e-3", "path=[{indentation=2.5e-10}]"]);
+    assert!(refused(&["opponent.equal=true", "path=[{indentation=4e-7}]"]).contains("of 5e-7 or more"));
+    ideal(&["opponent.equal=true", "path=[{indentation=5e-7}]"]);
+    refused(&["opponent={rigid=true,radius=0.1}", "path=[{indentation=2.7e-6}]"]);
+    ideal(&["opponent={rigid=true,radius=0.1}", "path=[{indentation=2.8e-6}]"]);
+}

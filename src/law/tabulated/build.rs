@@ -17,7 +17,7 @@ use crate::law::LawError;
 use crate::law::model::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 
-/// Least depth of one body that is simulated: the mesh has a contact radius of 0.005 R at least.
+/// Least depth of one body that is simulated, unless the greatest is less than ten times as deep.
 const SHALLOWEST: f64 = 2e-5;
 /// Where an elastic contact is one on a half-space still.
 const HALF_SPACE: f64 = 1e-3;
@@ -54,8 +54,8 @@ pub struct Built {
 /// the last among them, makes it, and those between check it.
 ///
 /// # Errors
-/// [`LawError::NotCovered`] for a case that presses into nothing or sticks; a hardening law that is
-/// none.
+/// [`LawError::NotCovered`] for a case that presses into nothing, or next to nothing, or sticks; a
+/// hardening law that is none.
 pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
     if case.contact.friction == Friction::Stick {
         return Err(LawError::NotCovered {
@@ -68,6 +68,12 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
         _ => deepest,
     }) / radius;
+    if SPAN * deepest * radius < case.least_indentation() {
+        return Err(LawError::NotCovered {
+            problem: "the path presses less than ten times as deep as the shallowest contact that is meshed for",
+            remedy: "Press deeper: what is shallower is Hertz's contact",
+        });
+    }
     // The limits are those of a sphere on a plane, in which R is R*.
     let [shallowest, half_space] = [SHALLOWEST, HALF_SPACE].map(|h| h * radius / case.effective_radius());
     let yielding = first_yield(case)?.map_or(half_space, |h| h / radius);

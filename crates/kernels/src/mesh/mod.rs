@@ -27,7 +27,7 @@ pub use sphere::{
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
     /// The predicted contact radius is outside the range for which the sphere's mesh is built.
-    #[error("contact radius a/R = {0} is outside 0.005 to 0.65: change the indentation, or the estimate of the contact radius")]
+    #[error("contact radius a/R = {0} is outside 0.0005 to 0.65: change the indentation, or the estimate of the contact radius")]
     ContactRadius(f64),
     /// The number of elements per contact radius is out of range.
     #[error("elements_per_contact_radius = {0} is outside 2 to 32: 16 is a good start")]

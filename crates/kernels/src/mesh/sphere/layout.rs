@@ -13,7 +13,7 @@ const RING_GROWTH: f64 = 1.22;
 const LAYER_GROWTH: f64 = 1.14;
 /// Smallest a/R for which a layout is made: that of a sphere ten times as large as the one pressed
 /// against it.
-const SMALLEST_CONTACT: f64 = 0.000_5;
+const SMALLEST_CONTACT: f64 = 0.000_05;
 /// Largest a/R for which a layout is made.
 pub const LARGEST_CONTACT: f64 = 0.65;
 /// Radii of the finely meshed surface that there may be, in contact radii.

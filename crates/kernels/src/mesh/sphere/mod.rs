@@ -19,12 +19,12 @@ pub use layout::{FINE_ZONES, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
 /// Contact is watched this many fine radii from the pole.
 const CONTACT_MARGIN: f64 = 1.3;
 /// Smallest a/R that a body is meshed for.
-const SMALLEST_CONTACT: f64 = 0.005;
+const SMALLEST_CONTACT: f64 = 0.000_5;
 
 /// Description of the mesh of a sphere, or of a flat, with lengths in radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereSpec {
-    /// Predicted contact radius a/R, 0.005 to 0.65.
+    /// Predicted contact radius a/R, 0.0005 to 0.65.
     pub contact_radius: f64,
     /// Elements from the pole to the contact radius, 2 to 32.
     pub elements_per_contact_radius: usize,

@@ -48,7 +48,7 @@ fn quality_of(mesh: &Mesh, contact_radius: f64) -> (f64, f64, bool) {
 /// The range that users can ask for.
 fn specs() -> Vec<SphereSpec> {
     let mut specs = Vec::new();
-    for contact_radius in [0.005, 0.01, 0.05, 0.2087, 0.3, 0.4, 0.65] {
+    for contact_radius in [0.0005, 0.005, 0.01, 0.05, 0.2087, 0.3, 0.4, 0.65] {
         for elements_per_contact_radius in [4, 5, 6, 7, 8, 11, 16] {
             for fine_zone in [1.1, 1.3, 3.0] {
                 specs.push(spec(contact_radius, elements_per_contact_radius, fine_zone));
