@@ -143,7 +143,7 @@ fn write_deck(Arguments { case, out, set, settings }: &Arguments) -> Result<Stri
 
 /// The whole deck, in the case's units.
 fn deck(case: &Case, problem: &Problem, settings: &Settings) -> Result<String, Failed> {
-    if problem.equal_pair {
+    if case.opponent == Some(Opponent::Equal) {
         return Err("a deck has a plane, a rigid sphere or a meshed opponent: give two equal spheres as opponent.radius".into());
     }
     let mut text = String::from("** Half of the lower half of a sphere; symmetry plane y = 0, equator driven.\n");
@@ -215,9 +215,9 @@ fn geometry(text: &mut String, case: &Case, problem: &Problem, kind: Element) ->
         return surface(text, "ABOVE", &below.iter().map(turned).collect::<Vec<_>>());
     }
     let first = (mesh.nodes.len() + middles.nodes.len(), mesh.elements.len());
-    match &problem.rigid {
-        Some(rigid) => cap(text, case, problem, first, rigid.curvature),
-        None => plane(text, first, radius),
+    match &problem.case.0.opponent {
+        Some(Opponent::Rigid { radius }) => cap(text, case, problem, first, 1.0 / radius),
+        _ => plane(text, first, radius),
     }
 }
 
@@ -384,7 +384,7 @@ fn contact(text: &mut String, case: &Case, problem: &Problem, settings: &Setting
         Friction::Coefficient(mu) => writeln!(text, "*FRICTION\n{mu:.12e}, {:.12e}", settings.stick_slope * unit)?,
         Friction::Stick => return Err("full stick is not written to decks: give a coefficient of friction".into()),
     }
-    let slave_is_opponent = problem.couple.as_ref().is_some_and(|(slave, _)| *slave == 1);
+    let slave_is_opponent = problem.couple().is_some_and(|bodies| bodies.slave == 1);
     let pair = if slave_is_opponent { "ABOVE, BELOW" } else { "BELOW, ABOVE" };
     writeln!(text, "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE\n{pair}")?;
     text.push_str("*BOUNDARY\nHELD, 1, 3\nSYMMETRY, 2, 2\n");

@@ -12,7 +12,6 @@ const ALONG_CORRECTION: u32 = 0;
 const EXTRAPOLATED: u32 = 1;
 const AT_START: u32 = 2;
 const SHIFTED: u32 = 3;
-const UNCHANGED: u32 = 4;
 
 @compute @workgroup_size(64)
 fn iterate_place(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -35,7 +34,7 @@ fn iterate_place(@builtin(global_invocation_id) id: vec3<u32>) {
             case EXTRAPOLATED: {
                 d[i] = number(slot, RATIO) * (committed[of_case + i] - before[of_case + i]);
             }
-            case SHIFTED, UNCHANGED: {
+            case SHIFTED: {
                 d[i] = increments[base + i];
             }
             default: {}

@@ -154,14 +154,19 @@ impl Case {
         [0, 1].map(|i| 1.0 + other[i] / own[i])
     }
 
+    /// Radius of what the sphere is pressed against; none of what is flat.
+    pub fn opponent_radius(&self) -> Option<f64> {
+        match self.opponent {
+            None | Some(Opponent::Deforming { radius: None, .. }) => None,
+            Some(Opponent::Equal) => Some(self.sphere.radius),
+            Some(Opponent::Rigid { radius } | Opponent::Deforming { radius: Some(radius), .. }) => Some(radius),
+        }
+    }
+
     /// The effective radius R*, 1/R* = 1/R_1 + 1/R_2: that of the sphere which, pressed onto a
     /// plane, meets it as closely as these two surfaces meet.
     pub fn effective_radius(&self) -> f64 {
-        let other = match self.opponent {
-            None | Some(Opponent::Deforming { radius: None, .. }) => return self.sphere.radius,
-            Some(Opponent::Equal) => return 0.5 * self.sphere.radius,
-            Some(Opponent::Rigid { radius } | Opponent::Deforming { radius: Some(radius), .. }) => radius,
-        };
+        let Some(other) = self.opponent_radius() else { return self.sphere.radius };
         // The quotient, and not the radii, is what stays of the order of one.
         if self.sphere.flat { other } else { self.sphere.radius / (1.0 + self.sphere.radius / other) }
     }

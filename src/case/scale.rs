@@ -13,8 +13,8 @@ pub struct Scaled<T>(pub T);
 
 impl Case {
     /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2.
-    /// Indentation and shear are what one body moves: half of the relative displacement in an equal
-    /// pair, which the copy is one no more. Any other opponent is scaled too.
+    /// Indentation and shear are what one body moves: in an equal pair half of the relative
+    /// displacement, so the copy of one is not to be scaled again. The opponent is scaled too.
     pub fn scaled(&self) -> Scaled<Case> {
         let (radius, modulus) = (self.sphere.radius, self.material.youngs_modulus);
         let travel = radius * self.bodies();
@@ -46,7 +46,8 @@ impl Case {
                         hardening: material.hardening.scaled(modulus),
                     },
                 }),
-                None | Some(Opponent::Equal) => None,
+                Some(Opponent::Equal) => Some(Opponent::Equal),
+                None => None,
             },
             mesh: Mesh { contact_radius: self.mesh.contact_radius.map(|a| a / radius), ..self.mesh.clone() },
             solver: self.solver.clone(),

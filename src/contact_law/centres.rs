@@ -22,7 +22,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::{Case, Opponent};
+use crate::case::Case;
 
 /// How a table of two spheres says that its h, delta_T and forces are those of the frame of the
 /// centres.
@@ -44,11 +44,7 @@ impl Centres {
     /// Those of a case, in its units.
     pub fn of(case: &Case) -> Self {
         let radius = case.sphere.radius;
-        let distance = match &case.opponent {
-            None | Some(Opponent::Deforming { radius: None, .. }) => None,
-            Some(Opponent::Equal) => Some(2.0 * radius),
-            Some(Opponent::Rigid { radius: other } | Opponent::Deforming { radius: Some(other), .. }) => Some(radius + other),
-        };
+        let distance = case.opponent_radius().map(|other| radius + other);
         Self { distance: distance.filter(|_| !case.sphere.flat) }
     }
 

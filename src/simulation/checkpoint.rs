@@ -12,8 +12,8 @@ use super::path::{Start, Target};
 use super::record::{ContactPoint, StepRecord};
 use crate::compute::CaseState;
 use crate::contact::coulomb::Status;
-use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
+use crate::solver::opponent::Opponent;
 
 /// Greatest number that a state may have, which is scaled: displacements are over R, forces over E
 /// R^2.
@@ -50,11 +50,10 @@ pub(super) struct Committed {
 
 impl Committed {
     /// The undeformed state.
-    pub fn virgin(mesh: &Mesh, rigid: Option<Rigid>) -> Self {
+    pub fn virgin(mesh: &Mesh, opponent: &dyn Opponent) -> Self {
         let zero = vec![0.0; 3 * mesh.nodes.len()];
         let statuses = vec![Status::Open; mesh.contact_nodes.len()];
-        let gap = |x: &[f64; 3]| rigid.map_or(x[2], |rigid| rigid.gap(x));
-        let gaps = mesh.contact_nodes.iter().map(|&n| gap(&mesh.nodes[n as usize])).collect();
+        let gaps = mesh.contact_nodes.iter().map(|&n| opponent.first_gap(&mesh.nodes[n as usize])).collect();
         let mut state = Self { u: zero.clone(), u_before: zero.clone(), force: zero, statuses, gaps, ..Self::default() };
         state.place_points(mesh);
         state

@@ -6,7 +6,6 @@ mod paused;
 mod safe;
 mod segments;
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::SimulationError;
@@ -23,15 +22,11 @@ use crate::compute::iterate::{Ask, Keeps, Plate, Settled};
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseState, Compute, ComputeError};
 use crate::contact::coulomb::{Friction, Status};
-use crate::contact::plane::gap;
 use crate::material::multistep;
 use crate::mesh::Mesh;
-use crate::solver::encounter::Encounter;
 use crate::solver::iterate::{Extrapolation, SetOut};
 use crate::solver::newton::Newton;
 use crate::solver::phases::{Lap, Phase};
-use crate::solver::rigid::position;
-use crate::solver::system::Meeting;
 use crate::solver::{Control, StepFailure, StepOutcome, StepReport};
 pub use paused::Paused;
 use safe::{Muted, Safe};
@@ -79,7 +74,7 @@ impl<'a> Drive<'a> {
     /// in its virgin state.
     pub fn new(problem: &'a Problem, backend: &'a mut dyn Compute, case: usize, newton: Newton) -> Self {
         let mesh = problem.model.mesh.clone();
-        let state = Committed::virgin(&mesh, problem.rigid);
+        let state = Committed::virgin(&mesh, newton.opponent());
         Self {
             problem,
             mesh,
@@ -94,15 +89,6 @@ impl<'a> Drive<'a> {
             held_force: None,
             last_report: StepReport::default(),
             traffic_before: None,
-        }
-    }
-
-    /// The contact nodes at which the contact is known: of two bodies the slave's.
-    fn slave_contacts(&self) -> Range<usize> {
-        let (own, all) = (self.mesh.own_contacts(), self.mesh.contact_nodes.len());
-        match self.problem.couple {
-            Some((1, _)) => own..all,
-            _ => 0..own,
         }
     }
 
@@ -191,7 +177,7 @@ impl<'a> Drive<'a> {
             None => {
                 self.backend.restore(self.case, &CaseState::virgin(&self.mesh))?;
                 self.newton.set_force_scales([0.0; 2]);
-                (self.state, self.place) = (Committed::virgin(&self.mesh, self.problem.rigid), Place::default());
+                (self.state, self.place) = (Committed::virgin(&self.mesh, self.newton.opponent()), Place::default());
                 self.is_away = false;
                 Ok(())
             }
@@ -337,10 +323,10 @@ impl<'a> Drive<'a> {
                  the step was bisected {} times. {}",
                 r.step + 1,
                 r.segment,
-                self.problem.bodies * r.h,
-                self.problem.bodies * r.delta_t,
-                self.problem.bodies * next.h,
-                self.problem.bodies * next.delta_t,
+                self.problem.bodies() * r.h,
+                self.problem.bodies() * r.delta_t,
+                self.problem.bodies() * next.h,
+                self.problem.bodies() * next.delta_t,
                 self.problem.max_cutbacks,
                 failure.remedy(),
             )));
@@ -424,32 +410,14 @@ impl<'a> Drive<'a> {
             Some(_) => multistep::weight(self.state.length_to(target.h, target.delta_t) / self.state.last_length),
             None => 0.0,
         };
-        if self.problem.equal_pair {
-            let expected = guess.as_deref().unwrap_or(&self.state.u);
-            // Up to the first shear all is even in x.
-            let meeting = Meeting::new(&self.mesh, &self.state.u, expected, self.state.direction == 0.0);
-            if let Some(guess) = &mut guess
-                && !self.problem.pressed_in_full
-            {
-                meeting.separate(&self.mesh, guess);
+        let expected = guess.as_deref().unwrap_or(&self.state.u);
+        // Up to the first shear all is even in x.
+        self.newton.set_out(&self.mesh, &self.state.u, expected, self.state.direction == 0.0);
+        if let Some(guess) = &mut guess {
+            if !self.problem.pressed_in_full {
+                self.newton.opponent().separate(&self.mesh, guess);
             }
-            self.newton.meet(meeting);
-            if let Some(guess) = &mut guess {
-                self.newton.symmetrise(guess);
-            }
-        }
-        if let Some(couple) = self.problem.couple {
-            let expected = guess.as_deref().unwrap_or(&self.state.u);
-            let encounter = Encounter::new(&self.mesh, couple, &self.state.u, expected, self.state.direction == 0.0);
-            if let Some(guess) = &mut guess
-                && !self.problem.pressed_in_full
-            {
-                encounter.separate(&self.mesh, guess);
-            }
-            self.newton.encounter(encounter);
-            if let Some(guess) = &mut guess {
-                self.newton.symmetrise(guess);
-            }
+            self.newton.opponent().leave_even(guess);
         }
         let mut lap = Lap::start();
         self.backend.begin_step(self.case, weight)?;
@@ -502,23 +470,7 @@ impl<'a> Drive<'a> {
 
     /// The displacements of such an extrapolation. A device that keeps iterates forms them itself.
     fn guess(&self, ratio: f64) -> Vec<f64> {
-        let mut guess: Vec<f64> = self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect();
-        if self.problem.equal_pair || self.problem.couple.is_some() || self.problem.pressed_in_full {
-            return guess;
-        }
-        if let Some(rigid) = self.problem.rigid {
-            for &node in &self.mesh.contact_nodes {
-                let x = rigid.push_out(&position(&self.mesh, &guess, node));
-                let reference = self.mesh.nodes[node as usize];
-                (0..3).for_each(|c| guess[3 * node as usize + c] = x[c] - reference[c]);
-            }
-            return guess;
-        }
-        for &node in &self.mesh.contact_nodes {
-            let z = 3 * node as usize + 2;
-            guess[z] -= gap(self.mesh.nodes[node as usize][2], guess[z]).min(0.0);
-        }
-        guess
+        self.state.u.iter().zip(&self.state.u_before).map(|(u, b)| u + ratio * (u - b)).collect()
     }
 
     /// The last accepted step.
@@ -544,7 +496,7 @@ impl<'a> Drive<'a> {
     fn outgrown(&self) -> Option<Outgrowth> {
         let limit = self.mesh.fine_radius - 0.5 * self.problem.spacing;
         let StepRecord { h, delta_t, reach, a: contact_radius, .. } = self.state.record;
-        let (h, delta_t) = (self.problem.bodies * h, self.problem.bodies * delta_t);
+        let (h, delta_t) = (self.problem.bodies() * h, self.problem.bodies() * delta_t);
         (reach > limit).then_some(Outgrowth { reach, contact_radius, fine_radius: self.mesh.fine_radius, h, delta_t })
     }
 }

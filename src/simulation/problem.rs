@@ -10,19 +10,20 @@ use crate::case::{self, Case, Opponent, Scaled, Segment};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
-use crate::linalg::{LinearSolver, SolverKind};
+use crate::linalg::SolverKind;
 use crate::material::{Hardening, Material, MaterialError};
 use crate::memory;
 use crate::mesh::couple::{self, couple};
-use crate::mesh::pattern::Pattern;
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
 use crate::mesh::{Mesh, MeshError};
-use crate::solver::couple::CoupleSolver;
-use crate::solver::encounter::Series;
 use crate::solver::newton::Newton;
-use crate::solver::pair::PairSolver;
+use crate::solver::opponent;
+use crate::solver::opponent::couple::TwoBodies;
+use crate::solver::opponent::joint::Joint;
+use crate::solver::opponent::pair::EqualPair;
+use crate::solver::opponent::plane::Plane;
+use crate::solver::opponent::rigid::RigidSphere;
 use crate::solver::system::Boundary;
-use crate::solver::systems::Unmade;
 use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_linear, monotone_from};
 
 /// A case ready to be simulated.
@@ -59,16 +60,8 @@ pub struct Problem {
     ///   it takes 75, 91 and 107). Elastic bodies and bodies of one stiffness need the part: two
     ///   elastic spheres take 46 iterations at 10 elements with it, and 258 from all.
     pub pressed_in_full: bool,
-    /// The body is pressed against its own image (see [`crate::contact::pair`]), not against a
-    /// plane.
-    pub equal_pair: bool,
-    /// What the body is pressed against, if it is no plane nor its image.
-    pub rigid: Option<Rigid>,
-    /// Bodies that deform, see [`Case::bodies`]: displacements of the path and the record are those
-    /// of one.
-    pub bodies: f64,
-    /// Of two bodies that both deform, which is the slave, and what they are in series.
-    pub couple: Option<(usize, Series)>,
+    /// Of two bodies that both deform the stiffer one is the slave.
+    slaves_are_exchanged: bool,
 }
 
 /// Steps of a press: so many and so many more for each element along the contact radius; the front
@@ -121,7 +114,7 @@ fn asked_zone(scaled: &Scaled<Case>, laws: &[&Hardening<f64>]) -> Zone {
             .fold(f64::INFINITY, f64::min)
     };
     // Of two bodies the closed forms know R*, E* and the weaker yield stress alone.
-    let (r, modulus) = (case.effective_radius(), 1.0 / case.compliance()[0]);
+    let (r, modulus) = (case.body_radius(), 1.0 / case.compliance()[0]);
     let predicted =
         || r * predicted_contact_radius(modulus, case.material.poissons_ratio, flow_stress, largest_indentation(scaled) / r);
     Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone).within(smaller_radius(scaled))
@@ -161,12 +154,12 @@ fn opponent_material(Scaled(case): &Scaled<Case>) -> Result<Option<Material<f64>
     }
 }
 
-/// The softer body is the slave, of equal ones the sphere: the index of the slave, and the two in
-/// series.
-fn slave_and_series(Scaled(case): &Scaled<Case>) -> Option<(usize, Series)> {
-    let Some(Opponent::Deforming { material, .. }) = &case.opponent else { return None };
-    let other = material.youngs_modulus;
-    Some(if other < 1.0 { (1, Series::new(other, 1.0)) } else { (0, Series::new(1.0, other)) })
+/// The two bodies of a scaled case whose opponent deforms.
+fn two_bodies(Scaled(case): &Scaled<Case>, slaves_are_exchanged: bool) -> Option<TwoBodies> {
+    match &case.opponent {
+        Some(Opponent::Deforming { material, .. }) => Some(TwoBodies::new(material.youngs_modulus, slaves_are_exchanged)),
+        _ => None,
+    }
 }
 
 /// Johnson's parameter of a contact of radius `a`, Lambda = E a/((1 - nu^2) sigma_rep R), with
@@ -194,13 +187,11 @@ impl Problem {
     /// # Errors
     /// As [`Problem::new`].
     pub fn on(case: &Case, zone: Option<Zone>) -> Result<Self, SimulationError> {
-        let (equal_pair, bodies) = (case.opponent == Some(Opponent::Equal), case.bodies());
-        let scaled = case.scaled();
+        Self::of(case.scaled(), zone)
+    }
+
+    fn of(scaled: Scaled<Case>, zone: Option<Zone>) -> Result<Self, SimulationError> {
         let case = &scaled.0;
-        let rigid = match case.opponent {
-            Some(Opponent::Rigid { radius }) => Some(Rigid { curvature: 1.0 / radius }),
-            None | Some(Opponent::Equal | Opponent::Deforming { .. }) => None,
-        };
         let nu = case.material.poissons_ratio;
         let material = case.material.constants::<f64>()?;
         let opponent = opponent_material(&scaled)?;
@@ -210,34 +201,30 @@ impl Problem {
         let mesh = mesh_of(&scaled, &zone)?;
         memory::meshed(mesh.elements.len());
         // Of two spheres it knows R* alone.
-        let lambda = johnson_parameter(&laws, case.compliance()[0], nu, zone.contact_radius / case.effective_radius());
-        let two_bodies = opponent.is_some();
-        let couple = slave_and_series(&scaled);
-        let is_unlike = couple.is_some_and(|(_, series)| series.contrast() >= UNLIKE_STIFFNESS);
+        let lambda = johnson_parameter(&laws, case.compliance()[0], nu, zone.contact_radius / case.body_radius());
+        let couple = two_bodies(&scaled, false);
+        let is_unlike = couple.is_some_and(|couple| couple.series.contrast() >= UNLIKE_STIFFNESS);
         let largest_nu = match &case.opponent {
             Some(Opponent::Deforming { material, .. }) => nu.max(material.poissons_ratio),
             _ => nu,
         };
         let pressed_in_full =
             lambda >= FULLY_PLASTIC || largest_nu >= NEARLY_INCOMPRESSIBLE || is_unlike && lambda >= UNLIKE_PLASTIC;
-        let further = if two_bodies && !pressed_in_full { COUPLE_LINEAR } else { 1.0 };
+        let further = if couple.is_some() && !pressed_in_full { COUPLE_LINEAR } else { 1.0 };
         Ok(Self {
             resolution: Resolution { press_steps: press_steps(case), shear_steps: shear_steps(case), coarseness: 1.0 },
             settings: Settings {
                 tolerance: case.solver.tolerance,
                 max_iterations: case.solver.max_iterations,
                 loosest_linear: loosest_linear(largest_nu) * further,
-                first_linear: if two_bodies { COUPLE_FIRST } else { first_linear(lambda) },
+                first_linear: if couple.is_some() { COUPLE_FIRST } else { first_linear(lambda) },
                 monotone_from: monotone_from(lambda),
             },
             max_cutbacks: case.solver.max_cutbacks,
             spacing: zone.contact_radius / elements as f64,
             zone,
             pressed_in_full,
-            equal_pair,
-            rigid,
-            bodies,
-            couple,
+            slaves_are_exchanged: false,
             model: CaseModel {
                 mesh: Arc::new(mesh),
                 material,
@@ -256,10 +243,12 @@ impl Problem {
     /// # Errors
     /// As [`Problem::new`].
     pub fn on_zone(&self, zone: Zone) -> Result<Self, SimulationError> {
-        // The scaled case is that of one body: it does not say that there are two, nor that it is a
-        // scout's.
-        let Self { equal_pair, bodies, resolution, .. } = *self;
-        Ok(Self { equal_pair, bodies, resolution, ..Self::on(&self.case.0, Some(zone))? })
+        // The case does not say that it is a scout's, nor that slaves are exchanged.
+        let mut grown = Self { resolution: self.resolution, ..Self::of(self.case.clone(), Some(zone))? };
+        if self.slaves_are_exchanged {
+            grown.exchange_slaves();
+        }
+        Ok(grown)
     }
 
     /// The fine zone for a contact that has left this one (see [`Zone::grown`]); `None` if
@@ -272,12 +261,20 @@ impl Problem {
 
     /// Makes the stiffer of two bodies the slave: a check on the interface, which costs iterations.
     pub fn exchange_slaves(&mut self) {
-        if let Some((slave, series)) = &mut self.couple {
-            *slave = 1 - *slave;
-            series.master_share = 1.0 - series.master_share;
-            // The full guess needs the softer body as the slave.
-            self.pressed_in_full = false;
-        }
+        self.slaves_are_exchanged = !self.slaves_are_exchanged;
+        // The full guess needs the softer body as the slave.
+        self.pressed_in_full &= self.couple().is_none();
+    }
+
+    /// Two bodies that both deform, and which of them is the slave.
+    pub fn couple(&self) -> Option<TwoBodies> {
+        two_bodies(&self.case, self.slaves_are_exchanged)
+    }
+
+    /// Bodies that deform (see [`Case::bodies`]): displacements of the path and the record are those
+    /// of one.
+    pub fn bodies(&self) -> f64 {
+        self.case.0.bodies()
     }
 
     /// The fine zone that a case (in the user's units) asks for.
@@ -296,34 +293,30 @@ impl Problem {
         Boundary::new(&self.model.mesh).prescribed.iter().filter(|p| !**p).count()
     }
 
-    /// The Newton iteration for this problem.
-    pub fn newton(&self) -> Result<Newton, SimulationError> {
+    /// What the body is pressed against, before any step.
+    fn opponent(&self) -> Box<dyn opponent::Opponent> {
         let mesh = &self.model.mesh;
-        let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
-        if self.equal_pair {
-            let solver = PairSolver::new(mesh, &pattern).map_err(SolverError::from)?;
-            return Ok(Newton::new(mesh, solver.ok_or(SimulationError::NotMirrored)?, self.settings));
+        match &self.case.0.opponent {
+            None => Box::new(Plane),
+            Some(Opponent::Rigid { radius }) => Box::new(RigidSphere::new(Rigid { curvature: 1.0 / radius })),
+            Some(Opponent::Equal) => Box::new(Joint::new(mesh, EqualPair)),
+            Some(Opponent::Deforming { material, .. }) => {
+                Box::new(Joint::new(mesh, TwoBodies::new(material.youngs_modulus, self.slaves_are_exchanged)))
+            }
         }
-        if let Some((slave, _)) = self.couple {
-            let solver = CoupleSolver::new(mesh, &pattern, slave).map_err(SolverError::from)?;
-            return Ok(Newton::new(mesh, solver, self.settings));
-        }
+    }
+
+    /// The Newton iteration for this problem.
+    ///
+    /// # Errors
+    /// [`SimulationError::NotMirrored`], [`SimulationError::Solver`].
+    pub fn newton(&self) -> Result<Newton, SimulationError> {
         let kind = match self.case.0.solver.linear {
             case::Linear::Multigrid => SolverKind::Multigrid,
             case::Linear::Direct => SolverKind::Direct,
         };
-        let mesh_of_solver = mesh.clone();
-        let linear = Unmade::new(kind, move || {
-            let hierarchy = &mesh_of_solver.hierarchy;
-            Ok(match kind {
-                SolverKind::Multigrid => LinearSolver::<f32>::new(kind, &pattern, hierarchy)?.into(),
-                SolverKind::Direct => LinearSolver::<f64>::new(kind, &pattern, hierarchy)?.into(),
-            })
-        });
-        let newton = Newton::new(mesh, linear, self.settings);
-        Ok(match self.rigid {
-            Some(rigid) => newton.against(rigid),
-            None => newton,
-        })
+        let (mesh, opponent) = (&self.model.mesh, self.opponent());
+        let systems = opponent.systems(mesh, kind).map_err(SolverError::from)?.ok_or(SimulationError::NotMirrored)?;
+        Ok(Newton::new(mesh, systems, self.settings).against(opponent))
     }
 }

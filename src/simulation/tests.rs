@@ -5,11 +5,10 @@ use super::checkpoint::Snapshot;
 use super::drive::{Drive, Ending, Observer, StepView};
 use super::problem::Problem;
 use super::record::StepRecord;
-use crate::case::{Case, Hold, Segment, ShearTarget};
+use crate::case::{Case, Hold, Opponent, Segment, ShearTarget};
 use crate::compute::cpu::Cpu;
 use crate::compute::wrong::{Kind, REFUSAL, Wrong};
 use crate::compute::{CaseState, Compute, ComputeError};
-use crate::contact::rigid::Rigid;
 use crate::real::Real;
 
 /// Every kind of segment, there and back.
@@ -128,7 +127,7 @@ fn so_it_is_in_single_precision_with_full_stick_and_with_the_direct_solver() {
 fn so_it_is_between_equal_spheres() {
     let mut problem = problem("0.3", "");
     problem.case.0.path.truncate(3);
-    problem.equal_pair = true;
+    problem.case.0.opponent = Some(Opponent::Equal);
     stop_and_go::<f64>(&problem);
 }
 
@@ -136,7 +135,7 @@ fn so_it_is_between_equal_spheres() {
 fn so_it_is_against_a_rigid_sphere() {
     let mut problem = problem("0.3", "");
     problem.case.0.path.truncate(3);
-    problem.rigid = Some(Rigid { curvature: 1.0 });
+    problem.case.0.opponent = Some(Opponent::Rigid { radius: 1.0 });
     stop_and_go::<f64>(&problem);
 }
 
@@ -160,13 +159,20 @@ fn on_a_larger_zone_the_opponent_is_the_same() {
     let text = include_str!("../../fixtures/cases/ideal.toml");
     for opponent in ["opponent.equal=true", "opponent={rigid=true,radius=2.0}", "opponent.radius=2.0"] {
         let sets = ["mesh.elements_per_contact_radius=4".to_owned(), opponent.to_owned()];
-        let problem = Problem::new(&Case::parse(text, "case.toml", &sets).unwrap()).unwrap();
+        let case = Case::parse(text, "case.toml", &sets).unwrap();
+        let mut problem = Problem::new(&case).unwrap();
+        problem.exchange_slaves();
         let zone = problem.zone.grown(1.2 * problem.zone.radius(), 0.0, 1.0).unwrap();
         let grown = problem.on_zone(zone).unwrap();
-        assert_eq!((grown.equal_pair, grown.bodies, grown.rigid), (problem.equal_pair, problem.bodies, problem.rigid));
-        assert_eq!((&grown.case, grown.zone), (&problem.case, zone));
-        assert_eq!((grown.couple, &grown.model.opponent), (problem.couple, &problem.model.opponent));
-        assert!(grown.equal_pair || grown.couple.is_some() || grown.rigid == Some(Rigid { curvature: 0.5 }));
+        assert_eq!((grown.bodies(), &grown.case, grown.zone), (case.bodies(), &problem.case, zone));
+        assert_eq!((grown.couple(), &grown.model.opponent), (problem.couple(), &problem.model.opponent));
+        assert_eq!(grown.pressed_in_full, problem.pressed_in_full);
+        let opponent = grown.case.0.opponent.as_ref();
+        let slave = grown.couple().map(|bodies| bodies.slave);
+        assert!(matches!(
+            (opponent, slave),
+            (Some(Opponent::Equal | Opponent::Rigid { .. }), None) | (Some(Opponent::Deforming { .. }), Some(1))
+        ));
     }
 }
 

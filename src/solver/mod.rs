@@ -1,26 +1,18 @@
 //! From one accepted state to the next: a semismooth Newton iteration with a merit line search.
 //!
 //! `newton` iterates one step, of which `outcome` tells how it went; `iterate` has its vectors, on
-//! the host or on a device. `system` holds the residual and matrix of the host's, `rigid` those of
-//! a rigid sphere as the opponent, `encounter` those of another body, `meet` what either does to a
-//! trial; `systems` solves for the correction, with `pair` for two equal spheres and `couple` for
-//! two bodies (`tied` is what these have in common), `phases` is what its parts cost. Choosing
-//! steps and bisecting them is the simulation's business.
+//! the host or on a device. `system` holds the residual and matrix of the host's, `opponent` all
+//! that depends on what the body is pressed against; `systems` solves for the correction, with
+//! `pair` for two equal spheres and `couple` for two bodies (`tied` is what these have in common),
+//! `phases` is what its parts cost. Choosing steps and bisecting them is the simulation's business.
 
-pub mod couple;
-pub mod dissipation;
-pub mod encounter;
-mod half;
 pub mod iterate;
-mod meet;
 pub mod newton;
+pub mod opponent;
 pub mod outcome;
-pub mod pair;
 pub mod phases;
-pub mod rigid;
 pub mod system;
 pub mod systems;
-mod tied;
 
 #[cfg(test)]
 mod tests;

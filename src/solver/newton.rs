@@ -3,20 +3,19 @@
 
 mod line_search;
 
-use super::encounter::Encounter;
 use super::iterate::host::HostIterate;
 use super::iterate::resident::ResidentIterate;
 use super::iterate::{Asked, Correction, Iterate, SetOut};
+use super::opponent::{Opponent, StepTaken};
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
 use super::phases::{Lap, Phase, PhaseTimes};
-use super::system::{Meeting, Trial};
+use super::system::Trial;
 use super::systems::Systems;
 use super::{Control, Settings, SolverError};
 use crate::compute::ComputeError;
 use crate::compute::handle::Evaluate;
 use crate::compute::iterate::{Keeps, Reading, Settled};
 use crate::contact::coulomb::{Friction, Status};
-use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
 
 /// Eisenstat & Walker (1996), choice 2: eta = gamma (m_k / m_k-1)^2. Not below what the tolerance
@@ -101,10 +100,15 @@ impl Newton {
         }
     }
 
-    /// The same against a rigid sphere in place of the plane.
-    pub fn against(mut self, rigid: Rigid) -> Self {
-        self.iterates.host.against(rigid);
+    /// The same against another opponent than the plane.
+    pub fn against(mut self, opponent: Box<dyn Opponent>) -> Self {
+        self.iterates.host.against(opponent);
         self
+    }
+
+    /// What the body is pressed against.
+    pub fn opponent(&self) -> &dyn Opponent {
+        &*self.iterates.host.boundary().opponent
     }
 
     /// Which iterates of the case stay on this backend.
@@ -184,26 +188,14 @@ impl Newton {
         self.may_miss = may_miss;
     }
 
-    /// Sets the interface of an equal pair for the next step.
-    pub fn meet(&mut self, meeting: Meeting) {
-        self.iterates.host.meet(meeting);
+    /// Sets out for the next step (see [`Opponent::set_out`]).
+    pub fn set_out(&mut self, mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) {
+        self.iterates.host.set_out(mesh, start, expected, symmetric);
     }
 
-    /// Sets the interface with another body for the next step.
-    pub fn encounter(&mut self, encounter: Encounter) {
-        self.iterates.host.encounter(encounter);
-    }
-
-    /// Work that friction dissipates in the step to the accepted trial, on the meshed half, where
-    /// the forces at the contact were `before` (three a node) at its start; between two bodies
-    /// alone.
-    pub fn interface_friction_work(&self, friction: Friction<f64>, before: &[f64]) -> Option<f64> {
-        let (trial, boundary) = (self.iterates.host.current(), self.iterates.host.boundary());
-        match (&boundary.pair, &boundary.encounter) {
-            (Some(pair), _) => Some(pair.friction_work(friction, trial, before)),
-            (None, Some(encounter)) => Some(encounter.friction_work(friction, trial, before)),
-            (None, None) => None,
-        }
+    /// Work that friction dissipates in the step to the accepted trial, on the meshed half.
+    pub fn friction_work(&self, step: &StepTaken<'_>) -> f64 {
+        self.opponent().friction_work(self.accepted(), step)
     }
 
     /// What the bodies need at the points at which Coulomb's law is posed, in the frames in which
@@ -211,19 +203,14 @@ impl Newton {
     /// equilibrium the forces of contact, but not projected onto what contact can exert. Where the
     /// vectors are on the host.
     pub fn needed_forces(&self, mesh: &Mesh) -> Vec<([f64; 3], Status)> {
-        self.iterates.host.current().needed_forces(mesh, self.iterates.host.boundary())
-    }
-
-    /// Leaves the even part of a guess where the step is symmetric.
-    pub fn symmetrise(&self, guess: &mut [f64]) {
-        self.iterates.host.symmetrise(guess);
+        self.opponent().needed_forces(self.accepted(), mesh)
     }
 
     /// What contact exerts on each contact node at the accepted trial, what each does, and its gap,
     /// where its vectors are on the host.
     pub fn contact_state(&self, mesh: &Mesh) -> (Vec<[f64; 3]>, Vec<Status>, Vec<f64>) {
-        let (trial, boundary) = (self.accepted(), self.iterates.host.boundary());
-        (trial.point_forces(mesh, boundary), trial.statuses(boundary), trial.gaps(mesh, boundary))
+        let (trial, opponent) = (self.accepted(), self.opponent());
+        (opponent.forces(trial, mesh), opponent.statuses(trial), opponent.gaps(trial, mesh))
     }
 
     /// Number of contact nodes of the sphere; those of another body follow them.

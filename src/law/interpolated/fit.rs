@@ -17,7 +17,7 @@ use crate::law::fit::study_name;
 use crate::law::model::Interval;
 use crate::law::report::{CaseErrors, by_region};
 use crate::law::table::StudyTable;
-use crate::law::tabulated::{Against, Level, Measured, scaled};
+use crate::law::tabulated::{Against, Level, Measured};
 use crate::law::variables::yield_lambda;
 use crate::output::{OutputDirectory, read_history};
 
@@ -249,7 +249,7 @@ fn sample(
             outputs.unload_as(&other);
         }
     }
-    let own = scaled(case).material;
+    let own = case.scaled().0.material;
     let material = materials.iter().position(|known| *known == own).unwrap_or_else(|| {
         materials.push(own);
         materials.len() - 1

@@ -133,7 +133,7 @@ pub struct Interpolated {
 /// The sphere of a case by itself, and the one that makes the same elastic contact on a rigid
 /// plane; in units of its radius and its E.
 fn bodies(case: &Case) -> Result<(Body, ElasticSphere), LawError> {
-    let scaled = tabulated::scaled(case);
+    let scaled = case.scaled().0;
     Ok((Body::new(1.0, &scaled.material)?, equivalent(&scaled)))
 }
 

@@ -87,10 +87,7 @@ fn bodies(case: &Case) -> impl Iterator<Item = &Material> {
 /// bodies have R/2 and E/2.
 pub fn equivalent(case: &Case) -> ElasticSphere {
     let Material { youngs_modulus, poissons_ratio, .. } = case.material;
-    let [normal, tangential] = match case.opponent {
-        Some(Opponent::Equal) => [2.0; 2],
-        _ => case.compliance(),
-    };
+    let [normal, tangential] = case.compliance().map(|one| case.bodies() * one);
     let effective_modulus = youngs_modulus / ((1.0 - poissons_ratio * poissons_ratio) * normal);
     // Of one body, tangential over normal compliance is (2 - nu)/(2 (1 - nu)).
     let ratio = (2.0 - poissons_ratio) / (1.0 - poissons_ratio) * tangential / normal;

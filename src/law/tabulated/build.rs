@@ -10,7 +10,7 @@ use super::{
 };
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
-use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
+use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
 use crate::contact_law::path::drive;
 use crate::contact_law::{Centres, POINTS, measured_slope, unloading_exponent};
 use crate::law::LawError;
@@ -155,15 +155,8 @@ pub fn build(dir: &Path, case: &Case, elements: usize) -> Result<Built, LawError
     Ok(Built { table, coarse, measured: all, missing })
 }
 
-/// A case in units of R and E, with what it meets, which an equal pair loses there.
-pub fn scaled(case: &Case) -> Case {
-    let in_units = case.scaled().0;
-    let opponent = if case.opponent == Some(Opponent::Equal) { Some(Opponent::Equal) } else { in_units.opponent.clone() };
-    Case { opponent, ..in_units }
-}
-
 pub(super) fn table(case: &Case, depths: &[Measured], elements: usize) -> Result<Tabulated, LawError> {
-    let scaled = case_of(&scaled(case), elements);
+    let scaled = case_of(&case.scaled().0, elements);
     let sphere = equivalent(&scaled);
     let mut levels: Vec<Level> = depths.iter().map(|one| level(&sphere, friction_of(&scaled), one)).collect();
     smoothed(&mut levels);

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::against::equivalent;
-use super::build::{scaled, unloading_radius};
+use super::build::unloading_radius;
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Segment};
 use crate::contact_law::{Centres, unloading_exponent};
@@ -84,7 +84,7 @@ impl Measured {
         let release = release.map(|row| [row.h / radius, row.f_n / force]).collect();
         let one = Self { h: start.h / radius, f_n0: start.f_n / force, a0: start.a / radius, curve, back, release };
         Some(match (centres.frame(), case.contact.friction) {
-            (Some(_), Friction::Coefficient(mu)) => one.at_one_overlap(&equivalent(&scaled(case)), mu, &lacking),
+            (Some(_), Friction::Coefficient(mu)) => one.at_one_overlap(&equivalent(&case.scaled().0), mu, &lacking),
             _ => one,
         })
     }

@@ -31,7 +31,7 @@ use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINT
 
 pub use against::{Against, equivalent, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
-pub(super) use build::{backbone_of, reversal, scaled, unloading_radius};
+pub(super) use build::{backbone_of, reversal, unloading_radius};
 pub(super) use checked::check_levels;
 pub(super) use measure::Measured;
 pub use measure::Missing;
@@ -145,12 +145,12 @@ impl Tabulated {
     /// # Errors
     /// A hardening law whose numbers make no law; [`LawError::NoTable`] for levels that are none.
     pub(super) fn interpolated(case: &Case, levels: Vec<Level>, elements: usize) -> Result<Self, LawError> {
-        build::of_levels(build::scaled(case), levels, elements)
+        build::of_levels(case.scaled().0, levels, elements)
     }
 
     /// The table of two bodies that are alike as that of an equal pair, which `case` is of.
     pub(super) fn of_an_equal_pair(self, case: &Case) -> Self {
-        let case = build::case_of(&build::scaled(case), self.elements_per_contact_radius);
+        let case = build::case_of(&case.scaled().0, self.elements_per_contact_radius);
         Self { body: Against::of(&case), frame: Centres::of(&case).frame(), case: case.to_toml(), ..self }
     }
 

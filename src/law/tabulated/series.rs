@@ -502,12 +502,12 @@ pub fn alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
         Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
         _ => deepest,
     });
+    let radius = scaled.effective_radius();
+    let opponent = (opponent == Against::EqualSphere).then_some(Opponent::Equal);
+    let mut base = Case { sphere: Sphere { radius: 1.0, flat: false }, opponent, ..scaled };
     // One body may give way by all of h, and its R' is R* at the least; a table of an equal pair
     // counts what both of its spheres give way.
-    let (opponent, share) = if opponent == Against::EqualSphere { (Some(Opponent::Equal), 2.0) } else { (None, 1.0) };
-    let indentation = spare * share * deepest / scaled.effective_radius();
-    let sphere = Sphere { radius: 1.0, flat: false };
-    let base = Case { sphere, opponent, path: vec![Segment::Indentation { indentation }], ..scaled };
+    base.path = vec![Segment::Indentation { indentation: spare * base.bodies() * deepest / radius }];
     Some([base.clone(), Case { material: other, ..base }])
 }
 

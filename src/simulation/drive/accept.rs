@@ -5,16 +5,14 @@ use crate::compute::handle::{CaseHandle, Evaluate};
 use crate::compute::iterate::Settled;
 use crate::compute::{Energies, Fault, Outcome};
 use crate::contact::coulomb::Status;
-use crate::contact::frame::to_frame;
 use crate::contact::plane::gap;
 use crate::simulation::SimulationError;
 use crate::simulation::footprint::{bulge, footprint};
 use crate::simulation::path::Target;
 use crate::simulation::record::StepRecord;
 use crate::solver::StepReport;
-use crate::solver::dissipation::dissipated;
+use crate::solver::opponent::StepTaken;
 use crate::solver::phases::{Lap, Phase};
-use crate::solver::rigid::position;
 
 /// What a step leaves that is accepted.
 struct Taken {
@@ -54,14 +52,18 @@ impl Drive<'_> {
         }
         let h = self.newton.accepted_h();
         let force: [f64; 3] = std::array::from_fn(|c| forces[..self.mesh.own_contacts()].iter().map(|f| f[c]).sum());
-        let slaves = self.slave_contacts();
+        let slaves = self.newton.opponent().contacts(&self.mesh);
         let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
         let (contact_points, slipping_points) = (count(Status::Stick) + count(Status::Slip), count(Status::Slip));
         let length = self.state.length_to(target.h, target.delta_t);
-        let friction_work = match self.newton.interface_friction_work(self.problem.model.friction, &self.state.force) {
-            Some(work) => work,
-            None => self.friction_work(&displacement, &forces, &statuses),
-        };
+        let friction_work = self.newton.friction_work(&StepTaken {
+            mesh: &self.mesh,
+            friction: self.problem.model.friction,
+            displacements: [&self.state.u, &displacement],
+            before: &self.state.force,
+            after: &forces,
+            statuses: &statuses,
+        });
         self.state.u_before = std::mem::replace(&mut self.state.u, displacement);
         self.state.force = internal_force;
         for (force, &node) in forces.iter().zip(&self.mesh.contact_nodes) {
@@ -76,7 +78,7 @@ impl Drive<'_> {
         let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing);
         // A slave that is the opponent lies the other way round.
         let side = if slaves.start == 0 { 1.0 } else { -1.0 };
-        let shape = self.problem.couple.and_then(|_| bulge(&self.state.points[slaves]));
+        let shape = self.mesh.couple.as_ref().and_then(|_| bulge(&self.state.points[slaves]));
         let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
         // 0 - x, not -x: no force is 0, not -0.
         let (f_n, f_t) = (2.0 * force[2], 0.0 - 2.0 * force[0]);
@@ -175,27 +177,5 @@ impl Drive<'_> {
             statuses: points.iter().map(|point| point.status).collect(),
             gaps,
         }
-    }
-
-    /// Dissipation by friction in a step, summed over the points of the meshed half.
-    fn friction_work(&self, u: &[f64], forces: &[[f64; 3]], statuses: &[Status]) -> f64 {
-        let friction = self.problem.model.friction;
-        let mut work = 0.0;
-        for (((point, force), &status), &node) in self.state.points.iter().zip(forces).zip(statuses).zip(&self.mesh.contact_nodes)
-        {
-            let base = 3 * node as usize;
-            let Some(rigid) = self.problem.rigid else {
-                let slip = [0, 1].map(|i| u[base + i] - self.state.u[base + i]);
-                work += dissipated(friction, status, &point.force, force, slip);
-                continue;
-            };
-            // Along the surface half-way: across it points come down, and nothing is dissipated.
-            let [before, after] = [&self.state.u, u].map(|u| position(&self.mesh, u, node));
-            let frame = rigid.frame(&std::array::from_fn(|i| 0.5 * (before[i] + after[i])));
-            let [along, across, _] = to_frame(&frame, &std::array::from_fn(|i| after[i] - before[i]));
-            let [before, after] = [&point.force, force].map(|force| to_frame(&frame, force));
-            work += dissipated(friction, status, &before, &after, [along, across]);
-        }
-        work
     }
 }

@@ -126,7 +126,7 @@ impl Drive<'_> {
                 if distance >= bound {
                     observer.note(&format!(
                         "shear: full slip was not reached within delta_T = {:.4} R; {} of {} contact points slip",
-                        self.problem.bodies * distance,
+                        self.problem.bodies() * distance,
                         self.state.record.slipping_points,
                         self.state.record.contact_points
                     ));
@@ -140,7 +140,7 @@ impl Drive<'_> {
 
     /// Every point slips, but for points at the edge that carry next to nothing.
     fn slips_fully(&self) -> bool {
-        let closed = self.state.points[self.slave_contacts()].iter().filter(|p| p.status != Status::Open);
+        let closed = self.state.points[self.newton.opponent().contacts(&self.mesh)].iter().filter(|p| p.status != Status::Open);
         let (mut stick, mut all) = (0.0, 0.0);
         for p in closed {
             all += p.force[2];

@@ -5,16 +5,12 @@ use crate::compute::handle::Evaluate;
 use crate::compute::iterate::{Reading, Vectors};
 use crate::compute::{ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
-use crate::contact::pair::leave_even;
-use crate::contact::rigid::Rigid;
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
-use crate::solver::encounter::Encounter;
+use crate::solver::opponent::Opponent;
 use crate::solver::outcome::{Halt, StepFailure, Worst};
-use crate::solver::pair::mirror_nodes;
 use crate::solver::phases::PhaseTimes;
-use crate::solver::rigid::Against;
-use crate::solver::system::{Boundary, Meeting, Trial};
+use crate::solver::system::{Boundary, Trial};
 use crate::solver::systems::Systems;
 use crate::solver::{Control, SolverError};
 
@@ -51,14 +47,8 @@ pub struct HostIterate {
 impl HostIterate {
     /// Iterates on a mesh.
     pub fn new(mesh: &Mesh, linear: Systems) -> Self {
-        let mut boundary = Boundary::new(mesh);
-        if let Systems::Pair(solver) = &linear {
-            boundary.mirror = solver.mirror().to_vec();
-        } else if matches!(linear, Systems::Couple(_)) {
-            boundary.mirror = mirror_nodes(mesh).unwrap_or_default();
-        }
         Self {
-            boundary,
+            boundary: Boundary::new(mesh),
             linear,
             current: Trial::default(),
             candidate: Trial::default(),
@@ -79,9 +69,9 @@ impl HostIterate {
         }
     }
 
-    /// The opponent is a rigid sphere in place of the plane.
-    pub fn against(&mut self, rigid: Rigid) {
-        self.boundary.against = Some(Against::new(rigid));
+    /// Sets what the body is pressed against, in place of the plane.
+    pub fn against(&mut self, opponent: Box<dyn Opponent>) {
+        self.boundary.opponent = opponent;
     }
 
     /// The current iterate.
@@ -100,29 +90,9 @@ impl HostIterate {
         self.boundary.frictionless.iter_mut().zip(points).for_each(|(slides, &point)| *slides = point);
     }
 
-    /// Sets the interface of an equal pair for the next step.
-    pub fn meet(&mut self, meeting: Meeting) {
-        if let Systems::Pair(solver) = &mut self.linear {
-            solver.set_symmetric(meeting.symmetric);
-        }
-        self.boundary.pair = Some(meeting);
-    }
-
-    /// Sets the interface with another body for the next step.
-    pub fn encounter(&mut self, encounter: Encounter) {
-        if let Systems::Couple(solver) = &mut self.linear {
-            solver.set_symmetric(encounter.symmetric);
-        }
-        self.boundary.encounter = Some(encounter);
-    }
-
-    /// Leaves the even part of a guess where the step is symmetric.
-    pub fn symmetrise(&self, guess: &mut [f64]) {
-        if let Systems::Pair(solver) = &self.linear {
-            solver.symmetrise(guess);
-        } else if self.boundary.is_even() {
-            leave_even(&self.boundary.mirror, guess);
-        }
+    /// Sets out for a step (see [`Opponent::set_out`]).
+    pub fn set_out(&mut self, mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) {
+        self.boundary.opponent.set_out(mesh, start, expected, symmetric);
     }
 
     /// What Newton's method decides by of a trial, as seen from the current iterate.
@@ -176,9 +146,7 @@ impl HostIterate {
     /// Over a plane, its systems solved with multigrid: what a device that keeps iterates does by
     /// itself.
     pub fn is_over_plane_by_multigrid(&self) -> bool {
-        let over_plane =
-            matches!(self.linear, Systems::Plane(_) | Systems::Direct(_) | Systems::Unmade(_)) && self.boundary.against.is_none();
-        over_plane && self.linear.kind() == SolverKind::Multigrid
+        self.boundary.opponent.is_plane() && self.linear.kind() == SolverKind::Multigrid
     }
 
     /// Takes the memory of vectors and matrices, if it has not yet: on a device that keeps iterates
@@ -265,9 +233,6 @@ impl Iterate for HostIterate {
         self.came_off.iter_mut().zip(start.came_off).for_each(|(off, came_off)| *off = *came_off);
         let mesh = case.model().mesh.clone();
         self.furnish(&mesh)?;
-        if let Some(against) = &mut self.boundary.against {
-            against.set_out(&mesh, start.displacement);
-        }
         if let Some(guess) = start.guess {
             self.current.h = control.h;
             self.current.u.copy_from_slice(guess);

@@ -6,15 +6,13 @@ use super::{Asked, Correction};
 use crate::compute::handle::Evaluate;
 use crate::compute::linear::{Ended, LinearRequest, Side, SideReport};
 use crate::compute::{Blocks, Outcome};
-use crate::contact::pair::leave_even;
 use crate::linalg::{BlockMatrix, LinalgError, SolverKind};
 use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::solver::SolverError;
 use crate::solver::outcome::{Halt, StepFailure};
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
-use crate::solver::rigid::turn;
-use crate::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
+use crate::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side, turn};
 use crate::solver::systems::{Matrix, Systems};
 
 /// Share of the forces at the contact to which the response to a unit indentation is solved, which
@@ -69,8 +67,8 @@ impl HostIterate {
     fn solve_there(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<There, Halt> {
         let Asked { control, eta, first } = asked;
         let mesh = &case.model().mesh.clone();
-        let Systems::Plane(solver) = &self.linear else { return Ok(There::NotSolved { krylov: 0 }) };
-        if solver.kind() != SolverKind::Multigrid || self.boundary.against.is_some() {
+        let Systems::Multigrid(solver) = &self.linear else { return Ok(There::NotSolved { krylov: 0 }) };
+        if solver.kind() != SolverKind::Multigrid || !self.boundary.opponent.is_plane() {
             return Ok(There::NotSolved { krylov: 0 });
         }
         let mut lap = Lap::start();
@@ -118,7 +116,7 @@ impl HostIterate {
             delta_h = self.move_plate(target, reports[0].along, unit.along)?;
         }
         self.delta.copy_from_slice(&self.correction);
-        self.current.expand(mesh, &self.boundary, &mut self.delta);
+        self.boundary.opponent.expand(&self.current, mesh, &mut self.delta);
         self.delta_h = delta_h;
         Ok(There::Solved(Correction { krylov, fallback: false, delta_h, slope: 0.0 }))
     }
@@ -153,17 +151,7 @@ impl HostIterate {
             Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &self.current, held, times)?,
         }
         let mut lap = Lap::start();
-        match (&mut self.linear, &self.boundary.pair, &self.boundary.encounter) {
-            (Systems::Plane(solver), None, None) => solver.refresh(&self.fixed)?,
-            (Systems::Direct(solver), None, None) => solver.refresh(&self.fixed)?,
-            (Systems::Pair(solver), Some(pair), None) => {
-                solver.refresh(&pair.interface, &self.current.rows, &self.fixed, &self.boundary.prescribed)?;
-            }
-            (Systems::Couple(solver), None, Some(encounter)) => {
-                solver.refresh(&encounter.interface, &self.current.rows, &self.fixed)?;
-            }
-            _ => return Err(StepFailure::Linear("the solver is made for another opponent".into()).into()),
-        }
+        self.boundary.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
         lap.end(times, Phase::LinearUpdate);
         self.correction.fill(0.0);
         let solved = match self.linear.solve(&self.rhs, eta, &mut self.correction, true) {
@@ -185,21 +173,15 @@ impl HostIterate {
             let (current, boundary, delta) = (&self.current, &self.boundary, &mut self.delta);
             let mut along = |x: &[f64]| {
                 delta.copy_from_slice(x);
-                current.expand(mesh, boundary, delta);
+                boundary.opponent.expand(current, mesh, delta);
                 self.functional.iter().zip(&*delta).map(|(w, x)| w * x).sum::<f64>()
             };
             let (by_delta, by_unit) = (along(&self.correction), along(&self.unit_response));
             delta_h = self.move_plate(target, by_delta, by_unit)?;
         }
         self.delta.copy_from_slice(&self.correction);
-        self.current.expand(mesh, &self.boundary, &mut self.delta);
-        if let Systems::Pair(solver) = &self.linear {
-            solver.symmetrise(&mut self.delta);
-        } else if self.boundary.is_even() {
-            leave_even(&self.boundary.mirror, &mut self.delta);
-            self.correction.copy_from_slice(&self.delta);
-            self.current.contract(mesh, &self.boundary, &mut self.correction);
-        }
+        self.boundary.opponent.expand(&self.current, mesh, &mut self.delta);
+        self.boundary.opponent.leave_even_correction(&mut self.delta, &mut self.correction);
         lap.end(times, Phase::LinearSolve);
         self.delta_h = delta_h;
         Ok(Correction { krylov, fallback, delta_h, slope: 0.0 })
@@ -215,7 +197,7 @@ impl HostIterate {
             let mut guess = vec![0.0; self.unit_rhs.len()];
             let alone = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             guess.iter_mut().skip(2).step_by(3).take(self.boundary.own_nodes).for_each(|z| *z = -1.0);
-            self.current.contract(mesh, &self.boundary, &mut guess);
+            self.boundary.opponent.contract(&self.current, mesh, &mut guess);
             let moving = self.linear.residual_norm(&self.unit_rhs, &guess)?;
             self.unit_scale = if alone > 0.0 { (moving / alone).min(1.0) } else { 1.0 };
             self.unit_response.copy_from_slice(&guess);
@@ -224,7 +206,7 @@ impl HostIterate {
     }
 }
 
-/// Forms the matrix: the tangent, and over a plane or a rigid sphere the contact's rows in it.
+/// Forms the matrix: the tangent, and the contact's rows in it if they stand there.
 /// `held`, where the normal force is, receives how the plate's force follows the displacements.
 fn form<T: Real>(
     matrix: &mut BlockMatrix<T>,
@@ -244,10 +226,8 @@ where
     if let Some(functional) = held {
         plate_functional(matrix, &boundary.plate, functional);
     }
-    if boundary.against.is_some() {
+    if boundary.opponent.is_in_matrix() {
         turn(matrix, mesh, &current.frames);
-    }
-    if boundary.pair.is_none() && boundary.encounter.is_none() {
         apply_contact(matrix, mesh, &current.rows);
     }
     lap.end(times, Phase::Contact);

@@ -12,13 +12,13 @@
 //! the slave exerts on it, which is nothing together in equilibrium.
 
 use super::frame::{Frame, frame, from_frame, to_frame};
+use super::interface::{Interface, inward_normals};
 use super::mortar::{Surface, weights_between};
-use super::pair::inward_normals;
 use crate::mesh::Mesh;
 
 /// The interface of one step: fixed while it is solved, made anew for the next.
 #[derive(Clone, Debug, Default)]
-pub struct Interface {
+pub struct CoupleInterface {
     /// Slave nodes, by their index among the contact nodes.
     pub slaves: Vec<usize>,
     /// Per contact node: the slave that it is, or of a master the one that it has most to do with.
@@ -46,7 +46,7 @@ fn at(x: &[f64], node: usize) -> [f64; 3] {
     [x[3 * node], x[3 * node + 1], x[3 * node + 2]]
 }
 
-impl Interface {
+impl CoupleInterface {
     /// The interface between the two bodies of a mesh with displacement `u` (three a node), of
     /// which body `slave` (0 the sphere, 1 the opponent) is the slave and the master's normal has
     /// the weight `of_master` (0 to 1); none if the mesh is of one body.
@@ -98,17 +98,6 @@ impl Interface {
         interface
     }
 
-    /// Node of each slave.
-    pub fn nodes(&self) -> &[usize] {
-        &self.nodes
-    }
-
-    /// Whether a contact node is a slave on the symmetry plane, along whose normal nothing is
-    /// coupled.
-    pub fn is_on_symmetry_plane(&self, contact: usize) -> bool {
-        self.facing[contact].is_some_and(|k| self.on_symmetry[k])
-    }
-
     /// What the masters' values x (three a node) come to at a slave, in the slave's coordinates;
     /// not along y where that is not coupled.
     fn opposite(&self, k: usize, x: &[f64]) -> [f64; 3] {
@@ -123,25 +112,42 @@ impl Interface {
         across(sum)
     }
 
-    /// Relative positions or displacements of the slaves in their frames, from those of all nodes
-    /// (three a node).
-    pub fn relative(&self, x: &[f64]) -> Vec<[f64; 3]> {
-        let relative = |k: usize| {
-            let (own, other) = (at(x, self.nodes[k]), self.opposite(k, x));
-            to_frame(&self.frames[k], &std::array::from_fn(|c| own[c] - other[c]))
-        };
-        (0..self.slaves.len()).map(relative).collect()
+    /// A slave's force in the masters' coordinates, as far as they are coupled.
+    fn carried(&self, k: usize, force: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = across(force);
+        [x, if self.on_symmetry[k] { 0.0 } else { y }, z]
+    }
+}
+
+impl Interface for CoupleInterface {
+    fn slaves(&self) -> &[usize] {
+        &self.slaves
     }
 
-    /// y of displacements u, in place: slave entries become relative ones in their frames.
-    pub fn contract(&self, u: &mut [f64]) {
-        for (k, w) in self.relative(u).into_iter().enumerate() {
-            u[3 * self.nodes[k]..][..3].copy_from_slice(&w);
-        }
+    fn facing(&self) -> &[Option<usize>] {
+        &self.facing
     }
 
-    /// u = T y, in place.
-    pub fn expand(&self, y: &mut [f64]) {
+    fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    fn base(&self, k: usize) -> usize {
+        3 * self.nodes[k]
+    }
+
+    /// The symmetry plane sees to it, along whose normal nothing is coupled.
+    fn is_free_along_y(&self, k: usize) -> bool {
+        self.on_symmetry[k]
+    }
+
+    /// In the slave's coordinates.
+    fn relative_along_axes(&self, k: usize, x: &[f64]) -> [f64; 3] {
+        let (own, other) = (at(x, self.nodes[k]), self.opposite(k, x));
+        std::array::from_fn(|c| own[c] - other[c])
+    }
+
+    fn expand(&self, y: &mut [f64]) {
         for k in 0..self.slaves.len() {
             let (w, other) = (from_frame(&self.frames[k], &at(y, self.nodes[k])), self.opposite(k, y));
             let u: [f64; 3] = std::array::from_fn(|c| w[c] + other[c]);
@@ -149,9 +155,7 @@ impl Interface {
         }
     }
 
-    /// T^T f, in place: slave entries become the forces of the interface in their frames, master
-    /// entries what is not balanced there.
-    pub fn reduce(&self, f: &mut [f64]) {
+    fn reduce(&self, f: &mut [f64]) {
         for k in 0..self.slaves.len() {
             let force = at(f, self.nodes[k]);
             let carried = self.carried(k, force);
@@ -162,15 +166,8 @@ impl Interface {
         }
     }
 
-    /// A slave's force in the masters' coordinates, as far as they are coupled.
-    fn carried(&self, k: usize, force: [f64; 3]) -> [f64; 3] {
-        let [x, y, z] = across(force);
-        [x, if self.on_symmetry[k] { 0.0 } else { y }, z]
-    }
-
-    /// What the interface's forces (per slave, in its frame) exert on the contact nodes of both
-    /// bodies, in their order, each in its own coordinates.
-    pub fn nodal(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    /// Of both bodies, each in its own coordinates.
+    fn nodal(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut nodal = vec![[0.0; 3]; self.contacts];
         for (k, force) in forces.iter().enumerate() {
             let force = from_frame(&self.frames[k], force);
@@ -215,7 +212,7 @@ mod tests {
         for (radius, slave) in [(2.0, 0), (2.0, 1), (f64::INFINITY, 0), (1.0, 1)] {
             let mesh = bodies(0.2, 4, radius);
             for by in [0.0, 0.3, 1.0, 3.0] {
-                let interface = Interface::new(&mesh, &slid(&mesh, 0.05 * by), slave, 0.5);
+                let interface = CoupleInterface::new(&mesh, &slid(&mesh, 0.05 * by), slave, 0.5);
                 assert!(interface.slaves.len() > 20, "{}", interface.slaves.len());
                 let n = 3 * mesh.nodes.len();
                 let y: Vec<f64> = (0..n).map(|i| (0.37 * i as f64).sin()).collect();
@@ -256,7 +253,7 @@ mod tests {
             for slip in [0.0, 0.3, 1.0, 3.0] {
                 let by = slip * 0.2 / elements as f64;
                 let u: Vec<f64> = (0..mesh.nodes.len()).flat_map(|n| [if n < parts.node { by } else { 0.0 }, 0.0, 0.0]).collect();
-                let interface = Interface::new(&mesh, &u, 0, 0.5);
+                let interface = CoupleInterface::new(&mesh, &u, 0, 0.5);
                 let mut force = vec![0.0; mesh.contact_nodes.len()];
                 for k in 0..interface.slaves.len() {
                     interface.masters[k].iter().for_each(|&(contact, _, w)| force[contact] += interface.area[k] * w);

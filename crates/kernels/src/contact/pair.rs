@@ -10,29 +10,17 @@
 //! carries there, at a master node the body's own and what the image exerts on it, which is nothing
 //! together in equilibrium.
 
-use super::frame::{Frame, frame, from_frame, to_frame, unit};
+use super::frame::{Frame, frame, from_frame, to_frame};
+use super::interface::{Interface, inward_normals};
 use super::mortar::{Weights, self_image_weights};
 use crate::mesh::Mesh;
 
 /// R = diag(-1, 1, -1), the half turn round y.
 pub const HALF_TURN: [f64; 3] = [-1.0, 1.0, -1.0];
 
-/// Leaves the part of a vector (three a node) that is even in x; `mirror` is the node opposite in x
-/// of each node.
-pub fn leave_even(mirror: &[u32], v: &mut [f64]) {
-    for (n, &opposite) in mirror.iter().enumerate().filter(|(n, opposite)| *n <= **opposite as usize) {
-        for c in 0..3 {
-            let sign = if c == 0 { -1.0 } else { 1.0 };
-            let (i, j) = (3 * n + c, 3 * opposite as usize + c);
-            let even = 0.5 * (v[i] + sign * v[j]);
-            (v[i], v[j]) = (even, sign * even);
-        }
-    }
-}
-
 /// The interface of one step: fixed while it is solved, made anew for the next.
 #[derive(Clone, Debug, Default)]
-pub struct Interface {
+pub struct PairInterface {
     /// Slave nodes, by their index among the contact nodes.
     pub slaves: Vec<usize>,
     /// Per contact node: the slave that it is, if it is one.
@@ -63,7 +51,7 @@ pub struct Interface {
 /// Share of an element that the seam may be off a node.
 const SEAM: f64 = 1e-2;
 
-impl Interface {
+impl PairInterface {
     /// The interface between a body with displacement `u` (three a node) and its image.
     pub fn new(mesh: &Mesh, u: &[f64]) -> Self {
         // The slaves are on the side that trails: contact is lost there node by node, and its edge
@@ -165,89 +153,6 @@ impl Interface {
         }
     }
 
-    /// The unknown of component 0 of a slave.
-    pub fn base(&self, k: usize) -> usize {
-        3 * self.nodes[self.slaves[k]]
-    }
-
-    /// Whether a slave's slip along y is no condition: the symmetry plane or the seam sees to it.
-    pub fn is_free_along_y(&self, k: usize) -> bool {
-        self.free_y[k]
-    }
-
-    /// Relative positions or displacements of the slaves in their frames, from those of all nodes
-    /// (three a node).
-    pub fn relative(&self, x: &[f64]) -> Vec<[f64; 3]> {
-        (0..self.slaves.len()).map(|k| to_frame(&self.frames[k], &self.relative_global(k, x))).collect()
-    }
-
-    fn relative_global(&self, k: usize, x: &[f64]) -> [f64; 3] {
-        let at = |node: usize| &x[3 * node..3 * node + 3];
-        let mut w = [0.0; 3];
-        match self.in_seam[k] {
-            None => w.copy_from_slice(at(self.nodes[self.slaves[k]])),
-            Some(g) => {
-                let n = self.seam.len();
-                for (other, &slave) in self.seam.iter().enumerate() {
-                    let x = at(self.nodes[self.slaves[slave]]);
-                    (0..3).for_each(|c| w[c] += self.direct[c][g * n + other] * x[c]);
-                }
-            }
-        }
-        for &(j, f) in &self.masters[k] {
-            let x = at(self.nodes[j]);
-            (0..3).for_each(|c| w[c] += f[c] * x[c]);
-        }
-        w
-    }
-
-    /// y of displacements u: slave entries become relative ones in their frames.
-    pub fn contract(&self, u: &mut [f64]) {
-        for (k, w) in self.relative(u).into_iter().enumerate() {
-            let base = self.base(k);
-            u[base..base + 3].copy_from_slice(&w);
-        }
-    }
-
-    /// u = T y, in place.
-    pub fn expand(&self, y: &mut [f64]) {
-        let mut rest: Vec<[f64; 3]> = Vec::with_capacity(self.slaves.len());
-        for k in 0..self.slaves.len() {
-            let base = self.base(k);
-            let mut w = from_frame(&self.frames[k], &[y[base], y[base + 1], y[base + 2]]);
-            for &(j, f) in &self.masters[k] {
-                let x = 3 * self.nodes[j];
-                (0..3).for_each(|c| w[c] -= f[c] * y[x + c]);
-            }
-            rest.push(w);
-        }
-        self.through_seam(&mut rest, |m, n, row, column| m[row * n + column]);
-        for (k, w) in rest.into_iter().enumerate() {
-            let base = self.base(k);
-            y[base..base + 3].copy_from_slice(&w);
-        }
-    }
-
-    /// T^T f, in place: slave entries become the forces of the interface in their frames, master
-    /// entries what is not balanced there.
-    pub fn reduce(&self, f: &mut [f64]) {
-        let mut forces: Vec<[f64; 3]> = (0..self.slaves.len())
-            .map(|k| {
-                let base = self.base(k);
-                [f[base], f[base + 1], f[base + 2]]
-            })
-            .collect();
-        self.through_seam(&mut forces, |m, n, row, column| m[column * n + row]);
-        for (k, force) in forces.into_iter().enumerate() {
-            for &(j, w) in &self.masters[k] {
-                let x = 3 * self.nodes[j];
-                (0..3).for_each(|c| f[x + c] -= w[c] * force[c]);
-            }
-            let base = self.base(k);
-            f[base..base + 3].copy_from_slice(&to_frame(&self.frames[k], &force));
-        }
-    }
-
     /// The inverse of E, or its transpose, at the seam's slaves.
     fn through_seam(&self, w: &mut [[f64; 3]], entry: impl Fn(&[f64], usize, usize, usize) -> f64) {
         let n = self.seam.len();
@@ -283,10 +188,87 @@ impl Interface {
             (0..3).for_each(|c| loads[3 * node + c] += force[c]);
         }
     }
+}
 
-    /// What the interface's forces (per slave, in its frame) exert on the contact nodes of the
-    /// body, in their order.
-    pub fn nodal(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+impl Interface for PairInterface {
+    fn slaves(&self) -> &[usize] {
+        &self.slaves
+    }
+
+    fn facing(&self) -> &[Option<usize>] {
+        &self.facing
+    }
+
+    fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    fn base(&self, k: usize) -> usize {
+        3 * self.nodes[self.slaves[k]]
+    }
+
+    /// The symmetry plane or the seam sees to it.
+    fn is_free_along_y(&self, k: usize) -> bool {
+        self.free_y[k]
+    }
+
+    fn relative_along_axes(&self, k: usize, x: &[f64]) -> [f64; 3] {
+        let at = |node: usize| &x[3 * node..3 * node + 3];
+        let mut w = [0.0; 3];
+        match self.in_seam[k] {
+            None => w.copy_from_slice(at(self.nodes[self.slaves[k]])),
+            Some(g) => {
+                let n = self.seam.len();
+                for (other, &slave) in self.seam.iter().enumerate() {
+                    let x = at(self.nodes[self.slaves[slave]]);
+                    (0..3).for_each(|c| w[c] += self.direct[c][g * n + other] * x[c]);
+                }
+            }
+        }
+        for &(j, f) in &self.masters[k] {
+            let x = at(self.nodes[j]);
+            (0..3).for_each(|c| w[c] += f[c] * x[c]);
+        }
+        w
+    }
+
+    fn expand(&self, y: &mut [f64]) {
+        let mut rest: Vec<[f64; 3]> = Vec::with_capacity(self.slaves.len());
+        for k in 0..self.slaves.len() {
+            let base = self.base(k);
+            let mut w = from_frame(&self.frames[k], &[y[base], y[base + 1], y[base + 2]]);
+            for &(j, f) in &self.masters[k] {
+                let x = 3 * self.nodes[j];
+                (0..3).for_each(|c| w[c] -= f[c] * y[x + c]);
+            }
+            rest.push(w);
+        }
+        self.through_seam(&mut rest, |m, n, row, column| m[row * n + column]);
+        for (k, w) in rest.into_iter().enumerate() {
+            let base = self.base(k);
+            y[base..base + 3].copy_from_slice(&w);
+        }
+    }
+
+    fn reduce(&self, f: &mut [f64]) {
+        let mut forces: Vec<[f64; 3]> = (0..self.slaves.len())
+            .map(|k| {
+                let base = self.base(k);
+                [f[base], f[base + 1], f[base + 2]]
+            })
+            .collect();
+        self.through_seam(&mut forces, |m, n, row, column| m[column * n + row]);
+        for (k, force) in forces.into_iter().enumerate() {
+            for &(j, w) in &self.masters[k] {
+                let x = 3 * self.nodes[j];
+                (0..3).for_each(|c| f[x + c] -= w[c] * force[c]);
+            }
+            let base = self.base(k);
+            f[base..base + 3].copy_from_slice(&to_frame(&self.frames[k], &force));
+        }
+    }
+
+    fn nodal(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut nodal = vec![[0.0; 3]; self.nodes.len()];
         let n = self.seam.len();
         for (k, force) in forces.iter().enumerate() {
@@ -327,23 +309,6 @@ fn combine(row: &Weights, free_y: bool) -> Vec<(usize, [f64; 3])> {
     }
     out.sort_by_key(|e| e.0);
     out
-}
-
-/// Unit normals into the body at the surface's nodes, means of those of the faces around them
-/// weighted by area. The body's surface looks down.
-pub(super) fn inward_normals(positions: &[[f64; 3]], faces: &[[usize; 4]]) -> Vec<[f64; 3]> {
-    let mut normals = vec![[0.0; 3]; positions.len()];
-    for face in faces {
-        let [a, b, c, d] = face.map(|n| positions[n]);
-        let (p, q): ([f64; 3], [f64; 3]) = (std::array::from_fn(|i| c[i] - a[i]), std::array::from_fn(|i| d[i] - b[i]));
-        let cross = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-        let sign = if cross[2] < 0.0 { -1.0 } else { 1.0 };
-        for &n in face {
-            (0..3).for_each(|i| normals[n][i] += sign * cross[i]);
-        }
-    }
-    normals.iter_mut().for_each(|n| *n = unit(*n));
-    normals
 }
 
 /// The inverse of a small dense matrix, with partial pivoting.
@@ -388,7 +353,7 @@ mod tests {
     fn forces_and_displacements_are_dual() {
         let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap();
         for by in [0.0, 0.007, 0.06, -0.03] {
-            let interface = Interface::new(&mesh, &slid(&mesh, by));
+            let interface = PairInterface::new(&mesh, &slid(&mesh, by));
             let n = 3 * mesh.nodes.len();
             let y: Vec<f64> = (0..n).map(|i| (0.37 * i as f64).sin()).collect();
             let f: Vec<f64> = (0..n).map(|i| (0.11 * i as f64 + 0.4).cos()).collect();
@@ -412,7 +377,7 @@ mod tests {
     #[test]
     fn bodies_that_have_not_slid_meet_in_the_plane() {
         let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap();
-        let interface = Interface::new(&mesh, &vec![0.0; 3 * mesh.nodes.len()]);
+        let interface = PairInterface::new(&mesh, &vec![0.0; 3 * mesh.nodes.len()]);
         let positions: Vec<f64> = mesh.nodes.as_flattened().to_vec();
         for (k, w) in interface.relative(&positions).iter().enumerate() {
             let [t1, _, normal] = interface.frames[k];
