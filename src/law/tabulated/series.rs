@@ -415,11 +415,11 @@ impl Level {
     }
 }
 
-/// What a table is of: the part of h that is one body's.
-fn share_of(table: &Tabulated) -> Result<f64, LawError> {
+/// What the body of a table meets in it.
+fn opponent_of(table: &Tabulated) -> Result<Option<Opponent>, LawError> {
     match table.body {
-        Against::EqualSphere => Ok(0.5),
-        Against::Plane => Ok(1.0),
+        Against::EqualSphere => Ok(Some(Opponent::Equal)),
+        Against::Plane => Ok(None),
         _ => Err(LawError::NotCovered {
             problem: "a table of two unlike bodies says nothing of one of them",
             remedy: "Tabulate each body against its equal: [opponent] equal = true",
@@ -450,14 +450,14 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
     let curvatures = [of_sphere, other_radius.map_or(0.0, f64::recip)];
     let body = |i: usize, curvature: Option<f64>| {
         let (table, material, name) = (tables[i], materials[i], NAMES[i]);
-        let share = share_of(table)?;
-        let opponent = (table.body == Against::EqualSphere).then_some(Opponent::Equal);
+        let opponent = opponent_of(table)?;
         let alone = Case { sphere: Sphere { radius: 1.0, flat: false }, material: material.clone(), opponent, ..scaled.clone() };
         table.covers(&alone).map_err(|error| match error {
             LawError::OtherMaterial { what } => LawError::OtherMaterial { what: format!("of the {name}, {what}") },
             error => error,
         })?;
-        Ok::<Body, LawError>(Body::new(table, material, share, curvature))
+        // Of h in the table this much is one body's.
+        Ok::<Body, LawError>(Body::new(table, material, 1.0 / alone.bodies(), curvature))
     };
     let bodies = [body(0, Some(curvatures[0]))?, body(1, Some(curvatures[1]))?];
     let sheared = [body(0, None)?, body(1, None)?];

@@ -29,7 +29,7 @@ pub trait Bodies: Debug + Send + Sync {
     /// What solves their systems.
     type Solver: Tied<Interface = Self::Interface>;
 
-    /// How many times the slaves' forces those on one body are.
+    /// Sum of the forces on one body's contact nodes, over that of the slaves' forces.
     const SIDES: f64;
     /// Where all is even in x nothing slips, and friction has nothing to do.
     const STICKS_IF_EVEN: bool;
@@ -42,8 +42,10 @@ pub trait Bodies: Debug + Send + Sync {
     /// Stiffness of the two as springs in series.
     fn series(&self) -> Series;
 
-    /// The contact nodes at which the contact is known.
-    fn contacts(&self, mesh: &Mesh) -> Range<usize>;
+    /// See [`Opponent::contacts`].
+    fn contacts(&self, mesh: &Mesh) -> Range<usize> {
+        0..mesh.own_contacts()
+    }
 
     /// Gap of a contact node at the rim that nothing faces, from its height over the plane between
     /// the undeformed bodies.

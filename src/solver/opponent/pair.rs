@@ -1,8 +1,6 @@
 //! The body's own image, turned half round y: an equal pair (see [`crate::contact::pair`]). Of the
 //! two bodies one is simulated, whose surface has slaves and masters.
 
-use std::ops::Range;
-
 use super::joint::{Bodies, Series};
 use crate::contact::pair::PairInterface;
 use crate::linalg::LinalgError;
@@ -30,10 +28,6 @@ impl Bodies for EqualPair {
 
     fn series(&self) -> Series {
         Series::new(1.0, 1.0)
-    }
-
-    fn contacts(&self, mesh: &Mesh) -> Range<usize> {
-        0..mesh.own_contacts()
     }
 
     /// The gap to the node's own mirror image.
