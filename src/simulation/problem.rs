@@ -271,8 +271,8 @@ impl Problem {
         two_bodies(&self.case, self.slaves_are_exchanged)
     }
 
-    /// Bodies that deform (see [`Case::bodies`]): displacements of the path and the record are those
-    /// of one.
+    /// Bodies that deform (see [`Case::bodies`]): displacements of the path and the record are
+    /// those of one.
     pub fn bodies(&self) -> f64 {
         self.case.0.bodies()
     }

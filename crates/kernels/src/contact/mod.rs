@@ -3,8 +3,8 @@
 //!
 //! `plane` says how far a point is from the plane and how far it has slid, `rigid` the same of a
 //! sphere, and `pair` and `couple` of the image and of another body, each with its mortar and what
-//! `interface` has for both; `coulomb` turns that and the internal force on the point into the residual and the
-//! linearised rows of the contact conditions.
+//! `interface` has for both; `coulomb` turns that and the internal force on the point into the
+//! residual and the linearised rows of the contact conditions.
 
 pub mod coulomb;
 pub mod couple;
