@@ -13,8 +13,8 @@ pub const BYTES_PER_ELEMENT: f64 = 10_000.0;
 /// An estimate of the number of elements of the case's mesh, from its keys alone, to about a fifth.
 ///
 /// N = n^2 (n/16)^0.35 [18 + 36 f + 12 ln(0.2 R/a)], n = `elements_per_contact_radius`, f =
-/// `fine_zone`: a fit to the O-grids themselves, n from 8 to 32, f from 1.1 to 3, a/R from 0.0005 to
-/// 0.3. Where a is not given it is (2 R h)^(1/2), h the largest indentation, between the elastic
+/// `fine_zone`: a fit to the O-grids themselves, n from 8 to 32, f from 1.1 to 3, a/R from 0.0005
+/// to 0.3. Where a is not given it is (2 R h)^(1/2), h the largest indentation, between the elastic
 /// and the ideally plastic contact, with R* in place of R where the opponent is a sphere.
 pub fn estimated_elements(case: &Case) -> usize {
     let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {

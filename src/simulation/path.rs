@@ -67,7 +67,7 @@ const GROWING_STEPS: usize = 4;
 pub const RELEASE_STEPS: f64 = 12.0;
 /// No increment of a shear is longer than this share of the contact radius; where everything slips
 /// those of a shear of given length go on growing up to it. What comes into contact or leaves it
-/// while it slips makes an error of the first order in this share: with friction 0.95 and h/R = 0.07,
+/// while it slips makes an error of the first order in this share: at friction 0.95 and h/R = 0.07,
 /// where sticking contacts allow increments five times as long, F_T is 7 % off with those.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
 /// Most steps after the first part of a shear of given length: where nothing touches, say, the slip
