@@ -220,31 +220,6 @@ mod tests {
     use super::*;
     use crate::analytical::ElasticSphere;
     use crate::case::{Hardening, Material};
-    use crate::law::Law;
-
-    /// Large elastic contacts of the general study and of materials that it has not seen.
-    #[test]
-    fn the_general_law_knows_large_elastic_contacts() {
-        let law = Law::from_json(include_str!("../../fixtures/law/general/law.json")).unwrap();
-        assert_eq!(law.normal.form, NormalForm::Composed);
-        let seen = include_str!("../../fixtures/law/general/study.csv");
-        let unseen = include_str!("../../fixtures/law/general/unseen.csv");
-        for (study, expected) in [(seen, 6), (unseen, 2)] {
-            let mut large = 0;
-            for row in study.lines().filter(|row| row.contains("elastic")) {
-                let columns: Vec<&str> = row.split(',').collect();
-                let [nu, friction, h, a, f_n] = [5, 6, 13, 14, 15].map(|i| columns[i].parse::<f64>().unwrap());
-                if a < 0.1 {
-                    continue;
-                }
-                large += 1;
-                let material = Material { youngs_modulus: 200e3, poissons_ratio: nu, hardening: Hardening::Elastic };
-                let ours = law.normal.state(&Body::new(1.0, &material).unwrap(), friction, h).f_n;
-                assert!((ours / f_n - 1.0).abs() < 0.01, "nu = {nu}, mu = {friction}, h = {h}: {ours} and {f_n}");
-            }
-            assert_eq!(large, expected);
-        }
-    }
 
     #[test]
     fn the_composed_force_is_continuous_at_first_yield() {
