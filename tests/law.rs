@@ -13,7 +13,6 @@ use std::path::Path;
 
 use asperity::case::Case;
 use asperity::law::fit::fit;
-use asperity::law::forms::Forms;
 use asperity::law::predict::{NormalSource, predict};
 use asperity::law::prior::Prior;
 use asperity::law::{Law, LawError};
@@ -52,11 +51,6 @@ fn a_known_law_is_found_again() {
     let folder = tempfile::tempdir().expect("a folder");
     synthetic::write_study(folder.path(), 0.0);
     let law = fit(folder.path(), &Prior::BuiltIn).expect("a law");
-    // The two forms of f_N differ by less than the weak pull of the constants to their start costs
-    // (0.1 % of F_N0): either may be kept.
-    let kept = Forms { normal_curve: synthetic::FORMS.normal_curve, ..law.forms };
-    assert_eq!(kept, synthetic::FORMS, "{}", asperity::law::report::candidate_table(&law.candidates));
-    assert_eq!(law.normal.form, synthetic::normal().form);
     let [f_t, f_n] = unseen(&law);
     assert!(f_t < 0.01 && f_n < 0.01, "{f_t} {f_n}\n{}", law.formulas());
     let all = &law.errors.last().expect("a row for all").errors;
@@ -95,7 +89,7 @@ fn fit_and_predict_through_the_program() {
     synthetic::write_study(folder.path(), 0.01);
     let fitted = asperity(&["law", "fit", text(folder.path())]).code(0);
     let printed = String::from_utf8_lossy(&fitted.get_output().stdout).into_owned();
-    for expected in ["36 cases of 8 materials", "Jaeger-Ciavarella", "Olsson & Larsson", "F_N_slip/F_N0", "mu 0.2 to 0.4"] {
+    for expected in ["36 cases of 8 materials", "Jaeger-Ciavarella", "the study alone", "F_N_slip/F_N0", "mu 0.2 to 0.4"] {
         assert!(printed.contains(expected), "{expected} is missing in\n{printed}");
     }
     let law = folder.path().join("law.json");
@@ -246,7 +240,15 @@ fn a_law_file_with_a_number_that_no_law_has_is_refused_by_its_key() {
         (&formulas, "/constants/fall/2", 1e308.into(), "constants.fall[2] is 1e308"),
         (&formulas, "/validity/poissons_ratio/from", (-1.5).into(), "validity.poissons_ratio.from is -1.5"),
         (&formulas, "/validity/lambda/to", (-1.0).into(), "validity.lambda.to is -1.0"),
-        (&formulas, "/normal/force", serde_json::json!([1.0]), "normal.force has 1 constants, and its form has 6"),
+        (&formulas, "/normal/force", serde_json::json!([1.0]), "normal.force"),
+        (&formulas, "/normal/radius/1", 0.0.into(), "normal.radius[1] is 0.0"),
+        (
+            &formulas,
+            "/forms/variable",
+            "lambda".into(),
+            "earlier versions had: forms.variable is \"lambda\", and this version has \"area\"",
+        ),
+        (&formulas, "/forms/variable", "x".into(), "forms.variable is \"x\""),
         (&formulas, "/constants/slip/1", "x".into(), "constants.slip[1] is \"x\", and has to be a number"),
     ] {
         let mut changed = good.clone();

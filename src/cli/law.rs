@@ -37,8 +37,8 @@ pub struct LawArgs {
 /// The subcommands of `asperity law`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum LawCommand {
-    /// Fit a law to a study: writes DIR/law.json and prints the candidate forms and their errors,
-    /// or those of an interpolation.
+    /// Fit a law to a study: writes DIR/law.json and prints the formulas and their errors, or the
+    /// errors of an interpolation.
     Fit(FitArgs),
     /// Tabulate the law of one material and one friction coefficient as curves in h: simulates
     /// depths up to that of the case as a study, writes DIR/law.json and prints the errors in
@@ -227,7 +227,7 @@ fn summary(law: &Law) -> String {
         );
     }
     let predicted = "Errors with F_N0 and a0 predicted from h, cross-validated, in per cent";
-    let known = "Errors of the kept forms (*) with F_N0 and a0 known, cross-validated, in per cent";
+    let known = "Errors of the kept fit (*) with F_N0 and a0 known, cross-validated, in per cent";
     for table in [
         report::candidate_table(&law.candidates),
         report::normal_table(&law.normal_candidates),

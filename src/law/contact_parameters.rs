@@ -1,5 +1,6 @@
 //! Contact parameters from a fitted law and a material.
 
+use super::forms::NORMAL_CURVE;
 use super::model::{Axisymmetric, Law, Parameters};
 use super::variables::{Body, yield_lambda};
 use crate::analytical::cattaneo_mindlin;
@@ -58,13 +59,6 @@ impl Law {
             VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent }
         };
         let range = [first_indentation(body), LAST * sphere.radius];
-        ContactParameters::tabulate(
-            sphere.radius,
-            sphere.effective_modulus(),
-            friction,
-            Some(self.forms.normal_curve),
-            range,
-            contact,
-        )
+        ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), friction, Some(NORMAL_CURVE), range, contact)
     }
 }

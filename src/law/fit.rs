@@ -1,11 +1,11 @@
-//! Determines the constants of every candidate by least squares of whole curves, compares them by
-//! cross-validation, and keeps the best.
+//! Determines the constants of the formulas by least squares of whole curves, and their errors by
+//! cross-validation.
 //!
-//! A candidate's constants are found in three steps, each with what the one before it found: the
-//! fall of F_N from F_N_slip/F_N0; n and delta_T_slip from F_T(delta_T), as a share of its peak;
-//! the exponents of f_N from F_N(delta_T), as a share of F_N0. Cross-validation leaves out whole
-//! materials: a case is predicted by constants that saw nothing of its hardening law, at no mu and
-//! no h.
+//! The constants are found in three steps, each with what the one before it found: the fall of F_N
+//! from F_N_slip/F_N0; n and delta_T_slip from F_T(delta_T), as a share of its peak; the exponents
+//! of f_N from F_N(delta_T), as a share of F_N0. Cross-validation leaves out whole materials: a case
+//! is predicted by constants that saw nothing of its hardening law, at no mu and no h. It also
+//! decides how strongly a small study is drawn to the constants of another law.
 
 use std::path::Path;
 
@@ -13,10 +13,11 @@ use rayon::prelude::*;
 
 use super::LawError;
 use super::data::{Sample, StudyData};
-use super::forms::{self, Constants, Forms, NormalCurve, Plasticity, SlipForm, Variable};
-use super::least_squares::{PULL, Sign, minimize};
+use super::family::Forms;
+use super::forms::{self, Constants, Plasticity};
+use super::least_squares::{PULL, minimize};
 use super::model::{self, Axisymmetric, FORMAT, Interval, Law, Parameters, PriorUse, Provenance, VERSION, Validity};
-use super::normal::{self, NormalForm, NormalModel};
+use super::normal::{self, NormalModel};
 use super::own_fit::own_fit;
 use super::prior::{Prior, WEIGHTS};
 use super::report::{Candidate, CaseErrors, Errors, FittedCase, NormalCandidate, by_region, case_errors};
@@ -53,11 +54,11 @@ fn at(sample: &Sample, a: f64, f_n: f64) -> Axisymmetric {
 }
 
 /// What the correlations see of a sample.
-fn plasticity(variable: Variable, sample: &Sample) -> Plasticity {
+fn plasticity(sample: &Sample) -> Plasticity {
     let v = &sample.variables;
     let sphere = &sample.body.sphere;
     let first = yield_lambda(sphere.poissons_ratio);
-    Plasticity::new(variable, sample.friction, sample.a0 / sphere.radius, v.lambda, first, v.hardness, v.c_squared)
+    Plasticity::new(sample.friction, sample.a0 / sphere.radius, v.lambda, first, v.c_squared)
 }
 
 fn array<const N: usize>(constants: &[f64]) -> [f64; N] {
@@ -71,34 +72,40 @@ fn failed(what: &'static str) -> impl Fn(String) -> LawError {
 /// Where a fit starts and how strongly it is drawn there: to another law's constants, or weakly to
 /// constants of order one.
 #[derive(Clone, Copy, Debug)]
-struct Start<T> {
+struct Start<T, W> {
     constants: T,
-    pull: f64,
+    pull: W,
     /// Whether `constants` are another law's.
     prior: bool,
 }
 
-impl<T: Copy> Start<T> {
+impl<T, W: Copy> Start<T, W> {
     /// The weight, if it is another law's.
-    fn weight(&self) -> Option<f64> {
+    fn weight(&self) -> Option<W> {
         self.prior.then_some(self.pull)
     }
 
-    fn suffix(&self) -> String {
-        self.weight().map_or_else(String::new, |weight| format!(", prior {weight}"))
+    /// How a table calls it.
+    fn name(&self, words: impl Fn(W) -> String) -> String {
+        self.weight().map_or_else(|| "the study alone".to_owned(), |weight| format!("prior {}", words(weight)))
     }
 }
 
-/// The constants of one combination of forms that fit the samples best.
-fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -> Result<Constants, LawError> {
-    let states: Vec<Plasticity> = samples.iter().map(|sample| plasticity(forms.variable, sample)).collect();
+/// A start of the shear.
+type ShearStart = Start<Constants, f64>;
+/// A start of the normal problem, with the pull of a0 and of F_N0: they are fitted one after the
+/// other, and a small study may know one of them better than its prior, but not the other.
+type NormalStart = Start<NormalModel, [f64; 2]>;
+
+/// The constants that fit the samples best.
+fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<Constants, LawError> {
+    let states: Vec<Plasticity> = samples.iter().map(|sample| plasticity(sample)).collect();
     let Start { mut constants, pull, .. } = *start;
 
     constants.fall = array(
-        &minimize(Sign::Positive, &constants.fall, pull, |c| {
+        &minimize(&constants.fall, pull, |c| {
             let c = array(c);
-            let fall =
-                |(sample, state): (&&Sample, &Plasticity)| forms::fall(forms, &c, state) - (1.0 - sample.f_n_slip / sample.f_n0);
+            let fall = |(sample, state): (&&Sample, &Plasticity)| forms::fall(&c, state) - (1.0 - sample.f_n_slip / sample.f_n0);
             samples.iter().zip(&states).map(fall).collect()
         })
         .map_err(failed("F_N_slip/F_N0"))?,
@@ -110,12 +117,12 @@ fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -
     let normal: Vec<Axisymmetric> = samples.iter().map(|sample| inputs(sample)).collect();
     let weights: Vec<f64> = samples.iter().map(|sample| 1.0 / (sample.peak() * points(sample))).collect();
     let with = |c: &[f64]| Constants { exponent: array(c), slip: array(&c[6..]), ..constants };
-    let found = minimize(Sign::Positive, &start, pull, |c| {
+    let found = minimize(&start, pull, |c| {
         let trial = with(c);
         let mut residuals = Vec::new();
         for ((sample, inputs), weight) in samples.iter().zip(&normal).zip(&weights) {
-            let p = model::contact(forms, &trial, inputs);
-            let f_t = |delta_t: f64| model::forces(forms, &p, sample.friction, delta_t).0;
+            let p = model::contact(&trial, inputs);
+            let f_t = |delta_t: f64| model::forces(&p, sample.friction, delta_t).0;
             residuals.extend(sample.curve[1..].iter().map(|at| weight * (f_t(at.delta_t) - at.f_t)));
         }
         residuals
@@ -124,16 +131,15 @@ fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -
     constants = with(&found);
 
     // Only M and N change in what follows.
-    let contacts: Vec<Parameters> = normal.iter().map(|inputs| model::contact(forms, &constants, inputs)).collect();
-    let found = minimize(Sign::Positive, &constants.curve, pull, |c| {
+    let contacts: Vec<Parameters> = normal.iter().map(|inputs| model::contact(&constants, inputs)).collect();
+    let found = minimize(&constants.curve, pull, |c| {
         let c = array(c);
         let mut residuals = Vec::new();
         for (sample, contact) in samples.iter().zip(&contacts) {
-            let (steep, gentle) = forms::curve_exponents(&c, sample.friction, contact.n);
-            let (m_exponent, n_exponent) = forms.normal_curve.exponents(steep, gentle);
+            let (m_exponent, n_exponent) = forms::curve_exponents(&c, sample.friction, contact.n);
             let p = Parameters { m_exponent, n_exponent, ..*contact };
             let weight = 1.0 / (sample.f_n0 * points(sample));
-            let f_n = |delta_t: f64| model::forces(forms, &p, sample.friction, delta_t).1;
+            let f_n = |delta_t: f64| model::forces(&p, sample.friction, delta_t).1;
             residuals.extend(sample.curve[1..].iter().map(|at| weight * (f_n(at.delta_t) - at.f_n)));
         }
         residuals
@@ -142,124 +148,112 @@ fn fit_constants(forms: &Forms, start: &Start<Constants>, samples: &[&Sample]) -
     Ok(Constants { curve: array(&found), ..constants })
 }
 
-fn law_errors(forms: &Forms, constants: &Constants, sample: &Sample, inputs: &Axisymmetric) -> CaseErrors {
-    let parameters = model::contact(forms, constants, inputs);
-    case_errors(sample, |delta_t| model::forces(forms, &parameters, sample.friction, delta_t))
-}
-
-/// Splits the samples by whether they are in the fold.
-fn split(samples: &[Sample], fold_of: &[usize], fold: usize) -> (Vec<usize>, Vec<usize>) {
-    (0..samples.len()).partition(|&i| fold_of[samples[i].material] != fold)
-}
-
-/// Constants for each fold, found without it; the last ones with all samples.
-fn constants_by_fold(
-    forms: &Forms,
-    start: &Start<Constants>,
-    samples: &[Sample],
-    fold_of: &[usize],
-    folds: usize,
-) -> Result<Vec<Constants>, LawError> {
-    let fold = |fold: usize| {
-        let (seen, _) = split(samples, fold_of, fold);
-        fit_constants(forms, start, &seen.iter().map(|&i| &samples[i]).collect::<Vec<_>>())
-    };
-    (0..=folds).map(fold).collect()
-}
-
-/// As [`Start`]; no prior model means the form's own start. The pull is that of the force, the
-/// other that of the radius: a0 and F_N0 are fitted one after the other, and a small study may know
-/// one of them better than its prior, but not the other.
-type NormalStart<'a> = (Start<Option<&'a NormalModel>>, f64);
-
-/// Fits one form of the normal problem.
-fn fit_normal(form: NormalForm, (start, radius_pull): &NormalStart, samples: &[&Sample]) -> Result<NormalModel, LawError> {
-    let pull = start.pull;
-    let (radius_start, force_start) = match start.constants {
-        Some(prior) => (prior.radius.clone(), prior.force.clone()),
-        None => (form.radius_start(), form.force_start()),
-    };
-    let radius = minimize(form.sign(), &radius_start, *radius_pull, |c| {
-        samples.iter().map(|s| (normal::contact_radius(form, c, &s.body, s.h0) / s.a0).ln()).collect()
+/// The constants of a0 and F_N0 that fit the samples best.
+fn fit_normal(start: &NormalStart, samples: &[&Sample]) -> Result<NormalModel, LawError> {
+    let ([radius_pull, force_pull], from) = (start.pull, start.constants);
+    let radius = minimize(&from.radius, radius_pull, |c| {
+        let c = array(c);
+        samples.iter().map(|s| (normal::contact_radius(&c, &s.body, s.h0) / s.a0).ln()).collect()
     })
     .map_err(failed("a0(h)"))?;
-    let radii: Vec<f64> = samples.iter().map(|s| normal::contact_radius(form, &radius, &s.body, s.h0)).collect();
-    let force = minimize(form.sign(), &force_start, pull, |c| {
-        let force = |(s, &a): (&&Sample, &f64)| (normal::normal_force(form, c, &s.body, s.friction, s.h0, a) / s.f_n0).ln();
-        samples.iter().zip(&radii).map(force).collect()
+    let force = minimize(&from.force, force_pull, |c| {
+        let c = array(c);
+        samples.iter().map(|s| (normal::normal_force(&c, &s.body, s.friction, s.h0) / s.f_n0).ln()).collect()
     })
     .map_err(failed("F_N0(h)"))?;
-    Ok(NormalModel { form, radius, force })
+    Ok(NormalModel::new(array(&radius), array(&force)))
 }
 
-/// What was compared, the weights of the prior for a0 and F_N0 that were chosen (none for a free
-/// fit), and the models by fold.
-type ChosenNormal = (Vec<NormalCandidate>, Option<[f64; 2]>, Vec<NormalModel>);
-
-/// How a table calls a start of the normal problem.
-fn suffix((start, radius_pull): &NormalStart) -> String {
-    start.weight().map_or_else(String::new, |weight| format!(", prior {radius_pull}, {weight}"))
+fn law_errors(constants: &Constants, sample: &Sample, inputs: &Axisymmetric) -> CaseErrors {
+    let parameters = model::contact(constants, inputs);
+    case_errors(sample, |delta_t| model::forces(&parameters, sample.friction, delta_t))
 }
 
-/// The normal forms compared; the best one's weight of the prior and its models by fold, the last
-/// one fitted to all.
-fn choose_normal(
-    prior: Option<&NormalModel>,
-    samples: &[Sample],
-    fold_of: &[usize],
+/// The samples, and which fold leaves out which material.
+struct Folded<'a> {
+    samples: &'a [Sample],
+    fold_of: Vec<usize>,
     folds: usize,
-) -> Result<ChosenNormal, LawError> {
-    let mut starts: Vec<(NormalForm, NormalStart)> =
-        NormalForm::ALL.into_iter().map(|form| (form, (Start { constants: None, pull: PULL, prior: false }, PULL))).collect();
-    if let Some(prior) = prior.filter(|prior| prior.form != NormalForm::Published) {
-        let start = |pull| Start { constants: Some(prior), pull, prior: true };
-        starts.extend(WEIGHTS.into_iter().flat_map(|a| WEIGHTS.map(|f| (prior.form, (start(f), a)))));
+}
+
+impl Folded<'_> {
+    /// A fit for each fold, found without it; the last one with all samples.
+    fn by_fold<T>(&self, fit: impl Fn(&[&Sample]) -> Result<T, LawError>) -> Result<Vec<T>, LawError> {
+        let seen = |fold: usize| self.samples.iter().filter(|sample| self.fold_of[sample.material] != fold).collect::<Vec<_>>();
+        (0..=self.folds).map(|fold| fit(&seen(fold))).collect()
     }
-    let fitted: Vec<(NormalCandidate, Vec<NormalModel>)> = starts
-        .par_iter()
-        .map(|&(form, start)| {
-            let models: Vec<NormalModel> = (0..=folds)
-                .map(|fold| {
-                    let (seen, _) = split(samples, fold_of, fold);
-                    fit_normal(form, &start, &seen.iter().map(|&i| &samples[i]).collect::<Vec<_>>())
-                })
-                .collect::<Result<_, _>>()?;
-            let errors: Vec<CaseErrors> = samples
-                .iter()
-                .map(|s| {
-                    let state = models[fold_of[s.material]].state(&s.body, s.friction, s.h0);
-                    let (a, f_n) = ((state.a / s.a0 - 1.0).abs(), (state.f_n / s.f_n0 - 1.0).abs());
-                    [a, a, f_n, f_n]
-                })
-                .collect();
-            let errors = Errors::over(&errors);
+
+    /// What saw nothing of the sample's material.
+    fn of<'b, T>(&self, by_fold: &'b [T], sample: &Sample) -> &'b T {
+        &by_fold[self.fold_of[sample.material]]
+    }
+}
+
+/// A start with what came of it: a fit for each fold, the last one with all samples.
+struct Compared<S, T, C> {
+    start: S,
+    by_fold: Vec<T>,
+    candidate: C,
+}
+
+/// A fit of the shear with the errors of each case.
+type ComparedShear = Compared<ShearStart, Constants, Vec<CaseErrors>>;
+/// A fit of the normal problem.
+type ComparedNormal = Compared<NormalStart, NormalModel, NormalCandidate>;
+
+/// The starts of the shear compared, best first.
+fn compare_shears(prior: Option<&Law>, folded: &Folded) -> Result<Vec<ComparedShear>, LawError> {
+    let mut starts = vec![Start { constants: Constants::START, pull: PULL, prior: false }];
+    if let Some(Law { constants, .. }) = prior {
+        starts.extend(WEIGHTS.map(|pull| Start { constants: *constants, pull, prior: true }));
+    }
+    let mut compared: Vec<_> = starts
+        .into_par_iter()
+        .map(|start| {
+            let by_fold = folded.by_fold(|seen| fit_constants(&start, seen))?;
+            let errors = folded.samples.iter().map(|s| law_errors(folded.of(&by_fold, s), s, &inputs(s))).collect();
+            Ok(Compared { start, by_fold, candidate: errors })
+        })
+        .collect::<Result<_, LawError>>()?;
+    compared.sort_by(|a, b| Errors::over(&a.candidate).score().total_cmp(&Errors::over(&b.candidate).score()));
+    Ok(compared)
+}
+
+/// The starts of the normal problem compared, best first.
+fn compare_normals(prior: Option<&Law>, folded: &Folded) -> Result<Vec<ComparedNormal>, LawError> {
+    let mut starts = vec![Start { constants: NormalModel::START, pull: [PULL; 2], prior: false }];
+    if let Some(Law { normal, .. }) = prior {
+        let start = |pull| Start { constants: *normal, pull, prior: true };
+        starts.extend(WEIGHTS.into_iter().flat_map(|a| WEIGHTS.map(|f| start([a, f]))));
+    }
+    let mut compared: Vec<_> = starts
+        .into_par_iter()
+        .map(|start| {
+            let by_fold = folded.by_fold(|seen| fit_normal(&start, seen))?;
+            let error = |s: &Sample| {
+                let state = folded.of(&by_fold, s).state(&s.body, s.friction, s.h0);
+                let (a, f_n) = ((state.a / s.a0 - 1.0).abs(), (state.f_n / s.f_n0 - 1.0).abs());
+                [a, a, f_n, f_n]
+            };
+            let errors = Errors::over(&folded.samples.iter().map(error).collect::<Vec<_>>());
             let candidate = NormalCandidate {
-                name: format!("{}{}", form.label(), suffix(&start)),
-                constants: form.radius_start().len() + form.force_start().len(),
+                name: start.name(|[a, f]| format!("{a}, {f}")),
+                constants: start.constants.radius.len() + start.constants.force.len(),
                 a_rms: errors.f_t_rms,
                 a_max: errors.f_t_max,
                 f_n_rms: errors.f_n_rms,
                 f_n_max: errors.f_n_max,
                 kept: false,
             };
-            Ok((candidate, models))
+            Ok(Compared { start, by_fold, candidate })
         })
         .collect::<Result<_, LawError>>()?;
-    let (mut candidates, models): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
     let score = |c: &NormalCandidate| c.a_rms.hypot(c.f_n_rms);
-    let best = (0..candidates.len()).min_by(|&i, &j| score(&candidates[i]).total_cmp(&score(&candidates[j]))).unwrap_or(0);
-    candidates[best].kept = true;
-    candidates.sort_by(|a, b| score(a).total_cmp(&score(b)));
-    let weight = starts.get(best).and_then(|(_, (start, radius_pull))| Some([*radius_pull, start.weight()?]));
-    Ok((candidates, weight, models.into_iter().nth(best).unwrap_or_default()))
-}
-
-/// One combination of forms, compared.
-struct Compared {
-    forms: Forms,
-    start: Start<Constants>,
-    by_fold: Vec<Constants>,
-    errors: Vec<CaseErrors>,
+    compared.sort_by(|a, b| score(&a.candidate).total_cmp(&score(&b.candidate)));
+    if let Some(best) = compared.first_mut() {
+        best.candidate.kept = true;
+    }
+    Ok(compared)
 }
 
 /// Fits a law to a study.
@@ -284,61 +278,18 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
     }
     let prior = prior.law(samples.len())?;
     let folds = FOLDS.min(materials);
-    let fold_of = folds::assign(materials, folds, SEED);
-
-    let without = Start { constants: Constants::START, pull: PULL, prior: false };
-    let mut combinations: Vec<(Forms, Start<Constants>)> = Variable::ALL
-        .into_iter()
-        .flat_map(|variable| SlipForm::ALL.into_iter().map(move |slip| (variable, slip)))
-        .flat_map(|(variable, slip_displacement)| {
-            NormalCurve::ALL.into_iter().map(move |normal_curve| (Forms { variable, slip_displacement, normal_curve }, without))
-        })
-        .collect();
-    if let Some(Law { forms, constants, .. }) = prior {
-        combinations.extend(WEIGHTS.map(|pull| (forms, Start { constants, pull, prior: true })));
-    }
-    let mut compared: Vec<Compared> = combinations
-        .into_par_iter()
-        .map(|(forms, start)| {
-            let by_fold = constants_by_fold(&forms, &start, samples, &fold_of, folds)?;
-            let error = |s: &Sample| law_errors(&forms, &by_fold[fold_of[s.material]], s, &inputs(s));
-            Ok(Compared { forms, start, errors: samples.iter().map(error).collect(), by_fold })
-        })
-        .collect::<Result<_, LawError>>()?;
-    let score = |c: &Compared| Errors::over(&c.errors).score();
-    compared.sort_by(|a, b| score(a).total_cmp(&score(b)));
-    let mut candidates: Vec<Candidate> = compared
-        .iter()
-        .enumerate()
-        .map(|(rank, c)| Candidate {
-            name: format!(
-                "{}, {}, {}{}",
-                c.forms.variable.label(),
-                c.forms.slip_displacement.label(),
-                c.forms.normal_curve.label(),
-                c.start.suffix()
-            ),
-            constants: c.forms.constants(),
-            errors: Errors::over(&c.errors),
-            kept: rank == 0,
-        })
-        .collect();
-    candidates.extend(baseline::candidates(samples));
-
-    let (normal_candidates, normal_weight, normal_models) =
-        choose_normal(prior.as_ref().map(|law| &law.normal), samples, &fold_of, folds)?;
-    let Compared { forms, start, by_fold, errors } = compared.swap_remove(0);
-    let (Some(constants), Some(normal)) = (by_fold.last().copied(), normal_models.last().cloned()) else {
-        return Err(failed("the law")("there are no folds".to_owned()));
+    let folded = Folded { samples, fold_of: folds::assign(materials, folds, SEED), folds };
+    let (shears, normals) = (compare_shears(prior.as_ref(), &folded)?, compare_normals(prior.as_ref(), &folded)?);
+    let (Some(shear), Some(normal)) = (shears.first(), normals.first()) else {
+        return Err(failed("the law")("there is nothing to start from".to_owned()));
     };
     // The whole way from the case alone: normal data predicted, by models that saw nothing of the
     // material either.
     let predicted: Vec<CaseErrors> = samples
         .iter()
         .map(|s| {
-            let fold = fold_of[s.material];
-            let state = normal_models[fold].state(&s.body, s.friction, s.h0);
-            law_errors(&forms, &by_fold[fold], s, &at(s, state.a, state.f_n))
+            let state = folded.of(&normal.by_fold, s).state(&s.body, s.friction, s.h0);
+            law_errors(folded.of(&shear.by_fold, s), s, &at(s, state.a, state.f_n))
         })
         .collect();
     let regions = |errors: &[CaseErrors]| {
@@ -346,37 +297,52 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
         let rows: Vec<_> = samples.iter().zip(errors).map(|(s, e)| (s.variables.lambda, first(s), s.friction, *e)).collect();
         by_region(&rows)
     };
+    let used = prior.filter(|_| shear.start.prior || normal.start.prior).map(|law| PriorUse {
+        study: law.provenance.study,
+        shear: shear.start.weight(),
+        normal: normal.start.weight(),
+    });
     Ok(Law {
         format: FORMAT.to_owned(),
         version: VERSION,
-        forms,
-        constants,
-        normal,
+        forms: Forms::default(),
+        constants: shear.by_fold[folds],
+        normal: normal.by_fold[folds],
         validity: validity(samples)?,
-        provenance: Provenance {
-            program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
-            study: study_name(dir),
-            cases: samples.len(),
-            left_out: data.skipped.iter().map(|skipped| (skipped.id.clone(), skipped.reason.clone())).collect(),
-            materials,
-            elements_per_contact_radius: (
-                samples.iter().map(|s| s.elements_per_contact_radius).min().unwrap_or(0),
-                samples.iter().map(|s| s.elements_per_contact_radius).max().unwrap_or(0),
-            ),
-            folds,
-            seed: SEED,
-            prior: prior.filter(|_| start.prior || normal_weight.is_some()).map(|law| PriorUse {
-                study: law.provenance.study,
-                shear: start.weight(),
-                normal: normal_weight,
-            }),
-        },
-        errors: regions(&errors),
+        provenance: provenance(dir, &data, folds, used),
+        errors: regions(&shear.candidate),
         errors_predicted: regions(&predicted),
-        candidates,
-        normal_candidates,
-        cases: samples.iter().zip(&errors).map(|(s, e)| fitted_case(&forms, s, e)).collect::<Result<_, _>>()?,
+        candidates: candidates(&shears, samples),
+        normal_candidates: normals.iter().map(|compared| compared.candidate.clone()).collect(),
+        cases: samples.iter().zip(&shear.candidate).map(|(s, e)| fitted_case(s, e)).collect::<Result<_, _>>()?,
     })
+}
+
+/// The fits of the shear, best first, and the baselines.
+fn candidates(shears: &[ComparedShear], samples: &[Sample]) -> Vec<Candidate> {
+    let fitted = shears.iter().enumerate().map(|(rank, compared)| Candidate {
+        name: compared.start.name(|weight| weight.to_string()),
+        constants: Constants::COUNT,
+        errors: Errors::over(&compared.candidate),
+        kept: rank == 0,
+    });
+    fitted.chain(baseline::candidates(samples)).collect()
+}
+
+/// Where a law comes from.
+fn provenance(dir: &Path, data: &StudyData, folds: usize, prior: Option<PriorUse>) -> Provenance {
+    let elements = || data.samples.iter().map(|sample| sample.elements_per_contact_radius);
+    Provenance {
+        program: format!("asperity {}", env!("CARGO_PKG_VERSION")),
+        study: study_name(dir),
+        cases: data.samples.len(),
+        left_out: data.skipped.iter().map(|skipped| (skipped.id.clone(), skipped.reason.clone())).collect(),
+        materials: data.materials(),
+        elements_per_contact_radius: (elements().min().unwrap_or(0), elements().max().unwrap_or(0)),
+        folds,
+        seed: SEED,
+        prior,
+    }
 }
 
 /// Name of the directory, even if it was given as `.`.
@@ -399,8 +365,8 @@ fn validity(samples: &[Sample]) -> Result<Validity, LawError> {
     })
 }
 
-fn fitted_case(forms: &Forms, sample: &Sample, errors: &CaseErrors) -> Result<FittedCase, LawError> {
-    let own = own_fit(forms.normal_curve, sample).map_err(failed("the curves of one case"))?;
+fn fitted_case(sample: &Sample, errors: &CaseErrors) -> Result<FittedCase, LawError> {
+    let own = own_fit(sample).map_err(failed("the curves of one case"))?;
     let v = &sample.variables;
     Ok(FittedCase {
         case: sample.id.clone(),

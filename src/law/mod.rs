@@ -1,9 +1,9 @@
 //! From simulations to a contact law that needs axisymmetric data only.
 //!
 //! `variables` are the normalised quantities in which contacts of different materials fall
-//! together; `data` reads a study back; `forms` and `normal` are the candidate correlations;
-//! `prior` is what a small study may take from a bigger one; `fit` determines their constants,
-//! compares them by cross-validation and keeps the best as a [`Law`] (`model`, `law.json`);
+//! together; `data` reads a study back; `forms` and `normal` are the correlations; `prior` is what a
+//! small study may take from a bigger one; `fit` determines their constants and makes of them a
+//! [`Law`] (`model`, `law.json`), whose errors are cross-validated;
 //! `predict` applies it to a case; `contact_parameters` makes of it what the update of
 //! [`contact_law`](crate::contact_law) needs, and `export` writes both for other programs.
 //! `least_squares` and `report` serve them.
@@ -35,6 +35,7 @@ mod baseline;
 mod bounds;
 mod contact_parameters;
 mod error;
+mod family;
 mod folds;
 mod formulas;
 mod json;

@@ -1,4 +1,4 @@
-//! The law: forms, constants, where they come from, where they hold and how well, as `law.json` has
+//! The law of formulas: constants, where they come from, where they hold and how well, as `law.json` has
 //! them.
 
 use std::path::Path;
@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::LawError;
 use super::bounds::{Bounds, Checked, TOLD};
-use super::forms::{self, Constants, Forms, Plasticity};
+use super::family::{self, Forms};
+use super::forms::{self, Constants, Plasticity};
 use super::json::{self, LawKind};
-use super::least_squares::Sign;
 use super::normal::NormalModel;
 use super::report::{Candidate, FittedCase, NormalCandidate, RegionError};
 use super::variables::{c_squared, yield_lambda};
@@ -187,7 +187,7 @@ pub struct Law {
     pub format: String,
     /// [`VERSION`].
     pub version: u32,
-    /// The chosen forms.
+    /// The words for its formulas.
     pub forms: Forms,
     /// Their constants.
     pub constants: Constants,
@@ -201,9 +201,9 @@ pub struct Law {
     pub errors: Vec<RegionError>,
     /// Cross-validated errors by region, F_N0 and a0 being predicted as well.
     pub errors_predicted: Vec<RegionError>,
-    /// The forms that were compared, best first, and the baselines.
+    /// The fits that were compared, best first, and the baselines.
     pub candidates: Vec<Candidate>,
-    /// The normal forms that were compared, best first.
+    /// The fits of the normal problem that were compared, best first.
     pub normal_candidates: Vec<NormalCandidate>,
     /// Every case with its own best parameters.
     pub cases: Vec<FittedCase>,
@@ -216,13 +216,13 @@ impl Law {
     /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly as a/R goes
     /// to 0; a contact without force has no slip force.
     pub fn contact(&self, inputs: &Axisymmetric) -> Parameters {
-        contact(&self.forms, &self.constants, inputs)
+        contact(&self.constants, inputs)
     }
 
     /// F_T and F_N at the displacement `delta_t` of a shear in one direction, constant from
     /// delta_T_slip on; F_T is odd and F_N even in `delta_t`.
     pub fn forces(&self, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
-        forces(&self.forms, parameters, friction, delta_t)
+        forces(parameters, friction, delta_t)
     }
 
     /// What of the contact lies outside of the range of the fit; empty if nothing does.
@@ -267,6 +267,7 @@ impl Law {
 
     /// A law from the text of its file; the error is what is wrong, in words.
     pub(super) fn from_json(text: &str) -> Result<Self, String> {
+        family::refuse_earlier(text)?;
         json::parse(text)
     }
 }
@@ -274,8 +275,6 @@ impl Law {
 /// What the constants of the forms may be, which are of order one: positive, since the search has
 /// their logarithms.
 const CONSTANT: Bounds = Bounds { least: 1e-9, most: 1e9 };
-/// Those of the normal forms that may have either sign.
-const SIGNED: Bounds = Bounds { least: -1e9, most: 1e9 };
 /// Ends of the ranges of what a law was fitted to.
 const RANGE: Bounds = Bounds { least: 0.0, most: 1e9 };
 /// Of Poisson's ratio: what an isotropic solid can have.
@@ -293,18 +292,10 @@ impl LawKind for Law {
             ("constants.exponent", &constants.exponent),
             ("constants.slip", &constants.slip),
             ("constants.curve", &constants.curve),
+            ("normal.radius", &normal.radius),
+            ("normal.force", &normal.force),
         ] {
             CONSTANT.hold(key, values)?;
-        }
-        let bounds = if normal.form.sign() == Sign::Positive { CONSTANT } else { SIGNED };
-        for (key, values, wanted) in [
-            ("normal.radius", &normal.radius, normal.form.radius_start().len()),
-            ("normal.force", &normal.force, normal.form.force_start().len()),
-        ] {
-            if values.len() != wanted {
-                return Err(format!("{key} has {} constants, and its form has {wanted}", values.len()));
-            }
-            bounds.hold(key, values)?;
         }
         for (key, range) in [
             ("validity.lambda", validity.lambda),
@@ -324,23 +315,20 @@ impl LawKind for Law {
     }
 }
 
-/// The law of one contact for given forms and constants: see [`Law::contact`].
-pub fn contact(forms: &Forms, constants: &Constants, inputs: &Axisymmetric) -> Parameters {
+/// The law of one contact for given constants: see [`Law::contact`].
+pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
     let sphere = inputs.sphere();
     let state = Plasticity::new(
-        forms.variable,
         inputs.friction,
         inputs.a / inputs.radius,
         inputs.lambda(),
         yield_lambda(inputs.poissons_ratio),
-        johnson::normalized_hardness(inputs.f_n, inputs.sigma_rep, inputs.a),
         inputs.c_squared(),
     );
-    let n = forms::exponent(forms, &constants.exponent, &state);
-    let share = 1.0 - forms::fall(forms, &constants.fall, &state);
-    let factor = forms::slip_factor(forms, &constants.slip, &state, n, share);
-    let (steep, gentle) = forms::curve_exponents(&constants.curve, inputs.friction, n);
-    let (m_exponent, n_exponent) = forms.normal_curve.exponents(steep, gentle);
+    let n = forms::exponent(&constants.exponent, &state);
+    let share = 1.0 - forms::fall(&constants.fall, &state);
+    let factor = forms::slip_factor(&constants.slip, &state, n, share);
+    let (m_exponent, n_exponent) = forms::curve_exponents(&constants.curve, inputs.friction, n);
     let mindlin = cattaneo_mindlin::initial_stiffness(&sphere, inputs.a);
     let elastic_slip = if mindlin > 0.0 { 1.5 * inputs.friction * inputs.f_n / mindlin } else { 0.0 };
     Parameters {
@@ -355,10 +343,10 @@ pub fn contact(forms: &Forms, constants: &Constants, inputs: &Axisymmetric) -> P
 }
 
 /// F_T and F_N at the displacement `delta_t`: see [`Law::forces`].
-pub fn forces(forms: &Forms, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
+pub fn forces(parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
     let p = parameters;
     let x = if p.delta_t_slip > 0.0 { (delta_t.abs() / p.delta_t_slip).min(1.0) } else { 1.0 };
     let f_t = friction * p.f_n_slip * forms::f_t(x, p.n);
-    let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * forms.normal_curve.value(x, p.m_exponent, p.n_exponent);
+    let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * forms::f_n(x, p.m_exponent, p.n_exponent);
     (if delta_t == 0.0 { 0.0 } else { f_t.copysign(delta_t) }, f_n)
 }

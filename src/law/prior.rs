@@ -3,7 +3,7 @@
 //! A small study determines a few combinations of the constants and leaves the others open. Its fit
 //! may start from the constants of a bigger law and be drawn back to them: the constant c adds the
 //! residual w ln(c/c_prior) to those of the data, which are shares of a force, every case counting
-//! as one. Which weight w, or none, is a question to the cross-validation, as the forms are.
+//! as one. Which weight w, or none, is a question to the cross-validation.
 
 use std::path::Path;
 

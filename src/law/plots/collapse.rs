@@ -52,9 +52,8 @@ pub fn normal(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Opt
         let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, in normalised variables.";
         return Ok(Some(Picture::draw("collapse-normal", caption, sheet.chart(SINGLE), |root| draw_chart(root, &left))?));
     };
-    let f_n = |x: f64, p: &Parameters| law.forms.normal_curve.value(x, p.m_exponent, p.n_exponent);
-    let label = format!("law: f_N(x) = {}", law.forms.normal_curve.label().replace('-', " − "));
-    let right = diagonal(name, &label, samples, lines(&falling, Some(law), share, f_n));
+    let f_n = |x: f64, p: &Parameters| forms::f_n(x, p.m_exponent, p.n_exponent);
+    let right = diagonal(name, "law: f_N(x) = 1 − (1 − x^M)^N", samples, lines(&falling, Some(law), share, f_n));
     let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, coloured by Λ. Left: over x = δ_T/δ_T_slip. Right: over \
                    the law's f_N(x) with the case's M and N. δ_T_slip, M and N are the law's, F_N0 and F_N_slip the simulation's.";
     let (size, columns) = sheet.charts(DOUBLE, 2);

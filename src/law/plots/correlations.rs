@@ -36,7 +36,7 @@ pub fn fall(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Pictu
 
 /// n and delta_T_slip over its elastic value: each case's own best ones, and the law's.
 pub fn parameters(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture, LawError> {
-    let own = |sample: &Sample| own_fit(law.forms.normal_curve, sample);
+    let own = own_fit;
     let reference = reference(samples, law);
     let frictions = frictions(samples);
     let x = || lambda_axis(samples.iter().map(|sample| sample.variables.lambda));
