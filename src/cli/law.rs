@@ -62,9 +62,9 @@ pub struct FitArgs {
     /// The directory of a study.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
-    /// Constants to start from, weighted by cross-validation: built-in (used if the study has less
-    /// than a quarter of its cases), none, or another law.json.
-    #[arg(long, value_name = "PRIOR", default_value = "built-in")]
+    /// Constants to start from, weighted by cross-validation: wear-2014 (those of 240 cases, used if
+    /// the study has less than a quarter as many), none, or another law.json.
+    #[arg(long, value_name = "PRIOR", default_value = "wear-2014")]
     pub prior: String,
     /// Interpolate between the cases instead of fitting formulas: for a large study of many
     /// materials, on a plane or of equal spheres.

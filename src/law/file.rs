@@ -53,16 +53,21 @@ impl LawFile {
         })
     }
 
-    /// Reads any kind; of the name `built-in` it is the law by interpolation that comes with the
-    /// program.
+    /// The law that comes with the program, `built-in` on the command line: by interpolation, of any
+    /// material, on a rigid plane or between two bodies ([`Interpolated::built_in`]).
+    ///
+    /// # Errors
+    /// A file that was no law when the program was built.
+    pub fn built_in() -> Result<Self, LawError> {
+        Ok(Self::Interpolated(Box::new(Interpolated::built_in()?)))
+    }
+
+    /// Reads any kind; of the name `built-in` it is [`built_in`](Self::built_in).
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_or_built_in(path: &Path) -> Result<Self, LawError> {
-        if path == Path::new(BUILT_IN) {
-            return Ok(Self::Interpolated(Box::new(Interpolated::built_in()?)));
-        }
-        Self::read(path)
+        if path == Path::new(BUILT_IN) { Self::built_in() } else { Self::read(path) }
     }
 
     /// The same law where it is of one kind of contact already; the table of the case's contact

@@ -78,7 +78,7 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
     Ok(Prediction { inputs, parameters, curve, out_of_range })
 }
 
-/// Refuses a case with an opponent: laws are of a sphere on a rigid plane.
+/// Refuses a case with an opponent: formulas are of a sphere on a rigid plane.
 ///
 /// # Errors
 /// [`LawError::NotCovered`].
@@ -86,8 +86,8 @@ pub fn over_a_plane(case: &Case) -> Result<(), LawError> {
     match case.opponent {
         None => Ok(()),
         Some(_) => Err(LawError::NotCovered {
-            problem: "the case has an [opponent], and laws describe a sphere on a rigid plane",
-            remedy: "Leave the table [opponent] out, or simulate the case with `asperity run`",
+            problem: "the case has an [opponent], and a law of formulas is of a sphere on a rigid plane",
+            remedy: "Take the built-in law, whose name is `built-in`, or tabulate the case with `asperity law tabulate`",
         }),
     }
 }

@@ -67,8 +67,8 @@ fn a_small_study_predicts_cases_that_it_never_saw() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/studies/small.toml");
     let study = folder.path().join("small");
     asperity(&["study", text(&source), "--out", text(&study), "--device", "cpu"]).code(0);
-    // By itself, and with the constants of the built-in law to start from.
-    let laws = ["none", "built-in"].map(|prior| {
+    // By itself, and with the constants of wear-2014 to start from.
+    let laws = ["none", "wear-2014"].map(|prior| {
         asperity(&["law", "fit", text(&study), "--prior", prior]).code(0);
         let law = Law::read(&study.join("law.json")).expect("a law");
         assert_eq!((law.provenance.cases, law.provenance.materials), (27, 3), "{:?}", law.provenance.left_out);
@@ -92,6 +92,6 @@ fn a_small_study_predicts_cases_that_it_never_saw() {
     }
     // Over all curves 1.9 and 1.9 % without, 1.7 and 1.1 % with it.
     let rms = squares.map(|sums| sums.map(|sum| (sum / UNSEEN.len() as f64).sqrt()));
-    println!("rms of F_T and F_N without a prior and with the built-in one: {rms:.4?}");
+    println!("rms of F_T and F_N without a prior and with that of wear-2014: {rms:.4?}");
     assert!(rms[0].iter().all(|&rms| rms < 0.025) && rms[1].iter().all(|&rms| rms < 0.02), "{rms:?}");
 }
