@@ -372,7 +372,7 @@ fn table_against(hardening: &str, opponent: &str) -> LawFile {
             f_n0,
             a0,
             slip_share: 1.0 - 0.3 * plasticity,
-            delta_t_slip: 0.9 * f_n0 / (1.6 * a0) * (1.0 + plasticity),
+            delta_t_end: 0.9 * f_n0 / (1.6 * a0) * (1.0 + plasticity),
             unloading_radius: 1.1 * a0,
             k_t: 1.7 * a0,
             backbone: 1.3,
@@ -607,8 +607,8 @@ fn the_update_follows_the_law_it_is_made_of() {
                 let expected: Parameters = law.contact(&inputs);
                 let (mut state, _) = pair.update(&Default::default(), h, [0.0; 2]);
                 for k in 1..=20 {
-                    let delta = 1.1 * expected.delta_t_slip * f64::from(k) / 20.0;
-                    let increment = 1.1 * expected.delta_t_slip / 20.0;
+                    let delta = 1.1 * expected.delta_t_end * f64::from(k) / 20.0;
+                    let increment = 1.1 * expected.delta_t_end / 20.0;
                     let (next, out) = pair.update(&state, h, [0.0, increment]);
                     state = next;
                     let (f_t, f_n) = law.forces(&expected, friction, delta);

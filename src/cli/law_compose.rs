@@ -99,7 +99,7 @@ pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
         "F_N0",
         "a0",
         "F_N_slip",
-        "delta_T_slip"
+        "delta_T_end"
     );
     for level in &table.levels {
         // Writing to a String cannot fail.
@@ -110,7 +110,7 @@ pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
             level.f_n0,
             level.a0,
             level.slip_share * level.f_n0,
-            level.delta_t_slip
+            level.delta_t_end
         );
     }
     print(&format!("{text}\nlaw in {}\n", file.display()))?;

@@ -55,8 +55,8 @@ impl Law {
             };
             let compliance = 1.0 + self.constants.slip[0] * (state.a / sphere.radius);
             let k_t = cattaneo_mindlin::initial_stiffness(&sphere, state.a) / compliance;
-            let Parameters { f_n0, f_n_slip, delta_t_slip, n, m_exponent, n_exponent, .. } = self.contact(&inputs);
-            VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent }
+            let Parameters { f_n0, f_n_slip, delta_t_end, n, m_exponent, n_exponent, .. } = self.contact(&inputs);
+            VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip: delta_t_end, k_t, n, m_exponent, n_exponent }
         };
         let range = [first_indentation(body), LAST * sphere.radius];
         ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), friction, Some(NORMAL_CURVE), range, contact)

@@ -7,7 +7,7 @@
 //! ```text
 //! F_N_slip/F_N0 = 1 - tanh(A mu) tanh[B mu^p z^q exp(r mu w - d a/R)]  fall of the normal force
 //! n             = 3/2 + N tanh[C mu^p z^(q exp(-s mu)) exp(r mu w - d a/R) / N], N = 8.5  exponent of f_T
-//! delta_T_slip  = 3 mu F_N0 (2 - nu)/(16 G a) f,                       displacement at full slip:
+//! delta_T_end   = 3 mu F_N0 (2 - nu)/(16 G a) f,                       where the curves end, x = 1:
 //!             f = (2 n/3) (F_N_slip/F_N0) (1 + b a/R + S z^q)          through the initial stiffness
 //! f_T           = 1 - (1 - x)^n
 //! f_N           = 1 - (1 - x^M)^N                                      N = 1 + s + t (n - 3/2) steep, M = 1 + u mu^v gentle
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact_law::NormalCurve;
 
 /// Greatest n - 3/2. Beyond n = 10, f_T is an exponential for all that can be seen, and
-/// delta_T_slip would no longer be the displacement at which sliding starts.
+/// delta_T_end would no longer be the displacement at which sliding starts.
 pub const EXPONENT_SPAN: f64 = 8.5;
 /// How f_N is written.
 pub const NORMAL_CURVE: NormalCurve = NormalCurve::ComplementOfPower;
@@ -113,7 +113,7 @@ pub fn exponent(constants: &[f64; 6], state: &Plasticity) -> f64 {
     1.5 + EXPONENT_SPAN * (c * state.product(p, power) * size / EXPONENT_SPAN).tanh()
 }
 
-/// f = delta_T_slip over its elastic value, given n and F_N_slip/F_N0.
+/// f = delta_T_end over its elastic value, given n and F_N_slip/F_N0.
 pub fn slip_factor(constants: &[f64; 4], state: &Plasticity, n: f64, slip_share: f64) -> f64 {
     let [body, rate, _, q] = *constants;
     n / 1.5 * slip_share * (1.0 + body * state.relative_radius + rate * state.z.powf(q))

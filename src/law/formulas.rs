@@ -18,7 +18,7 @@ impl Law {
         let mut line = |left: &str, right: &str| {
             let _ = writeln!(text, "{left:<15} = {right}");
         };
-        line("F_T", "mu F_N_slip [1 - (1 - x)^n], x = delta_T/delta_T_slip");
+        line("F_T", "mu F_N_slip [1 - (1 - x)^n], x = delta_T/delta_T_end");
         line("F_N", "F_N0 - (F_N0 - F_N_slip) f_N, f_N = 1 - (1 - x^M)^N");
         line("Lambda_Y", "Lambda at first yield (2.533 at nu = 0.3); g = 1 - (Lambda_Y/Lambda)^2; below it g = z = w = 0");
         line("c2", "a^2/(2 R h)");
@@ -31,7 +31,7 @@ impl Law {
         let size = format!("exp({n_r:.4} mu w - {n_d:.4} a/R)");
         line("n", &format!("1.5 + {EXPONENT_SPAN} tanh[{:.4} mu^{n_p:.4} z^({power}) {size}]", n_c / EXPONENT_SPAN));
         let slip = format!("(2 n/3) (F_N_slip/F_N0) (1 + {body:.4} a/R + {rate:.4} z^{slip_q:.4})");
-        line("delta_T_slip", &format!("3 mu F_N0 (2 - nu)/(16 G a0) f, f = {slip}"));
+        line("delta_T_end", &format!("3 mu F_N0 (2 - nu)/(16 G a0) f, f = {slip}"));
         line("N", &format!("{:.4} + {t:.4} (n - 1.5)", 1.0 + s));
         line("M", &format!("1 + {u:.4} mu^{v:.4}"));
         for (left, right) in self.normal_formulas() {

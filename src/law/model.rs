@@ -61,16 +61,16 @@ impl Axisymmetric {
 }
 
 /// The law of one contact, in the units of its [`Axisymmetric`] data:
-/// F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x), x = delta_T/delta_T_slip.
+/// F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x), x = delta_T/delta_T_end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameters {
     /// F_N0 before the shear.
     pub f_n0: f64,
     /// F_N at full slip.
     pub f_n_slip: f64,
-    /// delta_T at full slip, length.
-    pub delta_t_slip: f64,
-    /// Initial tangential stiffness, n mu F_N_slip/delta_T_slip, force per length.
+    /// delta_T at x = 1, where the curves end and everything slips, length.
+    pub delta_t_end: f64,
+    /// Initial tangential stiffness, n mu F_N_slip/delta_T_end, force per length.
     pub k_t0: f64,
     /// n of f_T = 1 - (1 - x)^n.
     pub n: f64,
@@ -220,7 +220,7 @@ impl Law {
     }
 
     /// F_T and F_N at the displacement `delta_t` of a shear in one direction, constant from
-    /// delta_T_slip on; F_T is odd and F_N even in `delta_t`.
+    /// delta_T_end on; F_T is odd and F_N even in `delta_t`.
     pub fn forces(&self, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
         forces(parameters, friction, delta_t)
     }
@@ -334,7 +334,7 @@ pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
     Parameters {
         f_n0: inputs.f_n,
         f_n_slip: share * inputs.f_n,
-        delta_t_slip: factor * elastic_slip,
+        delta_t_end: factor * elastic_slip,
         k_t0: mindlin * n / 1.5 * share / factor,
         n,
         m_exponent,
@@ -345,7 +345,7 @@ pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
 /// F_T and F_N at the displacement `delta_t`: see [`Law::forces`].
 pub fn forces(parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
     let p = parameters;
-    let x = if p.delta_t_slip > 0.0 { (delta_t.abs() / p.delta_t_slip).min(1.0) } else { 1.0 };
+    let x = if p.delta_t_end > 0.0 { (delta_t.abs() / p.delta_t_end).min(1.0) } else { 1.0 };
     let f_t = friction * p.f_n_slip * forms::f_t(x, p.n);
     let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * forms::f_n(x, p.m_exponent, p.n_exponent);
     (if delta_t == 0.0 { 0.0 } else { f_t.copysign(delta_t) }, f_n)

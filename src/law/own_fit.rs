@@ -1,7 +1,7 @@
-//! The parameters of one case by least squares of its own curves: delta_T_slip and n from F_T, M
+//! The parameters of one case by least squares of its own curves: delta_T_end and n from F_T, M
 //! and N from F_N.
 //!
-//! Where F_T approaches mu F_N_slip as an exponential, n and delta_T_slip grow together without
+//! Where F_T approaches mu F_N_slip as an exponential, n and delta_T_end grow together without
 //! bound; n is kept below 3/2 + 8.5 as in the law.
 
 use super::data::Sample;
@@ -12,7 +12,7 @@ use crate::analytical::cattaneo_mindlin;
 /// One case's own parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnFit {
-    /// delta_T_slip over its elastic value.
+    /// delta_T_end over its elastic value.
     pub slip_factor: f64,
     /// n.
     pub n: f64,

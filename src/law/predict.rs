@@ -61,7 +61,7 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
         f_n: normal.f_n,
     };
     let parameters = law.contact(&inputs);
-    let slip = parameters.delta_t_slip;
+    let slip = parameters.delta_t_end;
     let (end, direction) = match target {
         ShearTarget::FullSlip => (slip, 1.0),
         ShearTarget::Displacement(d) => (d.abs(), d.signum()),

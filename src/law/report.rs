@@ -136,7 +136,7 @@ pub struct FittedCase {
     pub slip_share: f64,
     /// k_T0 of the simulation over Mindlin's.
     pub stiffness_ratio: f64,
-    /// delta_T_slip over its elastic value.
+    /// delta_T_end over its elastic value.
     pub slip_factor: f64,
     /// n of f_T.
     pub n: f64,

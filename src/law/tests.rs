@@ -26,7 +26,7 @@ pub(super) fn elastic_sample(friction: f64) -> Sample {
         f_n0: contact.normal_force,
         f_n_slip: contact.normal_force,
         k_t0: contact.initial_stiffness(),
-        delta_t_99: contact.slip_displacement(),
+        delta_t_slip: contact.slip_displacement(),
         variables,
         curve,
         elements_per_contact_radius: 16,
@@ -82,10 +82,10 @@ mod limits {
             let exact = CattaneoMindlin::at_indentation(inputs.sphere(), friction, inputs.h);
             assert_eq!((p.n, p.f_n_slip, p.f_n0), (1.5, inputs.f_n, inputs.f_n));
             let compliance = 1.0 + constants().slip[0] * inputs.a / inputs.radius;
-            assert!((p.delta_t_slip / exact.slip_displacement() / compliance - 1.0).abs() < 1e-13);
+            assert!((p.delta_t_end / exact.slip_displacement() / compliance - 1.0).abs() < 1e-13);
             assert!((p.k_t0 / exact.initial_stiffness() * compliance - 1.0).abs() < 1e-13);
             for x in [-2.0, -0.5, 0.0, 0.3, 0.99, 1.0, 4.0] {
-                let (f_t, f_n) = forces(&p, friction, x * p.delta_t_slip);
+                let (f_t, f_n) = forces(&p, friction, x * p.delta_t_end);
                 assert!((f_t - exact.force(x * exact.slip_displacement())).abs() < 1e-12 * inputs.f_n);
                 assert_eq!(f_n, inputs.f_n);
             }
@@ -93,7 +93,7 @@ mod limits {
         // In the limit of a half-space it is theirs exactly.
         let small = at(1e-13, 0.3);
         let exact = CattaneoMindlin::at_indentation(small.sphere(), 0.3, small.h);
-        assert!((contact(&constants(), &small).delta_t_slip / exact.slip_displacement() - 1.0).abs() < 1e-13);
+        assert!((contact(&constants(), &small).delta_t_end / exact.slip_displacement() - 1.0).abs() < 1e-13);
         // And for a sphere that never yields.
         let elastic = Axisymmetric { sigma_rep: f64::INFINITY, ..at(50.0, 0.3) };
         assert_eq!(contact(&constants(), &elastic).n, 1.5);
@@ -104,7 +104,7 @@ mod limits {
         let yielding = yield_lambda(0.3);
         let (below, above) =
             (contact(&constants(), &at(yielding, 0.3)), contact(&constants(), &at(yielding * (1.0 + 1e-9), 0.3)));
-        let pairs = |p: &Parameters| [p.f_n_slip / p.f_n0, p.delta_t_slip / p.f_n0, p.k_t0, p.n, p.m_exponent, p.n_exponent];
+        let pairs = |p: &Parameters| [p.f_n_slip / p.f_n0, p.delta_t_end / p.f_n0, p.k_t0, p.n, p.m_exponent, p.n_exponent];
         for (below, above) in pairs(&below).into_iter().zip(pairs(&above)) {
             assert!((above / below - 1.0).abs() < 1e-5, "{below} and {above}");
         }
@@ -118,9 +118,9 @@ mod limits {
             let inputs = at(lambda, 0.5);
             let p = contact(&constants(), &inputs);
             let share = p.f_n_slip / p.f_n0;
-            assert!(share > 0.0 && share <= 1.0 && p.n >= 1.5 && p.n <= 10.0 && p.delta_t_slip > 0.0, "{p:?}");
+            assert!(share > 0.0 && share <= 1.0 && p.n >= 1.5 && p.n <= 10.0 && p.delta_t_end > 0.0, "{p:?}");
             assert!(p.m_exponent >= 1.0 && p.n_exponent >= 1.0);
-            assert!((p.k_t0 - p.n * 0.5 * p.f_n_slip / p.delta_t_slip).abs() < 1e-12 * p.k_t0);
+            assert!((p.k_t0 - p.n * 0.5 * p.f_n_slip / p.delta_t_end).abs() < 1e-12 * p.k_t0);
             if let Some(last) = last {
                 // Both turn where the contact is large: these contacts grow with Lambda.
                 assert!(lambda > 100.0 || share <= last.f_n_slip / last.f_n0 + 1e-12, "at {lambda}");
@@ -136,11 +136,11 @@ mod limits {
         let p = contact(&constants(), &inputs);
         let mut last = (0.0, inputs.f_n);
         for i in 0..=300 {
-            let d = p.delta_t_slip * f64::from(i) / 250.0;
+            let d = p.delta_t_end * f64::from(i) / 250.0;
             let (f_t, f_n) = forces(&p, 0.4, d);
             let (back_t, back_n) = forces(&p, 0.4, -d);
             assert_eq!((back_t, back_n), (0.0 - f_t, f_n));
-            assert!(f_t >= last.0 && f_n <= last.1 && f_t <= 0.4 * f_n * (1.0 + 1e-12), "x = {}", d / p.delta_t_slip);
+            assert!(f_t >= last.0 && f_n <= last.1 && f_t <= 0.4 * f_n * (1.0 + 1e-12), "x = {}", d / p.delta_t_end);
             last = (f_t, f_n);
         }
         assert!((last.0 / (0.4 * p.f_n_slip) - 1.0).abs() < 1e-14 && last.1 == p.f_n_slip);
@@ -160,7 +160,7 @@ mod limits {
             ..inputs
         };
         let (p, q) = (contact(&constants(), &inputs), contact(&constants(), &other));
-        assert!((q.delta_t_slip / length / p.delta_t_slip - 1.0).abs() < 1e-12 && (q.n / p.n - 1.0).abs() < 1e-12);
+        assert!((q.delta_t_end / length / p.delta_t_end - 1.0).abs() < 1e-12 && (q.n / p.n - 1.0).abs() < 1e-12);
     }
 
     #[test]

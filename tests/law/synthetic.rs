@@ -58,7 +58,7 @@ pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>
     };
     let parameters = model::contact(&CONSTANTS, &inputs);
     let curve = (1..=25)
-        .map(|i| parameters.delta_t_slip * (f64::from(i) / 25.0).powf(1.8))
+        .map(|i| parameters.delta_t_end * (f64::from(i) / 25.0).powf(1.8))
         .map(|d| {
             let (f_t, f_n) = model::forces(&parameters, friction, d);
             [d, f_t, f_n]

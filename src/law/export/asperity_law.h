@@ -331,7 +331,7 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
             t->deepest = ASPERITY_R(h);
         }
         for (j = 0; j < ASPERITY_COLUMNS; j++) {
-            /* The update needs 1/a and 1/delta_T_slip, and first what has a logarithm in the table. */
+            /* The update needs 1/a and 1/delta_T_end, and first what has a logarithm in the table. */
             double sign = j == 1 || j == 3 ? -1.0 : 1.0, value = p->table[i][j], slope = asperity_knot_slope(p, j, i);
             int k = place[j];
             double start = sign * (value - (j == 0 || j == 7 ? log_modulus : 0.0));

@@ -165,7 +165,7 @@ fn errors(sample: &Sample, level: &Level) -> CaseErrors {
     let one = &sample.measured;
     let (mut squares, mut greatest) = ([0.0; 2], [0.0f64; 2]);
     for point in &one.curve {
-        let x = (point.delta_t / level.delta_t_slip).min(1.0);
+        let x = (point.delta_t / level.delta_t_end).min(1.0);
         let [f_t, lost] = [&level.tangential, &level.normal].map(|shape| straight(shape, x));
         let f_t = sample.friction * level.slip_share * level.f_n0 * f_t;
         let f_n = level.f_n0 * (1.0 - (1.0 - level.slip_share) * lost);

@@ -86,7 +86,7 @@ pub(in crate::law) fn check_levels(levels: &[Level]) -> Checked {
         for (name, value) in [
             ("F_N0", level.f_n0),
             ("a0", level.a0),
-            ("delta_t_slip", level.delta_t_slip),
+            ("delta_T_end", level.delta_t_end),
             ("unloading_radius", level.unloading_radius),
             ("k_T", level.k_t),
         ] {

@@ -58,9 +58,10 @@ pub struct Level {
     pub a0: f64,
     /// Normal force at full slip over F_N0, at most 1.
     pub slip_share: f64,
-    /// Displacement at which the curves of the shear end, delta_T at x = 1: twice that at which
-    /// F_T/F_N is 0.99 mu.
-    pub delta_t_slip: f64,
+    /// Displacement at which the curves of the shear end, delta_T at x = 1: in a table that was
+    /// simulated twice delta_T_slip, that at which F_T/F_N is 0.99 mu.
+    #[serde(rename = "delta_T_end", alias = "delta_t_slip")]
+    pub delta_t_end: f64,
     /// Radius with which 2 E* a is the stiffness of an unloading; that of the contact in Hertz's.
     pub unloading_radius: f64,
     /// Tangential stiffness k_T at the start of a reversal.
@@ -276,9 +277,9 @@ impl Tabulated {
                 a: level.unloading_radius,
                 f_n0: level.f_n0,
                 f_n_slip: level.slip_share * level.f_n0,
-                delta_t_slip: level.delta_t_slip,
+                delta_t_slip: level.delta_t_end,
                 // The sliders must not be softer than the curve of the shear at its start.
-                k_t: level.k_t.max(steepest(&level.tangential) * mu * level.slip_share * level.f_n0 / level.delta_t_slip),
+                k_t: level.k_t.max(steepest(&level.tangential) * mu * level.slip_share * level.f_n0 / level.delta_t_end),
                 // Its place is that of the yield curve's coefficient where the shapes are numbers.
                 n: 1.0,
                 // The steep exponent's place is the backbone's where the shapes are numbers.
@@ -401,7 +402,7 @@ fn columns_of(level: &Level) -> Vec<f64> {
         level.f_n0.ln() - 1.5 * ln_h,
         level.a0.ln() - 0.5 * ln_h,
         level.slip_share,
-        level.delta_t_slip.ln() - ln_h,
+        level.delta_t_end.ln() - ln_h,
         level.unloading_radius.ln() - 0.5 * ln_h,
         level.k_t.ln() - 0.5 * ln_h,
         level.backbone,
@@ -437,7 +438,7 @@ fn level_of(h: f64, columns: &[f64]) -> Level {
         f_n0: (columns[0] + 1.5 * ln_h).exp(),
         a0: (columns[1] + 0.5 * ln_h).exp(),
         slip_share,
-        delta_t_slip: (columns[3] + ln_h).exp(),
+        delta_t_end: (columns[3] + ln_h).exp(),
         unloading_radius: (columns[4] + 0.5 * ln_h).exp(),
         k_t: (columns[5] + 0.5 * ln_h).exp(),
         backbone: columns[6].clamp(BACKBONE[0], BACKBONE[1]),

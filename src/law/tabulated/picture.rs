@@ -78,7 +78,7 @@ fn shears(built: &Built) -> Result<Chart, LawError> {
         series.push(Series::solid("", BLUE, line(0, one.f_n0)));
         series.push(Series::solid("", VERMILION, line(1, friction * one.f_n0)));
     }
-    let x = Axis::linear("δ_T / δ_{T,slip}", 0.0, 1.03 * last.clamp(0.1, 2.0));
+    let x = Axis::linear("δ_T / δ_{T,end}", 0.0, 1.03 * last.clamp(0.1, 2.0));
     let y = Axis::linear("F_N / F_N0 and F_T / (μ F_N0)", 0.0, 1.1);
     Ok(Chart { title: "Shear at the checked depths".into(), x, y, series, bar: None })
 }
