@@ -12,9 +12,9 @@ use std::fs;
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::law::fit::fit;
-use asperity::law::predict::{NormalSource, predict};
-use asperity::law::prior::Prior;
+use asperity::law::formulas::fit::fit;
+use asperity::law::formulas::predict::{NormalSource, predict};
+use asperity::law::formulas::prior::Prior;
 use asperity::law::{Law, LawError};
 use assert_cmd::Command;
 

@@ -18,12 +18,13 @@ use asperity::analytical::ElasticSphere;
 use asperity::case::Case;
 use asperity::contact_law::{Frame, POINTS};
 use asperity::law::export::{Language, engine_files, files, law_files, law_source, source, vectors};
-use asperity::law::forms::Constants;
-use asperity::law::model::{FORMAT, Interval, Law, Provenance, VERSION, Validity};
-use asperity::law::normal::NormalModel;
-use asperity::law::tabulated::{self, Level, Tabulated};
+use asperity::law::formulas::model::{FORMAT, Law, Provenance, VERSION, Validity};
+use asperity::law::formulas::normal::NormalModel;
+use asperity::law::formulas::shear::Constants;
+use asperity::law::range::Interval;
+use asperity::law::table::{self, Level, Tabulated};
 use asperity::law::variables::Body;
-use asperity::law::{Axisymmetric, LawFile, Parameters};
+use asperity::law::{LawFile, Parameters};
 use asperity::material::hardening::Hardening;
 use programs::has;
 
@@ -382,14 +383,14 @@ fn table_against(hardening: &str, opponent: &str) -> LawFile {
     };
     let levels: Vec<Level> = (0..12).map(level).collect();
     LawFile::Table(Box::new(Tabulated {
-        format: tabulated::FORMAT.to_owned(),
-        version: tabulated::VERSION,
+        format: table::FORMAT.to_owned(),
+        version: table::VERSION,
         body: if opponent.is_empty() {
-            tabulated::Against::Plane
+            table::Against::Plane
         } else if opponent.contains("flat = true") {
-            tabulated::Against::Flat
+            table::Against::Flat
         } else {
-            tabulated::Against::OtherSphere
+            table::Against::OtherSphere
         },
         frame: (!opponent.is_empty() && !opponent.contains("flat = true")).then_some(Frame::LineOfCentres),
         program: "a test".to_owned(),
@@ -593,17 +594,7 @@ fn the_update_follows_the_law_it_is_made_of() {
             let friction = 0.25;
             let pair = law.contact_parameters(&body, friction).unwrap();
             for h in [1e-5, 1e-3, 0.02].map(|h| h * sphere.radius) {
-                let normal = law.normal.state(&body, friction, h);
-                let inputs = Axisymmetric {
-                    youngs_modulus: sphere.youngs_modulus,
-                    poissons_ratio: sphere.poissons_ratio,
-                    radius: sphere.radius,
-                    friction,
-                    sigma_rep: body.representative_stress(normal.a),
-                    h,
-                    a: normal.a,
-                    f_n: normal.f_n,
-                };
+                let inputs = law.inputs(&body, friction, h);
                 let expected: Parameters = law.contact(&inputs);
                 let (mut state, _) = pair.update(&Default::default(), h, [0.0; 2]);
                 for k in 1..=20 {
@@ -711,17 +702,7 @@ fn the_module_warns_where_the_law_does() {
     for (answer, (yield_stress, nu, friction, h)) in answers.into_iter().zip(cases) {
         let sphere = ElasticSphere { radius: 2.0, youngs_modulus: 1e3, poissons_ratio: nu };
         let body = Body { sphere, hardening: Hardening::ideal(yield_stress).unwrap() };
-        let normal = law.normal.state(&body, friction, 2.0 * h);
-        let inputs = Axisymmetric {
-            youngs_modulus: 1e3,
-            poissons_ratio: nu,
-            radius: 2.0,
-            friction,
-            sigma_rep: body.representative_stress(normal.a),
-            h: 2.0 * h,
-            a: normal.a,
-            f_n: normal.f_n,
-        };
+        let inputs = law.inputs(&body, friction, 2.0 * h);
         let bit = |quantity| ["Lambda", "mu", "a/R", "c^2", "nu"].iter().position(|name| *name == quantity).map_or(0, |i| 1 << i);
         let expected: u32 = law.out_of_range(&inputs).iter().map(|outside| bit(outside.quantity)).sum();
         assert_eq!(answer, expected, "{yield_stress} {nu} {friction} {h}");

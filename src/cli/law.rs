@@ -19,11 +19,12 @@ use crate::case::Case;
 use crate::contact_law::path::PathPoint;
 use crate::law::export::{Language, law_files, law_source};
 use crate::law::file::BUILT_IN;
+use crate::law::formulas::fit::fit;
+use crate::law::formulas::predict::{NormalSource, Prediction, predict};
+use crate::law::formulas::prior::Prior;
 use crate::law::interpolated::{self, Interpolated};
-use crate::law::model::OutOfRange;
-use crate::law::predict::{NormalSource, Prediction, predict};
-use crate::law::prior::Prior;
-use crate::law::{Law, LawError, LawFile, fit, report};
+use crate::law::range::OutOfRange;
+use crate::law::{Law, LawError, LawFile, report};
 use crate::output::{decimal, refuse_foreign, refuse_input, write_own};
 
 /// Make a contact law and use it.
@@ -173,7 +174,7 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
         }
         return Ok(Outcome::Done);
     }
-    let law = fit::fit(&args.dir, &Prior::from_option(&args.prior)?)?;
+    let law = fit(&args.dir, &Prior::from_option(&args.prior)?)?;
     law.write(&path)?;
     if args.json {
         print_json(&law)?;

@@ -11,7 +11,7 @@ use super::law::warn_out_of_range;
 use super::{CliError, Outcome, print};
 use crate::case::Case;
 use crate::law::interpolated::Interpolated;
-use crate::law::tabulated::{Tabulated, compose};
+use crate::law::table::{Tabulated, compose};
 use crate::law::{LawError, LawFile};
 use crate::output::refuse_input;
 

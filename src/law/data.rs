@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::LawError;
-use super::table::StudyTable;
+use super::study_table::StudyTable;
 use super::variables::{Body, Variables};
 use crate::case::{Case, Friction, Hold, Scaled, Segment};
 use crate::output::{OutputDirectory, StepRecord, Summary, SummaryInputs, read_history};
@@ -124,6 +124,12 @@ impl StudyData {
         let list: Vec<String> = reasons.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
         format!("Left out: {}. ", list.join(", "))
     }
+}
+
+/// Name of the directory, even if it was given as `.`.
+pub(super) fn study_name(dir: &Path) -> String {
+    let dir = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
+    dir.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 /// Whether a law can be fitted to a run.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::case::CaseError;
 use crate::contact_law::ContactError;
-use crate::law::tabulated::Against;
+use crate::law::table::Against;
 use crate::material::MaterialError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::law::forms::Constants;
-use asperity::law::model::{self, Axisymmetric};
-use asperity::law::normal::NormalModel;
+use asperity::law::formulas::model::{self, Axisymmetric};
+use asperity::law::formulas::normal::NormalModel;
+use asperity::law::formulas::shear::Constants;
 use asperity::law::variables::Body;
 use asperity::output::{HistoryWriter, OutputDirectory, StepRecord};
 
@@ -45,17 +45,7 @@ pub fn hardenings() -> Vec<String> {
 /// The normal data and the curve (delta_T, F_T, F_N) of a case that follows the law.
 pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>) {
     let body = Body::from_case(case).expect("a hardening law");
-    let state = normal().state(&body, friction, h);
-    let inputs = Axisymmetric {
-        youngs_modulus: body.sphere.youngs_modulus,
-        poissons_ratio: body.sphere.poissons_ratio,
-        radius: body.sphere.radius,
-        friction,
-        sigma_rep: body.representative_stress(state.a),
-        h,
-        a: state.a,
-        f_n: state.f_n,
-    };
+    let inputs = Axisymmetric::of(&body, friction, h, normal().state(&body, friction, h));
     let parameters = model::contact(&CONSTANTS, &inputs);
     let curve = (1..=25)
         .map(|i| parameters.delta_t_end * (f64::from(i) / 25.0).powf(1.8))

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use asperity::case::Case;
 use asperity::law::Law;
-use asperity::law::predict::{NormalSource, predict};
+use asperity::law::formulas::predict::{NormalSource, predict};
 use asperity::output::read_history;
 
 use super::{asperity, text};

@@ -12,11 +12,11 @@ mod vectors;
 pub use engine::{engine_files, engine_source};
 pub use vectors::{table_vectors, unit_vectors, vectors};
 
-use super::contact_parameters::LAST;
-use super::elastic::BODY;
-use super::forms::EXPONENT_SPAN;
-use super::model::Law;
-use super::tabulated::Tabulated;
+use super::formulas::contact_parameters::LAST;
+use super::formulas::elastic::BODY;
+use super::formulas::model::Law;
+use super::formulas::shear::EXPONENT_SPAN;
+use super::table::Tabulated;
 use super::{LawError, LawFile};
 use crate::case::{Case, Hardening};
 use crate::contact_law::export::{HEADER_NAME, check_program, fill, header, header_3d, header_parts, module_parts};

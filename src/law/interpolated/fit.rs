@@ -13,11 +13,11 @@ use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
 use crate::contact_law::{Frame, POINTS};
 use crate::law::LawError;
-use crate::law::fit::study_name;
-use crate::law::model::Interval;
+use crate::law::data::study_name;
+use crate::law::range::Interval;
 use crate::law::report::{CaseErrors, by_region};
-use crate::law::table::StudyTable;
-use crate::law::tabulated::{Against, Level, Measured, scaled};
+use crate::law::study_table::StudyTable;
+use crate::law::table::{Against, Level, Measured, scaled};
 use crate::law::variables::yield_lambda;
 use crate::output::{OutputDirectory, read_history};
 

@@ -4,8 +4,8 @@
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, hertz};
 use crate::contact_law::POINTS;
 use crate::law::data::Point;
-use crate::law::tabulated::spline::Spline;
-use crate::law::tabulated::{Against, Level, Measured, backbone_of, cleaned, reversal, unloading_radius};
+use crate::law::table::spline::Spline;
+use crate::law::table::{Against, Level, Measured, backbone_of, cleaned, reversal, unloading_radius};
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Number of outputs that are no curves.

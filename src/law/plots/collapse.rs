@@ -3,9 +3,9 @@
 
 use super::groups::lambda_bar;
 use crate::law::data::{Point, Sample};
-use crate::law::fit::inputs;
-use crate::law::forms;
-use crate::law::model::Parameters;
+use crate::law::formulas::fit::inputs;
+use crate::law::formulas::model::Parameters;
+use crate::law::formulas::shear;
 use crate::law::{Law, LawError};
 use crate::output::plots::chart::{Axis, Chart, Line, Series, draw_chart, draw_charts};
 use crate::output::plots::style::INK;
@@ -23,14 +23,14 @@ pub fn tangential(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result
     let name = "F_T / (μ F_{N,slip})";
     let mut left = panel("Tangential force", over(law), name, samples, lines(&all, law, share, |x, _| x));
     for (n, dash) in [(1.5, 12.0), (3.0, 7.0), (8.0, 3.0)] {
-        let points = (0..=140).map(|i| 0.01 * f64::from(i)).map(|x| (x, forms::f_t(x, n))).collect();
+        let points = (0..=140).map(|i| 0.01 * f64::from(i)).map(|x| (x, shear::f_t(x, n))).collect();
         left.series.push(Series::dashed(format!("f_T, n = {n}"), INK, dash, points));
     }
     let Some(law) = law else {
         let caption = "Every shear in normalised variables. δ_T_slip is the displacement at which F_T/F_N reaches 0.99 μ.";
         return Ok(Picture::draw("collapse-tangential", caption, sheet.chart(SINGLE), |root| draw_chart(root, &left))?);
     };
-    let f_t = |x: f64, p: &Parameters| forms::f_t(x, p.n);
+    let f_t = |x: f64, p: &Parameters| shear::f_t(x, p.n);
     let right = diagonal(name, "law: f_T(x) = 1 − (1 − x)^n", samples, lines(&all, Some(law), share, f_t));
     let caption = "Every shear in normalised variables, coloured by Λ. Left: over x = δ_T/δ_T_end, with f_T for some n. Right: over the law's f_T(x) \
                    with the case's n; all curves fall on the diagonal where the law holds. δ_T_end and n are the law's, F_N_slip the simulation's.";
@@ -51,7 +51,7 @@ pub fn normal(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Opt
         let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, in normalised variables.";
         return Ok(Some(Picture::draw("collapse-normal", caption, sheet.chart(SINGLE), |root| draw_chart(root, &left))?));
     };
-    let f_n = |x: f64, p: &Parameters| forms::f_n(x, p.m_exponent, p.n_exponent);
+    let f_n = |x: f64, p: &Parameters| shear::f_n(x, p.m_exponent, p.n_exponent);
     let right = diagonal(name, "law: f_N(x) = 1 − (1 − x^M)^N", samples, lines(&falling, Some(law), share, f_n));
     let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, coloured by Λ. Left: over x = δ_T/δ_T_end. Right: over \
                    the law's f_N(x) with the case's M and N. δ_T_end, M and N are the law's, F_N0 and F_N_slip the simulation's.";

@@ -2,7 +2,7 @@
 
 use super::groups::{by_friction, lambda_axis};
 use crate::law::data::Sample;
-use crate::law::fit::inputs;
+use crate::law::formulas::fit::inputs;
 use crate::law::report::{CaseErrors, FittedCase, LAMBDA_BOUNDS, case_errors};
 use crate::law::variables::yield_lambda;
 use crate::law::{Law, LawError};

@@ -3,9 +3,9 @@
 use super::groups::{Reference, by_friction, frictions, lambda_axis};
 use crate::analytical::cattaneo_mindlin;
 use crate::law::data::Sample;
-use crate::law::fit::inputs;
-use crate::law::model::Axisymmetric;
-use crate::law::own_fit::own_fit;
+use crate::law::formulas::fit::inputs;
+use crate::law::formulas::model::Axisymmetric;
+use crate::law::formulas::own_fit::own_fit;
 use crate::law::{Law, LawError};
 use crate::output::plots::chart::{Axis, Chart, draw_chart, draw_charts, extent};
 use crate::output::plots::{Picture, Sheet};

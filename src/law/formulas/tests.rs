@@ -1,12 +1,12 @@
 //! Tests of the room as a whole; helpers that its files share.
 
-use super::data::{Point, Sample};
-use super::variables::Body;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::case;
+use crate::law::data::{Point, Sample};
+use crate::law::variables::Body;
 
 /// A sample of an elastic sphere that follows Cattaneo and Mindlin exactly.
-pub(super) fn elastic_sample(friction: f64) -> Sample {
+pub(in crate::law) fn elastic_sample(friction: f64) -> Sample {
     let material = case::Material { youngs_modulus: 200e3, poissons_ratio: 0.3, hardening: case::Hardening::Elastic };
     let body = Body::new(1.0, &material).unwrap();
     let h0 = 1e-4;
@@ -34,9 +34,9 @@ pub(super) fn elastic_sample(friction: f64) -> Sample {
 }
 
 mod limits {
-    use super::super::forms::Constants;
     use super::super::model::{Axisymmetric, Parameters, contact, forces};
-    use super::super::variables::{Body, yield_lambda};
+    use super::super::shear::Constants;
+    use crate::law::variables::{Body, yield_lambda};
     use super::*;
     use crate::analytical::hertz;
 

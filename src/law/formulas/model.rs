@@ -5,15 +5,16 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::LawError;
-use super::bounds::{Bounds, Checked, TOLD};
 use super::family::{self, Forms};
-use super::forms::{self, Constants, Plasticity};
-use super::json::{self, LawKind};
-use super::normal::NormalModel;
-use super::report::{Candidate, FittedCase, NormalCandidate, RegionError};
-use super::variables::{c_squared, yield_lambda};
+use super::normal::{NormalModel, NormalState};
+use super::shear::{self, Constants, Plasticity};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
+use crate::law::LawError;
+use crate::law::bounds::{Bounds, Checked, TOLD};
+use crate::law::json::{self, LawKind};
+use crate::law::range::{Interval, MARGIN, OutOfRange};
+use crate::law::report::{Candidate, FittedCase, NormalCandidate, RegionError};
+use crate::law::variables::{Body, c_squared, yield_lambda};
 
 /// The first key of a law file, by which it is recognised.
 pub const FORMAT: &str = "asperity-law";
@@ -44,6 +45,13 @@ pub struct Axisymmetric {
 }
 
 impl Axisymmetric {
+    /// That of a body at the indentation `h`, with Coulomb's coefficient `friction`.
+    pub fn of(body: &Body, friction: f64, h: f64, NormalState { a, f_n }: NormalState) -> Self {
+        let ElasticSphere { youngs_modulus, poissons_ratio, radius } = body.sphere;
+        let sigma_rep = body.representative_stress(a);
+        Self { youngs_modulus, poissons_ratio, radius, friction, sigma_rep, h, a, f_n }
+    }
+
     /// The elastic sphere.
     pub fn sphere(&self) -> ElasticSphere {
         ElasticSphere { radius: self.radius, youngs_modulus: self.youngs_modulus, poissons_ratio: self.poissons_ratio }
@@ -80,29 +88,6 @@ pub struct Parameters {
     pub n_exponent: f64,
 }
 
-/// A closed interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
-    /// Lower end.
-    pub from: f64,
-    /// Upper end.
-    pub to: f64,
-}
-
-impl Interval {
-    /// The smallest one that holds all values; `None` for no values.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        values.into_iter().fold(None, |interval: Option<Self>, x| {
-            Some(interval.map_or(Self { from: x, to: x }, |i| Self { from: i.from.min(x), to: i.to.max(x) }))
-        })
-    }
-
-    /// Whether `x` lies in it, to a share `margin` of the ends.
-    pub fn contains(&self, x: f64, margin: f64) -> bool {
-        x >= self.from - margin * self.from.abs() && x <= self.to + margin * self.to.abs()
-    }
-}
-
 /// The data that the law was fitted to: where it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -122,24 +107,6 @@ pub struct Validity {
     /// not take but `law predict` checks: a study of ideally plastic spheres says nothing of
     /// hardening ones.
     pub hardening_exponent: Interval,
-}
-
-/// A quantity of a contact that lies outside of what the law was fitted to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutOfRange {
-    /// Its name.
-    pub quantity: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// Where the law holds.
-    pub range: Interval,
-}
-
-impl std::fmt::Display for OutOfRange {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { quantity, value, range } = self;
-        write!(f, "{quantity} = {value:.4} is outside of {:.4} to {:.4}", range.from, range.to)
-    }
 }
 
 /// Where the constants come from.
@@ -209,9 +176,6 @@ pub struct Law {
     pub cases: Vec<FittedCase>,
 }
 
-/// Share of an end by which a quantity may pass it before it is called outside.
-pub(super) const MARGIN: f64 = 0.02;
-
 impl Law {
     /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly as a/R goes
     /// to 0; a contact without force has no slip force.
@@ -223,6 +187,23 @@ impl Law {
     /// delta_T_end on; F_T is odd and F_N even in `delta_t`.
     pub fn forces(&self, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
         forces(parameters, friction, delta_t)
+    }
+
+    /// The contact of a body at the indentation `h`, with F_N0 and a0 of the law's own formulas.
+    pub fn inputs(&self, body: &Body, friction: f64, h: f64) -> Axisymmetric {
+        Axisymmetric::of(body, friction, h, self.normal.state(body, friction, h))
+    }
+
+    /// [`out_of_range`](Self::out_of_range), and the hardening exponent of a body that has yielded,
+    /// where it is not one that the law was fitted to.
+    pub fn body_out_of_range(&self, body: &Body, inputs: &Axisymmetric) -> Vec<OutOfRange> {
+        let mut outside = self.out_of_range(inputs);
+        let (value, range) = (body.hardening_exponent(inputs.a), self.validity.hardening_exponent);
+        let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);
+        if yielded && !range.contains(value, MARGIN) {
+            outside.push(OutOfRange { quantity: "hardening exponent", value, range });
+        }
+        outside
     }
 
     /// What of the contact lies outside of the range of the fit; empty if nothing does.
@@ -266,7 +247,7 @@ impl Law {
     }
 
     /// A law from the text of its file; the error is what is wrong, in words.
-    pub(super) fn from_json(text: &str) -> Result<Self, String> {
+    pub(in crate::law) fn from_json(text: &str) -> Result<Self, String> {
         family::refuse_earlier(text)?;
         json::parse(text)
     }
@@ -325,10 +306,10 @@ pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
         yield_lambda(inputs.poissons_ratio),
         inputs.c_squared(),
     );
-    let n = forms::exponent(&constants.exponent, &state);
-    let share = 1.0 - forms::fall(&constants.fall, &state);
-    let factor = forms::slip_factor(&constants.slip, &state, n, share);
-    let (m_exponent, n_exponent) = forms::curve_exponents(&constants.curve, inputs.friction, n);
+    let n = shear::exponent(&constants.exponent, &state);
+    let share = 1.0 - shear::fall(&constants.fall, &state);
+    let factor = shear::slip_factor(&constants.slip, &state, n, share);
+    let (m_exponent, n_exponent) = shear::curve_exponents(&constants.curve, inputs.friction, n);
     let mindlin = cattaneo_mindlin::initial_stiffness(&sphere, inputs.a);
     let elastic_slip = if mindlin > 0.0 { 1.5 * inputs.friction * inputs.f_n / mindlin } else { 0.0 };
     Parameters {
@@ -346,7 +327,7 @@ pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
 pub fn forces(parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
     let p = parameters;
     let x = if p.delta_t_end > 0.0 { (delta_t.abs() / p.delta_t_end).min(1.0) } else { 1.0 };
-    let f_t = friction * p.f_n_slip * forms::f_t(x, p.n);
-    let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * forms::f_n(x, p.m_exponent, p.n_exponent);
+    let f_t = friction * p.f_n_slip * shear::f_t(x, p.n);
+    let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * shear::f_n(x, p.m_exponent, p.n_exponent);
     (if delta_t == 0.0 { 0.0 } else { f_t.copysign(delta_t) }, f_n)
 }

@@ -24,7 +24,7 @@ use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Material, Opponent, Segment, Sphere};
 use crate::contact_law::{Centres, POINTS, unloading_exponent};
 use crate::law::LawError;
-use crate::law::model::Interval;
+use crate::law::range::Interval;
 
 /// Least power of a/R with which the mean pressure counts as rising where the two radii are shared
 /// out. Of a fully plastic body it stands still or falls, and any radius would do: by this the

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::Law;
 use super::elastic::BODY;
-use super::forms::EXPONENT_SPAN;
+use super::model::Law;
+use super::shear::EXPONENT_SPAN;
 
 impl Law {
     /// The formulas of the law with their constants, a line each, to be read by people; constants

@@ -1,10 +1,10 @@
 //! Contact parameters from a fitted law and a material.
 
-use super::forms::NORMAL_CURVE;
 use super::model::{Axisymmetric, Law, Parameters};
-use super::variables::{Body, yield_lambda};
+use super::shear::NORMAL_CURVE;
 use crate::analytical::cattaneo_mindlin;
 use crate::contact_law::{ContactError, ContactParameters, VirginPoint};
+use crate::law::variables::{Body, yield_lambda};
 
 /// Greatest tabulated indentation over R.
 pub const LAST: f64 = 0.15;
@@ -42,17 +42,8 @@ impl Law {
         let sphere = body.sphere;
         let contact = |h: f64| {
             let state = self.normal.state(body, friction, h);
-            let inputs = Axisymmetric {
-                youngs_modulus: sphere.youngs_modulus,
-                poissons_ratio: sphere.poissons_ratio,
-                radius: sphere.radius,
-                // Without friction there is no displacement at full slip, and none is asked for.
-                friction: if friction > 0.0 { friction } else { 1e-6 },
-                sigma_rep: body.representative_stress(state.a),
-                h,
-                a: state.a,
-                f_n: state.f_n,
-            };
+            // Without friction there is no displacement at full slip, and none is asked for.
+            let inputs = Axisymmetric::of(body, if friction > 0.0 { friction } else { 1e-6 }, h, state);
             let compliance = 1.0 + self.constants.slip[0] * (state.a / sphere.radius);
             let k_t = cattaneo_mindlin::initial_stiffness(&sphere, state.a) / compliance;
             let Parameters { f_n0, f_n_slip, delta_t_end, n, m_exponent, n_exponent, .. } = self.contact(&inputs);

@@ -16,9 +16,9 @@ use serde::{Deserialize, Serialize};
 
 use super::elastic::stiffening;
 use super::family::NormalForm;
-use super::variables::{Body, yield_lambda};
 use crate::analytical::hertz;
 use crate::analytical::olsson_larsson::plastic_c_squared;
+use crate::law::variables::{Body, yield_lambda};
 
 /// The normal problem of a law: F_N0 and a0 as functions of h and mu.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -13,8 +13,6 @@ mod against;
 mod build;
 mod checked;
 mod measure;
-#[cfg(feature = "plots")]
-mod picture;
 mod series;
 pub mod spline;
 
@@ -25,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use self::spline::Spline;
 use super::LawError;
 use super::json;
-use super::model::{Interval, OutOfRange};
+use super::range::{Interval, OutOfRange};
 use crate::case::{self, Case, Friction, Opponent};
 use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINTS, Shapes, VirginPoint};
 
@@ -35,8 +33,6 @@ pub(super) use build::{backbone_of, reversal, scaled, unloading_radius};
 pub(super) use checked::check_levels;
 pub(super) use measure::Measured;
 pub use measure::Missing;
-#[cfg(feature = "plots")]
-pub use picture::picture;
 pub(super) use series::alone;
 pub use series::compose;
 
@@ -193,7 +189,7 @@ impl Tabulated {
     ///
     /// # Errors
     /// [`LawError::BadLaw`], after reading it never.
-    fn scaled_case(&self) -> Result<Case, LawError> {
+    pub(super) fn scaled_case(&self) -> Result<Case, LawError> {
         self.case().map_err(|problem| LawError::BadLaw { path: "law.json".into(), problem })
     }
 
@@ -388,7 +384,7 @@ fn alike(a: &serde_json::Value, b: &serde_json::Value) -> bool {
 
 /// What is tabulated as smooth curves in ln h: everything over the power of h that it has in
 /// Hertz's contact.
-struct Curves {
+pub(super) struct Curves {
     columns: Vec<Spline>,
 }
 
@@ -449,7 +445,7 @@ fn level_of(h: f64, columns: &[f64]) -> Level {
 }
 
 impl Curves {
-    fn new(levels: &[Level]) -> Self {
+    pub fn new(levels: &[Level]) -> Self {
         let x: Vec<f64> = levels.iter().map(|level| level.h.ln()).collect();
         let rows: Vec<Vec<f64>> = levels.iter().map(columns_of).collect();
         let column = |c: usize| rows.iter().map(|row| row[c]).collect::<Vec<f64>>();
@@ -457,12 +453,12 @@ impl Curves {
     }
 
     /// F_N0 and a0 alone.
-    fn normal(&self, h: f64) -> [f64; 2] {
+    pub fn normal(&self, h: f64) -> [f64; 2] {
         let ln_h = h.ln();
         [(self.columns[0].at(ln_h) + 1.5 * ln_h).exp(), (self.columns[1].at(ln_h) + 0.5 * ln_h).exp()]
     }
 
-    fn at(&self, h: f64) -> Level {
+    pub fn at(&self, h: f64) -> Level {
         let values: Vec<f64> = self.columns.iter().map(|spline| spline.at(h.ln())).collect();
         level_of(h, &values)
     }

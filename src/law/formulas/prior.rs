@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use super::model::Law;
-use super::{LawError, json};
+use crate::law::{LawError, json};
 
 /// The weights that are tried. The greatest all but keeps the prior's constants; the least decides
 /// only what the data leave open.
@@ -17,7 +17,7 @@ pub const WEIGHTS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
 const SMALL: f64 = 0.25;
 
 /// The law in fixtures/law/, fitted to the study fixtures/studies/wear-2014.toml.
-const WEAR_2014: &str = include_str!("../../fixtures/law/law.json");
+const WEAR_2014: &str = include_str!("../../../fixtures/law/law.json");
 
 /// Whether a fit knows of another law.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,10 +1,9 @@
 //! The table beside the simulations, and its errors.
 
-use super::build::Built;
-use super::{Curves, DepthErrors, Level, equivalent};
 use crate::analytical::hertz;
 use crate::contact_law::path::drive;
 use crate::law::LawError;
+use crate::law::table::{Built, Curves, DepthErrors, Level, equivalent};
 use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_charts, extent};
 use crate::output::plots::style::{BLUE, GREEN, GREY, INK, VERMILION};
 use crate::output::plots::{Picture, Sheet};

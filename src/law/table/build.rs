@@ -14,7 +14,7 @@ use crate::case::{Case, Friction, Hold, Opponent, Segment, ShearTarget};
 use crate::contact_law::path::drive;
 use crate::contact_law::{Centres, POINTS, measured_slope, unloading_exponent};
 use crate::law::LawError;
-use crate::law::model::Interval;
+use crate::law::range::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Least depth of one body that is simulated, unless the greatest is less than ten times as deep.
@@ -45,7 +45,7 @@ pub struct Built {
     /// That of every other depth, which was checked.
     pub coarse: Tabulated,
     /// The simulated depths.
-    pub(super) measured: Vec<Measured>,
+    pub(in crate::law) measured: Vec<Measured>,
     /// Depths that were not reached.
     pub missing: Vec<Missing>,
 }

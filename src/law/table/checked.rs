@@ -6,7 +6,7 @@ use crate::case::{Case, Friction};
 use crate::contact_law::{Centres, POINTS};
 use crate::law::bounds::{Bounds, Checked, TOLD};
 use crate::law::json::LawKind;
-use crate::law::tabulated::Against;
+use crate::law::table::Against;
 
 /// Depths over R: a case presses to 0.3 of the larger radius at the most, which is ten times the
 /// smaller one, and a body that is to be put in series three times as deep.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::output::plain_json;
 
-/// The formulas of the shear, as the key `forms` has them.
+/// The formulas of the shear, as the key `shear` has them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Forms {
@@ -98,7 +98,7 @@ mod tests {
     /// Every word of earlier versions, in the place of the one that is left.
     #[test]
     fn formulas_of_earlier_versions_are_told_by_name() {
-        let text = include_str!("../../fixtures/law/law.json");
+        let text = include_str!("../../../fixtures/law/law.json");
         assert!(Law::from_json(text).is_ok());
         for (key, words) in super::EARLIER {
             let name = key.split('.').next_back().unwrap();

@@ -11,18 +11,20 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::LawError;
-use super::data::{Sample, StudyData};
+use super::baseline;
 use super::family::Forms;
-use super::forms::{self, Constants, Plasticity};
 use super::least_squares::{PULL, minimize};
-use super::model::{self, Axisymmetric, FORMAT, Interval, Law, Parameters, PriorUse, Provenance, VERSION, Validity};
-use super::normal::{self, NormalModel};
+use super::model::{self, Axisymmetric, FORMAT, Law, Parameters, PriorUse, Provenance, VERSION, Validity};
+use super::normal::{self, NormalModel, NormalState};
 use super::own_fit::own_fit;
 use super::prior::{Prior, WEIGHTS};
-use super::report::{Candidate, CaseErrors, Errors, FittedCase, NormalCandidate, by_region, case_errors};
-use super::variables::yield_lambda;
-use super::{baseline, folds};
+use super::shear::{self, Constants, Plasticity};
+use crate::law::LawError;
+use crate::law::data::{Sample, StudyData, study_name};
+use crate::law::folds;
+use crate::law::range::Interval;
+use crate::law::report::{Candidate, CaseErrors, Errors, FittedCase, NormalCandidate, by_region, case_errors};
+use crate::law::variables::yield_lambda;
 
 /// Fewest usable cases for a law.
 pub const FEWEST_CASES: usize = 8;
@@ -35,22 +37,12 @@ const SEED: u64 = 2014;
 
 /// The normal data of a sample, as simulated.
 pub fn inputs(sample: &Sample) -> Axisymmetric {
-    at(sample, sample.a0, sample.f_n0)
+    at(sample, NormalState { a: sample.a0, f_n: sample.f_n0 })
 }
 
 /// The inputs of a sample, with the given contact radius and force.
-fn at(sample: &Sample, a: f64, f_n: f64) -> Axisymmetric {
-    let sphere = sample.body.sphere;
-    Axisymmetric {
-        youngs_modulus: sphere.youngs_modulus,
-        poissons_ratio: sphere.poissons_ratio,
-        radius: sphere.radius,
-        friction: sample.friction,
-        sigma_rep: sample.body.representative_stress(a),
-        h: sample.h0,
-        a,
-        f_n,
-    }
+fn at(sample: &Sample, state: NormalState) -> Axisymmetric {
+    Axisymmetric::of(&sample.body, sample.friction, sample.h0, state)
 }
 
 /// What the correlations see of a sample.
@@ -105,7 +97,7 @@ fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<Constants, L
     constants.fall = array(
         &minimize(&constants.fall, pull, |c| {
             let c = array(c);
-            let fall = |(sample, state): (&&Sample, &Plasticity)| forms::fall(&c, state) - (1.0 - sample.f_n_slip / sample.f_n0);
+            let fall = |(sample, state): (&&Sample, &Plasticity)| shear::fall(&c, state) - (1.0 - sample.f_n_slip / sample.f_n0);
             samples.iter().zip(&states).map(fall).collect()
         })
         .map_err(failed("F_N_slip/F_N0"))?,
@@ -136,7 +128,7 @@ fn fit_constants(start: &ShearStart, samples: &[&Sample]) -> Result<Constants, L
         let c = array(c);
         let mut residuals = Vec::new();
         for (sample, contact) in samples.iter().zip(&contacts) {
-            let (m_exponent, n_exponent) = forms::curve_exponents(&c, sample.friction, contact.n);
+            let (m_exponent, n_exponent) = shear::curve_exponents(&c, sample.friction, contact.n);
             let p = Parameters { m_exponent, n_exponent, ..*contact };
             let weight = 1.0 / (sample.f_n0 * points(sample));
             let f_n = |delta_t: f64| model::forces(&p, sample.friction, delta_t).1;
@@ -289,7 +281,7 @@ pub fn fit(dir: &Path, prior: &Prior) -> Result<Law, LawError> {
         .iter()
         .map(|s| {
             let state = folded.of(&normal.by_fold, s).state(&s.body, s.friction, s.h0);
-            law_errors(folded.of(&shear.by_fold, s), s, &at(s, state.a, state.f_n))
+            law_errors(folded.of(&shear.by_fold, s), s, &at(s, state))
         })
         .collect();
     let regions = |errors: &[CaseErrors]| {
@@ -343,12 +335,6 @@ fn provenance(dir: &Path, data: &StudyData, folds: usize, prior: Option<PriorUse
         seed: SEED,
         prior,
     }
-}
-
-/// Name of the directory, even if it was given as `.`.
-pub(super) fn study_name(dir: &Path) -> String {
-    let dir = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
-    dir.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
 fn validity(samples: &[Sample]) -> Result<Validity, LawError> {
