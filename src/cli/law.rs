@@ -63,8 +63,8 @@ pub struct FitArgs {
     /// The directory of a study.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
-    /// Constants to start from, weighted by cross-validation: wear-2014 (those of 240 cases, used if
-    /// the study has less than a quarter as many), none, or another law.json.
+    /// Constants to start from, weighted by cross-validation: wear-2014 (those of 240 cases, used
+    /// if the study has less than a quarter as many), none, or another law.json.
     #[arg(long, value_name = "PRIOR", default_value = "wear-2014")]
     pub prior: String,
     /// Interpolate between the cases instead of fitting formulas: for a large study of many

@@ -53,8 +53,8 @@ impl LawFile {
         })
     }
 
-    /// The law that comes with the program, `built-in` on the command line: by interpolation, of any
-    /// material, on a rigid plane or between two bodies ([`Interpolated::built_in`]).
+    /// The law that comes with the program, `built-in` on the command line: by interpolation, of
+    /// any material, on a rigid plane or between two bodies ([`Interpolated::built_in`]).
     ///
     /// # Errors
     /// A file that was no law when the program was built.

@@ -1,5 +1,5 @@
-//! What a fit says of itself: tables of what was compared and of errors by region, for `law.json` and for
-//! the terminal.
+//! What a fit says of itself: tables of what was compared and of errors by region, for `law.json`
+//! and for the terminal.
 
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! The words by which a file names its formulas. Earlier versions of the program chose between
-//! sixteen ways to write a shear and four to write F_N0; of these one is left, and a file of another
-//! one is told from a file that is damaged.
+//! sixteen ways to write a shear and four to write F_N0; of these one is left, and a file of
+//! another one is told from a file that is damaged.
 
 use serde::{Deserialize, Serialize};
 

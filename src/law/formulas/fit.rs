@@ -3,8 +3,8 @@
 //!
 //! The constants are found in three steps, each with what the one before it found: the fall of F_N
 //! from F_N_slip/F_N0; n and delta_T_end from F_T(delta_T), as a share of its peak; the exponents
-//! of f_N from F_N(delta_T), as a share of F_N0. Cross-validation leaves out whole materials: a case
-//! is predicted by constants that saw nothing of its hardening law, at no mu and no h. It also
+//! of f_N from F_N(delta_T), as a share of F_N0. Cross-validation leaves out whole materials: a
+//! case is predicted by constants that saw nothing of its hardening law, at no mu and no h. It also
 //! decides how strongly a small study is drawn to the constants of another law.
 
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! The law of formulas: constants, where they come from, where they hold and how well, as `law.json` has
-//! them.
+//! The law of formulas: constants, where they come from, where they hold and how well, as
+//! `law.json` has them.
 
 use std::path::Path;
 

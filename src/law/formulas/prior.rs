@@ -22,8 +22,8 @@ const WEAR_2014: &str = include_str!("../../../fixtures/law/law.json");
 /// Whether a fit knows of another law.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Prior {
-    /// That of [`Law::wear_2014`], for a study with less than a quarter as many cases as it has; else
-    /// none.
+    /// That of [`Law::wear_2014`], for a study with less than a quarter as many cases as it has;
+    /// else none.
     #[default]
     Wear2014,
     /// None: the constants are drawn to one, weakly.
@@ -34,8 +34,8 @@ pub enum Prior {
 }
 
 impl Prior {
-    /// What `--prior` says: `wear-2014`, which earlier versions called `built-in`, `none`, or the path
-    /// of a law.json.
+    /// What `--prior` says: `wear-2014`, which earlier versions called `built-in`, `none`, or the
+    /// path of a law.json.
     ///
     /// # Errors
     /// A file that is no law.
@@ -65,8 +65,8 @@ impl Prior {
 
 impl Law {
     /// The formulas with the constants of the study wear-2014 (`fixtures/law`): 240 cases of 15
-    /// materials on a plane, nu = 0.3, mu 0.05 to 0.5, h/R 0.001 to 0.05. The built-in law holds for
-    /// more and is nearer: [`LawFile::built_in`](super::LawFile::built_in).
+    /// materials on a plane, nu = 0.3, mu 0.05 to 0.5, h/R 0.001 to 0.05. The built-in law holds
+    /// for more and is nearer: [`LawFile::built_in`](crate::law::LawFile::built_in).
     ///
     /// # Errors
     /// A file that was no law when the program was built.

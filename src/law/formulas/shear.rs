@@ -1,10 +1,11 @@
 //! The formulas of a shear: smooth correlations with few constants, every one with its elastic
 //! limit built in.
 //!
-//! With Lambda_Y its value at first yield, g = 1 - (Lambda_Y/Lambda)^2, c^2 = a^2/(2 R h),
-//! z = g (2 c^2 - 1), what the contact is larger than an elastic one, and w = z/ln(Lambda/Lambda_Y),
-//! how fast it has grown since first yield (fast without hardening, slowly with it),
+//! With Lambda_Y at first yield, g = 1 - (Lambda_Y/Lambda)^2 and c^2 = a^2/(2 R h), z says how much
+//! larger the contact is than an elastic one, and w how fast it has grown since first yield (fast
+//! without hardening, slowly with it):
 //! ```text
+//! z             = g (2 c^2 - 1), w = z/ln(Lambda/Lambda_Y)
 //! F_N_slip/F_N0 = 1 - tanh(A mu) tanh[B mu^p z^q exp(r mu w - d a/R)]  fall of the normal force
 //! n             = 3/2 + N tanh[C mu^p z^(q exp(-s mu)) exp(r mu w - d a/R) / N], N = 8.5  exponent of f_T
 //! delta_T_end   = 3 mu F_N0 (2 - nu)/(16 G a) f,                       where the curves end, x = 1:

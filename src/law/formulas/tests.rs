@@ -36,9 +36,9 @@ pub(in crate::law) fn elastic_sample(friction: f64) -> Sample {
 mod limits {
     use super::super::model::{Axisymmetric, Parameters, contact, forces};
     use super::super::shear::Constants;
-    use crate::law::variables::{Body, yield_lambda};
     use super::*;
     use crate::analytical::hertz;
+    use crate::law::variables::{Body, yield_lambda};
 
     fn constants() -> Constants {
         Constants {
