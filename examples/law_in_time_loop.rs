@@ -6,12 +6,11 @@
 
 use asperity::Case;
 use asperity::contact_law::ContactState;
-use asperity::law::prior::built_in;
-use asperity::law::variables::Body;
+use asperity::law::LawFile;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let case = Case::load("fixtures/cases/ideal.toml".as_ref(), &[])?;
-    let parameters = built_in()?.contact_parameters(&Body::from_case(&case)?, 0.3)?;
+    let parameters = LawFile::built_in()?.contact_parameters(&case)?;
 
     // Units of the case: mm, N and s, and so tonnes. Rotation is left out.
     let mass = 4.0 / 3.0 * std::f64::consts::PI * 7.8e-9;

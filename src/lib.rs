@@ -35,7 +35,7 @@
 //! |---|---|
 //! | one run | [`Simulation`], [`Options`], [`Outcome`]; `examples/run.rs`, `examples/fields.rs` |
 //! | many runs | [`study`]; `examples/parallel_study.rs` |
-//! | a contact law in a discrete-element code | [`law::Law`], [`contact_law`]; `examples/law_in_time_loop.rs` |
+//! | a contact law in a discrete-element code | [`law::LawFile::built_in`], [`contact_law`]; `examples/law_in_time_loop.rs` |
 //! | closed forms | [`analytical`] |
 //! | one material point | [`material::point`] |
 //!

@@ -356,15 +356,15 @@ fn a_key_in_a_wrong_table_is_told_by_its_whole_name() {
 
 #[test]
 fn a_misspelt_law_that_comes_with_the_program_is_told() {
-    for arguments in [
-        &["law", "predict", "bult-in", "fixtures/cases/voce.toml"][..],
-        &["law", "export", "builtin", "fixtures/cases/voce.toml", "--format", "c"],
-        &["law", "check", "built_in"],
-        &["law", "fit", "fixtures", "--prior", "bulit-in"],
+    for (arguments, meant) in [
+        (&["law", "predict", "bult-in", "fixtures/cases/voce.toml"][..], "built-in"),
+        (&["law", "export", "builtin", "fixtures/cases/voce.toml", "--format", "c"], "built-in"),
+        (&["law", "check", "built_in"], "built-in"),
+        (&["law", "fit", "fixtures", "--prior", "waer-2014"], "wear-2014"),
     ] {
         let output = asperity(arguments);
         let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains("there is no such file, did you mean `built-in`?"), "{arguments:?}: {message}");
+        assert!(message.contains(&format!("there is no such file, did you mean `{meant}`?")), "{arguments:?}: {message}");
     }
 }

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Draws the studies of the general laws: materials of every hardening law at random, by a seed.
+"""Draws the studies of the laws by interpolation: materials of every hardening law at random, by a seed.
 
-    python3 benches/law/draw.py --out fixtures/studies              # general.toml, general-unseen.toml
-    python3 benches/law/draw.py --out fixtures/studies --wide       # wide.toml, wide-unseen.toml
-    python3 benches/law/draw.py --out fixtures/studies --equal      # the same on an equal sphere
+    python3 benches/law/draw.py --out fixtures/studies              # wide.toml, wide-unseen.toml
+    python3 benches/law/draw.py --out fixtures/studies --equal      # wide-pair.toml, wide-pair-unseen.toml
     python3 benches/law/draw.py --out DIR --seed 1                  # other materials, that no law has seen
 
-General is for formulas: 38 materials, pressed and sheared. Wide is for interpolation: five times as
-many, and twice as many again with mu above 0.5, where contacts differ most; it shears them back (on a
-plane) and releases them too.
+A study is of five times the materials below (three times on an equal sphere), and of twice as many
+again (once) with mu above 0.5, where contacts differ most. All are pressed, sheared, sheared back (on
+a plane) and released.
 
 Every material meets CASES pairs of friction and indentation. Poisson's ratio, ln(E/sigma_Y), ln(mu)
 and ln(h/R) are each cut into as many strata as there are draws, one draw a stratum. A fifth of the
@@ -22,7 +21,7 @@ import random
 from pathlib import Path
 
 YOUNGS_MODULUS = 200e3
-SEED = 2014
+SEED = 2026
 CASES = 4
 # How many materials of each hardening law, and how many of those are set aside.
 KINDS = {
@@ -37,8 +36,7 @@ KINDS = {
 RATIO = (12.0, 5000.0)  # E/sigma_Y
 POISSON = (0.0, 0.49)
 FRICTION = (0.05, 1.0)
-STRONG = (0.5, 1.0)  # mu of the second part of a wide study
-WIDE_SEED = 2026
+STRONG = (0.5, 1.0)  # mu of the second part of a study
 TIMES = (5, 2)  # how many times as many materials its two parts have
 PAIR_TIMES = (3, 1)  # the same on an equal sphere
 INDENTATION = (0.001, 0.15)  # h/R
@@ -99,7 +97,7 @@ def hardening(rng, law, yield_stress):
     return f'{{ law = "{law}", {body} }}'
 
 
-def draw(seed, times=1, frictions=FRICTION):
+def draw(seed, times, frictions=FRICTION):
     """(law, hardening, nu, mu, h, set aside) of every case: first one case of each material, then
     a second of each, so that the first part of a study is a study too."""
     rng = random.Random(seed)
@@ -126,7 +124,7 @@ def wrapped(key, values):
     return f'"{key}" = [\n' + "".join(f"    {line},\n" for line in lines) + "]\n"
 
 
-def study(cases, equal, wide, what, seed):
+def study(cases, equal, what, seed):
     """The text of the study file."""
     text = (
         f"# {what} Drawn by benches/law/draw.py, seed {seed}; see there for the ranges.\n"
@@ -138,9 +136,8 @@ def study(cases, equal, wide, what, seed):
         "fine_zone = 1.6\n\n"
         + ("[base.opponent]\nequal = true\n\n" if equal else "")
         + '[[base.path]]\n\n[[base.path]]\nshear = "full-slip"\nhold = "indentation"\n\n'
-        + ('[[base.path]]\nshear = 0.0\nhold = "indentation"\n\n' if wide and not equal else "")
-        + ("[[base.path]]\nrelease = 0.5\n\n" if wide else "")
-        + "[zip]\n"
+        + ("" if equal else '[[base.path]]\nshear = 0.0\nhold = "indentation"\n\n')
+        + "[[base.path]]\nrelease = 0.5\n\n[zip]\n"
     )
     # Between equal spheres h is the approach of their centres, twice what each is pressed in.
     depth = [(2.0 if equal else 1.0) * case[4] for case in cases]
@@ -154,23 +151,20 @@ def study(cases, equal, wide, what, seed):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="where the two study files go")
-    parser.add_argument("--seed", type=int, help=f"of the draw (those of fixtures/studies: {SEED}, wide {WIDE_SEED})")
-    parser.add_argument("--wide", action="store_true", help="the study for interpolation")
+    parser.add_argument("--seed", type=int, default=SEED, help=f"of the draw (those of fixtures/studies: {SEED})")
     parser.add_argument("--equal", action="store_true", help="on an equal sphere instead of the plane")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
-    wide = arguments.wide
-    seed = arguments.seed if arguments.seed is not None else (WIDE_SEED if wide else SEED)
-    times = PAIR_TIMES if arguments.equal else TIMES
-    cases = draw(seed, times[0]) + draw(seed + 1, times[1], STRONG) if wide else draw(seed)
-    stem = ("wide" if wide else "general") + ("-pair" if arguments.equal else "")
-    against = "an equal sphere" if arguments.equal else "a plane"
+    seed, equal = arguments.seed, arguments.equal
+    times = PAIR_TIMES if equal else TIMES
+    cases = draw(seed, times[0]) + draw(seed + 1, times[1], STRONG)
+    stem, against = ("wide-pair", "an equal sphere") if equal else ("wide", "a plane")
     for aside, name, what in [
-        (False, stem, f"The study of the general law on {against}: what is fitted."),
-        (True, f"{stem}-unseen", f"The materials set aside from the study of the general law on {against}."),
+        (False, stem, f"The study of the law by interpolation on {against}: what it is made from."),
+        (True, f"{stem}-unseen", f"The materials set aside from the study of the law by interpolation on {against}."),
     ]:
         chosen = [case for case in cases if case[5] == aside]
-        (arguments.out / f"{name}.toml").write_text(study(chosen, arguments.equal, wide, what, seed))
+        (arguments.out / f"{name}.toml").write_text(study(chosen, equal, what, seed))
 
 
 if __name__ == "__main__":

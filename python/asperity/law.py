@@ -114,10 +114,10 @@ class Law:
         return _of_json, (type(self), *self._native.to_json())
 
     @classmethod
-    def fit(cls, study: Study | str | os.PathLike[str], prior: str = "built-in", *, interpolate: bool = False, reversal: Law | None = None) -> Law:
+    def fit(cls, study: Study | str | os.PathLike[str], prior: str = "wear-2014", *, interpolate: bool = False, reversal: Law | None = None) -> Law:
         """Fits a law to a study and writes ``law.json`` into its directory.
 
-        :param prior: constants to start from: ``"built-in"``, ``"none"``, or the path of another ``law.json``.
+        :param prior: constants to start from: ``"wear-2014"``, ``"none"``, or the path of another ``law.json``.
         :param interpolate: a law by interpolation between the contacts of the study, of many materials, instead of formulas.
         :param reversal: with ``interpolate``, where cases were not sheared back or released: the law by interpolation that knows the stiffness of a reversal and
             of an unloading, as :meth:`built_in` does.
@@ -171,12 +171,14 @@ class Law:
         return cls(NativeLaw.load(path("law", file)))
 
     @classmethod
-    def built_in(cls, formulas: bool = False) -> Law:
-        """The law that comes with the program, for any material: it interpolates between simulated contacts, of a sphere with a plane and of two equal spheres.
+    def built_in(cls) -> Law:
+        """The law that comes with the program, for any material: it interpolates between simulated contacts, of a sphere with a plane and of two equal spheres."""
+        return cls(NativeLaw.built_in())
 
-        :param formulas: the one with formulas instead, fitted to 240 cases of 15 materials, Poisson's ratio 0.3.
-        """
-        return cls(NativeLaw.built_in(truth("formulas", formulas)))
+    @classmethod
+    def wear_2014(cls) -> Law:
+        """The formulas that a small study starts from, fitted to 240 cases of 15 materials on a plane, Poisson's ratio 0.3: :meth:`built_in` holds for more and is nearer."""
+        return cls(NativeLaw.wear_2014())
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes a ``law.json``."""

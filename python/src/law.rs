@@ -9,12 +9,13 @@ use asperity::contact_law::path::PathPoint;
 use asperity::law::check::{Checked, check_until};
 use asperity::law::data::Point;
 use asperity::law::export::{Language, law_files, law_source};
+use asperity::law::formulas::fit::fit;
+use asperity::law::formulas::predict::{NormalSource, Prediction, predict};
+use asperity::law::formulas::prior::Prior;
 use asperity::law::interpolated::{self, Interpolated};
-use asperity::law::model::OutOfRange;
-use asperity::law::predict::{NormalSource, Prediction, predict};
-use asperity::law::prior::{self, Prior};
-use asperity::law::tabulated::{build, depths, study_text};
-use asperity::law::{Law, LawError, LawFile, fit};
+use asperity::law::range::OutOfRange;
+use asperity::law::table::{build, depths, study_text};
+use asperity::law::{Law, LawError, LawFile};
 use asperity::output::{StepRecord, write_own};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -37,7 +38,7 @@ pub struct NativeLaw {
 #[pyfunction]
 pub fn fit_law(py: Python<'_>, dir: PathBuf, prior: &str) -> PyResult<NativeLaw> {
     let law = compute(py, || -> Result<Law, LawError> {
-        let law = fit::fit(&dir, &Prior::from_option(prior)?)?;
+        let law = fit(&dir, &Prior::from_option(prior)?)?;
         law.write(&dir.join("law.json"))?;
         Ok(law)
     })?;
@@ -107,13 +108,16 @@ impl NativeLaw {
         Ok(Self::of(law))
     }
 
-    /// The law that comes with the program: by interpolation, or the formulas.
+    /// The law that comes with the program, by interpolation.
     #[staticmethod]
-    fn built_in(formulas: bool) -> PyResult<Self> {
-        if formulas {
-            return prior::built_in().map(Self::formulas_of).map_err(failed);
-        }
-        Interpolated::built_in().map(|law| Self::of(LawFile::Interpolated(Box::new(law)))).map_err(failed)
+    fn built_in() -> PyResult<Self> {
+        LawFile::built_in().map(Self::of).map_err(failed)
+    }
+
+    /// The formulas of the study wear-2014.
+    #[staticmethod]
+    fn wear_2014() -> PyResult<Self> {
+        Law::wear_2014().map(Self::formulas_of).map_err(failed)
     }
 
     /// The table of a case's contact, of a law by interpolation; another law as it is.

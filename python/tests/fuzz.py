@@ -56,7 +56,7 @@ class Fuzz:
         self.run = asperity.Run.load(place / "run")
         self.study = asperity.Study.load(place / "study")
         self.table = asperity.Law.load(place / "table/law.json")
-        self.formulas, self.built_in = asperity.Law.built_in(formulas=True), asperity.Law.built_in()
+        self.formulas, self.built_in = asperity.Law.wear_2014(), asperity.Law.built_in()
         self.case = self.run.case
         self.tables: dict[str, Any] = self.case.to_dict()
         self.fields = self.run.fields()
@@ -210,7 +210,8 @@ class Fuzz:
             "Law.fit": fit,
             "Law.tabulate": tabulate,
             "Law.load": hurt,
-            "Law.built_in": lambda dice: Law.built_in(value(dice)),
+            "Law.built_in": lambda dice: Law.built_in(),
+            "Law.wear_2014": lambda dice: Law.wear_2014(),
             "Law.save": lambda dice: law(dice).save(self.path(dice, self.place / "saved.json")),
             "Law.to_dict": lambda dice: law(dice).to_dict(),
             "Law.table": lambda dice: law(dice).table(self.a_case(dice)),

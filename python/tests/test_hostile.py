@@ -27,7 +27,7 @@ SHARE = 1000
 
 @pytest.fixture(scope="module")
 def law() -> asperity.Law:
-    return asperity.Law.built_in(formulas=True)
+    return asperity.Law.wear_2014()
 
 
 @pytest.fixture(scope="module")

@@ -54,7 +54,7 @@ def test_a_case_comes_back_as_it_was(file: Path) -> None:
 
 @pytest.mark.parametrize("name", ["formulas", "built_in", "table"])
 def test_a_law_comes_back_bit_by_bit(name: str, table: asperity.Law, case: asperity.Case) -> None:
-    law = {"formulas": asperity.Law.built_in(formulas=True), "built_in": asperity.Law.built_in(), "table": table}[name]
+    law = {"formulas": asperity.Law.wear_2014(), "built_in": asperity.Law.built_in(), "table": table}[name]
     curve = law.predict(case)
     equal = asperity.Case.parse(case.to_toml() + "[opponent]\nequal = true\n")
     between = law.predict(equal) if name == "built_in" else None
@@ -65,7 +65,7 @@ def test_a_law_comes_back_bit_by_bit(name: str, table: asperity.Law, case: asper
 
 
 def test_contacts_come_back_bit_by_bit_and_go_their_own_way(table: asperity.Law, case: asperity.Case) -> None:
-    for law in (table, asperity.Law.built_in(formulas=True), asperity.Law.built_in()):
+    for law in (table, asperity.Law.wear_2014(), asperity.Law.built_in()):
         state = law.contacts(case, 7)
         moved(law, state)
         before, copies = state.array, [*kept(state), state.copy()]
@@ -167,7 +167,7 @@ def test_the_functions_themselves_go_to_workers(method: str, case: asperity.Case
 FORKED = """
 import asperity, os, signal, sys, threading
 case, out = asperity.Case.load(sys.argv[1]), sys.argv[2]
-law = asperity.Law.built_in(formulas=True)
+law = asperity.Law.wear_2014()
 state = law.contacts(case, 100_000)
 law.update(state, 0.01, (0.0, 0.0))
 asperity.run(case)
@@ -246,7 +246,7 @@ def test_a_fork_from_the_progress_of_a_run_ends_in_the_child(case: asperity.Case
 LEFT = """
 import asperity, sys, threading, time
 case, what = asperity.Case.parse(sys.argv[1]), sys.argv[2]
-law = asperity.Law.built_in(formulas=True)
+law = asperity.Law.wear_2014()
 begun = threading.Event()
 def compute():
     if what == "run":
@@ -319,7 +319,7 @@ def test_a_run_in_a_thread_is_ended_by_its_progress(case: asperity.Case, tmp_pat
 
 
 def test_contacts_are_moved_by_one_thread_at_a_time(case: asperity.Case) -> None:
-    law = asperity.Law.built_in(formulas=True)
+    law = asperity.Law.wear_2014()
     state, told, answers = law.contacts(case, 300_000), [], []
     law.update(state, 0.01, (0.0, 0.0))
     barrier = threading.Barrier(2)
@@ -358,7 +358,7 @@ def test_a_subinterpreter_is_refused(tmp_path: Path) -> None:
         print(interpreters.run_string(inner, text))
     except Exception as error:
         print("refused", error)
-    law = asperity.Law.built_in(formulas=True)
+    law = asperity.Law.wear_2014()
     """
     ended = child(code)
     assert ended.returncode == 0 and "refused" in ended.stdout, ended.stdout + ended.stderr
@@ -367,7 +367,7 @@ def test_a_subinterpreter_is_refused(tmp_path: Path) -> None:
 LIMITED = """
 import resource, sys
 import asperity
-case, law = asperity.Case.load(sys.argv[1]), asperity.Law.built_in(formulas=True)
+case, law = asperity.Case.load(sys.argv[1]), asperity.Law.wear_2014()
 law.update(law.contacts(case, 1000), 0.01, (0.0, 0.0))
 def refused(call, *arguments):
     try:

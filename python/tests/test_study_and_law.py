@@ -69,7 +69,7 @@ def law() -> asperity.Law:
 
 
 def test_a_law_is_kept_and_told(law: asperity.Law, tmp_path: Path) -> None:
-    assert law.to_dict() == asperity.Law.built_in(formulas=True).to_dict()
+    assert law.to_dict() == asperity.Law.wear_2014().to_dict()
     law.save(tmp_path / "law.json")
     assert asperity.Law.load(tmp_path / "law.json").to_dict() == law.to_dict()
     assert "F_T" in law.formulas() and "240 cases of 15 materials" in repr(law)
@@ -83,7 +83,7 @@ def test_a_law_needs_enough_cases(study: asperity.Study) -> None:
     with pytest.raises(asperity.AsperityError, match="usable cases of"):
         asperity.Law.fit(study, interpolate=True, reversal=asperity.Law.built_in())
     with pytest.raises(asperity.CaseError, match="no law by interpolation"):
-        asperity.Law.fit(study, interpolate=True, reversal=asperity.Law.built_in(formulas=True))
+        asperity.Law.fit(study, interpolate=True, reversal=asperity.Law.wear_2014())
     with pytest.raises(ValueError, match="interpolate is False"):
         asperity.Law.fit(study, reversal=asperity.Law.built_in())
 

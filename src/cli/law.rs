@@ -19,11 +19,12 @@ use crate::case::Case;
 use crate::contact_law::path::PathPoint;
 use crate::law::export::{Language, law_files, law_source};
 use crate::law::file::BUILT_IN;
+use crate::law::formulas::fit::fit;
+use crate::law::formulas::predict::{NormalSource, Prediction, predict};
+use crate::law::formulas::prior::Prior;
 use crate::law::interpolated::{self, Interpolated};
-use crate::law::model::OutOfRange;
-use crate::law::predict::{NormalSource, Prediction, predict};
-use crate::law::prior::Prior;
-use crate::law::{Law, LawError, LawFile, fit, report};
+use crate::law::range::OutOfRange;
+use crate::law::{Law, LawError, LawFile, report};
 use crate::output::{decimal, refuse_foreign, refuse_input, write_own};
 
 /// Make a contact law and use it.
@@ -37,8 +38,8 @@ pub struct LawArgs {
 /// The subcommands of `asperity law`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum LawCommand {
-    /// Fit a law to a study: writes DIR/law.json and prints the candidate forms and their errors,
-    /// or those of an interpolation.
+    /// Fit a law to a study: writes DIR/law.json and prints the formulas and their errors, or the
+    /// errors of an interpolation.
     Fit(FitArgs),
     /// Tabulate the law of one material and one friction coefficient as curves in h: simulates
     /// depths up to that of the case as a study, writes DIR/law.json and prints the errors in
@@ -62,9 +63,9 @@ pub struct FitArgs {
     /// The directory of a study.
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
-    /// Constants to start from, weighted by cross-validation: built-in (used if the study has less
-    /// than a quarter of its cases), none, or another law.json.
-    #[arg(long, value_name = "PRIOR", default_value = "built-in")]
+    /// Constants to start from, weighted by cross-validation: wear-2014 (those of 240 cases, used
+    /// if the study has less than a quarter as many), none, or another law.json.
+    #[arg(long, value_name = "PRIOR", default_value = "wear-2014")]
     pub prior: String,
     /// Interpolate between the cases instead of fitting formulas: for a large study of many
     /// materials, on a plane or of equal spheres.
@@ -173,7 +174,7 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
         }
         return Ok(Outcome::Done);
     }
-    let law = fit::fit(&args.dir, &Prior::from_option(&args.prior)?)?;
+    let law = fit(&args.dir, &Prior::from_option(&args.prior)?)?;
     law.write(&path)?;
     if args.json {
         print_json(&law)?;
@@ -227,7 +228,7 @@ fn summary(law: &Law) -> String {
         );
     }
     let predicted = "Errors with F_N0 and a0 predicted from h, cross-validated, in per cent";
-    let known = "Errors of the kept forms (*) with F_N0 and a0 known, cross-validated, in per cent";
+    let known = "Errors of the kept fit (*) with F_N0 and a0 known, cross-validated, in per cent";
     for table in [
         report::candidate_table(&law.candidates),
         report::normal_table(&law.normal_candidates),

@@ -11,7 +11,7 @@ use super::law::warn_out_of_range;
 use super::{CliError, Outcome, print};
 use crate::case::Case;
 use crate::law::interpolated::Interpolated;
-use crate::law::tabulated::{Tabulated, compose};
+use crate::law::table::{Tabulated, compose};
 use crate::law::{LawError, LawFile};
 use crate::output::refuse_input;
 
@@ -99,7 +99,7 @@ pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
         "F_N0",
         "a0",
         "F_N_slip",
-        "delta_T_slip"
+        "delta_T_end"
     );
     for level in &table.levels {
         // Writing to a String cannot fail.
@@ -110,7 +110,7 @@ pub(super) fn compose_tables(args: &ComposeArgs) -> Result<Outcome, CliError> {
             level.f_n0,
             level.a0,
             level.slip_share * level.f_n0,
-            level.delta_t_slip
+            level.delta_t_end
         );
     }
     print(&format!("{text}\nlaw in {}\n", file.display()))?;

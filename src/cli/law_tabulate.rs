@@ -12,7 +12,8 @@ use super::study::{compute, options};
 use super::{CliError, Outcome, print};
 use crate::case::{Case, PictureFormat};
 use crate::law::LawError;
-use crate::law::tabulated::{Built, build, depths, picture, study_text};
+use crate::law::plots::table_picture;
+use crate::law::table::{Built, build, depths, study_text};
 use crate::output::refuse_foreign;
 use crate::study::{Options, Study, hold};
 
@@ -79,7 +80,7 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     let law = args.out.join("law.json");
     built.table.write(&law)?;
     let drawn = args.out.join("tabulated.svg");
-    picture(&built)?.write(&drawn, PictureFormat::Svg)?;
+    table_picture(&built)?.write(&drawn, PictureFormat::Svg)?;
     print(&format!("{}\nlaw in {}, picture in {}\n", summary(&built), law.display(), drawn.display()))?;
     Ok(if built.missing.is_empty() { Outcome::Done } else { Outcome::CasesFailed })
 }

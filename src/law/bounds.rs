@@ -6,7 +6,7 @@ use std::fmt::Display;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::model::Interval;
+use super::range::Interval;
 
 /// Whether something is as it has to be; the error begins with the key.
 pub(super) type Checked = Result<(), String>;

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::LawError;
-use super::table::StudyTable;
+use super::study_table::StudyTable;
 use super::variables::{Body, Variables};
 use crate::case::{Case, Friction, Hold, Scaled, Segment};
 use crate::output::{OutputDirectory, StepRecord, Summary, SummaryInputs, read_history};
@@ -42,7 +42,7 @@ pub struct Sample {
     /// The simulation's initial tangential stiffness k_T0.
     pub k_t0: f64,
     /// delta_T at which F_T/F_N reaches 0.99 mu.
-    pub delta_t_99: f64,
+    pub delta_t_slip: f64,
     /// The normalised variables before the shear.
     pub variables: Variables,
     /// The shear, from its start (delta_T = 0, F_T = 0, F_N = F_N0) to full slip.
@@ -126,6 +126,12 @@ impl StudyData {
     }
 }
 
+/// Name of the directory, even if it was given as `.`.
+pub(super) fn study_name(dir: &Path) -> String {
+    let dir = dir.canonicalize().unwrap_or_else(|_| dir.to_owned());
+    dir.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
 /// Whether a law can be fitted to a run.
 enum Usable {
     Yes(Box<Sample>),
@@ -153,7 +159,7 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
     }
     let history = read_history(&directory.history())?;
     let summary = Summary::from_history(&history, &SummaryInputs::of(&case));
-    let (Some(h0), Some(a0), Some(f_n0), Some(k_t0), Some(delta_t_99), Some(_)) =
+    let (Some(h0), Some(a0), Some(f_n0), Some(k_t0), Some(delta_t_slip), Some(_)) =
         (summary.h0, summary.a0, summary.f_n0, summary.k_t0, summary.delta_t_slip, summary.f_n_slip)
     else {
         return Ok(Usable::No("without full slip"));
@@ -180,7 +186,7 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
         f_n0,
         f_n_slip,
         k_t0,
-        delta_t_99,
+        delta_t_slip,
         variables,
         curve,
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,

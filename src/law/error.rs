@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use crate::case::CaseError;
 use crate::contact_law::ContactError;
-use crate::law::tabulated::Against;
+use crate::law::table::Against;
 use crate::material::MaterialError;
 use crate::output::OutputError;
 use crate::simulation::SimulationError;
@@ -86,7 +86,10 @@ pub enum LawError {
         remedy: &'static str,
     },
     /// A case of which a table says nothing.
-    #[error("the table is of another material: {what}. Tabulate this one with `asperity law tabulate`, or use a law of formulas")]
+    #[error(
+        "the table is of another material: {what}. Tabulate this one with `asperity law tabulate`, or take the built-in law, whose \
+         name is `built-in`"
+    )]
     OtherMaterial {
         /// What differs.
         what: String,

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use super::formulas::predict::over_a_plane;
 use super::interpolated::{self, Interpolated};
 use super::json;
-use super::model::{Axisymmetric, MARGIN, OutOfRange};
-use super::predict::over_a_plane;
-use super::tabulated::{self, Tabulated};
-use super::variables::{Body, yield_lambda};
+use super::range::OutOfRange;
+use super::table::{self, Tabulated};
+use super::variables::Body;
 use super::{Law, LawError};
 use crate::case::{Case, Friction};
 use crate::contact_law::path::{PathPoint, follow_centres};
@@ -47,22 +47,27 @@ impl LawFile {
 
     fn of_text(text: &str) -> Result<Self, String> {
         Ok(match json::head(text)?.format.as_str() {
-            tabulated::FORMAT => Self::Table(Box::new(Tabulated::from_json(text)?)),
+            table::FORMAT => Self::Table(Box::new(Tabulated::from_json(text)?)),
             interpolated::FORMAT => Self::Interpolated(Box::new(Interpolated::from_json(text)?)),
             _ => Self::Formulas(Box::new(Law::from_json(text)?)),
         })
     }
 
-    /// Reads any kind; of the name `built-in` it is the law by interpolation that comes with the
-    /// program.
+    /// The law that comes with the program, `built-in` on the command line: by interpolation, of
+    /// any material, on a rigid plane or between two bodies ([`Interpolated::built_in`]).
+    ///
+    /// # Errors
+    /// A file that was no law when the program was built.
+    pub fn built_in() -> Result<Self, LawError> {
+        Ok(Self::Interpolated(Box::new(Interpolated::built_in()?)))
+    }
+
+    /// Reads any kind; of the name `built-in` it is [`built_in`](Self::built_in).
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn read_or_built_in(path: &Path) -> Result<Self, LawError> {
-        if path == Path::new(BUILT_IN) {
-            return Ok(Self::Interpolated(Box::new(Interpolated::built_in()?)));
-        }
-        Self::read(path)
+        if path == Path::new(BUILT_IN) { Self::built_in() } else { Self::read(path) }
     }
 
     /// The same law where it is of one kind of contact already; the table of the case's contact
@@ -147,37 +152,10 @@ impl LawFile {
             Self::Formulas(law) => {
                 let body = Body::from_case(case)?;
                 let Friction::Coefficient(friction) = case.contact.friction else { return Ok(Vec::new()) };
-                Ok(out_of_formulas(law, &body, friction, h))
+                Ok(law.body_out_of_range(&body, &law.inputs(&body, friction, h)))
             }
             Self::Table(table) => Ok(table.out_of_range(h / case.sphere.radius)),
             Self::Interpolated(law) => law.out_of_range(case, h),
         }
-    }
-}
-
-fn out_of_formulas(law: &Law, body: &Body, friction: f64, h: f64) -> Vec<OutOfRange> {
-    let state = law.normal.state(body, friction, h);
-    let inputs = Axisymmetric {
-        youngs_modulus: body.sphere.youngs_modulus,
-        poissons_ratio: body.sphere.poissons_ratio,
-        radius: body.sphere.radius,
-        friction,
-        sigma_rep: body.representative_stress(state.a),
-        h,
-        a: state.a,
-        f_n: state.f_n,
-    };
-    let mut outside = law.out_of_range(&inputs);
-    outside.extend(law.hardening_out_of_range(body, &inputs));
-    outside
-}
-
-impl Law {
-    /// The hardening exponent of a body that has yielded, where it is not one that the law was
-    /// fitted to.
-    pub fn hardening_out_of_range(&self, body: &Body, inputs: &Axisymmetric) -> Option<OutOfRange> {
-        let (value, range) = (body.hardening_exponent(inputs.a), self.validity.hardening_exponent);
-        let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);
-        (yielded && !range.contains(value, MARGIN)).then_some(OutOfRange { quantity: "hardening exponent", value, range })
     }
 }

@@ -1,49 +1,35 @@
 //! From simulations to a contact law that needs axisymmetric data only.
 //!
-//! `variables` are the normalised quantities in which contacts of different materials fall
-//! together; `data` reads a study back; `forms` and `normal` are the candidate correlations;
-//! `prior` is what a small study may take from a bigger one; `fit` determines their constants,
-//! compares them by cross-validation and keeps the best as a [`Law`] (`model`, `law.json`);
-//! `predict` applies it to a case; `contact_parameters` makes of it what the update of
-//! [`contact_law`](crate::contact_law) needs, and `export` writes both for other programs.
-//! `least_squares` and `report` serve them.
+//! A law is of one of three kinds, a room each: `formulas` with constants that are fitted to a
+//! study, a `table` of one contact as curves in h, and what is `interpolated` between the contacts
+//! of a large study, which makes such a table for any material. [`LawFile`] is any of them. Each
+//! ends in the parameters of the update of [`contact_law`](crate::contact_law): `export` writes
+//! them for other programs, `check` holds the update against simulated paths, `plots` draws.
 //!
-//! `tabulated` is the law of one material and one friction as curves in h, `interpolated` makes
-//! such a table for any material between those of a study; `file` takes any kind; `check` holds the
-//! update against simulated paths.
+//! What the rooms share: `variables` are the normalised quantities in which contacts of different
+//! materials fall together; `study_table` and `data` read a study back, `folds` are those of a
+//! cross-validation, `report` is what a fit says of itself; `range` is where a law holds; `json`
+//! and `bounds` are how a law is kept in a file and checked.
 
 pub mod check;
 pub mod data;
-pub mod elastic;
 pub mod export;
 pub mod file;
-pub mod fit;
-pub mod forms;
+pub mod formulas;
 pub mod interpolated;
-pub mod model;
-pub mod normal;
 #[cfg(feature = "plots")]
 pub mod plots;
-pub mod predict;
-pub mod prior;
+pub mod range;
 pub mod report;
+pub mod study_table;
 pub mod table;
-pub mod tabulated;
 pub mod variables;
 
-mod baseline;
 mod bounds;
-mod contact_parameters;
 mod error;
 mod folds;
-mod formulas;
 mod json;
-mod least_squares;
-mod own_fit;
-
-#[cfg(test)]
-mod tests;
 
 pub use error::LawError;
 pub use file::LawFile;
-pub use model::{Axisymmetric, Law, Parameters};
+pub use formulas::model::{Axisymmetric, Law, Parameters};

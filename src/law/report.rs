@@ -1,5 +1,5 @@
-//! What a fit says of itself: tables of candidates and of errors by region, for `law.json` and for
-//! the terminal.
+//! What a fit says of itself: tables of what was compared and of errors by region, for `law.json`
+//! and for the terminal.
 
 use std::fmt::Write;
 
@@ -71,11 +71,11 @@ pub fn case_errors(sample: &Sample, model: impl Fn(f64) -> (f64, f64)) -> CaseEr
     [rms[0], greatest[0], rms[1], greatest[1]]
 }
 
-/// A combination of forms, or a baseline, with its errors on cases that it was not fitted to.
+/// A fit, or a baseline, with its errors on cases that it was not fitted to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Candidate {
-    /// What it is.
+    /// Where it starts, or what it is.
     pub name: String,
     /// Number of fitted constants.
     pub constants: usize,
@@ -85,11 +85,11 @@ pub struct Candidate {
     pub kept: bool,
 }
 
-/// A form of the normal problem with its cross-validated relative errors.
+/// A fit of the normal problem with its cross-validated relative errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NormalCandidate {
-    /// What it is.
+    /// Where it starts, or what it is.
     pub name: String,
     /// Number of fitted constants.
     pub constants: usize,
@@ -136,13 +136,13 @@ pub struct FittedCase {
     pub slip_share: f64,
     /// k_T0 of the simulation over Mindlin's.
     pub stiffness_ratio: f64,
-    /// delta_T_slip over its elastic value.
+    /// delta_T_end over its elastic value.
     pub slip_factor: f64,
     /// n of f_T.
     pub n: f64,
-    /// M of the chosen f_N.
+    /// M of f_N.
     pub m_exponent: f64,
-    /// N of the chosen f_N.
+    /// N of f_N.
     pub n_exponent: f64,
     /// Greatest error of F_T of this curve's own fit, as a share of its peak.
     pub own_f_t_max: f64,
@@ -190,24 +190,24 @@ pub fn by_region(cases: &[(f64, f64, f64, CaseErrors)]) -> Vec<RegionError> {
     rows
 }
 
-/// The table of candidates, errors in per cent.
+/// The table of fits, errors in per cent.
 pub fn candidate_table(candidates: &[Candidate]) -> String {
     let mut text = String::from(
-        "Candidates, cross-validated errors in per cent (F_T of its peak, F_N of F_N0)\n\
-         form                                                constants  F_T rms     max F_N rms     max\n",
+        "Shear, cross-validated errors in per cent (F_T of its peak, F_N of F_N0)\n\
+         fitted from                         constants  F_T rms     max F_N rms     max\n",
     );
     for candidate in candidates {
         let kept = if candidate.kept { " *" } else { "" };
-        let _ = writeln!(text, "{:<51} {:>9}  {}{kept}", candidate.name, candidate.constants, candidate.errors.columns());
+        let _ = writeln!(text, "{:<35} {:>9}  {}{kept}", candidate.name, candidate.constants, candidate.errors.columns());
     }
     text
 }
 
-/// The table of normal forms, errors in per cent.
+/// The table of fits of the normal problem, errors in per cent.
 pub fn normal_table(candidates: &[NormalCandidate]) -> String {
     let mut text = String::from(
         "Normal problem, cross-validated errors in per cent\n\
-         form                          constants   a0 rms     max F_N0 rms    max\n",
+         fitted from                   constants   a0 rms     max F_N0 rms    max\n",
     );
     for c in candidates {
         let kept = if c.kept { " *" } else { "" };

@@ -11,7 +11,7 @@ use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::id::{case_id, directory_of, is_case_id};
 use super::row::cell;
-use crate::law::table::StudyTable;
+use crate::law::study_table::StudyTable;
 use crate::output::{DirectoryLock, OutputDirectory, OutputError, Status, Summary, TaskLock, read_history};
 
 /// A study and the directories of its cases.

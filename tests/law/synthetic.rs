@@ -4,20 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use asperity::case::Case;
-use asperity::law::forms::{Constants, Forms, NormalCurve, SlipForm, Variable};
-use asperity::law::model::{self, Axisymmetric};
-use asperity::law::normal::{NormalForm, NormalModel};
+use asperity::law::formulas::model::{self, Axisymmetric};
+use asperity::law::formulas::normal::NormalModel;
+use asperity::law::formulas::shear::Constants;
 use asperity::law::variables::Body;
 use asperity::output::{HistoryWriter, OutputDirectory, StepRecord};
 
-/// The law that the studies follow.
-pub const FORMS: Forms = Forms {
-    variable: Variable::Area,
-    slip_displacement: SlipForm::ThroughStiffness,
-    normal_curve: NormalCurve::ComplementOfPower,
-};
-
-/// Its constants, of the size that simulations give.
+/// The constants that the studies follow, of the size that simulations give.
 pub const CONSTANTS: Constants = Constants {
     fall: [1.2, 1.8, 0.4, 1.2, 2.0, 0.3],
     exponent: [30.0, 1.3, 2.0, 1.5, 0.7, 1.5],
@@ -27,7 +20,7 @@ pub const CONSTANTS: Constants = Constants {
 
 /// The normal problem that they follow.
 pub fn normal() -> NormalModel {
-    NormalModel { form: NormalForm::Smooth, radius: vec![1.1, 0.25, 1.4, 0.2], force: vec![0.3, 0.8, 1.6, 1.0, 0.6, 0.4] }
+    NormalModel::new([1.1, 0.25, 1.4, 0.2], [0.11, 0.8, 1.6, 0.6, 0.4, 0.7])
 }
 
 /// One case's file; `hardening` are the lines of its table.
@@ -52,22 +45,12 @@ pub fn hardenings() -> Vec<String> {
 /// The normal data and the curve (delta_T, F_T, F_N) of a case that follows the law.
 pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>) {
     let body = Body::from_case(case).expect("a hardening law");
-    let state = normal().state(&body, friction, h);
-    let inputs = Axisymmetric {
-        youngs_modulus: body.sphere.youngs_modulus,
-        poissons_ratio: body.sphere.poissons_ratio,
-        radius: body.sphere.radius,
-        friction,
-        sigma_rep: body.representative_stress(state.a),
-        h,
-        a: state.a,
-        f_n: state.f_n,
-    };
-    let parameters = model::contact(&FORMS, &CONSTANTS, &inputs);
+    let inputs = Axisymmetric::of(&body, friction, h, normal().state(&body, friction, h));
+    let parameters = model::contact(&CONSTANTS, &inputs);
     let curve = (1..=25)
-        .map(|i| parameters.delta_t_slip * (f64::from(i) / 25.0).powf(1.8))
+        .map(|i| parameters.delta_t_end * (f64::from(i) / 25.0).powf(1.8))
         .map(|d| {
-            let (f_t, f_n) = model::forces(&FORMS, &parameters, friction, d);
+            let (f_t, f_n) = model::forces(&parameters, friction, d);
             [d, f_t, f_n]
         })
         .collect();

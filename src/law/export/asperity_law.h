@@ -20,11 +20,7 @@
 
 #define ASPERITY_ANY_MATERIAL 1
 
-/* Forms of the law and their constants. */
-#define ASPERITY_VARIABLE @VARIABLE@     /* z: 0 ln(Lambda/Lambda_Y), 1 ln(1 + mu (Lambda - Lambda_Y)), 2 stiffness, 3 area */
-#define ASPERITY_SLIP_FORM @SLIP_FORM@    /* 0 direct, 1 through the initial stiffness */
-#define ASPERITY_NORMAL_CURVE @NORMAL_CURVE@ /* f_N: 0 [1 - (1 - x)^M]^N, 1 1 - (1 - x^M)^N */
-#define ASPERITY_NORMAL_FORM @NORMAL_FORM@  /* F_N0(h), a(h): 0 Olsson & Larsson 2016, 1 the same corrected, 2 smooth curves, 3 composed of limits */
+/* The constants of the formulas. */
 @CONSTANTS@
 #define ASPERITY_PI 3.141592653589793
 
@@ -165,55 +161,6 @@ static inline double asperity_yield_lambda(double nu) {
     return 0.5 * ASPERITY_PI * (1.0 / fabs(1.5 * fall - (1.0 + nu) * (1.0 - zeta * atan(1.0 / zeta))));
 }
 
-/* c^2 (Olsson & Larsson 2016); `plastic` is its end. */
-static inline double asperity_c_squared(double lambda, double plastic) {
-    double span = log(1527.0 / 4.005), x, slope, growth, value;
-    x = log(lambda / 4.005) / span;
-    x = x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x;
-    slope = 0.191 * span;
-    growth = plastic - 0.5;
-    value = 0.5 + x * (slope + x * ((3.0 * growth - 2.0 * slope) - x * (2.0 * growth - slope)));
-    return value < plastic ? value : plastic;
-}
-
-/* Olsson & Larsson's contact radius. */
-static inline double asperity_published_radius(const asperity_material *m, double radius, double h) {
-    double reach = 2.0 * radius * h, low = sqrt(0.5 * reach), high = sqrt(1.43 * reach), a;
-    int i;
-    for (i = 0; i < 200; i++) {
-        a = 0.5 * (low + high);
-        if (a <= low || a >= high) {
-            break;
-        }
-        if (a * a - asperity_c_squared(asperity_lambda(m, radius, a), 1.43 * exp(-0.97 * asperity_hardening_exponent(m, radius, a))) * reach
-            < 0.0) {
-            low = a;
-        } else {
-            high = a;
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-/* Olsson & Larsson's force. */
-static inline double asperity_published_force(const asperity_material *m, double radius, double a) {
-    double stress = asperity_representative_stress(m, radius, a), lambda = asperity_lambda(m, radius, a);
-    double maximum = asperity_hardening_exponent(m, radius, a) > 0.2 ? 2.8 : 3.0;
-    double q = log(a / radius / 0.041), factor = 1.0, below, hardness;
-    if (q > 0.0) {
-        factor = 1.0 - 0.0460789 * pow(q, 2.2139);
-        factor = factor > 0.0 ? factor : 0.0;
-    }
-    hardness = 4.0 * lambda / (3.0 * ASPERITY_PI);
-    if (lambda >= 2.0) {
-        below = log(160.0 / lambda);
-        below = below > 0.0 ? below : 0.0;
-        below = factor * (maximum - 0.0965 * below * below);
-        hardness = hardness < below ? hardness : below;
-    }
-    return hardness * ASPERITY_PI * a * a * stress;
-}
-
 /* S tanh(mu/beta); it vanishes with beta at nu = 1/2. */
 static inline double asperity_stick(double nu, double friction) {
     double beta = (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));
@@ -229,60 +176,34 @@ static inline double asperity_stiffening(double nu, double friction, double size
         + size * (ASPERITY_BODY_2 + ASPERITY_BODY_3 * size + ASPERITY_BODY_4 * nu);
 }
 
-/* a and F_N0 at the indentation h > 0; Hertz below first yield, but for F_N0 of form 3. */
+/* a and F_N0 at the indentation h > 0. */
 static inline void asperity_normal(const asperity_material *m, double radius, double friction, double h, double *a, double *f_n) {
     double hertz = sqrt(radius * h);
     double force = 4.0 / 3.0 * asperity_effective_modulus(m) * sqrt(radius) * pow(h, 1.5);
-    double yield = asperity_yield_lambda(m->poissons_ratio), published, ratio, ramp, hardening;
-    double elastic = ASPERITY_NORMAL_FORM == 3 ? asperity_stiffening(m->poissons_ratio, friction, hertz / radius) : 0.0;
+    double yield = asperity_yield_lambda(m->poissons_ratio), lambda = asperity_lambda(m, radius, hertz);
+    double elastic = asperity_stiffening(m->poissons_ratio, friction, hertz / radius);
+    double ratio, ramp, hardening, growth, c_squared, plastic, size;
     *a = hertz;
-    *f_n = ASPERITY_NORMAL_FORM == 3 ? force * exp(elastic) : force;
-    if (asperity_lambda(m, radius, hertz) <= yield) {
+    *f_n = force * exp(elastic);
+    if (lambda <= yield) {
         return;
     }
-    if (ASPERITY_NORMAL_FORM >= 2) {
-        double growth, c_squared, plastic, size;
-        ratio = asperity_lambda(m, radius, hertz) / yield;
-        ratio = ratio > 1.0 ? ratio : 1.0;
-        ramp = 1.0 - 1.0 / ratio;
-        hardening = asperity_hardening_exponent(m, radius, hertz);
-        growth = 1.43 * exp(-ASPERITY_NORMAL_RADIUS_0 * hardening) - 0.5;
-        c_squared = 0.5 + growth * (1.0 - exp(-pow(ASPERITY_NORMAL_RADIUS_1 * log(ratio), ASPERITY_NORMAL_RADIUS_2)));
-        *a = hertz * sqrt(2.0 * c_squared * exp(ASPERITY_NORMAL_RADIUS_3 * ramp * hertz / radius));
-        if (ASPERITY_NORMAL_FORM == 3) {
-            plastic = asperity_lambda(m, radius, hertz) - yield;
-            plastic = pow(ASPERITY_NORMAL_FORCE_0 * pow(plastic, ASPERITY_NORMAL_FORCE_1), ASPERITY_NORMAL_FORCE_2);
-            size = (ASPERITY_NORMAL_FORCE_5 - ASPERITY_NORMAL_FORCE_3 * log(ratio)) * (hertz / radius);
-            size = (1.0 - ramp) * elastic + ramp * (size - ASPERITY_NORMAL_FORCE_4 * hardening);
-            *f_n = force * pow(1.0 + plastic, -1.0 / ASPERITY_NORMAL_FORCE_2) * exp(size);
-            return;
-        }
-        plastic = pow(ASPERITY_NORMAL_FORCE_0 * pow(ratio - 1.0, ASPERITY_NORMAL_FORCE_1), ASPERITY_NORMAL_FORCE_2);
-        size = (ASPERITY_NORMAL_FORCE_3 - ASPERITY_NORMAL_FORCE_4 * log(ratio)) * hertz / radius;
-        *f_n = force * pow(1.0 + plastic, -1.0 / ASPERITY_NORMAL_FORCE_2) * exp(ramp * (size - ASPERITY_NORMAL_FORCE_5 * hardening));
-        return;
-    }
-    published = asperity_published_radius(m, radius, h);
-    *a = published;
-    *f_n = asperity_published_force(m, radius, published);
-    if (ASPERITY_NORMAL_FORM == 1) {
-        ratio = asperity_lambda(m, radius, published) / yield;
-        ratio = ratio > 1.0 ? ratio : 1.0;
-        ramp = 1.0 - 1.0 / ratio;
-        hardening = asperity_hardening_exponent(m, radius, published);
-        *a = published * exp(ramp * (ASPERITY_NORMAL_RADIUS_0 + ASPERITY_NORMAL_RADIUS_1 * log(ratio)));
-        *f_n *= exp(ramp
-                    * (ASPERITY_NORMAL_FORCE_0 + ASPERITY_NORMAL_FORCE_1 * *a / radius + ASPERITY_NORMAL_FORCE_2 * hardening
-                       + ASPERITY_NORMAL_FORCE_3 * log(ratio)));
-    }
+    ratio = lambda / yield;
+    ratio = ratio > 1.0 ? ratio : 1.0;
+    ramp = 1.0 - 1.0 / ratio;
+    hardening = asperity_hardening_exponent(m, radius, hertz);
+    growth = 1.43 * exp(-ASPERITY_NORMAL_RADIUS_0 * hardening) - 0.5;
+    c_squared = 0.5 + growth * (1.0 - exp(-pow(ASPERITY_NORMAL_RADIUS_1 * log(ratio), ASPERITY_NORMAL_RADIUS_2)));
+    *a = hertz * sqrt(2.0 * c_squared * exp(ASPERITY_NORMAL_RADIUS_3 * ramp * hertz / radius));
+    plastic = pow(ASPERITY_NORMAL_FORCE_0 * pow(lambda - yield, ASPERITY_NORMAL_FORCE_1), ASPERITY_NORMAL_FORCE_2);
+    size = (ASPERITY_NORMAL_FORCE_5 - ASPERITY_NORMAL_FORCE_3 * log(ratio)) * (hertz / radius);
+    size = (1.0 - ramp) * elastic + ramp * (size - ASPERITY_NORMAL_FORCE_4 * hardening);
+    *f_n = force * pow(1.0 + plastic, -1.0 / ASPERITY_NORMAL_FORCE_2) * exp(size);
 }
 
 /* mu^p z^q. */
 static inline double asperity_product(double p, double q, double friction, double z) {
-    if (z <= 0.0) {
-        return 0.0;
-    }
-    return (ASPERITY_VARIABLE == 1 ? 1.0 : pow(friction, p)) * pow(z, q);
+    return z <= 0.0 ? 0.0 : pow(friction, p) * pow(z, q);
 }
 
 /* A row of the table: the law at the indentation h. Without friction there is no displacement at full slip, and none is asked for. */
@@ -296,17 +217,9 @@ static inline void asperity_table_row(const asperity_material *m, double radius,
     if (lambda > yield) {
         ratio = lambda / yield;
         ramp = 1.0 - 1.0 / (ratio * ratio);
-        if (ASPERITY_VARIABLE == 0) {
-            z = log(ratio);
-        } else if (ASPERITY_VARIABLE == 1) {
-            z = log1p(friction * (lambda - yield));
-        } else if (ASPERITY_VARIABLE == 2) {
-            z = ramp * log(4.0 * lambda / (3.0 * ASPERITY_PI * (f_n / (ASPERITY_PI * a * a * stress))));
-        } else {
-            z = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0);
-        }
+        z = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0);
+        growth = z / log(ratio);
         z = z > 0.0 ? z : 0.0;
-        growth = ramp * (2.0 * (a * a / (2.0 * radius * h)) - 1.0) / log(ratio);
         growth = growth > 0.0 ? growth : 0.0;
     }
     power = ASPERITY_EXPONENT_2 * exp(-ASPERITY_EXPONENT_4 * friction);
@@ -317,11 +230,7 @@ static inline void asperity_table_row(const asperity_material *m, double radius,
     share = 1.0
         - tanh(ASPERITY_FALL_0 * friction) * tanh(ASPERITY_FALL_1 * asperity_product(ASPERITY_FALL_2, ASPERITY_FALL_3, friction, z) * size);
     body = 1.0 + ASPERITY_SLIP_0 * (a / radius);
-    if (ASPERITY_SLIP_FORM == 0) {
-        factor = body + ASPERITY_SLIP_1 * asperity_product(ASPERITY_SLIP_2, ASPERITY_SLIP_3, friction, z);
-    } else {
-        factor = n / 1.5 * share * (body + ASPERITY_SLIP_1 * pow(z, ASPERITY_SLIP_3));
-    }
+    factor = n / 1.5 * share * (body + ASPERITY_SLIP_1 * pow(z, ASPERITY_SLIP_3));
     steep = 1.0 + ASPERITY_CURVE_0 + ASPERITY_CURVE_1 * (n - 1.5);
     mindlin = 8.0 * (0.5 * m->youngs_modulus / (1.0 + m->poissons_ratio)) * a / (2.0 - m->poissons_ratio);
     row[0] = log(f_n);
@@ -406,7 +315,7 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
     asperity_conserve(p);
     memset(t, 0, sizeof *t);
     t->plane = 1;
-    t->form = ASPERITY_NORMAL_CURVE;
+    t->form = 1;
     t->share = ASPERITY_R(1.0);
     t->poissons_ratio = ASPERITY_R(m->poissons_ratio);
     t->friction = ASPERITY_R(friction);
@@ -422,7 +331,7 @@ static inline int asperity_setup(asperity_table *t, const asperity_material *m, 
             t->deepest = ASPERITY_R(h);
         }
         for (j = 0; j < ASPERITY_COLUMNS; j++) {
-            /* The update needs 1/a and 1/delta_T_slip, and first what has a logarithm in the table. */
+            /* The update needs 1/a and 1/delta_T_end, and first what has a logarithm in the table. */
             double sign = j == 1 || j == 3 ? -1.0 : 1.0, value = p->table[i][j], slope = asperity_knot_slope(p, j, i);
             int k = place[j];
             double start = sign * (value - (j == 0 || j == 7 ? log_modulus : 0.0));

@@ -5,7 +5,7 @@ use super::{ExportedFile, plain};
 use crate::case::Case;
 use crate::contact_law::KNOTS;
 use crate::contact_law::export::{EngineTable, HEADER_NAME, check_program, header, header_3d};
-use crate::law::tabulated::{Against, is_on_a_flat};
+use crate::law::table::{Against, is_on_a_flat};
 use crate::law::{LawError, LawFile};
 
 /// What an engine gets.

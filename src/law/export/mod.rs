@@ -12,12 +12,11 @@ mod vectors;
 pub use engine::{engine_files, engine_source};
 pub use vectors::{table_vectors, unit_vectors, vectors};
 
-use super::contact_parameters::LAST;
-use super::elastic::BODY;
-use super::forms::{EXPONENT_SPAN, NormalCurve, SlipForm, Variable};
-use super::model::Law;
-use super::normal::NormalForm;
-use super::tabulated::Tabulated;
+use super::formulas::contact_parameters::LAST;
+use super::formulas::elastic::BODY;
+use super::formulas::model::Law;
+use super::formulas::shear::EXPONENT_SPAN;
+use super::table::Tabulated;
 use super::{LawError, LawFile};
 use crate::case::{Case, Hardening};
 use crate::contact_law::export::{HEADER_NAME, check_program, fill, header, header_3d, header_parts, module_parts};
@@ -26,6 +25,7 @@ use crate::material::HardeningLaw;
 
 const HEADER: &str = include_str!("asperity_law.h");
 const MODULE: &str = include_str!("asperity_law.py");
+const FORMULAS_MODULE: &str = include_str!("asperity_law_formulas.py");
 const TABLE_MODULE: &str = include_str!("asperity_law_table.py");
 
 /// A language of the export.
@@ -116,18 +116,18 @@ pub fn source(law: &Law, language: Language) -> String {
             Language::Python => format!("{name} = {}\n", number(value)),
         });
     };
-    let mut list = |name: &str, values: &[f64], length: usize| {
-        for i in 0..length {
-            constant(&format!("{name}_{i}"), values.get(i).copied().unwrap_or(0.0));
+    let mut list = |name: &str, values: &[f64]| {
+        for (i, value) in values.iter().enumerate() {
+            constant(&format!("{name}_{i}"), *value);
         }
     };
-    list("FALL", &law.constants.fall, 6);
-    list("EXPONENT", &law.constants.exponent, 6);
-    list("SLIP", &law.constants.slip, 4);
-    list("CURVE", &law.constants.curve, 4);
-    list("NORMAL_RADIUS", &law.normal.radius, 4);
-    list("NORMAL_FORCE", &law.normal.force, 6);
-    list("BODY", &BODY, 5);
+    list("FALL", &law.constants.fall);
+    list("EXPONENT", &law.constants.exponent);
+    list("SLIP", &law.constants.slip);
+    list("CURVE", &law.constants.curve);
+    list("NORMAL_RADIUS", &law.normal.radius);
+    list("NORMAL_FORCE", &law.normal.force);
+    list("BODY", &BODY);
     constant("EXPONENT_SPAN", EXPONENT_SPAN);
     let range = &law.validity;
     for (name, interval) in [
@@ -159,11 +159,8 @@ pub fn source(law: &Law, language: Language) -> String {
                 short(range.poissons_ratio.to)
             ),
         ),
-        ("TABLE", String::new()),
-        ("VARIABLE", variable(law.forms.variable).to_string()),
-        ("SLIP_FORM", slip_form(law.forms.slip_displacement).to_string()),
-        ("NORMAL_CURVE", normal_curve(law.forms.normal_curve).to_string()),
-        ("NORMAL_FORM", normal_form(law.normal.form).to_string()),
+        ("SETUP", FORMULAS_MODULE.to_owned()),
+        ("NORMAL_CURVE", "1".to_owned()),
         ("CONSTANTS", constants.trim_end().to_owned()),
         ("LAST", format!("{LAST:?}")),
         ("HARDENING_CODES", hardening_codes(language)),
@@ -218,14 +215,9 @@ fn table_source(table: &Tabulated) -> Result<String, LawError> {
         ("VERSION", env!("CARGO_PKG_VERSION").to_owned()),
         ("SOURCE", format!("a table of {what}")),
         ("FITTED", format!("Of {what}, h/R up to {}", short(table.range.to))),
-        ("VARIABLE", "0".to_owned()),
-        ("SLIP_FORM", "0".to_owned()),
+        ("SETUP", fragment),
         ("NORMAL_CURVE", "2".to_owned()),
-        ("NORMAL_FORM", "0".to_owned()),
-        ("CONSTANTS", String::new()),
-        ("LAST", format!("{LAST:?}")),
         ("HARDENING_CODES", hardening_codes(Language::Python)),
-        ("TABLE", fragment),
     ];
     Ok(fill(MODULE, values.into_iter().chain(module_parts())))
 }
@@ -267,36 +259,4 @@ fn hardening_codes(language: Language) -> String {
 /// A name that can stand in a comment of any language.
 fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_. ".contains(c) { c } else { '_' }).collect()
-}
-
-fn variable(variable: Variable) -> u8 {
-    match variable {
-        Variable::Lambda => 0,
-        Variable::FrictionLambda => 1,
-        Variable::Stiffness => 2,
-        Variable::Area => 3,
-    }
-}
-
-fn slip_form(form: SlipForm) -> u8 {
-    match form {
-        SlipForm::Direct => 0,
-        SlipForm::ThroughStiffness => 1,
-    }
-}
-
-fn normal_curve(curve: NormalCurve) -> u8 {
-    match curve {
-        NormalCurve::PowerOfComplement => 0,
-        NormalCurve::ComplementOfPower => 1,
-    }
-}
-
-fn normal_form(form: NormalForm) -> u8 {
-    match form {
-        NormalForm::Published => 0,
-        NormalForm::Corrected => 1,
-        NormalForm::Smooth => 2,
-        NormalForm::Composed => 3,
-    }
 }

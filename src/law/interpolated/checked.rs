@@ -6,7 +6,7 @@ use super::{FORMAT, Interpolated, PROCESSES, VERSION};
 use crate::contact_law::Frame;
 use crate::law::bounds::{Bounds, Checked, TOLD};
 use crate::law::json::LawKind;
-use crate::law::tabulated::{Against, frame_of_the_centres};
+use crate::law::table::{Against, frame_of_the_centres};
 
 /// Means of inputs and outputs and the ends of their ranges, which are logarithms and shares.
 const VALUE: Bounds = Bounds { least: -1e3, most: 1e3 };

@@ -13,11 +13,11 @@ use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment};
 use crate::contact_law::{Frame, POINTS};
 use crate::law::LawError;
-use crate::law::fit::study_name;
-use crate::law::model::Interval;
+use crate::law::data::study_name;
+use crate::law::range::Interval;
 use crate::law::report::{CaseErrors, by_region};
-use crate::law::table::StudyTable;
-use crate::law::tabulated::{Against, Level, Measured};
+use crate::law::study_table::StudyTable;
+use crate::law::table::{Against, Level, Measured};
 use crate::law::variables::yield_lambda;
 use crate::output::{OutputDirectory, read_history};
 
@@ -165,7 +165,7 @@ fn errors(sample: &Sample, level: &Level) -> CaseErrors {
     let one = &sample.measured;
     let (mut squares, mut greatest) = ([0.0; 2], [0.0f64; 2]);
     for point in &one.curve {
-        let x = (point.delta_t / level.delta_t_slip).min(1.0);
+        let x = (point.delta_t / level.delta_t_end).min(1.0);
         let [f_t, lost] = [&level.tangential, &level.normal].map(|shape| straight(shape, x));
         let f_t = sample.friction * level.slip_share * level.f_n0 * f_t;
         let f_n = level.f_n0 * (1.0 - (1.0 - level.slip_share) * lost);

@@ -24,9 +24,9 @@ use self::outputs::{NUMBERS, Outputs};
 use self::process::{Place, Process};
 use super::LawError;
 use super::json;
-use super::model::{Interval, MARGIN, OutOfRange};
+use super::range::{Interval, MARGIN, OutOfRange};
 use super::report::RegionError;
-use super::tabulated::{self, Against, Tabulated, equivalent};
+use super::table::{self, Against, Tabulated, equivalent};
 use super::variables::{Body, yield_lambda};
 use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Opponent};
@@ -215,7 +215,7 @@ impl Interpolated {
             return Err(LawError::OtherOpponent { case: against, law: self.body });
         }
         let (body, sphere) = bodies(case)?;
-        let levels = tabulated::depths(case)?
+        let levels = table::depths(case)?
             .into_iter()
             .map(|h| {
                 let outputs = self.outputs(&inputs(&body, &sphere, friction(case), h));
@@ -229,7 +229,7 @@ impl Interpolated {
     /// table against what the law is of, and they are put in series.
     ///
     /// # Errors
-    /// Those of [`table`](Self::table) and of [`compose`](tabulated::compose).
+    /// Those of [`table`](Self::table) and of [`compose`](table::compose).
     pub fn compose(&self, case: &Case) -> Result<Tabulated, LawError> {
         if let Some(law) = self.of_equal_spheres(case) {
             return law.compose(case);
@@ -239,8 +239,8 @@ impl Interpolated {
         }
         let mut spare = SPARE;
         loop {
-            let Some([sphere, other]) = tabulated::alone(case, self.body, spare) else { return self.table(case) };
-            match tabulated::compose(case, [&self.table(&sphere)?, &self.table(&other)?]) {
+            let Some([sphere, other]) = table::alone(case, self.body, spare) else { return self.table(case) };
+            match table::compose(case, [&self.table(&sphere)?, &self.table(&other)?]) {
                 Err(LawError::Shallow { .. }) if spare < DEEPEST => spare *= SPARE,
                 composed => return composed,
             }
@@ -259,7 +259,7 @@ impl Interpolated {
         // Of two bodies that are put in series each is asked by itself.
         let equal = Against::of(case) == Against::EqualSphere && self.body == Against::Plane;
         let pair = if equal { &like_itself(case) } else { case };
-        if let Some(bodies) = tabulated::alone(pair, self.body, 1.0) {
+        if let Some(bodies) = table::alone(pair, self.body, 1.0) {
             let depth = |body: &Case| h / case.effective_radius() * if body.opponent.is_some() { 2.0 } else { 1.0 };
             let each = bodies.iter().map(|body| self.out_of_range(body, depth(body))).collect::<Result<Vec<_>, _>>()?;
             return Ok(each.concat());

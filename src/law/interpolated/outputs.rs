@@ -4,8 +4,9 @@
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, hertz};
 use crate::contact_law::POINTS;
 use crate::law::data::Point;
-use crate::law::tabulated::spline::Spline;
-use crate::law::tabulated::{Against, Level, Measured, backbone_of, cleaned, reversal, unloading_radius};
+use crate::law::table::spline::Spline;
+use crate::law::table::{Against, Level, Measured, backbone_of, cleaned, reversal, unloading_radius};
+use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Number of outputs that are no curves.
 pub const NUMBERS: usize = 6;
@@ -20,7 +21,7 @@ const REVERSAL: usize = 4;
 /// is reached from 0.9 to 1.75.
 const END: f64 = 1.75;
 /// F_T/F_N over mu from which a contact with a plane has come to full slip,
-const SLIPPED: f64 = 0.99;
+const SLIPPED: f64 = SLIP_DISPLACEMENT_RATIO;
 /// and one of two spheres: elastic ones whose points all slide have up to 3 % less at mu above 0.6,
 /// since not all of them slide in one direction.
 const SLIPPED_PAIR: f64 = 0.95;
@@ -131,7 +132,7 @@ impl Outputs {
             f_n0,
             a0: a * a0.exp(),
             slip_share: kept,
-            delta_t_slip: END * END * length,
+            delta_t_end: END * END * length,
             unloading_radius: a * unloading.exp(),
             k_t,
             backbone,

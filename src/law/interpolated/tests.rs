@@ -4,7 +4,7 @@ use crate::contact_law::Centres;
 use crate::contact_law::path::follow;
 use crate::law::LawFile;
 use crate::law::data::Point;
-use crate::law::tabulated::Measured;
+use crate::law::table::Measured;
 
 fn fixture(name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/interpolated").join(name)

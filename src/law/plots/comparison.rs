@@ -2,7 +2,7 @@
 
 use super::groups::{by_friction, lambda_axis};
 use crate::law::data::Sample;
-use crate::law::fit::inputs;
+use crate::law::formulas::fit::inputs;
 use crate::law::report::{CaseErrors, FittedCase, LAMBDA_BOUNDS, case_errors};
 use crate::law::variables::yield_lambda;
 use crate::law::{Law, LawError};
@@ -58,7 +58,7 @@ impl std::fmt::Display for Short {
 
 fn case_chart(law: &Law, sample: &Sample) -> Chart {
     let parameters = law.contact(&inputs(sample));
-    let (slip, mu, f_n0) = (parameters.delta_t_slip, sample.friction, sample.f_n0);
+    let (slip, mu, f_n0) = (parameters.delta_t_end, sample.friction, sample.f_n0);
     let computed = |value: fn(&crate::law::data::Point) -> f64, scale: f64| -> Vec<(f64, f64)> {
         sample.curve.iter().map(|point| (point.delta_t / slip, value(point) / scale)).collect()
     };
@@ -79,7 +79,7 @@ fn case_chart(law: &Law, sample: &Sample) -> Chart {
     ];
     Chart {
         title: String::new(),
-        x: Axis::linear("δ_T / law's δ_{T,slip}", 0.0, 1.03 * last),
+        x: Axis::linear("δ_T / law's δ_{T,end}", 0.0, 1.03 * last),
         y: Axis::linear("F_N/F_N0 and F_T/(μF_N0)", 0.0, 1.15),
         series,
         bar: None,

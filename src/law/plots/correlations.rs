@@ -1,11 +1,11 @@
-//! What the law correlates, over Lambda and mu: the fall of F_N, n and delta_T_slip.
+//! What the law correlates, over Lambda and mu: the fall of F_N, n and delta_T_end.
 
 use super::groups::{Reference, by_friction, frictions, lambda_axis};
 use crate::analytical::cattaneo_mindlin;
 use crate::law::data::Sample;
-use crate::law::fit::inputs;
-use crate::law::model::Axisymmetric;
-use crate::law::own_fit::own_fit;
+use crate::law::formulas::fit::inputs;
+use crate::law::formulas::model::Axisymmetric;
+use crate::law::formulas::own_fit::own_fit;
 use crate::law::{Law, LawError};
 use crate::output::plots::chart::{Axis, Chart, draw_chart, draw_charts, extent};
 use crate::output::plots::{Picture, Sheet};
@@ -34,9 +34,9 @@ pub fn fall(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Pictu
     Ok(Picture::draw("fall", caption, sheet.chart((860, 560)), |root| draw_chart(root, &chart))?)
 }
 
-/// n and delta_T_slip over its elastic value: each case's own best ones, and the law's.
+/// n and delta_T_end over its elastic value: each case's own best ones, and the law's.
 pub fn parameters(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture, LawError> {
-    let own = |sample: &Sample| own_fit(law.forms.normal_curve, sample);
+    let own = own_fit;
     let reference = reference(samples, law);
     let frictions = frictions(samples);
     let x = || lambda_axis(samples.iter().map(|sample| sample.variables.lambda));
@@ -48,21 +48,21 @@ pub fn parameters(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture
     let mut factor = by_friction(samples, |sample| own(sample).map_or(f64::NAN, |own| own.slip_factor));
     // Single curves may have a far larger optimum; the law's own range and most of the marks are
     // what is shown.
-    let most = |sample: &Sample| law.contact(&inputs(sample)).delta_t_slip / elastic(&inputs(sample));
+    let most = |sample: &Sample| law.contact(&inputs(sample)).delta_t_end / elastic(&inputs(sample));
     let highest = 1.6 * extent(samples.iter().map(most)).1;
     n.extend(reference.by_friction(law, &frictions, |p, _| p.n));
-    factor.extend(reference.by_friction(law, &frictions, |p, inputs| p.delta_t_slip / elastic(inputs)));
+    factor.extend(reference.by_friction(law, &frictions, |p, inputs| p.delta_t_end / elastic(inputs)));
     let charts = [
         Chart { title: "Exponent of f_T".into(), x: x(), y: Axis::linear("n", 0.0, 10.5), series: n, bar: None },
         Chart {
             title: "Displacement at full slip".into(),
             x: x(),
-            y: Axis::linear("δ_{T,slip} / elastic δ_{T,slip}", 0.0, highest.max(2.0)),
+            y: Axis::linear("δ_{T,end} / elastic δ_{T,end}", 0.0, highest.max(2.0)),
             series: factor,
             bar: None,
         },
     ];
-    let caption = "Marks: n and δ_T_slip of each case by least squares of its own F_T curve; the two go together, so that single curves leave \
+    let caption = "Marks: n and δ_T_end of each case by least squares of its own F_T curve; the two go together, so that single curves leave \
                    them loosely determined. Lines: the law for a reference sphere. Both start from Cattaneo and Mindlin's 3/2 and 1.";
     let (size, columns) = sheet.charts((1180, 520), 2);
     Ok(Picture::draw("parameters", caption, size, |root| draw_charts(root, columns, &charts))?)

@@ -4,7 +4,7 @@
 use crate::case::{Hardening, Material};
 use crate::law::Law;
 use crate::law::data::Sample;
-use crate::law::model::{Axisymmetric, Parameters};
+use crate::law::formulas::model::{Axisymmetric, Parameters};
 use crate::law::variables::{Body, Variables};
 use crate::output::plots::canvas::Colour;
 use crate::output::plots::chart::{Axis, ColourBar, Mark, Series};
@@ -81,18 +81,8 @@ impl Reference {
     fn state(law: &Law, nu: f64, h: f64, stiffness: f64) -> Option<(Axisymmetric, Variables)> {
         let hardening = Hardening::Ideal { yield_stress: 1.0 / stiffness };
         let body = Body::new(1.0, &Material { youngs_modulus: 1.0, poissons_ratio: nu, hardening }).ok()?;
-        let state = law.normal.state(&body, 0.0, h);
-        let inputs = Axisymmetric {
-            youngs_modulus: 1.0,
-            poissons_ratio: nu,
-            radius: 1.0,
-            friction: 0.0,
-            sigma_rep: body.representative_stress(state.a),
-            h,
-            a: state.a,
-            f_n: state.f_n,
-        };
-        Some((inputs, body.variables(h, state.a, state.f_n)))
+        let inputs = law.inputs(&body, 0.0, h);
+        Some((inputs, body.variables(h, inputs.a, inputs.f_n)))
     }
 
     /// What it is, for a legend.

@@ -2,7 +2,8 @@
 //! correlates, all curves in normalised variables, and the law against single cases.
 //!
 //! `groups` tells cases apart by mu and by hardening and draws the law's curve of a reference
-//! sphere; the others are the pictures.
+//! sphere; `run` has a law beside the simulation of one case, `table` a table beside the depths it
+//! was made from; the others are the pictures.
 
 mod collapse;
 mod comparison;
@@ -10,12 +11,14 @@ mod correlations;
 mod groups;
 mod normal_maps;
 mod run;
+mod table;
 
 #[cfg(test)]
 mod tests;
 
 pub use comparison::greatest_errors;
 pub use run::{law_beside_run, table_beside_run};
+pub use table::picture as table_picture;
 
 use super::data::StudyData;
 use super::variables::{Body, Variables};

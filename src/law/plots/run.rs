@@ -3,10 +3,11 @@
 use crate::case::Case;
 use crate::contact_law::Centres;
 use crate::contact_law::path::drive_centres;
-use crate::law::model::OutOfRange;
-use crate::law::predict::{NormalSource, Prediction, predict};
+use crate::law::formulas::normal::NormalState;
+use crate::law::formulas::predict::{NormalSource, Prediction, predict};
+use crate::law::range::OutOfRange;
 use crate::law::variables::Body;
-use crate::law::{Law, LawError, LawFile, model};
+use crate::law::{Axisymmetric, Law, LawError, LawFile, Parameters};
 use crate::output::plots::{Picture, View, plot_law};
 use crate::output::{StepRecord, Summary, SummaryInputs};
 
@@ -42,7 +43,7 @@ pub fn law_beside_run(law: &Law, case: &Case, history: &[StepRecord], view: &Vie
     let direction = if prediction.curve.last().is_some_and(|point| point.delta_t < 0.0) { -1.0 } else { 1.0 };
     let friction = prediction.inputs.friction;
     let reached = history.iter().map(|record| record.delta_t.abs()).fold(0.0, f64::max);
-    let curve = |parameters: &model::Parameters| -> Vec<[f64; 3]> {
+    let curve = |parameters: &Parameters| -> Vec<[f64; 3]> {
         // Dense where it is steep.
         let displacements = (0..=150).map(|i| reached * (f64::from(i) / 150.0).powi(2));
         displacements
@@ -55,8 +56,8 @@ pub fn law_beside_run(law: &Law, case: &Case, history: &[StepRecord], view: &Vie
     let mut laws = Vec::new();
     let summary = Summary::from_history(history, &SummaryInputs::of(case));
     if let (Some(h), Some(a), Some(f_n)) = (summary.h0, summary.a0, summary.f_n0) {
-        let sigma_rep = Body::from_case(case)?.representative_stress(a);
-        let known = law.contact(&model::Axisymmetric { h, a, f_n, sigma_rep, ..prediction.inputs });
+        let body = Body::from_case(case)?;
+        let known = law.contact(&Axisymmetric::of(&body, friction, h, NormalState { a, f_n }));
         laws.push(("law, F_N0 and a_0 known".to_owned(), curve(&known)));
     }
     laws.push(("law from the case alone".to_owned(), curve(&prediction.parameters)));

@@ -1,5 +1,5 @@
 use super::*;
-use crate::law::tests::elastic_sample;
+use crate::law::formulas::tests::elastic_sample;
 
 /// Pictures of elastic cases alone: no Lambda, no fall, and nothing that stops.
 #[test]

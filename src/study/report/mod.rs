@@ -15,7 +15,7 @@ use crate::case::PictureFormat;
 use crate::law::Law;
 use crate::law::data::StudyData;
 use crate::law::plots::{NormalContact, greatest_errors, study_pictures};
-use crate::law::table::{StudyRow, StudyTable};
+use crate::law::study_table::{StudyRow, StudyTable};
 use crate::output::plots::Sheet;
 use crate::output::{OutputDirectory, Picture, write_own};
 

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use asperity::case::{Case, estimated_memory};
 use asperity::internals::cli::point::read_path;
 use asperity::law::LawFile;
-use asperity::law::table::StudyTable;
+use asperity::law::study_table::StudyTable;
 use asperity::material::point::along;
 use asperity::output::plots::Sheet;
 use asperity::output::{Checkpoint, Summary, read_contact, read_history};

@@ -7,7 +7,7 @@ use asperity::law::LawFile;
 use asperity::law::data::StudyData;
 use asperity::law::export::{Language, law_files, law_source};
 use asperity::law::plots::{law_beside_run, study_pictures, table_beside_run};
-use asperity::law::tabulated::compose;
+use asperity::law::table::compose;
 use asperity::output::plots::{PlotInputs, Sheet, SlipPanel, Tables, View, run_pictures};
 use asperity::output::{ContactPoint, StepRecord, Summary, SummaryInputs};
 

@@ -14,7 +14,7 @@ use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
 use crate::contact_law::path::drive;
 use crate::contact_law::{Centres, POINTS, measured_slope, unloading_exponent};
 use crate::law::LawError;
-use crate::law::model::Interval;
+use crate::law::range::Interval;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
 
 /// Least depth of one body that is simulated, unless the greatest is less than ten times as deep.
@@ -45,7 +45,7 @@ pub struct Built {
     /// That of every other depth, which was checked.
     pub coarse: Tabulated,
     /// The simulated depths.
-    pub(super) measured: Vec<Measured>,
+    pub(in crate::law) measured: Vec<Measured>,
     /// Depths that were not reached.
     pub missing: Vec<Missing>,
 }
@@ -214,9 +214,9 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
     if friction <= 0.0 || points_of_curve < 4 {
         let elastic = hertzian(sphere, friction, one.h);
         let mindlin = cattaneo_mindlin::initial_stiffness(sphere, one.a0);
-        let delta_t_slip = 1.5 * friction.max(1e-6) * one.f_n0 / mindlin * LENGTH * NEARLY_MINDLIN;
+        let delta_t_end = 1.5 * friction.max(1e-6) * one.f_n0 / mindlin * LENGTH * NEARLY_MINDLIN;
         let unloading_radius = unloading_radius(sphere, one);
-        return Level { f_n0: one.f_n0, a0: one.a0, delta_t_slip, unloading_radius, k_t: mindlin, ..elastic };
+        return Level { f_n0: one.f_n0, a0: one.a0, delta_t_end, unloading_radius, k_t: mindlin, ..elastic };
     }
     let slipping = one.curve.iter().position(|point| point.f_t >= NEARLY_SLIPPING * friction * point.f_n);
     let at_99 = match slipping {
@@ -252,7 +252,7 @@ fn level(sphere: &ElasticSphere, friction: f64, one: &Measured) -> Level {
         f_n0: one.f_n0,
         a0: one.a0,
         slip_share: f_n_slip / one.f_n0,
-        delta_t_slip: end,
+        delta_t_end: end,
         unloading_radius: unloading_radius(sphere, one),
         k_t,
         backbone,
@@ -340,7 +340,7 @@ pub(super) fn hertzian(sphere: &ElasticSphere, friction: f64, h: f64) -> Level {
         f_n0: hertz::force(sphere, h),
         a0: contact.contact_radius,
         slip_share: 1.0,
-        delta_t_slip: end,
+        delta_t_end: end,
         unloading_radius: contact.contact_radius,
         k_t: cattaneo_mindlin::initial_stiffness(sphere, contact.contact_radius),
         backbone: 1.5,

@@ -5,10 +5,10 @@
 //! curves bracket it: that of a Hertz pressure with the contact's own a0 and F_N0, which is
 //! Cattaneo and Mindlin's law, and that of a uniform pressure, the fully plastic limit.
 
-use super::data::Sample;
-use super::report::{Candidate, Errors, case_errors};
 use crate::analytical::mesarovic_johnson::Unloading;
 use crate::analytical::{ElasticSphere, hertz, jaeger_ciavarella};
+use crate::law::data::Sample;
+use crate::law::report::{Candidate, Errors, case_errors};
 
 /// Both baselines with their errors; they have no constants to fit.
 pub fn candidates(samples: &[Sample]) -> Vec<Candidate> {
@@ -44,7 +44,7 @@ fn uniform(sample: &Sample, d: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::analytical::cattaneo_mindlin;
-    use crate::law::tests::elastic_sample;
+    use crate::law::formulas::tests::elastic_sample;
 
     #[test]
     fn a_hertz_pressure_is_cattaneo_and_mindlins() {

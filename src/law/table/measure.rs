@@ -10,7 +10,7 @@ use crate::case::{Case, Friction, Segment};
 use crate::contact_law::{Centres, unloading_exponent};
 use crate::law::LawError;
 use crate::law::data::Point;
-use crate::law::table::StudyTable;
+use crate::law::study_table::StudyTable;
 use crate::output::{OutputDirectory, StepRecord, read_history};
 
 /// A depth that was not reached.

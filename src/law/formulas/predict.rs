@@ -1,11 +1,12 @@
 //! Applies a law to a case: F_T and F_N over delta_T without any simulation of the shear.
 
-use super::LawError;
-use super::data::Point;
-use super::model::{Axisymmetric, Law, OutOfRange, Parameters};
+use super::model::{Axisymmetric, Law, Parameters};
 use super::normal::NormalState;
-use super::variables::Body;
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::law::LawError;
+use crate::law::data::Point;
+use crate::law::range::OutOfRange;
+use crate::law::variables::Body;
 use crate::output::Recorder;
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
@@ -50,18 +51,9 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
         NormalSource::Formulas => law.normal.state(&body, friction, indentation),
         NormalSource::Press => press(case)?,
     };
-    let inputs = Axisymmetric {
-        youngs_modulus: case.material.youngs_modulus,
-        poissons_ratio: case.material.poissons_ratio,
-        radius: case.sphere.radius,
-        friction,
-        sigma_rep: body.representative_stress(normal.a),
-        h: indentation,
-        a: normal.a,
-        f_n: normal.f_n,
-    };
+    let inputs = Axisymmetric::of(&body, friction, indentation, normal);
     let parameters = law.contact(&inputs);
-    let slip = parameters.delta_t_slip;
+    let slip = parameters.delta_t_end;
     let (end, direction) = match target {
         ShearTarget::FullSlip => (slip, 1.0),
         ShearTarget::Displacement(d) => (d.abs(), d.signum()),
@@ -73,12 +65,11 @@ pub fn predict(law: &Law, case: &Case, source: NormalSource) -> Result<Predictio
             Point { delta_t: direction * d, f_t, f_n }
         })
         .collect();
-    let mut out_of_range = law.out_of_range(&inputs);
-    out_of_range.extend(law.hardening_out_of_range(&body, &inputs));
+    let out_of_range = law.body_out_of_range(&body, &inputs);
     Ok(Prediction { inputs, parameters, curve, out_of_range })
 }
 
-/// Refuses a case with an opponent: laws are of a sphere on a rigid plane.
+/// Refuses a case with an opponent: formulas are of a sphere on a rigid plane.
 ///
 /// # Errors
 /// [`LawError::NotCovered`].
@@ -86,8 +77,8 @@ pub fn over_a_plane(case: &Case) -> Result<(), LawError> {
     match case.opponent {
         None => Ok(()),
         Some(_) => Err(LawError::NotCovered {
-            problem: "the case has an [opponent], and laws describe a sphere on a rigid plane",
-            remedy: "Leave the table [opponent] out, or simulate the case with `asperity run`",
+            problem: "the case has an [opponent], and a law of formulas is of a sphere on a rigid plane",
+            remedy: "Take the built-in law, whose name is `built-in`, or tabulate the case with `asperity law tabulate`",
         }),
     }
 }

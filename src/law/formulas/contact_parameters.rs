@@ -1,9 +1,10 @@
 //! Contact parameters from a fitted law and a material.
 
 use super::model::{Axisymmetric, Law, Parameters};
-use super::variables::{Body, yield_lambda};
+use super::shear::NORMAL_CURVE;
 use crate::analytical::cattaneo_mindlin;
 use crate::contact_law::{ContactError, ContactParameters, VirginPoint};
+use crate::law::variables::{Body, yield_lambda};
 
 /// Greatest tabulated indentation over R.
 pub const LAST: f64 = 0.15;
@@ -41,30 +42,14 @@ impl Law {
         let sphere = body.sphere;
         let contact = |h: f64| {
             let state = self.normal.state(body, friction, h);
-            let inputs = Axisymmetric {
-                youngs_modulus: sphere.youngs_modulus,
-                poissons_ratio: sphere.poissons_ratio,
-                radius: sphere.radius,
-                // Without friction there is no displacement at full slip, and none is asked for.
-                friction: if friction > 0.0 { friction } else { 1e-6 },
-                sigma_rep: body.representative_stress(state.a),
-                h,
-                a: state.a,
-                f_n: state.f_n,
-            };
+            // Without friction there is no displacement at full slip, and none is asked for.
+            let inputs = Axisymmetric::of(body, if friction > 0.0 { friction } else { 1e-6 }, h, state);
             let compliance = 1.0 + self.constants.slip[0] * (state.a / sphere.radius);
             let k_t = cattaneo_mindlin::initial_stiffness(&sphere, state.a) / compliance;
-            let Parameters { f_n0, f_n_slip, delta_t_slip, n, m_exponent, n_exponent, .. } = self.contact(&inputs);
-            VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent }
+            let Parameters { f_n0, f_n_slip, delta_t_end, n, m_exponent, n_exponent, .. } = self.contact(&inputs);
+            VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip: delta_t_end, k_t, n, m_exponent, n_exponent }
         };
         let range = [first_indentation(body), LAST * sphere.radius];
-        ContactParameters::tabulate(
-            sphere.radius,
-            sphere.effective_modulus(),
-            friction,
-            Some(self.forms.normal_curve),
-            range,
-            contact,
-        )
+        ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), friction, Some(NORMAL_CURVE), range, contact)
     }
 }

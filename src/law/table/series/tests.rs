@@ -53,7 +53,7 @@ fn plastic(sphere: &ElasticSphere, h: f64) -> Level {
         f_n0,
         a0,
         slip_share: 1.0 - fall,
-        delta_t_slip: 2.0 * n * MU * f_n0 / k_t,
+        delta_t_end: 2.0 * n * MU * f_n0 / k_t,
         unloading_radius: 1.05 * a0,
         k_t,
         backbone: 1.3,
@@ -119,7 +119,7 @@ fn elastic_bodies_are_hertz_and_cattaneo_and_mindlin() {
             );
             // Both slip where the other does, and the softer one moves more.
             for (j, f_t) in level.tangential.iter().enumerate() {
-                let delta = ((j + 1) as f64 / POINTS as f64).powi(2) * level.delta_t_slip;
+                let delta = ((j + 1) as f64 / POINTS as f64).powi(2) * level.delta_t_end;
                 let force = exact.force(delta);
                 assert!((f_t * MU * level.f_n0 - force).abs() < 3e-3 * MU * level.f_n0, "h {}: {f_t} {force}", level.h);
             }
@@ -161,7 +161,7 @@ fn a_strong_partner_of_the_same_stiffness_doubles_the_way_to_full_slip_of_the_we
     let alone = compose(&rigid, [&tables[0], &table(&material(200e9, 0.3, ELASTIC), elastic)]).unwrap();
     let last = |table: &Tabulated| {
         let level = table.levels.last().unwrap();
-        level.delta_t_slip / level.a0 / level.slip_share
+        level.delta_t_end / level.a0 / level.slip_share
     };
     assert!(last(&composed) > 1.5 * last(&alone), "{} {}", last(&composed), last(&alone));
 }
@@ -180,7 +180,7 @@ fn which_body_is_called_the_sphere_makes_no_difference() {
     for (a, b) in pair.levels.iter().zip(&exchanged.levels) {
         assert!((0.5 * a.h / b.h - 1.0).abs() < 1e-9);
         assert!((force * a.f_n0 / b.f_n0 - 1.0).abs() < 1e-9 && (0.5 * a.a0 / b.a0 - 1.0).abs() < 1e-9, "{a:?} {b:?}");
-        assert!((0.5 * a.delta_t_slip / b.delta_t_slip - 1.0).abs() < 1e-6, "{a:?} {b:?}");
+        assert!((0.5 * a.delta_t_end / b.delta_t_end - 1.0).abs() < 1e-6, "{a:?} {b:?}");
         assert!(a.tangential.iter().zip(&b.tangential).all(|(x, y)| (x - y).abs() < 1e-6));
         assert!(a.normal.iter().zip(&b.normal).all(|(x, y)| (x - y).abs() < 1e-6));
     }

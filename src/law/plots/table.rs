@@ -1,10 +1,9 @@
 //! The table beside the simulations, and its errors.
 
-use super::build::Built;
-use super::{Curves, DepthErrors, Level, equivalent};
 use crate::analytical::hertz;
 use crate::contact_law::path::drive;
 use crate::law::LawError;
+use crate::law::table::{Built, Curves, DepthErrors, Level, equivalent};
 use crate::output::plots::chart::{Axis, Chart, Mark, Series, draw_charts, extent};
 use crate::output::plots::style::{BLUE, GREEN, GREY, INK, VERMILION};
 use crate::output::plots::{Picture, Sheet};
@@ -78,7 +77,7 @@ fn shears(built: &Built) -> Result<Chart, LawError> {
         series.push(Series::solid("", BLUE, line(0, one.f_n0)));
         series.push(Series::solid("", VERMILION, line(1, friction * one.f_n0)));
     }
-    let x = Axis::linear("δ_T / δ_{T,slip}", 0.0, 1.03 * last.clamp(0.1, 2.0));
+    let x = Axis::linear("δ_T / δ_{T,end}", 0.0, 1.03 * last.clamp(0.1, 2.0));
     let y = Axis::linear("F_N / F_N0 and F_T / (μ F_N0)", 0.0, 1.1);
     Ok(Chart { title: "Shear at the checked depths".into(), x, y, series, bar: None })
 }

@@ -24,7 +24,7 @@ use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Material, Opponent, Segment, Sphere};
 use crate::contact_law::{Centres, POINTS, unloading_exponent};
 use crate::law::LawError;
-use crate::law::model::Interval;
+use crate::law::range::Interval;
 
 /// Least power of a/R with which the mean pressure counts as rising where the two radii are shared
 /// out. Of a fully plastic body it stands still or falls, and any radius would do: by this the
@@ -131,7 +131,7 @@ impl Body {
             let ratio = h / first;
             level.h = h;
             level.f_n0 *= ratio.powf(1.5);
-            level.delta_t_slip *= ratio;
+            level.delta_t_end *= ratio;
             for length in [&mut level.a0, &mut level.unloading_radius, &mut level.k_t] {
                 *length *= ratio.sqrt();
             }
@@ -175,7 +175,7 @@ impl Body {
             gamma,
             depth: gamma * force / stiffness,
             k_t: level.k_t * self.modulus * radius / self.share,
-            slip: level.delta_t_slip * radius * self.share,
+            slip: level.delta_t_end * radius * self.share,
             level,
         }
     }
@@ -388,7 +388,7 @@ impl<'a> Series<'a> {
             f_n0,
             a0,
             slip_share: (f_n_slip / f_n0).min(1.0),
-            delta_t_slip: end,
+            delta_t_end: end,
             unloading_radius,
             k_t,
             backbone: 1.0 / (1.0 - bend * k_t),
@@ -407,7 +407,7 @@ impl Level {
         Self {
             f_n0,
             a0,
-            delta_t_slip: self.delta_t_slip * f_n0 / self.f_n0 / wider,
+            delta_t_end: self.delta_t_end * f_n0 / self.f_n0 / wider,
             unloading_radius: self.unloading_radius * wider,
             k_t: self.k_t * wider,
             ..self

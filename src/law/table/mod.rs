@@ -13,8 +13,6 @@ mod against;
 mod build;
 mod checked;
 mod measure;
-#[cfg(feature = "plots")]
-mod picture;
 mod series;
 pub mod spline;
 
@@ -25,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use self::spline::Spline;
 use super::LawError;
 use super::json;
-use super::model::{Interval, OutOfRange};
+use super::range::{Interval, OutOfRange};
 use crate::case::{self, Case, Friction, Opponent};
 use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINTS, Shapes, VirginPoint};
 
@@ -35,8 +33,6 @@ pub(super) use build::{backbone_of, reversal, unloading_radius};
 pub(super) use checked::check_levels;
 pub(super) use measure::Measured;
 pub use measure::Missing;
-#[cfg(feature = "plots")]
-pub use picture::picture;
 pub(super) use series::alone;
 pub use series::compose;
 
@@ -58,9 +54,10 @@ pub struct Level {
     pub a0: f64,
     /// Normal force at full slip over F_N0, at most 1.
     pub slip_share: f64,
-    /// Displacement at which the curves of the shear end, delta_T at x = 1: twice that at which
-    /// F_T/F_N is 0.99 mu.
-    pub delta_t_slip: f64,
+    /// Displacement at which the curves of the shear end, delta_T at x = 1: in a table that was
+    /// simulated twice delta_T_slip, that at which F_T/F_N is 0.99 mu.
+    #[serde(rename = "delta_T_end", alias = "delta_t_slip")]
+    pub delta_t_end: f64,
     /// Radius with which 2 E* a is the stiffness of an unloading; that of the contact in Hertz's.
     pub unloading_radius: f64,
     /// Tangential stiffness k_T at the start of a reversal.
@@ -192,7 +189,7 @@ impl Tabulated {
     ///
     /// # Errors
     /// [`LawError::BadLaw`], after reading it never.
-    fn scaled_case(&self) -> Result<Case, LawError> {
+    pub(super) fn scaled_case(&self) -> Result<Case, LawError> {
         self.case().map_err(|problem| LawError::BadLaw { path: "law.json".into(), problem })
     }
 
@@ -276,9 +273,9 @@ impl Tabulated {
                 a: level.unloading_radius,
                 f_n0: level.f_n0,
                 f_n_slip: level.slip_share * level.f_n0,
-                delta_t_slip: level.delta_t_slip,
+                delta_t_slip: level.delta_t_end,
                 // The sliders must not be softer than the curve of the shear at its start.
-                k_t: level.k_t.max(steepest(&level.tangential) * mu * level.slip_share * level.f_n0 / level.delta_t_slip),
+                k_t: level.k_t.max(steepest(&level.tangential) * mu * level.slip_share * level.f_n0 / level.delta_t_end),
                 // Its place is that of the yield curve's coefficient where the shapes are numbers.
                 n: 1.0,
                 // The steep exponent's place is the backbone's where the shapes are numbers.
@@ -387,7 +384,7 @@ fn alike(a: &serde_json::Value, b: &serde_json::Value) -> bool {
 
 /// What is tabulated as smooth curves in ln h: everything over the power of h that it has in
 /// Hertz's contact.
-struct Curves {
+pub(super) struct Curves {
     columns: Vec<Spline>,
 }
 
@@ -401,7 +398,7 @@ fn columns_of(level: &Level) -> Vec<f64> {
         level.f_n0.ln() - 1.5 * ln_h,
         level.a0.ln() - 0.5 * ln_h,
         level.slip_share,
-        level.delta_t_slip.ln() - ln_h,
+        level.delta_t_end.ln() - ln_h,
         level.unloading_radius.ln() - 0.5 * ln_h,
         level.k_t.ln() - 0.5 * ln_h,
         level.backbone,
@@ -437,7 +434,7 @@ fn level_of(h: f64, columns: &[f64]) -> Level {
         f_n0: (columns[0] + 1.5 * ln_h).exp(),
         a0: (columns[1] + 0.5 * ln_h).exp(),
         slip_share,
-        delta_t_slip: (columns[3] + ln_h).exp(),
+        delta_t_end: (columns[3] + ln_h).exp(),
         unloading_radius: (columns[4] + 0.5 * ln_h).exp(),
         k_t: (columns[5] + 0.5 * ln_h).exp(),
         backbone: columns[6].clamp(BACKBONE[0], BACKBONE[1]),
@@ -448,7 +445,7 @@ fn level_of(h: f64, columns: &[f64]) -> Level {
 }
 
 impl Curves {
-    fn new(levels: &[Level]) -> Self {
+    pub fn new(levels: &[Level]) -> Self {
         let x: Vec<f64> = levels.iter().map(|level| level.h.ln()).collect();
         let rows: Vec<Vec<f64>> = levels.iter().map(columns_of).collect();
         let column = |c: usize| rows.iter().map(|row| row[c]).collect::<Vec<f64>>();
@@ -456,12 +453,12 @@ impl Curves {
     }
 
     /// F_N0 and a0 alone.
-    fn normal(&self, h: f64) -> [f64; 2] {
+    pub fn normal(&self, h: f64) -> [f64; 2] {
         let ln_h = h.ln();
         [(self.columns[0].at(ln_h) + 1.5 * ln_h).exp(), (self.columns[1].at(ln_h) + 0.5 * ln_h).exp()]
     }
 
-    fn at(&self, h: f64) -> Level {
+    pub fn at(&self, h: f64) -> Level {
         let values: Vec<f64> = self.columns.iter().map(|spline| spline.at(h.ln())).collect();
         level_of(h, &values)
     }

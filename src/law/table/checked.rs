@@ -6,7 +6,7 @@ use crate::case::{Case, Friction};
 use crate::contact_law::{Centres, POINTS};
 use crate::law::bounds::{Bounds, Checked, TOLD};
 use crate::law::json::LawKind;
-use crate::law::tabulated::Against;
+use crate::law::table::Against;
 
 /// Depths over R: a case presses to 0.3 of the larger radius at the most, which is ten times the
 /// smaller one, and a body that is to be put in series three times as deep.
@@ -86,7 +86,7 @@ pub(in crate::law) fn check_levels(levels: &[Level]) -> Checked {
         for (name, value) in [
             ("F_N0", level.f_n0),
             ("a0", level.a0),
-            ("delta_t_slip", level.delta_t_slip),
+            ("delta_T_end", level.delta_t_end),
             ("unloading_radius", level.unloading_radius),
             ("k_T", level.k_t),
         ] {

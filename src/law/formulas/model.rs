@@ -1,19 +1,20 @@
-//! The law: forms, constants, where they come from, where they hold and how well, as `law.json` has
-//! them.
+//! The law of formulas: constants, where they come from, where they hold and how well, as
+//! `law.json` has them.
 
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::LawError;
-use super::bounds::{Bounds, Checked, TOLD};
-use super::forms::{self, Constants, Forms, Plasticity};
-use super::json::{self, LawKind};
-use super::least_squares::Sign;
-use super::normal::NormalModel;
-use super::report::{Candidate, FittedCase, NormalCandidate, RegionError};
-use super::variables::{c_squared, yield_lambda};
+use super::family::{self, Forms};
+use super::normal::{NormalModel, NormalState};
+use super::shear::{self, Constants, Plasticity};
 use crate::analytical::{ElasticSphere, cattaneo_mindlin, johnson};
+use crate::law::LawError;
+use crate::law::bounds::{Bounds, Checked, TOLD};
+use crate::law::json::{self, LawKind};
+use crate::law::range::{Interval, MARGIN, OutOfRange};
+use crate::law::report::{Candidate, FittedCase, NormalCandidate, RegionError};
+use crate::law::variables::{Body, c_squared, yield_lambda};
 
 /// The first key of a law file, by which it is recognised.
 pub const FORMAT: &str = "asperity-law";
@@ -44,6 +45,13 @@ pub struct Axisymmetric {
 }
 
 impl Axisymmetric {
+    /// That of a body at the indentation `h`, with Coulomb's coefficient `friction`.
+    pub fn of(body: &Body, friction: f64, h: f64, NormalState { a, f_n }: NormalState) -> Self {
+        let ElasticSphere { youngs_modulus, poissons_ratio, radius } = body.sphere;
+        let sigma_rep = body.representative_stress(a);
+        Self { youngs_modulus, poissons_ratio, radius, friction, sigma_rep, h, a, f_n }
+    }
+
     /// The elastic sphere.
     pub fn sphere(&self) -> ElasticSphere {
         ElasticSphere { radius: self.radius, youngs_modulus: self.youngs_modulus, poissons_ratio: self.poissons_ratio }
@@ -61,16 +69,16 @@ impl Axisymmetric {
 }
 
 /// The law of one contact, in the units of its [`Axisymmetric`] data:
-/// F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x), x = delta_T/delta_T_slip.
+/// F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x), x = delta_T/delta_T_end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameters {
     /// F_N0 before the shear.
     pub f_n0: f64,
     /// F_N at full slip.
     pub f_n_slip: f64,
-    /// delta_T at full slip, length.
-    pub delta_t_slip: f64,
-    /// Initial tangential stiffness, n mu F_N_slip/delta_T_slip, force per length.
+    /// delta_T at x = 1, where the curves end and everything slips, length.
+    pub delta_t_end: f64,
+    /// Initial tangential stiffness, n mu F_N_slip/delta_T_end, force per length.
     pub k_t0: f64,
     /// n of f_T = 1 - (1 - x)^n.
     pub n: f64,
@@ -78,29 +86,6 @@ pub struct Parameters {
     pub m_exponent: f64,
     /// N of f_N.
     pub n_exponent: f64,
-}
-
-/// A closed interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
-    /// Lower end.
-    pub from: f64,
-    /// Upper end.
-    pub to: f64,
-}
-
-impl Interval {
-    /// The smallest one that holds all values; `None` for no values.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        values.into_iter().fold(None, |interval: Option<Self>, x| {
-            Some(interval.map_or(Self { from: x, to: x }, |i| Self { from: i.from.min(x), to: i.to.max(x) }))
-        })
-    }
-
-    /// Whether `x` lies in it, to a share `margin` of the ends.
-    pub fn contains(&self, x: f64, margin: f64) -> bool {
-        x >= self.from - margin * self.from.abs() && x <= self.to + margin * self.to.abs()
-    }
 }
 
 /// The data that the law was fitted to: where it holds.
@@ -122,24 +107,6 @@ pub struct Validity {
     /// not take but `law predict` checks: a study of ideally plastic spheres says nothing of
     /// hardening ones.
     pub hardening_exponent: Interval,
-}
-
-/// A quantity of a contact that lies outside of what the law was fitted to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutOfRange {
-    /// Its name.
-    pub quantity: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// Where the law holds.
-    pub range: Interval,
-}
-
-impl std::fmt::Display for OutOfRange {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { quantity, value, range } = self;
-        write!(f, "{quantity} = {value:.4} is outside of {:.4} to {:.4}", range.from, range.to)
-    }
 }
 
 /// Where the constants come from.
@@ -187,7 +154,7 @@ pub struct Law {
     pub format: String,
     /// [`VERSION`].
     pub version: u32,
-    /// The chosen forms.
+    /// The words for its formulas.
     pub forms: Forms,
     /// Their constants.
     pub constants: Constants,
@@ -201,28 +168,42 @@ pub struct Law {
     pub errors: Vec<RegionError>,
     /// Cross-validated errors by region, F_N0 and a0 being predicted as well.
     pub errors_predicted: Vec<RegionError>,
-    /// The forms that were compared, best first, and the baselines.
+    /// The fits that were compared, best first, and the baselines.
     pub candidates: Vec<Candidate>,
-    /// The normal forms that were compared, best first.
+    /// The fits of the normal problem that were compared, best first.
     pub normal_candidates: Vec<NormalCandidate>,
     /// Every case with its own best parameters.
     pub cases: Vec<FittedCase>,
 }
 
-/// Share of an end by which a quantity may pass it before it is called outside.
-pub(super) const MARGIN: f64 = 0.02;
-
 impl Law {
     /// The law of one contact. Below first yield it is Cattaneo and Mindlin's, exactly as a/R goes
     /// to 0; a contact without force has no slip force.
     pub fn contact(&self, inputs: &Axisymmetric) -> Parameters {
-        contact(&self.forms, &self.constants, inputs)
+        contact(&self.constants, inputs)
     }
 
     /// F_T and F_N at the displacement `delta_t` of a shear in one direction, constant from
-    /// delta_T_slip on; F_T is odd and F_N even in `delta_t`.
+    /// delta_T_end on; F_T is odd and F_N even in `delta_t`.
     pub fn forces(&self, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
-        forces(&self.forms, parameters, friction, delta_t)
+        forces(parameters, friction, delta_t)
+    }
+
+    /// The contact of a body at the indentation `h`, with F_N0 and a0 of the law's own formulas.
+    pub fn inputs(&self, body: &Body, friction: f64, h: f64) -> Axisymmetric {
+        Axisymmetric::of(body, friction, h, self.normal.state(body, friction, h))
+    }
+
+    /// [`out_of_range`](Self::out_of_range), and the hardening exponent of a body that has yielded,
+    /// where it is not one that the law was fitted to.
+    pub fn body_out_of_range(&self, body: &Body, inputs: &Axisymmetric) -> Vec<OutOfRange> {
+        let mut outside = self.out_of_range(inputs);
+        let (value, range) = (body.hardening_exponent(inputs.a), self.validity.hardening_exponent);
+        let yielded = inputs.lambda() > yield_lambda(inputs.poissons_ratio);
+        if yielded && !range.contains(value, MARGIN) {
+            outside.push(OutOfRange { quantity: "hardening exponent", value, range });
+        }
+        outside
     }
 
     /// What of the contact lies outside of the range of the fit; empty if nothing does.
@@ -266,7 +247,8 @@ impl Law {
     }
 
     /// A law from the text of its file; the error is what is wrong, in words.
-    pub(super) fn from_json(text: &str) -> Result<Self, String> {
+    pub(in crate::law) fn from_json(text: &str) -> Result<Self, String> {
+        family::refuse_earlier(text)?;
         json::parse(text)
     }
 }
@@ -274,8 +256,6 @@ impl Law {
 /// What the constants of the forms may be, which are of order one: positive, since the search has
 /// their logarithms.
 const CONSTANT: Bounds = Bounds { least: 1e-9, most: 1e9 };
-/// Those of the normal forms that may have either sign.
-const SIGNED: Bounds = Bounds { least: -1e9, most: 1e9 };
 /// Ends of the ranges of what a law was fitted to.
 const RANGE: Bounds = Bounds { least: 0.0, most: 1e9 };
 /// Of Poisson's ratio: what an isotropic solid can have.
@@ -293,18 +273,10 @@ impl LawKind for Law {
             ("constants.exponent", &constants.exponent),
             ("constants.slip", &constants.slip),
             ("constants.curve", &constants.curve),
+            ("normal.radius", &normal.radius),
+            ("normal.force", &normal.force),
         ] {
             CONSTANT.hold(key, values)?;
-        }
-        let bounds = if normal.form.sign() == Sign::Positive { CONSTANT } else { SIGNED };
-        for (key, values, wanted) in [
-            ("normal.radius", &normal.radius, normal.form.radius_start().len()),
-            ("normal.force", &normal.force, normal.form.force_start().len()),
-        ] {
-            if values.len() != wanted {
-                return Err(format!("{key} has {} constants, and its form has {wanted}", values.len()));
-            }
-            bounds.hold(key, values)?;
         }
         for (key, range) in [
             ("validity.lambda", validity.lambda),
@@ -324,29 +296,26 @@ impl LawKind for Law {
     }
 }
 
-/// The law of one contact for given forms and constants: see [`Law::contact`].
-pub fn contact(forms: &Forms, constants: &Constants, inputs: &Axisymmetric) -> Parameters {
+/// The law of one contact for given constants: see [`Law::contact`].
+pub fn contact(constants: &Constants, inputs: &Axisymmetric) -> Parameters {
     let sphere = inputs.sphere();
     let state = Plasticity::new(
-        forms.variable,
         inputs.friction,
         inputs.a / inputs.radius,
         inputs.lambda(),
         yield_lambda(inputs.poissons_ratio),
-        johnson::normalized_hardness(inputs.f_n, inputs.sigma_rep, inputs.a),
         inputs.c_squared(),
     );
-    let n = forms::exponent(forms, &constants.exponent, &state);
-    let share = 1.0 - forms::fall(forms, &constants.fall, &state);
-    let factor = forms::slip_factor(forms, &constants.slip, &state, n, share);
-    let (steep, gentle) = forms::curve_exponents(&constants.curve, inputs.friction, n);
-    let (m_exponent, n_exponent) = forms.normal_curve.exponents(steep, gentle);
+    let n = shear::exponent(&constants.exponent, &state);
+    let share = 1.0 - shear::fall(&constants.fall, &state);
+    let factor = shear::slip_factor(&constants.slip, &state, n, share);
+    let (m_exponent, n_exponent) = shear::curve_exponents(&constants.curve, inputs.friction, n);
     let mindlin = cattaneo_mindlin::initial_stiffness(&sphere, inputs.a);
     let elastic_slip = if mindlin > 0.0 { 1.5 * inputs.friction * inputs.f_n / mindlin } else { 0.0 };
     Parameters {
         f_n0: inputs.f_n,
         f_n_slip: share * inputs.f_n,
-        delta_t_slip: factor * elastic_slip,
+        delta_t_end: factor * elastic_slip,
         k_t0: mindlin * n / 1.5 * share / factor,
         n,
         m_exponent,
@@ -355,10 +324,10 @@ pub fn contact(forms: &Forms, constants: &Constants, inputs: &Axisymmetric) -> P
 }
 
 /// F_T and F_N at the displacement `delta_t`: see [`Law::forces`].
-pub fn forces(forms: &Forms, parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
+pub fn forces(parameters: &Parameters, friction: f64, delta_t: f64) -> (f64, f64) {
     let p = parameters;
-    let x = if p.delta_t_slip > 0.0 { (delta_t.abs() / p.delta_t_slip).min(1.0) } else { 1.0 };
-    let f_t = friction * p.f_n_slip * forms::f_t(x, p.n);
-    let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * forms.normal_curve.value(x, p.m_exponent, p.n_exponent);
+    let x = if p.delta_t_end > 0.0 { (delta_t.abs() / p.delta_t_end).min(1.0) } else { 1.0 };
+    let f_t = friction * p.f_n_slip * shear::f_t(x, p.n);
+    let f_n = p.f_n0 - (p.f_n0 - p.f_n_slip) * shear::f_n(x, p.m_exponent, p.n_exponent);
     (if delta_t == 0.0 { 0.0 } else { f_t.copysign(delta_t) }, f_n)
 }

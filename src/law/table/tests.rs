@@ -73,6 +73,15 @@ fn a_table_tells_the_depths_between() {
     }
 }
 
+/// What earlier versions called the end of the curves, by a name that means something else.
+#[test]
+fn the_earlier_name_of_a_length_is_read() {
+    let table = made();
+    let text = serde_json::to_string(&table).unwrap();
+    let earlier = text.replace("\"delta_T_end\"", "\"delta_t_slip\"");
+    assert!(earlier != text && Tabulated::from_json(&earlier) == Ok(table));
+}
+
 #[test]
 fn one_table_serves_every_radius_and_every_unit() {
     let table = made();

@@ -1,44 +1,23 @@
 //! Nonlinear least squares: Levenberg-Marquardt (the `levenberg-marquardt` crate, a port of
-//! MINPACK); positive constants in their logarithms.
+//! MINPACK), of positive constants in their logarithms.
 
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
 
-/// Weight of the pull of a constant (or its logarithm) towards its start. Residuals are shares of a
+/// Weight of the pull of a constant's logarithm towards its start. Residuals are shares of a
 /// force, a per cent or so each: the pull decides only what the data leave open, and keeps a small
 /// study's constants finite.
 pub const PULL: f64 = 0.01;
 /// Range of a logarithm beyond which nothing changes any more, but overflows do.
 const LARGEST_LOGARITHM: f64 = 12.0;
 
-/// What constants may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// Above 0: fitted by their logarithms.
-    Positive,
-    /// Anything.
-    Any,
-}
-
-impl Sign {
-    fn unknown(self, constant: f64) -> f64 {
-        match self {
-            Sign::Positive => constant.ln(),
-            Sign::Any => constant,
-        }
-    }
-
-    fn constant(self, unknown: f64) -> f64 {
-        match self {
-            Sign::Positive => unknown.clamp(-LARGEST_LOGARITHM, LARGEST_LOGARITHM).exp(),
-            Sign::Any => unknown,
-        }
-    }
+/// A constant from its logarithm.
+fn constant(unknown: f64) -> f64 {
+    unknown.clamp(-LARGEST_LOGARITHM, LARGEST_LOGARITHM).exp()
 }
 
 struct Problem<'a, F> {
     residuals: &'a F,
-    sign: Sign,
     pull: f64,
     start: DVector<f64>,
     unknowns: DVector<f64>,
@@ -47,7 +26,7 @@ struct Problem<'a, F> {
 impl<F: Fn(&[f64]) -> Vec<f64>> Problem<'_, F> {
     /// Residuals of the data, then the pull.
     fn evaluate(&self, unknowns: &DVector<f64>) -> DVector<f64> {
-        let constants: Vec<f64> = unknowns.iter().map(|&x| self.sign.constant(x)).collect();
+        let constants: Vec<f64> = unknowns.iter().map(|&x| constant(x)).collect();
         let mut all = (self.residuals)(&constants);
         all.extend((unknowns - &self.start).iter().map(|x| self.pull * x));
         DVector::from_vec(all)
@@ -90,18 +69,14 @@ impl<F: Fn(&[f64]) -> Vec<f64>> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'
     }
 }
 
-/// The constants that minimise the sum of squares of `residuals`(constants), from `start` (> 0
-/// where they have to be positive), to which they are drawn with the weight `pull`: the residual of
-/// a constant that, or whose logarithm, is 1 away.
+/// The constants > 0 that minimise the sum of squares of `residuals`(constants), from `start`, to
+/// which they are drawn with the weight `pull`: the residual of one whose logarithm is 1 away.
 ///
 /// # Errors
 /// What the library says, where the residuals are not finite or it makes no way.
-pub fn minimize(sign: Sign, start: &[f64], pull: f64, residuals: impl Fn(&[f64]) -> Vec<f64>) -> Result<Vec<f64>, String> {
-    if start.is_empty() {
-        return Ok(Vec::new());
-    }
-    let unknowns = DVector::from_iterator(start.len(), start.iter().map(|&x| sign.unknown(x)));
-    let problem = Problem { residuals: &residuals, sign, pull, start: unknowns.clone(), unknowns };
+pub fn minimize(start: &[f64], pull: f64, residuals: impl Fn(&[f64]) -> Vec<f64>) -> Result<Vec<f64>, String> {
+    let unknowns = DVector::from_iterator(start.len(), start.iter().map(|x| x.ln()));
+    let problem = Problem { residuals: &residuals, pull, start: unknowns.clone(), unknowns };
     let (problem, report) =
         LevenbergMarquardt::new().with_ftol(1e-10).with_xtol(1e-8).with_gtol(1e-10).with_patience(40).minimize(problem);
     // An exhausted patience is an answer as good as its last digit; anything else without success
@@ -109,7 +84,7 @@ pub fn minimize(sign: Sign, start: &[f64], pull: f64, residuals: impl Fn(&[f64])
     if !report.termination.was_successful() && report.termination != TerminationReason::LostPatience {
         return Err(format!("{:?}", report.termination));
     }
-    Ok(problem.unknowns.iter().map(|&x| sign.constant(x)).collect())
+    Ok(problem.unknowns.iter().map(|&x| constant(x)).collect())
 }
 
 #[cfg(test)]
@@ -121,24 +96,21 @@ mod tests {
         let model = |c: &[f64], x: f64| c[0] * (-c[1] * x).exp() + c[2];
         let data: Vec<(f64, f64)> = (0..200).map(|i| f64::from(i) * 0.02).map(|x| (x, model(&[2.0, 1.5, 0.3], x))).collect();
         let residuals = |c: &[f64]| data.iter().map(|&(x, y)| 10.0 * (model(c, x) - y)).collect();
-        for sign in [Sign::Positive, Sign::Any] {
-            let found = minimize(sign, &[1.0, 1.0, 1.0], PULL, residuals).unwrap();
-            for (found, exact) in found.iter().zip([2.0, 1.5, 0.3]) {
-                assert!((found / exact - 1.0).abs() < 1e-3, "{sign:?}: {found} instead of {exact}");
-            }
+        let found = minimize(&[1.0, 1.0, 1.0], PULL, residuals).unwrap();
+        for (found, exact) in found.iter().zip([2.0, 1.5, 0.3]) {
+            assert!((found / exact - 1.0).abs() < 1e-3, "{found} instead of {exact}");
         }
     }
 
     #[test]
     fn what_the_data_leave_open_stays_where_it_was() {
         let residuals = |c: &[f64]| vec![c[0] - 3.0; 100];
-        let found = minimize(Sign::Positive, &[1.0, 0.7], PULL, residuals).unwrap();
+        let found = minimize(&[1.0, 0.7], PULL, residuals).unwrap();
         assert!((found[0] - 3.0).abs() < 1e-3 && (found[1] / 0.7 - 1.0).abs() < 1e-6, "{found:?}");
-        assert!(minimize(Sign::Any, &[], PULL, |_| Vec::new()).unwrap().is_empty());
     }
 
     #[test]
     fn residuals_that_are_no_numbers_are_an_error() {
-        assert!(minimize(Sign::Any, &[1.0], PULL, |c| vec![(c[0] - 5.0).sqrt()]).is_err());
+        assert!(minimize(&[1.0], PULL, |c| vec![(c[0] - 5.0).sqrt()]).is_err());
     }
 }
