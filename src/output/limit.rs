@@ -40,6 +40,7 @@ const TANGENTIAL_SHARE: f64 = 1.75;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
     path: Vec<Segment>,
+    units: Units,
     /// mu; `None` for full stick.
     friction: Option<f64>,
     /// Its curves, segment by segment.
@@ -113,6 +114,7 @@ impl Limits {
         Some(Self {
             companion: case.path.iter().enumerate().map(stretch).collect(),
             path: case.path.clone(),
+            units,
             friction,
             coarse_elements: scout.elements,
             coarse_spacing: scout.spacing,
@@ -202,14 +204,15 @@ impl Limits {
         self.factor() * (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
     }
 
-    /// Writes what is known into all rows of a history.
+    /// Writes what is known into all rows of a history, to the bits that they get one by one, which
+    /// pass through the simulation's units.
     pub fn write_into(&self, rows: &mut [StepRecord]) {
         for i in 0..rows.len() {
             let (before, rest) = rows.split_at_mut(i);
-            let found = self.of(before, &rest[0]);
-            let row = &mut rest[0];
-            (row.f_t_limit, row.f_n_limit) = (found.f_t_limit, found.f_n_limit);
-            (row.f_t_error, row.f_n_error) = (found.f_t_error, found.f_n_error);
+            let mut scaled = Scaled(StepRecord::default());
+            self.of(before, &rest[0]).put_into(&mut scaled, &self.units);
+            let StepRecord { f_t_limit, f_n_limit, f_t_error, f_n_error, .. } = scaled.in_units(&self.units);
+            rest[0] = StepRecord { f_t_limit, f_n_limit, f_t_error, f_n_error, ..rest[0] };
         }
     }
 
