@@ -6,13 +6,14 @@
 //! default steps. With `--test` (as the test script runs it) one case on coarse meshes.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use asperity::case::Case;
 use asperity::internals::simulation::drive::Ending;
 use asperity::internals::simulation::follow::{follow, on_cpu};
 use asperity::internals::simulation::problem::Problem;
-use asperity::internals::simulation::scout::scout_case;
-use asperity::output::{ErrorEstimate, Recorder, StepRecord, Summary, SummaryInputs, ripple};
+use asperity::internals::simulation::scout::scout;
+use asperity::output::{ErrorEstimate, Limits, Recorder, StepRecord, Summary, SummaryInputs, ripple};
 
 type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -106,11 +107,9 @@ fn main() -> Result<(), Failed> {
         for &mesh in &meshes {
             let case = load(mesh, &[])?;
             let (rows, summary) = run(&case)?;
-            let other = scout_case(&case);
-            let (_, other_summary) = run(&other)?;
-            let elements = other.mesh.elements_per_contact_radius;
-            let [fine, coarse] = [mesh, elements].map(|n| 1.0 / n as f64);
-            let estimate = ErrorEstimate::new(&rows, &summary, fine, &other_summary, coarse, elements);
+            let companion = scout(&case, &Arc::default())?.ok_or("the companion was stopped")?;
+            let limits = Limits::new(&case, &companion, Problem::new(&case)?.spacing).ok_or("the companion failed")?;
+            let estimate = ErrorEstimate::new(&rows, &[], &limits);
             let mut cell = |value: Option<f64>, exact: Option<f64>, estimated: Option<f64>| match (value, exact, estimated) {
                 (Some(value), Some(exact), Some(estimated)) => {
                     all += 1;

@@ -217,8 +217,8 @@ pub struct Solver {
     pub max_iterations: usize,
     /// How often a step may be cut in half.
     pub max_cutbacks: usize,
-    /// Whether a coarser run goes before a run, a tenth of its work: it finds how far the contact
-    /// reaches, and the run's error is estimated from it.
+    /// Whether a coarser run goes before a run, for an eighth of its work: it finds how far the
+    /// contact reaches, and limits and errors of the run's curves are estimated from it.
     pub error_estimate: bool,
     /// Memory that the mesh and the linear systems may take, in GiB, whatever the machine has; by
     /// default its share of what the machine has for this process.

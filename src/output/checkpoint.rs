@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::atomic::replace_atomically;
 use super::ledger::Ledger;
-use super::{OutputDirectory, OutputError, sound};
+use super::{Limits, OutputDirectory, OutputError, StepRecord, sound};
 use crate::bounded;
 use crate::case::Case;
 use crate::compute::Description;
@@ -25,7 +25,7 @@ use crate::simulation::zone::Zone;
 const NAME: &str = "asperity checkpoint";
 /// To be raised with every change of what is stored, and of the order and the steps in which a run
 /// goes on from it. The version of the program is compared as well.
-const FORMAT: u32 = 14;
+const FORMAT: u32 = 15;
 
 /// An unfinished run: its case, what it depends on, and what it has written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,6 +94,14 @@ impl Checkpoint {
         outside.setup -= seconds;
         let failed = scout.as_ref().and_then(no_estimate).map(|text| format!("note: {text}"));
         messages.extend(failed.filter(|text| !messages.contains(text)));
+        // As if the longer path had been scouted from the beginning.
+        let zone = self.ledger.zone.as_ref();
+        let spacing = zone.map(|zone| zone.contact_radius / case.mesh.elements_per_contact_radius as f64);
+        if let Some(limits) = scout.as_ref().zip(spacing).and_then(|(scout, spacing)| Limits::new(case, scout, spacing)) {
+            limits.write_into(&mut self.ledger.rows);
+        } else {
+            self.ledger.rows.iter_mut().for_each(StepRecord::forget_limits);
+        }
         self.ledger.scout = scout;
         self
     }

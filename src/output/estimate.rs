@@ -1,57 +1,46 @@
-//! The discretisation error of a run, estimated from the same case on its scout's coarser mesh and
-//! from the ripple of its own press curve.
-//!
-//! Mesh and load steps are refined together, and what they leave is taken to fall as 1/n with n
-//! elements along the contact radius: the difference of two runs then tells what is missing from
-//! either (Roache, J. Fluids Eng. 116, 1994). Where the error falls faster the estimate is too
-//! large, not too small. By chance two runs may agree although both are wrong, because nodes come
-//! into contact one after another and the force ripples about its smooth curve; so the ripple's
-//! size is added.
+//! The discretisation errors of the numbers of a summary, as its rows and its companion tell them,
+//! and the ripple of the press curve.
 
-use super::{StepRecord, Summary};
+use super::summary::first_shear;
+use super::{Limits, StepRecord};
 
 /// Press steps from this share of the greatest indentation on show the ripple.
 const RIPPLE_FROM: f64 = 0.25;
 /// Fewest steps by which a ripple is told from a trend.
 const RIPPLE_STEPS: usize = 6;
 
-/// Estimated errors, sizes, in the units of the values.
+/// Estimated errors, sizes, and the limit of the greatest tangential force, in the units of the
+/// values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
-    /// Elements along the contact radius of the coarse run that was compared with.
+    /// Elements along the contact radius of the companion.
     pub coarse_elements: usize,
-    /// Of F_N0.
+    /// Of F_N0: that of its row.
     pub f_n0: Option<f64>,
-    /// Of a0.
+    /// Of a0, made in the same way.
     pub a0: Option<f64>,
-    /// Of F_T_max.
+    /// Of F_T_max: that of its row.
     pub f_t_max: Option<f64>,
+    /// Greatest |F_T| of the shear in the limit of fine meshes and short steps.
+    pub f_t_max_limit: Option<f64>,
 }
 
 impl ErrorEstimate {
-    /// Compares a run whose elements are of size `spacing` with one on `coarse_spacing`, for which
-    /// `coarse_elements` along the contact radius were asked.
-    pub fn new(
-        rows: &[StepRecord],
-        run: &Summary,
-        spacing: f64,
-        coarse: &Summary,
-        coarse_spacing: f64,
-        coarse_elements: usize,
-    ) -> Self {
-        // e = C spacing on either mesh gives e of the fine one from the difference.
-        let factor = spacing / (coarse_spacing - spacing).abs();
-        let ripple = ripple(rows).unwrap_or(0.0);
-        let error = |q: fn(&Summary) -> Option<f64>, ripple: f64| {
-            let (fine, coarse) = (q(run)?, q(coarse)?);
-            Some(factor * (fine - coarse).abs() + ripple * fine.abs())
-        };
+    /// Of a history, in which segments that are `oblique` are no shear.
+    pub fn new(rows: &[StepRecord], oblique: &[usize], limits: &Limits) -> Self {
+        let at = |row: &StepRecord| limits.of(&rows[..rows.partition_point(|earlier| earlier.step < row.step)], row);
+        let (start, shear) = first_shear(rows, oblique);
+        let (start, points) = (start.map(at), shear.iter().map(at));
+        let largest = shear
+            .iter()
+            .zip(points.clone())
+            .reduce(|largest, point| if point.0.f_t.abs() > largest.0.f_t.abs() { point } else { largest });
         Self {
-            coarse_elements,
-            f_n0: error(|s| s.f_n0, ripple),
-            // F_N goes as a^2 where the pressure is given.
-            a0: error(|s| s.a0, 0.5 * ripple),
-            f_t_max: error(|s| s.f_t_max, ripple),
+            coarse_elements: limits.coarse_elements,
+            f_n0: start.and_then(|start| start.f_n_error),
+            a0: start.and_then(|start| start.a_error),
+            f_t_max: largest.and_then(|(_, point)| point.f_t_error),
+            f_t_max_limit: points.filter_map(|point| point.f_t_limit).map(f64::abs).reduce(f64::max),
         }
     }
 }
@@ -123,16 +112,5 @@ mod tests {
         let rippled = press(|h| 100.0 * h.powf(1.2) * (1.0 + 0.01 * (400.0 * h.sqrt()).sin()));
         let found = ripple(&rippled).unwrap();
         assert!((0.005..0.009).contains(&found), "0.01/sqrt 2 is {:.4}, found {found}", 0.01 / 2.0_f64.sqrt());
-    }
-
-    #[test]
-    fn an_error_of_first_order_is_told_exactly() {
-        let at = |n: f64| Summary { f_n0: Some(150.0 + 8.0 / n), a0: Some(0.2 - 0.1 / n), f_t_max: None, ..Summary::default() };
-        for (n, m) in [(16, 6), (8, 4), (4, 2), (5, 2), (6, 3)] {
-            let estimate = ErrorEstimate::new(&[], &at(n as f64), 0.2 / n as f64, &at(m as f64), 0.2 / m as f64, m);
-            assert!((estimate.f_n0.unwrap() - 8.0 / n as f64).abs() < 1e-12, "{n} {m}");
-            assert!((estimate.a0.unwrap() - 0.1 / n as f64).abs() < 1e-12);
-            assert_eq!(estimate.f_t_max, None);
-        }
     }
 }

@@ -13,10 +13,10 @@ use super::path_share::PathShare;
 use super::tables::is_panel;
 use super::units::coefficient;
 use super::{
-    Collection, ContactPoint, ErrorEstimate, HistoryWriter, OutputDirectory, OutputError, Position, Progress, Status, StepRecord,
-    Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields, write_parquet,
+    Collection, ContactPoint, ErrorEstimate, HistoryWriter, Limits, OutputDirectory, OutputError, Position, Progress, Status,
+    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields, write_parquet,
 };
-use crate::case::{Case, Fields, PictureFormat, Segment};
+use crate::case::{Case, Fields, PictureFormat};
 use crate::compute::{ComputeError, Description};
 use crate::simulation::checkpoint::Snapshot;
 use crate::simulation::drive::{Observer, StepView};
@@ -95,12 +95,14 @@ pub struct ResultWriter {
     progress: Box<dyn Progress>,
     stop: Arc<AtomicBool>,
     share: PathShare,
-    path: Vec<Segment>,
+    as_given: Case,
     history: HistoryWriter,
     collection: Collection,
     ledger: Ledger,
     /// Size of the elements in the contact, scaled.
     spacing: f64,
+    /// What the companion tells, if there was one that got to its end.
+    limits: Option<Limits>,
     /// The resolved case, for checkpoints.
     case: String,
     /// Where the run began, as `setting` may not say any more.
@@ -174,7 +176,8 @@ impl ResultWriter {
             collection,
             ledger,
             spacing: 0.0,
-            path: case.path.clone(),
+            limits: None,
+            as_given: case.clone(),
             case: case.to_toml(),
             checkpoint_interval: CHECKPOINT_INTERVAL,
             checkpoint_share: CHECKPOINT_SHARE,
@@ -228,20 +231,32 @@ impl ResultWriter {
         self.ledger.outside.setup -= seconds;
         no_estimate(&scout).iter().for_each(|text| self.note(text));
         self.ledger.scout = Some(scout);
+        self.compare();
     }
 
     /// Says on what mesh the run is.
     pub fn meshed(&mut self, problem: &Problem) {
         self.spacing = problem.spacing;
         self.ledger.zone = Some(problem.zone);
+        self.compare();
+    }
+
+    /// Makes the limits anew: mesh or companion are others.
+    fn compare(&mut self) {
+        self.limits = self.ledger.scout.as_ref().and_then(|scout| Limits::new(&self.as_given, scout, self.spacing));
+    }
+
+    /// The row of a step, with what is known of its limits, which the view gets too.
+    fn row(&self, view: &mut StepView<'_>) -> StepRecord {
+        if let Some(limits) = &self.limits {
+            limits.of(&self.ledger.rows, &view.record.in_units(&self.units)).put_into(&mut view.record, &self.units);
+        }
+        view.record.in_units(&self.units)
     }
 
     /// Estimates the errors of the run from what the scout has found, if it got to its end.
     fn estimate(&self) -> Option<ErrorEstimate> {
-        let scout = self.ledger.scout.as_ref().filter(|scout| scout.failure.is_none())?;
-        let rows: Vec<StepRecord> = scout.rows.iter().map(|row| row.in_units(&self.units)).collect();
-        let [run, coarse] = [&self.ledger.rows, &rows].map(|rows| Summary::from_history(rows, &self.inputs));
-        Some(ErrorEstimate::new(&self.ledger.rows, &run, self.spacing, &coarse, scout.spacing, scout.elements))
+        Some(ErrorEstimate::new(&self.ledger.rows, &self.inputs.oblique, self.limits.as_ref()?))
     }
 
     /// Steps written so far.
@@ -292,6 +307,7 @@ impl ResultWriter {
             f_n0_error: errors.f_n0,
             a0_error: errors.a0,
             f_t_max_error: errors.f_t_max,
+            f_t_max_limit: errors.f_t_max_limit,
             error_companion_elements: estimate.map(|e| e.coarse_elements),
             remeshed: self.ledger.remeshed,
             status,
@@ -404,7 +420,7 @@ impl Observer for ResultWriter {
             return Ok(());
         }
         let begun = Instant::now();
-        let row = view.record.in_units(&self.units);
+        let row = self.row(view);
         if let Err(error) = self.history.append(&row) {
             self.failed = matches!(error, OutputError::NotFinite { .. });
             return Err(error.into());
@@ -462,7 +478,7 @@ impl Observer for ResultWriter {
         self.out.cut_back(&[], &[])?;
         self.history = HistoryWriter::create(&self.out.history())?;
         self.collection = Collection::new(&self.out.collection());
-        self.share = PathShare::new(&self.path);
+        self.share = PathShare::new(&self.as_given.path);
         self.setting.elements = problem.model.mesh.elements.len();
         self.setting.unknowns = unknowns;
         let ledger = &mut self.ledger;

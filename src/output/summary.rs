@@ -106,7 +106,7 @@ pub struct Summary {
     /// up to the equator is in it.
     #[serde(rename = "k_T0")]
     pub k_t0: Option<f64>,
-    /// Estimated discretisation error of F_N0, a size, see [`super::estimate`]; null where none was
+    /// Estimated discretisation error of F_N0, a size, see [`super::Limits`]; null where none was
     /// made.
     #[serde(rename = "F_N0_error")]
     pub f_n0_error: Option<f64>,
@@ -115,11 +115,15 @@ pub struct Summary {
     /// That of F_T_max.
     #[serde(rename = "F_T_max_error")]
     pub f_t_max_error: Option<f64>,
+    /// Greatest |F_T| of the shear in the limit of fine meshes and short steps.
+    #[serde(rename = "F_T_max_limit")]
+    pub f_t_max_limit: Option<f64>,
     /// Root mean square of ln F_N about a smooth curve through the first press: the ripple of nodes
-    /// coming into contact, part of the errors.
+    /// coming into contact.
     #[serde(rename = "F_N_ripple")]
     pub f_n_ripple: Option<f64>,
-    /// Elements along the contact radius of the coarse run from which the errors were estimated.
+    /// Elements along the contact radius of the coarse run from which limits and errors were
+    /// estimated.
     pub error_companion_elements: Option<usize>,
     /// Steps that were accepted above the tolerance, or under full stick with points that slid.
     pub relaxed_steps: usize,
@@ -243,7 +247,7 @@ impl Summary {
 
 /// The last record before the first shear and the records of that shear, up to where it stops or
 /// turns. Without a shear the record of the greatest indentation and nothing.
-fn first_shear<'a>(history: &'a [StepRecord], oblique: &[usize]) -> (Option<&'a StepRecord>, &'a [StepRecord]) {
+pub(super) fn first_shear<'a>(history: &'a [StepRecord], oblique: &[usize]) -> (Option<&'a StepRecord>, &'a [StepRecord]) {
     let sheared = |pair: &[StepRecord]| pair[1].delta_t != pair[0].delta_t && !oblique.contains(&pair[1].segment);
     let begin = history.windows(2).position(sheared);
     let Some(begin) = begin else {

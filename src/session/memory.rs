@@ -1,11 +1,11 @@
 //! The results of a run without a directory.
 
 use super::Canceller;
-use crate::case::{Case, Segment};
+use crate::case::Case;
 use crate::compute::traffic::Account;
 use crate::output::{
-    Clock, ErrorEstimate, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary, SummaryInputs,
-    TimeByPhase, Units, last_line,
+    Clock, ErrorEstimate, Limits, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary,
+    SummaryInputs, TimeByPhase, Units, last_line,
 };
 use crate::simulation::drive::{Observer, StepView};
 use crate::simulation::problem::Problem;
@@ -23,9 +23,12 @@ pub struct Memory {
     clock: Clock,
     progress: Box<dyn Progress>,
     share: PathShare,
-    path: Vec<Segment>,
+    case: Case,
     spacing: f64,
-    scout: Option<Scout>,
+    /// The rows so far, in the user's units.
+    rows: Vec<StepRecord>,
+    /// What the companion tells, if there was one that got to its end.
+    limits: Option<Limits>,
     remeshed: usize,
     fallbacks: usize,
     confirming: Option<usize>,
@@ -48,14 +51,15 @@ impl Memory {
         Self {
             progress,
             share: PathShare::new(&case.path),
-            path: case.path.clone(),
+            case: case.clone(),
             units: Units::of(case),
             inputs: SummaryInputs::of(case),
             setting,
             canceller,
             clock,
             spacing: problem.spacing,
-            scout: None,
+            rows: Vec::new(),
+            limits: None,
             remeshed: 0,
             fallbacks: 0,
             confirming: None,
@@ -71,7 +75,7 @@ impl Memory {
     pub fn scouted(&mut self, scout: Scout, seconds: f64) {
         self.outside.error_estimate = seconds;
         self.outside.setup -= seconds;
-        self.scout = Some(scout);
+        self.limits = Limits::new(&self.case, &scout, self.spacing);
     }
 
     /// Keeps a note for the summary that the user has been told already.
@@ -99,13 +103,12 @@ impl Memory {
             messages: self.messages.into_iter().chain(message.map(str::to_owned)).collect(),
             ..Summary::from_history(rows, &self.inputs)
         };
-        if let Some(scout) = self.scout.filter(|scout| scout.failure.is_none() && status == Status::Done) {
-            let coarse: Vec<StepRecord> = scout.rows.iter().map(|row| row.in_units(&self.units)).collect();
-            let coarse = Summary::from_history(&coarse, &self.inputs);
-            let errors = ErrorEstimate::new(rows, &summary, self.spacing, &coarse, scout.spacing, scout.elements);
+        if let Some(limits) = self.limits.filter(|_| status == Status::Done) {
+            let errors = ErrorEstimate::new(rows, &self.inputs.oblique, &limits);
             summary.f_n0_error = errors.f_n0;
             summary.a0_error = errors.a0;
             summary.f_t_max_error = errors.f_t_max;
+            summary.f_t_max_limit = errors.f_t_max_limit;
             summary.error_companion_elements = Some(errors.coarse_elements);
         }
         summary
@@ -124,7 +127,11 @@ impl Observer for Memory {
         }
         self.times += view.report.times;
         self.traffic.step(view.report.traffic, view.traffic());
+        if let Some(limits) = &self.limits {
+            limits.of(&self.rows, &view.record.in_units(&self.units)).put_into(&mut view.record, &self.units);
+        }
         let row = view.record.in_units(&self.units);
+        self.rows.push(row);
         self.progress.step(&Position {
             step: row.step,
             segment: row.segment,
@@ -150,7 +157,11 @@ impl Observer for Memory {
         self.setting.elements = problem.model.mesh.elements.len();
         self.setting.unknowns = unknowns;
         self.spacing = problem.spacing;
-        self.share = PathShare::new(&self.path);
+        self.rows.clear();
+        if let Some(limits) = &mut self.limits {
+            limits.meshed(problem.spacing);
+        }
+        self.share = PathShare::new(&self.case.path);
         (self.fallbacks, self.confirming) = (0, None);
         self.traffic.starts_over();
         self.remeshed += 1;

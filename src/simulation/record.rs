@@ -83,9 +83,28 @@ pub struct StepRecord {
     /// the sphere as around a rigid one.
     #[serde(default)]
     pub curvature: f64,
+    /// F_T in the limit of fine meshes and short steps, from this run and its coarse companion (see
+    /// [`crate::output::Limits`]); `None` where there is nothing to compare with, as in the next
+    /// three.
+    #[serde(default, rename = "F_T_limit")]
+    pub f_t_limit: Option<f64>,
+    /// F_N in that limit.
+    #[serde(default, rename = "F_N_limit")]
+    pub f_n_limit: Option<f64>,
+    /// Estimated size of what `f_t` lacks.
+    #[serde(default, rename = "F_T_error")]
+    pub f_t_error: Option<f64>,
+    /// Of what `f_n` lacks.
+    #[serde(default, rename = "F_N_error")]
+    pub f_n_error: Option<f64>,
 }
 
 impl StepRecord {
+    /// The row as a run without a companion has it.
+    pub fn forget_limits(&mut self) {
+        (self.f_t_limit, self.f_n_limit, self.f_t_error, self.f_n_error) = (None, None, None, None);
+    }
+
     /// The first number of the row that is infinite or NaN, with the name of its column.
     pub fn not_finite(&self) -> Option<(&'static str, f64)> {
         let numbers = [
@@ -107,7 +126,14 @@ impl StepRecord {
             ("work_plastic_opponent", self.work_plastic_opponent),
             ("curvature", self.curvature),
         ];
-        numbers.into_iter().find(|(_, number)| !number.is_finite())
+        let limits = [
+            ("F_T_limit", self.f_t_limit),
+            ("F_N_limit", self.f_n_limit),
+            ("F_T_error", self.f_t_error),
+            ("F_N_error", self.f_n_error),
+        ];
+        let limits = limits.into_iter().filter_map(|(column, number)| Some((column, number?)));
+        numbers.into_iter().chain(limits).find(|(_, number)| !number.is_finite())
     }
 }
 

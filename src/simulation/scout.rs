@@ -1,5 +1,5 @@
-//! The coarse run that goes before a run: it finds how far the contact will reach, and what the
-//! error of the run will be estimated from.
+//! The coarse run that goes before a run, its companion: it finds how far the contact will reach,
+//! and with it the limits of the curves and their errors are estimated.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,14 +29,14 @@ pub struct Scout {
     pub failure: Option<String>,
 }
 
-/// Elements along the contact radius of the scout of a run on `elements`: 0.4 of them, which is a
-/// tenth of the work; up to 10 not more than half, and not more than 4.
+/// Elements along the contact radius of the scout of a run on `elements`: half of them, of an odd
+/// number the smaller half.
 pub fn scout_elements(elements: usize) -> usize {
-    ((0.4 * elements as f64).round() as usize).max((elements / 2).min(4))
+    (elements / 2).max(1)
 }
 
-/// The case on its scout's mesh, with steps longer in the ratio of the elements: the errors of mesh
-/// and steps are then both those of a coarser run.
+/// The case on its scout's mesh, with steps longer in the ratio of the elements: what is of first
+/// order in either, mesh or steps, is then in the scout twice of what it is in the run.
 pub fn scout_case(case: &Case) -> Case {
     let (from, to) = (case.mesh.elements_per_contact_radius, scout_elements(case.mesh.elements_per_contact_radius));
     let mut scout = case.clone();

@@ -111,6 +111,8 @@ impl Drive<'_> {
             h_opponent: depth,
             work_plastic_opponent: 2.0 * energies.opponent_plastic,
             curvature,
+            // A run alone knows no limits.
+            ..StepRecord::default()
         };
         self.state.longest_recovery = self.state.longest_recovery.max(self.start().recovery());
         log::info!(

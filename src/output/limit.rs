@@ -1,0 +1,287 @@
+//! The limit of fine meshes and short steps of F_T and F_N, and how far a run may be from it, step
+//! by step.
+//!
+//! The run is compared with its companion, [`crate::simulation::scout`], at the same place on the
+//! path: in a segment that ends where the case says, at the same share of it; in one whose end the
+//! contact decides (to full slip, a release), at the same displacement from its start.
+//!
+//! What is of first order in mesh or steps is in the companion twice, so that f + (f - c) is
+//! without it (Richardson, Phil. Trans. R. Soc. A 226, 1927; Roache, J. Fluids Eng. 116, 1994).
+//!
+//! - F_T/F_N, in which the ripple of points that come into contact one by one cancels, is
+//!   extrapolated so.
+//! - F_N of a press falls faster, eightfold from companion to run at 16 elements, and what is left
+//!   of its difference is mostly that ripple: no correction. In a shear it has an error of first
+//!   order where friction is high. What its difference there exceeds that of the press by, which
+//!   was ripple, is added.
+//!
+//! docs/accuracy.md has the figures, and benches/limits/measure.py makes them.
+
+use super::curve::Curve;
+use super::{StepRecord, Units};
+use crate::case::{Case, Friction, Scaled, Segment, ShearTarget};
+use crate::simulation::scout::Scout;
+
+/// Steps over which differences are averaged, as a root mean square: one alone may be small by
+/// chance, where ripples cross.
+const WINDOW: usize = 10;
+/// What the difference of the two runs is multiplied with at most: one that has started over on a
+/// mesh almost as coarse as its companion's is not compared.
+const MOST_FACTOR: f64 = 3.0;
+/// Estimated error of F_N, and of a, in the mean difference from the companion.
+const NORMAL_SHARE: f64 = 0.85;
+/// What is missing of F_T/F_N is missing of F_N too, as the surface yields to p and q together:
+/// F_N falls with (F_T/F_N)^2. So much of F_T/F_N, times what it lacks, times F_N.
+const COUPLED_SHARE: f64 = 4.0;
+/// Estimated error of F_T in what F_T/F_N lacks, times F_N; that of F_N comes to it.
+const TANGENTIAL_SHARE: f64 = 1.75;
+
+/// The companion of a run, and how it is compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limits {
+    path: Vec<Segment>,
+    units: Units,
+    /// mu; `None` for full stick.
+    friction: Option<f64>,
+    /// Its curves, segment by segment.
+    companion: Vec<Stretch>,
+    /// Elements along the contact radius that were asked of it.
+    pub coarse_elements: usize,
+    coarse_spacing: f64,
+    spacing: f64,
+}
+
+/// F_N, F_T and a over the place in a segment.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Stretch {
+    f_n: Curve,
+    f_t: Curve,
+    a: Curve,
+}
+
+/// The companion at the place of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Counterpart {
+    f_n: f64,
+    f_t: f64,
+    a: f64,
+}
+
+/// What is known of the limits at a step, in the user's units; `None` where the companion did not
+/// get.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepLimits {
+    /// See [`StepRecord::f_t_limit`].
+    pub f_t_limit: Option<f64>,
+    /// See [`StepRecord::f_n_limit`].
+    pub f_n_limit: Option<f64>,
+    /// See [`StepRecord::f_t_error`].
+    pub f_t_error: Option<f64>,
+    /// See [`StepRecord::f_n_error`].
+    pub f_n_error: Option<f64>,
+    /// Estimated size of what the contact radius lacks.
+    pub a_error: Option<f64>,
+}
+
+impl StepLimits {
+    /// Adds them to a row that is scaled as the simulation's are.
+    pub fn put_into(&self, record: &mut Scaled<StepRecord>, units: &Units) {
+        let scaled = |value: Option<f64>| value.map(|value| value / units.force());
+        let row = &mut record.0;
+        (row.f_t_limit, row.f_n_limit) = (scaled(self.f_t_limit), scaled(self.f_n_limit));
+        (row.f_t_error, row.f_n_error) = (scaled(self.f_t_error), scaled(self.f_n_error));
+    }
+}
+
+impl Limits {
+    /// Of a run of `case` (in the user's units) whose elements in the contact are of the (scaled)
+    /// size `spacing`. `None` if the companion did not get to the end of the path.
+    pub fn new(case: &Case, scout: &Scout, spacing: f64) -> Option<Self> {
+        if scout.failure.is_some() {
+            return None;
+        }
+        let units = Units::of(case);
+        let rows: Vec<StepRecord> = scout.rows.iter().map(|row| row.in_units(&units)).collect();
+        let stretch = |(i, segment): (usize, &Segment)| {
+            let from = rows.partition_point(|row| row.segment < i);
+            let to = rows.partition_point(|row| row.segment <= i);
+            Stretch::new(segment, &start_of(&rows[..from]), rows.get(from..to).unwrap_or_default())
+        };
+        let friction = match case.contact.friction {
+            Friction::Coefficient(mu) => Some(mu),
+            Friction::Stick => None,
+        };
+        Some(Self {
+            companion: case.path.iter().enumerate().map(stretch).collect(),
+            path: case.path.clone(),
+            units,
+            friction,
+            coarse_elements: scout.elements,
+            coarse_spacing: scout.spacing,
+            spacing,
+        })
+    }
+
+    /// The run has started over on another mesh.
+    pub fn meshed(&mut self, spacing: f64) {
+        self.spacing = spacing;
+    }
+
+    /// What is known at a row, from it and those before it, all in the user's units.
+    pub fn of(&self, before: &[StepRecord], row: &StepRecord) -> StepLimits {
+        let comparable = self.coarse_spacing > self.spacing && self.factor() <= MOST_FACTOR;
+        let Some(here) = self.counterpart(before, row).filter(|_| comparable) else { return StepLimits::default() };
+        let StepLimits { f_t_limit, f_n_limit, f_t_error, f_n_error, a_error } = self.compared(before, row, here);
+        let [f_t_limit, f_n_limit, f_t_error, f_n_error, a_error] =
+            [f_t_limit, f_n_limit, f_t_error, f_n_error, a_error].map(|value| value.filter(|value| value.is_finite()));
+        StepLimits { f_t_limit, f_n_limit, f_t_error, f_n_error, a_error }
+    }
+
+    fn compared(&self, before: &[StepRecord], row: &StepRecord, here: Counterpart) -> StepLimits {
+        let mut window = self.last_compared(before, WINDOW - 1);
+        window.push((*row, here));
+        let f_n_usual = self.mean(&window, |row, there| Some(row.f_n - there.f_n));
+        let a_error = Some(NORMAL_SHARE * self.mean(&window, |row, there| Some(row.a - there.a)));
+        let f_n_limit = (row.f_n + self.beyond_ripple(before, row, &here)).max(0.0);
+        if row.f_n <= 0.0 {
+            let f_n_error = Some(NORMAL_SHARE * f_n_usual);
+            return StepLimits { f_t_limit: Some(0.0), f_n_limit: Some(f_n_limit), f_t_error: Some(0.0), f_n_error, a_error };
+        }
+        let Some(difference) = ratio_difference(row, &here) else {
+            return StepLimits {
+                f_n_limit: Some(f_n_limit),
+                f_n_error: Some(NORMAL_SHARE * f_n_usual),
+                a_error,
+                ..Default::default()
+            };
+        };
+        let (ratio, added) = (row.f_t / row.f_n, self.factor() * difference);
+        // Here or a step ago, whichever is more: it may change its sign on the way.
+        let last = window.iter().rev().take(2).filter(|(other, _)| other.segment == row.segment);
+        let differences = last.filter_map(|(other, there)| ratio_difference(other, there));
+        let ratio_error = self.factor() * differences.map(f64::abs).fold(0.0, f64::max);
+        let ripple = NORMAL_SHARE * f_n_usual;
+        let bound = self.friction.unwrap_or(f64::INFINITY);
+        StepLimits {
+            f_t_limit: Some((ratio + added).clamp(-bound, bound) * f_n_limit),
+            f_n_limit: Some(f_n_limit),
+            f_t_error: Some((TANGENTIAL_SHARE * ratio_error * row.f_n).hypot(ratio * ripple)),
+            f_n_error: Some(ripple.hypot(COUPLED_SHARE * ratio * ratio_error * row.f_n)),
+            a_error,
+        }
+    }
+
+    /// By how much more F_N of a shear differs from the companion's than it did in the last steps
+    /// before the first shear, where all of the difference is ripple and what falls faster than at
+    /// first order.
+    fn beyond_ripple(&self, before: &[StepRecord], row: &StepRecord, here: &Counterpart) -> f64 {
+        let is_press = |segment: usize| !matches!(self.path.get(segment), Some(Segment::Shear { .. } | Segment::Oblique { .. }));
+        if !matches!(self.path.get(row.segment), Some(Segment::Shear { .. })) {
+            return 0.0;
+        }
+        let press = before.iter().position(|earlier| !is_press(earlier.segment)).unwrap_or(before.len());
+        let pressed = self.last_compared(&before[..press], WINDOW);
+        if pressed.is_empty() {
+            return 0.0;
+        }
+        let difference = self.factor() * (row.f_n - here.f_n);
+        let level = self.mean(&pressed, |row, there| Some(row.f_n - there.f_n));
+        difference.signum() * (difference.abs() - level).max(0.0)
+    }
+
+    /// The last rows, at most so many, with their counterparts, as far back as there are some.
+    fn last_compared(&self, rows: &[StepRecord], count: usize) -> Vec<(StepRecord, Counterpart)> {
+        let all = (0..rows.len()).rev().take(count);
+        let mut found: Vec<_> = all.map_while(|i| Some((rows[i], self.counterpart(&rows[..i], &rows[i])?))).collect();
+        found.reverse();
+        found
+    }
+
+    /// Root mean square of a difference over the rows that have it, as an error of first order of
+    /// the finer run; none is 0.
+    fn mean(&self, window: &[(StepRecord, Counterpart)], difference: impl Fn(&StepRecord, &Counterpart) -> Option<f64>) -> f64 {
+        let squares: Vec<f64> = window.iter().filter_map(|(row, there)| difference(row, there)).map(|d| d * d).collect();
+        self.factor() * (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+    }
+
+    /// Writes what is known into all rows of a history, to the bits that they get one by one, which
+    /// pass through the simulation's units.
+    pub fn write_into(&self, rows: &mut [StepRecord]) {
+        for i in 0..rows.len() {
+            let (before, rest) = rows.split_at_mut(i);
+            let mut scaled = Scaled(StepRecord::default());
+            self.of(before, &rest[0]).put_into(&mut scaled, &self.units);
+            let StepRecord { f_t_limit, f_n_limit, f_t_error, f_n_error, .. } = scaled.in_units(&self.units);
+            rest[0] = StepRecord { f_t_limit, f_n_limit, f_t_error, f_n_error, ..rest[0] };
+        }
+    }
+
+    /// What the difference of the two runs is multiplied with for an error of first order of the
+    /// finer one: e = C spacing in both.
+    fn factor(&self) -> f64 {
+        self.spacing / (self.coarse_spacing - self.spacing)
+    }
+
+    fn counterpart(&self, before: &[StepRecord], row: &StepRecord) -> Option<Counterpart> {
+        let (segment, stretch) = (self.path.get(row.segment)?, self.companion.get(row.segment)?);
+        let from = before.partition_point(|earlier| earlier.segment < row.segment);
+        stretch.at(segment, place(segment, &start_of(&before[..from]), row))
+    }
+}
+
+impl Stretch {
+    fn new(segment: &Segment, start: &StepRecord, rows: &[StepRecord]) -> Self {
+        let curve = |of: fn(&StepRecord) -> f64| {
+            Curve::through(rows.iter().fold(vec![[0.0, of(start)]], |mut points, row| {
+                points.push([place(segment, start, row), of(row)]);
+                points
+            }))
+        };
+        Self { f_n: curve(|row| row.f_n), f_t: curve(|row| row.f_t), a: curve(|row| row.a) }
+    }
+
+    /// `None` for a segment in which the companion had nothing to do, and beyond the end of one by
+    /// more than its last step.
+    fn at(&self, segment: &Segment, place: f64) -> Option<Counterpart> {
+        let [end, step] = self.f_n.end()?;
+        let released = matches!(segment, Segment::Release { share } if *share == 0.0);
+        if released && place >= end {
+            // Nothing touches any more.
+            return Some(Counterpart { f_n: 0.0, f_t: 0.0, a: 0.0 });
+        }
+        if place > end + step {
+            return None;
+        }
+        Some(Counterpart { f_n: self.f_n.at(place)?, f_t: self.f_t.at(place)?, a: self.a.at(place)? })
+    }
+}
+
+/// How much larger F_T/F_N is in the run; `None` where the companion has no normal force.
+fn ratio_difference(row: &StepRecord, there: &Counterpart) -> Option<f64> {
+    (row.f_n > 0.0 && there.f_n > 0.0).then(|| row.f_t / row.f_n - there.f_t / there.f_n)
+}
+
+/// The state in which a segment begins after these rows.
+fn start_of(before: &[StepRecord]) -> StepRecord {
+    before.last().copied().unwrap_or_default()
+}
+
+/// The place of a row in a segment that begins at `start`: a share of it where its end is known, a
+/// length where it is not.
+fn place(segment: &Segment, start: &StepRecord, row: &StepRecord) -> f64 {
+    let (h, delta_t) = (row.h - start.h, row.delta_t - start.delta_t);
+    let share = |whole_h: f64, whole_delta: f64| {
+        let square = whole_h * whole_h + whole_delta * whole_delta;
+        if square > 0.0 { (h * whole_h + delta_t * whole_delta) / square } else { 1.0 }
+    };
+    match *segment {
+        Segment::Indentation { indentation } => share(indentation - start.h, 0.0),
+        Segment::Oblique { indentation, shear } => share(indentation - start.h, shear - start.delta_t),
+        Segment::Shear { shear: ShearTarget::Displacement(shear), .. } => share(0.0, shear - start.delta_t),
+        Segment::Shear { shear: ShearTarget::FullSlip, .. } => delta_t.abs(),
+        Segment::Release { .. } => h.abs(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,192 @@
+use super::*;
+
+const MU: f64 = 0.3;
+/// Share of F_T/F_N that one element along the contact radius lacks, and of F_N.
+const FIRST: f64 = 0.4;
+const NORMAL: f64 = 0.2;
+
+fn case(path: &str) -> Case {
+    let text = include_str!("../../../fixtures/cases/ideal.toml");
+    Case::parse(text, "ideal.toml", &[format!("path=[{path}]")]).expect("a case")
+}
+
+/// F_T/F_N after the share x of a slip displacement.
+fn ratio(x: f64) -> f64 {
+    let held = 1.0 - x.clamp(0.0, 1.0);
+    0.9 * MU * (1.0 - held * held.sqrt())
+}
+
+/// A run on n elements, with errors of first order in 1/n: pressed in `press` steps to h = 0.02,
+/// sheared in `shear` ones by `reach`, and back.
+fn run(n: f64, press: usize, shear: usize, reach: f64) -> Vec<StepRecord> {
+    let slip = 0.002;
+    let force = |h: f64| 7500.0 * h * (1.0 + NORMAL / n);
+    let mut rows = Vec::new();
+    for i in 1..=press {
+        let h = 0.02 * i as f64 / press as f64;
+        rows.push(StepRecord { h, f_n: force(h), a: h.sqrt() * (1.0 - NORMAL / n), ..StepRecord::default() });
+    }
+    let deepest = rows[press - 1];
+    let sheared = |segment, delta_t: f64, at: f64| {
+        let held = 1.0 - at.clamp(0.0, 1.0);
+        let f_n = deepest.f_n * (0.7 + 0.3 * held * held);
+        StepRecord { segment, delta_t, f_n, f_t: f_n * ratio(at) * (1.0 + FIRST / n), ..deepest }
+    };
+    for i in 1..=shear {
+        let delta_t = reach * (i as f64 / shear as f64).powf(1.3);
+        rows.push(sheared(1, delta_t, delta_t / slip));
+    }
+    for i in 1..=shear {
+        // What comes back is as long as the case says, from wherever it begins.
+        let share = i as f64 / shear as f64;
+        rows.push(sheared(2, reach + share * (0.001 - reach), 1.0 - 0.5 * share));
+    }
+    rows.iter_mut().enumerate().for_each(|(i, row)| row.step = i + 1);
+    rows
+}
+
+fn scout(rows: &[StepRecord], elements: usize, case: &Case) -> Scout {
+    let units = Units::of(case);
+    let scaled = |row: &StepRecord| {
+        let force = units.force();
+        Scaled(StepRecord { f_n: row.f_n / force, f_t: row.f_t / force, ..*row })
+    };
+    Scout { rows: rows.iter().map(scaled).collect(), spacing: 0.2 / elements as f64, elements, ..Scout::default() }
+}
+
+const PATH: &str = "{indentation=0.02}, {shear=\"full-slip\"}, {shear=0.001}";
+
+#[test]
+fn an_error_of_first_order_is_taken_out_of_the_tangential_force() {
+    let case = case(PATH);
+    for (n, m) in [(16, 8), (5, 2)] {
+        // The ends of full slip differ; half as many steps.
+        let (mut rows, coarse) = (run(n as f64, 26, 20, 0.0025), run(m as f64, 13, 10, 0.0027));
+        let limits = Limits::new(&case, &scout(&coarse, m, &case), 0.2 / n as f64).expect("limits");
+        limits.write_into(&mut rows);
+        let exact = run(f64::INFINITY, 26, 20, 0.0025);
+        for (row, exact) in rows.iter().zip(&exact) {
+            let [limit, error] = [row.f_t_limit, row.f_t_error].map(|value| value.expect("a value"));
+            let f_n_limit = row.f_n_limit.expect("a limit");
+            let wanted = exact.f_t / exact.f_n * f_n_limit;
+            assert!((limit - wanted).abs() < 0.2, "{n}: {limit} instead of {wanted} in {row:?}");
+            assert!((row.f_t - exact.f_t).abs() <= error + 1e-12, "{n}: {error} in {row:?}");
+            // A press is not extrapolated, nor is what a shear has of the same difference.
+            let added = if row.segment == 0 { 0.0 } else { 0.2 * 150.0 * NORMAL / n as f64 };
+            assert!((f_n_limit - row.f_n).abs() <= added + 1e-9, "{n}: {f_n_limit} in {row:?}");
+            let [off, error] = [(row.f_n - exact.f_n).abs(), row.f_n_error.expect("an error")];
+            assert!(error > 0.5 * off && error < 2.0 * 150.0 * NORMAL / n as f64, "{n}: {error} for {off} in {row:?}");
+        }
+        // Most of what the run lacks is gone.
+        let worst = |of: &dyn Fn(&StepRecord) -> f64| {
+            let apart = |(row, exact): (&StepRecord, &StepRecord)| (of(row) - exact.f_t / exact.f_n).abs();
+            rows.iter().zip(&exact).map(apart).fold(0.0, f64::max)
+        };
+        let limit = |row: &StepRecord| row.f_t_limit.zip(row.f_n_limit).map_or(f64::NAN, |(f_t, f_n)| f_t / f_n);
+        let [raw, limit] = [worst(&|row| row.f_t / row.f_n), worst(&limit)];
+        assert!(limit < 0.3 * raw, "{n}: {limit} of {raw}");
+    }
+}
+
+#[test]
+fn rows_one_by_one_have_the_bits_of_all_at_once() {
+    let case = case(PATH);
+    let (mut rows, coarse) = (run(16.0, 26, 20, 0.0025), run(8.0, 13, 10, 0.0027));
+    let limits = Limits::new(&case, &scout(&coarse, 8, &case), 0.2 / 16.0).expect("limits");
+    let before = rows.clone();
+    limits.write_into(&mut rows);
+    for (i, row) in before.iter().enumerate() {
+        let (units, mut scaled) = (Units::of(&case), Scaled(StepRecord::default()));
+        limits.of(&rows[..i], row).put_into(&mut scaled, &units);
+        let StepRecord { f_t_limit, f_n_limit, f_t_error, f_n_error, .. } = scaled.in_units(&units);
+        assert_eq!(StepRecord { f_t_limit, f_n_limit, f_t_error, f_n_error, ..*row }, rows[i]);
+    }
+    // Where a run stops early, its rows have what those of the whole one have.
+    let mut part = before[..30].to_vec();
+    limits.write_into(&mut part);
+    assert_eq!(part, rows[..30]);
+}
+
+#[test]
+fn nothing_is_said_where_there_is_nothing_to_compare_with() {
+    let case = case(PATH);
+    let (mut rows, coarse) = (run(16.0, 26, 20, 0.006), run(8.0, 13, 10, 0.0027));
+    let mut companion = scout(&coarse, 8, &case);
+    Limits::new(&case, &companion, 0.2 / 16.0).expect("limits").write_into(&mut rows);
+    // The companion's last step to full slip is 0.00035 long.
+    for row in rows.iter().filter(|row| row.segment == 1) {
+        assert_eq!(row.f_t_limit.is_some(), row.delta_t < 0.00305, "{row:?}");
+        assert_eq!(row.f_n_error.is_some(), row.f_t_error.is_some());
+    }
+    rows[0].forget_limits();
+    assert_eq!((rows[0].f_t_limit, rows[0].f_n_error), (None, None));
+    companion.failure = Some("no convergence".to_owned());
+    assert!(Limits::new(&case, &companion, 0.2 / 16.0).is_none());
+}
+
+#[test]
+fn no_limit_is_beyond_coulombs() {
+    let case = case(PATH);
+    let mut rows = run(16.0, 26, 20, 0.0025);
+    let mut coarse = run(8.0, 13, 10, 0.0027);
+    rows.iter_mut().for_each(|row| row.f_t = if row.segment > 0 { MU * row.f_n } else { 0.0 });
+    coarse.iter_mut().for_each(|row| row.f_t *= 0.5);
+    Limits::new(&case, &scout(&coarse, 8, &case), 0.2 / 16.0).expect("limits").write_into(&mut rows);
+    for row in &rows {
+        let [f_t, f_n] = [row.f_t_limit, row.f_n_limit].map(|limit| limit.expect("a limit"));
+        assert!(f_t <= MU * f_n * (1.0 + 1e-12), "{row:?}");
+        assert!(row.f_t_error.expect("an error") >= 0.0);
+    }
+}
+
+#[test]
+fn a_release_is_compared_by_the_way_back_and_beyond_its_end_with_nothing() {
+    let case = case("{indentation=0.02}, {release=true}");
+    let released = |recovery: f64, steps: usize| {
+        let mut rows = run(16.0, 26, 0, 0.0);
+        for i in 1..=steps {
+            let share = 1.0 - i as f64 / steps as f64;
+            rows.push(StepRecord {
+                step: 26 + i,
+                segment: 1,
+                h: 0.02 - recovery * (1.0 - share),
+                f_n: 150.0 * share,
+                ..rows[25]
+            });
+        }
+        rows
+    };
+    let (mut rows, coarse) = (released(0.0022, 23), released(0.002, 10));
+    Limits::new(&case, &scout(&coarse, 8, &case), 0.2 / 16.0).expect("limits").write_into(&mut rows);
+    for row in rows.iter().filter(|row| row.segment == 1) {
+        assert!(row.f_n_error.is_some_and(|error| error < 15.0), "{row:?}");
+        assert_eq!(row.f_t_limit.is_some(), row.f_n == 0.0 || row.h > 0.018 + 1e-9, "{row:?}");
+        assert!(row.f_n_limit.is_some_and(|limit| (limit - row.f_n).abs() < 1e-9), "{row:?}");
+    }
+}
+
+#[test]
+fn what_a_shear_adds_to_the_difference_of_the_normal_force_is_extrapolated() {
+    let case = case(PATH);
+    // Ripples of opposite sign in the press; in the shear F_N lacks more and more.
+    let with = |mut rows: Vec<StepRecord>, n: f64, sign: f64| {
+        for row in &mut rows {
+            let sheared = if row.segment == 0 { 0.0 } else { 400.0 / n * (row.delta_t / 0.0025).min(1.0) };
+            let ripple = if row.segment == 0 { sign * 0.2 * (300.0 * row.h).sin() } else { 0.0 };
+            (row.f_n, row.f_t) = (7500.0 * row.h + ripple - sheared, row.f_t * 0.5);
+        }
+        rows
+    };
+    let mut rows = with(run(16.0, 26, 20, 0.0025), 16.0, 1.0);
+    let coarse = with(run(8.0, 13, 10, 0.0025), 8.0, -1.0);
+    Limits::new(&case, &scout(&coarse, 8, &case), 0.2 / 16.0).expect("limits").write_into(&mut rows);
+    for row in &rows {
+        let limit = row.f_n_limit.expect("a limit");
+        if row.segment == 0 {
+            assert!((limit - row.f_n).abs() < 1e-9, "{limit} in {row:?}");
+        } else if row.segment == 1 {
+            // All but the ripple's own size.
+            assert!((-1e-6..0.5).contains(&(150.0 - limit)) || row.delta_t < 2e-4, "{limit} in {row:?}");
+        }
+    }
+}
