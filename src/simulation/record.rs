@@ -48,7 +48,7 @@ pub struct StepRecord {
     /// Plastic work.
     #[serde(default)]
     pub work_plastic: f64,
-    /// Work dissipated by friction (see [`crate::solver::dissipation::dissipated`]).
+    /// Work dissipated by friction (see [`crate::solver::opponent::dissipation::dissipated`]).
     #[serde(default)]
     pub work_friction: f64,
     /// Closed contact points of the meshed half.
