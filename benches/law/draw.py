@@ -5,9 +5,9 @@
     python3 benches/law/draw.py --out fixtures/studies --equal      # wide-pair.toml, wide-pair-unseen.toml
     python3 benches/law/draw.py --out DIR --seed 1                  # other materials, that no law has seen
 
-A study is of five times the materials below (three times on an equal sphere), and of twice as many
-again (once) with mu above 0.5, where contacts differ most. All are pressed, sheared, sheared back (on
-a plane) and released.
+A study has the materials below five times, and twice once more with mu above 0.5, where contacts differ
+most (on an equal sphere three times, and once). All are pressed, sheared, sheared back (on a plane) and
+released.
 
 Every material meets CASES pairs of friction and indentation. Poisson's ratio, ln(E/sigma_Y), ln(mu)
 and ln(h/R) are each cut into as many strata as there are draws, one draw a stratum. A fifth of the

@@ -1,10 +1,7 @@
 //! The two forms of f_N(x), of which a law has one.
 
-use serde::{Deserialize, Serialize};
-
 /// How f_N is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalCurve {
     /// f_N = [1 - (1 - x)^M]^N; M is the steep exponent.
     PowerOfComplement,
@@ -13,17 +10,6 @@ pub enum NormalCurve {
 }
 
 impl NormalCurve {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::PowerOfComplement, Self::ComplementOfPower];
-
-    /// How a table calls it.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::PowerOfComplement => "[1-(1-x)^M]^N",
-            Self::ComplementOfPower => "1-(1-x^M)^N",
-        }
-    }
-
     /// f_N(x), x clamped to \[0, 1\]: 0 at 0, 1 at 1, not decreasing.
     pub fn value(self, x: f64, m: f64, n: f64) -> f64 {
         let x = x.clamp(0.0, 1.0);

@@ -7,8 +7,8 @@
 //! on first loading:
 //!
 //! - *First loading* in h follows F_N0(h), and the contact radius a(h); in delta_T at constant h,
-//!   with x = delta_T/delta_T_slip, F_T = mu F_N_slip f_T(x) and F_N = F_N0 - (F_N0 - F_N_slip) f_N(x)
-//!   (Olsson & Larsson 2014). In the plane of F_N and |F_T| this is a limit curve, from (F_N0, 0)
+//!   with x = delta_T/delta_T_end, F_T = mu F_N_slip f_T(x) and F_N = F_N0 - (F_N0 - F_N_slip)
+//!   f_N(x) (Olsson & Larsson 2014). In the plane of F_N and |F_T| this is a limit curve, from (F_N0, 0)
 //!   to full slip, and x is the place on it.
 //! - *Inside the curve* the contact is elastic with friction. F_N = F_N0 eta^gamma, eta the elastic
 //!   approach over its greatest value D = gamma F_N0/(2 E* a): it starts with 2 E* a (a is the
@@ -21,7 +21,7 @@
 //!   Deresiewicz 1953) follow without rules of their own. Sliding in any direction holds each
 //!   slider to its limit; together they reach mu F_N.
 //! - *On the curve* plastic flow in h and delta_T moves the contact along it: x grows with delta_T
-//!   / delta_T_slip, the normal part of the flow being an indentation, so that F_N is lost and does
+//!   / delta_T_end, the normal part of the flow being an indentation, so that F_N is lost and does
 //!   not come back on reversal.
 //! - *Pressed while it is sheared* it yields where F_N (1 + s c r^2) = F_N0, r = F_T/F_N, an
 //!   ellipse through the origin as in modified Cam clay (Roscoe & Burland 1968), and flows with

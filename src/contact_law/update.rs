@@ -23,7 +23,7 @@ pub struct ContactState {
     /// Elastic approach from which the contact is released, length: F_N = 2 E* a reach/gamma
     /// (approach/reach)^gamma. It falls with F_N where shear takes that.
     pub reach: f64,
-    /// x = delta_T/delta_T_slip on the virgin curves at which the contact stands: the measure of
+    /// x = delta_T/delta_T_end on the virgin curves at which the contact stands: the measure of
     /// its loss of F_N to shear. Beyond 1, up to 2, of what reversed slip costs besides.
     pub x: f64,
     /// x of the virgin curves up to which the contact has hardened in shear: 0 after a press

@@ -66,7 +66,7 @@ pub struct ContactParameters {
     /// The gentle exponent of f_N, N of form 0 and M of form 1: the same at every h.
     pub gentle: f64,
     /// Per knot: ln F_N0; ln a, the radius with which 2 E* a is the stiffness of an unloading;
-    /// F_N_slip/F_N0; ln delta_T_slip; n (with form 2 the coefficient c of the yield curve); the
+    /// F_N_slip/F_N0; ln delta_T_end; n (with form 2 the coefficient c of the yield curve); the
     /// contact radius over a; the steep exponent of f_N (with form 2 the exponent of the sliders'
     /// backbone); ln k_T.
     pub table: [[f64; COLUMNS]; KNOTS],
@@ -112,7 +112,7 @@ pub struct VirginPoint {
     pub f_n0: f64,
     /// Normal force at full slip, force.
     pub f_n_slip: f64,
-    /// Displacement at full slip delta_T_slip, length.
+    /// Displacement at which the curves end, delta_T_end, length.
     pub delta_t_slip: f64,
     /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
     pub k_t: f64,
@@ -195,7 +195,7 @@ impl ContactParameters {
                 ("a", p.a),
                 ("F_N0", p.f_n0),
                 ("F_N_slip", p.f_n_slip),
-                ("delta_T_slip", p.delta_t_slip),
+                ("delta_T_end", p.delta_t_slip),
                 ("k_T", p.k_t),
                 ("n", p.n),
                 ("M", p.m_exponent),

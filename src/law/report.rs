@@ -206,7 +206,7 @@ pub fn candidate_table(candidates: &[Candidate]) -> String {
 /// The table of fits of the normal problem, errors in per cent.
 pub fn normal_table(candidates: &[NormalCandidate]) -> String {
     let mut text = String::from(
-        "Normal problem, cross-validated errors in per cent\n\
+        "Normal problem (weights for a0 and F_N0), cross-validated errors in per cent\n\
          fitted from                   constants   a0 rms     max F_N0 rms    max\n",
     );
     for c in candidates {

@@ -14,7 +14,7 @@
  * stand for two equal spheres with a share of 1/2, which is exact without friction only: a plane holds the surface by friction while it is pressed, where two equal spheres
  * move alike.
  *
- * The law: on first loading at constant h, with x = |delta_T|/delta_T_slip, F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x). Inside that curve the contact is
+ * The law: on first loading at constant h, with x = |delta_T|/delta_T_end, F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x). Inside that curve the contact is
  * elastic with friction: @SLIDERS@ sliders in parallel (Iwan 1967), which obey Masing's rule on reversal. On it plastic flow follows the law in x. Unloading in h is elastic and
  * ends at the residual dent. No path returns more energy than was stored.
  */
@@ -116,7 +116,7 @@ typedef struct asperity_table {
     asperity_real first;             /* h of the first knot */
     asperity_real log_step;
     asperity_real gentle;            /* exponent of f_N: N of form 0, M of form 1 */
-    /* F_N0, 1/a (2 E* a is the stiffness of an unloading), 1/delta_T_slip, k_T, F_N_slip/F_N0, n (with form 2 c of the yield curve), the contact radius over a, the
+    /* F_N0, 1/a (2 E* a is the stiffness of an unloading), 1/delta_T_end, k_T, F_N_slip/F_N0, n (with form 2 c of the yield curve), the contact radius over a, the
      * steep exponent of f_N (with form 2 that of the sliders' backbone) at a knot; towards the next, of the logarithms of the first four and of the others, the
      * coefficients of u, u^2 and u^3, where u is the share of a step. So nothing is lost to the size of a logarithm in float. */
     asperity_real knots[ASPERITY_KNOTS][4][ASPERITY_COLUMNS];
@@ -179,7 +179,7 @@ typedef struct asperity_curve {
     asperity_real f_n0, f_n_slip, m, big_n, k_t;
     asperity_real n;             /* of f_T; with form 2 c of the yield curve */
     asperity_real radii;         /* contact radius over a */
-    asperity_real per_slip;      /* 1/delta_T_slip, */
+    asperity_real per_slip;      /* 1/delta_T_end, */
     asperity_real per_a;         /* 1/a, of F_N0 */
     asperity_real per_force, per_gamma, per_backbone, per_n; /* and 1/F_N0, ... */
     asperity_real slope;    /* dF_N0/dh */

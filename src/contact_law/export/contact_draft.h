@@ -4,7 +4,7 @@ typedef struct asperity_draft {
     double effective_modulus; /* E* = E/(1 - nu^2) */
     double log_first;         /* ln h of the first knot */
     double log_step;
-    /* ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_slip, n, M, N, ln k_T */
+    /* ln F_N0, ln a, F_N_slip/F_N0, ln delta_T_end, n, M, N, ln k_T */
     double table[ASPERITY_KNOTS][ASPERITY_COLUMNS];
 } asperity_draft;
 

@@ -36,7 +36,7 @@ impl EngineTable {
 
     /// The cubics from knot to knot as the update reads them: coefficients of 1, u, u^2, u^3 of all
     /// columns, the logarithms first. Of those the first coefficient is the quantity itself, and of
-    /// a and delta_T_slip all are of the inverse.
+    /// a and delta_T_end all are of the inverse.
     fn knots(&self) -> Vec<[Vec<f64>; 4]> {
         let parameters = &self.parameters;
         let cubic = |i: usize, column: usize| {

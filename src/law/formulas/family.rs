@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::output::plain_json;
 
-/// The formulas of the shear, as the key `shear` has them.
+/// The formulas of the shear, as the key `forms` has them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Forms {

@@ -74,3 +74,15 @@ impl Law {
         Self::from_json(WEAR_2014).map_err(|problem| LawError::BadLaw { path: "fixtures/law/law.json".into(), problem })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Prior;
+
+    #[test]
+    fn the_earlier_name_of_wear_2014_is_taken() {
+        for name in ["wear-2014", "built-in"] {
+            assert!(matches!(Prior::from_option(name), Ok(Prior::Wear2014)), "{name}");
+        }
+    }
+}

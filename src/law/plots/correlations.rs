@@ -55,7 +55,7 @@ pub fn parameters(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture
     let charts = [
         Chart { title: "Exponent of f_T".into(), x: x(), y: Axis::linear("n", 0.0, 10.5), series: n, bar: None },
         Chart {
-            title: "Displacement at full slip".into(),
+            title: "Displacement at which the curves end".into(),
             x: x(),
             y: Axis::linear("δ_{T,end} / elastic δ_{T,end}", 0.0, highest.max(2.0)),
             series: factor,

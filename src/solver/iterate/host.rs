@@ -29,8 +29,8 @@ pub struct HostIterate {
     came_off: Vec<bool>,
     pub(super) fixed: Vec<bool>,
     pub(super) rhs: Vec<f64>,
-    /// Correction of the displacements, and of the unknowns that the linear system has: relative
-    /// displacements where the body meets its own image.
+    /// Correction of the displacements, and of the unknowns that the linear system has: at contact
+    /// nodes what the opponent makes of them.
     pub(super) delta: Vec<f64>,
     pub(super) correction: Vec<f64>,
     pub(super) delta_h: f64,

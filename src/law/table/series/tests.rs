@@ -20,9 +20,7 @@ fn material(modulus: f64, nu: f64, hardening: &str) -> String {
 
 /// A table of two equal spheres of a material with the levels that `level` has.
 fn table(material: &str, level: impl Fn(&ElasticSphere, f64) -> Level) -> Tabulated {
-    let scaled = case(1.0, material, "opponent = { equal = true }", 0.01).scaled().0;
-    // Scaling halves the travel of an equal pair and leaves what it meets out.
-    let case = Case { opponent: Some(Opponent::Equal), ..scaled };
+    let case = case(1.0, material, "opponent = { equal = true }", 0.01).scaled().0;
     let sphere = equivalent(&case);
     let levels: Vec<Level> = (0..16).map(|i| level(&sphere, 2e-5 * 1.75f64.powi(i))).collect();
     Tabulated {
