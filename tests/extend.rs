@@ -68,6 +68,9 @@ fn a_longer_path_has_the_bits_that_it_has_from_the_beginning() {
         assert!(told.contains(&format!("extended after step {} of the run in ", pressed.len())), "{name}: {told}");
         done(&scratch, "whole", &with(SHEARED, &["-q"]));
         assert_eq!(difference(&scratch.path("out"), &scratch.path("whole")), None, "{name}");
+        let sheared = read_history(&scratch.path("out/history.csv")).expect("a history");
+        let limits = sheared.iter().filter(|row| row.f_t_limit.is_some()).count();
+        assert!(if name == "blind" { limits == 0 } else { 2 * limits > sheared.len() }, "{name}: {limits} limits");
         // By two segments, of which the first goes on from the last.
         done(&scratch, "out", &with(last, &["--extend", "-q", "--threads", "1"]));
         done(&scratch, "whole", &with(last, &["-q", "--force"]));

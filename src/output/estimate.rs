@@ -40,7 +40,11 @@ impl ErrorEstimate {
             f_n0: start.and_then(|start| start.f_n_error),
             a0: start.and_then(|start| start.a_error),
             f_t_max: largest.and_then(|(_, point)| point.f_t_error),
-            f_t_max_limit: points.filter_map(|point| point.f_t_limit).map(f64::abs).reduce(f64::max),
+            // Where a part of the shear has none, the largest may lie there.
+            f_t_max_limit: points
+                .map(|point| point.f_t_limit.map(f64::abs))
+                .reduce(|most, next| Some(most?.max(next?)))
+                .flatten(),
         }
     }
 }

@@ -2,8 +2,8 @@
 //! by step.
 //!
 //! The run is compared with its companion, [`crate::simulation::scout`], at the same place on the
-//! path: in a segment that ends where the case says, at the same share of it; in one whose end the
-//! contact decides (to full slip, a release), at the same displacement from its start.
+//! path: of a press and an oblique segment at the same share of it, of a shear and a release, in
+//! which the forces go with the way from where it began, at the same displacement from there.
 //!
 //! What is of first order in mesh or steps is in the companion twice, so that f + (f - c) is
 //! without it (Richardson, Phil. Trans. R. Soc. A 226, 1927; Roache, J. Fluids Eng. 116, 1994).
@@ -19,7 +19,7 @@
 
 use super::curve::Curve;
 use super::{StepRecord, Units};
-use crate::case::{Case, Friction, Scaled, Segment, ShearTarget};
+use crate::case::{Case, Friction, Scaled, Segment};
 use crate::simulation::scout::Scout;
 
 /// Steps over which differences are averaged, as a root mean square: one alone may be small by
@@ -175,17 +175,20 @@ impl Limits {
     /// before the first shear, where all of the difference is ripple and what falls faster than at
     /// first order.
     fn beyond_ripple(&self, before: &[StepRecord], row: &StepRecord, here: &Counterpart) -> f64 {
-        let is_press = |segment: usize| !matches!(self.path.get(segment), Some(Segment::Shear { .. } | Segment::Oblique { .. }));
         if !matches!(self.path.get(row.segment), Some(Segment::Shear { .. })) {
             return 0.0;
         }
-        let press = before.iter().position(|earlier| !is_press(earlier.segment)).unwrap_or(before.len());
+        let is_sheared = |segment: &Segment| matches!(segment, Segment::Shear { .. } | Segment::Oblique { .. });
+        let first = self.path.iter().position(is_sheared).unwrap_or(row.segment);
+        let press = before.partition_point(|earlier| earlier.segment < first);
         let pressed = self.last_compared(&before[..press], WINDOW);
         if pressed.is_empty() {
             return 0.0;
         }
         let difference = self.factor() * (row.f_n - here.f_n);
-        let level = self.mean(&pressed, |row, there| Some(row.f_n - there.f_n));
+        // No less than where the press ends, or the limit would jump there.
+        let last = pressed.last().map_or(0.0, |(row, there)| self.factor() * (row.f_n - there.f_n).abs());
+        let level = self.mean(&pressed, |row, there| Some(row.f_n - there.f_n)).max(last);
         difference.signum() * (difference.abs() - level).max(0.0)
     }
 
@@ -266,8 +269,8 @@ fn start_of(before: &[StepRecord]) -> StepRecord {
     before.last().copied().unwrap_or_default()
 }
 
-/// The place of a row in a segment that begins at `start`: a share of it where its end is known, a
-/// length where it is not.
+/// The place of a row in a segment that begins at `start`: a share of a press or an oblique one, a
+/// length of the others.
 fn place(segment: &Segment, start: &StepRecord, row: &StepRecord) -> f64 {
     let (h, delta_t) = (row.h - start.h, row.delta_t - start.delta_t);
     let share = |whole_h: f64, whole_delta: f64| {
@@ -277,8 +280,8 @@ fn place(segment: &Segment, start: &StepRecord, row: &StepRecord) -> f64 {
     match *segment {
         Segment::Indentation { indentation } => share(indentation - start.h, 0.0),
         Segment::Oblique { indentation, shear } => share(indentation - start.h, shear - start.delta_t),
-        Segment::Shear { shear: ShearTarget::Displacement(shear), .. } => share(0.0, shear - start.delta_t),
-        Segment::Shear { shear: ShearTarget::FullSlip, .. } => delta_t.abs(),
+        // After a reversal F_T goes with the way from it, wherever it was.
+        Segment::Shear { .. } => delta_t.abs(),
         Segment::Release { .. } => h.abs(),
     }
 }

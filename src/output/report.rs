@@ -10,7 +10,8 @@ impl Summary {
         let mut text = String::new();
         let mut line = |name: &str, value: Option<f64>, error: Option<f64>, what: &str| {
             if let Some(value) = value {
-                let error = error.map(|e| format!(" (+- {:.1} %)", 100.0 * e / value.abs())).unwrap_or_default();
+                let error =
+                    error.filter(|_| value != 0.0).map(|e| format!(" (+- {:.1} %)", 100.0 * e / value.abs())).unwrap_or_default();
                 // Writing to a String cannot fail.
                 let _ = writeln!(text, "{name:<13} {:<13} {what}{error}", significant(value));
             }

@@ -122,6 +122,8 @@ fn contact_and_summary_are_those_of_the_files() {
     };
     assert!(ours.f_n0_error.is_some());
     assert_eq!(timeless(ours), timeless(theirs));
+    assert_eq!(kept.history(), written.history());
+    assert!(kept.history().iter().all(|row| row.f_n_limit.is_some()));
 }
 
 #[test]

@@ -36,7 +36,7 @@ pub fn scout_elements(elements: usize) -> usize {
 }
 
 /// The case on its scout's mesh, with steps longer in the ratio of the elements: what is of first
-/// order in either, mesh or steps, is then in the scout twice of what it is in the run.
+/// order in either, mesh or steps, is then in the scout about twice of what it is in the run.
 pub fn scout_case(case: &Case) -> Case {
     let (from, to) = (case.mesh.elements_per_contact_radius, scout_elements(case.mesh.elements_per_contact_radius));
     let mut scout = case.clone();

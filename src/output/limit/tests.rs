@@ -1,4 +1,5 @@
 use super::*;
+use crate::output::ErrorEstimate;
 
 const MU: f64 = 0.3;
 /// Share of F_T/F_N that one element along the contact radius lacks, and of F_N.
@@ -37,9 +38,9 @@ fn run(n: f64, press: usize, shear: usize, reach: f64) -> Vec<StepRecord> {
         rows.push(sheared(1, delta_t, delta_t / slip));
     }
     for i in 1..=shear {
-        // What comes back is as long as the case says, from wherever it begins.
-        let share = i as f64 / shear as f64;
-        rows.push(sheared(2, reach + share * (0.001 - reach), 1.0 - 0.5 * share));
+        // What comes back goes with the way from the reversal, wherever that was.
+        let way = i as f64 / shear as f64 * (reach - 0.001);
+        rows.push(sheared(2, reach - way, 1.0 - way / 0.004));
     }
     rows.iter_mut().enumerate().for_each(|(i, row)| row.step = i + 1);
     rows
@@ -112,7 +113,22 @@ fn nothing_is_said_where_there_is_nothing_to_compare_with() {
     let case = case(PATH);
     let (mut rows, coarse) = (run(16.0, 26, 20, 0.006), run(8.0, 13, 10, 0.0027));
     let mut companion = scout(&coarse, 8, &case);
-    Limits::new(&case, &companion, 0.2 / 16.0).expect("limits").write_into(&mut rows);
+    let limits = Limits::new(&case, &companion, 0.2 / 16.0).expect("limits");
+    limits.write_into(&mut rows);
+    // F_T is largest where the companion has not been.
+    let estimate = ErrorEstimate::new(&rows, &[], &limits);
+    assert!(estimate.f_n0.is_some() && estimate.a0.is_some());
+    assert_eq!((estimate.f_t_max, estimate.f_t_max_limit), (None, None));
+    let compared = run(16.0, 26, 20, 0.0025);
+    let estimate = ErrorEstimate::new(&compared, &[], &limits);
+    let largest = compared.iter().map(|row| row.f_t).fold(0.0, f64::max);
+    assert!(estimate.f_t_max_limit.is_some_and(|limit| limit < largest && limit > 0.9 * largest), "{estimate:?} of {largest}");
+    // On a mesh that is almost as coarse as the companion's.
+    let mut coarser = limits.clone();
+    coarser.meshed(0.9 * 0.2 / 8.0);
+    assert_eq!(coarser.of(&compared[..9], &compared[9]).f_n_limit, None);
+    coarser.meshed(0.2 / 16.0);
+    assert_eq!(coarser, limits);
     // The companion's last step to full slip is 0.00035 long.
     for row in rows.iter().filter(|row| row.segment == 1) {
         assert_eq!(row.f_t_limit.is_some(), row.delta_t < 0.00305, "{row:?}");
