@@ -300,7 +300,7 @@ fn the_standard_mesh_has_the_size_that_the_design_asks_for() {
 
 #[test]
 fn impossible_descriptions_are_errors() {
-    for a in [0.004, 0.66, f64::NAN, -0.1] {
+    for a in [0.0004, 0.66, f64::NAN, -0.1] {
         assert!(matches!(sphere_mesh(&spec(a, 16, 1.3)), Err(MeshError::ContactRadius(_))));
     }
     for count in [0, 1, 33, usize::MAX] {
