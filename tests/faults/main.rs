@@ -20,5 +20,7 @@ mod signals;
 
 /// Whether all is to be run and not a share.
 fn all() -> bool {
-    std::env::var_os("ASPERITY_FAULTS").is_some_and(|value| value == "all")
+    [("ASPERITY_FAULTS", "all"), ("ASPERITY_LONG", "1")]
+        .iter()
+        .any(|(name, all)| std::env::var_os(name).is_some_and(|v| v == *all))
 }
