@@ -22,7 +22,7 @@ const MISTAKES: &[(&str, usize, &str, &str, &str)] = &[
     ("indentation-zero", 17, "path.0.indentation", "is 0.0", "a length > 0"),
     ("infinite", 6, "material.youngs_modulus", "is inf", "a stress > 0"),
     ("linear-softening", 12, "material.hardening.modulus", "is -10.0", "a stress >= 0 (no softening)"),
-    ("mesh-contact-radius", 17, "mesh.contact_radius", "is 1.0", "a length from 0.005 to 0.65 radius"),
+    ("mesh-contact-radius", 17, "mesh.contact_radius", "is 1.0", "a length from 0.0005 to 0.65 radius"),
     ("mesh-elements", 17, "mesh.elements_per_contact_radius", "is 3", "a whole number from 4 to 32"),
     ("mesh-fine-zone", 17, "mesh.fine_zone", "is 1.0", "a number from 1.1 to 3"),
     ("mesh-memory", 17, "solver.max_memory_gib", "a mesh of about", "a larger solver.max_memory_gib"),

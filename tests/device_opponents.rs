@@ -60,9 +60,11 @@ fn program(verb: &str, file: &Path, out: &Path, device: &str) {
     assert_eq!(output.status.code(), Some(0), "{verb}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The history as it was written.
-fn history(dir: &Path) -> String {
-    fs::read_to_string(OutputDirectory::existing(dir).history()).expect("a history")
+/// The history as a study has it, in which no case has a companion.
+fn history(dir: &Path) -> Vec<StepRecord> {
+    let mut rows = read_history(&OutputDirectory::existing(dir).history()).expect("a history");
+    rows.iter_mut().for_each(StepRecord::forget_limits);
+    rows
 }
 
 /// The largest difference of F_N, F_T and a over the steps; forces by the largest F_N.
