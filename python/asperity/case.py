@@ -106,7 +106,8 @@ class Case:
         """A value by its dotted key, as in ``case["path.0.indentation"]``."""
         value: Any = self.to_dict()
         if not isinstance(key, str):
-            raise KeyError(key)
+            # Not every object has a text.
+            raise KeyError(f"a key is a dotted string, as in 'path.0.indentation', and not a {type(key).__name__}")
         for part in key.split("."):
             try:
                 value = value[int(part)] if isinstance(value, list) else value[part]
