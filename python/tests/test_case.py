@@ -44,6 +44,12 @@ def test_values_by_their_keys() -> None:
     assert (softer["contact.friction"], softer["path.1.shear"], softer["output.plots"]) == ("stick", 0.001, False)
     with pytest.raises(KeyError):
         case["path.7"]
+    deep = ()
+    for _ in range(100_000):
+        deep = (deep,)
+    for key in [("path", 0), None, object(), [deep]]:
+        with pytest.raises(KeyError, match="a key is a dotted string"):
+            case[key]
 
 
 @pytest.mark.parametrize(
