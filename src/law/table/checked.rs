@@ -12,7 +12,7 @@ use crate::law::table::Against;
 /// smaller one, and a body that is to be put in series three times as deep.
 const DEPTH: Bounds = Bounds { least: 1e-15, most: 100.0 };
 /// Lengths over R, forces over E R^2 and stiffnesses over E R.
-const SIZE: Bounds = Bounds { least: 1e-30, most: 1e30 };
+const SIZE: Bounds = Bounds { least: 1e-30, most: 1e4 };
 /// F_N at full slip over F_N0, but for rounding.
 const SHARE: Bounds = Bounds { least: 1e-3, most: 1.0 + 1e-9 };
 /// The exponent of a backbone: at 1 it has no curve.
@@ -20,7 +20,7 @@ const EXPONENT: Bounds = Bounds { least: 1.0 + 1e-9, most: 10.0 };
 /// c of the yield curve.
 const YIELDING: Bounds = Bounds { least: 1e-9, most: 1e6 };
 /// F_T over mu times F_N at full slip, which is what is left of F_N0.
-const TANGENTIAL: Bounds = Bounds { least: -1.0, most: 1e3 };
+const TANGENTIAL: Bounds = Bounds { least: 0.0, most: 1e3 };
 /// What F_N has lost of what it loses.
 const NORMAL: Bounds = Bounds { least: -0.1, most: 1.1 };
 /// How many levels there may be. A spline goes through them all.
