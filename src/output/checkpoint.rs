@@ -214,9 +214,16 @@ fn head() -> String {
     format!("{NAME}, format {FORMAT}, version {}\n", env!("CARGO_PKG_VERSION"))
 }
 
+/// Bytes from which on the text of a case is long.
+const LONG: usize = 4 << 20;
+
 /// The first key in which two cases in TOML differ, with both values; `None` if they are the same
 /// case.
 pub fn case_difference(there: &str, here: &str) -> Option<String> {
+    // What is much longer is another one: to read it takes twenty times its length in memory.
+    if there.len() > LONG && there.len() / 2 > here.len() {
+        return Some(format!("its text there is {} MiB long", there.len() >> 20));
+    }
     let (found, wanted) = (flat(there), flat(here));
     // How pictures look changes no result, nor does what is kept for later, nor how much memory
     // there may be.
@@ -305,6 +312,14 @@ impl Write for Checked<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_text_that_is_far_longer_is_of_another_case_unread() {
+        let here = "[contact]\nfriction = 0.3\n";
+        let there = here.repeat(200_000);
+        assert_eq!(case_difference(&there, here).as_deref(), Some("its text there is 4 MiB long"));
+        assert_eq!(case_difference(here, here), None);
+    }
 
     #[test]
     fn a_difference_is_told_by_its_key() {
