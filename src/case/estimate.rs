@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::error::CaseError;
 use super::reader::Reader;
-use super::{Case, Opponent, Segment};
+use super::{Case, Opponent};
 use crate::memory::{GIB, Room};
 
 /// Memory of an element with its share of the linear systems, in bytes: its tangent and the 3x3
@@ -17,10 +17,7 @@ pub const BYTES_PER_ELEMENT: f64 = 10_000.0;
 /// to 0.3. Where a is not given it is (2 R h)^(1/2), h the largest indentation, between the elastic
 /// and the ideally plastic contact, with R* in place of R where the opponent is a sphere.
 pub fn estimated_elements(case: &Case) -> usize {
-    let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
-        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
-        _ => deepest,
-    });
+    let deepest = case.greatest_indentation();
     let radius = case.sphere.radius;
     let share = case.effective_radius() / radius;
     let contact = case.mesh.contact_radius.map_or((2.0 * share * deepest / radius).sqrt(), |a| a / radius).clamp(0.0005, 0.3);

@@ -326,7 +326,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether a coarse run goes first, for an eighth of the work; it finds how far the contact will reach and gives limits and errors",
+        meaning: "whether a coarse run goes first, for an eighth of the work; it finds how far the contact will reach and \
+                  gives limits and errors",
         example: "true",
         ..key("solver", "error_estimate", Truth, Defaults("true"))
     },

@@ -171,6 +171,21 @@ impl Case {
         if self.sphere.flat { other } else { self.sphere.radius / (1.0 + self.sphere.radius / other) }
     }
 
+    /// The first segment of the path that presses to its greatest indentation, by its number, and
+    /// that indentation, a length; `None` where nothing presses.
+    pub fn deepest_press(&self) -> Option<(usize, f64)> {
+        let presses = self.path.iter().enumerate().filter_map(|(i, segment)| match *segment {
+            Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => Some((i, indentation)),
+            Segment::Shear { .. } | Segment::Release { .. } => None,
+        });
+        presses.reduce(|most, next| if next.1 > most.1 { next } else { most })
+    }
+
+    /// The greatest indentation of the path, a length; 0 where nothing presses.
+    pub fn greatest_indentation(&self) -> f64 {
+        self.deepest_press().map_or(0.0, |(_, indentation)| indentation)
+    }
+
     /// The least that the greatest indentation of a path may be: an elastic contact there, of which
     /// a^2 = R* h (Hertz), has the smallest radius that is meshed for.
     pub(crate) fn least_indentation(&self) -> f64 {

@@ -119,11 +119,7 @@ impl Case {
     }
 
     fn of_path(&self, doubts: &mut Vec<Doubt>) {
-        let presses = self.path.iter().enumerate().filter_map(|(i, segment)| match *segment {
-            Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => Some((i, indentation)),
-            _ => None,
-        });
-        let Some((at, deepest)) = presses.reduce(|most, next| if next.1 > most.1 { next } else { most }) else { return };
+        let Some((at, deepest)) = self.deepest_press() else { return };
         // Of a pair, the closed form knows one body alone; two give way to more.
         if let (Some(yield_stress), None) = (self.material.hardening.yield_stress(self.material.youngs_modulus), &self.opponent) {
             let Material { youngs_modulus, poissons_ratio, .. } = self.material;

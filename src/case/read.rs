@@ -7,8 +7,8 @@ use super::error::{CaseError, Place};
 use super::material::{MAGNITUDES, read_material};
 use super::reader::Reader;
 use super::{
-    Case, Contact, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Segment, Solver, Sphere,
-    UnitLabels, estimate, hints, opponent, path, pictures,
+    Case, Contact, Fields, Friction, Linear, Material, Mesh, Opponent, Output, PictureFormat, Solver, Sphere, UnitLabels,
+    estimate, hints, opponent, path, pictures,
 };
 use crate::bounded;
 use crate::mesh::{FINE_ZONES, LARGEST_CONTACT};
@@ -123,11 +123,7 @@ impl Material {
 /// Refuses a path whose contact, an elastic one at its greatest indentation, is smaller than the
 /// smallest that is meshed for.
 fn check_deepest(case: &Case, root: &Reader<'_>) -> Result<(), CaseError> {
-    let indentations = case.path.iter().enumerate().filter_map(|(i, segment)| match *segment {
-        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => Some((i, indentation)),
-        _ => None,
-    });
-    let Some((at, deepest)) = indentations.reduce(|most, next| if next.1 > most.1 { next } else { most }) else { return Ok(()) };
+    let Some((at, deepest)) = case.deepest_press() else { return Ok(()) };
     let least = case.least_indentation();
     if deepest >= least * (1.0 - 1e-12) {
         return Ok(());

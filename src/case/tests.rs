@@ -238,8 +238,8 @@ fn a_contact_that_is_too_small_for_any_mesh_is_refused() {
     let told = refused(&["path=[{indentation=1e-8},{indentation=2e-7}]"]);
     assert_eq!(
         told,
-        "--set path: path.1.indentation: is 2e-7, the greatest of the path. Allowed: a greatest indentation of 2.5e-7 or more: there the \
-         contact radius is 0.0005 R, the smallest that is meshed for"
+        "--set path: path.1.indentation: is 2e-7, the greatest of the path. Allowed: a greatest indentation of 2.5e-7 or more: \
+         there the contact radius is 0.0005 R, the smallest that is meshed for"
     );
     // On its way down a contact may be of any size; R* counts, in any units.
     ideal(&["path=[{indentation=1e-12},{indentation=2.5e-7}]"]);

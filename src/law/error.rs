@@ -87,8 +87,8 @@ pub enum LawError {
     },
     /// A case of which a table says nothing.
     #[error(
-        "the table is of another material: {what}. Tabulate this one with `asperity law tabulate`, or take the built-in law, whose \
-         name is `built-in`"
+        "the table is of another material: {what}. Tabulate this one with `asperity law tabulate`, or take the built-in law, \
+         whose name is `built-in`"
     )]
     OtherMaterial {
         /// What differs.

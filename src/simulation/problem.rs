@@ -6,7 +6,7 @@ use super::SimulationError;
 use super::path::Resolution;
 use super::zone::Zone;
 use crate::analytical::predicted_contact_radius;
-use crate::case::{self, Case, Opponent, Scaled, Segment};
+use crate::case::{self, Case, Opponent, Scaled};
 use crate::compute::CaseModel;
 use crate::contact::coulomb::Friction;
 use crate::contact::rigid::Rigid;
@@ -84,13 +84,6 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.42;
 /// See [`Problem::pressed_in_full`].
 const UNLIKE_STIFFNESS: f64 = 2.0;
 const UNLIKE_PLASTIC: f64 = 30.0;
-/// Largest indentation of the path, scaled.
-fn largest_indentation(Scaled(case): &Scaled<Case>) -> f64 {
-    case.path.iter().fold(0.0, |h, s| match s {
-        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => h.max(*indentation),
-        _ => h,
-    })
-}
 
 /// Steps of a first press: as many as the case says, or else as go with its elements along the
 /// contact radius.
@@ -116,7 +109,7 @@ fn asked_zone(scaled: &Scaled<Case>, laws: &[&Hardening<f64>]) -> Zone {
     // Of two bodies the closed forms know R*, E* and the weaker yield stress alone.
     let (r, modulus) = (case.body_radius(), 1.0 / case.compliance()[0]);
     let predicted =
-        || r * predicted_contact_radius(modulus, case.material.poissons_ratio, flow_stress, largest_indentation(scaled) / r);
+        || r * predicted_contact_radius(modulus, case.material.poissons_ratio, flow_stress, case.greatest_indentation() / r);
     Zone::new(case.mesh.contact_radius.unwrap_or_else(predicted), case.mesh.fine_zone).within(smaller_radius(scaled))
 }
 

@@ -18,7 +18,10 @@ pub enum StudyError {
     #[error(transparent)]
     File(#[from] CaseError),
     /// Some of the combinations are no cases.
-    #[error("{source} (in the combination {combination}; {failing} of {}{count} combinations are refused)", if *more { "the first " } else { "" })]
+    #[error(
+        "{source} (in the combination {combination}; {failing} of {}{count} combinations are refused)",
+        if *more { "the first " } else { "" }
+    )]
     Combination {
         /// What is wrong with the first of them.
         source: Box<CaseError>,

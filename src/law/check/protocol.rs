@@ -21,10 +21,7 @@ const FULL: f64 = SLIP_DISPLACEMENT_RATIO;
 /// The protocol for the material, the friction and the greatest depth of `case`; the shears are
 /// measured in the displacement at which the law has 0.99 mu.
 pub fn protocol(case: &Case, parameters: &ContactParameters, elements: usize) -> Vec<Path> {
-    let h = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
-        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
-        _ => deepest,
-    });
+    let h = case.greatest_indentation();
     let slip = slip_displacement(parameters, h);
     let press = |share: f64| Segment::Indentation { indentation: share * h };
     let shear = |share: f64| Segment::Shear { shear: ShearTarget::Displacement(share * slip), hold: Hold::Indentation };

@@ -45,7 +45,8 @@ impl Law {
         let area = format!("1/2 + [1.43 exp(-{c1:.4} e) - 1/2] [1 - exp(-({c2:.4} U)^{c3:.4})]");
         let plastic = format!("[1 + ({k1:.4} (Lambda - Lambda_Y)^{k2:.4})^{k3:.4}]^(-1/{k3:.4})");
         let elastic = format!(
-            "S tanh(mu/beta) ({b0} + {b1} a_H/R) + (a_H/R) ({b2} + {b3} a_H/R + {b4} nu), S = (1 - nu) ln(3 - 4 nu)/(1 - 2 nu) - 1, beta = (1 - 2 nu)/(2 - 2 nu)"
+            "S tanh(mu/beta) ({b0} + {b1} a_H/R) + (a_H/R) ({b2} + {b3} a_H/R + {b4} nu), \
+             S = (1 - nu) ln(3 - 4 nu)/(1 - 2 nu) - 1, beta = (1 - 2 nu)/(2 - 2 nu)"
         );
         let with = "G = 1 - Lambda_Y/Lambda, U = ln(Lambda/Lambda_Y), e = d ln sigma/d ln eps_p at eps_rep; \
                     Lambda, e at Hertz's a_H = (R h)^(1/2), F_H Hertz's force";

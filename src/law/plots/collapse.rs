@@ -32,8 +32,9 @@ pub fn tangential(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result
     };
     let f_t = |x: f64, p: &Parameters| shear::f_t(x, p.n);
     let right = diagonal(name, "law: f_T(x) = 1 − (1 − x)^n", samples, lines(&all, Some(law), share, f_t));
-    let caption = "Every shear in normalised variables, coloured by Λ. Left: over x = δ_T/δ_T_end, with f_T for some n. Right: over the law's f_T(x) \
-                   with the case's n; all curves fall on the diagonal where the law holds. δ_T_end and n are the law's, F_N_slip the simulation's.";
+    let caption = "Every shear in normalised variables, coloured by Λ. Left: over x = δ_T/δ_T_end, with f_T for some n. Right: over \
+                   the law's f_T(x) with the case's n; all curves fall on the diagonal where the law holds. \
+                   δ_T_end and n are the law's, F_N_slip the simulation's.";
     let (size, columns) = sheet.charts(DOUBLE, 2);
     Ok(Picture::draw("collapse-tangential", caption, size, |root| draw_charts(root, columns, &[left, right]))?)
 }
@@ -53,8 +54,9 @@ pub fn normal(samples: &[Sample], law: Option<&Law>, sheet: Sheet) -> Result<Opt
     };
     let f_n = |x: f64, p: &Parameters| shear::f_n(x, p.m_exponent, p.n_exponent);
     let right = diagonal(name, "law: f_N(x) = 1 − (1 − x^M)^N", samples, lines(&falling, Some(law), share, f_n));
-    let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, coloured by Λ. Left: over x = δ_T/δ_T_end. Right: over \
-                   the law's f_N(x) with the case's M and N. δ_T_end, M and N are the law's, F_N0 and F_N_slip the simulation's.";
+    let caption = "The fall of F_N of every case in which it falls by more than 2 per cent, coloured by Λ. \
+                   Left: over x = δ_T/δ_T_end. Right: over the law's f_N(x) with the case's M and N. \
+                   δ_T_end, M and N are the law's, F_N0 and F_N_slip the simulation's.";
     let (size, columns) = sheet.charts(DOUBLE, 2);
     Ok(Some(Picture::draw("collapse-normal", caption, size, |root| draw_charts(root, columns, &[left, right]))?))
 }

@@ -62,7 +62,8 @@ pub fn parameters(samples: &[Sample], law: &Law, sheet: Sheet) -> Result<Picture
             bar: None,
         },
     ];
-    let caption = "Marks: n and δ_T_end of each case by least squares of its own F_T curve; the two go together, so that single curves leave \
+    let caption = "Marks: n and δ_T_end of each case by least squares of its own F_T curve; the two go together, \
+                   so that single curves leave \
                    them loosely determined. Lines: the law for a reference sphere. Both start from Cattaneo and Mindlin's 3/2 and 1.";
     let (size, columns) = sheet.charts((1180, 520), 2);
     Ok(Picture::draw("parameters", caption, size, |root| draw_charts(root, columns, &charts))?)

@@ -64,10 +64,7 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
         });
     }
     let radius = case.sphere.radius;
-    let deepest = case.path.iter().fold(0.0, |deepest: f64, segment| match segment {
-        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
-        _ => deepest,
-    }) / radius;
+    let deepest = case.greatest_indentation() / radius;
     if SPAN * deepest * radius < case.least_indentation() {
         return Err(LawError::NotCovered {
             problem: "the path presses less than ten times as deep as the shallowest contact that is meshed for",

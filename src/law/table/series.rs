@@ -498,10 +498,7 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
 pub fn alone(case: &Case, opponent: Against, spare: f64) -> Option<[Case; 2]> {
     let scaled = case.scaled().0;
     let Some(Opponent::Deforming { material: other, .. }) = scaled.opponent.clone() else { return None };
-    let deepest = scaled.path.iter().fold(0.0, |deepest: f64, segment| match segment {
-        Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => deepest.max(*indentation),
-        _ => deepest,
-    });
+    let deepest = scaled.greatest_indentation();
     let radius = scaled.effective_radius();
     let opponent = (opponent == Against::EqualSphere).then_some(Opponent::Equal);
     let mut base = Case { sphere: Sphere { radius: 1.0, flat: false }, opponent, ..scaled };

@@ -47,7 +47,10 @@ pub fn law_section(law: &Law) -> String {
     html.push_str("<p>With F<sub>N0</sub> and a<sub>0</sub> predicted from h as well:</p>\n");
     html.push_str(&regions(&law.errors_predicted));
 
-    html.push_str("<h3>What was compared</h3>\n<p>Fits to the study alone, and fits drawn to the prior with a weight (of the normal problem two, for a0 and F_N0). In bold what was kept; the baselines have no constants.</p>\n");
+    html.push_str(
+        "<h3>What was compared</h3>\n<p>Fits to the study alone, and fits drawn to the prior with a weight \
+         (of the normal problem two, for a0 and F_N0). In bold what was kept; the baselines have no constants.</p>\n",
+    );
     let mut table = Table::new(
         &["fitted from", "constants", "F<sub>T</sub> rms", "F<sub>T</sub> max", "F<sub>N</sub> rms", "F<sub>N</sub> max"],
         &[0],

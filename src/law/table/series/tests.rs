@@ -14,6 +14,15 @@ fn case(radius: f64, material: &str, opponent: &str, h: f64) -> Case {
     Case::parse(&text, "case.toml", &[]).unwrap()
 }
 
+/// Two laws driven along the same places have the same F_N and F_T, but for `tolerance`.
+fn agree(ours: &[[f64; 2]], theirs: &[[f64; 2]], tolerance: f64) {
+    for (place, (a, b)) in ours.iter().zip(theirs).enumerate() {
+        for k in 0..2 {
+            assert!((a[k] - b[k]).abs() < tolerance, "place {place}: {a:?} {b:?}");
+        }
+    }
+}
+
 fn material(modulus: f64, nu: f64, hardening: &str) -> String {
     format!("{{ youngs_modulus = {modulus:?}, poissons_ratio = {nu}, hardening = {{ {hardening} }} }}")
 }
@@ -87,11 +96,7 @@ fn two_equal_bodies_are_their_own_table_at_any_radius() {
             assert!((other.f_n_slip / one.f_n_slip - 1.0).abs() < 2e-3, "{one:?} {other:?}");
             let end = one.delta_t_slip;
             let places: Vec<[f64; 2]> = [0.0, 0.02, 0.1, 0.2, 0.4, 0.9].map(|x| [level.h, x * end]).to_vec();
-            for (a, b) in drive(&own, &places, 20).iter().zip(drive(&ours, &places, 20)) {
-                for k in 0..2 {
-                    assert!((a[k] - b[k]).abs() < 6e-3 * one.f_n0, "h {}, radius {radius}: {a:?} {b:?}", level.h);
-                }
-            }
+            agree(&drive(&own, &places, 20), &drive(&ours, &places, 20), 6e-3 * one.f_n0);
         }
     }
 }
@@ -140,11 +145,7 @@ fn a_stiff_and_strong_opponent_leaves_all_of_h_and_of_the_flow_to_the_weak_one()
         assert!((level.a0 / half.a - 1.0).abs() < 1e-2, "{} {}", level.a0, half.a);
         let places = [0.0, 0.02, 0.1, 0.2, 0.4, 0.9].map(|x| [level.h, 0.5 * x * half.delta_t_slip]);
         let twice = places.map(|place| place.map(|x| 2.0 * x));
-        for (a, b) in drive(&own, &twice, 20).iter().zip(drive(&ours, &places, 20)) {
-            for k in 0..2 {
-                assert!((a[k] - b[k]).abs() < 1e-2 * half.f_n0, "h {}: {a:?} {b:?}", level.h);
-            }
-        }
+        agree(&drive(&own, &twice, 20), &drive(&ours, &places, 20), 1e-2 * half.f_n0);
     }
 }
 
