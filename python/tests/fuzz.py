@@ -376,6 +376,10 @@ def main() -> int:
     if fuzz.run.summary != asperity.Run.load(place / "run").summary or fuzz.case != asperity.Run.load(place / "run").case:
         print("WRONG the run that was asked about has changed", flush=True)
         wrong += 1
+    for device in ["/dev/null", "/dev/full", "/dev/zero"]:
+        if Path(device).exists() and not Path(device).is_char_device():
+            print(f"WRONG {device} has been replaced", flush=True)
+            wrong += 1
     print(f"{count} calls, {wrong} wrong, {more >> 20} MiB", flush=True)
     return int(wrong > 0)
 

@@ -9,7 +9,7 @@ use std::path::Path;
 /// Writes `path` through `fill`: into a hidden file beside it, which takes the name only when it is
 /// complete and on the disk; then the folder is brought to the disk too, so that a power cut does
 /// not take the name back. Folders above it are made. On an error the hidden file is removed and
-/// what stood under the name before stays.
+/// what stood under the name before stays; so does a device, a pipe or a socket.
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
     let folder = folder_of(path);
     make_folder(folder).map_err(OutputError::writing(folder))?;
@@ -23,6 +23,10 @@ pub fn replace_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::
         path: path.to_path_buf(),
         source: io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"),
     })?;
+    if fs::symlink_metadata(path).is_ok_and(|there| !(there.is_file() || there.is_symlink() || there.is_dir())) {
+        let source = io::Error::new(io::ErrorKind::InvalidInput, "it is a device, a pipe or a socket, which no file replaces");
+        return Err(OutputError::Write { path: path.to_path_buf(), source });
+    }
     let folder = folder_of(path);
     // A name that nobody can have laid a link under, and a file that was not there.
     let number = RandomState::new().build_hasher().finish();
@@ -150,6 +154,19 @@ mod tests {
         );
         assert_eq!(fs::read_to_string(&mine).unwrap(), "mine");
         assert!(!path.is_symlink());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_file_stays() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("socket");
+        let _open = std::os::unix::net::UnixListener::bind(&path).unwrap();
+        let error = write_atomically(&path, |out| out.write_all(b"x")).unwrap_err().to_string();
+        assert!(error.contains("socket: it is a device, a pipe or a socket"), "{error}");
+        assert!(fs::symlink_metadata(&path).unwrap().file_type().is_socket());
+        assert_eq!(names(folder.path()), ["socket"]);
     }
 
     #[test]
