@@ -24,7 +24,14 @@ pub fn estimated_elements(case: &Case) -> usize {
     let n = case.mesh.elements_per_contact_radius as f64;
     // Another body counts as much: the ratio of a to its radius hardly matters.
     let meshed = if matches!(case.opponent, Some(Opponent::Deforming { .. })) { 2.0 } else { 1.0 };
-    (meshed * n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln())).ceil() as usize
+    let inside = n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln());
+    // A level of the skin has eight elements in place of each of two layers within the fine zone.
+    let level = |k: usize| {
+        let n = n * f64::from(1 << k);
+        14.0 * n * n * (2.0 * case.mesh.fine_zone - 0.5 + 2.0 / n)
+    };
+    let skin: f64 = (0..case.mesh.skin_levels()).map(level).sum();
+    (meshed * (inside + skin)).ceil() as usize
 }
 
 /// An estimate of the memory that the case's simulation takes, in GiB.

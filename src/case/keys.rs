@@ -275,6 +275,12 @@ pub const KEYS: &[Key] = &[
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("16"))
     },
     Key {
+        range: "1, 2, 4 or 8 times elements_per_contact_radius, at most 64",
+        meaning: "the same in the elements at the surface, which are halved in all directions so many times; F_T over delta_T needs them",
+        example: "16",
+        ..key("mesh", "surface_elements_per_contact_radius", Whole(4, 64), Optional("as many as inside"))
+    },
+    Key {
         range: "1.1 to 3",
         meaning: "radius of the finely meshed zone over the contact radius; it is enlarged if the contact leaves it",
         example: "1.3",

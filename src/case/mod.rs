@@ -205,12 +205,27 @@ impl Case {
 pub struct Mesh {
     /// Elements along the contact radius, 4 to 32.
     pub elements_per_contact_radius: usize,
+    /// The same at the surface: once, twice, four or eight times as many; by default as many.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface_elements_per_contact_radius: Option<usize>,
     /// Radius of the finely meshed zone over the contact radius, 1.1 to 3.
     pub fine_zone: f64,
     /// Contact radius to mesh for, in the units of the sphere's radius, in place of the predicted
     /// one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_radius: Option<f64>,
+}
+
+impl Mesh {
+    /// Elements along the contact radius at the surface.
+    pub fn surface_elements(&self) -> usize {
+        self.surface_elements_per_contact_radius.unwrap_or(self.elements_per_contact_radius)
+    }
+
+    /// How many times the elements at the surface are halved.
+    pub fn skin_levels(&self) -> usize {
+        (self.surface_elements() / self.elements_per_contact_radius.max(1)).max(1).ilog2() as usize
+    }
 }
 
 /// The solution of the equations.
@@ -299,7 +314,7 @@ impl Fields {
 
 impl Default for Mesh {
     fn default() -> Self {
-        Self { elements_per_contact_radius: 16, fine_zone: 1.3, contact_radius: None }
+        Self { elements_per_contact_radius: 16, surface_elements_per_contact_radius: None, fine_zone: 1.3, contact_radius: None }
     }
 }
 

@@ -11,7 +11,10 @@ use super::{
     estimate, hints, opponent, path, pictures,
 };
 use crate::bounded;
-use crate::mesh::{FINE_ZONES, LARGEST_CONTACT};
+use crate::mesh::{FINE_ZONES, FINEST_SURFACE, LARGEST_CONTACT};
+
+/// Times as many elements as inside that there may be along the contact radius at the surface.
+const SKINS: [usize; 4] = [1, 2, 4, 8];
 
 /// The tables of a case.
 const CASE_TABLES: [&str; 9] = ["sphere", "material", "contact", "opponent", "mesh", "solver", "output", "units", "path"];
@@ -177,10 +180,23 @@ fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
 }
 
 fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
-    table.only(&["elements_per_contact_radius", "fine_zone", "contact_radius"])?;
+    table.only(&["elements_per_contact_radius", "surface_elements_per_contact_radius", "fine_zone", "contact_radius"])?;
     let mut mesh = Mesh::default();
     if let Some(field) = table.get("elements_per_contact_radius") {
         mesh.elements_per_contact_radius = field.count(4..=32)?;
+    }
+    if let Some(field) = table.get("surface_elements_per_contact_radius") {
+        let own = mesh.elements_per_contact_radius;
+        let allowed: Vec<usize> = SKINS.iter().map(|by| by * own).filter(|&n| n <= FINEST_SURFACE).collect();
+        let surface = field.count(4..=FINEST_SURFACE)?;
+        if !allowed.contains(&surface) {
+            let named = allowed.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+            return Err(field.refuse(
+                &format!("elements at the surface are halved a whole number of times, and elements_per_contact_radius is {own}"),
+                &named,
+            ));
+        }
+        mesh.surface_elements_per_contact_radius = Some(surface);
     }
     if let Some(field) = table.get("fine_zone") {
         mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| FINE_ZONES.contains(&ratio))?;

@@ -22,7 +22,12 @@ fn the_reference_case_reads_with_the_documented_defaults() {
         sphere: Sphere { radius: 1.0, flat: false },
         material: Material { youngs_modulus: 200e3, poissons_ratio: 0.3, hardening: Hardening::Ideal { yield_stress: 400.0 } },
         contact: Contact { friction: Friction::Coefficient(0.3) },
-        mesh: Mesh { elements_per_contact_radius: 16, fine_zone: 1.3, contact_radius: None },
+        mesh: Mesh {
+            elements_per_contact_radius: 16,
+            surface_elements_per_contact_radius: None,
+            fine_zone: 1.3,
+            contact_radius: None,
+        },
         solver: Solver {
             linear: Linear::Multigrid,
             tolerance: 3e-4,
@@ -59,7 +64,15 @@ fn settings_replace_append_and_make_tables() {
         "material.hardening={law = \"power\", yield_stress = 300, coefficient = 500, exponent = 0.5}",
     ]);
     assert_eq!(case.contact.friction, Friction::Stick);
-    assert_eq!(case.mesh, Mesh { elements_per_contact_radius: 8, fine_zone: 1.3, contact_radius: Some(0.15) });
+    assert_eq!(
+        case.mesh,
+        Mesh {
+            elements_per_contact_radius: 8,
+            surface_elements_per_contact_radius: None,
+            fine_zone: 1.3,
+            contact_radius: Some(0.15)
+        }
+    );
     assert_eq!((case.solver.linear, case.solver.shear_steps), (Linear::Direct, Some(16)));
     assert_eq!(case.output.fields, Fields::None);
     assert_eq!(case.material.hardening, Hardening::Power { yield_stress: 300.0, coefficient: 500.0, exponent: 0.5 });

@@ -158,7 +158,7 @@ impl<R: Real, T: Real> Case<R, T> {
     fn new(model: &CaseModel) -> Result<Self, ComputeError> {
         let mesh = model.mesh.clone();
         let opponent = model.opponent.as_ref().unwrap_or(&model.material);
-        let size: Vec<f64> = mesh.elements.iter().map(|nodes| size(&nodes.map(|n| mesh.nodes[n as usize]))).collect();
+        let size: Vec<f64> = (0..mesh.elements.len()).map(|element| size(&mesh.corners(element))).collect();
         let same = |element: usize| {
             let Material { elasticity, .. } = if element < model.opponent_from() { &model.material } else { opponent };
             SAME_TANGENT * (SAME_UP_TO * elasticity.shear / elasticity.bulk).min(1.0)
@@ -198,7 +198,7 @@ impl<R: Real, T: Real> Case<R, T> {
         if element < self.opponent.0 { &self.tangent_material } else { &self.tangent_opponent }
     }
 
-    /// Committed displacement and increment of an element's nodes; the increment is formed in f64
+    /// Committed displacement and increment at an element's corners; the increment is formed in f64
     /// and rounded once.
     #[inline(always)]
     fn nodal<N: Real>(&self, element: usize, displacement: &[f64]) -> (Nodal<N>, Nodal<N>) {
@@ -212,6 +212,11 @@ impl<R: Real, T: Real> Case<R, T> {
                 committed[a][i] = N::of(u);
                 increment[a][i] = N::of(displacement[base + i] - u);
             }
+        }
+        let hanging = self.mesh.hanging[element];
+        if !hanging.is_none() {
+            hanging.to_corners(&mut committed);
+            hanging.to_corners(&mut increment);
         }
         (committed, increment)
     }
@@ -237,6 +242,10 @@ impl<R: Real, T: Real> Case<R, T> {
                     let (geometry, material) = (&case.tangent_geometry[e], case.tangent_material(e));
                     out.step = 0;
                     let margin = hex8::tangent(geometry, material, start, committed, increment, &mut out.tangent)?;
+                    let hanging = case.mesh.hanging[e];
+                    if !hanging.is_none() {
+                        hanging.to_named_tangent(&mut out.tangent, pair);
+                    }
                     (out.step, out.increment) = (case.step, *increment);
                     out.reach = case.reach[e].min(case.size[e] * margin);
                     Ok(())
@@ -314,6 +323,10 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
                 &mut self.element_force,
                 |case, e, committed, increment, out| {
                     *out = hex8::internal_force(&case.geometry[e], case.material(e), &case.start[e], committed, increment)?;
+                    let hanging = case.mesh.hanging[e];
+                    if !hanging.is_none() {
+                        hanging.to_named(out);
+                    }
                     Ok(())
                 },
             );
@@ -492,11 +505,10 @@ fn convert<R: Real, T: Real>(x: R) -> T {
 }
 
 fn geometry_of<R: Real>(mesh: &Mesh) -> Result<Vec<Geometry<R>>, ComputeError> {
-    let of_element = |(element, nodes): (usize, &[u32; NODES])| {
-        Geometry::new(&nodes.map(|n| mesh.nodes[n as usize]))
-            .map_err(|invalid| ComputeError::InvertedMesh { element, point: invalid.point() })
+    let of_element = |element: usize| {
+        Geometry::new(&mesh.corners(element)).map_err(|invalid| ComputeError::InvertedMesh { element, point: invalid.point() })
     };
-    mesh.elements.iter().enumerate().map(of_element).collect()
+    (0..mesh.elements.len()).map(of_element).collect()
 }
 
 /// The blocks of each node's row; `blocks` in the order of the plan's pattern.

@@ -61,7 +61,8 @@ impl CaseModel {
 
     /// Whether the two have one mesh connectivity: they may be in one batch.
     pub fn is_alike(&self, other: &Self) -> bool {
-        self.mesh.elements == other.mesh.elements && self.mesh.contact_nodes == other.mesh.contact_nodes
+        let (own, other) = (&self.mesh, &other.mesh);
+        own.elements == other.elements && own.hanging == other.hanging && own.contact_nodes == other.contact_nodes
     }
 }
 

@@ -1,6 +1,8 @@
 //! What every backend owes its cases, held on the CPU in both precisions: the bodies take the
 //! backend as an argument.
 
+mod hanging;
+
 use std::sync::Arc;
 
 use super::cpu::Cpu;

@@ -96,7 +96,7 @@ impl Checkpoint {
         messages.extend(failed.filter(|text| !messages.contains(text)));
         // As if the longer path had been scouted from the beginning.
         let zone = self.ledger.zone.as_ref();
-        let spacing = zone.map(|zone| zone.contact_radius / case.mesh.elements_per_contact_radius as f64);
+        let spacing = zone.map(|zone| zone.contact_radius / case.mesh.surface_elements() as f64);
         if let Some(limits) = scout.as_ref().zip(spacing).and_then(|(scout, spacing)| Limits::new(case, scout, spacing)) {
             limits.write_into(&mut self.ledger.rows);
         } else {

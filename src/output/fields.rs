@@ -1,6 +1,6 @@
 //! The fields of one step: what `fields/step_0020.vtu` shows.
 
-use super::space::{bodies, elements_in_space, stresses_in_space, vectors_in_space};
+use super::space::{Space, bodies, stresses_in_space};
 use super::{ContactPoint, ContactStatus, Field, Grid, Half, OutputError, Units, write_vtu};
 use crate::compute::CaseFields;
 use crate::mesh::Mesh;
@@ -20,15 +20,15 @@ pub fn write_fields(
     points: &[ContactPoint],
     units: &Units,
 ) -> Result<(), OutputError> {
-    let nodes = mesh.nodes.len();
+    let (nodes, space) = (mesh.nodes.len(), Space::new(mesh));
     let scaled = |x: &[f64; 3]| x.map(|x| x * units.radius);
-    let positions: Vec<[f64; 3]> = vectors_in_space(mesh, &mesh.nodes).iter().map(scaled).collect();
-    let moved: Vec<[f64; 3]> = vectors_in_space(mesh, displacement.as_chunks::<3>().0).iter().map(scaled).collect();
+    let positions: Vec<[f64; 3]> = space.vectors(&mesh.nodes).iter().map(scaled).collect();
+    let moved: Vec<[f64; 3]> = space.vectors(displacement.as_chunks::<3>().0).iter().map(scaled).collect();
 
-    let mut pressure = vec![0.0; nodes];
-    let mut traction = vec![[0.0; 3]; nodes];
-    let mut gap = vec![-1.0; nodes];
-    let mut status = vec![0; nodes];
+    let mut pressure = vec![0.0; positions.len()];
+    let mut traction = vec![[0.0; 3]; positions.len()];
+    let mut gap = vec![-1.0; positions.len()];
+    let mut status = vec![0; positions.len()];
     for point in points.iter().filter(|point| point.half != Half::Mirrored) {
         let node = point.point;
         if node >= nodes {
@@ -61,7 +61,7 @@ pub fn write_fields(
         Field::integer("plastic", fields.alpha.iter().map(|&alpha| i32::from(alpha > 0.0)).collect()),
     ];
     cell_fields.extend(bodies(mesh).map(|bodies| Field::integer("body", bodies)));
-    let cells = elements_in_space(mesh);
+    let cells = space.elements();
     write_vtu(path, &Grid { points: &positions, cells: &cells, symmetry_plane: Some(0.0) }, &point_fields, &cell_fields)
 }
 

@@ -1,20 +1,41 @@
 //! Where two bodies lie in space: each is computed in its own coordinates (see
 //! [`crate::mesh::couple`]), in which the opponent is the mirror image of itself.
 
-use crate::mesh::Mesh;
+use crate::mesh::{Corners, Mesh};
 
-/// Vectors at the nodes, or the nodes' positions, in space.
-pub fn vectors_in_space(mesh: &Mesh, vectors: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let from = mesh.own_nodes();
-    // 0 - z, not -z: what is at rest moves by 0, not -0.
-    vectors.iter().enumerate().map(|(n, &[x, y, z])| if n < from { [x, y, z] } else { [x, y, 0.0 - z] }).collect()
+/// The points of a mesh in space, those that hang after the nodes, and its cells.
+pub struct Space<'a> {
+    mesh: &'a Mesh,
+    corners: Corners,
 }
 
-/// Nodes of the elements, those of mirrored ones in an order that keeps their volume positive.
-pub fn elements_in_space(mesh: &Mesh) -> Vec<[u32; 8]> {
-    let from = mesh.own_elements();
-    let turned = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
-    mesh.elements.iter().enumerate().map(|(e, &nodes)| if e < from { nodes } else { turned(nodes) }).collect()
+impl<'a> Space<'a> {
+    /// Of a mesh.
+    pub fn new(mesh: &'a Mesh) -> Self {
+        Self { mesh, corners: Corners::of(mesh) }
+    }
+
+    /// Vectors at the points, or the points' positions, in space, from those at the nodes.
+    pub fn vectors(&self, vectors: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let (nodes, from) = (self.mesh.nodes.len(), self.mesh.own_nodes());
+        let own = |point: usize| match point.checked_sub(nodes) {
+            None => point < from,
+            Some(hanging) => self.corners.means[hanging].iter().all(|&n| (n as usize) < from),
+        };
+        // 0 - z, not -z: what is at rest moves by 0, not -0.
+        let placed = |(point, [x, y, z]): (usize, [f64; 3])| if own(point) { [x, y, z] } else { [x, y, 0.0 - z] };
+        // Of another number of nodes: the writer says so.
+        let extended = if vectors.len() == nodes { self.corners.extended(vectors) } else { vectors.to_vec() };
+        extended.into_iter().enumerate().map(placed).collect()
+    }
+
+    /// Points of the elements, those of mirrored ones in an order that keeps their volume positive.
+    pub fn elements(&self) -> Vec<[u32; 8]> {
+        let from = self.mesh.own_elements();
+        let turned = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
+        let points = |(e, &points): (usize, &[u32; 8])| if e < from { points } else { turned(points) };
+        self.corners.elements.iter().enumerate().map(points).collect()
+    }
 }
 
 /// Stresses [xx, yy, zz, xy, yz, zx] of the elements in space.
@@ -33,26 +54,30 @@ pub fn bodies(mesh: &Mesh) -> Option<Vec<i32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{SphereSpec, couple, quality, sphere_mesh};
+    use crate::mesh::{Hanging, SphereSpec, couple, quality, sphere_mesh};
 
     #[test]
     fn the_opponent_lies_below_and_its_elements_keep_their_volume() {
-        let sphere = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap();
-        let mesh = couple(sphere.clone(), sphere.clone());
-        let nodes = vectors_in_space(&mesh, &mesh.nodes);
-        let from = sphere.nodes.len();
-        assert!(nodes[..from].iter().all(|x| x[2] >= 0.0) && nodes[from..].iter().all(|x| x[2] <= 0.0));
-        let space = Mesh { nodes, elements: elements_in_space(&mesh), ..mesh.clone() };
-        assert!((quality::volume(&space) / (2.0 * quality::volume(&sphere)) - 1.0).abs() < 1e-12);
-        assert!((0..space.elements.len()).all(|e| quality::scaled_jacobian(&quality::corners(&space, e)) > 0.0));
-        // One body is where it is.
-        assert_eq!(
-            (vectors_in_space(&sphere, &sphere.nodes), elements_in_space(&sphere)),
-            (sphere.nodes.clone(), sphere.elements.clone())
-        );
-        assert_eq!(
-            (bodies(&sphere), bodies(&mesh).map(|bodies| bodies.iter().sum::<i32>() as usize)),
-            (None, Some(sphere.elements.len()))
-        );
+        for skin_levels in [0, 1] {
+            let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels };
+            let sphere = sphere_mesh(&spec).unwrap();
+            let mesh = couple(sphere.clone(), sphere.clone());
+            // As meshes whose corners are all nodes.
+            let drawn = |mesh: &Mesh| {
+                let space = Space::new(mesh);
+                let hanging = vec![Hanging::NONE; mesh.elements.len()];
+                Mesh { nodes: space.vectors(&mesh.nodes), elements: space.elements(), hanging, ..mesh.clone() }
+            };
+            let (both, own) = (drawn(&mesh), drawn(&sphere));
+            assert_eq!(both.nodes.len(), 2 * own.nodes.len());
+            assert_eq!(own.nodes.len() > sphere.nodes.len(), skin_levels > 0);
+            let below = |e: usize| both.elements[e].iter().all(|&n| both.nodes[n as usize][2] <= 0.0);
+            assert!((0..both.elements.len()).all(|e| below(e) == (e >= sphere.elements.len())));
+            assert!((quality::volume(&both) / (2.0 * quality::volume(&sphere)) - 1.0).abs() < 1e-12);
+            assert!((0..both.elements.len()).all(|e| quality::scaled_jacobian(&both.corners(e)) > 0.0));
+            // One body is where it is.
+            assert_eq!(own.nodes[..sphere.nodes.len()], sphere.nodes);
+            assert!((0..own.elements.len()).all(|e| own.corners(e) == sphere.corners(e)));
+        }
     }
 }

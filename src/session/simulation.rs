@@ -15,7 +15,7 @@ use crate::case::{Case, check_room};
 use crate::compute::select::{Selected, select};
 use crate::compute::{ComputeError, Description};
 use crate::memory;
-use crate::output::space::{elements_in_space, stresses_in_space, vectors_in_space};
+use crate::output::space::{Space, stresses_in_space};
 use crate::output::{
     Checkpoint, Clock, ContactPoint, OutputDirectory, Progress, ResultWriter, Setting, SilentProgress, Status, StepRecord,
     Summary, Units, mises, read_history,
@@ -255,13 +255,14 @@ impl Simulation {
         let fields = follower.fields().map_err(|error| SessionError::Simulation(error.into()))?;
         let Some(last) = follower.last() else { return Ok(None) };
         let mesh = &follower.problem().model.mesh;
+        let space = Space::new(mesh);
         let length = |x: &[f64; 3]| x.map(|x| x * radius);
         let stress: Vec<[f64; 6]> =
             stresses_in_space(mesh, &fields.stress).iter().map(|stress| stress.map(|s| s * youngs_modulus)).collect();
         Ok(Some(StepFields {
-            nodes: vectors_in_space(mesh, &mesh.nodes).iter().map(length).collect(),
-            elements: elements_in_space(mesh),
-            displacement: vectors_in_space(mesh, last.displacement().as_chunks::<3>().0).iter().map(length).collect(),
+            nodes: space.vectors(&mesh.nodes).iter().map(length).collect(),
+            elements: space.elements(),
+            displacement: space.vectors(last.displacement().as_chunks::<3>().0).iter().map(length).collect(),
             mises: stress.iter().map(mises).collect(),
             stress,
             alpha: fields.alpha,
@@ -488,7 +489,7 @@ impl Simulation {
         let zone = |case, scout| first_zone(case, scout).map_err(SessionError::Simulation);
         let (there, here) = (zone(&shorter, found.scout())?, zone(case, scout.as_ref())?);
         if there != here {
-            let size = |zone: &Zone| zone.contact_radius / case.mesh.elements_per_contact_radius as f64;
+            let size = |zone: &Zone| zone.contact_radius / case.mesh.surface_elements() as f64;
             let why = format!(
                 "from the beginning, the longer path would have another mesh: fine to {:.4} R, with elements of {:.5} R, and its run is on one \
                  fine to {:.4} R, with elements of {:.5} R. Compute it in another directory, or with --force; mesh.contact_radius and \

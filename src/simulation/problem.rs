@@ -88,7 +88,7 @@ const UNLIKE_PLASTIC: f64 = 30.0;
 /// Steps of a first press: as many as the case says, or else as go with its elements along the
 /// contact radius.
 pub fn press_steps(case: &Case) -> usize {
-    let elements = case.mesh.elements_per_contact_radius as f64;
+    let elements = case.mesh.surface_elements() as f64;
     case.solver.press_steps.unwrap_or_else(|| (PRESS_STEPS + PRESS_STEPS_PER_ELEMENT * elements).ceil() as usize)
 }
 
@@ -128,6 +128,7 @@ fn mesh_of(Scaled(case): &Scaled<Case>, zone: &Zone) -> Result<Mesh, MeshError> 
         contact_radius: zone.contact_radius / radius,
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,
         fine_zone: zone.fine_zone,
+        skin_levels: case.mesh.skin_levels(),
     };
     let own = if case.sphere.flat { flat_mesh(&spec(1.0))? } else { sphere_mesh(&spec(1.0))? };
     Ok(match case.opponent {
@@ -190,7 +191,7 @@ impl Problem {
         let opponent = opponent_material(&scaled)?;
         let laws: Vec<&Hardening<f64>> = std::iter::once(&material).chain(&opponent).map(|m| &m.hardening).collect();
         let zone = zone.map_or_else(|| asked_zone(&scaled, &laws), |zone| zone.within(smaller_radius(&scaled)));
-        let elements = case.mesh.elements_per_contact_radius;
+        let elements = case.mesh.surface_elements();
         let mesh = mesh_of(&scaled, &zone)?;
         memory::meshed(mesh.elements.len());
         // Of two spheres it knows R* alone.

@@ -41,6 +41,8 @@ pub fn scout_case(case: &Case) -> Case {
     let (from, to) = (case.mesh.elements_per_contact_radius, scout_elements(case.mesh.elements_per_contact_radius));
     let mut scout = case.clone();
     scout.mesh.elements_per_contact_radius = to;
+    scout.mesh.surface_elements_per_contact_radius =
+        scout.mesh.surface_elements_per_contact_radius.map(|_| to << case.mesh.skin_levels());
     scout.solver.press_steps = Some((press_steps(case) * to).div_ceil(from));
     scout.solver.shear_steps = Some((shear_steps(case) * to).div_ceil(from));
     scout
@@ -58,7 +60,8 @@ pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, Simul
     let asked = Problem::zone_of(&case)?;
     // Elements at the edge are larger here than in the run: a contact that fits there has to fit
     // here.
-    let roomy = Zone { fine_zone: (asked.fine_zone + ROOM / elements as f64).min(LARGEST_FINE_ZONE), ..asked };
+    let roomy =
+        Zone { fine_zone: (asked.fine_zone + ROOM / case.mesh.surface_elements() as f64).min(LARGEST_FINE_ZONE), ..asked };
     let mut problem = Problem::on(&case, Some(roomy))?;
     // Releases and what follows the first part of a shear have no number of steps in the case.
     problem.resolution.coarseness = finer as f64 / elements as f64;
@@ -85,7 +88,7 @@ pub fn scout(case: &Case, stop: &Arc<AtomicBool>) -> Result<Option<Scout>, Simul
 /// [`SimulationError::Hardening`].
 pub fn first_zone(case: &Case, scout: Option<&Scout>) -> Result<Zone, SimulationError> {
     let asked = Problem::zone_of(case)?;
-    let spacing = asked.contact_radius / case.mesh.elements_per_contact_radius as f64;
+    let spacing = asked.contact_radius / case.mesh.surface_elements() as f64;
     Ok(scout.map_or(asked, |scout| scout.zone(asked, spacing)))
 }
 

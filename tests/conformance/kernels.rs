@@ -16,7 +16,10 @@ const BOUND: f32 = 1e-5;
 
 fn meshes() -> [Arc<Mesh>; 2] {
     [4, 8].map(|elements_per_contact_radius| {
-        Arc::new(sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3 }).unwrap())
+        Arc::new(
+            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3, skin_levels: 0 })
+                .unwrap(),
+        )
     })
 }
 

@@ -18,7 +18,9 @@ use std::sync::Arc;
 const CASES: usize = 3;
 
 pub fn mesh() -> Arc<Mesh> {
-    Arc::new(sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap())
+    Arc::new(
+        sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0 }).unwrap(),
+    )
 }
 
 /// Three spheres: elastic, plastic, nearly incompressible.

@@ -369,6 +369,9 @@ pub fn write_geometry<R: DeviceReal>(
 /// their digits far from the origin, and volumes `[point]` of a mesh.
 fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
     let elements = mesh.elements.len();
+    if mesh.hanging.iter().any(|hanging| !hanging.is_none()) {
+        return Err(ComputeError::Device("it does not take meshes that are finer at the surface".to_owned()));
+    }
     let mut coordinates = vec![R::ZERO; COORDINATES * elements];
     let mut volume = vec![R::ZERO; QUADRATURE_POINTS * elements];
     for (e, nodes) in mesh.elements.iter().enumerate() {

@@ -351,7 +351,9 @@ mod tests {
 
     #[test]
     fn forces_and_displacements_are_dual() {
-        let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap();
+        let mesh =
+            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0 })
+                .unwrap();
         for by in [0.0, 0.007, 0.06, -0.03] {
             let interface = PairInterface::new(&mesh, &slid(&mesh, by));
             let n = 3 * mesh.nodes.len();
@@ -376,7 +378,9 @@ mod tests {
 
     #[test]
     fn bodies_that_have_not_slid_meet_in_the_plane() {
-        let mesh = sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3 }).unwrap();
+        let mesh =
+            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0 })
+                .unwrap();
         let interface = PairInterface::new(&mesh, &vec![0.0; 3 * mesh.nodes.len()]);
         let positions: Vec<f64> = mesh.nodes.as_flattened().to_vec();
         for (k, w) in interface.relative(&positions).iter().enumerate() {

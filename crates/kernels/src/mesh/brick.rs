@@ -3,7 +3,7 @@
 
 use super::connectivity::{contact_measures, node_elements};
 use super::hierarchy::{Between, Blocks, ClassMap, Site, hierarchy};
-use super::{Mesh, MeshError};
+use super::{Hanging, Mesh, MeshError};
 
 /// One block of cells along x, y, z.
 struct BrickBlocks([usize; 3]);
@@ -74,6 +74,7 @@ pub fn brick(nx: usize, ny: usize, nz: usize, lengths: [f64; 3]) -> Result<Mesh,
     let (contact_area, contact_size) = contact_measures(&nodes, &contact_faces, &contact_nodes);
     Ok(Mesh {
         node_elements: node_elements(nodes.len(), &elements),
+        hanging: vec![Hanging::NONE; elements.len()],
         nodes,
         elements,
         contact_nodes,

@@ -109,22 +109,45 @@ pub fn face_areas(corners: [[f64; 3]; 4]) -> [f64; 4] {
 /// Tributary area and local element size at each of `contact_nodes`, from all surface `faces`
 /// around them.
 pub fn contact_measures(nodes: &[[f64; 3]], faces: &[[u32; 4]], contact_nodes: &[u32]) -> (Vec<f64>, Vec<f64>) {
-    let mut tributary = vec![0.0; nodes.len()];
-    let mut around = vec![(0.0, 0usize); nodes.len()];
-    for face in faces {
-        let share = face_areas(face.map(|n| nodes[n as usize]));
-        let total: f64 = share.iter().sum();
-        for (&node, part) in face.iter().zip(share) {
-            tributary[node as usize] += part;
-            around[node as usize].0 += total;
-            around[node as usize].1 += 1;
+    const OWN: [[f64; 4]; 4] = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    let mut measures = Measures::new(nodes.len());
+    faces.iter().for_each(|&face| measures.add(face.map(|n| nodes[n as usize]), face, OWN));
+    measures.at(contact_nodes)
+}
+
+/// What the faces of a surface leave at its nodes.
+pub struct Measures {
+    tributary: Vec<f64>,
+    /// Sum of the areas of the faces around a node, and their number.
+    around: Vec<(f64, usize)>,
+}
+
+impl Measures {
+    /// Of no face yet.
+    pub fn new(nodes: usize) -> Self {
+        Self { tributary: vec![0.0; nodes], around: vec![(0.0, 0); nodes] }
+    }
+
+    /// Adds a face by the positions of its corners and the nodes that it names, with the share of
+    /// each node in each corner.
+    pub fn add(&mut self, corners: [[f64; 3]; 4], named: [u32; 4], shares: [[f64; 4]; 4]) {
+        let areas = face_areas(corners);
+        let total: f64 = areas.iter().sum();
+        for (k, &node) in named.iter().enumerate() {
+            let node = node as usize;
+            // A product with one and sums with zero change no bits.
+            self.tributary[node] += (0..4).filter(|&c| shares[c][k] != 0.0).map(|c| shares[c][k] * areas[c]).sum::<f64>();
+            self.around[node].0 += total;
+            self.around[node].1 += 1;
         }
     }
-    contact_nodes
-        .iter()
-        .map(|&n| {
-            let (area, count) = around[n as usize];
-            (tributary[n as usize], (area / count.max(1) as f64).sqrt())
-        })
-        .unzip()
+
+    /// Tributary area and local element size, the root of the mean area around, of nodes.
+    pub fn at(&self, nodes: &[u32]) -> (Vec<f64>, Vec<f64>) {
+        let of = |&n: &u32| {
+            let (area, count) = self.around[n as usize];
+            (self.tributary[n as usize], (area / count.max(1) as f64).sqrt())
+        };
+        nodes.iter().map(of).unzip()
+    }
 }

@@ -64,6 +64,7 @@ pub fn couple(sphere: Mesh, opponent: Mesh) -> Mesh {
     Mesh {
         nodes: [sphere.nodes, opponent.nodes].concat(),
         elements: [sphere.elements, opponent.elements.into_iter().map(|e| e.map(|n| n + nodes_before)).collect()].concat(),
+        hanging: [sphere.hanging, opponent.hanging].concat(),
         node_elements: NodeElements { start, entry },
         contact_nodes: after(sphere.contact_nodes, opponent.contact_nodes),
         contact_faces: [sphere.contact_faces, opponent.contact_faces.into_iter().map(|f| f.map(|n| n + nodes_before)).collect()]
@@ -88,7 +89,7 @@ mod tests {
 
     #[test]
     fn two_bodies_are_one_mesh_that_holds_together_in_itself() {
-        let spec = |a| SphereSpec { contact_radius: a, elements_per_contact_radius: 4, fine_zone: 1.3 };
+        let spec = |a| SphereSpec { contact_radius: a, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0 };
         let (sphere, other) = (sphere_mesh(&spec(0.2)).unwrap(), scaled(sphere_mesh(&spec(0.1)).unwrap(), 2.0));
         let mesh = couple(sphere.clone(), other.clone());
         let parts = mesh.couple.clone().unwrap();

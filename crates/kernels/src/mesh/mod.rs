@@ -13,14 +13,17 @@
 pub mod brick;
 pub mod connectivity;
 pub mod couple;
+pub mod hanging;
 pub mod hierarchy;
 pub mod quality;
 pub mod sphere;
 
 pub use brick::brick;
 pub use couple::{Couple, couple};
+pub use hanging::{Corners, Hanging};
 pub use sphere::{
-    FINE_ZONES, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh, opponent_mesh, sphere_mesh,
+    FINE_ZONES, FINEST_SURFACE, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh, opponent_mesh,
+    sphere_mesh,
 };
 
 /// What is wrong with the description of a mesh, and what to do about it.
@@ -32,6 +35,9 @@ pub enum MeshError {
     /// The number of elements per contact radius is out of range.
     #[error("elements_per_contact_radius = {0} is outside 2 to 32: 16 is a good start")]
     ElementsPerContactRadius(usize),
+    /// The surface would have too many elements per contact radius.
+    #[error("a surface halved {0} times is finer than 64 elements per contact radius: halve it once or twice")]
+    SkinLevels(usize),
     /// The fine zone is out of range.
     #[error("a fine zone of {0} contact radii is outside 1.1 to 3: 1.3 is a good start")]
     FineZone(f64),
@@ -97,8 +103,11 @@ pub struct Half {
 pub struct Mesh {
     /// Reference positions of the nodes.
     pub nodes: Vec<[f64; 3]>,
-    /// Nodes of each element in VTK_HEXAHEDRON order.
+    /// Nodes of each element in VTK_HEXAHEDRON order; where a corner hangs, its carrier (see
+    /// `hanging`). [`Mesh::corners`] has where the corners are.
     pub elements: Vec<[u32; 8]>,
+    /// Corners of each element that hang.
+    pub hanging: Vec<Hanging>,
     /// Elements around each node.
     pub node_elements: NodeElements,
     /// Nodes on the surface that can touch the plane, in increasing order.
@@ -127,6 +136,17 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Reference positions of an element's corners.
+    #[inline]
+    pub fn corners(&self, element: usize) -> [[f64; 3]; 8] {
+        let mut corners = self.elements[element].map(|n| self.nodes[n as usize]);
+        let hanging = self.hanging[element];
+        if !hanging.is_none() {
+            hanging.to_corners(&mut corners);
+        }
+        corners
+    }
+
     /// Number of nodes of the sphere: those of an opponent that deforms come after them.
     pub fn own_nodes(&self) -> usize {
         self.couple.as_ref().map_or(self.nodes.len(), |couple| couple.node)

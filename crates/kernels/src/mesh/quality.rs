@@ -61,7 +61,7 @@ pub fn scaled_jacobian(corners: &[[f64; 3]; 8]) -> f64 {
 
 /// Positions of an element's corners.
 pub fn corners(mesh: &Mesh, element: usize) -> [[f64; 3]; 8] {
-    mesh.elements[element].map(|n| mesh.nodes[n as usize])
+    mesh.corners(element)
 }
 
 /// Volume of the mesh, exact for trilinear elements (2 x 2 x 2 Gauss points).

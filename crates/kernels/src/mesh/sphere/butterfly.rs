@@ -52,6 +52,28 @@ impl Butterfly {
         Self { nx: self.nx / 2, half: true, ..*self }
     }
 
+    /// The same blocks with every cell halved so many times in all directions.
+    pub fn halved(&self, times: usize) -> Self {
+        let [nx, ny, nr, nd] = [self.nx, self.ny, self.nr, self.nd].map(|cells| cells << times);
+        Self { nx, ny, nr, nd, half: self.half }
+    }
+
+    /// The cells of each block along its indices.
+    pub fn cells_of_blocks(&self) -> [(usize, [usize; 3]); 3] {
+        [
+            (BOTTOM, [self.nx, self.ny, self.nd]),
+            (SIDE, [self.perimeter_cells(), self.nr, self.nd]),
+            (CORE, [self.nx, self.ny, self.nr]),
+        ]
+    }
+
+    /// The steps along a block's first two indices to an element's nodes 0 to 3, and 4 to 7.
+    pub fn turn(block: usize) -> [[usize; 2]; 4] {
+        // The sides' (s, r, d) is left-handed, (r, s, d) right-handed: its two first edges are
+        // swapped.
+        if block == SIDE { [[0, 0], [0, 1], [1, 1], [1, 0]] } else { [[0, 0], [1, 0], [1, 1], [0, 1]] }
+    }
+
     /// Of a site of [`Butterfly::right_half`], the node in these blocks.
     pub fn number_of_half(&self, site: Site) -> u32 {
         let [a, b, c] = site.at;
@@ -124,31 +146,6 @@ impl Butterfly {
     pub fn is_left(&self, site: Site) -> bool {
         let cells = if site.block == SIDE { self.perimeter_cells() } else { self.nx };
         if site.block == SIDE { 2 * site.at[0] > cells } else { 2 * site.at[0] < cells }
-    }
-
-    /// Elements in VTK_HEXAHEDRON order, block after block.
-    pub fn elements(&self) -> Vec<[u32; 8]> {
-        let mut elements = Vec::with_capacity(self.element_count());
-        // The sides' (s, r, d) is left-handed, (r, s, d) right-handed: its two first edges are
-        // swapped.
-        let blocks = [
-            (BOTTOM, [self.nx, self.ny, self.nd], [[0, 0], [1, 0], [1, 1], [0, 1]]),
-            (SIDE, [self.perimeter_cells(), self.nr, self.nd], [[0, 0], [0, 1], [1, 1], [1, 0]]),
-            (CORE, [self.nx, self.ny, self.nr], [[0, 0], [1, 0], [1, 1], [0, 1]]),
-        ];
-        for (block, [na, nb, nc], turn) in blocks {
-            for c in 0..nc {
-                for b in 0..nb {
-                    for a in 0..na {
-                        elements.push(std::array::from_fn(|local| {
-                            let [da, db] = turn[local % 4];
-                            self.number(Site { block, at: [a + da, b + db, c + local / 4] })
-                        }));
-                    }
-                }
-            }
-        }
-        elements
     }
 
     /// Faces on the sphere's surface over the centre block and the first `rings` rings,

@@ -16,6 +16,8 @@ const LAYER_GROWTH: f64 = 1.14;
 const SMALLEST_CONTACT: f64 = 0.000_05;
 /// Largest a/R for which a layout is made.
 pub const LARGEST_CONTACT: f64 = 0.65;
+/// Most elements per contact radius at the surface.
+pub const FINEST_SURFACE: usize = 64;
 /// Radii of the finely meshed surface that there may be, in contact radii.
 pub const FINE_ZONES: std::ops::RangeInclusive<f64> = 1.1..=3.0;
 /// Largest distance from the axis to which the fine zone may reach.
@@ -56,6 +58,8 @@ pub struct Layout {
     pub fading_rings: usize,
     /// Distance from the axis, on the sphere, to which the fine zone reaches.
     pub fine_radius: f64,
+    /// Levels of the skin, 0 none (see `skin`).
+    pub skin: usize,
 }
 
 /// Distance from the pole in the stereographic projection of a point of the sphere's surface at the
@@ -100,7 +104,7 @@ impl Layout {
     /// A value out of range.
     pub fn of(spec: &SphereSpec, flat: bool) -> Result<Layout, MeshError> {
         let projected = |rho: f64| if flat { rho } else { stereographic(rho) };
-        let &SphereSpec { contact_radius, elements_per_contact_radius: count, fine_zone } = spec;
+        let &SphereSpec { contact_radius, elements_per_contact_radius: count, fine_zone, .. } = spec;
         if !(SMALLEST_CONTACT..=LARGEST_CONTACT).contains(&contact_radius) {
             return Err(MeshError::ContactRadius(contact_radius));
         }
@@ -109,6 +113,9 @@ impl Layout {
         }
         if !FINE_ZONES.contains(&fine_zone) {
             return Err(MeshError::FineZone(fine_zone));
+        }
+        if count.checked_shl(spec.skin_levels as u32).is_none_or(|finest| finest > FINEST_SURFACE) {
+            return Err(MeshError::SkinLevels(spec.skin_levels));
         }
         let spacing = projected(contact_radius) / count as f64;
         let fine_radius = (fine_zone * contact_radius).min(LARGEST_FINE_RADIUS);
@@ -159,6 +166,29 @@ impl Layout {
             shifts: Vec::new(),
             fading_rings: outer.div_ceil(2),
             fine_radius,
+            skin: spec.skin_levels,
         })
+    }
+
+    /// The layout with every cell halved in all directions, its lines kept.
+    pub fn halved(&self) -> Self {
+        let between = |x: &[f64]| -> Vec<f64> {
+            let mut fine: Vec<f64> = x.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).collect();
+            fine.extend(x.last());
+            fine
+        };
+        Self {
+            m: 2 * self.m,
+            blocks: self.blocks.halved(1),
+            spacing: 0.5 * self.spacing,
+            spread: 2.0 * self.spread,
+            fine_rings: 2 * self.fine_rings,
+            rounding_rings: 2 * self.rounding_rings,
+            fading_rings: 2 * self.fading_rings,
+            radii: between(&self.radii),
+            depths: between(&self.depths),
+            shifts: Vec::new(),
+            ..*self
+        }
     }
 }

@@ -5,16 +5,17 @@ mod butterfly;
 mod entry;
 mod geometry;
 mod layout;
+mod skin;
 #[cfg(test)]
 mod tests;
 
-use super::connectivity::{contact_measures, node_elements, sweep_order};
-use super::hierarchy::{Blocks, hierarchy};
-use super::{Half, Mesh, MeshError};
-use butterfly::Butterfly;
+use super::connectivity::{node_elements, sweep_order};
+use super::hierarchy::hierarchy;
+use super::{Half, Hanging, Mesh, MeshError};
 use geometry::Geometry;
 use layout::Layout;
-pub use layout::{FINE_ZONES, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
+pub use layout::{FINE_ZONES, FINEST_SURFACE, LARGEST_CONTACT, LARGEST_FINE_RADIUS};
+use skin::Skin;
 
 /// Contact is watched this many fine radii from the pole.
 const CONTACT_MARGIN: f64 = 1.3;
@@ -30,6 +31,8 @@ pub struct SphereSpec {
     pub elements_per_contact_radius: usize,
     /// Radius of the finely meshed surface in contact radii, 1.1 to 3; capped at 0.85 sphere radii.
     pub fine_zone: f64,
+    /// How many times the elements at its surface are halved again, in all directions (see `skin`).
+    pub skin_levels: usize,
 }
 
 /// The mesh of half the lower hemisphere.
@@ -38,7 +41,7 @@ pub struct SphereSpec {
 /// A value of `spec` out of range.
 pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
     check(spec)?;
-    Ok(mesh_of(&Layout::new(spec)?.touching_evenly()))
+    Ok(mesh_of(&Layout::new(spec)?))
 }
 
 /// The mesh of the sphere that another, up to ten times smaller, is pressed against: the contact
@@ -47,7 +50,7 @@ pub fn sphere_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
 /// # Errors
 /// A value of `spec` out of range.
 pub fn opponent_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
-    Ok(mesh_of(&Layout::new(spec)?.touching_evenly()))
+    Ok(mesh_of(&Layout::new(spec)?))
 }
 
 /// Refuses contacts that are too small beside the body itself.
@@ -62,7 +65,7 @@ fn check(spec: &SphereSpec) -> Result<(), MeshError> {
 /// A value of `spec` out of range.
 pub fn flat_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
     check(spec)?;
-    Ok(mesh_of(&Layout::of(spec, true)?.touching_evenly()))
+    Ok(mesh_of(&Layout::of(spec, true)?))
 }
 
 /// Number of elements that [`sphere_mesh`] will make, without making them.
@@ -71,49 +74,48 @@ pub fn flat_mesh(spec: &SphereSpec) -> Result<Mesh, MeshError> {
 /// A value of `spec` out of range.
 pub fn element_count(spec: &SphereSpec) -> Result<usize, MeshError> {
     check(spec)?;
-    Ok(Layout::new(spec)?.blocks.element_count())
+    Ok(skin::element_count(&Layout::new(spec)?))
 }
 
-/// The mesh of a layout.
+/// The mesh of a layout, its surface nodes moved so that they touch evenly.
 fn mesh_of(layout: &Layout) -> Mesh {
-    let blocks = layout.blocks;
-    let geometry = Geometry::new(layout);
-    let sites = blocks.sites();
-    let nodes: Vec<[f64; 3]> = sites.iter().map(|&site| geometry.position(site)).collect();
-    let elements = blocks.elements();
-    let elements: Vec<[u32; 8]> = sweep_order(nodes.len(), &elements).into_iter().map(|e| elements[e as usize]).collect();
+    let finest = (0..layout.skin).fold(layout.clone(), |layout, _| layout.halved());
+    mesh_with(layout, &finest.touching_evenly())
+}
+
+/// The mesh of a layout whose nodes lie where those of its finest level do.
+fn mesh_with(layout: &Layout, finest: &Layout) -> Mesh {
+    let (blocks, geometry, skin) = (layout.blocks, Geometry::new(finest), Skin::new(layout));
+    let nodes = skin.positions(&geometry);
+    let (elements, hanging) = skin.elements();
+    let order = sweep_order(nodes.len(), &elements);
+    let elements: Vec<[u32; 8]> = order.iter().map(|&e| elements[e as usize]).collect();
+    let hanging: Vec<Hanging> = order.iter().map(|&e| hanging[e as usize]).collect();
 
     // Rings that can touch: the fine zone and a margin, but never the equator nor its neighbour.
     let reach = layout.radii[layout.fine_rings] * CONTACT_MARGIN;
     let rings = layout.radii.iter().filter(|&&r| r < reach).count().max(layout.fine_rings + 2).min(blocks.nr - 1);
-    let contact_faces = blocks.surface_faces(rings);
-    let mut contact_nodes: Vec<u32> = contact_faces.iter().flatten().copied().collect();
-    contact_nodes.sort_unstable();
-    contact_nodes.dedup();
-    let (contact_area, contact_size) = contact_measures(&nodes, &blocks.surface_faces(blocks.nr), &contact_nodes);
+    let (contact_faces, contact_nodes) = skin.contact(rings);
+    let (contact_area, contact_size) = skin.measures(&nodes).at(&contact_nodes);
 
     let on = |wanted: &dyn Fn(&[f64; 3]) -> bool| -> Vec<u32> {
         (0u32..).zip(&nodes).filter(|(_, x)| wanted(x)).map(|(n, _)| n).collect()
     };
+    let (half_nodes, half_levels) = skin.half();
     Mesh {
         node_elements: node_elements(nodes.len(), &elements),
-        plate_nodes: (0..).zip(&sites).filter(|(_, site)| geometry.is_on_plate(**site)).map(|(n, _)| n).collect(),
+        plate_nodes: (0..).zip(skin.sites()).filter(|(_, site)| geometry.is_on_plate(**site)).map(|(n, _)| n).collect(),
         symmetry_nodes: on(&|x| x[1] == 0.0),
         nodes,
         elements,
+        hanging,
         contact_nodes,
         contact_faces,
         contact_area,
         contact_size,
-        hierarchy: hierarchy(blocks),
-        half: Some(half_of(&blocks)),
+        hierarchy: [skin.prolongations(), hierarchy(blocks)].concat(),
+        half: Some(Half { node: half_nodes, hierarchy: [half_levels, hierarchy(blocks.right_half())].concat() }),
         fine_radius: layout.fine_radius,
         couple: None,
     }
-}
-
-/// The half at x >= 0.
-fn half_of(blocks: &Butterfly) -> Half {
-    let half = blocks.right_half();
-    Half { node: half.sites().into_iter().map(|site| blocks.number_of_half(site)).collect(), hierarchy: hierarchy(half) }
 }

@@ -1,12 +1,12 @@
 use super::butterfly::Butterfly;
 use super::*;
 use crate::mesh::connectivity::{FACES, boundary_faces};
-use crate::mesh::hierarchy::{COARSEST_NODES, Site, coarse_cells};
+use crate::mesh::hierarchy::{Blocks, COARSEST_NODES, Site, coarse_cells};
 use crate::mesh::quality;
 use std::f64::consts::PI;
 
 fn spec(contact_radius: f64, elements_per_contact_radius: usize, fine_zone: f64) -> SphereSpec {
-    SphereSpec { contact_radius, elements_per_contact_radius, fine_zone }
+    SphereSpec { contact_radius, elements_per_contact_radius, fine_zone, skin_levels: 0 }
 }
 
 /// Root mean square and largest relative difference between the area tributary to the nodes closer
@@ -72,33 +72,12 @@ fn elements_are_positive_and_well_shaped_over_the_range() {
     }
 }
 
-/// The layout with every cell halved in all directions, its lines kept.
-fn halved(layout: &Layout) -> Layout {
-    let between = |x: &[f64]| -> Vec<f64> {
-        let mut fine: Vec<f64> = x.windows(2).flat_map(|w| [w[0], 0.5 * (w[0] + w[1])]).collect();
-        fine.extend(x.last());
-        fine
-    };
-    let mut fine = layout.clone();
-    fine.m *= 2;
-    let Butterfly { nx, ny, nr, nd, half } = fine.blocks;
-    fine.blocks = Butterfly { nx: 2 * nx, ny: 2 * ny, nr: 2 * nr, nd: 2 * nd, half };
-    fine.spacing *= 0.5;
-    fine.spread *= 2.0;
-    fine.fine_rings *= 2;
-    fine.rounding_rings *= 2;
-    fine.fading_rings *= 2;
-    fine.radii = between(&layout.radii);
-    fine.depths = between(&layout.depths);
-    fine
-}
-
 #[test]
 fn the_volume_converges_at_second_order() {
     let coarse = Layout::new(&spec(0.2087, 4, 1.3)).unwrap();
-    let error = |layout: &Layout| 1.0 - quality::volume(&mesh_of(layout)) / (PI / 3.0);
-    let middle = halved(&coarse);
-    let errors = [error(&coarse), error(&middle), error(&halved(&middle))];
+    let error = |layout: &Layout| 1.0 - quality::volume(&mesh_with(layout, layout)) / (PI / 3.0);
+    let middle = coarse.halved();
+    let errors = [error(&coarse), error(&middle), error(&middle.halved())];
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
         assert!((1.8..2.2).contains(&order), "{errors:?}");
@@ -319,7 +298,7 @@ fn the_contact_area_enters_evenly() {
     // 1.3 contact radii.
     for (count, all, near) in [(4, 0.05, 0.04), (5, 0.04, 0.03), (8, 0.014, 0.010), (16, 0.004, 0.003), (24, 0.002, 0.0015)] {
         let spec = spec(0.2087, count, 1.3);
-        let ripple = |layout: &Layout, from: f64, to: f64| entry_ripple(&mesh_of(layout), [from * 0.2087, to * 0.2087]);
+        let ripple = |layout: &Layout, from: f64, to: f64| entry_ripple(&mesh_with(layout, layout), [from * 0.2087, to * 0.2087]);
         let spread = Layout::new(&spec).unwrap();
         let chosen = spread.clone().touching_evenly();
         let circles = Layout { spread: 0.0, ..spread.clone() };
