@@ -7,7 +7,7 @@ use asperity::{Case, Simulation};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut case = Case::load("fixtures/cases/ideal.toml".as_ref(), &[])?;
-    case.mesh.elements_per_contact_radius = 5;
+    case.mesh = case.mesh.uniform(5);
     case.solver.error_estimate = false;
     case.path = vec![Segment::Indentation { indentation: 0.01 }];
 

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut base = Case::load("fixtures/cases/ideal.toml".as_ref(), &[])?;
-    base.mesh.elements_per_contact_radius = 4;
+    base.mesh = base.mesh.uniform(4);
     base.solver.error_estimate = false;
     let mut cases = Vec::new();
     for yield_stress in [200.0, 800.0] {

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let out = arguments.next().map(PathBuf::from);
     // Coarse, so that it takes a second.
     let mut case = Case::load(Path::new(&file), &[])?;
-    case.mesh.elements_per_contact_radius = 5;
+    case.mesh = case.mesh.uniform(5);
 
     let mut simulation = Simulation::with(&case, Options { out, earlier: Earlier::Resume, ..Options::default() })?;
     println!("step       h   delta_T      F_N      F_T");

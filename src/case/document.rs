@@ -92,6 +92,22 @@ impl Document {
         Self { root: given(&toml::Value::Table(table.clone())) }
     }
 
+    /// Applies `--set` arguments, in order: see [`Document::set_argument`].
+    pub fn set_arguments(&mut self, arguments: &[String]) -> Result<(), CaseError> {
+        self.will_set(arguments.iter().map(|argument| argument.split('=').next().unwrap_or_default().trim()));
+        arguments.iter().try_for_each(|argument| self.set_argument(argument))
+    }
+
+    /// What goes before setting several dotted keys: the elements of the mesh, set by themselves, are
+    /// those at the surface too, whatever the file has there.
+    pub fn will_set<'a>(&mut self, keys: impl Iterator<Item = &'a str> + Clone) {
+        const INSIDE: &str = "mesh.elements_per_contact_radius";
+        const SURFACE: &str = "mesh.surface_elements_per_contact_radius";
+        if keys.clone().any(|key| key == INSIDE) && !keys.clone().any(|key| key == SURFACE) {
+            self.remove(SURFACE);
+        }
+    }
+
     /// Applies one `--set` argument, `key=value`: see [`Document::set`]. The value is TOML; what is
     /// not valid TOML is a string.
     pub fn set_argument(&mut self, argument: &str) -> Result<(), CaseError> {

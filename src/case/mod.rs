@@ -222,6 +222,11 @@ impl Mesh {
         self.surface_elements_per_contact_radius.unwrap_or(self.elements_per_contact_radius)
     }
 
+    /// The same mesh with so many elements along the contact radius, inside and at the surface.
+    pub fn uniform(&self, elements: usize) -> Self {
+        Self { elements_per_contact_radius: elements, surface_elements_per_contact_radius: None, ..self.clone() }
+    }
+
     /// How many times the elements at the surface are halved.
     pub fn skin_levels(&self) -> usize {
         (self.surface_elements() / self.elements_per_contact_radius.max(1)).max(1).ilog2() as usize

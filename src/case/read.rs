@@ -35,9 +35,7 @@ impl Case {
     /// [`Case::load`] for a text in memory; `file` is the name that errors give.
     pub fn parse(text: &str, file: &str, settings: &[String]) -> Result<Self, CaseError> {
         let mut document = Document::parse(text, file)?;
-        for argument in settings {
-            document.set_argument(argument)?;
-        }
+        document.set_arguments(settings)?;
         Self::from_document(&document)
     }
 
@@ -179,24 +177,33 @@ fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
     Ok(Contact { friction })
 }
 
+/// The elements inside where only those at the surface are given: a fourth, or else a half, of
+/// them, if that is allowed.
+fn inside_of(at_surface: usize) -> Option<usize> {
+    let inside = [4, 2, 1].into_iter().filter(|by| at_surface.is_multiple_of(*by)).map(|by| at_surface / by);
+    inside.into_iter().find(|inside| (4..=32).contains(inside))
+}
+
 fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
     table.only(&["elements_per_contact_radius", "surface_elements_per_contact_radius", "fine_zone", "contact_radius"])?;
     let mut mesh = Mesh::default();
-    if let Some(field) = table.get("elements_per_contact_radius") {
-        mesh.elements_per_contact_radius = field.count(4..=32)?;
+    let inside = table.get("elements_per_contact_radius").map(|field| field.count(4..=32)).transpose()?;
+    let surface = table.get("surface_elements_per_contact_radius");
+    if let Some(elements) = inside {
+        mesh = mesh.uniform(elements);
     }
-    if let Some(field) = table.get("surface_elements_per_contact_radius") {
-        let own = mesh.elements_per_contact_radius;
-        let allowed: Vec<usize> = SKINS.iter().map(|by| by * own).filter(|&n| n <= FINEST_SURFACE).collect();
-        let surface = field.count(4..=FINEST_SURFACE)?;
-        if !allowed.contains(&surface) {
+    if let Some(field) = surface {
+        let at_surface = field.count(4..=FINEST_SURFACE)?;
+        let elements = inside.or_else(|| inside_of(at_surface)).unwrap_or(mesh.elements_per_contact_radius);
+        let allowed: Vec<usize> = SKINS.iter().map(|by| by * elements).filter(|&n| n <= FINEST_SURFACE).collect();
+        if !allowed.contains(&at_surface) {
             let named = allowed.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-            return Err(field.refuse(
-                &format!("elements at the surface are halved a whole number of times, and elements_per_contact_radius is {own}"),
-                &named,
-            ));
+            let problem =
+                format!("{at_surface}, and elements_per_contact_radius is {elements}, which is halved a whole number of times");
+            return Err(field.refuse(&problem, &named));
         }
-        mesh.surface_elements_per_contact_radius = Some(surface);
+        mesh = mesh.uniform(elements);
+        mesh.surface_elements_per_contact_radius = Some(at_surface);
     }
     if let Some(field) = table.get("fine_zone") {
         mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| FINE_ZONES.contains(&ratio))?;

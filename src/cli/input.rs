@@ -45,9 +45,7 @@ impl Input {
         }
         let told = |errors| CliError::Mistakes { errors, text: self.text.clone() };
         let mut document = Document::parse(&self.text, &self.name).map_err(|error| told(vec![error]))?;
-        for argument in settings {
-            document.set_argument(argument)?;
-        }
+        document.set_arguments(settings)?;
         Case::from_document(&document).map_err(|first| match mistakes(&document) {
             // Never empty: the parser has just found one.
             errors if errors.is_empty() => first.into(),
@@ -61,7 +59,7 @@ impl Input {
     /// What the case takes and what there is, with line and key.
     pub fn check_room(&self, case: &Case, settings: &[String]) -> Result<(), CliError> {
         let mut document = Document::parse(&self.text, &self.name)?;
-        settings.iter().try_for_each(|argument| document.set_argument(argument))?;
+        document.set_arguments(settings)?;
         let told = |error| CliError::Mistakes { errors: vec![error], text: self.text.clone() };
         check_room(case, Some(&document), &memory::room()).map_err(told)
     }

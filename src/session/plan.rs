@@ -29,10 +29,14 @@ pub(super) fn plan(case: &Case, computed_on: &Description) -> String {
         Some(Opponent::Deforming { radius: Some(radius), .. }) => format!(" against a sphere of radius {radius} that deforms"),
         Some(Opponent::Deforming { radius: None, .. }) => " against a flat that deforms".to_owned(),
     };
+    let elements = case.mesh.elements_per_contact_radius;
+    let at_surface = match case.mesh.surface_elements() {
+        surface if surface == elements => String::new(),
+        surface => format!(" and {surface} at the surface"),
+    };
     format!(
-        "{}{against}; {friction}; {} elements along the contact radius; on {} in {}",
+        "{}{against}; {friction}; {elements} elements along the contact radius{at_surface}; on {} in {}",
         segments.join(", "),
-        case.mesh.elements_per_contact_radius,
         computed_on.device,
         computed_on.precision
     )

@@ -86,9 +86,9 @@ const UNLIKE_STIFFNESS: f64 = 2.0;
 const UNLIKE_PLASTIC: f64 = 30.0;
 
 /// Steps of a first press: as many as the case says, or else as go with its elements along the
-/// contact radius.
+/// contact radius, inside and at the surface alike.
 pub fn press_steps(case: &Case) -> usize {
-    let elements = case.mesh.surface_elements() as f64;
+    let elements = (case.mesh.elements_per_contact_radius as f64 * case.mesh.surface_elements() as f64).sqrt();
     case.solver.press_steps.unwrap_or_else(|| (PRESS_STEPS + PRESS_STEPS_PER_ELEMENT * elements).ceil() as usize)
 }
 

@@ -221,6 +221,8 @@ fn check_all(base: &Document, sweep: &Sweep, count: usize, file: &str) -> Result
         let values: Vec<String> = chosen.iter().map(|entry| entry.map_or(String::new(), |entry| plain(&entry.value))).collect();
         let combination = || describe(keys.iter().map(|key| key.name.as_str()).zip(values.iter().map(String::as_str)));
         let mut document = base.clone();
+        let named = keys.iter().zip(&chosen).filter(|(_, entry)| entry.is_some());
+        document.will_set(named.map(|(key, _)| key.name.as_str()));
         let set = order.iter().filter_map(|&key| Some((&keys[key], chosen[key]?))).try_for_each(|(key, entry)| {
             let SweepKey { name, told } = key;
             let refuse = |what: String| not_allowed(&entry.place, told, &what, "a dotted key of the case");

@@ -5,11 +5,14 @@ use serde::Serialize;
 use super::VerifyError;
 use super::equator::Equator;
 use super::sphere::History;
-use crate::case::{Case, Mesh};
+use crate::case::Case;
 use crate::compute::{CaseModel, Compute, ComputeError, Description};
 use crate::output::Recorder;
 use crate::simulation::drive::{Drive, Ending};
 use crate::simulation::problem::Problem;
+
+/// Elements along the contact radius at the fine level.
+const FINE: usize = 16;
 
 /// Makes the backend on which a case is computed.
 pub type BackendFactory<'a> = dyn FnMut(Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> + 'a;
@@ -45,12 +48,11 @@ impl<'a> Runner<'a> {
         self.computed_on.as_ref()
     }
 
-    /// Elements along the contact radius: `quick`, or at the fine level at least as many as a case
-    /// has by default.
+    /// Elements along the contact radius: `quick`, or at the fine level at least [`FINE`].
     pub fn elements(&self, quick: usize) -> usize {
         match self.level {
             Level::Quick => quick,
-            Level::Fine => quick.max(Mesh::default().elements_per_contact_radius),
+            Level::Fine => quick.max(FINE),
         }
     }
 

@@ -43,7 +43,7 @@ pub fn sphere(poissons_ratio: f64, hardening: Hardening, friction: f64, elements
         sphere: Sphere { radius: RADIUS, flat: false },
         material: Material { youngs_modulus: YOUNGS_MODULUS, poissons_ratio, hardening },
         contact: Contact { friction: Friction::Coefficient(friction) },
-        mesh: Mesh { elements_per_contact_radius: elements, ..Mesh::default() },
+        mesh: Mesh::default().uniform(elements),
         solver: Solver::default(),
         output: Output { fields: Fields::None, plots: false, ..Output::default() },
         units: UnitLabels::default(),

@@ -50,7 +50,7 @@ pub fn protocol(case: &Case, parameters: &ContactParameters, elements: usize) ->
         .into_iter()
         .map(|(name, path)| {
             let mut case = case.clone();
-            case.mesh.elements_per_contact_radius = elements;
+            case.mesh = case.mesh.uniform(elements);
             case.mesh.contact_radius = None;
             case.solver.error_estimate = false;
             case.output.fields = Fields::None;

@@ -133,7 +133,7 @@ fn displacements(slip: f64, end: f64) -> Vec<f64> {
 fn press(case: &Case) -> Result<NormalState, LawError> {
     let mut case = case.clone();
     case.path.truncate(1);
-    case.mesh.elements_per_contact_radius = case.mesh.elements_per_contact_radius.min(PRESS_ELEMENTS);
+    case.mesh = case.mesh.uniform(case.mesh.elements_per_contact_radius.min(PRESS_ELEMENTS));
     let mut recorder = Recorder::new(&case, None);
     match follow(Problem::new(&case)?, None, &mut |problem| on_cpu(problem), &mut recorder)?.ending {
         Ending::Done => {}

@@ -84,7 +84,7 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
 /// by half.
 pub fn case_of(case: &Case, elements: usize) -> Case {
     let mut case = case.clone();
-    case.mesh.elements_per_contact_radius = elements;
+    case.mesh = case.mesh.uniform(elements);
     case.mesh.contact_radius = None;
     case.solver.error_estimate = false;
     case.output.fields = crate::case::Fields::None;
