@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """How far F_T and F_N of runs are from the limit of fine meshes and short steps, and how often their own errors cover it.
 
-    cargo build --release && python3 benches/limits/measure.py OUT [--meshes 8,12] [--reference 16] [--cases 14] [--program PATH]
+    cargo build --release && python3 benches/limits/measure.py OUT [--meshes 8,12,8/16] [--reference 16] [--cases 14] [--program PATH]
 
 Fourteen contacts, pressed and sheared to full slip, on the given meshes and on the reference mesh, of which the columns
-F_T_limit and F_N_limit are taken for the truth. Rows count from a tenth of the greatest indentation on; errors are in
+F_T_limit and F_N_limit are taken for the truth. A mesh is given by its elements along the contact radius, 8/16 has 16 at
+the surface and 8 inside. Rows count from a tenth of the greatest indentation on; errors are in
 per cent of the greatest F_N and F_T. What was computed before is taken from OUT. Ten minutes of processor time.
 Standard library only.
 """
@@ -50,7 +51,14 @@ def run(program, out, settings):
         case = ROOT / "fixtures/cases/ideal.toml"
         subprocess.run([program, "run", case, "--out", out, "--force", "-q", "--threads", "1", *sets], check=True)
     with (out / "history.csv").open() as file:
-        return [{key: float(value) if value else None for key, value in row.items()} for row in csv.DictReader(file)]
+        rows = [{key: float(value) if value else None for key, value in row.items()} for row in csv.DictReader(file)]
+    return rows, json.loads((out / "summary.json").read_text())["cpu_s"]
+
+
+def mesh(name):
+    """The settings of a mesh by its name, 8 or 8/16."""
+    keys = ["mesh.elements_per_contact_radius", "mesh.surface_elements_per_contact_radius"]
+    return [f"{key}={elements}" for key, elements in zip(keys, name.split("/"))]
 
 
 def curve(rows, segment, name):
@@ -102,22 +110,23 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("out", type=Path)
     parser.add_argument("--meshes", default="8,12")
-    parser.add_argument("--reference", type=int, default=16)
+    parser.add_argument("--reference", default="16")
     parser.add_argument("--cases", type=int, default=len(CASES))
     parser.add_argument("--program", default=ROOT / "target/release/asperity")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    print("| case | elements | F_N | F_N_limit | F_T | F_T_limit | F_N covered | F_T covered | estimate over error: F_N | F_T |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    print("| case | elements | F_N | F_N_limit | F_T | F_T_limit | F_N covered | F_T covered | estimate over error: F_N | F_T | CPU s |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
     total = {"F_N": [], "F_T": []}
     for i, (name, settings) in enumerate(list(CASES.items())[:options.cases]):
-        mesh = "mesh.elements_per_contact_radius="
-        reference = run(options.program, options.out / f"{i}-{options.reference}", [*settings, f"{mesh}{options.reference}"])
-        for n in map(int, options.meshes.split(",")):
-            found = missing(run(options.program, options.out / f"{i}-{n}", [*settings, f"{mesh}{n}"]), reference)
+        place = lambda name: options.out / f"{i}-{name.replace('/', '-')}"
+        reference, _ = run(options.program, place(options.reference), [*settings, *mesh(options.reference)])
+        for n in options.meshes.split(","):
+            rows, seconds = run(options.program, place(n), [*settings, *mesh(n)])
+            found = missing(rows, reference)
             (held_n, over_n), (held_t, over_t) = cover(found["F_N"]), cover(found["F_T"])
             lacking = [cell([row[kind] for row in found[key]]) for key in ("F_N", "F_T") for kind in (0, 1)]
-            print(f"| {name} | {n} | {' | '.join(lacking)} | {held_n} | {held_t} | {over_n:.1f} | {over_t:.1f} |", flush=True)
+            print(f"| {name} | {n} | {' | '.join(lacking)} | {held_n} | {held_t} | {over_n:.1f} | {over_t:.1f} | {seconds:.1f} |", flush=True)
             for key, rows in found.items():
                 total[key] += rows
     for key, rows in total.items():

@@ -54,8 +54,15 @@ pub fn ranges() -> String {
     )
 }
 
+/// Elements along the contact radius.
+#[derive(Clone, Copy, Debug)]
+pub struct Elements {
+    pub inside: usize,
+    pub at_surface: usize,
+}
+
 /// Case number `index` of a seed, as a case file; the same as long as the ranges are.
-pub fn case_text(seed: u64, index: usize, elements: usize, against: Against) -> String {
+pub fn case_text(seed: u64, index: usize, mesh: Elements, against: Against) -> String {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
     draw.0.set_stream(index as u64);
     let radius = draw.logarithmic([1e-3, 1e3]);
@@ -110,7 +117,8 @@ pub fn case_text(seed: u64, index: usize, elements: usize, against: Against) -> 
         .collect();
     format!(
         "[sphere]\nradius = {radius:?}\n{body}[material]\nyoungs_modulus = {modulus:?}\npoissons_ratio = {nu:?}\n[material.hardening]\n{hardening}\n\
-         [contact]\nfriction = {friction}\n{opponent}[mesh]\nelements_per_contact_radius = {elements}\n{segments}"
+         [contact]\nfriction = {friction}\n{opponent}[mesh]\nelements_per_contact_radius = {}\nsurface_elements_per_contact_radius = {}\n{segments}",
+        mesh.inside, mesh.at_surface
     )
 }
 

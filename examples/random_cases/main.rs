@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Parser;
 use rayon::prelude::*;
 
-use generator::{Against, case_text, ranges};
+use generator::{Against, Elements, case_text, ranges};
 use measure::{Measured, measure, summary};
 
 #[derive(Parser)]
@@ -33,6 +33,9 @@ struct Args {
     /// Elements along the contact radius.
     #[arg(long, default_value_t = 5)]
     elements: usize,
+    /// The same at the surface: once, twice, four or eight times as many; by default as many.
+    #[arg(long)]
+    surface: Option<usize>,
     /// Against a plane alone, instead of against all opponents in turn.
     #[arg(long)]
     plane: bool,
@@ -65,8 +68,9 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         (.., true) => Against::Unlike,
         _ => Against::of(index),
     };
+    let elements = Elements { inside: args.elements, at_surface: args.surface.unwrap_or(args.elements) };
     if let Some(index) = args.only {
-        print!("{}", case_text(args.seed, index, args.elements, against(index)));
+        print!("{}", case_text(args.seed, index, elements, against(index)));
         return Ok(ExitCode::SUCCESS);
     }
     rayon::ThreadPoolBuilder::new().num_threads(args.threads).build_global()?;
@@ -77,7 +81,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         .into_par_iter()
         .with_max_len(1)
         .map(|index| {
-            let measured = measure(args.seed, index, args.elements, against(index));
+            let measured = measure(args.seed, index, elements, against(index));
             println!("{measured}");
             ready.fetch_add(1, Ordering::Relaxed);
             measured

@@ -14,7 +14,7 @@ use asperity::internals::simulation::record::StepRecord;
 use asperity::internals::simulation::scout::scout;
 use serde::Serialize;
 
-use crate::generator::{Against, case_text};
+use crate::generator::{Against, Elements, case_text};
 
 /// How a case went.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -115,7 +115,7 @@ impl Observer for Watch {
 }
 
 /// Runs case `index` of `seed`.
-pub fn measure(seed: u64, index: usize, elements: usize, against: Against) -> Measured {
+pub fn measure(seed: u64, index: usize, elements: Elements, against: Against) -> Measured {
     let text = case_text(seed, index, elements, against);
     let mut measured = Measured { seed, index, on_plane: against == Against::Plane, ..Measured::default() };
     let begun = Instant::now();

@@ -1,0 +1,129 @@
+//! A surface that is meshed finer than the inside: against uniform meshes as fine as either, with
+//! every opponent; where the contact leaves it; interrupted and gone on with.
+#![cfg(unix)]
+
+mod common;
+
+use asperity::case::Case;
+use asperity::internals::simulation::drive::Ending;
+use asperity::internals::simulation::follow::{follow, on_cpu};
+use asperity::internals::simulation::problem::Problem;
+use asperity::output::{Recorder, StepRecord, Summary, read_history};
+use common::{Scratch, difference, stderr};
+
+const IDEAL: &str = include_str!("../fixtures/cases/ideal.toml");
+const MESH: &str = "mesh.elements_per_contact_radius";
+const SURFACE: &str = "mesh.surface_elements_per_contact_radius";
+
+/// The rows of a case with these settings, which is done.
+fn rows(text: &str, settings: &[String]) -> Vec<StepRecord> {
+    let case = Case::parse(text, "case.toml", settings).unwrap_or_else(|error| panic!("{error}"));
+    let mut recorder = Recorder::new(&case, None);
+    let followed = follow(Problem::new(&case).expect("a problem"), None, &mut |problem| on_cpu(problem), &mut recorder);
+    assert_eq!(followed.expect("no failure of the program").ending, Ending::Done, "{settings:?}");
+    assert!(recorder.rows.iter().all(|row| row.relaxed == 0), "{settings:?}");
+    recorder.rows
+}
+
+fn on(inside: usize, at_surface: usize) -> Vec<String> {
+    vec![format!("{MESH}={inside}"), format!("{SURFACE}={at_surface}"), "solver.error_estimate=false".to_owned()]
+}
+
+/// F_N before the shear, and F_T at shares of a displacement before the first slip is over.
+fn forces(rows: &[StepRecord], delta_t: f64) -> [f64; 4] {
+    let pressed = rows.iter().rev().find(|row| row.segment == 0).expect("a press");
+    let shear: Vec<&StepRecord> = std::iter::once(pressed).chain(rows.iter().filter(|row| row.segment == 1)).collect();
+    let at = |d: f64| {
+        let k = shear.partition_point(|row| row.delta_t < d).clamp(1, shear.len() - 1);
+        let (a, b) = (shear[k - 1], shear[k]);
+        a.f_t + (b.f_t - a.f_t) * (d - a.delta_t) / (b.delta_t - a.delta_t)
+    };
+    [pressed.f_n, at(0.3 * delta_t), at(0.6 * delta_t), at(delta_t)]
+}
+
+/// What the fine surface is for: F_T of a mesh that is coarse inside is that of one as fine as the
+/// surface, and not that of one as coarse as the inside.
+#[test]
+fn f_t_is_that_of_the_surface_with_every_opponent() {
+    let opponents: [(&str, &[&str]); 5] = [
+        ("a plane", &[]),
+        ("a rigid sphere", &["opponent={rigid=true, radius=2.0}"]),
+        ("an equal sphere", &["opponent={equal=true}"]),
+        (
+            "a larger sphere",
+            &["opponent={radius=1.5, material={youngs_modulus=300e3, poissons_ratio=0.3, hardening={law=\"elastic\"}}}"],
+        ),
+        ("a flat", &["opponent={flat=true, material={youngs_modulus=300e3, poissons_ratio=0.3, hardening={law=\"elastic\"}}}"]),
+    ];
+    for (name, more) in opponents {
+        let of = |inside: usize, at_surface: usize| {
+            let path = ["path.0.indentation=0.01".to_owned(), "path.1.shear=0.002".to_owned()];
+            let settings = [on(inside, at_surface), path.to_vec(), more.iter().map(|s| (*s).to_owned()).collect()].concat();
+            forces(&rows(IDEAL, &settings), 0.001)
+        };
+        let (coarse, skin, fine) = (of(4, 4), of(4, 8), of(8, 8));
+        let off = |x: &[f64; 4]| -> f64 { (1..4).map(|k| (x[k] / fine[k] - 1.0).powi(2)).sum::<f64>().sqrt() };
+        println!("{name}: {coarse:.4?} {skin:.4?} {fine:.4?}: {:.4} {:.4}", off(&coarse), off(&skin));
+        assert!(off(&skin) < 0.5 * off(&coarse), "{name}: F_T {skin:?}, uniform {coarse:?} and {fine:?}");
+        assert!((skin[0] / fine[0] - 1.0).abs() < 0.03, "{name}: F_N {} and {}", skin[0], fine[0]);
+    }
+}
+
+#[test]
+fn a_contact_that_leaves_the_fine_surface_starts_over_on_a_larger_one() {
+    let narrow = [on(4, 16), vec!["mesh.contact_radius=0.1".to_owned(), "mesh.fine_zone=1.1".to_owned()]].concat();
+    let (case, wide) = (Case::parse(IDEAL, "", &narrow).expect("a case"), rows(IDEAL, &on(4, 16)));
+    let narrow = rows(IDEAL, &narrow);
+    let zone = 1.1 * case.mesh.contact_radius.expect("given");
+    let last = narrow.last().expect("rows");
+    assert!(last.reach > 1.5 * zone, "{} against {zone}", last.reach);
+    assert!((last.f_t / wide.last().expect("rows").f_t - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn a_run_with_a_fine_surface_goes_on_to_the_same_bits() {
+    let text = format!("{IDEAL}\n[mesh]\nelements_per_contact_radius = 4\nsurface_elements_per_contact_radius = 8\n");
+    let scratch = Scratch::new(&text, &["--device", "cpu"]);
+    let whole = scratch.run("whole", &[]);
+    assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
+    assert!(stderr(&whole).contains("4 elements along the contact radius and 8 at the surface"), "{}", stderr(&whole));
+    // Broken off by a file that cannot be written any more is a case of its own; here the process
+    // is told to stop.
+    let mut child =
+        common::program().args(scratch.args("out", &[])).stderr(std::process::Stdio::null()).spawn().expect("it runs");
+    let out = scratch.path("out");
+    while read_history(&out.join("history.csv")).map_or(0, |rows| rows.len()) < 8 {
+        assert_eq!(child.try_wait().expect("a child"), None, "it ends before it is stopped");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    rustix::process::kill_process(rustix::process::Pid::from_child(&child), rustix::process::Signal::TERM)
+        .expect("a signal is sent");
+    assert_eq!(child.wait().expect("it ends").code(), Some(75));
+    let resumed = scratch.run("out", &["--resume"]);
+    assert_eq!(resumed.status.code(), Some(0), "{}", stderr(&resumed));
+    assert_eq!(difference(&out, &scratch.path("whole")), None);
+    let summary = Summary::read(&out.join("summary.json")).expect("a summary");
+    assert!(summary.f_t_max_limit.is_some(), "it has a companion");
+    // Points that hang are drawn: every cell of the VTU has its volume.
+    let fields = std::fs::read_dir(out.join("fields")).expect("fields").count();
+    assert!(fields > 0);
+}
+
+#[test]
+fn elements_set_by_themselves_are_those_at_the_surface_too() {
+    let text = format!("{IDEAL}\n[mesh]\nelements_per_contact_radius = 6\nsurface_elements_per_contact_radius = 24\n");
+    let mesh = |text: &str, settings: &[&str]| {
+        let settings: Vec<String> = settings.iter().map(|s| (*s).to_owned()).collect();
+        let mesh = Case::parse(text, "", &settings).unwrap_or_else(|error| panic!("{error}")).mesh;
+        (mesh.elements_per_contact_radius, mesh.surface_elements())
+    };
+    assert_eq!(mesh(&text, &[]), (6, 24));
+    assert_eq!(mesh(&text, &["mesh.elements_per_contact_radius=8"]), (8, 8));
+    assert_eq!(mesh(&text, &["mesh.elements_per_contact_radius=8", "mesh.surface_elements_per_contact_radius=16"]), (8, 16));
+    assert_eq!(mesh(&text, &["mesh.surface_elements_per_contact_radius=12", "mesh.elements_per_contact_radius=12"]), (12, 12));
+    assert_eq!(mesh(IDEAL, &["mesh.surface_elements_per_contact_radius=32"]), (8, 32));
+    assert_eq!(mesh(IDEAL, &["mesh.surface_elements_per_contact_radius=10"]), (5, 10));
+    let error =
+        Case::parse(&text, "case.toml", &["mesh.surface_elements_per_contact_radius=16".to_owned()]).unwrap_err().to_string();
+    assert!(error.contains("6, 12, 24, 48"), "{error}");
+}
