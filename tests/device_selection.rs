@@ -35,12 +35,19 @@ fn message(selected: Result<Selected, ComputeError>) -> String {
     }
 }
 
+/// Notes that f32 means mixed; there are no others.
+fn told_of_f32(selected: &Selected) -> usize {
+    assert!(selected.notes.iter().all(|note| note.contains("f32 means mixed")), "{:?}", selected.notes);
+    selected.notes.len()
+}
+
 #[test]
 fn the_cpu_is_what_was_asked_for() {
-    for (choice, precision) in [(PrecisionChoice::Auto, "f64"), (PrecisionChoice::F64, "f64"), (PrecisionChoice::F32, "f32")] {
+    for choice in [PrecisionChoice::Auto, PrecisionChoice::F64, PrecisionChoice::Mixed, PrecisionChoice::F32] {
         let selected = select(DeviceChoice::Cpu, choice, models()).unwrap();
-        assert!(selected.notes.is_empty() && selected.backend.description().device.starts_with("CPU"));
-        assert_eq!(selected.backend.description().precision, precision);
+        assert_eq!(told_of_f32(&selected), usize::from(choice == PrecisionChoice::F32), "{:?}", selected.notes);
+        assert!(selected.backend.description().device.starts_with("CPU"));
+        assert_eq!(selected.backend.description().precision, "f64");
     }
 }
 
@@ -53,19 +60,21 @@ fn a_bad_batch_is_no_fault_of_the_device() {
     let refused = |s: Result<Selected, _>| matches!(s, Err(ComputeError::Connectivity { case: 1 }));
     assert!(refused(select(DeviceChoice::Cpu, PrecisionChoice::Auto, bad.clone())));
     let Some(context) = device("a_bad_batch_is_no_fault_of_the_device", Precision::F32) else { return };
-    assert!(refused(select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, bad)));
+    assert!(refused(select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::Mixed, bad)));
 }
 
 #[test]
 fn the_device_is_named_with_its_precision() {
     let name = "the_device_is_named_with_its_precision";
-    for (choice, precision) in [(PrecisionChoice::Auto, "f64"), (PrecisionChoice::F32, "f32")] {
+    for choice in [PrecisionChoice::Auto, PrecisionChoice::Mixed, PrecisionChoice::F32] {
         let Some(context) = device(name, Precision::F64) else { return };
         let adapter = context.adapter().name.clone();
         let mut selected = select_on(Ok(Some(context)), DeviceChoice::Gpu, choice, models()).unwrap();
         let description = selected.backend.description();
-        assert!(description.device.contains(&adapter) && description.precision == precision, "{description:?}");
-        assert!(selected.notes.is_empty() && force(selected.backend.as_mut()).is_ok());
+        assert!(description.device.contains(&adapter) && description.precision == "f64", "{description:?}");
+        assert_eq!(description.device.contains("residuals on the CPU"), choice != PrecisionChoice::Auto);
+        assert_eq!(told_of_f32(&selected), usize::from(choice == PrecisionChoice::F32));
+        assert!(force(selected.backend.as_mut()).is_ok());
     }
 }
 
@@ -91,13 +100,13 @@ fn a_budget_too_small_is_the_cpus_turn_or_an_error() {
     for (budget, what) in [(1000, "device memory"), (28_000, "an evaluation of one case")] {
         let Some(context) = device(name, Precision::F32) else { return };
         let context = context.with_budget(budget);
-        let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, models()).unwrap();
+        let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::Mixed, models()).unwrap();
         assert!(selected.backend.description().device.starts_with("CPU"));
         let [note] = &selected.notes[..] else { panic!("{:?}", selected.notes) };
         assert!(note.contains("ASPERITY_GPU_MEMORY") && note.contains("the CPU was taken instead"), "{note}");
         assert!(force(selected.backend.as_mut()).is_ok());
         let Some(context) = device(name, Precision::F32) else { return };
-        let text = message(select_on(Ok(Some(context.with_budget(budget))), DeviceChoice::Gpu, PrecisionChoice::F32, models()));
+        let text = message(select_on(Ok(Some(context.with_budget(budget))), DeviceChoice::Gpu, PrecisionChoice::Mixed, models()));
         assert!(text.contains("ASPERITY_GPU_MEMORY") && text.contains(what), "{text}");
     }
 }
@@ -116,7 +125,7 @@ fn a_device_lost_before_its_first_step_is_the_cpus_turn() {
     let name = "a_device_lost_before_its_first_step_is_the_cpus_turn";
     let Some(context) = device(name, Precision::F32) else { return };
     context.destroy();
-    let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, models()).unwrap();
+    let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::Mixed, models()).unwrap();
     assert!(selected.notes.len() == 1 && selected.notes[0].contains("failed"), "{:?}", selected.notes);
     assert!(force(selected.backend.as_mut()).is_ok());
 }

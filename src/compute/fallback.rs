@@ -7,7 +7,7 @@ use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest, Outcome,
-    TangentRequest, TrialRequest,
+    TangentRequest,
 };
 
 /// A device with a copy of every committed state on the host, and the CPU in waiting.
@@ -139,11 +139,6 @@ impl Compute for Fallback {
 
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
         self.call(|backend| backend.contact(requests))?;
-        self.knows(requests.iter().map(|request| request.case))
-    }
-
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        self.call(|backend| backend.trial(requests))?;
         self.knows(requests.iter().map(|request| request.case))
     }
 

@@ -4,7 +4,6 @@ use super::iterate::{Answer, Ask, IterateRequest, Keeps, Plate};
 use super::linear::LinearRequest;
 use super::{
     Blocks, CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
-    TrialRequest,
 };
 use crate::contact::coulomb::Rows;
 
@@ -18,8 +17,6 @@ pub trait Evaluate {
     fn tangent(&mut self, displacement: &[f64], blocks: Blocks<'_>) -> Result<Outcome, ComputeError>;
     /// Contact conditions at a trial displacement with its internal forces.
     fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError>;
-    /// Internal forces at a trial displacement, and the contact conditions with them.
-    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError>;
     /// Linear systems with the tangent, where the backend solves them; the case is this one,
     /// whatever the request says.
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError>;
@@ -59,12 +56,6 @@ impl Evaluate for CaseHandle<'_> {
 
     fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError> {
         self.backend.contact(&mut [ContactRequest { case: self.case, displacement, force, rows }])
-    }
-
-    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError> {
-        let mut request = [TrialRequest { case: self.case, displacement, force, rows, outcome: Outcome::Valid }];
-        self.backend.trial(&mut request)?;
-        Ok(request[0].outcome)
     }
 
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError> {

@@ -8,7 +8,7 @@ use super::linear::LinearRequest;
 use super::traffic::Traffic;
 use super::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest,
-    TangentRequest, TrialRequest,
+    TangentRequest,
 };
 
 /// The environment variable of the hook, which only builds with debug assertions look at, those of
@@ -71,11 +71,6 @@ impl Compute for LostAfter {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
         self.lose_if_due();
         self.backend.tangent(requests)
-    }
-
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        self.lose_if_due();
-        self.backend.trial(requests)
     }
 
     fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {

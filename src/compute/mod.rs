@@ -212,22 +212,6 @@ pub struct ContactRequest<'a> {
     pub rows: &'a mut [Rows<f64>],
 }
 
-/// Asks for the internal forces of one case and the contact conditions with them.
-#[derive(Debug)]
-pub struct TrialRequest<'a> {
-    /// Case index in the batch.
-    pub case: usize,
-    /// Trial displacement, three a node.
-    pub displacement: &'a [f64],
-    /// Receives dW/du, three a node.
-    pub force: &'a mut [f64],
-    /// Receives the rows of each of the mesh's contact nodes; they mean nothing if the outcome is
-    /// not [`Outcome::Valid`].
-    pub rows: &'a mut [Rows<f64>],
-    /// Receives how it went.
-    pub outcome: Outcome,
-}
-
 /// Asks to make a trial displacement the committed state of one case.
 #[derive(Debug)]
 pub struct CommitRequest<'a> {
@@ -350,26 +334,6 @@ pub trait Compute: Send {
     fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError>;
     /// Contact conditions.
     fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError>;
-    /// Internal forces and contact conditions at once.
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        let mut forces: Vec<_> = requests
-            .iter_mut()
-            .map(|TrialRequest { case, displacement, force, .. }| ForceRequest {
-                case: *case,
-                displacement,
-                force,
-                outcome: Outcome::Valid,
-            })
-            .collect();
-        self.internal_force(&mut forces)?;
-        let outcomes: Vec<Outcome> = forces.iter().map(|request| request.outcome).collect();
-        requests.iter_mut().zip(outcomes).for_each(|(request, outcome)| request.outcome = outcome);
-        let valid = requests.iter_mut().filter(|request| request.outcome == Outcome::Valid);
-        let mut contacts: Vec<_> = valid
-            .map(|TrialRequest { case, displacement, force, rows, .. }| ContactRequest { case: *case, displacement, force, rows })
-            .collect();
-        self.contact(&mut contacts)
-    }
     /// Tangents, and the solutions of linear systems with them, both staying where they are
     /// computed. A backend that solves none leaves the requests as [`linear::Ended::NotTried`].
     fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {

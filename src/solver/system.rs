@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::opponent::Opponent;
-use super::opponent::plane::{Plane, take_rows};
+use super::opponent::plane::Plane;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::{Control, Worst};
 use crate::compute::handle::Evaluate;
@@ -114,25 +114,13 @@ impl Trial {
         times: &mut PhaseTimes,
     ) -> Result<Outcome, ComputeError> {
         let mut lap = Lap::start();
-        let over_plane = boundary.opponent.is_plane();
-        let outcome = if over_plane {
-            case.trial(&self.u, &mut self.force, &mut self.rows)?
-        } else {
-            case.internal_force(&self.u, &mut self.force)?
-        };
+        let outcome = case.internal_force(&self.u, &mut self.force)?;
         lap.end(times, Phase::Force);
         if outcome != Outcome::Valid {
             self.merit = f64::INFINITY;
             return Ok(outcome);
         }
-        if !over_plane {
-            return self.assess(case, boundary, control, times);
-        }
-        let mesh = case.model().mesh.clone();
-        take_rows(self, &mesh, boundary);
-        self.finish(boundary, control);
-        lap.end(times, Phase::Contact);
-        Ok(self.finite(&mesh))
+        self.assess(case, boundary, control, times)
     }
 
     /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces

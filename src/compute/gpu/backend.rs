@@ -20,7 +20,7 @@ use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies,
-    ForceRequest, Outcome, TangentRequest, TrialRequest,
+    ForceRequest, Outcome, TangentRequest,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Rows, Status};
 use crate::contact::plane::slip;
@@ -188,21 +188,6 @@ impl<R: DeviceReal> Compute for Gpu<R> {
                 request.outcome = outcomes[slot];
                 let n = request.force.len();
                 request.force.iter_mut().zip(&force[slot * n..]).for_each(|(out, f)| *out = f.to_f64());
-            }
-        }
-        Ok(())
-    }
-
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
-            let answers = self.batch()?.trial(&dispatch, &increments)?;
-            for (slot, &i) in dispatch.requests.iter().enumerate() {
-                let request = &mut requests[i];
-                request.outcome = answers.outcomes[slot];
-                let n = request.force.len();
-                request.force.iter_mut().zip(&answers.force[slot * n..]).for_each(|(out, f)| *out = f.to_f64());
-                read_rows(slot, &answers.rows, &answers.status, &self.models[request.case].mesh, request.rows);
             }
         }
         Ok(())

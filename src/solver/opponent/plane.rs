@@ -68,7 +68,7 @@ impl Opponent for Plane {
 
 /// Takes over the rows that the backend has stated over a plane: those of points that slide without
 /// friction are stated here, and all stand in the residual.
-pub fn take_rows(trial: &mut Trial, mesh: &Mesh, boundary: &Boundary) {
+fn take_rows(trial: &mut Trial, mesh: &Mesh, boundary: &Boundary) {
     for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free) {
         let node = mesh.contact_nodes[i];
         let base = 3 * node as usize;

@@ -47,10 +47,6 @@ impl Evaluate for Guesser<'_> {
         self.cpu.contact(displacement, force, rows)
     }
 
-    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError> {
-        self.cpu.trial(displacement, force, rows)
-    }
-
     fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError> {
         self.cpu.linear(request)
     }

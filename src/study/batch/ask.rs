@@ -11,7 +11,6 @@ use crate::contact::coulomb::Rows;
 /// What a case asks for, and the answer when it comes back.
 pub(super) enum Ask {
     Force { displacement: Vec<f64>, force: Vec<f64>, outcome: Outcome },
-    Trial { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>>, outcome: Outcome },
     Contact { displacement: Vec<f64>, force: Vec<f64>, rows: Vec<Rows<f64>> },
     Tangent { displacement: Vec<f64>, blocks: OwnBlocks, outcome: Outcome },
     Linear(LinearAsk),

@@ -10,7 +10,7 @@ use crate::compute::linear::LinearRequest;
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest,
-    Outcome, TangentRequest, TrialRequest,
+    Outcome, TangentRequest,
 };
 
 /// The way to one of the places of a shared backend.
@@ -160,22 +160,6 @@ impl Compute for Guest {
                 blocks.copy_to(&mut request.blocks)?;
                 request.outcome = outcome;
                 (self.displacement, self.blocks) = (displacement, blocks);
-            }
-        }
-        Ok(())
-    }
-
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        for request in requests {
-            let mut force = std::mem::take(&mut self.force);
-            force.resize(request.force.len(), 0.0);
-            let displacement = filled(&mut self.displacement, request.displacement);
-            let ask = Ask::Trial { displacement, force, rows: request.rows.to_vec(), outcome: Outcome::Valid };
-            if let Ask::Trial { displacement, force, rows, outcome } = self.ask(ask)? {
-                request.force.copy_from_slice(&force);
-                request.rows.copy_from_slice(&rows);
-                request.outcome = outcome;
-                (self.displacement, self.force) = (displacement, force);
             }
         }
         Ok(())

@@ -24,7 +24,6 @@ use crate::compute::linear::{LinearRequest, SideReport};
 use crate::compute::traffic::Traffic;
 use crate::compute::{
     CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, ForceRequest, Outcome, TangentRequest,
-    TrialRequest,
 };
 
 /// What the backend says of itself, for all guests.
@@ -85,14 +84,13 @@ impl Host {
 
     /// Answers requests of different cases, those of a kind in one call.
     fn answer(&mut self, waiting: Vec<Request>) -> Vec<(Sender<Answer>, Answer)> {
-        let (mut forces, mut trials, mut contacts) = (vec![], vec![], vec![]);
+        let (mut forces, mut contacts) = (vec![], vec![]);
         let (mut tangents, mut systems) = (vec![], vec![]);
         let (mut commits, mut others) = (vec![], vec![]);
         let mut iterates: Vec<Vec<Request>> = vec![];
         for request in waiting {
             match request.ask {
                 Ask::Force { .. } => forces.push(request),
-                Ask::Trial { .. } => trials.push(request),
                 Ask::Contact { .. } => contacts.push(request),
                 Ask::Tangent { .. } => tangents.push(request),
                 Ask::Linear(_) => systems.push(request),
@@ -108,14 +106,8 @@ impl Host {
         }
         let backend = self.backend.as_mut();
         let mut answers = Vec::new();
-        let kinds = [
-            (internal_force as Call, forces),
-            (trial, trials),
-            (contact, contacts),
-            (tangent, tangents),
-            (linear, systems),
-            (commit, commits),
-        ];
+        let kinds =
+            [(internal_force as Call, forces), (contact, contacts), (tangent, tangents), (linear, systems), (commit, commits)];
         let kinds = kinds.into_iter().chain(iterates.into_iter().map(|alike| (iterate as Call, alike)));
         for (call, mut requests) in kinds {
             if requests.is_empty() {
@@ -145,20 +137,6 @@ fn internal_force(backend: &mut dyn Compute, requests: &mut [Request]) -> Result
         }
     }
     backend.internal_force(&mut calls)?;
-    outcomes.into_iter().zip(&calls).for_each(|(out, call)| *out = call.outcome);
-    Ok(())
-}
-
-fn trial(backend: &mut dyn Compute, requests: &mut [Request]) -> Result<(), ComputeError> {
-    let mut outcomes = Vec::new();
-    let mut calls: Vec<TrialRequest<'_>> = Vec::new();
-    for Request { case, ask, .. } in requests {
-        if let Ask::Trial { displacement, force, rows, outcome } = ask {
-            calls.push(TrialRequest { case: *case, displacement, force, rows, outcome: Outcome::Valid });
-            outcomes.push(outcome);
-        }
-    }
-    backend.trial(&mut calls)?;
     outcomes.into_iter().zip(&calls).for_each(|(out, call)| *out = call.outcome);
     Ok(())
 }
