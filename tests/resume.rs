@@ -213,7 +213,7 @@ fn a_run_killed_at_any_step_goes_on() {
     let mut backend = Cpu::<f64, f32>::with_tangents(vec![problem.model.clone()]).expect("a backend");
     let newton = problem.newton().expect("a solver");
     let (elements, unknowns) = (problem.model.mesh.elements.len(), newton.free_unknowns());
-    let setting = Setting { computed_on: backend.description(), elements, unknowns };
+    let setting = Setting { computed_on: backend.about().description, elements, unknowns };
     let copies = Copies { from: dir.clone(), to: scratch.path("killed"), after: after.clone() };
     let mut results = ResultWriter::create(&case, &dir, setting, Clock::start(), Box::new(copies), Arc::default(), None)
         .expect("results")

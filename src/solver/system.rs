@@ -7,7 +7,7 @@ use super::opponent::Opponent;
 use super::opponent::plane::Plane;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::{Control, Worst};
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::compute::{ComputeError, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
@@ -108,7 +108,7 @@ impl Trial {
     /// `times`.
     pub fn evaluate(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         boundary: &Boundary,
         control: &Control,
         times: &mut PhaseTimes,
@@ -127,7 +127,7 @@ impl Trial {
     /// there.
     pub fn assess(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         boundary: &Boundary,
         control: &Control,
         times: &mut PhaseTimes,

@@ -180,7 +180,7 @@ fn gpu_f64_has_the_cpus_history_even_if_it_is_lost_on_the_way() {
     let mut backend = Fallback::new(Box::new(device));
     let lost = history(&problem, &mut backend, Some((6, &context)));
     hold("gpu_f64", &lost, &reference, 1e-7);
-    assert!(backend.description().device.contains("CPU") && backend.description().device.contains("failed"));
+    assert!(backend.about().description.device.contains("CPU") && backend.about().description.device.contains("failed"));
     assert!(backend.take_notes().is_empty());
 }
 
