@@ -9,7 +9,7 @@ use std::path::Path;
 
 use asperity::case::Case;
 use asperity::internals::compute::cpu::Cpu;
-use asperity::internals::compute::handle::{CaseHandle, Evaluate};
+use asperity::internals::compute::handle::CaseHandle;
 use asperity::internals::compute::{Compute, Outcome};
 use asperity::internals::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
 use asperity::internals::simulation::drive::{Drive, Observer, StepView};
@@ -88,12 +88,12 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     let plate = boundary.plate.first().map_or(0, |&node| 3 * node as usize + 2);
     trial.h = -trial.u[plate];
     let control = Control { h: trial.h, delta_t: 0.0, normal_force: None };
-    backend.begin_step(0, 0.0)?;
     let mut handle = CaseHandle { backend: &mut backend, case: 0 };
+    handle.begin_step(0.0)?;
     let outcome = trial.evaluate(&mut handle, &boundary, &control, &mut PhaseTimes::default())?;
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     let mut matrix = BlockMatrix::<f32>::zeros(pattern.clone());
-    handle.tangent(&trial.u, (&mut matrix.blocks).into())?;
+    handle.tangent(&trial.u, &mut matrix.blocks)?;
     let raw = matrix.clone();
     let mut fixed = vec![false; trial.u.len()];
     fixed_unknowns(&mesh, &boundary, &trial.rows, &mut fixed);
@@ -109,7 +109,7 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     let mut force = vec![0.0; trial.u.len()];
     group.bench_function("force", |b| b.iter(|| handle.internal_force(&trial.u, &mut force)));
     let mut blocks = vec![[0.0_f32; 9]; matrix.blocks.len()];
-    group.bench_function("tangent, formed and gathered", |b| b.iter(|| handle.tangent(&trial.u, (&mut blocks).into())));
+    group.bench_function("tangent, formed and gathered", |b| b.iter(|| handle.tangent(&trial.u, &mut blocks)));
     group.bench_function("contact, residual, merit", |b| {
         b.iter(|| trial.assess(&mut handle, &boundary, &control, &mut PhaseTimes::default()))
     });

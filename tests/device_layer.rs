@@ -345,7 +345,7 @@ fn a_profile_changes_no_bit_of_a_run() {
             assert!(matches!(ending, Ending::Done), "{name}: {ending:?}");
             let product = gpu.solver().unwrap().account(Part::Product);
             let product = bits.1 * 4 * (product.numbers + product.shared);
-            (bits.0, gpu.traffic().unwrap(), context.kernel_times(), (begun.elapsed().as_secs_f64(), product as u64))
+            (bits.0, gpu.about().traffic.unwrap(), context.kernel_times(), (begun.elapsed().as_secs_f64(), product as u64))
         };
         let open = || GpuContext::open(DeviceRequest::Gpu).unwrap().unwrap();
         let (bits, traffic, nothing, _) = run(open());

@@ -4,8 +4,9 @@
 mod device;
 
 use asperity::internals::compute::gpu::{GpuError, Precision};
+use asperity::internals::compute::handle::CaseHandle;
 use asperity::internals::compute::select::{DeviceChoice, PrecisionChoice, Selected, select, select_on};
-use asperity::internals::compute::{CaseModel, Compute, ComputeError, ForceRequest, Outcome};
+use asperity::internals::compute::{CaseModel, Compute, ComputeError};
 use asperity::internals::contact::coulomb::Friction;
 use asperity::internals::mesh::brick::brick;
 use asperity::material::{Elasticity, Hardening, Material};
@@ -22,25 +23,31 @@ fn models() -> Vec<CaseModel> {
 
 fn force(backend: &mut dyn Compute) -> Result<Vec<f64>, ComputeError> {
     let displacement: Vec<f64> = (0..3 * backend.models()[1].mesh.nodes.len()).map(|i| 1e-4 * ((i * i) % 7) as f64).collect();
-    let mut force = vec![0.0; displacement.len()];
-    let request = ForceRequest { case: 1, displacement: &displacement, force: &mut force, outcome: Outcome::Valid };
-    backend.internal_force(&mut [request])?;
+    let mut force = Vec::new();
+    CaseHandle { backend, case: 1 }.internal_force(&displacement, &mut force)?;
     Ok(force)
 }
 
 fn message(selected: Result<Selected, ComputeError>) -> String {
     match selected {
-        Ok(selected) => panic!("{} was selected: {:?}", selected.backend.description().device, selected.notes),
+        Ok(selected) => panic!("{} was selected: {:?}", selected.backend.about().description.device, selected.notes),
         Err(error) => error.to_string(),
     }
 }
 
+/// Notes that f32 means mixed; there are no others.
+fn told_of_f32(selected: &Selected) -> usize {
+    assert!(selected.notes.iter().all(|note| note.contains("f32 means mixed")), "{:?}", selected.notes);
+    selected.notes.len()
+}
+
 #[test]
 fn the_cpu_is_what_was_asked_for() {
-    for (choice, precision) in [(PrecisionChoice::Auto, "f64"), (PrecisionChoice::F64, "f64"), (PrecisionChoice::F32, "f32")] {
+    for choice in [PrecisionChoice::Auto, PrecisionChoice::F64, PrecisionChoice::Mixed, PrecisionChoice::F32] {
         let selected = select(DeviceChoice::Cpu, choice, models()).unwrap();
-        assert!(selected.notes.is_empty() && selected.backend.description().device.starts_with("CPU"));
-        assert_eq!(selected.backend.description().precision, precision);
+        assert_eq!(told_of_f32(&selected), usize::from(choice == PrecisionChoice::F32), "{:?}", selected.notes);
+        assert!(selected.backend.about().description.device.starts_with("CPU"));
+        assert_eq!(selected.backend.about().description.precision, "f64");
     }
 }
 
@@ -53,19 +60,21 @@ fn a_bad_batch_is_no_fault_of_the_device() {
     let refused = |s: Result<Selected, _>| matches!(s, Err(ComputeError::Connectivity { case: 1 }));
     assert!(refused(select(DeviceChoice::Cpu, PrecisionChoice::Auto, bad.clone())));
     let Some(context) = device("a_bad_batch_is_no_fault_of_the_device", Precision::F32) else { return };
-    assert!(refused(select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, bad)));
+    assert!(refused(select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::Mixed, bad)));
 }
 
 #[test]
 fn the_device_is_named_with_its_precision() {
     let name = "the_device_is_named_with_its_precision";
-    for (choice, precision) in [(PrecisionChoice::Auto, "f64"), (PrecisionChoice::F32, "f32")] {
+    for choice in [PrecisionChoice::Auto, PrecisionChoice::Mixed, PrecisionChoice::F32] {
         let Some(context) = device(name, Precision::F64) else { return };
         let adapter = context.adapter().name.clone();
         let mut selected = select_on(Ok(Some(context)), DeviceChoice::Gpu, choice, models()).unwrap();
-        let description = selected.backend.description();
-        assert!(description.device.contains(&adapter) && description.precision == precision, "{description:?}");
-        assert!(selected.notes.is_empty() && force(selected.backend.as_mut()).is_ok());
+        let description = selected.backend.about().description;
+        assert!(description.device.contains(&adapter) && description.precision == "f64", "{description:?}");
+        assert_eq!(description.device.contains("residuals on the CPU"), choice != PrecisionChoice::Auto);
+        assert_eq!(told_of_f32(&selected), usize::from(choice == PrecisionChoice::F32));
+        assert!(force(selected.backend.as_mut()).is_ok());
     }
 }
 
@@ -77,7 +86,7 @@ fn without_double_precision_the_residual_comes_from_the_cpu() {
         let Some(context) = device(name, Precision::F32) else { return };
         let context = context.without_double_precision();
         let mut selected = select_on(Ok(Some(context)), device_choice, PrecisionChoice::Auto, models()).unwrap();
-        let description = selected.backend.description();
+        let description = selected.backend.about().description;
         assert!(description.device.contains("in f32; residuals on the CPU") && description.precision == "f64", "{description:?}");
         assert!(selected.notes.len() == 1 && selected.notes[0].contains("no double precision"), "{:?}", selected.notes);
         assert_eq!(force(selected.backend.as_mut()).unwrap(), force(reference.backend.as_mut()).unwrap());
@@ -91,13 +100,13 @@ fn a_budget_too_small_is_the_cpus_turn_or_an_error() {
     for (budget, what) in [(1000, "device memory"), (28_000, "an evaluation of one case")] {
         let Some(context) = device(name, Precision::F32) else { return };
         let context = context.with_budget(budget);
-        let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, models()).unwrap();
-        assert!(selected.backend.description().device.starts_with("CPU"));
+        let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::Mixed, models()).unwrap();
+        assert!(selected.backend.about().description.device.starts_with("CPU"));
         let [note] = &selected.notes[..] else { panic!("{:?}", selected.notes) };
         assert!(note.contains("ASPERITY_GPU_MEMORY") && note.contains("the CPU was taken instead"), "{note}");
         assert!(force(selected.backend.as_mut()).is_ok());
         let Some(context) = device(name, Precision::F32) else { return };
-        let text = message(select_on(Ok(Some(context.with_budget(budget))), DeviceChoice::Gpu, PrecisionChoice::F32, models()));
+        let text = message(select_on(Ok(Some(context.with_budget(budget))), DeviceChoice::Gpu, PrecisionChoice::Mixed, models()));
         assert!(text.contains("ASPERITY_GPU_MEMORY") && text.contains(what), "{text}");
     }
 }
@@ -106,7 +115,7 @@ fn a_budget_too_small_is_the_cpus_turn_or_an_error() {
 fn a_driver_that_opens_no_device_is_the_cpus_turn_or_an_error() {
     let broken = || Err(GpuError::NoDevice { adapter: "Some GPU".into(), reason: "no".into() });
     let selected = select_on(broken(), DeviceChoice::Auto, PrecisionChoice::Auto, models()).unwrap();
-    assert!(selected.backend.description().device.starts_with("CPU"));
+    assert!(selected.backend.about().description.device.starts_with("CPU"));
     assert!(selected.notes.len() == 1 && selected.notes[0].contains("Some GPU"), "{:?}", selected.notes);
     assert!(message(select_on(broken(), DeviceChoice::Gpu, PrecisionChoice::Auto, models())).contains("Some GPU"));
 }
@@ -116,7 +125,7 @@ fn a_device_lost_before_its_first_step_is_the_cpus_turn() {
     let name = "a_device_lost_before_its_first_step_is_the_cpus_turn";
     let Some(context) = device(name, Precision::F32) else { return };
     context.destroy();
-    let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::F32, models()).unwrap();
+    let mut selected = select_on(Ok(Some(context)), DeviceChoice::Auto, PrecisionChoice::Mixed, models()).unwrap();
     assert!(selected.notes.len() == 1 && selected.notes[0].contains("failed"), "{:?}", selected.notes);
     assert!(force(selected.backend.as_mut()).is_ok());
 }
@@ -135,7 +144,7 @@ fn without_a_driver_auto_is_the_cpu_and_gpu_is_one_clear_error() {
         return;
     }
     let mut selected = select(DeviceChoice::Auto, PrecisionChoice::Auto, models()).unwrap();
-    assert!(selected.backend.description().device.starts_with("CPU"));
+    assert!(selected.backend.about().description.device.starts_with("CPU"));
     assert!(force(selected.backend.as_mut()).is_ok());
     let text = message(select(DeviceChoice::Gpu, PrecisionChoice::Auto, models()));
     assert!(text.contains("no GPU found") && text.contains("--device cpu"), "{text}");

@@ -12,10 +12,8 @@ use super::traffic::Sizes;
 use super::{BenchError, Options, Pools};
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Evaluation, Gpu, GpuContext};
-use crate::compute::{
-    CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome as Went, TangentRequest,
-};
-use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use crate::compute::handle::at_contact;
+use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, ComputeError, Outcome as Went};
 use crate::memory;
 use crate::mesh::Mesh;
 
@@ -31,86 +29,71 @@ pub const EVALUATIONS: [(Evaluation, &str, &str); 4] = [
 /// goes on.
 const SQUEEZE: [f64; 2] = [0.02, 1e-4];
 
-/// The arrays of a batch of calls.
+/// What calls of a batch are about, by case.
 struct Calls {
-    displacement: Vec<Vec<f64>>,
+    displacement: Vec<Arc<[f64]>>,
+    /// What the last calls left: internal forces at the contact nodes, and memory for tangents.
     force: Vec<Vec<f64>>,
-    blocks: Vec<Vec<[f64; 9]>>,
-    rows: Vec<Vec<Rows<f64>>>,
+    blocks: Vec<Blocks>,
 }
 
 impl Calls {
     fn new(models: &[CaseModel], sizes: &Sizes) -> Self {
-        let none = Point { force: [0.0; 3], gap: 0.0, slip: [0.0; 2], weight: 0.0, on_symmetry_plane: false };
-        let open = contact_rows(Friction::Coulomb(0.0), &none);
         Self {
-            displacement: models.iter().map(|m| squeezed(&m.mesh, SQUEEZE[0])).collect(),
-            force: vec![vec![0.0; 3 * sizes.nodes]; models.len()],
-            blocks: vec![vec![[0.0; 9]; sizes.blocks]; models.len()],
-            rows: vec![vec![open; sizes.contact_points]; models.len()],
+            displacement: models.iter().map(|m| squeezed(&m.mesh, SQUEEZE[0]).into()).collect(),
+            force: vec![vec![0.0; 3 * sizes.contact_points]; models.len()],
+            blocks: vec![Blocks::Double(vec![[0.0; 9]; sizes.blocks]); models.len()],
         }
     }
 
     /// Squeezes on.
     fn advance(&mut self, models: &[CaseModel], step: usize) {
         for (u, model) in self.displacement.iter_mut().zip(models) {
-            *u = squeezed(&model.mesh, SQUEEZE[0] + SQUEEZE[1] * step as f64);
+            *u = squeezed(&model.mesh, SQUEEZE[0] + SQUEEZE[1] * step as f64).into();
         }
     }
 
     /// One call for all cases.
     fn make(&mut self, backend: &mut dyn Compute, evaluation: Evaluation) -> Result<(), ComputeError> {
-        let cases = self.displacement.iter().enumerate();
-        match evaluation {
-            Evaluation::InternalForce => {
-                let mut requests: Vec<_> = cases
-                    .zip(&mut self.force)
-                    .map(|((case, displacement), force)| ForceRequest { case, displacement, force, outcome: Went::Valid })
-                    .collect();
-                backend.internal_force(&mut requests)?;
-                valid(requests.iter().map(|r| r.outcome))
-            }
-            Evaluation::Tangent => {
-                let mut requests: Vec<_> = cases
-                    .zip(&mut self.blocks)
-                    .map(|((case, displacement), blocks)| TangentRequest {
-                        case,
-                        displacement,
-                        blocks: blocks.into(),
-                        outcome: Went::Valid,
-                    })
-                    .collect();
-                backend.tangent(&mut requests)?;
-                valid(requests.iter().map(|r| r.outcome))
-            }
-            Evaluation::Contact => {
-                let mut requests: Vec<_> = cases
-                    .zip(&self.force)
-                    .zip(&mut self.rows)
-                    .map(|(((case, displacement), force), rows)| ContactRequest { case, displacement, force, rows })
-                    .collect();
-                backend.contact(&mut requests)
-            }
-            Evaluation::Update => {
-                let mut requests: Vec<_> = cases
-                    .map(|(case, displacement)| CommitRequest {
-                        case,
-                        displacement,
-                        energies: Energies::default(),
-                        outcome: Went::Valid,
-                    })
-                    .collect();
-                backend.commit(&mut requests)?;
-                valid(requests.iter().map(|r| r.outcome))
+        let call = |(case, u): (usize, &Arc<[f64]>)| {
+            let displacement = u.clone();
+            let call = match evaluation {
+                Evaluation::InternalForce => Call::Force { displacement },
+                Evaluation::Tangent => {
+                    let none = self.blocks[case].none();
+                    Call::Tangent { displacement, blocks: std::mem::replace(&mut self.blocks[case], none) }
+                }
+                Evaluation::Contact => {
+                    let displacement = at_contact(&backend.models()[case].mesh, u);
+                    Call::Contact { displacement, force: self.force[case].clone() }
+                }
+                Evaluation::Update => Call::Commit { displacement },
+            };
+            (case, call)
+        };
+        let calls = self.displacement.iter().enumerate().map(call).collect();
+        for (case, answer) in backend.call(calls)?.into_iter().enumerate() {
+            match answer {
+                Answer::Force { force, outcome } => {
+                    self.force[case] = at_contact(&backend.models()[case].mesh, &force);
+                    valid(outcome)?;
+                }
+                Answer::Tangent { blocks, outcome } => {
+                    self.blocks[case] = blocks;
+                    valid(outcome)?;
+                }
+                Answer::Commit { outcome, .. } => valid(outcome)?,
+                _ => {}
             }
         }
+        Ok(())
     }
 }
 
-fn valid(mut outcomes: impl Iterator<Item = Went>) -> Result<(), ComputeError> {
-    match outcomes.find(|&outcome| outcome != Went::Valid) {
-        None => Ok(()),
-        Some(outcome) => Err(ComputeError::Device(format!("the bench's displacement was refused: {outcome:?}"))),
+fn valid(outcome: Went) -> Result<(), ComputeError> {
+    match outcome {
+        Went::Valid => Ok(()),
+        outcome => Err(ComputeError::Device(format!("the bench's displacement was refused: {outcome:?}"))),
     }
 }
 

@@ -2,9 +2,9 @@ use super::input::{laws, material_points, models, side_by_side, squeezed};
 use super::report::On;
 use super::traffic::Sizes;
 use super::*;
+use crate::compute::Outcome;
 use crate::compute::cpu::Cpu;
-use crate::compute::handle::{CaseHandle, Evaluate};
-use crate::compute::{Compute, Outcome};
+use crate::compute::handle::at;
 use crate::material::{Hardening, return_mapping};
 use crate::real::Real;
 
@@ -38,11 +38,11 @@ fn every_quadrature_point_of_a_batch_yields() {
     let models = models(&mesh, 3).unwrap();
     let mut cpu = Cpu::<f64>::new(models.clone()).unwrap();
     for (case, model) in models.iter().enumerate() {
-        let mut before = cpu.state(case).unwrap();
+        let mut before = at(&mut cpu, case).state().unwrap();
         for strain in [0.02, 0.0201] {
-            let (_, outcome) = CaseHandle { backend: &mut cpu, case }.commit(&squeezed(&model.mesh, strain)).unwrap();
+            let (_, outcome) = at(&mut cpu, case).commit(&squeezed(&model.mesh, strain)).unwrap();
             assert_eq!(outcome, Outcome::Valid);
-            let after = cpu.state(case).unwrap();
+            let after = at(&mut cpu, case).state().unwrap();
             let alphas = |s: &crate::compute::CaseState| s.points.iter().flatten().map(|p| p.alpha).collect::<Vec<_>>();
             assert!(alphas(&before).iter().zip(alphas(&after)).all(|(a, b)| b > *a), "case {case} at {strain}");
             before = after;

@@ -27,7 +27,7 @@ pub enum Precision {
     /// f64 where the device has it.
     #[default]
     Auto,
-    /// Single precision.
+    /// The same as mixed.
     F32,
     /// Double precision.
     F64,

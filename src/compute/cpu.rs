@@ -6,10 +6,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::gather::GatherPlan;
+use super::linear::Solved;
 use super::sweep::{Keep, Sweep};
 use super::{
-    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies, Fault,
-    ForceRequest, Outcome, TangentRequest,
+    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Fault, Outcome,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, contact_rows};
 use crate::contact::plane::{gap, slip};
@@ -296,128 +296,145 @@ impl<R: Real, T: Real> Case<R, T> {
 }
 
 impl<R: Real, T: Real> Compute for Cpu<R, T> {
-    fn description(&self) -> Description {
-        let threads = rayon::current_num_threads();
-        Description { device: format!("CPU ({threads} thread{})", if threads == 1 { "" } else { "s" }), precision: R::NAME }
-    }
-
     fn models(&self) -> &[CaseModel] {
         &self.models
     }
 
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
+    fn about(&self) -> About {
+        let threads = rayon::current_num_threads();
+        let device = format!("CPU ({threads} thread{})", if threads == 1 { "" } else { "s" });
+        About::plain(Description { device, precision: R::NAME })
+    }
+
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        calls.into_iter().map(|(case, call)| self.answer(case, call)).collect()
+    }
+}
+
+impl<R: Real, T: Real> Cpu<R, T> {
+    fn answer(&mut self, case: usize, call: Call) -> Result<Answer, ComputeError> {
+        Ok(match call {
+            Call::BeginStep(weight) => {
+                self.begin_step(case, weight);
+                Answer::Done
+            }
+            Call::Force { displacement } => self.internal_force(case, &displacement),
+            Call::Tangent { displacement, blocks } => self.tangent(case, &displacement, blocks),
+            Call::Contact { displacement, force } => self.contact(case, &displacement, &force),
+            Call::Commit { displacement } => self.commit(case, &displacement),
+            Call::Fields => Answer::Fields(self.fields(case)?),
+            Call::State => Answer::State(self.state(case)),
+            Call::Restore(state) => {
+                self.restore(case, &state);
+                Answer::Done
+            }
+            Call::Replace(model) => {
+                self.replace(case, *model)?;
+                Answer::Replaced(true)
+            }
+            Call::Solve(_) => Answer::Solved(Solved::not_tried()),
+            Call::Iterate(_) => return Err(ComputeError::Device("the CPU keeps no iterates".to_owned())),
+        })
+    }
+
+    fn begin_step(&mut self, case: usize, weight: f64) {
         let case = &mut self.cases[case];
         case.step += 1;
         let weight = R::of(weight);
         case.start.par_iter_mut().zip(&case.state).with_min_len(CHUNK).for_each(|(start, state)| *start = state.start(weight));
-        Ok(())
     }
 
-    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
-        for request in requests {
-            let case = &self.cases[request.case];
-            request.outcome = case.each_element(
-                0,
-                CHUNK,
-                request.displacement,
-                &mut self.element_force,
-                |case, e, committed, increment, out| {
-                    *out = hex8::internal_force(&case.geometry[e], case.material(e), &case.start[e], committed, increment)?;
-                    let hanging = case.mesh.hanging[e];
-                    if !hanging.is_none() {
-                        hanging.to_named(out);
-                    }
-                    Ok(())
-                },
-            );
-            let (lists, element_force) = (&case.mesh.node_elements, &self.element_force);
-            request.force.par_chunks_mut(3 * CHUNK).enumerate().for_each(|(chunk, out)| {
-                for (i, out) in out.chunks_exact_mut(3).enumerate() {
-                    let node = chunk * CHUNK + i;
-                    let mut sum = [R::ZERO; 3];
-                    for &entry in &lists.entry[lists.list(node)] {
-                        let f = &element_force[entry as usize / 8][entry as usize % 8];
-                        for (s, &f) in sum.iter_mut().zip(f) {
-                            *s += f;
-                        }
-                    }
-                    for (out, s) in out.iter_mut().zip(sum) {
-                        *out = s.to_f64();
+    fn internal_force(&mut self, case: usize, displacement: &[f64]) -> Answer {
+        let case = &self.cases[case];
+        let mut force = vec![0.0; displacement.len()];
+        let outcome = case.each_element(0, CHUNK, displacement, &mut self.element_force, |case, e, committed, increment, out| {
+            *out = hex8::internal_force(&case.geometry[e], case.material(e), &case.start[e], committed, increment)?;
+            let hanging = case.mesh.hanging[e];
+            if !hanging.is_none() {
+                hanging.to_named(out);
+            }
+            Ok(())
+        });
+        let (lists, element_force) = (&case.mesh.node_elements, &self.element_force);
+        force.par_chunks_mut(3 * CHUNK).enumerate().for_each(|(chunk, out)| {
+            for (i, out) in out.chunks_exact_mut(3).enumerate() {
+                let node = chunk * CHUNK + i;
+                let mut sum = [R::ZERO; 3];
+                for &entry in &lists.entry[lists.list(node)] {
+                    let f = &element_force[entry as usize / 8][entry as usize % 8];
+                    for (s, &f) in sum.iter_mut().zip(f) {
+                        *s += f;
                     }
                 }
-            });
-        }
-        Ok(())
+                for (out, s) in out.iter_mut().zip(sum) {
+                    *out = s.to_f64();
+                }
+            }
+        });
+        Answer::Force { force, outcome }
     }
 
-    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        for request in requests {
-            let case = &self.cases[request.case];
-            let tangents = request.case.min(self.element_tangent.len() - 1);
-            let assembly = (&self.plan, &self.sweep, self.element_tangent[tangents].as_mut_slice());
-            request.outcome = match &mut request.blocks {
-                Blocks::Double(blocks) => case.tangent(assembly, request.displacement, blocks),
-                Blocks::Single(blocks) => case.tangent(assembly, request.displacement, blocks),
+    fn tangent(&mut self, case: usize, displacement: &[f64], blocks: Blocks) -> Answer {
+        let tangents = case.min(self.element_tangent.len() - 1);
+        let case = &self.cases[case];
+        let assembly = (&self.plan, &self.sweep, self.element_tangent[tangents].as_mut_slice());
+        let mut blocks = blocks.resized(self.plan.pattern.entries());
+        let outcome = match &mut blocks {
+            Blocks::Double(blocks) => case.tangent(assembly, displacement, blocks),
+            Blocks::Single(blocks) => case.tangent(assembly, displacement, blocks),
+        };
+        Answer::Tangent { blocks, outcome }
+    }
+
+    /// Of displacements and forces at the contact nodes.
+    fn contact(&self, case: usize, displacement: &[f64], force: &[f64]) -> Answer {
+        let case = &self.cases[case];
+        let nodes = case.mesh.contact_nodes.iter().enumerate();
+        let numbers = displacement.as_chunks::<3>().0.iter().zip(force.as_chunks::<3>().0);
+        let rows = nodes.zip(numbers).map(|((i, &node), (u, force))| {
+            let start = &case.committed[3 * node as usize..][..3];
+            let point = Point {
+                force: force.map(R::of),
+                // Formed in f64: a gap is a small difference of larger numbers.
+                gap: R::of(gap(case.mesh.nodes[node as usize][2], u[2])),
+                slip: slip([u[0], u[1]], [start[0], start[1]]).map(R::of),
+                weight: case.weight[i],
+                on_symmetry_plane: case.on_symmetry_plane[i],
             };
-        }
-        Ok(())
+            widen(&contact_rows(case.friction, &point))
+        });
+        Answer::Contact(rows.collect())
     }
 
-    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
-        for request in requests {
-            let case = &self.cases[request.case];
-            for (i, (rows, &node)) in request.rows.iter_mut().zip(&case.mesh.contact_nodes).enumerate() {
-                let base = 3 * node as usize;
-                let (u, start) = (&request.displacement[base..base + 3], &case.committed[base..base + 3]);
-                let point = Point {
-                    force: [R::of(request.force[base]), R::of(request.force[base + 1]), R::of(request.force[base + 2])],
-                    // Formed in f64: a gap is a small difference of larger numbers.
-                    gap: R::of(gap(case.mesh.nodes[node as usize][2], u[2])),
-                    slip: slip([u[0], u[1]], [start[0], start[1]]).map(R::of),
-                    weight: case.weight[i],
-                    on_symmetry_plane: case.on_symmetry_plane[i],
-                };
-                *rows = widen(&contact_rows(case.friction, &point));
-            }
-        }
-        Ok(())
-    }
-
-    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
-        for request in requests {
-            let case = &self.cases[request.case];
-            self.next.resize(case.state.len(), (State::default(), R::ZERO));
-            request.outcome =
-                case.each_element(0, CHUNK, request.displacement, &mut self.next, |case, e, committed, increment, out| {
-                    let (state, start) = (&case.state[e], &case.start[e]);
-                    *out = hex8::update(&case.geometry[e], case.material(e), state, start, committed, increment)?;
-                    Ok(())
-                });
-            if request.outcome == Outcome::Valid {
-                let case = &mut self.cases[request.case];
-                let mut energies = Energies::default();
-                let opponent = case.opponent.0;
-                for (e, ((state, start), (next, elastic))) in
-                    case.state.iter_mut().zip(&mut case.start).zip(&self.next).enumerate()
-                {
-                    if e >= opponent {
-                        energies.opponent_plastic += next.plastic_work.to_f64();
-                    }
-                    *state = *next;
-                    *start = next.points;
-                    energies.elastic += elastic.to_f64();
-                    energies.plastic += next.plastic_work.to_f64();
-                    energies.max_alpha = next.points.iter().fold(energies.max_alpha, |m, p| m.max(p.alpha.to_f64()));
+    fn commit(&mut self, index: usize, displacement: &[f64]) -> Answer {
+        let case = &self.cases[index];
+        let mut energies = Energies::default();
+        self.next.resize(case.state.len(), (State::default(), R::ZERO));
+        let outcome = case.each_element(0, CHUNK, displacement, &mut self.next, |case, e, committed, increment, out| {
+            let (state, start) = (&case.state[e], &case.start[e]);
+            *out = hex8::update(&case.geometry[e], case.material(e), state, start, committed, increment)?;
+            Ok(())
+        });
+        if outcome == Outcome::Valid {
+            let case = &mut self.cases[index];
+            let opponent = case.opponent.0;
+            for (e, ((state, start), (next, elastic))) in case.state.iter_mut().zip(&mut case.start).zip(&self.next).enumerate() {
+                if e >= opponent {
+                    energies.opponent_plastic += next.plastic_work.to_f64();
                 }
-                case.step += 1;
-                case.committed.copy_from_slice(request.displacement);
-                request.energies = energies;
+                *state = *next;
+                *start = next.points;
+                energies.elastic += elastic.to_f64();
+                energies.plastic += next.plastic_work.to_f64();
+                energies.max_alpha = next.points.iter().fold(energies.max_alpha, |m, p| m.max(p.alpha.to_f64()));
             }
+            case.step += 1;
+            case.committed.copy_from_slice(displacement);
         }
-        Ok(())
+        Answer::Commit { energies, outcome }
     }
 
-    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
+    fn fields(&self, case: usize) -> Result<CaseFields, ComputeError> {
         let case = &self.cases[case];
         let mut out = vec![([0.0; 6], 0.0, 0.0_f64); case.state.len()];
         let outcome = case.each_element(0, CHUNK, &case.committed, &mut out, |case, e, committed, _, out| {
@@ -442,9 +459,9 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
         })
     }
 
-    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
+    fn state(&self, case: usize) -> CaseState {
         let case = &self.cases[case];
-        Ok(CaseState {
+        CaseState {
             displacement: case.committed.clone(),
             points: case
                 .state
@@ -457,10 +474,10 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
                 .map(|s| s.flow.map(|f| Flow { strain: f.strain.map(R::to_f64), alpha: f.alpha.to_f64() }))
                 .collect(),
             plastic_work: case.state.iter().map(|s| s.plastic_work.to_f64()).collect(),
-        })
+        }
     }
 
-    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
+    fn replace(&mut self, case: usize, model: CaseModel) -> Result<(), ComputeError> {
         if !model.is_alike(&self.models[case]) {
             return Err(ComputeError::Connectivity { case });
         }
@@ -470,10 +487,10 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
             held.fill(Held::NONE);
         }
         self.models[case] = model;
-        Ok(true)
+        Ok(())
     }
 
-    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
+    fn restore(&mut self, case: usize, state: &CaseState) {
         let case = &mut self.cases[case];
         case.step += 1;
         case.committed.clone_from(&state.displacement);
@@ -483,7 +500,6 @@ impl<R: Real, T: Real> Compute for Cpu<R, T> {
             s.plastic_work = R::of(state.plastic_work[e]);
             case.start[e] = s.points;
         }
-        Ok(())
     }
 }
 

@@ -1,38 +1,15 @@
-//! One case of a batch, as its Newton iteration sees it.
+//! One case of a batch, as those see it who follow its path.
 
-use super::iterate::{Answer, Ask, IterateRequest, Keeps, Plate};
-use super::linear::LinearRequest;
-use super::{
-    Blocks, CaseModel, CommitRequest, Compute, ComputeError, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
-    TrialRequest,
-};
+use std::sync::Arc;
+
+use super::call::{Answer, Call, OfBlocks, not_asked};
+use super::iterate::{Ask, Keeps, Plate, Reply, Request};
+use super::linear::{Solved, System};
+use super::{CaseFields, CaseModel, CaseState, Compute, ComputeError, Energies, Outcome};
 use crate::contact::coulomb::Rows;
+use crate::mesh::Mesh;
 
-/// What the solver of one case may ask for.
-pub trait Evaluate {
-    /// The case.
-    fn model(&self) -> &CaseModel;
-    /// Internal forces at a trial displacement.
-    fn internal_force(&mut self, displacement: &[f64], force: &mut [f64]) -> Result<Outcome, ComputeError>;
-    /// Tangent blocks at a trial displacement.
-    fn tangent(&mut self, displacement: &[f64], blocks: Blocks<'_>) -> Result<Outcome, ComputeError>;
-    /// Contact conditions at a trial displacement with its internal forces.
-    fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError>;
-    /// Internal forces at a trial displacement, and the contact conditions with them.
-    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError>;
-    /// Linear systems with the tangent, where the backend solves them; the case is this one,
-    /// whatever the request says.
-    fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError>;
-    /// Which iterates stay where they are computed (see [`Compute::keeps`]).
-    fn keeps(&self) -> Keeps;
-    /// Asks something of the iterates there. `kept` says that what was tried last is the current
-    /// one from now on.
-    fn iterate(&mut self, kept: bool, plate: Plate, ask: Ask) -> Result<Answer, ComputeError>;
-    /// Makes a trial displacement the committed state.
-    fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError>;
-}
-
-/// A case of a backend that this thread has for itself.
+/// A case of a backend that this thread has for itself. All errors are the backend's.
 pub struct CaseHandle<'a> {
     /// The backend.
     pub backend: &'a mut dyn Compute,
@@ -40,53 +17,105 @@ pub struct CaseHandle<'a> {
     pub case: usize,
 }
 
-impl Evaluate for CaseHandle<'_> {
-    fn model(&self) -> &CaseModel {
+/// The case at this place of a backend.
+pub fn at(backend: &mut dyn Compute, case: usize) -> CaseHandle<'_> {
+    CaseHandle { backend, case }
+}
+
+impl CaseHandle<'_> {
+    /// The case.
+    pub fn model(&self) -> &CaseModel {
         &self.backend.models()[self.case]
     }
 
-    fn internal_force(&mut self, displacement: &[f64], force: &mut [f64]) -> Result<Outcome, ComputeError> {
-        let mut request = [ForceRequest { case: self.case, displacement, force, outcome: Outcome::Valid }];
-        self.backend.internal_force(&mut request)?;
-        Ok(request[0].outcome)
+    /// Which iterates stay where they are computed.
+    pub fn keeps(&self) -> Keeps {
+        self.backend.about().keeps
     }
 
-    fn tangent(&mut self, displacement: &[f64], blocks: Blocks<'_>) -> Result<Outcome, ComputeError> {
-        let mut request = [TangentRequest { case: self.case, displacement, blocks, outcome: Outcome::Valid }];
-        self.backend.tangent(&mut request)?;
-        Ok(request[0].outcome)
+    fn call(&mut self, call: Call) -> Result<Answer, ComputeError> {
+        self.backend.call(vec![(self.case, call)])?.pop().ok_or_else(not_asked)
     }
 
-    fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError> {
-        self.backend.contact(&mut [ContactRequest { case: self.case, displacement, force, rows }])
+    /// See [`Call::BeginStep`].
+    pub fn begin_step(&mut self, weight: f64) -> Result<(), ComputeError> {
+        self.call(Call::BeginStep(weight)).map(drop)
     }
 
-    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError> {
-        let mut request = [TrialRequest { case: self.case, displacement, force, rows, outcome: Outcome::Valid }];
-        self.backend.trial(&mut request)?;
-        Ok(request[0].outcome)
+    /// Internal forces at a trial displacement.
+    pub fn internal_force(&mut self, displacement: &[f64], force: &mut Vec<f64>) -> Result<Outcome, ComputeError> {
+        let answer = self.call(Call::Force { displacement: displacement.into() })?;
+        let Answer::Force { force: found, outcome } = answer else { return Err(not_asked()) };
+        *force = found;
+        Ok(outcome)
     }
 
-    fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError> {
-        request.case = self.case;
-        self.backend.linear(std::slice::from_mut(request))
+    /// Tangent blocks at a trial displacement. After an error there are none.
+    pub fn tangent<T: OfBlocks>(&mut self, displacement: &[f64], blocks: &mut Vec<[T; 9]>) -> Result<Outcome, ComputeError> {
+        let memory = T::wrap(std::mem::take(blocks));
+        let answer = self.call(Call::Tangent { displacement: displacement.into(), blocks: memory })?;
+        let Answer::Tangent { blocks: found, outcome } = answer else { return Err(not_asked()) };
+        *blocks = T::unwrap(found).ok_or_else(not_asked)?;
+        Ok(outcome)
     }
 
-    fn keeps(&self) -> Keeps {
-        self.backend.keeps()
+    /// Contact conditions at a trial displacement with its internal forces.
+    pub fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut Vec<Rows<f64>>) -> Result<(), ComputeError> {
+        let mesh = &self.model().mesh;
+        let call = Call::Contact { displacement: at_contact(mesh, displacement), force: at_contact(mesh, force) };
+        let Answer::Contact(found) = self.call(call)? else { return Err(not_asked()) };
+        *rows = found;
+        Ok(())
     }
 
-    fn iterate(&mut self, kept: bool, plate: Plate, ask: Ask) -> Result<Answer, ComputeError> {
-        let mut request = [IterateRequest { case: self.case, kept, plate, ask, answer: Answer::Nothing }];
-        self.backend.iterate(&mut request)?;
-        let [IterateRequest { answer, .. }] = request;
-        Ok(answer)
+    /// Linear systems with the tangent, where the backend solves them.
+    pub fn solve(&mut self, system: System) -> Result<Solved, ComputeError> {
+        match self.call(Call::Solve(system.into()))? {
+            Answer::Solved(solved) => Ok(solved),
+            _ => Err(not_asked()),
+        }
     }
 
-    fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError> {
-        let mut request =
-            [CommitRequest { case: self.case, displacement, energies: Energies::default(), outcome: Outcome::Valid }];
-        self.backend.commit(&mut request)?;
-        Ok((request[0].energies, request[0].outcome))
+    /// Asks something of the iterates where the backend keeps them. `kept` says that what was tried
+    /// last is the current one from now on.
+    pub fn iterate(&mut self, kept: bool, plate: Plate, ask: Ask) -> Result<Reply, ComputeError> {
+        match self.call(Call::Iterate(Request { kept, plate, ask }))? {
+            Answer::Iterate(reply) => Ok(reply),
+            _ => Err(not_asked()),
+        }
     }
+
+    /// Makes a trial displacement the committed state.
+    pub fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError> {
+        match self.call(Call::Commit { displacement: displacement.into() })? {
+            Answer::Commit { energies, outcome } => Ok((energies, outcome)),
+            _ => Err(not_asked()),
+        }
+    }
+
+    /// Stresses and strains of the committed state.
+    pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
+        match self.call(Call::Fields)? {
+            Answer::Fields(fields) => Ok(fields),
+            _ => Err(not_asked()),
+        }
+    }
+
+    /// A copy of the committed state.
+    pub fn state(&mut self) -> Result<CaseState, ComputeError> {
+        match self.call(Call::State)? {
+            Answer::State(state) => Ok(state),
+            _ => Err(not_asked()),
+        }
+    }
+
+    /// Replaces the committed state.
+    pub fn restore(&mut self, state: impl Into<Arc<CaseState>>) -> Result<(), ComputeError> {
+        self.call(Call::Restore(state.into())).map(drop)
+    }
+}
+
+/// What there is at the contact nodes of a vector of three numbers a node.
+pub fn at_contact(mesh: &Mesh, vector: &[f64]) -> Vec<f64> {
+    mesh.contact_nodes.iter().flat_map(|&node| &vector[3 * node as usize..][..3]).copied().collect()
 }

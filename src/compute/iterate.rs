@@ -1,7 +1,7 @@
 //! The iterates of Newton's method, where they stay on the device: what is asked of one case, and
 //! the few numbers that come back.
 //!
-//! A backend that keeps iterates ([`super::Compute::keeps`]) has two for each case, the
+//! A backend that keeps iterates ([`super::About::keeps`]) has two for each case, the
 //! current one and a trial, both as increments since the committed state, and a correction that
 //! leads from the one to the other. Over a plane only.
 
@@ -103,19 +103,15 @@ pub enum Ask {
     SetEarlier(Vec<f64>),
 }
 
-/// Asks something of the iterates of one case. All requests of a call ask for the same.
+/// Asks something of the iterates of one case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct IterateRequest {
-    /// Case index in the batch.
-    pub case: usize,
+pub struct Request {
     /// What was tried last is the current iterate from now on.
     pub kept: bool,
     /// The plate.
     pub plate: Plate,
     /// What is asked.
     pub ask: Ask,
-    /// Receives the answer.
-    pub answer: Answer,
 }
 
 /// What is known of a trial: all that decides how the iteration goes on.
@@ -219,10 +215,9 @@ pub struct Vectors {
 }
 
 /// What comes back.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Answer {
-    /// Nothing was asked, or there is nothing to say.
-    #[default]
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reply {
+    /// There is nothing to say.
     Nothing,
     /// Of [`Ask::Begin`], [`Ask::Try`] and [`Ask::Land`].
     Reading(Reading),

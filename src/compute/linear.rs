@@ -1,31 +1,29 @@
 //! Linear systems that are solved where the tangents are: what is asked, and how it went.
 
+use std::sync::Arc;
+
 use super::Outcome;
 use crate::contact::coulomb::Rows;
 
 /// Asks to form the tangent of one case and to solve linear systems with it, without bringing it to
 /// the host. Over a plane only: contact conditions are stated in the axes of space.
-#[derive(Debug)]
-pub struct LinearRequest<'a> {
-    /// Case index in the batch.
-    pub case: usize,
+#[derive(Clone, Debug)]
+pub struct System {
     /// Trial displacement, three a node.
-    pub displacement: &'a [f64],
+    pub displacement: Arc<[f64]>,
     /// Contact conditions; those of points that slide replace the rows of their nodes.
-    pub rows: &'a [Rows<f64>],
+    pub rows: Vec<Rows<f64>>,
     /// Per unknown: its row is one of the identity, whatever the tangent holds.
-    pub fixed: &'a [bool],
+    pub fixed: Vec<bool>,
     /// The systems.
-    pub sides: Vec<Side<'a>>,
-    /// Receives how the tangent went.
-    pub outcome: Outcome,
+    pub sides: Vec<Side>,
 }
 
 /// One right-hand side.
-#[derive(Debug)]
-pub struct Side<'a> {
+#[derive(Clone, Debug)]
+pub struct Side {
     /// Right-hand side, three a node; at fixed unknowns their values.
-    pub rhs: &'a [f64],
+    pub rhs: Vec<f64>,
     /// Relative residual to be reached over the free unknowns, the fixed ones' part taken over to
     /// the right-hand side. A device in single precision stops at 1.2e-5 of the residual that its
     /// last cycle of vectors began with, whatever is asked.
@@ -35,21 +33,42 @@ pub struct Side<'a> {
     /// Krylov iterations that it will probably take: so many are sent off at once. A wrong number
     /// costs time, and nothing else.
     pub expected: usize,
-    /// The guess (zeros are one); receives the last iterate, whatever the report says of it.
-    pub x: &'a mut [f64],
-    /// Receives how it went.
+    /// The guess; zeros are one.
+    pub guess: Vec<f64>,
+}
+
+/// How linear systems went.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// How the tangent went.
+    pub outcome: Outcome,
+    /// By side; none where nobody tried, because the backend solves no systems.
+    pub solutions: Vec<Solution>,
+}
+
+impl Solved {
+    /// Of a backend that solves none.
+    pub fn not_tried() -> Self {
+        Self { outcome: Outcome::Valid, solutions: Vec::new() }
+    }
+}
+
+/// The last iterate of a solution.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// The iterate, whatever the report says of it.
+    pub x: Vec<f64>,
+    /// How it went.
     pub report: SideReport,
 }
 
 /// How a solution ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ended {
-    /// Nobody tried: the backend solves no systems.
-    #[default]
-    NotTried,
     /// The tolerance is met, by the recurrence of the residual, or what can be reached of it.
     Converged,
     /// It is not, and will not be.
+    #[default]
     Stalled,
     /// A number of the system is not finite.
     NotFinite,

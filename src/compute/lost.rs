@@ -3,13 +3,7 @@
 use std::sync::Arc;
 
 use super::gpu::GpuContext;
-use super::iterate::{Ask, IterateRequest, Keeps};
-use super::linear::LinearRequest;
-use super::traffic::Traffic;
-use super::{
-    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest,
-    TangentRequest, TrialRequest,
-};
+use super::{About, Answer, Call, CaseModel, Compute, ComputeError};
 
 /// The environment variable of the hook, which only builds with debug assertions look at, those of
 /// the tests: a number N of calls that commit (of one case: N accepted steps), after which the
@@ -37,94 +31,27 @@ pub fn hooked(backend: Box<dyn Compute>, context: Arc<GpuContext>) -> Box<dyn Co
     }
 }
 
-impl LostAfter {
-    fn lose_if_due(&self) {
-        if self.commits == 0 {
-            self.context.destroy();
-        }
-    }
-}
-
 impl Compute for LostAfter {
-    fn description(&self) -> Description {
-        self.backend.description()
-    }
-
     fn models(&self) -> &[CaseModel] {
         self.backend.models()
     }
 
-    fn traffic(&self) -> Option<Traffic> {
-        self.backend.traffic()
+    fn about(&self) -> About {
+        self.backend.about()
     }
 
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
-        self.backend.begin_step(case, weight)
-    }
-
-    /// Here and in the tangent the device is lost, so that its last commit can still be read back.
-    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
-        self.lose_if_due();
-        self.backend.internal_force(requests)
-    }
-
-    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        self.lose_if_due();
-        self.backend.tangent(requests)
-    }
-
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        self.lose_if_due();
-        self.backend.trial(requests)
-    }
-
-    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
-        self.lose_if_due();
-        self.backend.linear(requests)
-    }
-
-    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
-        self.backend.contact(requests)
-    }
-
-    fn keeps(&self) -> Keeps {
-        self.backend.keeps()
-    }
-
-    fn has_stand_in(&self) -> bool {
-        self.backend.has_stand_in()
-    }
-
-    /// A commit counts; before anything else the device is lost where it is due.
-    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
-        self.lose_if_due();
-        self.backend.iterate(requests)?;
-        if requests.iter().any(|request| request.ask == Ask::Commit) {
-            self.commits = self.commits.saturating_sub(1);
+    /// Where it is due the device is lost before an evaluation, so that its last commit can still
+    /// be read back, and before anything that is asked of iterates.
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        let evaluates =
+            |call: &Call| matches!(call, Call::Force { .. } | Call::Tangent { .. } | Call::Solve(_) | Call::Iterate(_));
+        if self.commits == 0 && calls.iter().any(|(_, call)| evaluates(call)) {
+            self.context.destroy();
         }
-        Ok(())
-    }
-
-    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
-        self.backend.commit(requests)?;
-        self.commits = self.commits.saturating_sub(1);
-        Ok(())
-    }
-
-    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
-        self.backend.fields(case)
-    }
-
-    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
-        self.backend.state(case)
-    }
-
-    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
-        self.backend.restore(case, state)
-    }
-
-    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
-        self.backend.replace(case, model)
+        let commits = calls.iter().any(|(_, call)| call.commits());
+        let answers = self.backend.call(calls)?;
+        self.commits = self.commits.saturating_sub(usize::from(commits));
+        Ok(answers)
     }
 
     fn take_notes(&mut self) -> Vec<String> {

@@ -9,6 +9,7 @@
 //! displacement); trial states are never stored: each evaluation is a pure function of the
 //! committed state and the trial displacement.
 
+pub mod call;
 pub mod cpu;
 pub mod fallback;
 pub mod gather;
@@ -31,13 +32,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::coulomb::{Friction, Rows};
+use crate::contact::coulomb::Friction;
 use crate::element::hex8::Invalid;
 use crate::material::multistep::Flow;
 use crate::material::{Material, PointState, Refusal};
 use crate::mesh::Mesh;
-use iterate::{IterateRequest, Keeps};
-use linear::LinearRequest;
+pub use call::{Answer, Blocks, Call};
+use iterate::Keeps;
 use traffic::Traffic;
 
 /// One case of a batch, scaled: lengths by R, stresses by E.
@@ -151,97 +152,6 @@ impl Fault {
     }
 }
 
-/// Asks for the internal nodal forces of one case.
-#[derive(Debug)]
-pub struct ForceRequest<'a> {
-    /// Case index in the batch.
-    pub case: usize,
-    /// Trial displacement, three a node.
-    pub displacement: &'a [f64],
-    /// Receives dW/du, three a node.
-    pub force: &'a mut [f64],
-    /// Receives how it went.
-    pub outcome: Outcome,
-}
-
-/// Where the blocks of a tangent go: in f32 for multigrid, which holds its matrices so; in f64 for
-/// the direct solver, and for comparisons.
-#[derive(Debug)]
-pub enum Blocks<'a> {
-    /// In f64.
-    Double(&'a mut [[f64; 9]]),
-    /// In f32.
-    Single(&'a mut [[f32; 9]]),
-}
-
-impl<'a> From<&'a mut Vec<[f64; 9]>> for Blocks<'a> {
-    fn from(blocks: &'a mut Vec<[f64; 9]>) -> Self {
-        Self::Double(blocks)
-    }
-}
-
-impl<'a> From<&'a mut Vec<[f32; 9]>> for Blocks<'a> {
-    fn from(blocks: &'a mut Vec<[f32; 9]>) -> Self {
-        Self::Single(blocks)
-    }
-}
-
-/// Asks for the tangent of one case: blocks d f_i / d u_j in the order of
-/// [`crate::mesh::pattern::Pattern`].
-#[derive(Debug)]
-pub struct TangentRequest<'a> {
-    /// Case index in the batch.
-    pub case: usize,
-    /// Trial displacement, three a node.
-    pub displacement: &'a [f64],
-    /// Receives the blocks, row-major; they mean nothing if the outcome is not [`Outcome::Valid`].
-    pub blocks: Blocks<'a>,
-    /// Receives how it went.
-    pub outcome: Outcome,
-}
-
-/// Asks for the contact conditions of one case.
-#[derive(Debug)]
-pub struct ContactRequest<'a> {
-    /// Case index in the batch.
-    pub case: usize,
-    /// Trial displacement, three a node.
-    pub displacement: &'a [f64],
-    /// Internal forces there, three a node.
-    pub force: &'a [f64],
-    /// Receives the rows of each of the mesh's contact nodes.
-    pub rows: &'a mut [Rows<f64>],
-}
-
-/// Asks for the internal forces of one case and the contact conditions with them.
-#[derive(Debug)]
-pub struct TrialRequest<'a> {
-    /// Case index in the batch.
-    pub case: usize,
-    /// Trial displacement, three a node.
-    pub displacement: &'a [f64],
-    /// Receives dW/du, three a node.
-    pub force: &'a mut [f64],
-    /// Receives the rows of each of the mesh's contact nodes; they mean nothing if the outcome is
-    /// not [`Outcome::Valid`].
-    pub rows: &'a mut [Rows<f64>],
-    /// Receives how it went.
-    pub outcome: Outcome,
-}
-
-/// Asks to make a trial displacement the committed state of one case.
-#[derive(Debug)]
-pub struct CommitRequest<'a> {
-    /// Case index in the batch.
-    pub case: usize,
-    /// Converged displacement, three a node.
-    pub displacement: &'a [f64],
-    /// Receives the energies of the new committed state.
-    pub energies: Energies,
-    /// Receives how it went; an invalid state is not committed.
-    pub outcome: Outcome,
-}
-
 /// Energies of a committed state, of the meshed half.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energies {
@@ -325,7 +235,7 @@ pub enum ComputeError {
     #[error("the compute device failed: {0}")]
     Device(String),
     /// The device that had the case's committed state failed. Another stands in for it, once it is
-    /// given a state to go on from ([`Compute::restore`]).
+    /// given a state to go on from ([`Call::Restore`]).
     #[error("the device that had the state of the case failed, and nobody has given its stand-in an earlier one")]
     Gone,
     /// The device that had Newton's iterates failed; its stand-in has the committed state.
@@ -333,87 +243,46 @@ pub enum ComputeError {
     Moved,
 }
 
+/// What a backend says of itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct About {
+    /// Where this is computed.
+    pub description: Description,
+    /// It solves linear systems: [`Call::Solve`].
+    pub solves: bool,
+    /// Which of Newton's iterates stay where they are computed: [`Call::Iterate`] asks for those,
+    /// and nothing else is asked for up to the step's end.
+    pub keeps: Keeps,
+    /// Another backend would stand in if this one failed: then copies of states are worth taking
+    /// from time to time.
+    pub has_stand_in: bool,
+    /// What has passed between the host and the device so far; `None` without a device.
+    pub traffic: Option<Traffic>,
+}
+
+impl About {
+    /// Of a backend that evaluates, and does nothing else.
+    pub fn plain(description: Description) -> Self {
+        Self { description, solves: false, keeps: Keeps::Nothing, has_stand_in: false, traffic: None }
+    }
+}
+
 /// A batch of cases on some device.
 pub trait Compute: Send {
-    /// Where this is computed.
-    fn description(&self) -> Description;
     /// The cases of the batch.
     fn models(&self) -> &[CaseModel];
-    /// Starts a step of one case: what is asked of it up to its next commit starts from its
-    /// committed state with `weight` times the flow of its last step anticipated (see
-    /// [`crate::material::multistep`]). A step that is not started so, as any after a commit,
-    /// anticipates nothing.
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError>;
-    /// Internal forces.
-    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError>;
-    /// Tangents. In f32 beside residuals in f64 they may be, element by element, those of an
-    /// earlier request of the step that are as good.
-    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError>;
-    /// Contact conditions.
-    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError>;
-    /// Internal forces and contact conditions at once.
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        let mut forces: Vec<_> = requests
-            .iter_mut()
-            .map(|TrialRequest { case, displacement, force, .. }| ForceRequest {
-                case: *case,
-                displacement,
-                force,
-                outcome: Outcome::Valid,
-            })
-            .collect();
-        self.internal_force(&mut forces)?;
-        let outcomes: Vec<Outcome> = forces.iter().map(|request| request.outcome).collect();
-        requests.iter_mut().zip(outcomes).for_each(|(request, outcome)| request.outcome = outcome);
-        let valid = requests.iter_mut().filter(|request| request.outcome == Outcome::Valid);
-        let mut contacts: Vec<_> = valid
-            .map(|TrialRequest { case, displacement, force, rows, .. }| ContactRequest { case: *case, displacement, force, rows })
-            .collect();
-        self.contact(&mut contacts)
-    }
-    /// Tangents, and the solutions of linear systems with them, both staying where they are
-    /// computed. A backend that solves none leaves the requests as [`linear::Ended::NotTried`].
-    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
-        let _ = requests;
-        Ok(())
-    }
-    /// Which of Newton's iterates stay where they are computed: [`Compute::iterate`] is asked for
-    /// those, and nothing else up to the step's end.
-    fn keeps(&self) -> Keeps {
-        Keeps::Nothing
-    }
-    /// Newton's iterates, where they stay. All requests ask for the same.
-    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
-        let _ = requests;
-        Err(ComputeError::Device("this backend keeps no iterates".to_owned()))
-    }
-    /// Commits converged displacements.
-    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError>;
-    /// Stresses and strains of a committed state.
-    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError>;
-    /// A copy of a committed state.
-    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError>;
-    /// Replaces a committed state.
-    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError>;
-    /// Puts another case of the batch's connectivity, in its virgin state, in the place of one that
-    /// has ended; `false` where the backend has no place for it, and leaves things as they were.
-    /// The new case gets the bits that it would get in a batch that had it from the beginning.
-    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
-        let _ = (case, model);
-        Ok(false)
-    }
-    /// Whether another backend would stand in if this one failed: then copies of states are worth
-    /// taking from time to time.
-    fn has_stand_in(&self) -> bool {
-        false
-    }
+    /// What it is, and what may be asked of it at present.
+    fn about(&self) -> About;
+    /// Answers calls, each of the case of this index, in their order. All go with the first
+    /// ([`Call::goes_with`]).
+    ///
+    /// # Errors
+    /// What no smaller step cures. What was to be evaluated can be asked for again; of anything else
+    /// some may be done.
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError>;
     /// What the user should know and has not been told yet, in whole sentences: a device that
     /// failed, say.
     fn take_notes(&mut self) -> Vec<String> {
         Vec::new()
-    }
-    /// What has passed between the host and the device so far; `None` without a device.
-    fn traffic(&self) -> Option<Traffic> {
-        None
     }
 }

@@ -30,7 +30,7 @@ pub enum PrecisionChoice {
     /// f64 for the residual, f32 for the linear systems. On a device without f64 as `Mixed`.
     #[default]
     Auto,
-    /// f32 for everything.
+    /// As `Mixed`, with a note: f32 for everything was a precision once.
     F32,
     /// f64, as `Auto`.
     F64,
@@ -54,7 +54,7 @@ pub struct Selected {
 /// [`ComputeError::Device`] if a GPU was asked for and there is none, or the batch does not fit.
 pub fn select(device: DeviceChoice, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
     match device {
-        DeviceChoice::Cpu => Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
+        DeviceChoice::Cpu => Ok(Selected { backend: cpu(models)?, notes: notes_of(precision) }),
         choice => on_device(choice, precision, models),
     }
 }
@@ -70,13 +70,18 @@ pub fn is_there(device: DeviceChoice) -> Result<bool, ComputeError> {
     }
 }
 
-fn cpu(precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
-    Ok(match precision {
-        PrecisionChoice::F32 => wrong::hooked(Cpu::<f32>::new(models)?),
-        PrecisionChoice::Auto | PrecisionChoice::F64 | PrecisionChoice::Mixed => {
-            wrong::hooked(Cpu::<f64, f32>::with_tangents(models)?)
+fn cpu(models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
+    Ok(wrong::hooked(Cpu::<f64, f32>::with_tangents(models)?))
+}
+
+/// What the user should know of the precision, wherever it is computed in.
+fn notes_of(precision: PrecisionChoice) -> Vec<String> {
+    match precision {
+        PrecisionChoice::F32 => {
+            vec!["precision f32 means mixed: a device makes the steps in f32, and each is held to the residual in f64".to_owned()]
         }
-    })
+        PrecisionChoice::Auto | PrecisionChoice::F64 | PrecisionChoice::Mixed => Vec::new(),
+    }
 }
 
 /// A choice of device, opened once for all the backends that are made on it.
@@ -118,7 +123,7 @@ impl Devices {
 #[cfg(not(feature = "gpu"))]
 fn on_device(device: DeviceChoice, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
     opens(device)?;
-    Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() })
+    Ok(Selected { backend: cpu(models)?, notes: notes_of(precision) })
 }
 
 #[cfg(not(feature = "gpu"))]
@@ -136,7 +141,7 @@ fn opens(device: DeviceChoice) -> Result<bool, ComputeError> {
 mod device {
     use std::sync::{Arc, Mutex, PoisonError};
 
-    use super::{DeviceChoice, PrecisionChoice, Selected, cpu};
+    use super::{DeviceChoice, PrecisionChoice, Selected, cpu, notes_of};
     use crate::compute::fallback::Fallback;
     use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, KernelTimes, Mixed, Precision};
     use crate::compute::lost::hooked;
@@ -259,7 +264,7 @@ mod device {
     ) -> Result<Selected, ComputeError> {
         let reason = match context {
             Ok(None) if device == DeviceChoice::Gpu => ComputeError::from(GpuError::NoAdapter),
-            Ok(None) => return Ok(Selected { backend: cpu(precision, models)?, notes: Vec::new() }),
+            Ok(None) => return Ok(Selected { backend: cpu(models)?, notes: notes_of(precision) }),
             Err(error) => error.into(),
             Ok(Some(context)) => match gpu(Arc::new(context), precision, models.clone()) {
                 Ok((backend, notes)) if device == DeviceChoice::Gpu => return Ok(Selected { backend, notes }),
@@ -271,7 +276,8 @@ mod device {
             ComputeError::Device(reason) if device != DeviceChoice::Gpu => {
                 let note = format!("the GPU could not be used ({reason}); the CPU was taken instead");
                 log::info!("{note}");
-                Ok(Selected { backend: cpu(precision, models)?, notes: vec![note] })
+                let notes = [notes_of(precision), vec![note]].concat();
+                Ok(Selected { backend: cpu(models)?, notes })
             }
             error => Err(error),
         }
@@ -282,13 +288,8 @@ mod device {
         precision: PrecisionChoice,
         models: Vec<CaseModel>,
     ) -> Result<(Box<dyn Compute>, Vec<String>), ComputeError> {
-        if precision == PrecisionChoice::F32 {
-            let gpu = Gpu::<f32>::new(context.clone(), models)?;
-            let notes = gpu.notes();
-            return Ok((hooked(Box::new(gpu), context), notes));
-        }
         let has_double = context.supports(Precision::F64).is_ok();
-        if has_double && precision != PrecisionChoice::Mixed {
+        if has_double && matches!(precision, PrecisionChoice::Auto | PrecisionChoice::F64) {
             let gpu = Gpu::<f64>::with_tangents_in_single(context.clone(), models)?;
             let notes = gpu.notes();
             return Ok((hooked(Box::new(gpu), context), notes));
@@ -301,6 +302,7 @@ mod device {
             log::info!("{note}");
             notes.insert(0, note);
         }
+        notes.extend(notes_of(precision));
         Ok((hooked(Box::new(mixed), context), notes))
     }
 }

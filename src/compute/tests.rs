@@ -5,9 +5,10 @@ mod hanging;
 
 use std::sync::Arc;
 
+use super::call::{Answer, Blocks, Call};
 use super::cpu::Cpu;
-use super::handle::{CaseHandle, Evaluate};
-use super::{CaseModel, CommitRequest, Compute, ComputeError, Energies, Fault, ForceRequest, Outcome, TangentRequest};
+use super::handle::{CaseHandle, at};
+use super::{CaseModel, Compute, ComputeError, Energies, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, contact_rows};
 use crate::material::hardening::Hardening;
 use crate::material::{Elasticity, Material};
@@ -67,7 +68,7 @@ fn displacement(mesh: &Mesh, size: f64) -> Vec<f64> {
 
 /// Everything that a backend says of one case at one displacement, as bits.
 #[derive(Clone, Debug, PartialEq)]
-struct Answer {
+struct Said {
     force: Vec<u64>,
     blocks: Vec<u64>,
     rows: Vec<(u32, Vec<u64>)>,
@@ -82,31 +83,31 @@ fn no_rows(mesh: &Mesh) -> Vec<Rows<f64>> {
     vec![contact_rows(Friction::Stick, &open); mesh.contact_nodes.len()]
 }
 
-fn answer(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Answer {
-    let mut handle = CaseHandle { backend, case };
+fn answer(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Said {
+    let mut handle = at(backend, case);
     let mesh = handle.model().mesh.clone();
     let mut force = vec![0.0; u.len()];
     let mut blocks = vec![[0.0_f64; 9]; Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries()];
     let mut rows = no_rows(&mesh);
     assert_eq!(handle.internal_force(u, &mut force).unwrap(), Outcome::Valid);
-    assert_eq!(handle.tangent(u, (&mut blocks).into()).unwrap(), Outcome::Valid);
+    assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Outcome::Valid);
     handle.contact(u, &force, &mut rows).unwrap();
     let row = |r: &Rows<f64>| {
         let numbers =
             r.residual.iter().chain(r.force_rows.as_flattened()).chain(r.displacement_rows.as_flattened()).chain([&r.weight]);
         (r.status as u32, bits(numbers))
     };
-    Answer { force: bits(&force), blocks: bits(blocks.as_flattened()), rows: rows.iter().map(row).collect() }
+    Said { force: bits(&force), blocks: bits(blocks.as_flattened()), rows: rows.iter().map(row).collect() }
 }
 
 fn commit(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Energies {
-    let (energies, outcome) = CaseHandle { backend, case }.commit(u).unwrap();
+    let (energies, outcome) = at(backend, case).commit(u).unwrap();
     assert_eq!(outcome, Outcome::Valid);
     energies
 }
 
 /// Two committed steps and what is seen at a third displacement.
-fn run(backend: &mut dyn Compute, case: usize) -> (Vec<Answer>, Energies) {
+fn run(backend: &mut dyn Compute, case: usize) -> (Vec<Said>, Energies) {
     let mesh = backend.models()[case].mesh.clone();
     let mut answers = vec![answer(backend, case, &displacement(&mesh, 1e-3))];
     commit(backend, case, &displacement(&mesh, 5e-3));
@@ -124,7 +125,7 @@ fn one_thread_and_two_give_the_same_bits() {
             pool.install(|| {
                 let mut backend = make(models()).unwrap();
                 let answers: Vec<_> = (0..3).map(|case| run(backend.as_mut(), case)).collect();
-                (answers, backend.state(0).unwrap(), backend.fields(2).unwrap())
+                (answers, at(backend.as_mut(), 0).state().unwrap(), at(backend.as_mut(), 2).fields().unwrap())
             })
         };
         let (one, two, three) = (on(1), on(2), on(3));
@@ -135,10 +136,10 @@ fn one_thread_and_two_give_the_same_bits() {
 }
 
 fn tangent(backend: &mut dyn Compute, case: usize, u: &[f64]) -> Vec<[f32; 9]> {
-    let mut handle = CaseHandle { backend, case };
+    let mut handle = at(backend, case);
     let mesh = handle.model().mesh.clone();
     let mut blocks = vec![[0.0_f32; 9]; Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries()];
-    assert_eq!(handle.tangent(u, (&mut blocks).into()).unwrap(), Outcome::Valid);
+    assert_eq!(handle.tangent(u, &mut blocks).unwrap(), Outcome::Valid);
     blocks
 }
 
@@ -163,10 +164,10 @@ fn a_tangent_in_single_precision_is_taken_again_within_a_step_and_close_by() {
     assert!(difference(&tangent(&mut fresh(), 1, &at(5e-3)), &far) < 1e-3, "moved");
     assert!(difference(&exact, &far) > 1e-3, "it is another");
     // In another step, and from another state, it is formed anew.
-    backend.begin_step(1, 0.0).unwrap();
+    CaseHandle { backend: &mut backend, case: 1 }.begin_step(0.0).unwrap();
     assert!(exact == tangent(&mut backend, 1, &at(1.002e-3)), "another step");
-    let state = backend.state(1).unwrap();
-    backend.restore(1, &state).unwrap();
+    let state = CaseHandle { backend: &mut backend, case: 1 }.state().unwrap();
+    CaseHandle { backend: &mut backend, case: 1 }.restore(state).unwrap();
     assert!(first == tangent(&mut backend, 1, &at(1e-3)), "restored");
     let mut other = fresh();
     for backend in [&mut backend, &mut other] {
@@ -189,7 +190,7 @@ fn a_tangent_in_single_precision_is_taken_again_within_a_step_and_close_by() {
     let mut torn = at(1e-3);
     torn[7] = f64::NAN;
     let mut blocks = vec![[0.0_f32; 9]; exact.len()];
-    let outcome = CaseHandle { backend: &mut backend, case: 1 }.tangent(&torn, (&mut blocks).into()).unwrap();
+    let outcome = CaseHandle { backend: &mut backend, case: 1 }.tangent(&torn, &mut blocks).unwrap();
     assert_ne!(outcome, Outcome::Valid);
     assert!(tangent(&mut backend, 1, &at(1e-3)) == tangent(&mut fresh(), 1, &at(1e-3)), "after a failure");
 }
@@ -211,24 +212,15 @@ fn a_batch_gives_each_case_what_it_gets_alone() {
         let mut together = make(models()).unwrap();
         let meshes: Vec<_> = models().into_iter().map(|m| m.mesh).collect();
         let u: Vec<_> = meshes.iter().map(|m| displacement(m, 1e-3)).collect();
-        let mut forces: Vec<Vec<f64>> = u.iter().map(|u| vec![0.0; u.len()]).collect();
-        let mut requests: Vec<_> = forces
-            .iter_mut()
-            .enumerate()
-            .map(|(case, force)| ForceRequest { case, displacement: &u[case], force, outcome: Outcome::Valid })
-            .collect();
-        together.internal_force(&mut requests).unwrap();
-        let entries = Pattern::from_elements(meshes[0].nodes.len(), &meshes[0].elements).entries();
-        let mut blocks = vec![vec![[0.0_f64; 9]; entries]; 3];
-        let mut requests: Vec<_> = blocks
-            .iter_mut()
-            .enumerate()
-            .map(|(case, blocks)| TangentRequest { case, displacement: &u[case], blocks: blocks.into(), outcome: Outcome::Valid })
-            .collect();
-        together.tangent(&mut requests).unwrap();
-        for case in 0..3 {
-            assert!(bits(&forces[case]) == alone[case].0[0].force, "force of case {case}");
-            assert!(bits(blocks[case].as_flattened()) == alone[case].0[0].blocks, "tangent of case {case}");
+        let all = |call: fn(&[f64]) -> Call| u.iter().enumerate().map(|(case, u)| (case, call(u))).collect();
+        let forces = together.call(all(|u| Call::Force { displacement: u.into() })).unwrap();
+        let tangents = together.call(all(|u| Call::Tangent { displacement: u.into(), blocks: Blocks::Double(vec![]) })).unwrap();
+        for (case, answers) in forces.iter().zip(&tangents).enumerate() {
+            let (Answer::Force { force, .. }, Answer::Tangent { blocks: Blocks::Double(blocks), .. }) = answers else {
+                panic!("{answers:?}");
+            };
+            assert!(bits(force) == alone[case].0[0].force, "force of case {case}");
+            assert!(bits(blocks.as_flattened()) == alone[case].0[0].blocks, "tangent of case {case}");
         }
     }
 }
@@ -240,9 +232,7 @@ fn the_assembled_tangent_is_symmetric_and_the_derivative_of_the_force() {
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     let u = displacement(&mesh, 0.02);
     let mut blocks = vec![[0.0_f64; 9]; pattern.entries()];
-    backend
-        .tangent(&mut [TangentRequest { case: 1, displacement: &u, blocks: (&mut blocks).into(), outcome: Outcome::Valid }])
-        .unwrap();
+    at(&mut backend, 1).tangent(&u, &mut blocks).unwrap();
     let scale = blocks.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     for a in 0..pattern.rows() {
         for k in pattern.row(a) {
@@ -264,7 +254,7 @@ fn the_assembled_tangent_is_symmetric_and_the_derivative_of_the_force() {
     let mut force = |s: f64| {
         let moved: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + s * v).collect();
         let mut f = vec![0.0; u.len()];
-        CaseHandle { backend: &mut backend, case: 1 }.internal_force(&moved, &mut f).unwrap();
+        at(&mut backend, 1).internal_force(&moved, &mut f).unwrap();
         f
     };
     let (up, down) = (force(e), force(-e));
@@ -289,17 +279,20 @@ fn a_state_survives_being_copied_out_and_back() {
         let mut first = make(models()).unwrap();
         let mesh = first.models()[0].mesh.clone();
         commit(first.as_mut(), 0, &displacement(&mesh, 5e-3));
-        let saved = first.state(0).unwrap();
+        let saved = at(first.as_mut(), 0).state().unwrap();
         assert!(saved.plastic_work.iter().any(|w| *w > 0.0) && saved.points.iter().flatten().any(|p| p.alpha > 0.0));
         let expected = run(first.as_mut(), 0);
 
         // Into a fresh backend, into another slot's neighbour, and back into one that has gone on.
         let mut second = make(models()).unwrap();
-        second.restore(0, &saved).unwrap();
-        assert_eq!(second.state(0).unwrap(), saved);
+        at(second.as_mut(), 0).restore(saved.clone()).unwrap();
+        assert_eq!(at(second.as_mut(), 0).state().unwrap(), saved);
         assert!(run(second.as_mut(), 0) == expected, "a fresh backend");
-        assert!(second.state(1).unwrap() == make(models()).unwrap().state(1).unwrap(), "a neighbour was touched");
-        first.restore(0, &saved).unwrap();
+        assert!(
+            at(second.as_mut(), 1).state().unwrap() == at(make(models()).unwrap().as_mut(), 1).state().unwrap(),
+            "a neighbour was touched"
+        );
+        at(first.as_mut(), 0).restore(saved).unwrap();
         assert!(run(first.as_mut(), 0) == expected, "the same backend");
     }
 }
@@ -312,14 +305,14 @@ fn what_is_not_committed_leaves_no_trace() {
         let mesh = clean.models()[0].mesh.clone();
         commit(clean.as_mut(), 0, &displacement(&mesh, 4e-3));
         commit(disturbed.as_mut(), 0, &displacement(&mesh, 4e-3));
-        let before = disturbed.state(0).unwrap();
+        let before = at(disturbed.as_mut(), 0).state().unwrap();
         // Trials far away, trials that invert elements, and a commit that is refused.
         answer(disturbed.as_mut(), 0, &displacement(&mesh, 0.05));
         let mut inverted = displacement(&mesh, 4e-3);
         let node = mesh.nodes.len() / 2;
         inverted[3 * node] += 10.0;
         let mut force = vec![0.0; inverted.len()];
-        let mut handle = CaseHandle { backend: disturbed.as_mut(), case: 0 };
+        let mut handle = at(disturbed.as_mut(), 0);
         let bad = handle.internal_force(&inverted, &mut force).unwrap();
         assert!(matches!(bad, Outcome::Invalid(Fault::Inverted { .. })), "{bad:?}");
         assert_eq!(handle.commit(&inverted).unwrap().1, bad);
@@ -327,7 +320,7 @@ fn what_is_not_committed_leaves_no_trace() {
         meaningless[7] = f64::NAN;
         let refused = handle.commit(&meaningless).unwrap().1;
         assert!(matches!(refused, Outcome::Invalid(Fault::Deformation { .. })), "{refused:?}");
-        assert_eq!(disturbed.state(0).unwrap(), before);
+        assert_eq!(at(disturbed.as_mut(), 0).state().unwrap(), before);
         assert!(run(clean.as_mut(), 0) == run(disturbed.as_mut(), 0));
     }
 }
@@ -344,7 +337,7 @@ fn the_first_inverted_element_is_named_at_any_thread_count() {
                 u[3 * n as usize] = -5.0;
             }
             let mut force = vec![0.0; u.len()];
-            let outcome = CaseHandle { backend: &mut backend, case: 0 }.internal_force(&u, &mut force).unwrap();
+            let outcome = at(&mut backend, 0).internal_force(&u, &mut force).unwrap();
             let first = mesh.elements.iter().position(|e| e.contains(&mesh.elements[70][6])).unwrap();
             let named = matches!(outcome, Outcome::Invalid(Fault::Inverted { element, .. }) if element == first);
             assert!(named, "{outcome:?}, {first} expected");
@@ -367,7 +360,7 @@ fn energies_and_fields_of_a_uniform_squeeze() {
         let volume = crate::mesh::quality::volume(&mesh);
         assert!((energies.elastic / (density * volume) - 1.0).abs() < digits, "{} {}", energies.elastic, density * volume);
         assert_eq!((energies.plastic, energies.max_alpha), (0.0, 0.0));
-        let fields = backend.fields(1).unwrap();
+        let fields = at(backend.as_mut(), 1).fields().unwrap();
         let expected = |b: f64| 0.5 * e.bulk * (j - 1.0 / j) + e.shear * j.powf(-5.0 / 3.0) * (b - trace / 3.0);
         for stress in &fields.stress {
             for (s, b) in stress.iter().zip([1.02_f64.powi(2), 1.0, 0.97_f64.powi(2)]) {
@@ -401,14 +394,14 @@ fn a_refused_commit_keeps_its_neighbours_in_the_same_call() {
     let good = displacement(&meshes[0], 4e-3);
     let mut bad = displacement(&meshes[1], 4e-3);
     bad[0] = f64::NAN;
-    let mut requests = [
-        CommitRequest { case: 0, displacement: &good, energies: Energies::default(), outcome: Outcome::Valid },
-        CommitRequest { case: 1, displacement: &bad, energies: Energies::default(), outcome: Outcome::Valid },
-    ];
-    backend.commit(&mut requests).unwrap();
-    assert_eq!(requests[0].outcome, Outcome::Valid);
-    assert!(requests[0].energies.plastic > 0.0);
-    assert!(matches!(requests[1].outcome, Outcome::Invalid(Fault::Deformation { .. })));
-    assert_eq!(backend.state(0).unwrap().displacement, good);
-    assert!(backend.state(1).unwrap().displacement.iter().all(|x| *x == 0.0));
+    let calls = [&good, &bad].map(|u| Call::Commit { displacement: u.as_slice().into() });
+    let answers = backend.call(calls.into_iter().enumerate().collect()).unwrap();
+    let [Answer::Commit { energies, outcome }, Answer::Commit { outcome: refused, .. }] = answers[..] else {
+        panic!("{answers:?}");
+    };
+    assert_eq!(outcome, Outcome::Valid);
+    assert!(energies.plastic > 0.0);
+    assert!(matches!(refused, Outcome::Invalid(Fault::Deformation { .. })));
+    assert_eq!(at(&mut backend, 0).state().unwrap().displacement, good);
+    assert!(at(&mut backend, 1).state().unwrap().displacement.iter().all(|x| *x == 0.0));
 }

@@ -1,11 +1,8 @@
 //! A backend that computes wrongly from some step on: the way in which tests get one, in the
 //! program and by themselves.
 
-use super::iterate::Keeps;
-use super::{
-    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Fault,
-    ForceRequest, Outcome, TangentRequest,
-};
+use super::handle::at;
+use super::{About, Answer, Blocks, Call, CaseModel, Compute, ComputeError, Energies, Fault, Outcome};
 use crate::material::Refusal;
 
 /// The environment variable of the hook, which only builds with debug assertions look at, those of
@@ -97,89 +94,57 @@ impl<C: Compute> Wrong<C> {
     }
 }
 
-impl<C: Compute> Compute for Wrong<C> {
-    fn description(&self) -> Description {
-        self.backend.description()
+impl<C: Compute> Wrong<C> {
+    /// Makes an answer wrong.
+    fn spoil(&mut self, case: usize, call: &Call, answer: &mut Answer) -> Result<(), ComputeError> {
+        match answer {
+            Answer::Force { force, outcome } => {
+                if let Some(unknown) = self.wrong_force(case) {
+                    force[unknown] = f64::NAN;
+                }
+                if self.is(Kind::Material) && at(&mut self.backend, case).state()?.displacement != call.displacement() {
+                    *outcome = Outcome::Invalid(REFUSAL);
+                }
+            }
+            // In the middle of the matrix: the first rows may be prescribed ones, which nobody
+            // reads.
+            Answer::Tangent { blocks: Blocks::Double(blocks), .. } if self.is(Kind::Tangent) => {
+                let middle = blocks.len() / 2;
+                blocks[middle] = [f64::NAN; 9];
+            }
+            Answer::Tangent { blocks: Blocks::Single(blocks), .. } if self.is(Kind::Tangent) => {
+                let middle = blocks.len() / 2;
+                blocks[middle] = [f32::NAN; 9];
+            }
+            Answer::Contact(rows) if self.is(Kind::Contact) => rows[0].residual = [f64::NAN; 3],
+            Answer::Commit { energies, .. } if self.is(Kind::Energy) => energies.elastic = f64::NAN,
+            _ => {}
+        }
+        Ok(())
     }
+}
 
+impl<C: Compute> Compute for Wrong<C> {
     fn models(&self) -> &[CaseModel] {
         self.backend.models()
     }
 
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
-        self.backend.begin_step(case, weight)
+    fn about(&self) -> About {
+        About::plain(self.backend.about().description)
     }
 
-    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
-        self.backend.internal_force(requests)?;
-        for request in requests {
-            if let Some(unknown) = self.wrong_force(request.case) {
-                request.force[unknown] = f64::NAN;
-            }
-            if self.is(Kind::Material) && self.backend.state(request.case)?.displacement != request.displacement {
-                request.outcome = Outcome::Invalid(REFUSAL);
-            }
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        let commits = calls.iter().any(|(_, call)| call.commits());
+        if commits && self.is(Kind::Commit) {
+            let refused = Answer::Commit { energies: Energies::default(), outcome: Outcome::Invalid(REFUSAL) };
+            return Ok(vec![refused; calls.len()]);
         }
-        Ok(())
-    }
-
-    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        self.backend.tangent(requests)?;
-        for request in requests.iter_mut().filter(|_| self.is(Kind::Tangent)) {
-            // In the middle of the matrix: the first rows may be prescribed ones, which nobody
-            // reads.
-            match &mut request.blocks {
-                Blocks::Double(blocks) => {
-                    let middle = blocks.len() / 2;
-                    blocks[middle] = [f64::NAN; 9];
-                }
-                Blocks::Single(blocks) => {
-                    let middle = blocks.len() / 2;
-                    blocks[middle] = [f32::NAN; 9];
-                }
-            }
+        let asked: Vec<(usize, Call)> = calls.iter().map(|(case, call)| (*case, call.again())).collect();
+        let mut answers = self.backend.call(calls)?;
+        for ((case, call), answer) in asked.iter().zip(&mut answers) {
+            self.spoil(*case, call, answer)?;
         }
-        Ok(())
-    }
-
-    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
-        self.backend.contact(requests)?;
-        for request in requests.iter_mut().filter(|_| self.is(Kind::Contact)) {
-            request.rows[0].residual = [f64::NAN; 3];
-        }
-        Ok(())
-    }
-
-    fn keeps(&self) -> Keeps {
-        Keeps::Nothing
-    }
-
-    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
-        if self.is(Kind::Commit) {
-            requests.iter_mut().for_each(|request| request.outcome = Outcome::Invalid(REFUSAL));
-            return Ok(());
-        }
-        self.backend.commit(requests)?;
-        if self.is(Kind::Energy) {
-            requests.iter_mut().for_each(|request| request.energies.elastic = f64::NAN);
-        }
-        self.commits = self.commits.saturating_sub(1);
-        Ok(())
-    }
-
-    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
-        self.backend.fields(case)
-    }
-
-    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
-        self.backend.state(case)
-    }
-
-    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
-        self.backend.restore(case, state)
-    }
-
-    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
-        self.backend.replace(case, model)
+        self.commits = self.commits.saturating_sub(usize::from(commits));
+        Ok(answers)
     }
 }

@@ -195,8 +195,8 @@ impl Checkpoint {
             return Ok(());
         }
         let problem = format!(
-            "it is of a run in {}, and this one would be in {precision}; give --precision {} and the device of that run, or run with --force and without --resume to begin anew",
-            self.precision, self.precision
+            "it is of a run in {}, and runs are in {precision} now; run with --force and without --resume to begin anew",
+            self.precision
         );
         Err(OutputError::Checkpoint { path: path.to_path_buf(), problem })
     }

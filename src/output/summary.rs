@@ -164,7 +164,7 @@ pub struct Summary {
     pub time_by_phase: TimeByPhase,
     /// Device that ran the kernels.
     pub device: String,
-    /// Precision of the kernels, f32 or f64.
+    /// Precision of the residual, f64.
     pub precision: String,
     /// What passed between the host and the device; null where the CPU ran the kernels.
     pub device_traffic: Option<DeviceTraffic>,

@@ -311,7 +311,7 @@ impl Simulation {
             ComputeError::Device(what) => SessionError::Device { what },
             error => SessionError::Simulation(error.into()),
         })?;
-        let computed_on = backend.description();
+        let computed_on = backend.about().description;
         if let Some(out) = &options.out {
             match &checkpoint {
                 Some(checkpoint) => {

@@ -17,7 +17,7 @@ use super::path::{Resolution, Start, Target, indentation_targets, oblique_target
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::{Scaled, Segment, ShearTarget};
-use crate::compute::handle::{CaseHandle, Evaluate};
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Keeps, Plate, Settled};
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseState, Compute, ComputeError};
@@ -99,10 +99,10 @@ impl<'a> Drive<'a> {
     /// [`SimulationError::Snapshot`] if it is one of another mesh, [`SimulationError::Compute`].
     pub fn resume(&mut self, snapshot: Snapshot) -> Result<(), SimulationError> {
         snapshot.check(&self.mesh)?;
-        if self.backend.has_stand_in() {
+        if self.backend.about().has_stand_in {
             self.safe.keep(snapshot.clone());
         }
-        self.backend.restore(self.case, &snapshot.case)?;
+        self.handle().restore(snapshot.case)?;
         if self.keeps() != Keeps::Nothing {
             self.handle().iterate(false, Plate::default(), Ask::SetEarlier(snapshot.state.u_before.clone()))?;
         }
@@ -119,7 +119,7 @@ impl<'a> Drive<'a> {
 
     /// Offers the observer a checkpoint of the last accepted step.
     pub fn checkpoint(&mut self, last: bool, observer: &mut dyn Observer) {
-        let (mut taken, may_go_back) = (None, self.backend.has_stand_in());
+        let (mut taken, may_go_back) = (None, self.backend.about().has_stand_in);
         observer.checkpoint(last, &mut || {
             let snapshot = self.snapshot()?;
             taken = may_go_back.then(|| snapshot.clone());
@@ -142,7 +142,7 @@ impl<'a> Drive<'a> {
             state: self.state.clone(),
             place: self.place.clone(),
             force_scales: self.newton.force_scales(),
-            case: self.backend.state(self.case)?,
+            case: self.handle().state()?,
         })
     }
 
@@ -175,7 +175,8 @@ impl<'a> Drive<'a> {
         match snapshot {
             Some(snapshot) => self.resume(*snapshot),
             None => {
-                self.backend.restore(self.case, &CaseState::virgin(&self.mesh))?;
+                let virgin = CaseState::virgin(&self.mesh);
+                self.handle().restore(virgin)?;
                 self.newton.set_force_scales([0.0; 2]);
                 (self.state, self.place) = (Committed::virgin(&self.mesh, self.newton.opponent()), Place::default());
                 self.is_away = false;
@@ -390,7 +391,7 @@ impl<'a> Drive<'a> {
 
     /// One Newton solve towards a target; commits nothing, but where the iterates stay on a device.
     fn attempt(&mut self, target: &Target) -> Result<StepOutcome, SimulationError> {
-        self.traffic_before = self.traffic_before.or_else(|| self.backend.traffic());
+        self.traffic_before = self.traffic_before.or_else(|| self.backend.about().traffic);
         self.newton.set_may_miss(self.place.depth >= SHALLOW);
         let keeps = self.keeps();
         let ratio = self.extrapolation(target);
@@ -420,7 +421,7 @@ impl<'a> Drive<'a> {
             self.newton.opponent().leave_even(guess);
         }
         let mut lap = Lap::start();
-        self.backend.begin_step(self.case, weight)?;
+        self.handle().begin_step(weight)?;
         lap.end(&mut self.newton.times, Phase::Commit);
         let extrapolation = ratio.map(|ratio| Extrapolation { ratio, lift: !self.problem.pressed_in_full });
         let StepRecord { h, delta_t, .. } = self.state.record;

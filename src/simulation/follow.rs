@@ -6,6 +6,7 @@ use super::drive::{Drive, Ending, Observer, Paused};
 use super::problem::Problem;
 use super::zone::{BLIND_MARGIN, Zone};
 use crate::compute::cpu::Cpu;
+use crate::compute::handle::at;
 use crate::compute::select::Selected;
 use crate::compute::{CaseFields, Compute, ComputeError, Description};
 
@@ -118,12 +119,12 @@ impl<'a> Follower<'a> {
     /// # Errors
     /// [`ComputeError`] of the device.
     pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
-        self.seat.0.fields(self.seat.1)
+        at(self.seat.0.as_mut(), self.seat.1).fields()
     }
 
     /// Where the present part of the run is computed.
     pub fn description(&self) -> Description {
-        self.seat.0.description()
+        self.seat.0.about().description
     }
 }
 

@@ -4,7 +4,8 @@ use super::checkpoint::Snapshot;
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
 use crate::case::Scaled;
-use crate::compute::iterate::{Answer, Ask, IterateRequest, Plate};
+use crate::compute::handle::at;
+use crate::compute::iterate::{Ask, Plate, Reply};
 use crate::compute::traffic::Traffic;
 use crate::compute::{CaseFields, Compute, ComputeError};
 use crate::contact::coulomb::Status;
@@ -78,11 +79,8 @@ impl Displacement<'_> {
         if !*self.is_away {
             return Ok(());
         }
-        let mut request =
-            [IterateRequest { case, kept: false, plate: Plate::default(), ask: Ask::Displacements, answer: Answer::Nothing }];
-        backend.iterate(&mut request)?;
-        let [IterateRequest { answer, .. }] = request;
-        if let Answer::Displacements([u, u_before]) = answer {
+        let asked = at(backend, case).iterate(false, Plate::default(), Ask::Displacements)?;
+        if let Reply::Displacements([u, u_before]) = asked {
             (*self.u, *self.u_before) = (u, u_before);
             *self.is_away = false;
         }
@@ -107,11 +105,11 @@ impl StepView<'_> {
 
     /// What has passed to the device and back so far; `None` without a device.
     pub fn traffic(&self) -> Option<Traffic> {
-        self.backend.traffic()
+        self.backend.about().traffic
     }
 
     /// Stresses and strains of the step.
     pub fn fields(&mut self) -> Result<CaseFields, ComputeError> {
-        self.backend.fields(self.case)
+        at(&mut *self.backend, self.case).fields()
     }
 }

@@ -7,8 +7,9 @@ use super::problem::Problem;
 use super::record::StepRecord;
 use crate::case::{Case, Hold, Opponent, Segment, ShearTarget};
 use crate::compute::cpu::Cpu;
+use crate::compute::handle::at;
 use crate::compute::wrong::{Kind, REFUSAL, Wrong};
-use crate::compute::{CaseState, Compute, ComputeError};
+use crate::compute::{CaseState, ComputeError};
 use crate::real::Real;
 
 /// Every kind of segment, there and back.
@@ -71,7 +72,7 @@ fn follow<R: Real>(problem: &Problem, from: Option<Snapshot>, seen: &mut Seen) -
         drive.resume(snapshot).unwrap();
     }
     let ending = drive.run(seen).unwrap();
-    (ending, backend.state(0).unwrap())
+    (ending, at(&mut backend, 0).state().unwrap())
 }
 
 /// The run in one go, and stopped after every attempt at a step: both show the same.

@@ -13,7 +13,7 @@ use super::system::Trial;
 use super::systems::Systems;
 use super::{Control, Settings, SolverError};
 use crate::compute::ComputeError;
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Keeps, Reading, Settled};
 use crate::contact::coulomb::{Friction, Status};
 use crate::mesh::Mesh;
@@ -112,7 +112,7 @@ impl Newton {
     }
 
     /// Which iterates of the case stay on this backend.
-    pub fn keeps_on(&self, case: &dyn Evaluate) -> Keeps {
+    pub fn keeps_on(&self, case: &CaseHandle<'_>) -> Keeps {
         if self.iterates.host.is_over_plane_by_multigrid() { case.keeps() } else { Keeps::Nothing }
     }
 
@@ -126,7 +126,7 @@ impl Newton {
     ///
     /// # Errors
     /// [`SolverError::Compute`].
-    pub fn settle(&mut self, case: &mut dyn Evaluate) -> Result<Option<Settled>, SolverError> {
+    pub fn settle(&mut self, case: &mut CaseHandle<'_>) -> Result<Option<Settled>, SolverError> {
         if self.is_resident { self.iterates.settle(case).map(Some) } else { Ok(None) }
     }
 
@@ -228,7 +228,12 @@ impl Newton {
     ///
     /// On success the solution is the accepted trial ([`Newton::accepted`], [`Newton::settle`]);
     /// nothing is committed. A failure leaves the committed state as it was.
-    pub fn solve(&mut self, case: &mut dyn Evaluate, start: &SetOut<'_>, control: &Control) -> Result<StepOutcome, SolverError> {
+    pub fn solve(
+        &mut self,
+        case: &mut CaseHandle<'_>,
+        start: &SetOut<'_>,
+        control: &Control,
+    ) -> Result<StepOutcome, SolverError> {
         let keeps = self.keeps_on(case);
         self.is_resident = keeps != Keeps::Nothing;
         self.tolerance = self.settings.tolerance.max(if keeps == Keeps::Guesses { SINGLE } else { 0.0 });
@@ -251,7 +256,7 @@ impl Newton {
     /// starts over, with these points sliding.
     fn confirm(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         start: &SetOut<'_>,
         control: &Control,
         sliding: &[bool],
@@ -297,7 +302,7 @@ impl Newton {
         std::mem::take(&mut self.given_up)
     }
 
-    fn follow(&mut self, case: &mut dyn Evaluate, start: &SetOut<'_>, control: &Control) -> Result<StepReport, Halt> {
+    fn follow(&mut self, case: &mut CaseHandle<'_>, start: &SetOut<'_>, control: &Control) -> Result<StepReport, Halt> {
         let mut times = std::mem::take(&mut self.times);
         let begun = self.iterate().begin(case, start, control, &mut times);
         self.times = times;
@@ -383,7 +388,7 @@ impl Newton {
     /// land in it let go of.
     fn keep(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         length: f64,
         found: Reading,
@@ -416,7 +421,7 @@ impl Newton {
 
     /// The merit is below the tolerance, the tangential residuals of the contact are against the
     /// friction that there can be, and a held normal force is met to this share of it.
-    fn has_converged(&mut self, case: &dyn Evaluate, control: &Control, held: f64) -> bool {
+    fn has_converged(&mut self, case: &CaseHandle<'_>, control: &Control, held: f64) -> bool {
         // Not by a force that is made up: a light contact would end the step before it carries any.
         let bound = (self.tolerance * self.loaded_scale()).max(ROUNDING);
         // Written so that a NaN has not converged.

@@ -4,10 +4,10 @@
 use rayon::prelude::*;
 
 use super::opponent::Opponent;
-use super::opponent::plane::{Plane, take_rows};
+use super::opponent::plane::Plane;
 use super::phases::{Lap, Phase, PhaseTimes};
 use super::{Control, Worst};
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{missing_weight, prescribed};
 use crate::compute::{ComputeError, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Point, Rows, Status, contact_rows};
@@ -108,38 +108,26 @@ impl Trial {
     /// `times`.
     pub fn evaluate(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         boundary: &Boundary,
         control: &Control,
         times: &mut PhaseTimes,
     ) -> Result<Outcome, ComputeError> {
         let mut lap = Lap::start();
-        let over_plane = boundary.opponent.is_plane();
-        let outcome = if over_plane {
-            case.trial(&self.u, &mut self.force, &mut self.rows)?
-        } else {
-            case.internal_force(&self.u, &mut self.force)?
-        };
+        let outcome = case.internal_force(&self.u, &mut self.force)?;
         lap.end(times, Phase::Force);
         if outcome != Outcome::Valid {
             self.merit = f64::INFINITY;
             return Ok(outcome);
         }
-        if !over_plane {
-            return self.assess(case, boundary, control, times);
-        }
-        let mesh = case.model().mesh.clone();
-        take_rows(self, &mesh, boundary);
-        self.finish(boundary, control);
-        lap.end(times, Phase::Contact);
-        Ok(self.finite(&mesh))
+        self.assess(case, boundary, control, times)
     }
 
     /// Evaluates contact, residual and merit at `self.u`, taking `self.force` to be the forces
     /// there.
     pub fn assess(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         boundary: &Boundary,
         control: &Control,
         times: &mut PhaseTimes,

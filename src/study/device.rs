@@ -207,7 +207,7 @@ fn serve(
     // A case that starts over on another mesh leaves the batch.
     let elsewhere = |problem: &Problem| devices.select(precision, vec![problem.model.clone()]);
     let follow = |case: usize, problem: Problem, guest: Guest, notes: &[String]| {
-        let computed_on = guest.description();
+        let computed_on = guest.about().description;
         let mut seat = seats((Box::new(guest), 0), problem.zone, elsewhere);
         simulator.progress.started();
         simulator.follow(case, problem, &mut seat, computed_on, notes)

@@ -352,7 +352,7 @@ fn on_cores(
         let problem = simulator.problem(case)?;
         let open = |problem: &Problem| select(DeviceChoice::Cpu, precision, vec![problem.model.clone()]);
         let Selected { backend, notes } = open(&problem)?;
-        let computed_on = backend.description();
+        let computed_on = backend.about().description;
         let mut seat = seats((backend, 0), problem.zone, open);
         simulator.follow(case, problem, &mut seat, computed_on, &notes)
     };

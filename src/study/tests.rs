@@ -8,10 +8,7 @@ use super::directory::{Earlier, StudyDirectory};
 use super::file::Study;
 use super::row::{Row, RowStatus, write_table};
 use crate::compute::cpu::Cpu;
-use crate::compute::{
-    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest,
-    TangentRequest,
-};
+use crate::compute::{About, Answer, Call, CaseFields, CaseModel, Compute, ComputeError};
 use crate::output::{OutputDirectory, Status, Summary};
 use crate::simulation::drive::{Drive, Ending, Observer, StepView};
 use crate::simulation::problem::Problem;
@@ -47,7 +44,7 @@ fn study() -> Study {
     Study::parse(STUDY, "study.toml").expect("a study")
 }
 
-/// Counts calls and their requests; fails from the given call of `internal_force` on.
+/// Counts calls and their requests; fails from the given call for forces on.
 struct Watched {
     inner: Cpu<f64>,
     calls: Arc<AtomicUsize>,
@@ -57,39 +54,25 @@ struct Watched {
 }
 
 impl Compute for Watched {
-    fn description(&self) -> Description {
-        self.inner.description()
-    }
     fn models(&self) -> &[CaseModel] {
         self.inner.models()
     }
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
-        self.inner.begin_step(case, weight)
+    fn about(&self) -> About {
+        self.inner.about()
     }
-    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
-        if self.calls.fetch_add(1, Ordering::Relaxed) >= self.fails_from {
-            return Err(ComputeError::Device("lost".to_owned()));
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        match calls[0].1 {
+            Call::Force { .. } => {
+                if self.calls.fetch_add(1, Ordering::Relaxed) >= self.fails_from {
+                    return Err(ComputeError::Device("lost".to_owned()));
+                }
+                self.largest.fetch_max(calls.len(), Ordering::Relaxed);
+            }
+            // It has no room for other cases.
+            Call::Replace(_) => return Ok(vec![Answer::Replaced(false)]),
+            _ => {}
         }
-        self.largest.fetch_max(requests.len(), Ordering::Relaxed);
-        self.inner.internal_force(requests)
-    }
-    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        self.inner.tangent(requests)
-    }
-    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
-        self.inner.contact(requests)
-    }
-    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
-        self.inner.commit(requests)
-    }
-    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
-        self.inner.fields(case)
-    }
-    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
-        self.inner.state(case)
-    }
-    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
-        self.inner.restore(case, state)
+        self.inner.call(calls)
     }
     fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.note.lock().unwrap())
@@ -233,7 +216,7 @@ fn a_case_that_takes_the_place_of_another_goes_as_alone() {
         let mut cpu = Cpu::<f64>::new(vec![problems[0].model.clone()]).expect("a batch");
         let refused = places[0].next(&problems[1].model).expect("a host").is_none();
         drop(places);
-        (refused, cpu.replace(0, coarse.model))
+        (refused, cpu.call(vec![(0, Call::Replace(Box::new(coarse.model)))]))
     });
     assert!(refused && matches!(other, Err(ComputeError::Connectivity { case: 0 })));
 }

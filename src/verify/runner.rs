@@ -81,7 +81,7 @@ impl<'a> Runner<'a> {
         let mut recorder = Recorder::new(case, None);
         let ending = Drive::new(&problem, backend.as_mut(), 0, newton).run(&mut recorder);
         // Not where it began, if the device failed on the way.
-        self.computed_on = Some(backend.description());
+        self.computed_on = Some(backend.about().description);
         match ending? {
             Ending::Done => Ok(History { rows: recorder.rows, contact: recorder.contact }),
             Ending::NotConverged(reason) => Err(VerifyError::Stopped(reason)),

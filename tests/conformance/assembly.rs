@@ -4,6 +4,7 @@
 use crate::batch::{Backend, commits, displaced, for_every_batch, forces, models, random, tangents};
 use asperity::internals::compute::Compute;
 use asperity::internals::compute::gpu::{Gpu, Precision};
+use asperity::internals::compute::handle::CaseHandle;
 use asperity::internals::real::Real;
 
 pub struct Bounds;
@@ -25,7 +26,7 @@ fn bits(backend: &mut dyn Compute, steps: &[Vec<(usize, Vec<f64>)>]) -> Vec<Vec<
             push(i, &f[i].1);
             push(i, k[i].1.as_flattened());
             push(i, &[e[i].1.elastic, e[i].1.plastic, e[i].1.max_alpha]);
-            let state = backend.state(*case).unwrap();
+            let state = CaseHandle { backend, case: *case }.state().unwrap();
             push(i, &state.plastic_work);
             state.points.iter().flatten().for_each(|p| push(i, &[p.be[0], p.be[1], p.be[3], p.alpha]));
         }

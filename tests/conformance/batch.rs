@@ -2,14 +2,12 @@
 
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::gpu::{DeviceReal, Gpu, GpuContext};
-use asperity::internals::compute::{
-    CaseModel, CommitRequest, Compute, ContactRequest, Energies, ForceRequest, Outcome, TangentRequest,
-};
-use asperity::internals::contact::coulomb::{Friction, Point, Rows, contact_rows};
+use asperity::internals::compute::handle::at_contact;
+use asperity::internals::compute::{Answer, Blocks, Call, CaseModel, Compute, Energies, Outcome};
+use asperity::internals::contact::coulomb::{Friction, Rows};
 use asperity::internals::mesh::Mesh;
 use asperity::internals::mesh::brick::brick;
 use asperity::internals::mesh::couple::{couple, scaled};
-use asperity::internals::mesh::pattern::Pattern;
 use asperity::internals::real::Real;
 use asperity::material::{Elasticity, Hardening, Material};
 use rand::{RngExt, SeedableRng};
@@ -121,63 +119,45 @@ pub fn displaced<R: Real>(from: &[f64], strain: f64, rng: &mut ChaCha8Rng) -> Ve
     from.iter().map(|u| u + R::of(strain * rng.random_range(-0.1..0.1)).to_f64()).collect()
 }
 
-pub fn forces(backend: &mut dyn Compute, displacements: &[(usize, Vec<f64>)]) -> Vec<(Outcome, Vec<f64>)> {
-    let mut out: Vec<_> = displacements.iter().map(|(_, u)| vec![0.0; u.len()]).collect();
-    let mut requests: Vec<_> = displacements
-        .iter()
-        .zip(&mut out)
-        .map(|((case, displacement), force)| ForceRequest { case: *case, displacement, force, outcome: Outcome::Valid })
-        .collect();
-    backend.internal_force(&mut requests).unwrap();
-    let outcomes: Vec<_> = requests.iter().map(|r| r.outcome).collect();
-    outcomes.into_iter().zip(out).collect()
+type Displacements = [(usize, Vec<f64>)];
+
+/// One call at displacements.
+fn call(backend: &mut dyn Compute, displacements: &Displacements, call: fn(Arc<[f64]>) -> Call) -> Vec<Answer> {
+    backend.call(displacements.iter().map(|(case, u)| (*case, call(u.as_slice().into()))).collect()).unwrap()
 }
 
-pub fn tangents(backend: &mut dyn Compute, displacements: &[(usize, Vec<f64>)]) -> Vec<(Outcome, Vec<[f64; 9]>)> {
-    let mesh = &backend.models()[0].mesh;
-    let entries = Pattern::from_elements(mesh.nodes.len(), &mesh.elements).entries();
-    let mut out = vec![vec![[0.0; 9]; entries]; displacements.len()];
-    let mut requests: Vec<_> = displacements
-        .iter()
-        .zip(&mut out)
-        .map(|((case, displacement), blocks)| TangentRequest {
-            case: *case,
-            displacement,
-            blocks: blocks.into(),
-            outcome: Outcome::Valid,
-        })
-        .collect();
-    backend.tangent(&mut requests).unwrap();
-    let outcomes: Vec<_> = requests.iter().map(|r| r.outcome).collect();
-    outcomes.into_iter().zip(out).collect()
+pub fn forces(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<f64>)> {
+    let answers = call(backend, displacements, |displacement| Call::Force { displacement });
+    let force = |answer| if let Answer::Force { force, outcome } = answer { (outcome, force) } else { panic!("{answer:?}") };
+    answers.into_iter().map(force).collect()
 }
 
-pub fn commits(backend: &mut dyn Compute, displacements: &[(usize, Vec<f64>)]) -> Vec<(Outcome, Energies)> {
-    let mut requests: Vec<_> = displacements
-        .iter()
-        .map(|(case, displacement)| CommitRequest {
-            case: *case,
-            displacement,
-            energies: Energies::default(),
-            outcome: Outcome::Valid,
-        })
-        .collect();
-    backend.commit(&mut requests).unwrap();
-    requests.iter().map(|r| (r.outcome, r.energies)).collect()
+pub fn tangents(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Vec<[f64; 9]>)> {
+    let answers = call(backend, displacements, |displacement| Call::Tangent { displacement, blocks: Blocks::Double(Vec::new()) });
+    let tangent = |answer| match answer {
+        Answer::Tangent { blocks: Blocks::Double(blocks), outcome } => (outcome, blocks),
+        other => panic!("{other:?}"),
+    };
+    answers.into_iter().map(tangent).collect()
+}
+
+pub fn commits(backend: &mut dyn Compute, displacements: &Displacements) -> Vec<(Outcome, Energies)> {
+    let answers = call(backend, displacements, |displacement| Call::Commit { displacement });
+    let commit = |answer| match answer {
+        Answer::Commit { energies, outcome } => (outcome, energies),
+        other => panic!("{other:?}"),
+    };
+    answers.into_iter().map(commit).collect()
 }
 
 /// Contact rows at displacements with given forces.
 pub fn contacts(backend: &mut dyn Compute, trials: &[(usize, Vec<f64>, Vec<f64>)]) -> Vec<Vec<Rows<f64>>> {
-    let empty = Point { force: [0.0; 3], gap: 1.0, slip: [0.0; 2], weight: 1.0, on_symmetry_plane: false };
-    let points = backend.models()[0].mesh.contact_nodes.len();
-    let mut out = vec![vec![contact_rows(Friction::Coulomb(0.0), &empty); points]; trials.len()];
-    let mut requests: Vec<_> = trials
-        .iter()
-        .zip(&mut out)
-        .map(|((case, displacement, force), rows)| ContactRequest { case: *case, displacement, force, rows })
-        .collect();
-    backend.contact(&mut requests).unwrap();
-    out
+    let mesh = backend.models()[0].mesh.clone();
+    let call = |(case, u, force): &(usize, Vec<f64>, Vec<f64>)| {
+        (*case, Call::Contact { displacement: at_contact(&mesh, u), force: at_contact(&mesh, force) })
+    };
+    let answers = backend.call(trials.iter().map(call).collect()).unwrap();
+    answers.into_iter().map(|answer| if let Answer::Contact(rows) = answer { rows } else { panic!("{answer:?}") }).collect()
 }
 
 /// Largest difference by the largest number of the reference; infinite where one is not finite.

@@ -2,6 +2,7 @@
 //! against the CPU in f64.
 
 use crate::batch::{Backend, OnCpu, commits, couples, difference, displaced, for_every_batch, forces, models, random, tangents};
+use asperity::internals::compute::handle::CaseHandle;
 use asperity::internals::compute::{CaseState, Compute, Outcome};
 use asperity::internals::real::Real;
 
@@ -30,6 +31,10 @@ const KINDS: [(&str, f64, f64, f64); 6] = [
     ("large strain", 1e-2, 4e-1, 0.0),
 ];
 const CELLS: [usize; 3] = [2, 2, 1];
+
+fn state(backend: &mut Box<dyn Compute>, case: usize) -> CaseState {
+    CaseHandle { backend: backend.as_mut(), case }.state().unwrap()
+}
 
 struct Pair {
     ours: Box<dyn Compute>,
@@ -92,13 +97,14 @@ fn commits_and_energies_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Boun
         for case in 0..trials.len() {
             assert_eq!((e[case].0, f[case].0), (Outcome::Valid, Outcome::Valid), "{}", kind.0);
             let (e, f) = (e[case].1, f[case].1);
-            let state = distance(&ours.state(case).unwrap(), &reference.state(case).unwrap());
+            let state = distance(&state(&mut ours, case), &state(&mut reference, case));
             let error = [[e.elastic, f.elastic], [e.plastic, f.plastic], [e.max_alpha, f.max_alpha]]
                 .iter()
                 .fold(state, |worst, [ours, reference]| worst.max(difference([ours], [reference])));
             assert!(error <= bounds.state, "{} {}, case {case}: {error:e}, {e:?}, {f:?}", R::NAME, kind.0);
             assert!(case == 0 || kind.2 < 1e-2 || (e.plastic > 0.0 && e.max_alpha > 0.0), "{}, case {case}: {e:?}", kind.0);
-            let fields = [ours.fields(case).unwrap(), reference.fields(case).unwrap()];
+            let fields =
+                [&mut ours, &mut reference].map(|backend| CaseHandle { backend: backend.as_mut(), case }.fields().unwrap());
             let [stress, expected] = fields.map(|f| f.stress.into_iter().flatten().collect::<Vec<_>>());
             assert!(difference(&stress, &expected) <= bounds.force, "{} {}, case {case}: fields", R::NAME, kind.0);
             worst = worst.max(error);
@@ -113,8 +119,8 @@ fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B
     let expected = forces(ours.as_mut(), &trials);
     let mut other = backend.start(&models(CELLS));
     for case in 0..trials.len() {
-        other.restore(case, &ours.state(case).unwrap()).unwrap();
-        assert_eq!(other.state(case).unwrap(), ours.state(case).unwrap());
+        CaseHandle { backend: other.as_mut(), case }.restore(state(&mut ours, case)).unwrap();
+        assert_eq!(state(&mut other, case), state(&mut ours, case));
     }
     assert!(forces(other.as_mut(), &trials) == expected);
 }
@@ -175,7 +181,7 @@ fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds
             assert!(f[case].1 == good[case].1, "case {case}");
         } else {
             // not committed: the state and the answers are those of before
-            assert!(ours.state(case).unwrap().displacement != bad[case].1);
+            assert!(state(&mut ours, case).displacement != bad[case].1);
             assert!(forces(ours.as_mut(), &trials[case..=case])[0] == good[case], "case {case}");
         }
     }
@@ -223,11 +229,11 @@ fn two_bodies_answer_as_each_by_itself<R: Real, B: Backend<R>>(backend: &B, boun
                 assert!(difference([sum], [alone]) <= 1e-12, "case {case}: {sums:?}, alone {alone:?}");
                 assert!(difference([sum], [on_cpu]) <= bounds.state, "case {case}: {sums:?}, in f64 {on_cpu:?}");
             }
-            assert!(ours.state(case).unwrap().plastic_work.len() == 2 * bodies[0].state(case).unwrap().plastic_work.len());
+            assert!(state(&mut ours, case).plastic_work.len() == 2 * state(&mut bodies[0], case).plastic_work.len());
         }
-        let bits = bodies.each_mut().map(|body| (0..both.len()).map(|case| body.state(case).unwrap()).collect::<Vec<_>>());
+        let bits = bodies.each_mut().map(|body| (0..both.len()).map(|case| state(body, case)).collect::<Vec<_>>());
         for case in 0..both.len() {
-            let state = ours.state(case).unwrap();
+            let state = state(&mut ours, case);
             let [own, opponent] = bits.each_ref().map(|states| &states[case]);
             assert!(state.points == [&own.points[..], &opponent.points].concat(), "case {case}: other states than alone");
         }

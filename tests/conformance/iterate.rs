@@ -7,12 +7,10 @@ use crate::linear::mesh;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::gpu::{Gpu, Precision};
 use asperity::internals::compute::handle::CaseHandle;
-use asperity::internals::compute::iterate::{
-    Answer, Ask, Begin, Correct, Corrected, From, IterateRequest, Keeps, Plate, Reading,
-};
+use asperity::internals::compute::iterate::{Ask, Begin, Correct, Corrected, From, Keeps, Plate, Reading, Reply, Request};
 use asperity::internals::compute::linear::Ended;
 use asperity::internals::compute::traffic::Traffic;
-use asperity::internals::compute::{CaseModel, Compute, Fault, Outcome};
+use asperity::internals::compute::{Answer, Call, CaseModel, Compute, Fault, Outcome};
 use asperity::internals::contact::coulomb::{Friction, Status};
 use asperity::internals::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use asperity::internals::solver::iterate::SetOut;
@@ -74,9 +72,9 @@ fn pressed(name: &str) -> Option<Pressed> {
         assert!(matches!(outcome, StepOutcome::Converged(_)), "{outcome:?}");
         let settled = newton.settle(&mut handle).unwrap().unwrap();
         assert!(settled.points.iter().any(|point| point.status != Status::Open) && settled.energies.elastic > 0.0);
-        let state = gpu.state(case).unwrap();
-        cpu.restore(case, &state).unwrap();
-        displacement.push(state.displacement);
+        let state = handle.state().unwrap();
+        displacement.push(state.displacement.clone());
+        CaseHandle { backend: &mut cpu, case }.restore(state).unwrap();
     }
     Some(Pressed { gpu, cpu, models, displacement })
 }
@@ -85,23 +83,16 @@ fn plate(control: &Control) -> Plate {
     Plate { h: control.h, delta_t: control.delta_t, held: control.normal_force }
 }
 
-fn ask(gpu: &mut Gpu<f64>, asks: &[(usize, bool, Plate, Ask)]) -> Vec<Answer> {
-    let mut requests: Vec<IterateRequest> = asks
-        .iter()
-        .map(|(case, kept, plate, ask)| IterateRequest {
-            case: *case,
-            kept: *kept,
-            plate: *plate,
-            ask: ask.clone(),
-            answer: Answer::Nothing,
-        })
-        .collect();
-    gpu.iterate(&mut requests).unwrap();
-    requests.into_iter().map(|request| request.answer).collect()
+fn ask(gpu: &mut Gpu<f64>, asks: &[(usize, bool, Plate, Ask)]) -> Vec<Reply> {
+    let request = |(case, kept, plate, ask): &(usize, bool, Plate, Ask)| {
+        (*case, Call::Iterate(Request { kept: *kept, plate: *plate, ask: ask.clone() }))
+    };
+    let answers = gpu.call(asks.iter().map(request).collect()).unwrap();
+    answers.into_iter().map(|answer| if let Answer::Iterate(reply) = answer { reply } else { panic!("{answer:?}") }).collect()
 }
 
-fn reading(answer: &Answer) -> Reading {
-    let Answer::Reading(reading) = answer else { panic!("{answer:?}") };
+fn reading(answer: &Reply) -> Reading {
+    let Reply::Reading(reading) = answer else { panic!("{answer:?}") };
     *reading
 }
 
@@ -184,8 +175,8 @@ fn correct(tolerance: f64, plate_force: f64) -> Ask {
     Ask::Correct(Correct { tolerance, expected: 12, unit_tolerance: 1e-4, unit_expected: 12, first: true, plate_force })
 }
 
-fn corrected(answer: &Answer) -> Corrected {
-    let Answer::Corrected(corrected) = answer else { panic!("{answer:?}") };
+fn corrected(answer: &Reply) -> Corrected {
+    let Reply::Corrected(corrected) = answer else { panic!("{answer:?}") };
     *corrected
 }
 
@@ -208,7 +199,7 @@ fn a_correction_solves_the_hosts_system() {
             assert_eq!((found.tangent, found.report.ended), (Outcome::Valid, Ended::Converged));
             // The whole correction becomes the iterate, so that it can be read.
             let brought = ask(&mut pressed.gpu, &[(case, true, plate(&control), Ask::Bring)]).remove(0);
-            let Answer::Vectors(vectors) = brought else { panic!("{brought:?}") };
+            let Reply::Vectors(vectors) = brought else { panic!("{brought:?}") };
             let x: Vec<f64> = vectors.displacement.iter().zip(&start).map(|(a, b)| a - b).collect();
 
             let blocks = tangents(&mut pressed.cpu, &[(case, start.clone())]).remove(0).1;
@@ -304,8 +295,8 @@ fn correct_from_start(
         let plate_force = begun[i].plate_force;
         Ask::Correct(Correct { tolerance, expected, unit_tolerance: 0.1 * tolerance, unit_expected, first: true, plate_force })
     };
-    let before = gpu.traffic().unwrap();
+    let before = gpu.about().traffic.unwrap();
     let answers = ask(gpu, &all(&correct));
-    let passed = gpu.traffic().unwrap() - before;
+    let passed = gpu.about().traffic.unwrap() - before;
     (begun.into_iter().zip(answers.iter().map(corrected)).collect(), passed)
 }

@@ -5,8 +5,8 @@ use crate::batch::{random, tangents};
 use crate::device::device;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::gpu::{DeviceReal, Gpu, GpuContext, Precision};
-use asperity::internals::compute::linear::{Ended, LinearRequest, Side, SideReport};
-use asperity::internals::compute::{CaseModel, Compute, Outcome};
+use asperity::internals::compute::linear::{self, Ended, Side, SideReport, Solved};
+use asperity::internals::compute::{Answer, Call, CaseModel, Compute, Outcome};
 use asperity::internals::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use asperity::internals::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use asperity::internals::mesh::{Mesh, SphereSpec, sphere_mesh};
@@ -105,21 +105,48 @@ impl System {
     }
 }
 
-fn asked<'a>(case: usize, system: &'a System, tolerance: f64, relative_to_guess: bool, x: &'a mut [f64]) -> LinearRequest<'a> {
-    let sides = vec![Side { rhs: &system.rhs, tolerance, relative_to_guess, expected: 2, x, report: SideReport::default() }];
+/// What is asked of a system: a side of this tolerance from each guess.
+fn asked(system: &System, sides: &[(f64, Vec<f64>)], expected: usize, relative_to_guess: bool) -> linear::System {
+    let side = |(tolerance, guess): &(f64, Vec<f64>)| Side {
+        rhs: system.rhs.clone(),
+        tolerance: *tolerance,
+        relative_to_guess,
+        expected,
+        guess: guess.clone(),
+    };
     let System { displacement, rows, fixed, .. } = system;
-    LinearRequest { case, displacement, rows, fixed, sides, outcome: Outcome::Valid }
+    let (rows, fixed) = (rows.clone(), fixed.clone());
+    linear::System { displacement: displacement.as_slice().into(), rows, fixed, sides: sides.iter().map(side).collect() }
+}
+
+fn solved(backend: &mut dyn Compute, systems: Vec<(usize, linear::System)>) -> Vec<Solved> {
+    let answers = backend.call(systems.into_iter().map(|(case, system)| (case, Call::Solve(system.into()))).collect()).unwrap();
+    answers.into_iter().map(|answer| if let Answer::Solved(solved) = answer { solved } else { panic!("{answer:?}") }).collect()
 }
 
 pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
-    let mut solutions: Vec<Vec<f64>> = systems.iter().map(|(_, system)| vec![0.0; system.rhs.len()]).collect();
-    let mut requests: Vec<LinearRequest<'_>> =
-        systems.iter().zip(&mut solutions).map(|(&(case, system), x)| asked(case, system, tolerance, false, x)).collect();
-    backend.linear(&mut requests).unwrap();
-    assert!(requests.iter().all(|request| request.outcome == Outcome::Valid));
-    let reports: Vec<SideReport> = requests.iter().map(|request| request.sides[0].report).collect();
-    drop(requests);
-    solutions.into_iter().zip(reports).collect()
+    let zeros = |system: &System| vec![0.0; system.rhs.len()];
+    let one = |&(case, system): &(usize, &System)| (case, asked(system, &[(tolerance, zeros(system))], 2, false));
+    let answers = solved(backend, systems.iter().map(one).collect());
+    let solution = |mut solved: Solved| {
+        assert_eq!((solved.outcome, solved.solutions.len()), (Outcome::Valid, 1));
+        let solution = solved.solutions.remove(0);
+        (solution.x, solution.report)
+    };
+    answers.into_iter().map(solution).collect()
+}
+
+/// The same of one case, from a guess.
+fn solve_from(
+    backend: &mut dyn Compute,
+    (case, system): (usize, &System),
+    tolerance: f64,
+    relative_to_guess: bool,
+    guess: Vec<f64>,
+) -> (Vec<f64>, SideReport) {
+    let solution =
+        solved(backend, vec![(case, asked(system, &[(tolerance, guess)], 2, relative_to_guess))]).remove(0).solutions.remove(0);
+    (solution.x, solution.report)
 }
 
 fn bits(answers: &[(Vec<f64>, SideReport)]) -> Vec<Vec<u64>> {
@@ -205,36 +232,21 @@ fn a_dispatch_takes_different_numbers_of_sides_and_guesses() {
     let guesses: [&[f64]; CASES] = [&[0.0, 1.0], &[0.0], &[-1.0]];
     let mut answers = |cases: &[usize]| -> Vec<Vec<Vec<u64>>> {
         let n = systems[0].rhs.len();
-        let mut solutions: Vec<Vec<Vec<f64>>> =
-            cases.iter().map(|&case| guesses[case].iter().map(|guess| vec![1e-6 * guess; n]).collect()).collect();
-        let side = |system, tolerance, x| Side {
-            rhs: system,
-            tolerance,
-            relative_to_guess: false,
-            expected: 1,
-            x,
-            report: SideReport::default(),
+        let call = |&case: &usize| {
+            let guesses = guesses[case].iter().map(|guess| vec![1e-6 * guess; n]);
+            let sides: Vec<(f64, Vec<f64>)> = [1e-2, 1e-3].into_iter().zip(guesses).collect();
+            (case, asked(&systems[case], &sides, 1, false))
         };
-        let mut requests: Vec<LinearRequest<'_>> = cases
-            .iter()
-            .zip(&mut solutions)
-            .map(|(&case, solutions)| {
-                let System { displacement, rows, fixed, rhs, .. } = &systems[case];
-                let sides = solutions.iter_mut().zip([1e-2, 1e-3]).map(|(x, tolerance)| side(&rhs[..], tolerance, x));
-                LinearRequest { case, displacement, rows, fixed, sides: sides.collect(), outcome: Outcome::Valid }
-            })
-            .collect();
-        gpu.linear(&mut requests).unwrap();
-        for request in &requests {
-            assert!(request.sides.iter().all(|side| side.report.ended == Ended::Converged && side.report.iterations > 0));
-        }
-        drop(requests);
-        for (&case, solutions) in cases.iter().zip(&solutions) {
-            for (x, tolerance) in solutions.iter().zip([1e-2, 1e-3]) {
-                assert!(systems[case].residual(x) <= 1.02 * tolerance);
+        let answers = solved(&mut gpu, cases.iter().map(call).collect());
+        for (&case, solved) in cases.iter().zip(&answers) {
+            assert_eq!(solved.solutions.len(), guesses[case].len());
+            for (solution, tolerance) in solved.solutions.iter().zip([1e-2, 1e-3]) {
+                assert!(solution.report.ended == Ended::Converged && solution.report.iterations > 0);
+                assert!(systems[case].residual(&solution.x) <= 1.02 * tolerance);
             }
         }
-        solutions.iter().map(|sides| sides.iter().map(|x| x.iter().map(|x| x.to_bits()).collect()).collect()).collect()
+        let bits = |solved: &Solved| solved.solutions.iter().map(|s| s.x.iter().map(|x| x.to_bits()).collect()).collect();
+        answers.iter().map(bits).collect()
     };
     let together = answers(&[0, 1, 2]);
     for case in 0..CASES {
@@ -260,10 +272,9 @@ fn too_little_memory_leaves_the_systems_to_the_host() {
     let context = device(name, Precision::F32).unwrap().with_budget(used - (1 << 20));
     let mut gpu = Gpu::<f32>::new(Arc::new(context), models.to_vec()).unwrap();
     assert!(gpu.notes().len() == 1 && gpu.notes()[0].contains("solved on the CPU"), "{:?}", gpu.notes());
-    let mut x = vec![0.0; system.rhs.len()];
-    let mut request = asked(0, &system, 0.1, false, &mut x);
-    gpu.linear(std::slice::from_mut(&mut request)).unwrap();
-    assert_eq!(request.sides[0].report.ended, Ended::NotTried);
+    assert!(!gpu.about().solves);
+    let system = asked(&system, &[(0.1, vec![0.0; system.rhs.len()])], 2, false);
+    assert!(solved(&mut gpu, vec![(0, system)])[0].solutions.is_empty());
 }
 
 /// More iterations than one list has, and more than one cycle of vectors; a guess; numbers that are
@@ -278,18 +289,13 @@ fn a_hard_system_a_guess_and_what_cannot_be_solved() {
     let mut hard = system(2, &models, false);
     let x = solve(&mut gpu, &[(2, &hard)], 1e-5).remove(0).0;
     // Its own solution as the guess, asked for by the residual at the guess.
-    let mut again = x.clone();
-    let mut request = asked(2, &hard, 1e-3, false, &mut again);
-    gpu.linear(std::slice::from_mut(&mut request)).unwrap();
-    let report = request.sides[0].report;
+    let (mut again, report) = solve_from(&mut gpu, (2, &hard), 1e-3, false, x);
     assert!(
         (report.ended, report.iterations) == (Ended::Converged, 0) && report.start_norm < 2e-5 * report.rhs_norm,
         "{report:?}"
     );
     again.iter_mut().for_each(|x| *x *= 0.5);
-    let mut request = asked(2, &hard, 0.1, true, &mut again);
-    gpu.linear(std::slice::from_mut(&mut request)).unwrap();
-    let report = request.sides[0].report;
+    let (again, report) = solve_from(&mut gpu, (2, &hard), 0.1, true, again);
     assert!(
         report.ended == Ended::Converged && report.iterations > 0 && report.residual <= 0.1 * report.start_norm,
         "{report:?}"
@@ -301,18 +307,10 @@ fn a_hard_system_a_guess_and_what_cannot_be_solved() {
     let flat: Vec<CaseModel> = crate::batch::models([2, 2, 2]);
     let mut gpu = Gpu::<f32>::new(context, flat.clone()).unwrap();
     let n = 3 * flat[0].mesh.nodes.len();
-    let (zeros, fixed, mut x) = (vec![0.0; n], vec![false; n], vec![0.0; n]);
-    let sides = vec![Side {
-        rhs: &zeros,
-        tolerance: 0.1,
-        relative_to_guess: false,
-        expected: 1,
-        x: &mut x,
-        report: SideReport::default(),
-    }];
-    let mut request = LinearRequest { case: 0, displacement: &zeros, rows: &[], fixed: &fixed, sides, outcome: Outcome::Valid };
-    gpu.linear(std::slice::from_mut(&mut request)).unwrap();
-    assert_eq!(request.sides[0].report.ended, Ended::NotTried);
+    let (zeros, fixed) = (vec![0.0; n], vec![false; n]);
+    let side = Side { rhs: zeros.clone(), tolerance: 0.1, relative_to_guess: false, expected: 1, guess: zeros.clone() };
+    let system = linear::System { displacement: zeros.into(), rows: Vec::new(), fixed, sides: vec![side] };
+    assert!(!gpu.about().solves && solved(&mut gpu, vec![(0, system)])[0].solutions.is_empty());
 }
 
 /// More iterations than a cycle has vectors: the next begins at the answer of the last. The other

@@ -32,7 +32,7 @@ fn a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes()
         let models = (0..cases).map(|_| model()).collect();
         let gpu = Gpu::<f64>::with_tangents_in_single(context.into(), models).unwrap();
         let slots = gpu.context().unwrap().budget().used();
-        assert_eq!(gpu.keeps(), Keeps::Steps);
+        assert_eq!(gpu.about().keeps, Keeps::Steps);
         Some(slots)
     });
     let [Some(one), Some(two)] = used else { return };

@@ -174,7 +174,7 @@ fn a_result_that_is_no_number_is_a_failure_with_its_step_and_never_done() {
     let problem = Problem::new(&case).expect("a problem");
     let mut backend = Cpu::<f64>::new(vec![problem.model.clone()]).expect("a backend");
     let newton = problem.newton().expect("a solver");
-    let setting = Setting { computed_on: backend.description(), elements: 1, unknowns: 1 };
+    let setting = Setting { computed_on: backend.about().description, elements: 1, unknowns: 1 };
     let out = OutputDirectory::create(scratch.path("out")).expect("a directory");
     let progress = Box::new(SilentProgress);
     let mut results =

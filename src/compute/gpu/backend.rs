@@ -14,13 +14,13 @@ use super::linear::pack::Packed;
 use super::linear::parts::Part;
 use super::scratch::{CONTACT_ANSWER, CONTACT_TRIAL};
 use super::shader_sources::Precision;
+use crate::compute::call::not_asked;
 use crate::compute::cpu::Cpu;
-use crate::compute::iterate::{IterateRequest, Keeps};
-use crate::compute::linear::LinearRequest;
-use crate::compute::traffic::Traffic;
+use crate::compute::handle::{at, at_contact};
+use crate::compute::iterate::Keeps;
+use crate::compute::linear::{Solved, System};
 use crate::compute::{
-    Blocks, CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, Energies,
-    ForceRequest, Outcome, TangentRequest, TrialRequest,
+    About, Answer, Blocks, Call, CaseFields, CaseModel, CaseState, Compute, ComputeError, Description, Energies, Outcome,
 };
 use crate::contact::coulomb::{CONTACT_WEIGHT, Rows, Status};
 use crate::contact::plane::slip;
@@ -147,163 +147,134 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// Increments of a dispatch, `[slot][3 node + i]`: formed in f64, rounded once.
-    fn increments<'a>(
-        &mut self,
-        dispatch: &Dispatch,
-        request: impl Fn(usize) -> (usize, &'a [f64]),
-    ) -> Result<Vec<R>, ComputeError> {
+    fn increments(&mut self, dispatch: &Dispatch, calls: &[(usize, Call)]) -> Result<Vec<R>, ComputeError> {
         let mut out = Vec::new();
         for &i in &dispatch.requests {
-            let (case, displacement) = request(i);
-            self.refresh(case)?;
-            out.extend(displacement.iter().zip(&self.committed[case]).map(|(u, c)| R::of(u - c)));
+            let (case, call) = &calls[i];
+            self.refresh(*case)?;
+            out.extend(call.displacement().iter().zip(&self.committed[*case]).map(|(u, c)| R::of(u - c)));
         }
         Ok(out)
     }
-}
 
-impl<R: DeviceReal> Compute for Gpu<R> {
-    fn description(&self) -> Description {
-        Description { device: self.name.clone(), precision: R::NAME }
-    }
-
-    fn models(&self) -> &[CaseModel] {
-        &self.models
-    }
-
-    fn traffic(&self) -> Option<Traffic> {
-        self.context().map(|context| context.traffic())
-    }
-
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
-        Ok(self.batch()?.begin_step(case, weight)?)
-    }
-
-    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
-        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
-            let (outcomes, force) = self.batch()?.internal_force(&dispatch, &increments)?;
-            for (slot, &i) in dispatch.requests.iter().enumerate() {
-                let request = &mut requests[i];
-                request.outcome = outcomes[slot];
-                let n = request.force.len();
-                request.force.iter_mut().zip(&force[slot * n..]).for_each(|(out, f)| *out = f.to_f64());
-            }
+    /// Answers calls dispatch by dispatch: `answer` has those of one, in the order of its slots.
+    fn by_dispatch(
+        &mut self,
+        mut calls: Vec<(usize, Call)>,
+        answer: fn(&mut Self, &Dispatch, &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError>,
+    ) -> Result<Vec<Answer>, ComputeError> {
+        let mut answers: Vec<Answer> = calls.iter().map(|_| Answer::Done).collect();
+        for dispatch in self.schedule(calls.iter().map(|(case, _)| *case)) {
+            let of_slots = answer(self, &dispatch, &mut calls)?;
+            dispatch.requests.iter().zip(of_slots).for_each(|(&i, answer)| answers[i] = answer);
         }
-        Ok(())
+        Ok(answers)
     }
 
-    fn trial(&mut self, requests: &mut [TrialRequest<'_>]) -> Result<(), ComputeError> {
-        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
-            let answers = self.batch()?.trial(&dispatch, &increments)?;
-            for (slot, &i) in dispatch.requests.iter().enumerate() {
-                let request = &mut requests[i];
-                request.outcome = answers.outcomes[slot];
-                let n = request.force.len();
-                request.force.iter_mut().zip(&answers.force[slot * n..]).for_each(|(out, f)| *out = f.to_f64());
-                read_rows(slot, &answers.rows, &answers.status, &self.models[request.case].mesh, request.rows);
-            }
-        }
-        Ok(())
+    fn internal_force(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
+        let increments = self.increments(dispatch, calls)?;
+        let (outcomes, force) = self.batch()?.internal_force(dispatch, &increments)?;
+        let of_slots = force.chunks_exact(3 * self.batch()?.sizes().nodes).zip(outcomes);
+        Ok(of_slots
+            .map(|(force, outcome)| Answer::Force { force: force.iter().map(|f| f.to_f64()).collect(), outcome })
+            .collect())
     }
 
-    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
-            let batch = self.batch()?;
-            let (outcomes, upper) = batch.tangent(&dispatch, &increments)?;
-            let count = batch.sizes().blocks;
-            for (slot, &i) in dispatch.requests.iter().enumerate() {
-                let request = &mut requests[i];
-                request.outcome = outcomes[slot];
-                if request.outcome != Outcome::Valid {
-                    continue;
-                }
+    fn tangent(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
+        let increments = self.increments(dispatch, calls)?;
+        let batch = self.batch()?;
+        let (outcomes, upper) = batch.tangent(dispatch, &increments)?;
+        let count = batch.sizes().blocks;
+        let mut answers = Vec::with_capacity(outcomes.len());
+        for (slot, (&i, outcome)) in dispatch.requests.iter().zip(outcomes).enumerate() {
+            let Call::Tangent { blocks, .. } = &mut calls[i].1 else { return Err(not_asked()) };
+            let empty = blocks.none();
+            let mut blocks = std::mem::replace(blocks, empty).resized(batch.plan.source.len());
+            if outcome == Outcome::Valid {
                 let upper = |component, block| upper.at((slot * 9 + component) * count + block);
-                match &mut request.blocks {
+                match &mut blocks {
                     Blocks::Double(blocks) => mirror(&batch.plan.source, upper, blocks),
                     Blocks::Single(blocks) => mirror(&batch.plan.source, upper, blocks),
                 }
             }
+            answers.push(Answer::Tangent { blocks, outcome });
         }
-        Ok(())
+        Ok(answers)
     }
 
-    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
-        if !self.batch.as_ref().is_some_and(Batch::solves) {
-            return Ok(());
-        }
-        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
-            let packed = Packed::new(dispatch.requests.iter().map(|&i| &requests[i]));
-            let (outcomes, answers) = self.batch()?.linear(&dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
-            for (slot, &i) in dispatch.requests.iter().enumerate() {
-                requests[i].outcome = outcomes[slot];
-                packed.unpack(slot, &answers, &mut requests[i]);
+    fn contact(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
+        let points = self.batch()?.sizes().contact_points;
+        let mut trial = vec![R::ZERO; dispatch.requests.len() * CONTACT_TRIAL * points];
+        for (trial, &i) in trial.chunks_exact_mut(CONTACT_TRIAL * points).zip(&dispatch.requests) {
+            let (case, Call::Contact { displacement, force }) = &calls[i] else { return Err(not_asked()) };
+            self.refresh(*case)?;
+            let start = at_contact(&self.models[*case].mesh, &self.committed[*case]);
+            let of_points = displacement.as_chunks::<3>().0.iter().zip(start.as_chunks::<3>().0).zip(force.as_chunks::<3>().0);
+            for (k, ((u, start), force)) in of_points.enumerate() {
+                let [x, y] = slip([u[0], u[1]], [start[0], start[1]]);
+                let numbers = [force[0], force[1], force[2], x, y, u[2] - start[2]];
+                numbers.into_iter().enumerate().for_each(|(c, value)| trial[c * points + k] = R::of(value));
             }
         }
-        Ok(())
+        let (answer, status) = self.batch()?.contact(dispatch, &trial)?;
+        let of_slot =
+            |(slot, &i): (usize, &usize)| Answer::Contact(read_rows(slot, &answer, &status, &self.models[calls[i].0].mesh));
+        Ok(dispatch.requests.iter().enumerate().map(of_slot).collect())
     }
 
-    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
-        requests.iter().try_for_each(|request| self.refresh(request.case))?;
-        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let batch = self.batch()?;
-            let points = batch.sizes().contact_points;
-            let mut trial = vec![R::ZERO; dispatch.requests.len() * CONTACT_TRIAL * points];
-            for (trial, &i) in trial.chunks_exact_mut(CONTACT_TRIAL * points).zip(&dispatch.requests) {
-                let ContactRequest { case, displacement, force, .. } = &requests[i];
-                for (k, &node) in self.models[*case].mesh.contact_nodes.iter().enumerate() {
-                    let base = 3 * node as usize;
-                    let (u, start) = (&displacement[base..base + 3], &self.committed[*case][base..base + 3]);
-                    let [x, y] = slip([u[0], u[1]], [start[0], start[1]]);
-                    let numbers = [force[base], force[base + 1], force[base + 2], x, y, u[2] - start[2]];
-                    numbers.into_iter().enumerate().for_each(|(c, value)| trial[c * points + k] = R::of(value));
-                }
-            }
-            let (answer, status) = batch.contact(&dispatch, &trial)?;
-            for (slot, &i) in dispatch.requests.iter().enumerate() {
-                let request = &mut requests[i];
-                read_rows(slot, &answer, &status, &self.models[request.case].mesh, request.rows);
-            }
-        }
-        Ok(())
+    fn solve(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
+        let increments = self.increments(dispatch, calls)?;
+        let system = |&i: &usize| if let (_, Call::Solve(system)) = &calls[i] { Some(&**system) } else { None };
+        let systems: Vec<&System> = dispatch.requests.iter().filter_map(system).collect();
+        let packed = Packed::new(&systems);
+        let (outcomes, answers) = self.batch()?.linear(dispatch, &increments, &packed.rows, &packed.fixed, &packed.sides)?;
+        let of_slots = systems.iter().zip(outcomes).enumerate();
+        Ok(of_slots
+            .map(|(slot, (system, outcome))| Answer::Solved(Solved { outcome, solutions: packed.unpack(slot, &answers, system) }))
+            .collect())
     }
 
-    fn keeps(&self) -> Keeps {
-        if self.batch.as_ref().is_some_and(Batch::keeps_iterates) { Keeps::Steps } else { Keeps::Nothing }
-    }
-
-    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
-        self.answer(requests)
-    }
-
-    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
-        for dispatch in self.schedule(requests.iter().map(|r| r.case)) {
-            let increments = self.increments(&dispatch, |i| (requests[i].case, requests[i].displacement))?;
-            let (outcomes, energies) = self.batch()?.update(&dispatch, &increments)?;
-            for (slot, &i) in dispatch.requests.iter().enumerate() {
-                let request = &mut requests[i];
-                request.outcome = outcomes[slot];
-                if request.outcome != Outcome::Valid {
-                    continue;
-                }
+    fn commit(&mut self, dispatch: &Dispatch, calls: &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError> {
+        let increments = self.increments(dispatch, calls)?;
+        let (outcomes, energies) = self.batch()?.update(dispatch, &increments)?;
+        let mut answers = Vec::with_capacity(outcomes.len());
+        for (slot, (&i, outcome)) in dispatch.requests.iter().zip(outcomes).enumerate() {
+            let mut of_state = Energies::default();
+            if outcome == Outcome::Valid {
+                let (case, displacement) = (calls[i].0, calls[i].1.displacement());
                 let batch = self.batch()?;
-                batch.keep(&dispatch, slot, &self.models[request.case], request.displacement)?;
-                let elements = batch.sizes().elements;
+                batch.keep(dispatch, slot, &self.models[case], displacement)?;
+                let (elements, own) = (batch.sizes().elements, batch.sizes().own_elements);
                 let component = |c: usize| energies[(3 * slot + c) * elements..][..elements].iter().map(|e| e.to_f64());
-                let own = batch.sizes().own_elements;
-                request.energies = Energies {
+                of_state = Energies {
                     elastic: component(0).sum(),
                     plastic: component(1).sum(),
                     max_alpha: component(2).fold(0.0, f64::max),
                     opponent_plastic: component(1).skip(own).sum(),
                 };
-                self.committed[request.case].copy_from_slice(request.displacement);
+                self.committed[case].copy_from_slice(displacement);
             }
+            answers.push(Answer::Commit { energies: of_state, outcome });
         }
-        Ok(())
+        Ok(answers)
+    }
+
+    /// What is done case by case.
+    fn answer(&mut self, case: usize, call: Call) -> Result<Answer, ComputeError> {
+        Ok(match call {
+            Call::BeginStep(weight) => {
+                self.batch()?.begin_step(case, weight)?;
+                Answer::Done
+            }
+            Call::Fields => Answer::Fields(self.fields(case)?),
+            Call::State => Answer::State(self.state(case)?),
+            Call::Restore(state) => {
+                self.restore(case, &state)?;
+                Answer::Done
+            }
+            Call::Replace(model) => Answer::Replaced(self.take_in(case, *model)?),
+            _ => return Err(not_asked()),
+        })
     }
 
     /// Computed on the CPU, in the same precision, from the state on the device: it is output, and
@@ -311,8 +282,8 @@ impl<R: DeviceReal> Compute for Gpu<R> {
     fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
         let state = self.state(case)?;
         let mut twin = Cpu::<R>::new(vec![self.models[case].clone()])?;
-        twin.restore(0, &state)?;
-        twin.fields(0)
+        at(&mut twin, 0).restore(state)?;
+        at(&mut twin, 0).fields()
     }
 
     fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
@@ -337,10 +308,6 @@ impl<R: DeviceReal> Compute for Gpu<R> {
         })
     }
 
-    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
-        self.take_in(case, model)
-    }
-
     fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
         let batch = self.batch()?;
         let count = batch.sizes().points();
@@ -359,15 +326,45 @@ impl<R: DeviceReal> Compute for Gpu<R> {
     }
 }
 
+impl<R: DeviceReal> Compute for Gpu<R> {
+    fn models(&self) -> &[CaseModel] {
+        &self.models
+    }
+
+    fn about(&self) -> About {
+        let keeps = self.batch.as_ref().is_some_and(Batch::keeps_iterates);
+        About {
+            description: Description { device: self.name.clone(), precision: R::NAME },
+            solves: self.batch.as_ref().is_some_and(Batch::solves),
+            keeps: if keeps { Keeps::Steps } else { Keeps::Nothing },
+            has_stand_in: false,
+            traffic: self.context().map(|context| context.traffic()),
+        }
+    }
+
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        match calls.first() {
+            Some((_, Call::Force { .. })) => self.by_dispatch(calls, Self::internal_force),
+            Some((_, Call::Tangent { .. })) => self.by_dispatch(calls, Self::tangent),
+            Some((_, Call::Contact { .. })) => self.by_dispatch(calls, Self::contact),
+            Some((_, Call::Solve(_))) if !self.about().solves => Ok(vec![Answer::Solved(Solved::not_tried()); calls.len()]),
+            Some((_, Call::Solve(_))) => self.by_dispatch(calls, Self::solve),
+            Some((_, Call::Commit { .. })) => self.by_dispatch(calls, Self::commit),
+            Some((_, Call::Iterate(_))) => self.iterate(calls),
+            _ => calls.into_iter().map(|(case, call)| self.answer(case, call)).collect(),
+        }
+    }
+}
+
 /// The contact rows of a slot, from components `[slot][component][point]` and codes
 /// `[slot][point]`.
-fn read_rows<R: DeviceReal>(slot: usize, answer: &[R], status: &[u32], mesh: &Mesh, rows: &mut [Rows<f64>]) {
-    let points = rows.len();
+fn read_rows<R: DeviceReal>(slot: usize, answer: &[R], status: &[u32], mesh: &Mesh) -> Vec<Rows<f64>> {
+    let points = mesh.contact_nodes.len();
     let component = |c: usize, k: usize| answer[(slot * CONTACT_ANSWER + c) * points + k].to_f64();
-    for (k, rows) in rows.iter_mut().enumerate() {
+    let of_point = |k: usize| {
         let code = status[slot * points + k];
         let row = |first: usize| std::array::from_fn(|j| component(first + j, k));
-        *rows = Rows {
+        Rows {
             status: match code % 4 {
                 0 => Status::Open,
                 1 => Status::Stick,
@@ -378,8 +375,9 @@ fn read_rows<R: DeviceReal>(slot: usize, answer: &[R], status: &[u32], mesh: &Me
             displacement_rows: [row(12), row(15), row(18)],
             fixed: [code & 4 != 0, code & 8 != 0, code & 16 != 0],
             weight: R::of(CONTACT_WEIGHT * mesh.contact_size[k]).to_f64(),
-        };
-    }
+        }
+    };
+    (0..points).map(of_point).collect()
 }
 
 /// All blocks of a tangent from `upper(component, block)`, its upper ones: `source` says of each

@@ -88,19 +88,6 @@ impl<R: DeviceReal> UpperBlocks<R> {
     }
 }
 
-/// What [`Batch::trial`] finds.
-#[derive(Clone, Debug)]
-pub struct TrialAnswers<R> {
-    /// How each slot went.
-    pub outcomes: Vec<Outcome>,
-    /// Internal forces `[slot][3 node + i]`.
-    pub force: Vec<R>,
-    /// Contact rows `[slot][component][point]`.
-    pub rows: Vec<R>,
-    /// Their status `[slot][point]`.
-    pub status: Vec<u32>,
-}
-
 /// Solutions `[slot][component][node]` of one side, and how they went by slot.
 pub type Answers = (Vec<f32>, Vec<SideReport>);
 
@@ -349,31 +336,6 @@ impl<R: DeviceReal> Batch<R> {
         let (sizes, slots) = (self.sizes(), dispatch.cases.len());
         let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
         Ok((self.evaluate(dispatch, Evaluation::InternalForce, &self.scratch.force, &mut force)?, force))
-    }
-
-    /// As [`Batch::internal_force`], and the contact rows there as [`Batch::contact`] has them, in
-    /// one submission.
-    ///
-    /// # Errors
-    /// The device's fault.
-    pub fn trial(&self, dispatch: &Dispatch, increments: &[R]) -> Result<TrialAnswers<R>, GpuError> {
-        self.begin_element(dispatch, increments)?;
-        let (sizes, slots, scratch) = (self.sizes(), dispatch.cases.len(), &self.scratch);
-        let mut list = self.context.record();
-        self.append(dispatch, Evaluation::InternalForce, &mut list)?;
-        list.dispatch(&self.groups[dispatch.group].1.contact_trial, sizes.contact_points, slots)?;
-        self.append(dispatch, Evaluation::Contact, &mut list)?;
-        let mut first = vec![0u32; slots];
-        let mut force = vec![R::ZERO; slots * 3 * sizes.nodes];
-        let mut rows = vec![R::ZERO; slots * CONTACT_ANSWER * sizes.contact_points];
-        let mut status = vec![0; slots * sizes.contact_points];
-        list.submit_and_read(&mut [
-            scratch.first_invalid.read(0, &mut first)?,
-            scratch.force.read(0, &mut force)?,
-            scratch.contact_answer.read(0, &mut rows)?,
-            scratch.contact_status.read(0, &mut status)?,
-        ])?;
-        Ok(TrialAnswers { outcomes: outcomes(&first), force, rows, status })
     }
 
     /// Upper blocks of the tangents, `[slot][3 i + j][block]`.

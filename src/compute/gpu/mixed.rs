@@ -10,13 +10,9 @@ use std::sync::Arc;
 use super::backend::Gpu;
 use super::context::GpuContext;
 use crate::compute::cpu::Cpu;
-use crate::compute::iterate::{Answer, Ask, IterateRequest, Keeps, Plate};
-use crate::compute::linear::LinearRequest;
-use crate::compute::traffic::Traffic;
-use crate::compute::{
-    CaseFields, CaseModel, CaseState, CommitRequest, Compute, ComputeError, ContactRequest, Description, ForceRequest, Outcome,
-    TangentRequest,
-};
+use crate::compute::handle::at;
+use crate::compute::iterate::{Ask, Keeps, Plate, Request};
+use crate::compute::{About, Answer, Call, CaseModel, Compute, ComputeError, Description, Outcome};
 
 /// Evaluates a batch in f64 on the CPU, and its tangents and linear systems in f32 on a device.
 pub struct Mixed {
@@ -42,83 +38,54 @@ impl Mixed {
     pub fn context(&self) -> Option<&Arc<GpuContext>> {
         self.single.context()
     }
+
+    /// The device takes over the states that the CPU has found.
+    fn commit(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        let cases: Vec<usize> = calls.iter().map(|(case, _)| *case).collect();
+        let keeps = self.single.about().keeps != Keeps::Nothing;
+        let before: Vec<Vec<f64>> = cases.iter().filter(|_| keeps).map(|&case| self.single.committed[case].clone()).collect();
+        let answers = self.residual.call(calls)?;
+        let is_valid = |answer: &Answer| matches!(answer, Answer::Commit { outcome: Outcome::Valid, .. });
+        for (&case, _) in cases.iter().zip(&answers).filter(|(_, answer)| is_valid(answer)) {
+            at(&mut self.single, case).restore(at(&mut self.residual, case).state()?)?;
+        }
+        let valid = cases.iter().zip(before).zip(&answers).filter(|(_, answer)| is_valid(answer));
+        let earlier = valid.map(|((&case, before), _)| {
+            (case, Call::Iterate(Request { kept: false, plate: Plate::default(), ask: Ask::SetEarlier(before) }))
+        });
+        let earlier: Vec<(usize, Call)> = earlier.collect();
+        if !earlier.is_empty() {
+            self.single.call(earlier)?;
+        }
+        Ok(answers)
+    }
 }
 
 impl Compute for Mixed {
-    fn description(&self) -> Description {
-        let (cpu, gpu) = (self.residual.description(), self.single.description());
-        Description { device: format!("{}, in f32; residuals on the {}", gpu.device, cpu.device), precision: cpu.precision }
-    }
-
     fn models(&self) -> &[CaseModel] {
         self.residual.models()
     }
 
-    fn traffic(&self) -> Option<Traffic> {
-        self.single.traffic()
+    fn about(&self) -> About {
+        let (cpu, gpu) = (self.residual.about().description, self.single.about());
+        let device = format!("{}, in f32; residuals on the {}", gpu.description.device, cpu.device);
+        let keeps = if gpu.keeps == Keeps::Nothing { Keeps::Nothing } else { Keeps::Guesses };
+        About { description: Description { device, precision: cpu.precision }, keeps, ..gpu }
     }
 
-    fn begin_step(&mut self, case: usize, weight: f64) -> Result<(), ComputeError> {
-        self.residual.begin_step(case, weight)?;
-        self.single.begin_step(case, weight)
-    }
-
-    fn internal_force(&mut self, requests: &mut [ForceRequest<'_>]) -> Result<(), ComputeError> {
-        self.residual.internal_force(requests)
-    }
-
-    fn tangent(&mut self, requests: &mut [TangentRequest<'_>]) -> Result<(), ComputeError> {
-        self.single.tangent(requests)
-    }
-
-    fn contact(&mut self, requests: &mut [ContactRequest<'_>]) -> Result<(), ComputeError> {
-        self.residual.contact(requests)
-    }
-
-    fn linear(&mut self, requests: &mut [LinearRequest<'_>]) -> Result<(), ComputeError> {
-        self.single.linear(requests)
-    }
-
-    fn keeps(&self) -> Keeps {
-        if self.single.keeps() == Keeps::Nothing { Keeps::Nothing } else { Keeps::Guesses }
-    }
-
-    fn iterate(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
-        self.single.iterate(requests)
-    }
-
-    /// The device takes over the state that the CPU has found.
-    fn commit(&mut self, requests: &mut [CommitRequest<'_>]) -> Result<(), ComputeError> {
-        let keeps = self.keeps() != Keeps::Nothing;
-        let before: Vec<Vec<f64>> = requests.iter().filter(|_| keeps).map(|r| self.single.committed[r.case].clone()).collect();
-        self.residual.commit(requests)?;
-        for request in requests.iter().filter(|r| r.outcome == Outcome::Valid) {
-            self.single.restore(request.case, &self.residual.state(request.case)?)?;
+    fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        match calls.first() {
+            None | Some((_, Call::Force { .. } | Call::Contact { .. } | Call::Fields | Call::State)) => self.residual.call(calls),
+            Some((_, Call::Tangent { .. } | Call::Solve(_) | Call::Iterate(_))) => self.single.call(calls),
+            Some((_, Call::Commit { .. })) => self.commit(calls),
+            Some((_, Call::BeginStep(_) | Call::Restore(_))) => {
+                self.residual.call(calls.clone())?;
+                self.single.call(calls)
+            }
+            Some((_, Call::Replace(_))) => {
+                let answers = self.single.call(calls.clone())?;
+                if matches!(answers[..], [Answer::Replaced(true)]) { self.residual.call(calls) } else { Ok(answers) }
+            }
         }
-        let valid = requests.iter().zip(before).filter(|(r, _)| r.outcome == Outcome::Valid);
-        let mut earlier: Vec<IterateRequest> = valid
-            .map(|(r, before)| {
-                let (plate, ask) = (Plate::default(), Ask::SetEarlier(before));
-                IterateRequest { case: r.case, kept: false, plate, ask, answer: Answer::Nothing }
-            })
-            .collect();
-        if earlier.is_empty() { Ok(()) } else { self.single.iterate(&mut earlier) }
-    }
-
-    fn fields(&mut self, case: usize) -> Result<CaseFields, ComputeError> {
-        self.residual.fields(case)
-    }
-
-    fn state(&mut self, case: usize) -> Result<CaseState, ComputeError> {
-        self.residual.state(case)
-    }
-
-    fn restore(&mut self, case: usize, state: &CaseState) -> Result<(), ComputeError> {
-        self.residual.restore(case, state)?;
-        self.single.restore(case, state)
-    }
-
-    fn replace(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
-        Ok(self.single.replace(case, model.clone())? && self.residual.replace(case, model)?)
     }
 }

@@ -133,7 +133,6 @@ const BUT: &[(&str, usize, But)] = &[
 /// Kernels that touch single nodes or points, or a number of entries that only the device knows:
 /// what they move is not known, and little.
 const UNKNOWN: &[&str] = &[
-    "contact_trial",
     "krylov_measure",
     "krylov_begin",
     "krylov_advance",

@@ -8,7 +8,7 @@ use super::error::GpuError;
 use crate::compute::{CaseModel, ComputeError};
 
 impl<R: DeviceReal> Gpu<R> {
-    /// What [`crate::compute::Compute::replace`] asks for.
+    /// What [`crate::compute::Call::Replace`] asks for.
     pub(super) fn take_in(&mut self, case: usize, model: CaseModel) -> Result<bool, ComputeError> {
         if !model.is_alike(&self.models[case]) {
             return Err(ComputeError::Connectivity { case });

@@ -8,8 +8,7 @@ use super::pipelines::Bound;
 use super::pools::{PoolBytes, Pools};
 use super::resident::{Connectivity, HISTORY, Resident, Sizes};
 use super::shader_sources::{
-    CONTACT_POINTS, CONTACT_TRIAL as GATHER_CONTACT_TRIAL, GATHER_NODE_FORCE, HEX8_BEGIN_STEP, HEX8_ENERGIES,
-    HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_UPDATE, Kernel,
+    CONTACT_POINTS, GATHER_NODE_FORCE, HEX8_BEGIN_STEP, HEX8_ENERGIES, HEX8_INTERNAL_FORCE, HEX8_JACOBIAN, HEX8_UPDATE, Kernel,
 };
 
 /// Numbers of an element's tangent in `tangent.wgsl`.
@@ -96,7 +95,6 @@ pub struct Kernels {
     pub(super) begin_step: Bound,
     pub(super) update: Bound,
     pub(super) energies: Bound,
-    pub(super) contact_trial: Bound,
     pub(super) contact: Bound,
 }
 
@@ -133,7 +131,6 @@ impl Kernels {
             s.contact_answer.binding(),
             s.contact_status.binding(),
         ];
-        let contact_trial = [mesh.contact_node.binding(), s.force.binding(), s.increment.binding(), s.contact_trial.binding()];
         let at = |kernel, outputs: &[Argument<'_>]| bind(kernel, &[&shape, &element, &material, &at_points, outputs]);
         Ok(Self {
             jacobian: bind(&HEX8_JACOBIAN, &[&shape, &element, &[s.jacobian.binding()]])?,
@@ -142,7 +139,6 @@ impl Kernels {
             begin_step: bind(&HEX8_BEGIN_STEP, &[&shape, &[r.history.binding(), r.anticipated.binding(), r.state.binding()]])?,
             update: at(&HEX8_UPDATE, &[r.history.binding(), s.next_history.binding(), s.point_work.binding()])?,
             energies: bind(&HEX8_ENERGIES, &[&shape, &element, &material, &energies])?,
-            contact_trial: bind(&GATHER_CONTACT_TRIAL, &[&shape, &contact_trial])?,
             contact: bind(&CONTACT_POINTS, &[&shape, &contact])?,
         })
     }

@@ -124,7 +124,6 @@ pub static KERNELS: &[&Kernel] = &[
     &NARROW,
     &GATHER_NODE_FORCE,
     &GATHER_TANGENT_BLOCKS,
-    &CONTACT_TRIAL,
     &CONTACT_POINTS,
     &linear::ASSEMBLE,
     &linear::INVERT_DIAGONAL,
@@ -256,14 +255,6 @@ pub static GATHER_NODE_FORCE: Kernel = Kernel {
 pub static GATHER_TANGENT_BLOCKS: Kernel = Kernel {
     name: "gather_tangent_blocks",
     sources: &[BATCH, PAIRS, source!("gather/tangent_blocks.wgsl")],
-    bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
-    workgroup: 64,
-};
-
-/// What they take of a trial.
-pub static CONTACT_TRIAL: Kernel = Kernel {
-    name: "contact_trial",
-    sources: &[BATCH, source!("contact/contact_trial.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, ReadWrite],
     workgroup: 64,
 };

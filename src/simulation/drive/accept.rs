@@ -1,7 +1,7 @@
 //! What becomes of a step that has converged: it is committed, measured and recorded.
 
 use super::{Drive, Observer};
-use crate::compute::handle::{CaseHandle, Evaluate};
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::Settled;
 use crate::compute::{Energies, Fault, Outcome};
 use crate::contact::coulomb::Status;
@@ -47,7 +47,7 @@ impl Drive<'_> {
             return Ok(Some(fault));
         }
         let (wasted, cutbacks) = (std::mem::take(&mut self.place.wasted), std::mem::take(&mut self.place.cutbacks));
-        if let (Some(before), Some(after)) = (self.traffic_before.take(), self.backend.traffic()) {
+        if let (Some(before), Some(after)) = (self.traffic_before.take(), self.backend.about().traffic) {
             report.traffic = after - before;
         }
         let h = self.newton.accepted_h();

@@ -1,7 +1,7 @@
 //! Iterates whose vectors are on the host.
 
 use super::{Asked, Correction, Iterate, SetOut};
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Reading, Vectors};
 use crate::compute::{ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
@@ -96,7 +96,7 @@ impl HostIterate {
     }
 
     /// What Newton's method decides by of a trial, as seen from the current iterate.
-    fn reading(&self, trial: &Trial, outcome: Outcome, case: &dyn Evaluate, control: &Control) -> Reading {
+    fn reading(&self, trial: &Trial, outcome: Outcome, case: &CaseHandle<'_>, control: &Control) -> Reading {
         if outcome != Outcome::Valid {
             return Reading::of_nothing(outcome);
         }
@@ -175,7 +175,7 @@ impl HostIterate {
     /// Takes over an iterate from a device, and says whether it can be gone on from.
     pub(super) fn take_over(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         vectors: &Vectors,
         h: f64,
         control: &Control,
@@ -204,7 +204,7 @@ impl HostIterate {
     /// Evaluates the candidate at a step length.
     fn evaluate(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         length: f64,
         times: &mut PhaseTimes,
@@ -224,7 +224,7 @@ impl HostIterate {
 impl Iterate for HostIterate {
     fn begin(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         start: &SetOut<'_>,
         control: &Control,
         times: &mut PhaseTimes,
@@ -280,14 +280,14 @@ impl Iterate for HostIterate {
         })
     }
 
-    fn correct(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
+    fn correct(&mut self, case: &mut CaseHandle<'_>, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
         let found = self.linearise(case, asked, times)?;
         Ok(Correction { slope: self.slope(&self.current), ..found })
     }
 
     fn try_length(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         length: f64,
         times: &mut PhaseTimes,
@@ -308,7 +308,7 @@ impl Iterate for HostIterate {
         self.favoured = self.tried;
     }
 
-    fn keep(&mut self, case: &mut dyn Evaluate, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt> {
+    fn keep(&mut self, case: &mut CaseHandle<'_>, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt> {
         if length != self.favoured {
             let outcome = self.evaluate(case, control, length, times)?;
             outcome.check().map_err(|fault| StepFailure::Invalid { fault, when: "at an iterate that was valid before" })?;
@@ -322,7 +322,7 @@ impl Iterate for HostIterate {
 
     fn land(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         _expected: usize,
         times: &mut PhaseTimes,
@@ -339,7 +339,7 @@ impl Iterate for HostIterate {
         Ok(Some((landed, self.reading(&self.current, outcome, case, control))))
     }
 
-    fn worst(&mut self, case: &mut dyn Evaluate, _control: &Control, scale: f64) -> Result<Worst, Halt> {
+    fn worst(&mut self, case: &mut CaseHandle<'_>, _control: &Control, scale: f64) -> Result<Worst, Halt> {
         Ok(self.current.worst(&case.model().mesh, &self.boundary, scale))
     }
 }

@@ -3,17 +3,16 @@
 
 use super::host::HostIterate;
 use super::{Asked, Correction};
-use crate::compute::handle::Evaluate;
-use crate::compute::linear::{Ended, LinearRequest, Side, SideReport};
-use crate::compute::{Blocks, Outcome};
-use crate::linalg::{BlockMatrix, LinalgError, SolverKind};
+use crate::compute::call::OfBlocks;
+use crate::compute::handle::CaseHandle;
+use crate::compute::linear::{Ended, Side, SideReport, Solved, System};
+use crate::linalg::{BlockMatrix, LinalgError};
 use crate::mesh::Mesh;
-use crate::real::Real;
 use crate::solver::SolverError;
 use crate::solver::outcome::{Halt, StepFailure};
 use crate::solver::phases::{Lap, Phase, PhaseTimes};
 use crate::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side, turn};
-use crate::solver::systems::{Matrix, Systems};
+use crate::solver::systems::Matrix;
 
 /// Share of the forces at the contact to which the response to a unit indentation is solved, which
 /// gives the change of h that a missing normal force asks for.
@@ -35,7 +34,7 @@ impl HostIterate {
     /// Forms and solves the linear system: the correction is in `self.delta`.
     pub(super) fn linearise(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         asked: Asked<'_>,
         times: &mut PhaseTimes,
     ) -> Result<Correction, Halt> {
@@ -49,7 +48,7 @@ impl HostIterate {
     }
 
     /// What is fixed at the current iterate, and the right-hand sides.
-    pub(super) fn state_system(&mut self, case: &dyn Evaluate, times: &mut PhaseTimes) {
+    pub(super) fn state_system(&mut self, case: &CaseHandle<'_>, times: &mut PhaseTimes) {
         let mesh = &case.model().mesh;
         let mut lap = Lap::start();
         fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
@@ -64,22 +63,23 @@ impl HostIterate {
 
     /// As [`HostIterate::linearise`], by the backend. Where it stalls, the host has a direct solver
     /// to fall back on.
-    fn solve_there(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<There, Halt> {
+    fn solve_there(&mut self, case: &mut CaseHandle<'_>, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<There, Halt> {
         let Asked { control, eta, first } = asked;
         let mesh = &case.model().mesh.clone();
-        let Systems::Multigrid(solver) = &self.linear else { return Ok(There::NotSolved { krylov: 0 }) };
-        if solver.kind() != SolverKind::Multigrid || !self.boundary.opponent.is_plane() {
+        if !self.is_over_plane_by_multigrid() || !case.backend.about().solves {
             return Ok(There::NotSolved { krylov: 0 });
         }
         let mut lap = Lap::start();
-        self.correction.fill(0.0);
         if first {
             self.expected = [EXPECTED; 2];
         }
-        let report = SideReport::default();
-        let side =
-            |rhs, tolerance, relative_to_guess, expected, x| Side { rhs, tolerance, relative_to_guess, expected, x, report };
-        let mut sides = vec![side(&self.rhs, eta, false, self.expected[0], &mut self.correction)];
+        let mut sides = vec![Side {
+            rhs: self.rhs.clone(),
+            tolerance: eta,
+            relative_to_guess: false,
+            expected: self.expected[0],
+            guess: vec![0.0; self.rhs.len()],
+        }];
         if control.normal_force.is_some() {
             if first {
                 self.unit_response.fill(0.0);
@@ -87,16 +87,23 @@ impl HostIterate {
             }
             // The guess of the first iteration is the measure: see `unit_tolerance`.
             let share = eta.min(UNIT_RESPONSE);
-            let tolerance = if first { share } else { unit_share(share, self.unit_scale) };
-            sides.push(side(&self.unit_rhs, tolerance, first, self.expected[1], &mut self.unit_response));
+            sides.push(Side {
+                rhs: self.unit_rhs.clone(),
+                tolerance: if first { share } else { unit_share(share, self.unit_scale) },
+                relative_to_guess: first,
+                expected: self.expected[1],
+                guess: self.unit_response.clone(),
+            });
         }
-        let (displacement, rows, fixed) = (&self.current.u, &self.current.rows, &self.fixed);
-        let mut request = LinearRequest { case: 0, displacement, rows, fixed, sides, outcome: Outcome::Valid };
-        case.linear(&mut request)?;
-        let outcome = request.outcome;
-        let reports: Vec<SideReport> = request.sides.iter().map(|side| side.report).collect();
-        if reports[0].ended == Ended::NotTried {
+        let (displacement, rows) = (self.current.u.as_slice().into(), self.current.rows.clone());
+        let system = System { displacement, rows, fixed: self.fixed.clone(), sides };
+        let Solved { outcome, solutions } = case.solve(system)?;
+        if solutions.is_empty() {
             return Ok(There::NotSolved { krylov: 0 });
+        }
+        let reports: Vec<SideReport> = solutions.iter().map(|solution| solution.report).collect();
+        for (x, solution) in [&mut self.correction, &mut self.unit_response].into_iter().zip(solutions) {
+            *x = solution.x;
         }
         lap.end(times, Phase::LinearSolve);
         outcome.check().map_err(StepFailure::of_tangent)?;
@@ -138,7 +145,7 @@ impl HostIterate {
     /// As [`HostIterate::linearise`], on the host.
     pub(super) fn solve_here(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         asked: Asked<'_>,
         times: &mut PhaseTimes,
     ) -> Result<Correction, Halt> {
@@ -208,20 +215,17 @@ impl HostIterate {
 
 /// Forms the matrix: the tangent, and the contact's rows in it if they stand there.
 /// `held`, where the normal force is, receives how the plate's force follows the displacements.
-fn form<T: Real>(
+fn form<T: OfBlocks>(
     matrix: &mut BlockMatrix<T>,
-    case: &mut dyn Evaluate,
+    case: &mut CaseHandle<'_>,
     boundary: &Boundary,
     current: &Trial,
     held: Option<&mut Vec<f64>>,
     times: &mut PhaseTimes,
-) -> Result<(), Halt>
-where
-    for<'a> Blocks<'a>: From<&'a mut Vec<[T; 9]>>,
-{
+) -> Result<(), Halt> {
     let mesh = &case.model().mesh.clone();
     let mut lap = Lap::start();
-    case.tangent(&current.u, (&mut matrix.blocks).into())?.check().map_err(StepFailure::of_tangent)?;
+    case.tangent(&current.u, &mut matrix.blocks)?.check().map_err(StepFailure::of_tangent)?;
     lap.end(times, Phase::Tangent);
     if let Some(functional) = held {
         plate_functional(matrix, &boundary.plate, functional);

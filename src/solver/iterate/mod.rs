@@ -13,7 +13,7 @@ use super::outcome::Halt;
 use super::phases::PhaseTimes;
 use super::{Control, Worst};
 use crate::compute::Fault;
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::Reading;
 
 /// Where a step starts from.
@@ -75,7 +75,7 @@ pub trait Iterate {
     /// What no smaller step cures; the device that holds the iterate is gone.
     fn begin(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         start: &SetOut<'_>,
         control: &Control,
         times: &mut PhaseTimes,
@@ -92,7 +92,7 @@ pub trait Iterate {
     ///
     /// # Errors
     /// A system that cannot be solved; what no smaller step cures.
-    fn correct(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt>;
+    fn correct(&mut self, case: &mut CaseHandle<'_>, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt>;
 
     /// Evaluates the trial at a step length along the correction.
     ///
@@ -100,7 +100,7 @@ pub trait Iterate {
     /// What no smaller step cures.
     fn try_length(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         length: f64,
         times: &mut PhaseTimes,
@@ -114,7 +114,7 @@ pub trait Iterate {
     ///
     /// # Errors
     /// What no smaller step cures.
-    fn keep(&mut self, case: &mut dyn Evaluate, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt>;
+    fn keep(&mut self, case: &mut CaseHandle<'_>, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt>;
 
     /// Under full stick, after an iterate was kept: a point that came off within the step and comes
     /// down again has let go of its tangential force, and carries none up to the step's end: held
@@ -125,7 +125,7 @@ pub trait Iterate {
     /// What no smaller step cures.
     fn land(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         expected: usize,
         times: &mut PhaseTimes,
@@ -136,7 +136,7 @@ pub trait Iterate {
     ///
     /// # Errors
     /// What no smaller step cures.
-    fn locate(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Option<Fault>, Halt> {
+    fn locate(&mut self, case: &mut CaseHandle<'_>, control: &Control) -> Result<Option<Fault>, Halt> {
         let _ = (case, control);
         Ok(None)
     }
@@ -145,5 +145,5 @@ pub trait Iterate {
     ///
     /// # Errors
     /// What no smaller step cures.
-    fn worst(&mut self, case: &mut dyn Evaluate, control: &Control, scale: f64) -> Result<Worst, Halt>;
+    fn worst(&mut self, case: &mut CaseHandle<'_>, control: &Control, scale: f64) -> Result<Worst, Halt>;
 }

@@ -3,8 +3,8 @@
 use super::host::HostIterate;
 use super::linearise::{EXPECTED, UNIT_RESPONSE, no_depth, unit_share};
 use super::{Asked, Correction, Extrapolation, Iterate, SetOut};
-use crate::compute::handle::Evaluate;
-use crate::compute::iterate::{Answer, Ask, Begin, Correct, Corrected, From, Plate, Reading, Settled, Vectors};
+use crate::compute::handle::CaseHandle;
+use crate::compute::iterate::{Ask, Begin, Correct, Corrected, From, Plate, Reading, Reply, Settled, Vectors};
 use crate::compute::linear::Ended;
 use crate::compute::{ComputeError, Fault, Outcome};
 use crate::contact::coulomb::Friction;
@@ -55,10 +55,10 @@ impl ResidentIterate {
     ///
     /// # Errors
     /// [`SolverError::Compute`].
-    pub fn settle(&mut self, case: &mut dyn Evaluate) -> Result<Settled, SolverError> {
+    pub fn settle(&mut self, case: &mut CaseHandle<'_>) -> Result<Settled, SolverError> {
         let kept = std::mem::take(&mut self.kept);
         match case.iterate(kept, Plate::default(), Ask::Commit)? {
-            Answer::Settled(settled) => Ok(settled),
+            Reply::Settled(settled) => Ok(settled),
             other => Err(unexpected(&other)),
         }
     }
@@ -67,19 +67,19 @@ impl ResidentIterate {
         Plate { h: self.h, delta_t: control.delta_t, held: control.normal_force }
     }
 
-    fn ask(&mut self, case: &mut dyn Evaluate, control: &Control, ask: Ask) -> Result<Answer, SolverError> {
+    fn ask(&mut self, case: &mut CaseHandle<'_>, control: &Control, ask: Ask) -> Result<Reply, SolverError> {
         let kept = std::mem::take(&mut self.kept);
         Ok(case.iterate(kept, self.plate(control), ask)?)
     }
 
-    fn ask_reading(&mut self, case: &mut dyn Evaluate, control: &Control, ask: Ask) -> Result<Reading, SolverError> {
+    fn ask_reading(&mut self, case: &mut CaseHandle<'_>, control: &Control, ask: Ask) -> Result<Reading, SolverError> {
         match self.ask(case, control, ask)? {
-            Answer::Reading(reading) => Ok(reading),
+            Reply::Reading(reading) => Ok(reading),
             other => Err(unexpected(&other)),
         }
     }
 
-    fn begin_from(&mut self, case: &mut dyn Evaluate, control: &Control, from: From) -> Result<Reading, SolverError> {
+    fn begin_from(&mut self, case: &mut CaseHandle<'_>, control: &Control, from: From) -> Result<Reading, SolverError> {
         // Without full stick no point slides that the friction does not let.
         let sticks = case.model().friction == Friction::Stick && !matches!(from, From::Shift(_));
         let sliding = sticks.then(|| self.host.boundary().frictionless.clone());
@@ -92,13 +92,13 @@ impl ResidentIterate {
     ///
     /// # Errors
     /// [`SolverError::Compute`].
-    pub fn hand_over(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Box<Vectors>, SolverError> {
+    pub fn hand_over(&mut self, case: &mut CaseHandle<'_>, control: &Control) -> Result<Box<Vectors>, SolverError> {
         if self.kept && case.model().friction == Friction::Stick {
             // What came off last is noted with this request.
             self.ask_reading(case, control, Ask::Land)?;
         }
         match self.ask(case, control, Ask::Bring)? {
-            Answer::Vectors(vectors) => {
+            Reply::Vectors(vectors) => {
                 self.host.set_sliding(&vectors.sliding);
                 Ok(vectors)
             }
@@ -107,15 +107,15 @@ impl ResidentIterate {
     }
 
     /// The current iterate on the host, and whether it can be gone on from.
-    fn bring(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Outcome, SolverError> {
+    fn bring(&mut self, case: &mut CaseHandle<'_>, control: &Control) -> Result<Outcome, SolverError> {
         match self.ask(case, control, Ask::Bring)? {
-            Answer::Vectors(vectors) => self.host.take_over(case, &vectors, self.h, control),
+            Reply::Vectors(vectors) => self.host.take_over(case, &vectors, self.h, control),
             other => Err(unexpected(&other)),
         }
     }
 
     /// The correction by the host, which has a direct solver to fall back on.
-    fn correct_there(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
+    fn correct_there(&mut self, case: &mut CaseHandle<'_>, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
         let brought = self.bring(case, asked.control)?;
         brought.check().map_err(|fault| StepFailure::Invalid { fault, when: "at an iterate from the device" })?;
         self.host.state_system(case, times);
@@ -128,14 +128,14 @@ impl ResidentIterate {
     }
 }
 
-fn unexpected(answer: &Answer) -> SolverError {
+fn unexpected(answer: &Reply) -> SolverError {
     ComputeError::Device(format!("the device answered {answer:?}, which was not asked")).into()
 }
 
 impl Iterate for ResidentIterate {
     fn begin(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         start: &SetOut<'_>,
         control: &Control,
         times: &mut PhaseTimes,
@@ -173,7 +173,7 @@ impl Iterate for ResidentIterate {
         self.is_placed
     }
 
-    fn correct(&mut self, case: &mut dyn Evaluate, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
+    fn correct(&mut self, case: &mut CaseHandle<'_>, asked: Asked<'_>, times: &mut PhaseTimes) -> Result<Correction, Halt> {
         let Asked { control, eta, first } = asked;
         let mut lap = Lap::start();
         let share = eta.min(UNIT_RESPONSE);
@@ -187,7 +187,7 @@ impl Iterate for ResidentIterate {
         };
         (self.whole, self.tried) = (None, None);
         let corrected = match self.ask(case, control, Ask::Correct(ask))? {
-            Answer::Corrected(corrected) => corrected,
+            Reply::Corrected(corrected) => corrected,
             other => return Err(unexpected(&other).into()),
         };
         let Corrected { tangent, report, unit, delta_h, slope, trial } = corrected;
@@ -216,7 +216,7 @@ impl Iterate for ResidentIterate {
 
     fn try_length(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         length: f64,
         times: &mut PhaseTimes,
@@ -235,7 +235,7 @@ impl Iterate for ResidentIterate {
     /// The device has the last trial alone.
     fn favour(&mut self) {}
 
-    fn keep(&mut self, case: &mut dyn Evaluate, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt> {
+    fn keep(&mut self, case: &mut CaseHandle<'_>, control: &Control, length: f64, times: &mut PhaseTimes) -> Result<(), Halt> {
         if self.tried.is_none_or(|(tried, _)| tried != length) {
             self.try_length(case, control, length, times)?;
         }
@@ -248,7 +248,7 @@ impl Iterate for ResidentIterate {
 
     fn land(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         expected: usize,
         _times: &mut PhaseTimes,
@@ -261,12 +261,12 @@ impl Iterate for ResidentIterate {
         Ok(Some((expected, reading)))
     }
 
-    fn locate(&mut self, case: &mut dyn Evaluate, control: &Control) -> Result<Option<Fault>, Halt> {
+    fn locate(&mut self, case: &mut CaseHandle<'_>, control: &Control) -> Result<Option<Fault>, Halt> {
         self.kept = true;
         Ok(self.bring(case, control)?.check().err())
     }
 
-    fn worst(&mut self, case: &mut dyn Evaluate, control: &Control, scale: f64) -> Result<Worst, Halt> {
+    fn worst(&mut self, case: &mut CaseHandle<'_>, control: &Control, scale: f64) -> Result<Worst, Halt> {
         self.bring(case, control)?;
         self.host.worst(case, control, scale)
     }

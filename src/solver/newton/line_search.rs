@@ -5,7 +5,7 @@ use super::super::Control;
 use super::super::outcome::{Halt, StepFailure};
 use super::Newton;
 use crate::compute::Fault;
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::Reading;
 use crate::contact::coulomb::Friction;
 
@@ -27,7 +27,7 @@ impl Newton {
     /// step length and the trial there, which is not kept yet.
     pub(super) fn line_search(
         &mut self,
-        case: &mut dyn Evaluate,
+        case: &mut CaseHandle<'_>,
         control: &Control,
         reference: f64,
         slope: f64,
@@ -72,7 +72,7 @@ impl Newton {
     }
 
     /// A step that ends because what was tried last could not be evaluated.
-    pub(super) fn refused(&mut self, case: &mut dyn Evaluate, control: &Control, fault: Fault, when: &'static str) -> Halt {
+    pub(super) fn refused(&mut self, case: &mut CaseHandle<'_>, control: &Control, fault: Fault, when: &'static str) -> Halt {
         let located = match fault {
             Fault::Residual { at: None } => self.iterate().locate(case, control),
             _ => Ok(None),

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::dissipation::dissipated;
 use super::{Opponent, StepTaken, needed};
 use crate::compute::ComputeError;
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::contact::interface::{Interface, leave_even, mirror_nodes};
 use crate::linalg::{LinalgError, SolverKind};
@@ -216,7 +216,7 @@ impl<B: Bodies> Opponent for Joint<B> {
     }
 
     /// At the slave nodes; the residual is that of the unknowns y.
-    fn meet(&self, trial: &mut Trial, case: &mut dyn Evaluate, boundary: &Boundary) -> Result<(), ComputeError> {
+    fn meet(&self, trial: &mut Trial, case: &mut CaseHandle<'_>, boundary: &Boundary) -> Result<(), ComputeError> {
         let model = case.model();
         trial.residual.copy_from_slice(&trial.force);
         self.leave_even(&mut trial.residual);

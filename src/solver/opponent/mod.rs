@@ -19,7 +19,7 @@ use super::outcome::Halt;
 use super::system::{Boundary, Trial};
 use super::systems::{OneBody, Systems};
 use crate::compute::ComputeError;
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{Friction, Rows, Status};
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
@@ -106,7 +106,7 @@ pub trait Opponent: Debug + Send + Sync {
     ///
     /// # Errors
     /// What the backend says.
-    fn meet(&self, trial: &mut Trial, case: &mut dyn Evaluate, boundary: &Boundary) -> Result<(), ComputeError>;
+    fn meet(&self, trial: &mut Trial, case: &mut CaseHandle<'_>, boundary: &Boundary) -> Result<(), ComputeError>;
 
     /// Whether the conditions of contact stand in the matrix; others' are imposed on its products.
     fn is_in_matrix(&self) -> bool {

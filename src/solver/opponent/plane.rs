@@ -3,7 +3,7 @@
 use super::dissipation::dissipated;
 use super::{Opponent, StepTaken, needed};
 use crate::compute::ComputeError;
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{Friction, Point, Status, contact_rows};
 use crate::contact::plane::gap;
 use crate::mesh::Mesh;
@@ -25,7 +25,7 @@ impl Opponent for Plane {
         }
     }
 
-    fn meet(&self, trial: &mut Trial, case: &mut dyn Evaluate, boundary: &Boundary) -> Result<(), ComputeError> {
+    fn meet(&self, trial: &mut Trial, case: &mut CaseHandle<'_>, boundary: &Boundary) -> Result<(), ComputeError> {
         case.contact(&trial.u, &trial.force, &mut trial.rows)?;
         take_rows(trial, &case.model().mesh, boundary);
         Ok(())
@@ -68,7 +68,7 @@ impl Opponent for Plane {
 
 /// Takes over the rows that the backend has stated over a plane: those of points that slide without
 /// friction are stated here, and all stand in the residual.
-pub fn take_rows(trial: &mut Trial, mesh: &Mesh, boundary: &Boundary) {
+fn take_rows(trial: &mut Trial, mesh: &Mesh, boundary: &Boundary) {
     for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free) {
         let node = mesh.contact_nodes[i];
         let base = 3 * node as usize;

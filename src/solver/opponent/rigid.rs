@@ -8,7 +8,7 @@
 use super::dissipation::dissipated;
 use super::{Opponent, StepTaken, needed};
 use crate::compute::ComputeError;
-use crate::compute::handle::Evaluate;
+use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Status, contact_rows};
 use crate::contact::frame::{from_frame, to_frame};
 use crate::contact::rigid::Rigid;
@@ -61,7 +61,7 @@ impl Opponent for RigidSphere {
         }
     }
 
-    fn meet(&self, trial: &mut Trial, case: &mut dyn Evaluate, boundary: &Boundary) -> Result<(), ComputeError> {
+    fn meet(&self, trial: &mut Trial, case: &mut CaseHandle<'_>, boundary: &Boundary) -> Result<(), ComputeError> {
         let (mesh, friction) = (&case.model().mesh, case.model().friction);
         trial.residual.copy_from_slice(&trial.force);
         trial.frames.clear();

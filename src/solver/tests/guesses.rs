@@ -1,10 +1,8 @@
 //! Steps that a device has made in f32 are held to the residual in f64.
 
 use super::*;
-use crate::compute::iterate::{Answer, Ask, Corrected, Keeps, Plate, Reading, Vectors};
-use crate::compute::linear::LinearRequest;
-use crate::compute::{Blocks, ComputeError, Fault};
-use crate::contact::coulomb::Rows;
+use crate::compute::iterate::{Ask, Corrected, Keeps, Reading, Reply, Vectors};
+use crate::compute::{About, Answer, Call, ComputeError, Fault};
 use crate::mesh::{SphereSpec, sphere_mesh};
 
 const SETTINGS: Settings =
@@ -25,46 +23,35 @@ enum Device {
 }
 
 /// Such a device, and the CPU for everything else.
-struct Guesser<'a> {
-    cpu: CaseHandle<'a>,
+struct Guesser {
+    cpu: Cpu<f64, f32>,
     device: Device,
 }
 
-impl Evaluate for Guesser<'_> {
-    fn model(&self) -> &CaseModel {
-        self.cpu.model()
+impl Compute for Guesser {
+    fn models(&self) -> &[CaseModel] {
+        self.cpu.models()
     }
 
-    fn internal_force(&mut self, displacement: &[f64], force: &mut [f64]) -> Result<Outcome, ComputeError> {
-        self.cpu.internal_force(displacement, force)
+    fn about(&self) -> About {
+        About { keeps: Keeps::Guesses, ..self.cpu.about() }
     }
 
-    fn tangent(&mut self, displacement: &[f64], blocks: Blocks<'_>) -> Result<Outcome, ComputeError> {
-        self.cpu.tangent(displacement, blocks)
+    fn call(&mut self, mut calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        match calls.pop() {
+            Some((_, Call::Iterate(request))) => Ok(vec![Answer::Iterate(self.iterate(request.ask)?)]),
+            call => self.cpu.call(call.into_iter().collect()),
+        }
     }
+}
 
-    fn contact(&mut self, displacement: &[f64], force: &[f64], rows: &mut [Rows<f64>]) -> Result<(), ComputeError> {
-        self.cpu.contact(displacement, force, rows)
-    }
-
-    fn trial(&mut self, displacement: &[f64], force: &mut [f64], rows: &mut [Rows<f64>]) -> Result<Outcome, ComputeError> {
-        self.cpu.trial(displacement, force, rows)
-    }
-
-    fn linear(&mut self, request: &mut LinearRequest<'_>) -> Result<(), ComputeError> {
-        self.cpu.linear(request)
-    }
-
-    fn keeps(&self) -> Keeps {
-        Keeps::Guesses
-    }
-
-    fn iterate(&mut self, _kept: bool, _plate: Plate, ask: Ask) -> Result<Answer, ComputeError> {
-        let reading = |merit: f64| Answer::Reading(Reading { merit, ..Reading::default() });
+impl Guesser {
+    fn iterate(&self, ask: Ask) -> Result<Reply, ComputeError> {
+        let reading = |merit: f64| Reply::Reading(Reading { merit, ..Reading::default() });
         Ok(match (&self.device, ask) {
             (Device::Lost, _) => return Err(ComputeError::Moved),
             (Device::Ends(..), Ask::Begin(_)) => reading(0.0),
-            (Device::Ends(displacement, came_off), Ask::Bring) => Answer::Vectors(Box::new(Vectors {
+            (Device::Ends(displacement, came_off), Ask::Bring) => Reply::Vectors(Box::new(Vectors {
                 displacement: displacement.clone(),
                 force: vec![0.0; displacement.len()],
                 sliding: vec![false; came_off.len()],
@@ -72,10 +59,10 @@ impl Evaluate for Guesser<'_> {
             })),
             (Device::ReadsNaN, Ask::Begin(_)) => reading(f64::NAN),
             (Device::ReadsNaN, Ask::Bring) => {
-                let (nodes, points) = (self.model().mesh.nodes.len(), self.model().mesh.contact_nodes.len());
+                let (nodes, points) = (self.models()[0].mesh.nodes.len(), self.models()[0].mesh.contact_nodes.len());
                 let forces = vec![f64::NAN; 3 * nodes];
                 let marks = vec![false; points];
-                Answer::Vectors(Box::new(Vectors {
+                Reply::Vectors(Box::new(Vectors {
                     displacement: vec![0.0; 3 * nodes],
                     force: forces,
                     sliding: marks.clone(),
@@ -85,14 +72,10 @@ impl Evaluate for Guesser<'_> {
             (Device::ComesToNothing, Ask::Begin(_)) => reading(1.0),
             (Device::ComesToNothing, Ask::Correct(_)) => {
                 let tangent = Outcome::Invalid(Fault::Inverted { element: 3, point: 1 });
-                Answer::Corrected(Corrected { tangent, ..Corrected::default() })
+                Reply::Corrected(Corrected { tangent, ..Corrected::default() })
             }
             (_, other) => panic!("{other:?}"),
         })
-    }
-
-    fn commit(&mut self, displacement: &[f64]) -> Result<(Energies, Outcome), ComputeError> {
-        self.cpu.commit(displacement)
     }
 }
 
@@ -123,10 +106,9 @@ fn solved(friction: Friction<f64>, device: Option<Device>) -> Made {
     let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None, came_off: &[] };
     let mut newton = newton(&model.mesh);
     let mut cpu = Cpu::<f64, f32>::with_tangents(vec![model]).unwrap();
-    let mut cpu = CaseHandle { backend: &mut cpu, case: 0 };
     let outcome = match device {
-        None => newton.solve(&mut cpu, &start, &CONTROL),
-        Some(device) => newton.solve(&mut Guesser { cpu, device }, &start, &CONTROL),
+        None => newton.solve(&mut at(&mut cpu, 0), &start, &CONTROL),
+        Some(device) => newton.solve(&mut at(&mut Guesser { cpu, device }, 0), &start, &CONTROL),
     };
     let StepOutcome::Converged(report) = outcome.unwrap() else { panic!("no convergence") };
     let given_up = newton.take_given_up();

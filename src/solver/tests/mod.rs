@@ -13,7 +13,7 @@ use super::iterate::SetOut;
 use super::newton::Newton;
 use super::{Control, Settings, StepFailure, StepOutcome, StepReport};
 use crate::compute::cpu::Cpu;
-use crate::compute::handle::{CaseHandle, Evaluate};
+use crate::compute::handle::at;
 use crate::compute::{CaseModel, Compute, Energies, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{LinearSolver, Pattern, SolverKind};
@@ -58,7 +58,7 @@ impl Rig {
 
     /// The same from a guess.
     pub fn attempt_from(&mut self, guess: Option<&[f64]>, control: &Control) -> StepOutcome {
-        let mut handle = CaseHandle { backend: &mut self.backend, case: 0 };
+        let mut handle = at(&mut self.backend, 0);
         let plate = self.mesh.plate_nodes.first().map_or(0, |&n| 3 * n as usize);
         let start =
             SetOut { displacement: &self.u, h: self.h, delta_t: self.u[plate], guess, extrapolation: None, came_off: &[] };
@@ -74,7 +74,7 @@ impl Rig {
 
     pub fn commit(&mut self) {
         let accepted = self.newton.accepted();
-        let (energies, outcome) = CaseHandle { backend: &mut self.backend, case: 0 }.commit(&accepted.u).unwrap();
+        let (energies, outcome) = at(&mut self.backend, 0).commit(&accepted.u).unwrap();
         assert_eq!(outcome, Outcome::Valid);
         self.u.clone_from(&accepted.u);
         self.h = accepted.h;
@@ -98,7 +98,7 @@ impl Rig {
     }
 
     pub fn state_bits(&mut self) -> Vec<u64> {
-        let state = self.backend.state(0).unwrap();
+        let state = at(&mut self.backend, 0).state().unwrap();
         let points = state.points.iter().flatten().flat_map(|p| p.be.into_iter().chain([p.alpha]));
         state.displacement.iter().copied().chain(points).chain(state.plastic_work.iter().copied()).map(f64::to_bits).collect()
     }

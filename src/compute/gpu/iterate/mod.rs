@@ -1,5 +1,5 @@
-//! Newton's iterates on the device: what a call of [`crate::compute::Compute::iterate`] makes of
-//! its requests, all of which ask for the same.
+//! Newton's iterates on the device: what [`crate::compute::Call::Iterate`] asks for, of all cases
+//! the same.
 //!
 //! A list of kernels goes from the linear system at the current iterates to the merit of the trials
 //! at the ends of their corrections, and is one submission; what comes back is some thirty numbers

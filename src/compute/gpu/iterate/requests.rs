@@ -5,19 +5,39 @@ use super::super::batch::Dispatch;
 use super::super::buffers::DeviceReal;
 use super::super::linear::Solves;
 use super::{Brought, Corrections, Mark, Readout, flags, number, source};
+use crate::compute::call::not_asked;
 use crate::compute::iterate::{
-    Answer, Ask, Begin, Correct, Corrected, From, IterateRequest, Reading, Settled, SettledPoint, Vectors,
+    Ask, Begin, Correct, Corrected, From, Plate, Reading, Reply, Request, Settled, SettledPoint, Vectors,
 };
 use crate::compute::linear::SideReport;
-use crate::compute::{ComputeError, Outcome};
+use crate::compute::{Answer, Call, ComputeError, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 
+/// What is asked of the iterates of a case, and the reply.
+struct Asked {
+    case: usize,
+    kept: bool,
+    plate: Plate,
+    ask: Ask,
+    answer: Reply,
+}
+
 impl<R: DeviceReal> Gpu<R> {
-    /// As [`crate::compute::Compute::iterate`] has it.
-    pub(in super::super) fn answer(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+    /// What [`Call::Iterate`] asks for.
+    pub(in super::super) fn iterate(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError> {
+        let asked = |(case, call)| match call {
+            Call::Iterate(Request { kept, plate, ask }) => Ok(Asked { case, kept, plate, ask, answer: Reply::Nothing }),
+            _ => Err(not_asked()),
+        };
+        let mut requests = calls.into_iter().map(asked).collect::<Result<Vec<_>, _>>()?;
+        self.answer_asked(&mut requests)?;
+        Ok(requests.into_iter().map(|request| Answer::Iterate(request.answer)).collect())
+    }
+
+    fn answer_asked(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
         let Some(kind) = requests.first().map(|request| std::mem::discriminant(&request.ask)) else { return Ok(()) };
         if requests.iter().any(|request| std::mem::discriminant(&request.ask) != kind) {
-            return Err(ComputeError::Device("requests of one call ask for different things".to_owned()));
+            return Err(ComputeError::Device("calls that go together ask for different things".to_owned()));
         }
         for request in requests.iter_mut().filter(|request| request.kept) {
             self.current[request.case] ^= 1;
@@ -35,7 +55,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// What all marks of a case have: from the current iterate to the other one.
-    fn mark(&self, request: &IterateRequest) -> Mark {
+    fn mark(&self, request: &Asked) -> Mark {
         let current = self.current[request.case];
         let stick = self.models[request.case].friction == Friction::Stick;
         let mut mark = Mark { current, trial: 1 - current, ..Mark::default() };
@@ -54,30 +74,30 @@ impl<R: DeviceReal> Gpu<R> {
     /// Calls `serve` for the dispatches of some of the requests, given by their indices.
     fn dispatch(
         &mut self,
-        requests: &mut [IterateRequest],
+        requests: &mut [Asked],
         some: &[usize],
-        mut serve: impl FnMut(&mut Self, &Dispatch, &mut [&mut IterateRequest]) -> Result<(), ComputeError>,
+        mut serve: impl FnMut(&mut Self, &Dispatch, &mut [&mut Asked]) -> Result<(), ComputeError>,
     ) -> Result<(), ComputeError> {
         for dispatch in self.schedule(some.iter().map(|&i| requests[i].case)) {
-            let mut chosen: Vec<(usize, &mut IterateRequest)> = requests
+            let mut chosen: Vec<(usize, &mut Asked)> = requests
                 .iter_mut()
                 .enumerate()
                 .filter_map(|(i, request)| dispatch.requests.iter().position(|&slot| some[slot] == i).map(|slot| (slot, request)))
                 .collect();
             chosen.sort_by_key(|(slot, _)| *slot);
-            let mut chosen: Vec<&mut IterateRequest> = chosen.into_iter().map(|(_, request)| request).collect();
+            let mut chosen: Vec<&mut Asked> = chosen.into_iter().map(|(_, request)| request).collect();
             serve(self, &dispatch, &mut chosen)?;
         }
         Ok(())
     }
 
-    fn begin_iterates(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+    fn begin_iterates(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
         for request in requests.iter() {
             if let Ask::Begin(Begin { sliding: Some(sliding), .. }) = &request.ask {
                 self.batch()?.set_sliding(request.case, sliding)?;
             }
         }
-        let shifts = |request: &IterateRequest| matches!(request.ask, Ask::Begin(Begin { from: From::Shift(_), .. }));
+        let shifts = |request: &Asked| matches!(request.ask, Ask::Begin(Begin { from: From::Shift(_), .. }));
         for shifted in [false, true] {
             let some: Vec<usize> = (0..requests.len()).filter(|&i| shifts(&requests[i]) == shifted).collect();
             self.dispatch(requests, &some, |gpu, dispatch, requests| {
@@ -93,7 +113,7 @@ impl<R: DeviceReal> Gpu<R> {
                         gpu.current[request.case] = mark.trial;
                     }
                     gpu.note(request.case, mark, &readout);
-                    request.answer = Answer::Reading(alone(read));
+                    request.answer = Reply::Reading(alone(read));
                 }
                 Ok(())
             })?;
@@ -101,7 +121,7 @@ impl<R: DeviceReal> Gpu<R> {
         Ok(())
     }
 
-    fn first_mark(&self, request: &IterateRequest) -> Mark {
+    fn first_mark(&self, request: &Asked) -> Mark {
         let mut mark = self.mark(request);
         let Ask::Begin(Begin { from, .. }) = &request.ask else { return mark };
         match *from {
@@ -121,7 +141,7 @@ impl<R: DeviceReal> Gpu<R> {
         mark
     }
 
-    fn correct(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+    fn correct(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
         for held in [false, true] {
             let some: Vec<usize> = (0..requests.len()).filter(|&i| requests[i].plate.held.is_some() == held).collect();
             self.dispatch(requests, &some, |gpu, dispatch, requests| gpu.correct_alike(dispatch, requests))?;
@@ -130,7 +150,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// Requests that all hold a force, or none of them.
-    fn correct_alike(&mut self, dispatch: &Dispatch, requests: &mut [&mut IterateRequest]) -> Result<(), ComputeError> {
+    fn correct_alike(&mut self, dispatch: &Dispatch, requests: &mut [&mut Asked]) -> Result<(), ComputeError> {
         let asks: Vec<Correct> =
             requests.iter().filter_map(|request| if let Ask::Correct(ask) = request.ask { Some(ask) } else { None }).collect();
         let marks: Vec<Mark> = requests.iter().zip(&asks).map(|(request, ask)| self.mark_of_correction(request, ask)).collect();
@@ -153,7 +173,7 @@ impl<R: DeviceReal> Gpu<R> {
                 along: reports[slot].along * back,
                 ..reports[slot]
             };
-            request.answer = Answer::Corrected(Corrected {
+            request.answer = Reply::Corrected(Corrected {
                 tangent: tangents[slot],
                 report,
                 unit: units.get(slot).copied(),
@@ -165,7 +185,7 @@ impl<R: DeviceReal> Gpu<R> {
         Ok(())
     }
 
-    fn mark_of_correction(&self, request: &IterateRequest, ask: &Correct) -> Mark {
+    fn mark_of_correction(&self, request: &Asked, ask: &Correct) -> Mark {
         let mut mark = self.mark(request);
         mark.flags |= flags::PLACES_PLATE | if ask.first { flags::IS_FIRST } else { 0 };
         mark.numbers[number::STEP] = 1.0;
@@ -177,20 +197,20 @@ impl<R: DeviceReal> Gpu<R> {
         mark
     }
 
-    fn try_lengths(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+    fn try_lengths(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
         let all: Vec<usize> = (0..requests.len()).collect();
         self.dispatch(requests, &all, |gpu, dispatch, requests| {
             let marks: Vec<Mark> = requests.iter().map(|request| gpu.mark_at_length(request)).collect();
             let readouts = gpu.batch()?.try_iterates(dispatch, &marks)?;
             for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
                 gpu.note(request.case, mark, &readout);
-                request.answer = Answer::Reading(reading(&readout));
+                request.answer = Reply::Reading(reading(&readout));
             }
             Ok(())
         })
     }
 
-    fn mark_at_length(&self, request: &IterateRequest) -> Mark {
+    fn mark_at_length(&self, request: &Asked) -> Mark {
         let mut mark = self.mark(request);
         if let Ask::Try(length, delta_h) = request.ask {
             // Rounding must not leave the plate a hair from where it belongs.
@@ -200,7 +220,7 @@ impl<R: DeviceReal> Gpu<R> {
         mark
     }
 
-    fn land(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+    fn land(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
         let all: Vec<usize> = (0..requests.len()).collect();
         self.dispatch(requests, &all, |gpu, dispatch, requests| {
             let marks: Vec<Mark> = requests
@@ -213,13 +233,13 @@ impl<R: DeviceReal> Gpu<R> {
             let readouts = gpu.batch()?.assess_iterates(dispatch, &marks, false)?;
             for ((request, readout), mark) in requests.iter_mut().zip(readouts).zip(&marks) {
                 gpu.note(request.case, mark, &readout);
-                request.answer = Answer::Reading(alone(reading(&readout)));
+                request.answer = Reply::Reading(alone(reading(&readout)));
             }
             Ok(())
         })
     }
 
-    fn settle(&mut self, requests: &mut [IterateRequest]) -> Result<(), ComputeError> {
+    fn settle(&mut self, requests: &mut [Asked]) -> Result<(), ComputeError> {
         let all: Vec<usize> = (0..requests.len()).collect();
         self.dispatch(requests, &all, |gpu, dispatch, requests| {
             let marks: Vec<Mark> = requests.iter().map(|request| gpu.mark(request)).collect();
@@ -242,7 +262,7 @@ impl<R: DeviceReal> Gpu<R> {
                     };
                     SettledPoint { displacement: vector(0), force, status }
                 };
-                request.answer = Answer::Settled(Settled {
+                request.answer = Reply::Settled(Settled {
                     outcome: committed.outcome,
                     energies: committed.energies,
                     points: (0..count).map(point).collect(),
@@ -253,7 +273,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// What moves whole vectors, of one case.
-    fn transfer(&mut self, request: &mut IterateRequest) -> Result<(), ComputeError> {
+    fn transfer(&mut self, request: &mut Asked) -> Result<(), ComputeError> {
         let case = request.case;
         let numbers = |vector: Vec<R>| vector.iter().map(|x| x.to_f64()).collect::<Vec<f64>>();
         request.answer = match &request.ask {
@@ -262,21 +282,21 @@ impl<R: DeviceReal> Gpu<R> {
                 let Brought { increments, forces, slides, came_off } = self.batch()?.bring_iterate(case, self.current[case])?;
                 let displacement = increments.iter().zip(&self.committed[case]).map(|(d, u)| u + d.to_f64()).collect();
                 let [sliding, came_off] = [slides, came_off].map(|points| points.iter().map(|&point| point != 0).collect());
-                Answer::Vectors(Box::new(Vectors { displacement, force: numbers(forces), sliding, came_off }))
+                Reply::Vectors(Box::new(Vectors { displacement, force: numbers(forces), sliding, came_off }))
             }
             Ask::Give(correction) => {
                 self.batch()?.give_correction(case, correction)?;
-                Answer::Nothing
+                Reply::Nothing
             }
             Ask::Displacements => {
                 self.refresh(case)?;
-                Answer::Displacements([self.committed[case].clone(), numbers(self.batch()?.earlier(case)?)])
+                Reply::Displacements([self.committed[case].clone(), numbers(self.batch()?.earlier(case)?)])
             }
             Ask::SetEarlier(displacement) => {
                 self.batch()?.set_earlier(case, displacement)?;
-                Answer::Nothing
+                Reply::Nothing
             }
-            _ => Answer::Nothing,
+            _ => Reply::Nothing,
         };
         Ok(())
     }

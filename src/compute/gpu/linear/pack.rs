@@ -1,10 +1,10 @@
-//! Requests as the device takes them, and its answers as they are asked for.
+//! Systems as the device takes them, and its answers as they are asked for.
 
 use super::{POINT_ROWS, Right};
-use crate::compute::linear::{LinearRequest, Side, SideReport};
+use crate::compute::linear::{Side, SideReport, Solution, System};
 use crate::contact::coulomb::Status;
 
-/// The requests of a dispatch, slot by slot.
+/// The systems of a dispatch, slot by slot.
 #[derive(Debug, Default)]
 pub struct Packed {
     /// Contact rows `[slot][slides, force rows, displacement rows][point]`.
@@ -19,20 +19,20 @@ pub struct Packed {
 }
 
 impl Packed {
-    /// Packs requests in the order of their slots.
-    pub fn new<'a, 'b: 'a>(requests: impl Iterator<Item = &'a LinearRequest<'b>> + Clone) -> Self {
+    /// Packs systems in the order of their slots.
+    pub fn new(systems: &[&System]) -> Self {
         let mut out = Self { rows: Vec::new(), fixed: Vec::new(), sides: Vec::new(), factors: Vec::new() };
-        for request in requests.clone() {
-            out.pack_rows(request);
+        for system in systems {
+            out.pack_rows(system);
             let bits = |f: &[bool; 3]| u32::from(f[0]) | u32::from(f[1]) << 1 | u32::from(f[2]) << 2;
-            out.fixed.extend(request.fixed.as_chunks::<3>().0.iter().map(bits));
+            out.fixed.extend(system.fixed.as_chunks::<3>().0.iter().map(bits));
         }
-        let sides = requests.clone().map(|r| r.sides.len()).max().unwrap_or(0);
+        let sides = systems.iter().map(|system| system.sides.len()).max().unwrap_or(0);
         for side in 0..sides {
             let (mut right, mut factors) = (Right::default(), Vec::new());
-            let has_guess = requests.clone().any(|r| r.sides.get(side).is_some_and(|s| s.x.iter().any(|x| *x != 0.0)));
-            for request in requests.clone() {
-                factors.push(pack_side(request, request.sides.get(side), has_guess, &mut right));
+            let has_guess = systems.iter().any(|s| s.sides.get(side).is_some_and(|s| s.guess.iter().any(|x| *x != 0.0)));
+            for system in systems {
+                factors.push(pack_side(system, system.sides.get(side), has_guess, &mut right));
             }
             out.sides.push(right);
             out.factors.push(factors);
@@ -40,10 +40,10 @@ impl Packed {
         out
     }
 
-    fn pack_rows(&mut self, request: &LinearRequest<'_>) {
-        let (first, points) = (self.rows.len(), request.rows.len());
+    fn pack_rows(&mut self, system: &System) {
+        let (first, points) = (self.rows.len(), system.rows.len());
         self.rows.resize(first + POINT_ROWS * points, 0.0);
-        for (k, rows) in request.rows.iter().enumerate().filter(|(_, rows)| rows.status == Status::Slip) {
+        for (k, rows) in system.rows.iter().enumerate().filter(|(_, rows)| rows.status == Status::Slip) {
             let numbers =
                 std::iter::once(&1.0).chain(rows.force_rows.as_flattened()).chain(rows.displacement_rows.as_flattened());
             for (c, &number) in numbers.enumerate() {
@@ -52,34 +52,32 @@ impl Packed {
         }
     }
 
-    /// Writes what the device answered for a slot: fixed unknowns keep the values that were given.
-    pub fn unpack(&self, slot: usize, answers: &[super::super::batch::Answers], request: &mut LinearRequest<'_>) {
-        for (number, side) in request.sides.iter_mut().enumerate() {
-            let (solutions, reports) = &answers[number];
-            let back = 1.0 / self.factors[number][slot];
-            let nodes = side.x.len() / 3;
-            let solution = &solutions[slot * 3 * nodes..][..3 * nodes];
-            for (node, x) in side.x.as_chunks_mut::<3>().0.iter_mut().enumerate() {
-                for (c, x) in x.iter_mut().enumerate() {
-                    let i = 3 * node + c;
-                    *x = if request.fixed[i] { side.rhs[i] } else { f64::from(solution[c * nodes + node]) * back };
-                }
-            }
+    /// What the device answered for a slot: fixed unknowns keep the values that were given.
+    pub fn unpack(&self, slot: usize, answers: &[super::super::batch::Answers], system: &System) -> Vec<Solution> {
+        let sides = system.sides.iter().zip(answers).zip(&self.factors);
+        let solution = |((side, (solutions, reports)), factors): ((&Side, &super::super::batch::Answers), &Vec<f64>)| {
+            let (back, n) = (1.0 / factors[slot], side.rhs.len());
+            let solution = &solutions[slot * n..][..n];
+            let value = |i: usize| {
+                if system.fixed[i] { side.rhs[i] } else { f64::from(solution[i % 3 * (n / 3) + i / 3]) * back }
+            };
             let report = reports[slot];
-            side.report = SideReport {
+            let report = SideReport {
                 rhs_norm: report.rhs_norm * back,
                 start_norm: report.start_norm * back,
                 residual: report.residual * back,
                 along: report.along * back,
                 ..report
             };
-        }
+            Solution { x: (0..n).map(value).collect(), report }
+        };
+        sides.map(solution).collect()
     }
 }
 
 /// Appends a side of a slot; returns the factor of its numbers.
-fn pack_side(request: &LinearRequest<'_>, side: Option<&Side<'_>>, has_guess: bool, right: &mut Right) -> f64 {
-    let n = request.fixed.len();
+fn pack_side(system: &System, side: Option<&Side>, has_guess: bool, right: &mut Right) -> f64 {
+    let n = system.fixed.len();
     let largest = side.map_or(0.0, |side| side.rhs.iter().fold(0.0_f64, |m, b| m.max(b.abs())));
     let factor = if largest > 0.0 && largest.is_finite() { (-largest.log2().floor()).exp2() } else { 1.0 };
     let number = |value: Option<f64>| value.map_or(0.0, |value| (value * factor) as f32);
@@ -92,7 +90,9 @@ fn pack_side(request: &LinearRequest<'_>, side: Option<&Side<'_>>, has_guess: bo
     if has_guess {
         let guess = right.guess.get_or_insert_default();
         for c in 0..3 {
-            guess.extend((c..n).step_by(3).map(|i| if request.fixed[i] { number(rhs(i)) } else { number(side.map(|s| s.x[i])) }));
+            guess.extend(
+                (c..n).step_by(3).map(|i| if system.fixed[i] { number(rhs(i)) } else { number(side.map(|s| s.guess[i])) }),
+            );
         }
     }
     right.expected = right.expected.max(side.map_or(0, |side| side.expected));
