@@ -6,17 +6,18 @@ mod generator;
 #[path = "../examples/random_cases/measure.rs"]
 mod measure;
 
-use generator::{Against, ranges};
+use generator::{Against, Elements, ranges};
 use measure::{Measured, measure, summary};
 use rayon::prelude::*;
 
 const SEED: u64 = 7;
 const COUNT: usize = 40;
+const MESH: Elements = Elements { inside: 4, at_surface: 4 };
 
 #[test]
 fn random_cases_end_by_themselves_and_say_what_is_true() {
     let all: Vec<Measured> =
-        (0..COUNT).into_par_iter().with_max_len(1).map(|index| measure(SEED, index, 4, Against::of(index))).collect();
+        (0..COUNT).into_par_iter().with_max_len(1).map(|index| measure(SEED, index, MESH, Against::of(index))).collect();
     println!("{}\n{}", ranges(), Measured::HEAD);
     all.iter().for_each(|one| println!("{one}"));
     println!("{}", summary(&all));
