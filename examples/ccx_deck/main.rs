@@ -136,6 +136,9 @@ fn arguments() -> Result<Arguments, Failed> {
 fn write_deck(Arguments { case, out, set, settings }: &Arguments) -> Result<String, Failed> {
     let case = Case::load(case, set)?;
     let problem = Problem::new(&case)?;
+    if problem.model.mesh.hanging.iter().any(|hanging| !hanging.is_none()) {
+        return Err("mesh.surface_elements_per_contact_radius: corners that hang are not written in a deck; leave it out".into());
+    }
     std::fs::write(out, deck(&case, &problem, settings)?).map_err(|error| format!("{}: {error}", out.display()))?;
     let mesh = &problem.model.mesh;
     Ok(format!("{}: {} nodes, {} elements", out.display(), mesh.nodes.len(), mesh.elements.len()))

@@ -98,8 +98,8 @@ impl Document {
         arguments.iter().try_for_each(|argument| self.set_argument(argument))
     }
 
-    /// What goes before setting several dotted keys: the elements of the mesh, set by themselves, are
-    /// those at the surface too, whatever the file has there.
+    /// What goes before setting several dotted keys: the elements of the mesh, set by themselves,
+    /// are those at the surface too, whatever the file has there.
     pub fn will_set<'a>(&mut self, keys: impl Iterator<Item = &'a str> + Clone) {
         const INSIDE: &str = "mesh.elements_per_contact_radius";
         const SURFACE: &str = "mesh.surface_elements_per_contact_radius";

@@ -277,8 +277,8 @@ pub trait Compute: Send {
     /// ([`Call::goes_with`]).
     ///
     /// # Errors
-    /// What no smaller step cures. What was to be evaluated can be asked for again; of anything else
-    /// some may be done.
+    /// What no smaller step cures. What was to be evaluated can be asked for again; of anything
+    /// else some may be done.
     fn call(&mut self, calls: Vec<(usize, Call)>) -> Result<Vec<Answer>, ComputeError>;
     /// What the user should know and has not been told yet, in whole sentences: a device that
     /// failed, say.

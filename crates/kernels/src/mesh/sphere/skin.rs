@@ -1,11 +1,11 @@
 //! The skin: cells at the surface, over the fine zone, split in eight, once or several times.
 //!
 //! Level k is the lattice of the blocks with every cell halved k times in all directions; the body
-//! has the cells of level 0 but where they are split. Level k + 1 takes two layers of cells of level
-//! k, out to a ring beyond the fine zone; each level begins a cell further in than the one before,
-//! so that neighbours are of one level or of successive ones (2:1), and what a corner that hangs is
-//! the mean of does not hang itself. Nodes of level 0 have the numbers that they have without a
-//! skin; those that a level adds follow.
+//! has the cells of level 0 but where they are split. Level k + 1 takes two layers of cells of
+//! level k, out to a ring beyond the fine zone. Each level ends a cell further in than the one
+//! before: neighbours are then of one level or of successive ones (2:1), and what a corner that
+//! hangs is the mean of does not hang itself. Nodes of level 0 have the numbers that they have
+//! without a skin; those that a level adds follow.
 
 use super::butterfly::{BOTTOM, Butterfly, CORE, SIDE};
 use super::geometry::Geometry;
@@ -120,7 +120,7 @@ impl<'a> Skin<'a> {
         self.finest.number(Site { block, at: at.map(|i| i << (self.levels - level)) }) as usize
     }
 
-    /// The middles of the edges and faces of cells that are not split: who has a corner there hangs.
+    /// The middles of the edges and faces of cells that are not split: a corner there hangs.
     fn mark_hanging(&mut self) {
         for leaf in self.leaves.iter().filter(|leaf| leaf.level < self.levels) {
             for a in 0..3 {
@@ -240,8 +240,8 @@ impl<'a> Skin<'a> {
         self.leaves.iter().filter(|leaf| leaf.block != CORE && leaf.cell[2] == 0)
     }
 
-    /// Interpolations from level to level, finest first: what a level adds lies in the middle of two,
-    /// four or eight nodes of the one before.
+    /// Interpolations from level to level, finest first: what a level adds lies in the middle of
+    /// two, four or eight nodes of the one before.
     pub fn prolongations(&self) -> Vec<Prolongation> {
         (1..=self.levels).rev().map(|level| self.prolongation(level)).collect()
     }
