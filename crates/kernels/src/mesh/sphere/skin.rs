@@ -206,14 +206,16 @@ impl<'a> Skin<'a> {
         self.leaves.iter().map(|leaf| self.element(leaf)).unzip()
     }
 
-    /// The faces on the sphere's surface without a corner that hangs, over the first `rings` rings
-    /// of level 0, and all nodes of faces there, in increasing order.
+    /// The faces on the sphere's surface over the first `rings` rings of level 0, of a skin those of
+    /// the finest level without a corner that hangs, so that they are one surface without a gap;
+    /// and all nodes of faces there, in increasing order.
     pub fn contact(&self, rings: usize) -> (Vec<[u32; 4]>, Vec<u32>) {
         let is_near = |leaf: &&Leaf| leaf.block == BOTTOM || leaf.block == SIDE && leaf.cell[1] >> leaf.level < rings;
         let (mut faces, mut nodes) = (Vec::new(), Vec::new());
-        for (named, hanging) in self.outer().filter(is_near).map(|leaf| self.element(leaf)) {
+        for leaf in self.outer().filter(is_near) {
+            let (named, hanging) = self.element(leaf);
             nodes.extend(OUTER_FACE.map(|a| named[a]));
-            if !OUTER_FACE.iter().any(|&a| hanging.hangs(a)) {
+            if leaf.level == self.levels && !OUTER_FACE.iter().any(|&a| hanging.hangs(a)) {
                 faces.push(OUTER_FACE.map(|a| named[a]));
             }
         }
