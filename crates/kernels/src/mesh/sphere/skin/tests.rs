@@ -99,14 +99,20 @@ fn the_surface_is_fine_over_the_fine_zone_and_has_its_area() {
         let mesh = sphere_mesh(&spec).unwrap();
         let finest = spec.contact_radius / (spec.elements_per_contact_radius << spec.skin_levels) as f64;
         let rho = |n: u32| mesh.nodes[n as usize][0].hypot(mesh.nodes[n as usize][1]);
-        let inside = mesh
-            .contact_nodes
-            .iter()
-            .zip(&mesh.contact_size)
-            .filter(|(n, _)| rho(**n) < (mesh.fine_radius - finest).min(1.3 * spec.contact_radius));
-        for (&n, &size) in inside {
-            assert!(size < 1.8 * finest, "{spec:?}: {} {}", rho(n), size / finest);
+        // Up to there all faces around a node are of the finest level.
+        let mut of_finest = vec![0.0; mesh.nodes.len()];
+        for face in &mesh.contact_faces {
+            let shares = crate::mesh::connectivity::face_areas(face.map(|n| mesh.nodes[n as usize]));
+            face.iter().zip(shares).for_each(|(&n, share)| of_finest[n as usize] += share);
         }
+        let inside = || (0..mesh.contact_nodes.len()).filter(|&k| rho(mesh.contact_nodes[k]) < mesh.fine_radius - finest);
+        for k in inside() {
+            let (area, node) = (mesh.contact_area[k], mesh.contact_nodes[k]);
+            assert!((of_finest[node as usize] / area - 1.0).abs() < 1e-12, "{spec:?}: {}", rho(node));
+        }
+        let within = || inside().filter(|&k| rho(mesh.contact_nodes[k]) < spec.contact_radius);
+        let size = within().map(|k| mesh.contact_size[k]).sum::<f64>() / within().count() as f64;
+        assert!((0.9..1.3).contains(&(size / finest)), "{spec:?}: {}", size / finest);
         // Faces without a corner that hangs cover all of the fine zone; all faces, the surface.
         let covered: f64 = mesh
             .contact_faces
