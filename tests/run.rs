@@ -66,7 +66,7 @@ fn names(dir: &Path) -> Vec<String> {
 /// Every number of a row with its column, in the order of the file.
 fn numbers(row: &StepRecord) -> Vec<(String, f64)> {
     let serde_json::Value::Object(map) = serde_json::to_value(row).expect("a row") else { unreachable!("a struct is an object") };
-    map.into_iter().map(|(name, value)| (name, value.as_f64().expect("a number"))).collect()
+    map.into_iter().filter_map(|(name, value)| Some((name, value.as_f64()?))).collect()
 }
 
 /// The summary without what may differ between two runs of one case: times.
@@ -280,6 +280,7 @@ fn other_units_give_the_same_normalised_curve() {
             let unit = match name.as_str() {
                 "h" | "delta_T" | "a" | "stick_radius" | "a_gap" | "reach" => radius,
                 "F_N" | "F_T" | "F_T_limit" | "F_N_limit" | "F_T_error" | "F_N_error" => force,
+                "k_T" => force / radius,
                 "work_external" | "energy_elastic" | "work_plastic" | "work_friction" => force * radius,
                 _ => 1.0,
             };

@@ -116,7 +116,7 @@ mod tests {
         let row = StepRecord { step: 3, f_n: 1.0, ..StepRecord::default() };
         assert!(check_row(path, &row).is_ok());
         let some = Some(1.0);
-        let row = StepRecord { f_t_limit: some, f_n_limit: some, f_t_error: some, f_n_error: some, ..row };
+        let row = StepRecord { k_t: some, f_t_limit: some, f_n_limit: some, f_t_error: some, f_n_error: some, ..row };
         assert!(check_row(path, &row).is_ok());
         let serde_json::Value::Object(columns) = serde_json::to_value(row).unwrap() else { panic!("a struct is an object") };
         let mut refused = 0;
@@ -134,7 +134,7 @@ mod tests {
             assert!(message.starts_with(&format!("step 3: {column} is inf")), "{message}");
             refused += 1;
         }
-        assert_eq!(refused, 21);
+        assert_eq!(refused, 22);
         let message = check_row(path, &StepRecord { f_n: f64::NAN, ..row }).unwrap_err().to_string();
         assert!(message.starts_with("step 3: F_N is NaN"), "{message}");
     }

@@ -59,6 +59,7 @@ impl Scaled<StepRecord> {
             h_opponent: scaled.h_opponent * travel,
             work_plastic_opponent: scaled.work_plastic_opponent * energy,
             curvature: scaled.curvature / length,
+            k_t: scaled.k_t.map(|stiffness| stiffness * force / travel),
             f_t_limit: scaled.f_t_limit.map(|limit| limit * force),
             f_n_limit: scaled.f_n_limit.map(|limit| limit * force),
             f_t_error: scaled.f_t_error.map(|error| error * force),

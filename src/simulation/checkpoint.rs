@@ -113,6 +113,8 @@ pub(super) struct Place {
     pub waiting: Vec<Target>,
     /// F_T when it was set out for.
     pub force_before: f64,
+    /// Tangential stiffness at the start of the shear, until its first step is recorded.
+    pub stiffness: Option<f64>,
     /// Iterations of failed attempts and bisections since the last accepted step.
     pub wasted: usize,
     pub cutbacks: usize,
@@ -177,7 +179,7 @@ impl Snapshot {
         if !state.force.iter().chain(force_scales).all(sound) || !points.chain(flow).chain(&case.plastic_work).all(sound) {
             return wrong("a force, a strain or a work");
         }
-        let increment = state.last_increment.iter().flatten().copied();
+        let increment = state.last_increment.iter().flatten().chain(&place.stiffness).copied();
         if !start.chain(targets).chain(record).chain(single).chain(increment).all(|value| sound(&value)) {
             return wrong("a number of its place on the path");
         }

@@ -83,6 +83,10 @@ pub struct StepRecord {
     /// the sphere as around a rigid one.
     #[serde(default)]
     pub curvature: f64,
+    /// In the row of a shear's first step: the tangential stiffness at its start, a force over a
+    /// length (see [`crate::output::Summary::k_t0`]); `None` in others.
+    #[serde(default, rename = "k_T")]
+    pub k_t: Option<f64>,
     /// F_T in the limit of fine meshes and short steps, from this run and its coarse companion (see
     /// [`crate::output::Limits`]); `None` where there is nothing to compare with, as in the next
     /// three.
@@ -126,14 +130,15 @@ impl StepRecord {
             ("work_plastic_opponent", self.work_plastic_opponent),
             ("curvature", self.curvature),
         ];
-        let limits = [
+        let optional = [
+            ("k_T", self.k_t),
             ("F_T_limit", self.f_t_limit),
             ("F_N_limit", self.f_n_limit),
             ("F_T_error", self.f_t_error),
             ("F_N_error", self.f_n_error),
         ];
-        let limits = limits.into_iter().filter_map(|(column, number)| Some((column, number?)));
-        numbers.into_iter().chain(limits).find(|(_, number)| !number.is_finite())
+        let optional = optional.into_iter().filter_map(|(column, number)| Some((column, number?)));
+        numbers.into_iter().chain(optional).find(|(_, number)| !number.is_finite())
     }
 }
 

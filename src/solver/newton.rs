@@ -5,6 +5,7 @@ mod line_search;
 
 use super::iterate::host::HostIterate;
 use super::iterate::resident::ResidentIterate;
+use super::iterate::stiffness::SetOff;
 use super::iterate::{Asked, Correction, Iterate, SetOut};
 use super::opponent::{Opponent, StepTaken};
 use super::outcome::{Halt, Iteration, StepFailure, StepOutcome, StepReport};
@@ -221,6 +222,22 @@ impl Newton {
     /// Number of unknown displacements that are not prescribed.
     pub fn free_unknowns(&self) -> usize {
         self.iterates.host.boundary().prescribed.iter().filter(|p| !**p).count()
+    }
+
+    /// The tangential stiffness of the meshed half at the start of a shear; `None` where the state
+    /// has no answer.
+    ///
+    /// # Errors
+    /// [`SolverError`].
+    pub fn tangential_stiffness(&mut self, case: &mut CaseHandle<'_>, start: &SetOff<'_>) -> Result<Option<f64>, SolverError> {
+        match self.iterates.host.tangential_stiffness(case, start, &mut self.times) {
+            Ok(stiffness) => Ok(Some(stiffness).filter(|k| k.is_finite())),
+            Err(Halt::Step(failure)) => {
+                log::info!("no tangential stiffness: {failure}");
+                Ok(None)
+            }
+            Err(Halt::Solver(error)) => Err(error),
+        }
     }
 
     /// Finds equilibrium under `control` from the committed displacement, trying a guess first if

@@ -27,6 +27,8 @@ pub struct Boundary {
     /// points that come into contact within a step under full stick: where they touch down, and so
     /// what they stick to, is not known before its end.
     pub frictionless: Vec<bool>,
+    /// Every point that touches sticks, but for those that slide without friction.
+    pub stuck: bool,
     /// Per unknown: a typical stiffness by which a missing prescribed displacement enters the
     /// merit.
     pub weight: f64,
@@ -46,10 +48,20 @@ impl Boundary {
             plate: mesh.plate_nodes.iter().copied().filter(|&n| (n as usize) < own_nodes).collect(),
             prescribed: prescribed(mesh),
             frictionless,
+            stuck: false,
             weight: missing_weight(mesh),
             opponent: Box::new(Plane),
             own_nodes,
             own_contacts: mesh.own_contacts(),
+        }
+    }
+
+    /// The friction of a contact point, of a case with this one.
+    pub fn friction_at(&self, contact: usize, friction: Friction<f64>) -> Friction<f64> {
+        match (self.frictionless[contact], self.stuck) {
+            (true, _) => Friction::Coulomb(0.0),
+            (false, true) => Friction::Stick,
+            (false, false) => friction,
         }
     }
 

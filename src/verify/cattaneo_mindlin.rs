@@ -120,7 +120,7 @@ fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator, elements:
     let mut checks = vec![Check::relative(
         "cattaneo-mindlin",
         "k_T0",
-        initial_stiffness(history, body),
+        contact_stiffness(history, body),
         exact.initial_stiffness(),
         0.02,
         FORCE,
@@ -173,14 +173,10 @@ fn loading(history: &History, exact: &CattaneoMindlin, body: &Equator, elements:
     checks
 }
 
-/// Stiffness at the start: the secants of the first two steps, extrapolated to no displacement.
-fn initial_stiffness(history: &History, body: &Equator) -> f64 {
-    let secants: Vec<(f64, f64)> =
-        history.segment(1).map(|row| (row.delta_t, row.f_t / body.contact_shear(row.delta_t, row.f_t))).collect();
-    match secants[..] {
-        [(d0, k0), (d1, k1), ..] => k0 - d0 * (k1 - k0) / (d1 - d0),
-        _ => f64::NAN,
-    }
+/// The contact's own stiffness at the start of the shear.
+fn contact_stiffness(history: &History, body: &Equator) -> f64 {
+    let whole = history.segment(1).next().and_then(|row| row.k_t).unwrap_or(f64::NAN);
+    whole / body.contact_shear(1.0, whole)
 }
 
 /// The way back from the last displacement of first loading, and sliding at its end.

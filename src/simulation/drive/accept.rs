@@ -111,6 +111,7 @@ impl Drive<'_> {
             h_opponent: depth,
             work_plastic_opponent: 2.0 * energies.opponent_plastic,
             curvature,
+            k_t: self.place.stiffness.take(),
             // A run alone knows no limits.
             ..StepRecord::default()
         };

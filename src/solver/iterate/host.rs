@@ -151,7 +151,7 @@ impl HostIterate {
 
     /// Takes the memory of vectors and matrices, if it has not yet: on a device that keeps iterates
     /// they are not needed.
-    fn furnish(&mut self, mesh: &Mesh) -> Result<(), LinalgError> {
+    pub(super) fn furnish(&mut self, mesh: &Mesh) -> Result<(), LinalgError> {
         self.linear.make()?;
         let n = 3 * mesh.nodes.len();
         if self.rhs.len() == n {

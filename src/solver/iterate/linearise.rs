@@ -215,7 +215,7 @@ impl HostIterate {
 
 /// Forms the matrix: the tangent, and the contact's rows in it if they stand there.
 /// `held`, where the normal force is, receives how the plate's force follows the displacements.
-fn form<T: OfBlocks>(
+pub(super) fn form<T: OfBlocks>(
     matrix: &mut BlockMatrix<T>,
     case: &mut CaseHandle<'_>,
     boundary: &Boundary,

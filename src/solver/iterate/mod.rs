@@ -8,6 +8,7 @@
 pub mod host;
 mod linearise;
 pub mod resident;
+pub mod stiffness;
 
 use super::outcome::Halt;
 use super::phases::PhaseTimes;

@@ -146,8 +146,8 @@ impl<B: Bodies> Joint<B> {
             on_symmetry_plane,
         };
         let sticks = B::STICKS_IF_EVEN && self.is_even();
-        let slides = boundary.frictionless[slave] || sticks;
-        let mut rows = contact_rows(if slides { Friction::Coulomb(0.0) } else { friction }, &point);
+        let at_slave = if sticks { Friction::Coulomb(0.0) } else { boundary.friction_at(slave, friction) };
+        let mut rows = contact_rows(at_slave, &point);
         if free_y {
             rows.fixed[1] = false;
             rows.residual[1] = force[1];

@@ -67,9 +67,9 @@ impl Opponent for Plane {
 }
 
 /// Takes over the rows that the backend has stated over a plane: those of points that slide without
-/// friction are stated here, and all stand in the residual.
+/// friction, or stick whatever the case says, are stated here, and all stand in the residual.
 fn take_rows(trial: &mut Trial, mesh: &Mesh, boundary: &Boundary) {
-    for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free) {
+    for (i, _) in boundary.frictionless.iter().enumerate().filter(|(_, free)| **free || boundary.stuck) {
         let node = mesh.contact_nodes[i];
         let base = 3 * node as usize;
         let point = Point {
@@ -79,7 +79,7 @@ fn take_rows(trial: &mut Trial, mesh: &Mesh, boundary: &Boundary) {
             weight: trial.rows[i].weight,
             on_symmetry_plane: boundary.prescribed[base + 1],
         };
-        trial.rows[i] = contact_rows(Friction::Coulomb(0.0), &point);
+        trial.rows[i] = contact_rows(boundary.friction_at(i, Friction::Coulomb(0.0)), &point);
     }
     trial.residual.copy_from_slice(&trial.force);
     for (rows, &node) in trial.rows.iter().zip(&mesh.contact_nodes) {

@@ -9,7 +9,7 @@ use super::dissipation::dissipated;
 use super::{Opponent, StepTaken, needed};
 use crate::compute::ComputeError;
 use crate::compute::handle::CaseHandle;
-use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Status, contact_rows};
+use crate::contact::coulomb::{CONTACT_WEIGHT, Point, Status, contact_rows};
 use crate::contact::frame::{from_frame, to_frame};
 use crate::contact::rigid::Rigid;
 use crate::mesh::Mesh;
@@ -80,7 +80,7 @@ impl Opponent for RigidSphere {
                 weight: CONTACT_WEIGHT * mesh.contact_size[i],
                 on_symmetry_plane: boundary.prescribed[base + 1],
             };
-            let rows = contact_rows(if slides { Friction::Coulomb(0.0) } else { friction }, &point);
+            let rows = contact_rows(boundary.friction_at(i, friction), &point);
             if rows.status != Status::Open {
                 trial.force_scale += force[2].abs();
             }
