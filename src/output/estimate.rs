@@ -1,8 +1,9 @@
 //! The discretisation errors of the numbers of a summary, as its rows and its companion tell them,
 //! and the ripple of the press curve.
 
-use super::summary::first_shear;
-use super::{Limits, StepRecord};
+use super::limit::TANGENTIAL_SHARE;
+use super::summary::{SLIP_DISPLACEMENT_RATIOS, first_shear};
+use super::{Limits, StepLimits, StepRecord};
 
 /// Press steps from this share of the greatest indentation on show the ripple.
 const RIPPLE_FROM: f64 = 0.25;
@@ -23,6 +24,8 @@ pub struct ErrorEstimate {
     pub f_t_max: Option<f64>,
     /// Greatest |F_T| of the shear in the limit of fine meshes and short steps.
     pub f_t_max_limit: Option<f64>,
+    /// Of delta_T_90, delta_T_95 and delta_T_slip.
+    pub delta_t: [Option<f64>; 3],
 }
 
 impl ErrorEstimate {
@@ -30,7 +33,7 @@ impl ErrorEstimate {
     pub fn new(rows: &[StepRecord], oblique: &[usize], limits: &Limits) -> Self {
         let at = |row: &StepRecord| limits.of(&rows[..rows.partition_point(|earlier| earlier.step < row.step)], row);
         let (start, shear) = first_shear(rows, oblique);
-        let (start, points) = (start.map(at), shear.iter().map(at));
+        let (start_row, start, points) = (start, start.map(at), shear.iter().map(at));
         let largest = shear
             .iter()
             .zip(points.clone())
@@ -42,11 +45,38 @@ impl ErrorEstimate {
             f_t_max: largest.and_then(|(_, point)| point.f_t_error),
             // Where a part of the shear has none, the largest may lie there.
             f_t_max_limit: points
+                .clone()
                 .map(|point| point.f_t_limit.map(f64::abs))
                 .reduce(|most, next| Some(most?.max(next?)))
                 .flatten(),
+            delta_t: start_row.zip(limits.friction).map_or([None; 3], |(start, mu)| {
+                let ratio = |f_t: f64, f_n: f64| (f_n > 0.0).then(|| f_t.abs() / f_n);
+                let point = |(row, of): (&StepRecord, StepLimits)| {
+                    let found = ratio(row.f_t, row.f_n)?;
+                    let limit = of.f_t_limit.zip(of.f_n_limit).and_then(|(f_t, f_n)| ratio(f_t, f_n));
+                    Some([(row.delta_t - start.delta_t).abs(), found, (limit? - found).abs()])
+                };
+                let curve: Vec<Option<[f64; 3]>> = shear.iter().zip(points).map(point).collect();
+                SLIP_DISPLACEMENT_RATIOS.map(|share| displacement_error(&curve, share * mu))
+            }),
         }
     }
+}
+
+/// Error of the displacement at which F_T/F_N reaches `wanted`: what the ratio lacks at the ends of
+/// that step, whichever is more, over the slope of the curve in it. The points are displacement,
+/// ratio, and how far the ratio is from its limit.
+fn displacement_error(curve: &[Option<[f64; 3]>], wanted: f64) -> Option<f64> {
+    let mut before = [0.0; 3];
+    for point in curve {
+        let now = (*point)?;
+        if now[1] >= wanted {
+            let rise = now[1] - before[1];
+            return Some(if rise > 0.0 { TANGENTIAL_SHARE * before[2].max(now[2]) * (now[0] - before[0]) / rise } else { 0.0 });
+        }
+        before = now;
+    }
+    None
 }
 
 /// Root mean square of ln F_N about a quadratic in ln h fitted to the first press, from a quarter

@@ -73,6 +73,8 @@ pub fn check_summary(path: &Path, summary: &Summary) -> Result<(), OutputError> 
         ("h0", summary.h0),
         ("F_N_slip", summary.f_n_slip),
         ("F_T_max", summary.f_t_max),
+        ("delta_T_90", summary.delta_t_90),
+        ("delta_T_95", summary.delta_t_95),
         ("delta_T_slip", summary.delta_t_slip),
         ("k_T0", summary.k_t0),
         ("mu_at_slip", summary.mu_at_slip),

@@ -36,7 +36,7 @@ const NORMAL_SHARE: f64 = 0.85;
 /// F_N falls with (F_T/F_N)^2. So much of F_T/F_N, times what it lacks, times F_N.
 const COUPLED_SHARE: f64 = 4.0;
 /// Estimated error of F_T in what F_T/F_N lacks, times F_N; that of F_N comes to it.
-const TANGENTIAL_SHARE: f64 = 1.75;
+pub(super) const TANGENTIAL_SHARE: f64 = 1.75;
 
 /// The companion of a run, and how it is compared.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub struct Limits {
     path: Vec<Segment>,
     units: Units,
     /// mu; `None` for full stick.
-    friction: Option<f64>,
+    pub(super) friction: Option<f64>,
     /// Its curves, segment by segment.
     companion: Vec<Stretch>,
     /// Elements along the contact radius that were asked of it.

@@ -302,13 +302,7 @@ impl ResultWriter {
         let (wall_s, cpu_s) = self.spent();
         // Of a run that did not get to its end there is nothing to compare.
         let estimate = self.estimate().filter(|_| status == Status::Done);
-        let errors = estimate.unwrap_or_default();
         let mut summary = Summary {
-            f_n0_error: errors.f_n0,
-            a0_error: errors.a0,
-            f_t_max_error: errors.f_t_max,
-            f_t_max_limit: errors.f_t_max_limit,
-            error_companion_elements: estimate.map(|e| e.coarse_elements),
             remeshed: self.ledger.remeshed,
             status,
             elements: self.setting.elements,
@@ -322,7 +316,7 @@ impl ResultWriter {
             cpu_s,
             time_by_phase: TimeByPhase::new(&self.ledger.times, &self.ledger.outside, wall_s),
             messages: self.ledger.messages,
-            ..Summary::from_history(&self.ledger.rows, &self.inputs)
+            ..Summary::from_history(&self.ledger.rows, &self.inputs).with_errors(estimate)
         };
         if status == Status::Done && self.keeps_checkpoint && !self.end_is_kept {
             summary.messages.push("note: the last checkpoint could not be written: --extend is not possible".to_owned());

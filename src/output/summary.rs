@@ -1,6 +1,6 @@
 //! `summary.json`: one run in some numbers, and how they are read off its history.
 
-use super::{OutputError, StepRecord, TimeByPhase, plain_json, write_atomically};
+use super::{ErrorEstimate, OutputError, StepRecord, TimeByPhase, plain_json, write_atomically};
 use crate::bounded;
 use crate::compute::traffic::DeviceTraffic;
 use serde::{Deserialize, Serialize};
@@ -8,8 +8,11 @@ use std::io;
 use std::path::Path;
 
 /// delta_T_slip is the displacement at which |F_T|/F_N first reaches this share of mu: the last per
-/// cent of the curve is so flat that where it ends depends on the step size.
+/// cent of the curve is so flat that where it ends depends on mesh and steps.
 pub const SLIP_DISPLACEMENT_RATIO: f64 = 0.99;
+/// The same for delta_T_90 and delta_T_95, which have limits, and for delta_T_slip, which is a
+/// convention.
+pub(super) const SLIP_DISPLACEMENT_RATIOS: [f64; 3] = [0.90, 0.95, SLIP_DISPLACEMENT_RATIO];
 /// Full slip counts as reached when no point in contact sticks or |F_T|/F_N is at least this share
 /// of mu. It stays below 1 where points slip in slightly different directions or a few at the edge,
 /// which carry next to nothing, do not settle.
@@ -71,6 +74,10 @@ pub struct NormalizedResults {
     pub f_n_slip: Option<f64>,
     #[serde(rename = "F_T_max")]
     pub f_t_max: Option<f64>,
+    #[serde(rename = "delta_T_90")]
+    pub delta_t_90: Option<f64>,
+    #[serde(rename = "delta_T_95")]
+    pub delta_t_95: Option<f64>,
     #[serde(rename = "delta_T_slip")]
     pub delta_t_slip: Option<f64>,
     #[serde(rename = "k_T0")]
@@ -97,8 +104,14 @@ pub struct Summary {
     /// Greatest |F_T| of the shear.
     #[serde(rename = "F_T_max")]
     pub f_t_max: Option<f64>,
-    /// Displacement from the start of the shear to |F_T|/F_N = 0.99 mu, see
-    /// [`SLIP_DISPLACEMENT_RATIO`], interpolated linearly within the step.
+    /// Displacement from the start of the shear to |F_T|/F_N = 0.90 mu, interpolated linearly within
+    /// the step.
+    #[serde(rename = "delta_T_90")]
+    pub delta_t_90: Option<f64>,
+    /// The same to 0.95 mu.
+    #[serde(rename = "delta_T_95")]
+    pub delta_t_95: Option<f64>,
+    /// The same to 0.99 mu, see [`SLIP_DISPLACEMENT_RATIO`].
     #[serde(rename = "delta_T_slip")]
     pub delta_t_slip: Option<f64>,
     /// Initial tangential stiffness: the tangent dF_T/d delta_T at the start of the shear, where no
@@ -118,6 +131,15 @@ pub struct Summary {
     /// Greatest |F_T| of the shear in the limit of fine meshes and short steps.
     #[serde(rename = "F_T_max_limit")]
     pub f_t_max_limit: Option<f64>,
+    /// That of delta_T_90: what F_T/F_N lacks there, over the slope of its curve.
+    #[serde(rename = "delta_T_90_error")]
+    pub delta_t_90_error: Option<f64>,
+    /// That of delta_T_95.
+    #[serde(rename = "delta_T_95_error")]
+    pub delta_t_95_error: Option<f64>,
+    /// That of delta_T_slip.
+    #[serde(rename = "delta_T_slip_error")]
+    pub delta_t_slip_error: Option<f64>,
     /// Root mean square of ln F_N about a smooth curve through the first press: the ripple of nodes
     /// coming into contact.
     #[serde(rename = "F_N_ripple")]
@@ -205,11 +227,30 @@ impl Summary {
                 let slip = shear.iter().zip(&points).find(|(record, point)| in_full_slip(record, point, mu));
                 summary.f_n_slip = slip.map(|(record, _)| record.f_n);
                 summary.full_slip_reached = slip.is_some();
-                summary.delta_t_slip = slip_displacement(&points, mu);
+                let curve = || points.iter().map(|point| (point.displacement, point.ratio));
+                let [to_90, to_95, to_slip] = SLIP_DISPLACEMENT_RATIOS.map(|share| displacement_at(curve(), share * mu));
+                (summary.delta_t_90, summary.delta_t_95, summary.delta_t_slip) = (to_90, to_95, to_slip);
             }
         }
         summary.normalize(inputs);
         summary
+    }
+
+    /// The same with what is estimated of its errors.
+    pub fn with_errors(self, estimate: Option<ErrorEstimate>) -> Self {
+        let errors = estimate.unwrap_or_default();
+        let [delta_t_90_error, delta_t_95_error, delta_t_slip_error] = errors.delta_t;
+        Self {
+            f_n0_error: errors.f_n0,
+            a0_error: errors.a0,
+            f_t_max_error: errors.f_t_max,
+            f_t_max_limit: errors.f_t_max_limit,
+            delta_t_90_error,
+            delta_t_95_error,
+            delta_t_slip_error,
+            error_companion_elements: estimate.map(|estimate| estimate.coarse_elements),
+            ..self
+        }
     }
 
     fn normalize(&mut self, inputs: &SummaryInputs) {
@@ -221,6 +262,8 @@ impl Summary {
             h0: length(self.h0),
             f_n_slip: force(self.f_n_slip),
             f_t_max: force(self.f_t_max),
+            delta_t_90: length(self.delta_t_90),
+            delta_t_95: length(self.delta_t_95),
             delta_t_slip: length(self.delta_t_slip),
             k_t0: self.k_t0.map(|value| value / (inputs.youngs_modulus * inputs.radius)),
         };
@@ -286,16 +329,17 @@ fn in_full_slip(record: &StepRecord, point: &ShearPoint, mu: f64) -> bool {
     all_slip || point.ratio.is_some_and(|ratio| ratio >= FULL_SLIP_RATIO * mu)
 }
 
-fn slip_displacement(points: &[ShearPoint], mu: f64) -> Option<f64> {
-    let wanted = SLIP_DISPLACEMENT_RATIO * mu;
-    let (mut displacement, mut ratio) = (0.0, 0.0);
-    for point in points {
-        let now = point.ratio?;
+/// The displacement at which a curve of |F_T|/F_N over it, which begins at the origin, first reaches
+/// `wanted`, linear between its points; `None` if it does not, or at a point without a ratio before.
+fn displacement_at(curve: impl Iterator<Item = (f64, Option<f64>)>, wanted: f64) -> Option<f64> {
+    let (mut before, mut ratio) = (0.0, 0.0);
+    for (displacement, now) in curve {
+        let now = now?;
         if now >= wanted {
             let share = if now > ratio { ((wanted - ratio) / (now - ratio)).max(0.0) } else { 0.0 };
-            return Some(displacement + share * (point.displacement - displacement));
+            return Some(before + share * (displacement - before));
         }
-        (displacement, ratio) = (point.displacement, now);
+        (before, ratio) = (displacement, now);
     }
     None
 }
@@ -370,13 +414,16 @@ mod tests {
             close(summary.f_n_slip, contact.normal_force, 1e-14);
             close(summary.f_t_max, MU * contact.normal_force, 1e-12);
             close(summary.k_t0, contact.initial_stiffness(), 1e-14);
-            // 1 - (1 - x)^1.5 = 0.99 at x = 0.9536; linear within a step of 0.1 d_s.
+            // 1 - (1 - x)^1.5 is 0.90, 0.95 and 0.99 there; linear within a step of 0.1 d_s.
+            close(summary.delta_t_90, 0.7846 * contact.slip_displacement(), 0.02);
+            close(summary.delta_t_95, 0.8643 * contact.slip_displacement(), 0.02);
             close(summary.delta_t_slip, 0.9536 * contact.slip_displacement(), 0.02);
             close(summary.mu_at_slip, MU, 1e-12);
             assert!(summary.full_slip_reached);
             assert_eq!((summary.newton_iterations, summary.cutbacks, summary.krylov_iterations), (80, 1, 160));
             close(summary.normalized.f_n0, contact.normal_force / 800e3, 1e-14);
             close(summary.normalized.k_t0, summary.k_t0.unwrap() / 400e3, 1e-14);
+            close(summary.normalized.delta_t_90, summary.delta_t_90.unwrap() / 2.0, 1e-14);
             close(summary.normalized.delta_t_slip, summary.delta_t_slip.unwrap() / 2.0, 1e-14);
         }
     }
@@ -453,6 +500,9 @@ mod tests {
             "F_N_slip",
             "F_T_max",
             "delta_T_slip",
+            "delta_T_90",
+            "delta_T_95",
+            "delta_T_90_error",
             "k_T0",
             "elements",
             "unknowns",

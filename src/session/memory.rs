@@ -87,7 +87,9 @@ impl Memory {
     pub fn finish(mut self, rows: &[StepRecord], status: Status, message: Option<&str>) -> Summary {
         self.progress.finish(&last_line(status, rows.len()));
         let wall_s = self.clock.wall_seconds();
-        let mut summary = Summary {
+        let limits = self.limits.filter(|_| status == Status::Done);
+        let estimate = limits.map(|limits| ErrorEstimate::new(rows, &self.inputs.oblique, &limits));
+        Summary {
             status,
             remeshed: self.remeshed,
             elements: self.setting.elements,
@@ -101,17 +103,8 @@ impl Memory {
             cpu_s: self.clock.cpu_seconds(),
             time_by_phase: TimeByPhase::new(&self.times, &self.outside, wall_s),
             messages: self.messages.into_iter().chain(message.map(str::to_owned)).collect(),
-            ..Summary::from_history(rows, &self.inputs)
-        };
-        if let Some(limits) = self.limits.filter(|_| status == Status::Done) {
-            let errors = ErrorEstimate::new(rows, &self.inputs.oblique, &limits);
-            summary.f_n0_error = errors.f_n0;
-            summary.a0_error = errors.a0;
-            summary.f_t_max_error = errors.f_t_max;
-            summary.f_t_max_limit = errors.f_t_max_limit;
-            summary.error_companion_elements = Some(errors.coarse_elements);
+            ..Summary::from_history(rows, &self.inputs).with_errors(estimate)
         }
-        summary
     }
 }
 

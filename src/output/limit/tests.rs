@@ -1,5 +1,5 @@
 use super::*;
-use crate::output::ErrorEstimate;
+use crate::output::{ErrorEstimate, Summary, SummaryInputs};
 
 const MU: f64 = 0.3;
 /// Share of F_T/F_N that one element along the contact radius lacks, and of F_N.
@@ -106,6 +106,29 @@ fn rows_one_by_one_have_the_bits_of_all_at_once() {
     let mut part = before[..30].to_vec();
     limits.write_into(&mut part);
     assert_eq!(part, rows[..30]);
+}
+
+#[test]
+fn displacements_of_slip_have_the_errors_of_their_curve() {
+    let mut case = case(PATH);
+    // All of it is reached.
+    case.contact.friction = Friction::Coefficient(0.25);
+    let inputs = SummaryInputs::of(&case);
+    let found = |rows: &[StepRecord]| {
+        let summary = Summary::from_history(rows, &inputs);
+        [summary.delta_t_90, summary.delta_t_95, summary.delta_t_slip].map(|value| value.expect("a displacement"))
+    };
+    let (rows, coarse) = (run(16.0, 26, 40, 0.0025), run(8.0, 13, 20, 0.0027));
+    let limits = Limits::new(&case, &scout(&coarse, 8, &case), 0.2 / 16.0).expect("limits");
+    let estimate = ErrorEstimate::new(&rows, &inputs.oblique, &limits);
+    let exact = found(&run(f64::INFINITY, 26, 40, 0.0025));
+    for ((here, exact), error) in found(&rows).into_iter().zip(exact).zip(estimate.delta_t) {
+        let (off, error) = ((here - exact).abs(), error.expect("an error"));
+        assert!(off <= error && error < 5.0 * off, "{here} instead of {exact}, said to be off by {error}");
+    }
+    // Where the companion did not slip there is nothing to compare with.
+    let short = Limits::new(&case, &scout(&run(8.0, 13, 20, 0.0008), 8, &case), 0.2 / 16.0).expect("limits");
+    assert_eq!(ErrorEstimate::new(&rows, &inputs.oblique, &short).delta_t, [None; 3]);
 }
 
 #[test]
