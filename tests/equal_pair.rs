@@ -105,11 +105,11 @@ fn the_contact_carries_the_force_and_the_energies_balance() {
 
 #[test]
 fn friction_shears_a_pair_otherwise_than_a_plane() {
-    // The plane's press lacks 3 % of the force and 6 % of the radius at mu = 0.3, as an
-    // axisymmetric code says too (153.6 and 148.2 for a fine mesh).
+    // The plane's press lacks 3 % of the force and 4 % of the radius at mu = 0.3, as an
+    // axisymmetric code says too (153.6 and 148.2, and 0.2164 and 0.2098 R, for a fine mesh).
     let mesh = "mesh.elements_per_contact_radius=8";
     let last = |text: &str, path: &str| follow(text, &[mesh, path]).last().map(|(row, _)| *row).unwrap_or_default();
     let (pair, plane) = (last(PAIR, "path=[{indentation=0.04}]"), last(PLANE, "path=[{indentation=0.02}]"));
     assert!((pair.f_n / 153.6 - 1.0).abs() < 0.015 && (plane.f_n / 148.2 - 1.0).abs() < 0.015, "{} {}", pair.f_n, plane.f_n);
-    assert!((pair.a / plane.a - 1.057).abs() < 0.01, "{} {}", pair.a, plane.a);
+    assert!((pair.a / plane.a - 1.035).abs() < 0.01, "{} {}", pair.a, plane.a);
 }

@@ -1,4 +1,5 @@
 //! The size of the contact, to a fraction of an element, by two methods that use different fields.
+//! docs/accuracy.md has what they give.
 //!
 //! A node on the edge knows no half contact: it is closed or open, and it is closed as soon as the
 //! smallest force holds it. Counting closed nodes, or looking for the end of the gap, therefore
@@ -11,29 +12,40 @@ use crate::contact::coulomb::Status;
 /// Size of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
-    /// Contact radius from the pressure: where the profile of the inner points would have to end to
-    /// carry the whole force.
+    /// Contact radius from the pressure: where the profile of the inner points has to end to carry
+    /// the whole force.
     pub radius: f64,
     /// Contact radius from the gap: where the gap of the points outside goes to zero.
     pub radius_gap: f64,
-    /// Radius of a disc with the tributary area of the sticking points.
+    /// Radius that a disc with the area of the sticking points has now.
     pub stick_radius: f64,
 }
 
 /// A contact point in the polar frame of the contact.
 struct Polar {
+    /// Distance from the middle of the contact, along the plane.
     r: f64,
+    /// The same in the undeformed body: the chord from the middle. On a sphere as on a flat what is
+    /// nearer than s has the area pi s^2 (Archimedes), so that areas tell chords.
+    s: f64,
+    /// Area of the undeformed surface that it stands for.
     area: f64,
     force: f64,
     gap: f64,
     closed: bool,
 }
 
-/// Width of the ring that the pressure profile is taken from, in spacings, outside of which other
-/// nodes would blur it.
-const RING: f64 = 5.0;
+/// Width of the ring that the pressure profile is taken from, in spacings.
+const RING: f64 = 4.0;
+/// Width of the rim outside the ring, in spacings, whose points carry more or less than their share.
+const RIM: f64 = 1.0;
+/// Exponents m of profiles p^m that are linear in s^2: that of Hertz's pressure and of a uniform one,
+/// and the least.
+const EXPONENTS: [f64; 2] = [2.0, 0.5];
 /// Width of the band outside the contact in which the gap is looked at, in spacings.
 const BAND: f64 = 3.0;
+/// Points so many spacings to either side tell how far the surface there has moved.
+const NEAR: f64 = 1.0;
 /// Fewer points than this make no profile.
 const FEWEST_POINTS: usize = 6;
 
@@ -47,33 +59,60 @@ pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
     }
     let disc = |area: f64| (2.0 * area / std::f64::consts::PI).sqrt();
     let stick_area: f64 = closed().filter(|p| p.status == Status::Stick).map(|p| p.area).sum();
-    let force: f64 = closed().map(|p| p.force[2]).sum();
-    let centre = if force > 0.0 { closed().map(|p| p.force[2] * p.position[0]).sum::<f64>() / force } else { 0.0 };
-    let reference_centre = closed().map(|p| p.area * p.reference[0]).sum::<f64>() / area;
-    // The surface has stretched under the contact: the ratio of current to reference distances of
-    // the closed points.
-    let (now, then) = closed().fold((0.0, 0.0), |(now, then), p| {
-        let (r, r0) = ((p.position[0] - centre).hypot(p.position[1]), (p.reference[0] - reference_centre).hypot(p.reference[1]));
-        (now + p.area * r * r0, then + p.area * r0 * r0)
-    });
-    let stretch = if then > 0.0 { now / then } else { 1.0 };
-    let polar: Vec<Polar> = points
-        .iter()
-        .map(|p| Polar {
-            r: (p.position[0] - centre).hypot(p.position[1]),
-            area: p.area * stretch * stretch,
-            force: p.force[2],
-            gap: p.gap,
-            closed: p.status != Status::Open,
-        })
-        .collect();
-    let touching = disc(area) * stretch;
+    let polar = polar(points);
+    // Stretched as the surface is there: more in the middle of a plastic contact than at its edge.
+    let now = |s: f64| present_radius(&polar, s, spacing);
+    let edge = disc(area);
+    let touching = now(edge);
     Footprint {
-        radius: radius_from_pressure(&polar, touching, spacing).unwrap_or(touching),
+        radius: edge_from_pressure(&polar, edge, spacing).map_or(touching, now),
         radius_gap: radius_from_gap(&polar, touching, spacing).unwrap_or(touching),
-        // + 0: a sum over no points is -0.
-        stick_radius: disc(stick_area + 0.0) * stretch,
+        stick_radius: if stick_area > 0.0 { now(disc(stick_area)) } else { 0.0 },
     }
+}
+
+/// The points in the polar frame of the contact: around the middle of its force, and of its area in
+/// the undeformed body.
+fn polar(points: &[ContactPoint]) -> Vec<Polar> {
+    let closed = || points.iter().filter(|p| p.status != Status::Open);
+    let mean = |weight: fn(&ContactPoint) -> f64, of: fn(&ContactPoint) -> f64| {
+        let sum: f64 = closed().map(weight).sum();
+        if sum > 0.0 { closed().map(|p| weight(p) * of(p)).sum::<f64>() / sum } else { 0.0 }
+    };
+    let centre = mean(|p| p.force[2], |p| p.position[0]);
+    let x = mean(|p| p.area, |p| p.reference[0]);
+    // A sphere through the origin has z = kappa |x|^2/2 everywhere.
+    let (by_square, squares) = points.iter().fold((0.0, 0.0), |(by_square, squares), p| {
+        let square: f64 = p.reference.iter().map(|x| x * x).sum();
+        (by_square + square * p.reference[2], squares + square * square)
+    });
+    let middle = [x, 0.0, if squares > 0.0 { by_square / squares * x * x } else { 0.0 }];
+    let point = |p: &ContactPoint| Polar {
+        r: (p.position[0] - centre).hypot(p.position[1]),
+        s: p.reference.iter().zip(middle).map(|(x, c)| (x - c) * (x - c)).sum::<f64>().sqrt(),
+        area: p.area,
+        force: p.force[2],
+        gap: p.gap,
+        closed: p.status != Status::Open,
+    };
+    points.iter().map(point).collect()
+}
+
+/// Where what was at `s` is now: a line through the points near it, which count the more the nearer
+/// they are (Cleveland, J. Am. Stat. Assoc. 74, 1979). Of a few points, all stretched alike.
+fn present_radius(points: &[Polar], s: f64, spacing: f64) -> f64 {
+    let through = |width: f64| {
+        let near = points.iter().filter(|p| (p.s - s).abs() < width);
+        let weight = |p: &Polar| p.area * (1.0 - ((p.s - s).abs() / width).powi(3)).powi(3);
+        Some(line(near.map(|p| (weight(p), p.s - s, p.r)))?.1)
+    };
+    [NEAR, 2.0 * NEAR, 4.0 * NEAR].into_iter().find_map(|width| through(width * spacing)).unwrap_or_else(|| {
+        let (now, then) = points
+            .iter()
+            .filter(|p| p.closed)
+            .fold((0.0, 0.0), |(now, then), p| (now + p.area * p.r * p.s, then + p.area * p.s * p.s));
+        if then > 0.0 { s * now / then } else { s }
+    })
 }
 
 /// Height in the middle and curvature of the surface in contact: the paraboloid z = z_0 + kappa
@@ -106,36 +145,71 @@ fn line(points: impl Iterator<Item = (f64, f64, f64)>) -> Option<(f64, f64)> {
     Some((slope, (y1 - slope * x1) / w))
 }
 
-/// The edge from the pressure. Inside, p^2 is fitted by a line in r^2, which is exact for Hertz's
-/// pressure and for a uniform one; the force that points near the edge lack against that profile is
-/// the integral of the profile from the edge to the touching radius.
-fn radius_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option<f64> {
-    let inside = touching - spacing;
-    let from = (touching - (RING + 1.0) * spacing).max(0.0);
-    let ring = points.iter().filter(|p| p.closed && (from..inside).contains(&p.r));
-    let (slope, at_zero) = line(ring.map(|p| (p.area, p.r * p.r, (p.force / p.area).powi(2))))?;
-    let squared = |r: f64| (at_zero + slope * r * r).max(0.0);
-    let lacking: f64 = points.iter().filter(|p| p.closed && p.r >= inside).map(|p| squared(p.r).sqrt() * p.area - p.force).sum();
-    // Half of the disc is meshed: the profile carries integral pi r p dr. With s = r^2 that is pi/2
-    // integral sqrt(c + m s) ds.
-    let carried = |r: f64| {
-        let (lo, hi) = (r * r, touching * touching);
+/// A profile of the pressure, p^m = at_zero + slope s^2.
+struct Profile {
+    exponent: f64,
+    slope: f64,
+    at_zero: f64,
+}
+
+impl Profile {
+    fn pressure(&self, squared: f64) -> f64 {
+        (self.at_zero + self.slope * squared).max(0.0).powf(1.0 / self.exponent)
+    }
+
+    /// Where it ends by itself.
+    fn end(&self) -> f64 {
+        if self.slope < 0.0 { (-self.at_zero / self.slope).max(0.0).sqrt() } else { f64::INFINITY }
+    }
+
+    /// What it carries between two radii, on half of a disc: integral pi s p ds, with s^2 the
+    /// variable.
+    fn carried(&self, from: f64, to: f64) -> f64 {
+        let (lo, hi) = (from * from, to * to);
         let n = 64;
         let step = (hi - lo) / f64::from(n);
-        (0..n).map(|i| squared((lo + (f64::from(i) + 0.5) * step).sqrt()).sqrt() * step).sum::<f64>()
-            * std::f64::consts::FRAC_PI_2
-    };
-    // Where the profile itself ends before the touching radius, the contact does too.
-    let end = if slope < 0.0 { (-at_zero / slope).max(0.0).sqrt().min(touching) } else { touching };
-    if lacking <= 0.0 {
-        return Some(end);
+        (0..n).map(|i| self.pressure(lo + (f64::from(i) + 0.5) * step) * step).sum::<f64>() * std::f64::consts::FRAC_PI_2
     }
-    let (mut lo, mut hi) = (from, end);
+}
+
+/// The edge from the pressure, in the undeformed body, where closed points stand for the disc of
+/// radius `touching`.
+///
+/// In a ring inside, p^2 is fitted by a line in s^2, which is exact for Hertz's pressure and for a
+/// uniform one. Where the points of the rim carry less than this profile would there, it ends
+/// abruptly, so far inside `touching` that it carries as much as they do. Where they carry more, as
+/// under friction, which moves the pressure of an elastic contact inwards, it runs out more slowly
+/// than Hertz's: with that power of p, less than the second, with which it carries what they do.
+fn edge_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option<f64> {
+    let inside = touching - RIM * spacing;
+    let from = (inside - RING * spacing).max(0.0);
+    let ring = || points.iter().filter(|p| p.closed && (from..inside).contains(&p.s));
+    let fit = |exponent: f64| {
+        let pressure = |p: &Polar| (p.force / p.area).max(0.0).powf(exponent);
+        let (slope, at_zero) = line(ring().map(|p| (p.area, p.s * p.s, pressure(p))))?;
+        Some(Profile { exponent, slope, at_zero })
+    };
+    let rim = || points.iter().filter(|p| p.closed && p.s >= inside);
+    let lacking = |profile: &Profile| rim().map(|p| profile.pressure(p.s * p.s) * p.area - p.force).sum::<f64>();
+    let [hertz, least] = EXPONENTS;
+    let mut profile = fit(hertz)?;
+    let missing = lacking(&profile);
+    if missing > 0.0 {
+        let cut = |s: f64| profile.carried(s, touching) <= missing;
+        return Some(halved(from, profile.end().min(touching), |s| !cut(s)));
+    }
+    let exponent = halved(least, hertz, |exponent| fit(exponent).is_some_and(|profile| lacking(&profile) > 0.0));
+    profile = fit(exponent)?;
+    Some(profile.end().min(touching))
+}
+
+/// Between `lo`, below which `is_below` holds, and `hi`, above which it does not.
+fn halved(mut lo: f64, mut hi: f64, is_below: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (lo + hi);
-        if carried(middle) > lacking { lo = middle } else { hi = middle }
+        if is_below(middle) { lo = middle } else { hi = middle }
     }
-    Some(0.5 * (lo + hi))
+    0.5 * (lo + hi)
 }
 
 /// The edge from the gap. It opens as (r - a)^q, with q = 3/2 at an elastic edge (Johnson 1985,
@@ -155,3 +229,6 @@ fn radius_from_gap(points: &[Polar], touching: f64, spacing: f64) -> Option<f64>
     }
     best.map(|(_, radius)| radius)
 }
+
+#[cfg(test)]
+mod tests;
