@@ -8,9 +8,9 @@
 use std::path::Path;
 
 use asperity::case::Case;
+use asperity::internals::compute::Outcome;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::handle::CaseHandle;
-use asperity::internals::compute::Outcome;
 use asperity::internals::linalg::{BlockMatrix, Hierarchy, LinearSolver, Pattern, SolverKind};
 use asperity::internals::simulation::drive::{Drive, Observer, StepView};
 use asperity::internals::simulation::problem::Problem;
