@@ -50,6 +50,9 @@ pub struct Gpu<R> {
     name: String,
 }
 
+/// Answers the calls of a dispatch, in the order of its slots.
+type OfDispatch<R> = fn(&mut Gpu<R>, &Dispatch, &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError>;
+
 impl<R: DeviceReal> Gpu<R> {
     /// Takes a batch of cases in their undeformed, virgin state to a device.
     ///
@@ -158,11 +161,7 @@ impl<R: DeviceReal> Gpu<R> {
     }
 
     /// Answers calls dispatch by dispatch: `answer` has those of one, in the order of its slots.
-    fn by_dispatch(
-        &mut self,
-        mut calls: Vec<(usize, Call)>,
-        answer: fn(&mut Self, &Dispatch, &mut [(usize, Call)]) -> Result<Vec<Answer>, ComputeError>,
-    ) -> Result<Vec<Answer>, ComputeError> {
+    fn by_dispatch(&mut self, mut calls: Vec<(usize, Call)>, answer: OfDispatch<R>) -> Result<Vec<Answer>, ComputeError> {
         let mut answers: Vec<Answer> = calls.iter().map(|_| Answer::Done).collect();
         for dispatch in self.schedule(calls.iter().map(|(case, _)| *case)) {
             let of_slots = answer(self, &dispatch, &mut calls)?;
