@@ -2,8 +2,8 @@
 // the formulation and its sources are. A thread has one quadrature point; point q of element e is 8
 // e + q.
 
-@group(0) @binding(2) var<storage, read> element_nodes: array<u32>;     // [element][local node]
-// [geometry][3 a + i][element]: reference positions of its nodes, relative to the first one
+@group(0) @binding(2) var<storage, read> element_nodes: array<u32>;     // [element][corner]: see hanging.wgsl
+// [geometry][3 a + i][element]: reference positions of its corners, relative to the first one
 @group(0) @binding(3) var<storage, read> coordinates: array<real>;
 @group(0) @binding(4) var<storage, read> volume: array<real>;           // [geometry][point]
 @group(0) @binding(5) var<storage, read> committed: array<real>;        // [case][3 node + i]: displacement
@@ -86,21 +86,25 @@ struct DisplacementGradients {
 
 fn displacement_gradients(at: Place) -> DisplacementGradients {
     let stride = dimensions.elements;
+    let hanging = hanging_of(at.element);
     var position: mat3x3<real>;
     var of_committed: mat3x3<real>;
     var of_increment: mat3x3<real>;
     for (var a = 0u; a < 8u; a++) {
-        let node = element_nodes[8u * at.element + a];
+        let node = node_at(at.element, a);
         let of_case = 3u * (at.case_index * dimensions.nodes + node);
         let of_slot = 3u * (at.slot * dimensions.nodes + node);
         let u = vec3<real>(committed[of_case], committed[of_case + 1u], committed[of_case + 2u]);
         let d = vec3<real>(increment[of_slot], increment[of_slot + 1u], increment[of_slot + 2u]);
         let of_element = (24u * at.geometry + 3u * a) * stride + at.element;
         let x = vec3<real>(coordinates[of_element], coordinates[of_element + stride], coordinates[of_element + 2u * stride]);
-        let n = shape_derivative(a, at.point % 8u);
+        var n = shape_derivative(a, at.point % 8u);
         position[0] += n.x * x;
         position[1] += n.y * x;
         position[2] += n.z * x;
+        if hanging != 0u {
+            n = named_derivative(hanging, a, at.point % 8u);
+        }
         of_committed[0] += n.x * u;
         of_committed[1] += n.y * u;
         of_committed[2] += n.z * u;

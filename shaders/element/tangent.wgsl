@@ -1,4 +1,4 @@
-// The blocks of the elements' tangents, d f_a/d u_b of each pair of nodes once. A workgroup has
+// The blocks of the elements' tangents, d f_a/d u_b of each pair of the nodes that they name once. A workgroup has
 // eight elements: first each thread makes the moduli of a quadrature point, in the form in which
 // they are applied, then it has a node b and the pairs of it with b, b + 1, b + 2, b + 3 and, for
 // the first four nodes, b + 4 (modulo 8):
@@ -69,8 +69,8 @@ struct AtNode {
     x: vec3<real>,
 }
 
-fn at_node(natural: mat3x3<real>, normal: mat3x3<real>, x: mat3x3<real>, node: u32, q: u32) -> AtNode {
-    let g = shape_derivative(node, q) * natural;
+fn at_node(natural: mat3x3<real>, normal: mat3x3<real>, x: mat3x3<real>, derivative: vec3<real>) -> AtNode {
+    let g = derivative * natural;
     return AtNode(g, normal * g, x * g);
 }
 
@@ -99,6 +99,7 @@ fn with_point(block: Block, at: u32, a: AtNode, b: AtNode, tau_b: vec3<real>) ->
 // Two pairs, which share what a point has of b; the second one only where it is `both`.
 fn make_pairs(slot: u32, element: u32, first_point: u32, b: u32, offset: u32, both: bool) {
     let a = vec2<u32>(b + offset, b + offset + 1u) % 8u;
+    let hanging = hanging_of(element);
     var first: Block;
     var second: Block;
     var volume_b = vec3<real>();
@@ -107,12 +108,14 @@ fn make_pairs(slot: u32, element: u32, first_point: u32, b: u32, offset: u32, bo
         let natural = mat3x3<real>(load_vector(at, 0u), load_vector(at, 3u), load_vector(at, 6u));
         let normal = load_sym(at, 15u);
         let x = load_sym(at, 21u);
-        let of_b = at_node(natural, normal, x, b, q);
+        let of_b = at_node(natural, normal, x, named_derivative(hanging, b, q));
         let tau_b = load_sym(at, 9u) * of_b.g;
         volume_b += component(at, 29u) * of_b.g;
-        first = with_point(first, at, at_node(natural, normal, x, a.x, q), of_b, tau_b);
+        let of_first = at_node(natural, normal, x, named_derivative(hanging, a.x, q));
+        first = with_point(first, at, of_first, of_b, tau_b);
         if both {
-            second = with_point(second, at, at_node(natural, normal, x, a.y, q), of_b, tau_b);
+            let of_second = at_node(natural, normal, x, named_derivative(hanging, a.y, q));
+            second = with_point(second, at, of_second, of_b, tau_b);
         }
     }
     let bulk_b = component(first_point, 30u) * volume_b;

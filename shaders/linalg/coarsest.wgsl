@@ -55,7 +55,11 @@ fn block_row_times(slot: u32, node: u32) -> vec3<real> {
         sum[i] = dot(vec3<real>(inverse[row], inverse[row + level.nodes], inverse[row + 2u * level.nodes]), own);
     }
     for (var k = 0u; k < level.width; k += 2u) {
-        let first = of_node(slot, column[k * level.nodes + node]);
+        let to = column[k * level.nodes + node];
+        if to == NO_COLUMN {
+            break;
+        }
+        let first = of_node(slot, to);
         let second = of_node(slot, column[(k + 1u) * level.nodes + node]);
         for (var i = 0u; i < 3u; i++) {
             let row = at + 3u * i * words;

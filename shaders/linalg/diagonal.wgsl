@@ -96,7 +96,11 @@ fn lost_of_row(slot: u32, node: u32) -> mat3x3<real> {
     var at = 18u * slot * words + node;
     var sum = mat3x3<real>();
     for (var k = 0u; k < level.width; k += 2u) {
-        let first = is_fixed[slot * level.nodes + column[k * level.nodes + node]];
+        let to = column[k * level.nodes + node];
+        if to == NO_COLUMN {
+            break;
+        }
+        let first = is_fixed[slot * level.nodes + to];
         let second = is_fixed[slot * level.nodes + column[(k + 1u) * level.nodes + node]];
         for (var j = 0u; j < 3u; j++) {
             for (var i = 0u; i < 3u; i++) {

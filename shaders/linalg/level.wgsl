@@ -1,7 +1,8 @@
 // One level of the multigrid hierarchy: its matrix, and what every kernel on it knows. A dispatch
 // has a thread for each node and component, 64 nodes a workgroup, and runs along y over the slots.
-// Vectors are [slot][component][node]; all rows of a matrix have the same number of blocks, those
-// that are missing being zero, so that neighbouring threads read neighbouring numbers.
+// Vectors are [slot][component][node]; all rows of a matrix have room for the same number of blocks,
+// so that neighbouring threads read neighbouring numbers. Those that are missing are zero, and end a
+// product: it takes two blocks at a time, and of two that are missing the column is NO_COLUMN.
 struct Level {
     nodes: u32,
     width: u32,             // blocks in a row
@@ -20,5 +21,6 @@ struct Level {
 // A workgroup of rows: its nodes, three components of each.
 const NODES_IN_GROUP: u32 = 64;
 const ROWS_IN_GROUP: u32 = 192;
+const NO_COLUMN: u32 = 0xffffffffu;
 
 @group(0) @binding(0) var<uniform> level: Level;

@@ -11,7 +11,11 @@ fn rounded_row_times(slot: u32, component: u32, node: u32) -> real {
         sum += inverse[lost + j * level.nodes] * x[of_slot + j * level.nodes + node];
     }
     for (var k = 0u; k < level.width; k += 2u) {
-        let first = of_slot + column[k * level.nodes + node];
+        let to = column[k * level.nodes + node];
+        if to == NO_COLUMN {
+            break;
+        }
+        let first = of_slot + to;
         let second = of_slot + column[(k + 1u) * level.nodes + node];
         for (var j = 0u; j < 3u; j++) {
             let upper = matrix[at + j * words];

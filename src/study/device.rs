@@ -19,7 +19,7 @@ use super::schedule::side_by_side;
 use super::simulate::Simulator;
 use crate::compute::select::{Devices, PrecisionChoice, Selected};
 use crate::compute::{CaseModel, Compute, ComputeError};
-use crate::mesh::Mesh;
+use crate::mesh::{Hanging, Mesh};
 use crate::output::Summary;
 use crate::simulation::follow::seats;
 use crate::simulation::problem::Problem;
@@ -269,10 +269,35 @@ fn by_connectivity(simulator: &Simulator<'_>, order: &[usize]) -> Vec<Vec<usize>
     groups
 }
 
-/// Number of elements and a hash of their nodes and the contact's (FNV-1a, Fowler, Noll & Vo 1991):
-/// equal where a batch can be shared.
+/// Number of elements and a hash of their nodes, of their corners that hang and of the contact's
+/// nodes (FNV-1a, Fowler, Noll & Vo 1991): equal where a batch can be shared.
 fn connectivity(mesh: &Mesh) -> (usize, u64) {
-    let nodes = mesh.elements.iter().flatten().chain(&mesh.contact_nodes);
-    let hash = nodes.fold(0xcbf2_9ce4_8422_2325u64, |hash, &node| (hash ^ u64::from(node)).wrapping_mul(0x0100_0000_01b3));
+    let corner = |hanging: &Hanging, a: usize| u64::from(hanging.hangs(a)) << 32 | (hanging.octant() as u64) << 33;
+    let of_element = |(nodes, hanging): (&[u32; 8], &Hanging)| -> [u64; 8] {
+        std::array::from_fn(|a| u64::from(nodes[a]) | corner(hanging, a))
+    };
+    let elements = mesh.elements.iter().zip(&mesh.hanging).flat_map(of_element);
+    let numbers = elements.chain(mesh.contact_nodes.iter().map(|&node| node.into()));
+    let hash = numbers.fold(0xcbf2_9ce4_8422_2325u64, |hash, number| (hash ^ number).wrapping_mul(0x0100_0000_01b3));
     (mesh.elements.len(), hash)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::brick::brick;
+
+    #[test]
+    fn meshes_with_other_corners_that_hang_share_no_batch() {
+        let mesh = brick(1, 1, 1, [1.0; 3]).unwrap();
+        let with = |octant: usize, corner: usize| {
+            let hanging = vec![Hanging::new(octant, |a| a == corner)];
+            connectivity(&Mesh { hanging, ..mesh.clone() })
+        };
+        let mut all = vec![connectivity(&mesh), with(0, 1), with(2, 1), with(0, 3), with(2, 3)];
+        assert_eq!(all[1], with(0, 1));
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 5);
+    }
 }

@@ -5,9 +5,9 @@ use asperity::internals::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use asperity::internals::compute::handle::at_contact;
 use asperity::internals::compute::{Answer, Blocks, Call, CaseModel, Compute, Energies, Outcome};
 use asperity::internals::contact::coulomb::{Friction, Rows};
-use asperity::internals::mesh::Mesh;
 use asperity::internals::mesh::brick::brick;
 use asperity::internals::mesh::couple::{couple, scaled};
+use asperity::internals::mesh::{Mesh, SphereSpec, sphere_mesh};
 use asperity::internals::real::Real;
 use asperity::material::{Elasticity, Hardening, Material};
 use rand::{RngExt, SeedableRng};
@@ -76,8 +76,37 @@ pub fn distorted(cells: [usize; 3], seed: u64) -> Arc<Mesh> {
     Arc::new(mesh)
 }
 
-/// One law of every kind (E = 1), on meshes of one connectivity; the first and third share theirs.
+/// A ball with so many layers of elements that are halved again at its surface, whose corners hang
+/// where they end; the smallest elements are about 0.3 wide and all are distorted.
+pub fn with_skin(levels: usize, seed: u64) -> Arc<Mesh> {
+    let spec = SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 3, fine_zone: 1.1, skin_levels: levels };
+    let mesh = sphere_mesh(&spec).unwrap();
+    let edge = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+    let edges = (0..mesh.elements.len()).map(|e| mesh.corners(e)).flat_map(|x| [1, 3, 4].map(|b| edge(x[0], x[b])));
+    let shortest = edges.fold(f64::INFINITY, f64::min);
+    let mut mesh = scaled(mesh, 0.3 / shortest);
+    let mut rng = random(seed);
+    for x in &mut mesh.nodes {
+        x.iter_mut().for_each(|x| *x += rng.random_range(-0.02..0.02));
+    }
+    assert!(mesh.hanging.iter().any(|hanging| !hanging.is_none()));
+    Arc::new(mesh)
+}
+
+/// The batches of every test of the element: on boxes, and where corners hang by one level and two.
+pub fn every_mesh(cells: [usize; 3]) -> [Vec<CaseModel>; 3] {
+    let skins = [1, 2].map(|levels| models_on([1, 2].map(|seed| with_skin(levels, seed))));
+    let [one, two] = skins;
+    [models(cells), one, two]
+}
+
+/// One law of every kind on boxes.
 pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
+    models_on([1, 2].map(|seed| distorted(cells, seed)))
+}
+
+/// One law of every kind (E = 1), on meshes of one connectivity; the first and third share theirs.
+pub fn models_on(meshes: [Arc<Mesh>; 2]) -> Vec<CaseModel> {
     let laws = [
         Ok(Hardening::Elastic),
         Hardening::ideal(2e-3),
@@ -88,7 +117,6 @@ pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
         Hardening::table(&[[0.0, 2e-3], [0.01, 3e-3], [0.03, 3.5e-3], [0.2, 5e-3]]),
     ];
     let frictions = [Friction::Coulomb(0.3), Friction::Stick, Friction::Coulomb(0.0), Friction::Coulomb(0.6)];
-    let meshes = [distorted(cells, 1), distorted(cells, 2)];
     let model = |(i, law): (usize, Result<_, _>)| CaseModel {
         mesh: meshes[i % 2].clone(),
         material: Material { elasticity: Elasticity::new(1.0, [0.3, 0.0, 0.45][i % 3]), hardening: law.unwrap() },
@@ -100,8 +128,7 @@ pub fn models(cells: [usize; 3]) -> Vec<CaseModel> {
 
 /// Two bodies that deform, of unlike materials, on meshes of one connectivity; and the models of
 /// each body by itself.
-pub fn couples(cells: [usize; 3]) -> (Vec<CaseModel>, [Vec<CaseModel>; 2]) {
-    let own = models(cells);
+pub fn couples(own: Vec<CaseModel>) -> (Vec<CaseModel>, [Vec<CaseModel>; 2]) {
     let opponents: Vec<_> = own.iter().cycle().skip(2).take(own.len()).cloned().collect();
     let couple = |(own, opponent): (&CaseModel, &CaseModel)| CaseModel {
         mesh: Arc::new(couple((*own.mesh).clone(), scaled((*opponent.mesh).clone(), 2.0))),

@@ -1,8 +1,8 @@
 //! The contact conditions of points that are open, stick, slip, or sit on an edge between them,
 //! against the CPU in f64.
 
-use crate::batch::{Backend, OnCpu, commits, contacts, difference, displaced, for_every_batch, models, random};
-use asperity::internals::compute::Outcome;
+use crate::batch::{Backend, OnCpu, commits, contacts, difference, displaced, every_mesh, for_every_batch, models, random};
+use asperity::internals::compute::{CaseModel, Outcome};
 use asperity::internals::contact::coulomb::Status;
 use asperity::internals::real::Real;
 use rand::RngExt;
@@ -42,8 +42,11 @@ fn trials<R: Real>(mesh: &asperity::internals::mesh::Mesh, committed: &[f64], se
 }
 
 fn rows_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
-    let models = models(CELLS);
-    let (mut ours, mut reference) = (backend.start(&models), <OnCpu as Backend<f64>>::start(&OnCpu, &models));
+    every_mesh(CELLS).iter().for_each(|models| rows_agree_on::<R, B>(backend, bounds, models));
+}
+
+fn rows_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, models: &[CaseModel]) {
+    let (mut ours, mut reference) = (backend.start(models), <OnCpu as Backend<f64>>::start(&OnCpu, models));
     let start = vec![0.0; 3 * models[0].mesh.nodes.len()];
     let committed: Vec<_> = (0..models.len()).map(|c| (c, displaced::<R>(&start, 1e-3, &mut random(80 + c as u64)))).collect();
     assert!(commits(ours.as_mut(), &committed).iter().all(|(outcome, _)| *outcome == Outcome::Valid));

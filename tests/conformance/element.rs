@@ -1,9 +1,11 @@
 //! The element on small distorted meshes: forces, tangents, commits and energies of every law
 //! against the CPU in f64.
 
-use crate::batch::{Backend, OnCpu, commits, couples, difference, displaced, for_every_batch, forces, models, random, tangents};
+use crate::batch::{
+    Backend, OnCpu, commits, couples, difference, displaced, every_mesh, for_every_batch, forces, models, random, tangents,
+};
 use asperity::internals::compute::handle::CaseHandle;
-use asperity::internals::compute::{CaseState, Compute, Outcome};
+use asperity::internals::compute::{CaseModel, CaseState, Compute, Outcome};
 use asperity::internals::real::Real;
 
 /// How far from the reference a backend may be, relative to the largest number of the answer.
@@ -44,9 +46,8 @@ struct Pair {
 
 /// The backend and the reference after the first step of a kind, and the displacements of its
 /// second.
-fn prepare<R: Real, B: Backend<R>>(backend: &B, kind: (&str, f64, f64, f64), seed: u64) -> Pair {
-    let models = models(CELLS);
-    let (mut ours, mut reference) = (backend.start(&models), <OnCpu as Backend<f64>>::start(&OnCpu, &models));
+fn prepare<R: Real, B: Backend<R>>(backend: &B, models: &[CaseModel], kind: (&str, f64, f64, f64), seed: u64) -> Pair {
+    let (mut ours, mut reference) = (backend.start(models), <OnCpu as Backend<f64>>::start(&OnCpu, models));
     let mut rng = random(seed);
     let (_, first, second, back) = kind;
     let start = vec![0.0; 3 * models[0].mesh.nodes.len()];
@@ -66,9 +67,13 @@ fn prepare<R: Real, B: Backend<R>>(backend: &B, kind: (&str, f64, f64, f64), see
 }
 
 fn forces_and_tangents_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+    every_mesh(CELLS).iter().for_each(|models| forces_and_tangents_agree_on::<R, B>(backend, bounds, models));
+}
+
+fn forces_and_tangents_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, models: &[CaseModel]) {
     let (mut worst_force, mut worst_tangent) = (0.0f64, 0.0f64);
     for (seed, kind) in (10..).zip(KINDS) {
-        let Pair { mut ours, mut reference, trials } = prepare(backend, kind, seed);
+        let Pair { mut ours, mut reference, trials } = prepare(backend, models, kind, seed);
         let (f, g) = (forces(ours.as_mut(), &trials), forces(reference.as_mut(), &trials));
         let (k, l) = (tangents(ours.as_mut(), &trials), tangents(reference.as_mut(), &trials));
         for case in 0..trials.len() {
@@ -80,7 +85,8 @@ fn forces_and_tangents_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bound
             (worst_force, worst_tangent) = (worst_force.max(force), worst_tangent.max(tangent));
         }
     }
-    println!("{}: worst force {worst_force:.1e}, tangent {worst_tangent:.1e}", R::NAME);
+    let elements = models[0].mesh.elements.len();
+    println!("{}, {elements} elements: worst force {worst_force:.1e}, tangent {worst_tangent:.1e}", R::NAME);
 }
 
 fn distance(ours: &CaseState, reference: &CaseState) -> f64 {
@@ -90,9 +96,13 @@ fn distance(ours: &CaseState, reference: &CaseState) -> f64 {
 }
 
 fn commits_and_energies_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+    every_mesh(CELLS).iter().for_each(|models| commits_and_energies_agree_on::<R, B>(backend, bounds, models));
+}
+
+fn commits_and_energies_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, models: &[CaseModel]) {
     let mut worst = 0.0f64;
     for (seed, kind) in (30..).zip(KINDS) {
-        let Pair { mut ours, mut reference, trials } = prepare(backend, kind, seed);
+        let Pair { mut ours, mut reference, trials } = prepare(backend, models, kind, seed);
         let (e, f) = (commits(ours.as_mut(), &trials), commits(reference.as_mut(), &trials));
         for case in 0..trials.len() {
             assert_eq!((e[case].0, f[case].0), (Outcome::Valid, Outcome::Valid), "{}", kind.0);
@@ -115,9 +125,10 @@ fn commits_and_energies_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Boun
 
 /// A restored state is the one that was taken: the answers that follow have the same bits.
 fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
-    let Pair { mut ours, trials, .. } = prepare(backend, KINDS[3], 50);
+    let models = models(CELLS);
+    let Pair { mut ours, trials, .. } = prepare(backend, &models, KINDS[3], 50);
     let expected = forces(ours.as_mut(), &trials);
-    let mut other = backend.start(&models(CELLS));
+    let mut other = backend.start(&models);
     for case in 0..trials.len() {
         CaseHandle { backend: other.as_mut(), case }.restore(state(&mut ours, case)).unwrap();
         assert_eq!(state(&mut other, case), state(&mut ours, case));
@@ -128,7 +139,11 @@ fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B
 /// Newton's third law, no force from a shift of the whole body, and a tangent that is the
 /// derivative of the force.
 fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
-    let Pair { mut ours, trials, .. } = prepare(backend, KINDS[3], 60);
+    every_mesh(CELLS).iter().for_each(|models| obeys_its_equations_on::<R, B>(backend, bounds, models));
+}
+
+fn obeys_its_equations_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, models: &[CaseModel]) {
+    let Pair { mut ours, trials, .. } = prepare(backend, models, KINDS[3], 60);
     let moved: Vec<_> = trials.iter().map(|(case, u)| (*case, u.iter().map(|u| u + 0.25).collect())).collect();
     let (still, shifted) = (forces(ours.as_mut(), &trials), forces(ours.as_mut(), &moved));
     for (case, ((_, f), (_, g))) in still.iter().zip(&shifted).enumerate() {
@@ -165,7 +180,7 @@ fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
 /// J <= 0 and NaN are named by element and point, and spoil neither the other cases nor the calls
 /// after them.
 fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
-    let Pair { mut ours, mut reference, trials } = prepare(backend, KINDS[3], 70);
+    let Pair { mut ours, mut reference, trials } = prepare(backend, &models(CELLS), KINDS[3], 70);
     let good = forces(ours.as_mut(), &trials);
     let mut bad = trials.clone();
     bad[1].1[3 * 4 + 2] += 2.0;
@@ -190,7 +205,11 @@ fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds
 /// Two bodies in one mesh answer as each by itself, to the bit: forces, tangents, energies, and
 /// which part of the plastic work is the opponent's.
 fn two_bodies_answer_as_each_by_itself<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
-    let (both, alone) = couples(CELLS);
+    every_mesh(CELLS).into_iter().for_each(|models| two_bodies_answer_on::<R, B>(backend, bounds, models));
+}
+
+fn two_bodies_answer_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, own: Vec<CaseModel>) {
+    let (both, alone) = couples(own);
     let nodes = alone[0][0].mesh.nodes.len();
     let mut ours = backend.start(&both);
     let mut reference = <OnCpu as Backend<f64>>::start(&OnCpu, &both);

@@ -14,11 +14,12 @@ use std::sync::Arc;
 /// Of the largest number of an array.
 const BOUND: f32 = 1e-5;
 
-fn meshes() -> [Arc<Mesh>; 2] {
-    [4, 8].map(|elements_per_contact_radius| {
+/// Two of even elements, and two with smaller ones at the surface, whose levels are the first steps
+/// of the hierarchy.
+fn meshes() -> [Arc<Mesh>; 4] {
+    [(4, 0), (8, 0), (4, 1), (4, 2)].map(|(elements_per_contact_radius, skin_levels)| {
         Arc::new(
-            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3, skin_levels: 0 })
-                .unwrap(),
+            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3, skin_levels }).unwrap(),
         )
     })
 }
@@ -153,7 +154,7 @@ fn product(matrix: &BlockMatrix<f64>, fixed: &[bool], x: &[f64]) -> Vec<f64> {
 #[test]
 fn a_krylov_cycle_obeys_its_equations() {
     let name = "a_krylov_cycle_obeys_its_equations";
-    let [mesh, _] = meshes();
+    let [mesh, ..] = meshes();
     let models = models(&mesh);
     for case in 0..models.len() {
         let Some(context) = device(name, Precision::F64).map(Arc::new) else { return };

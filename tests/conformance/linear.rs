@@ -18,9 +18,17 @@ use std::sync::Arc;
 const CASES: usize = 3;
 
 pub fn mesh() -> Arc<Mesh> {
-    Arc::new(
-        sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels: 0 }).unwrap(),
-    )
+    let [mesh, ..] = meshes();
+    mesh
+}
+
+/// A sphere of even elements, and with elements at the surface that are halved once and twice
+/// again.
+pub fn meshes() -> [Arc<Mesh>; 3] {
+    [0, 1, 2].map(|skin_levels| {
+        let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels };
+        Arc::new(sphere_mesh(&spec).unwrap())
+    })
 }
 
 /// Three spheres: elastic, plastic, nearly incompressible.
@@ -158,9 +166,14 @@ fn context(name: &str, precision: Precision) -> Option<Arc<GpuContext>> {
 }
 
 fn meets_tolerances_as_the_cpu_does<R: DeviceReal>(name: &str) {
-    let Some(context) = context(name, R::PRECISION) else { return };
-    let mesh = mesh();
-    let models = models(&mesh);
+    for mesh in meshes() {
+        let Some(context) = context(name, R::PRECISION) else { return };
+        meets_tolerances_on::<R>(name, context, &mesh);
+    }
+}
+
+fn meets_tolerances_on<R: DeviceReal>(name: &str, context: Arc<GpuContext>, mesh: &Arc<Mesh>) {
+    let models = models(mesh);
     let mut gpu = Gpu::<R>::new(context, models.clone()).unwrap();
     for masked in [false, true] {
         let systems: Vec<System> = (0..CASES).map(|case| system(case, &models, masked)).collect();

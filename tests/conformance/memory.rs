@@ -5,22 +5,42 @@ use asperity::internals::compute::gpu::{Gpu, Precision};
 use asperity::internals::compute::iterate::Keeps;
 use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::contact::coulomb::Friction;
-use asperity::internals::mesh::{SphereSpec, sphere_mesh};
+use asperity::internals::mesh::{Mesh, SphereSpec, sphere_mesh};
 use asperity::material::{Elasticity, Hardening, Material};
 use std::sync::Arc;
 
 const MEGABYTE: u64 = 1_000_000;
 const GIBIBYTE: u64 = 1 << 30;
 
-/// The reference case's mesh. Each case has one of its own: what cases of one mesh share is not
-/// counted on.
+/// The reference case's mesh.
 #[test]
 fn a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes() {
     let name = "a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes";
     let spec = SphereSpec { contact_radius: 0.2091, elements_per_contact_radius: 16, fine_zone: 1.3, skin_levels: 0 };
     let mesh = sphere_mesh(&spec).unwrap();
-    println!("{} elements, {} nodes", mesh.elements.len(), mesh.nodes.len());
     assert!(mesh.nodes.len() >= 16_173, "{} nodes", mesh.nodes.len());
+    let Some([one, of_case]) = memory(name, &mesh) else { return };
+    let all = one + 31 * of_case;
+    println!("32 cases take {:.2} GiB", all as f64 / GIBIBYTE as f64);
+    assert!(of_case <= 90 * MEGABYTE, "a case takes {of_case} bytes");
+    assert!(all <= 3 * GIBIBYTE, "32 cases take {all} bytes");
+}
+
+/// With the same elements at the surface, over larger ones: rows of nodes from which corners hang
+/// are longer, and all have room for as many blocks.
+#[test]
+fn a_case_with_a_skin_takes_no_more_than_one_that_is_as_fine_inside() {
+    let name = "a_case_with_a_skin_takes_no_more_than_one_that_is_as_fine_inside";
+    for (elements_per_contact_radius, skin_levels) in [(8, 1), (4, 2)] {
+        let spec = SphereSpec { contact_radius: 0.2091, elements_per_contact_radius, fine_zone: 1.3, skin_levels };
+        let Some([_, of_case]) = memory(name, &sphere_mesh(&spec).unwrap()) else { return };
+        assert!(of_case <= 90 * MEGABYTE, "a case takes {of_case} bytes");
+    }
+}
+
+/// Bytes of one case, with what all cases share, and of one more. Each case has a mesh of its own:
+/// what cases of one mesh share is not counted on.
+fn memory(name: &str, mesh: &Mesh) -> Option<[u64; 2]> {
     let used = [1, 2].map(|cases| {
         let context = device(name, Precision::F64)?;
         let model = || CaseModel {
@@ -35,10 +55,9 @@ fn a_case_of_the_reference_mesh_takes_90_megabytes_and_32_take_three_gibibytes()
         assert_eq!(gpu.about().keeps, Keeps::Steps);
         Some(slots)
     });
-    let [Some(one), Some(two)] = used else { return };
+    let [Some(one), Some(two)] = used else { return None };
     let of_case = two - one;
-    let all = one + 31 * of_case;
-    println!("a case takes {:.1} MB, 32 take {:.2} GiB", of_case as f64 / MEGABYTE as f64, all as f64 / GIBIBYTE as f64);
-    assert!(of_case <= 90 * MEGABYTE, "a case takes {of_case} bytes");
-    assert!(all <= 3 * GIBIBYTE, "32 cases take {all} bytes");
+    let (elements, nodes) = (mesh.elements.len(), mesh.nodes.len());
+    println!("{elements} elements, {nodes} nodes: a case takes {:.1} MB", of_case as f64 / MEGABYTE as f64);
+    Some([one, of_case])
 }

@@ -74,6 +74,8 @@ enum But {
 const BUT: &[(&str, usize, But)] = &[
     // The largest alpha alone.
     ("hex8_energies", 10, But::OneOf(super::resident::HISTORY as u64)),
+    // Of elements with corners that hang.
+    ("gather_node_force", 2, But::Left),
     // The committed state, and not its last flow.
     ("hex8_update", 12, But::OneOf(2)),
     // The contact's rows where points slide, and the diagonals for them.

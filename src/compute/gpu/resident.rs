@@ -11,7 +11,7 @@ use crate::compute::{CaseModel, ComputeError};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction};
 use crate::element::hex8::{Geometry, NODES, QUADRATURE_POINTS};
 use crate::material::Material;
-use crate::mesh::Mesh;
+use crate::mesh::{Hanging, Mesh};
 
 /// Components of a point's state.
 pub const STATE: usize = super::material::STATE;
@@ -26,6 +26,15 @@ const FULL_STICK: f64 = -1.0;
 
 /// Numbers of a material, with those of its table.
 pub const MATERIAL_ROOM: usize = 32 + 3 * TABLE_ROOM;
+
+/// Of an entry of the nodes that an element names, as in `hanging.wgsl`: some corner of it hangs.
+const SOME_HANG: u32 = 1 << 29;
+/// The bits that the first three entries have of the element's octant.
+const OCTANT_AT: u32 = 30;
+/// The bit of a corner that hangs.
+const HANGS_AT: u32 = 31;
+/// Of an element in the list of a node, as in `node_force.wgsl`: some corner of it hangs.
+const HAS_HANGING: u32 = 1 << 31;
 
 /// Sizes that all cases of a batch share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,11 +80,11 @@ impl Sizes {
 pub struct Connectivity {
     /// Sizes of a case.
     pub sizes: Sizes,
-    /// Nodes of each element.
+    /// Nodes that each element names, and which of its corners hang, as `hanging.wgsl` reads them.
     pub element_nodes: StorageBuffer<u32>,
     /// Starts of the nodes' lists of elements.
     pub node_start: StorageBuffer<u32>,
-    /// The lists.
+    /// The lists, as `node_force.wgsl` reads them.
     pub node_entry: StorageBuffer<u32>,
     /// Starts of the blocks' lists of element blocks.
     pub block_start: StorageBuffer<u32>,
@@ -93,7 +102,7 @@ impl Connectivity {
     /// # Errors
     /// As [`GpuContext::array`].
     pub fn new(context: &GpuContext, mesh: &Mesh, plan: &BlockPlan) -> Result<Self, GpuError> {
-        let nodes: Vec<u32> = mesh.elements.iter().flatten().copied().collect();
+        let [nodes, around] = with_hanging(mesh)?;
         let mut on_plane = vec![0u32; mesh.nodes.len()];
         mesh.symmetry_nodes.iter().for_each(|&n| on_plane[n as usize] = 1);
         let on_plane: Vec<u32> = mesh.contact_nodes.iter().map(|&n| on_plane[n as usize]).collect();
@@ -107,7 +116,7 @@ impl Connectivity {
             },
             element_nodes: context.array("element nodes", &nodes)?.whole(),
             node_start: context.array("elements around nodes: starts", &mesh.node_elements.start)?.whole(),
-            node_entry: context.array("elements around nodes", &mesh.node_elements.entry)?.whole(),
+            node_entry: context.array("elements around nodes", &around)?.whole(),
             block_start: context.array("blocks of the tangent: starts", &plan.start)?.whole(),
             block_entry: context.array("blocks of the tangent", &plan.entry)?.whole(),
             contact_node: context.array("contact nodes", &mesh.contact_nodes)?.whole(),
@@ -276,6 +285,27 @@ impl<R: DeviceReal> Resident<R> {
     }
 }
 
+/// The nodes that elements name and the elements around nodes, with the bits of corners that hang.
+///
+/// # Errors
+/// [`GpuError::TooLarge`] where numbers take the place of these bits.
+fn with_hanging(mesh: &Mesh) -> Result<[Vec<u32>; 2], GpuError> {
+    let largest = mesh.nodes.len().max(2 * mesh.elements.len()) as u64;
+    if largest > u64::from(SOME_HANG) {
+        let of = |nodes: u64| nodes * size_of::<[f32; 3]>() as u64;
+        return Err(GpuError::TooLarge { what: "displacements".to_owned(), bytes: of(largest), limit: of(SOME_HANG.into()) });
+    }
+    let entries = |(nodes, &hanging): (&[u32; NODES], &Hanging)| -> [u32; NODES] {
+        std::array::from_fn(|a| {
+            let bits = u32::from(hanging.hangs(a)) << HANGS_AT | (hanging.octant() as u32 >> a & 1) << OCTANT_AT;
+            nodes[a] | if hanging.is_none() { 0 } else { bits | SOME_HANG }
+        })
+    };
+    let nodes = mesh.elements.iter().zip(&mesh.hanging).flat_map(entries).collect();
+    let with = |&entry: &u32| if mesh.hanging[entry as usize / NODES].is_none() { entry } else { entry | HAS_HANGING };
+    Ok([nodes, mesh.node_elements.entry.iter().map(with).collect()])
+}
+
 /// The weights of the contact conditions of a mesh's contact points.
 fn contact_weights<R: DeviceReal>(mesh: &Mesh) -> Vec<R> {
     mesh.contact_size.iter().map(|&h| R::of(CONTACT_WEIGHT * h)).collect()
@@ -332,7 +362,7 @@ fn materials<T: DeviceReal>(sizes: Sizes, models: &[CaseModel]) -> Vec<Material<
     own.chain(opponents).take(sizes.bodies() * models.len()).map(Material::cast).collect()
 }
 
-/// Reference positions of the nodes `[mesh][3 a + i][element]` and volumes `[mesh][point]` of
+/// Reference positions of the corners `[mesh][3 a + i][element]` and volumes `[mesh][point]` of
 /// meshes, on the device.
 fn send_geometry<R: DeviceReal>(
     context: &GpuContext,
@@ -365,17 +395,14 @@ pub fn write_geometry<R: DeviceReal>(
     Ok(())
 }
 
-/// Positions of the nodes relative to the element's first one `[3 a + i][element]`, which keep
+/// Positions of the corners relative to the element's first one `[3 a + i][element]`, which keep
 /// their digits far from the origin, and volumes `[point]` of a mesh.
 fn flatten_geometry<R: DeviceReal>(mesh: &Mesh) -> Result<(Vec<R>, Vec<R>), ComputeError> {
     let elements = mesh.elements.len();
-    if mesh.hanging.iter().any(|hanging| !hanging.is_none()) {
-        return Err(ComputeError::Device("it does not take meshes that are finer at the surface".to_owned()));
-    }
     let mut coordinates = vec![R::ZERO; COORDINATES * elements];
     let mut volume = vec![R::ZERO; QUADRATURE_POINTS * elements];
-    for (e, nodes) in mesh.elements.iter().enumerate() {
-        let positions = nodes.map(|n| mesh.nodes[n as usize]);
+    for e in 0..elements {
+        let positions = mesh.corners(e);
         let geometry = Geometry::<R>::new(&positions)
             .map_err(|invalid| ComputeError::InvertedMesh { element: e, point: invalid.point() })?;
         volume[QUADRATURE_POINTS * e..][..QUADRATURE_POINTS].copy_from_slice(&geometry.volume.0);

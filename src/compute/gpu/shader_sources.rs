@@ -75,6 +75,8 @@ const RETURN_MAPPING_POINTS: Source = source!("material/return_mapping.wgsl");
 pub const BATCH: Source = source!("batch.wgsl");
 /// Geometry and kinematics of the element.
 pub const HEX8: Source = source!("element/hex8.wgsl");
+/// Corners that hang.
+pub const HANGING: Source = source!("element/hanging.wgsl");
 /// The material of an element.
 pub const BODY: Source = source!("element/body.wgsl");
 /// A quadrature point at a trial displacement.
@@ -190,7 +192,7 @@ pub static RETURN_MAPPING: Kernel = Kernel {
 /// det F - 1 of every quadrature point; this and the following are driven by [`super::batch`].
 pub static HEX8_JACOBIAN: Kernel = Kernel {
     name: "hex8_jacobian",
-    sources: &[BATCH, HEX8, source!("element/jacobian.wgsl")],
+    sources: &[BATCH, HEX8, HANGING, source!("element/jacobian.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, ReadWrite],
     workgroup: 64,
 };
@@ -198,7 +200,7 @@ pub static HEX8_JACOBIAN: Kernel = Kernel {
 /// The weighted stress of every quadrature point.
 pub static HEX8_INTERNAL_FORCE: Kernel = Kernel {
     name: "hex8_internal_force",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, POINT, source!("element/internal_force.wgsl")],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, POINT, source!("element/internal_force.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
@@ -206,7 +208,7 @@ pub static HEX8_INTERNAL_FORCE: Kernel = Kernel {
 /// The tangents of all elements, block by block.
 pub static HEX8_TANGENT: Kernel = Kernel {
     name: "hex8_tangent",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, POINT, PAIRS, source!("element/tangent.wgsl")],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, POINT, PAIRS, source!("element/tangent.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
@@ -222,7 +224,20 @@ pub static HEX8_BEGIN_STEP: Kernel = Kernel {
 /// The state of every quadrature point at the end of a step.
 pub static HEX8_UPDATE: Kernel = Kernel {
     name: "hex8_update",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, MULTISTEP, BODY, HEX8, POINT, source!("element/update.wgsl")],
+    sources: &[
+        BATCH,
+        MATH,
+        TENSOR,
+        HARDENING,
+        MATERIAL,
+        J2,
+        MULTISTEP,
+        BODY,
+        HEX8,
+        HANGING,
+        POINT,
+        source!("element/update.wgsl"),
+    ],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite, Read, ReadWrite, ReadWrite],
     workgroup: 64,
 };
@@ -230,7 +245,7 @@ pub static HEX8_UPDATE: Kernel = Kernel {
 /// The energies of every element at the end of a step.
 pub static HEX8_ENERGIES: Kernel = Kernel {
     name: "hex8_energies",
-    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, source!("element/energies.wgsl")],
+    sources: &[BATCH, MATH, TENSOR, HARDENING, MATERIAL, J2, BODY, HEX8, HANGING, source!("element/energies.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
     workgroup: 64,
 };
@@ -246,7 +261,7 @@ pub static NARROW: Kernel = Kernel {
 /// Stresses into nodal forces.
 pub static GATHER_NODE_FORCE: Kernel = Kernel {
     name: "gather_node_force",
-    sources: &[BATCH, HEX8, source!("gather/node_force.wgsl")],
+    sources: &[BATCH, HEX8, HANGING, source!("gather/node_force.wgsl")],
     bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Read, Read, Read, ReadWrite],
     workgroup: 64,
 };

@@ -8,7 +8,7 @@ use super::galerkin::{Transfer, Weights};
 use super::multigrid::{COARSEST_DEGREE, COARSEST_LOW, DEGREE, check};
 use crate::mesh::Prolongation;
 
-/// Stands for no block.
+/// Stands for no block, or no column.
 pub const NOWHERE: u32 = u32::MAX;
 
 /// Lists of weighted blocks, one a block of a product.
@@ -38,9 +38,10 @@ pub struct Rows {
 pub struct LevelLayout {
     /// Nodes.
     pub nodes: usize,
-    /// Blocks in a row, an even number: two share a word. Rows with fewer end in zeros.
+    /// Room for blocks in a row, an even number: two share a word. Rows with fewer end in zeros.
     pub width: usize,
-    /// Column node of each block; the row's own where there is none.
+    /// Column node of each block; where there is none, the row's own if its pair has one, and else
+    /// [`NOWHERE`], which ends the row.
     pub column: Vec<u32>,
     /// Index in the pattern of each block, or [`NOWHERE`].
     pub source: Vec<u32>,
@@ -100,12 +101,16 @@ impl LevelLayout {
     fn new(pattern: &Pattern) -> Self {
         let nodes = pattern.rows();
         let width = width(pattern);
-        let mut column: Vec<u32> = (0..width).flat_map(|_| 0..nodes as u32).collect();
+        let mut column = vec![NOWHERE; width * nodes];
         let mut source = vec![NOWHERE; width * nodes];
         for i in 0..nodes {
             for (k, at) in pattern.row(i).enumerate() {
                 column[k * nodes + i] = pattern.column[at];
                 source[k * nodes + i] = at as u32;
+            }
+            let blocks = pattern.row(i).len();
+            if blocks % 2 == 1 {
+                column[blocks * nodes + i] = i as u32;
             }
         }
         let diagonal = (0..nodes).map(|i| pattern.diagonal[i] - pattern.row_start[i]).collect();

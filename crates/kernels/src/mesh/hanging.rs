@@ -5,7 +5,8 @@
 //! there. Such a corner is no node. Its element names the corner of the split cell on the same side
 //! in its place, its *carrier*. All corners from which the mean is taken are then named by the
 //! element (see [`Hanging::members`]), so x = T x_carriers at its corners, T^T f at its carriers,
-//! and T^T K T in the same 36 blocks: lists, patterns and matrices know nothing of it.
+//! and T^T K T in the same 36 blocks: lists, patterns and matrices know nothing of it. Its twin
+//! `shaders/element/hanging.wgsl` gives the named nodes' shape functions T^T N instead.
 
 use std::collections::BTreeMap;
 
@@ -46,6 +47,12 @@ impl Hanging {
     #[inline(always)]
     pub fn is_none(self) -> bool {
         self.corners == 0
+    }
+
+    /// Which of the eight children of a split cell the element is; 0 where no corner hangs.
+    #[inline]
+    pub fn octant(self) -> usize {
+        self.octant.into()
     }
 
     /// Whether a corner hangs.
