@@ -195,7 +195,9 @@ pub fn explain_failure(out: &mut dyn fmt::Write, bytes: usize) -> fmt::Result {
         )?,
     }
     if elements > 0 {
-        out.write_str(". Take fewer elements (mesh.elements_per_contact_radius, mesh.fine_zone)")?;
+        out.write_str(
+            ". Take fewer elements (mesh.elements_per_contact_radius, mesh.surface_elements_per_contact_radius, mesh.fine_zone)",
+        )?;
     }
     if cases > 1 {
         out.write_str(", fewer cases side by side (--threads)")?;

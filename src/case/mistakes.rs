@@ -58,6 +58,7 @@ fn depends(key: &str, replaced: &str) -> bool {
         "sphere" | "sphere.radius" => below("path") || key == "mesh.contact_radius" || below("sphere"),
         "material" | "material.youngs_modulus" | "material.hardening.law" => below("material.hardening"),
         "contact" | "contact.friction" => below("path"),
+        "mesh.elements_per_contact_radius" => key == "mesh.surface_elements_per_contact_radius" || below(replaced),
         // Segments begin where others end.
         segment if segment.starts_with("path") => below("path"),
         _ => below(replaced),

@@ -219,7 +219,7 @@ pub struct Mesh {
 impl Mesh {
     /// Elements along the contact radius at the surface.
     pub fn surface_elements(&self) -> usize {
-        self.surface_elements_per_contact_radius.unwrap_or(self.elements_per_contact_radius)
+        self.elements_per_contact_radius << self.skin_levels()
     }
 
     /// The same mesh with so many elements along the contact radius, inside and at the surface.
@@ -229,7 +229,8 @@ impl Mesh {
 
     /// How many times the elements at the surface are halved.
     pub fn skin_levels(&self) -> usize {
-        (self.surface_elements() / self.elements_per_contact_radius.max(1)).max(1).ilog2() as usize
+        let at_surface = self.surface_elements_per_contact_radius.unwrap_or(self.elements_per_contact_radius);
+        (at_surface / self.elements_per_contact_radius.max(1)).max(1).ilog2() as usize
     }
 }
 

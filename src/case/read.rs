@@ -177,13 +177,6 @@ fn read_contact(table: &Reader<'_>) -> Result<Contact, CaseError> {
     Ok(Contact { friction })
 }
 
-/// The elements inside where only those at the surface are given: a fourth, or else a half, of
-/// them, if that is allowed.
-fn inside_of(at_surface: usize) -> Option<usize> {
-    let inside = [4, 2, 1].into_iter().filter(|by| at_surface.is_multiple_of(*by)).map(|by| at_surface / by);
-    inside.into_iter().find(|inside| (4..=32).contains(inside))
-}
-
 fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
     table.only(&["elements_per_contact_radius", "surface_elements_per_contact_radius", "fine_zone", "contact_radius"])?;
     let mut mesh = Mesh::default();
@@ -194,16 +187,15 @@ fn read_mesh(table: &Reader<'_>, radius: f64) -> Result<Mesh, CaseError> {
     }
     if let Some(field) = surface {
         let at_surface = field.count(4..=FINEST_SURFACE)?;
-        let elements = inside.or_else(|| inside_of(at_surface)).unwrap_or(mesh.elements_per_contact_radius);
+        let elements = mesh.elements_per_contact_radius;
         let allowed: Vec<usize> = SKINS.iter().map(|by| by * elements).filter(|&n| n <= FINEST_SURFACE).collect();
         if !allowed.contains(&at_surface) {
             let named = allowed.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-            let problem =
-                format!("{at_surface}, and elements_per_contact_radius is {elements}, which is halved a whole number of times");
-            return Err(field.refuse(&problem, &named));
+            let by_default = if inside.is_some() { "" } else { " by default" };
+            let problem = format!("is {at_surface}, where elements_per_contact_radius is {elements}{by_default}");
+            return Err(field.refuse(&problem, &format!("{named}: once, twice, four or eight times as many")));
         }
-        mesh = mesh.uniform(elements);
-        mesh.surface_elements_per_contact_radius = Some(at_surface);
+        mesh.surface_elements_per_contact_radius = Some(at_surface).filter(|&n| n != elements);
     }
     if let Some(field) = table.get("fine_zone") {
         mesh.fine_zone = field.number("a number from 1.1 to 3", |ratio| FINE_ZONES.contains(&ratio))?;

@@ -42,14 +42,14 @@ fn a_uniform_deformation_passes_through_corners_that_hang() {
     assert!(largest(true) < 1e-15 && largest(false) > 1e-4, "{:e} inside, {:e} outside", largest(true), largest(false));
 }
 
-/// The blocks of a plastic state against differences of the forces, at nodes from which corners
-/// hang.
+/// Blocks against differences of the forces, at nodes from which corners hang; elastic, as a point
+/// that begins to yield between the two has neither slope.
 #[test]
 fn the_tangent_is_the_derivative_across_corners_that_hang() {
     let mesh = with_skin();
-    let mut cpu = Cpu::<f64>::new(vec![of(&mesh, Hardening::power(1e-3, 5e-3, 0.3).unwrap())]).unwrap();
+    let mut cpu = Cpu::<f64>::new(vec![of(&mesh, Hardening::Elastic)]).unwrap();
     commit(&mut cpu, 0, &displacement(&mesh, 5e-3));
-    let u = displacement(&mesh, 7e-3);
+    let u = displacement(&mesh, 2e-2);
     let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     let mut blocks = vec![[0.0_f64; 9]; pattern.entries()];
     assert_eq!(CaseHandle { backend: &mut cpu, case: 0 }.tangent(&u, (&mut blocks).into()).unwrap(), Outcome::Valid);
@@ -65,14 +65,14 @@ fn the_tangent_is_the_derivative_across_corners_that_hang() {
                 u[3 * node + j] += step;
                 u
             };
-            let step = 1e-8;
+            let step = 1e-6;
             let (more, less) = (forces(&mut cpu, &at(step)), forces(&mut cpu, &at(-step)));
             for e in pattern.row(node) {
                 let row = pattern.column[e] as usize;
                 let block = blocks[pattern.position(row, node).unwrap()];
                 for i in 0..3 {
                     let difference = (more[3 * row + i] - less[3 * row + i]) / (2.0 * step);
-                    assert!((difference - block[3 * i + j]).abs() < 1e-6, "{node}, {row}: {difference} {}", block[3 * i + j]);
+                    assert!((difference - block[3 * i + j]).abs() < 1e-8, "{node}, {row}: {difference} {}", block[3 * i + j]);
                 }
             }
         }

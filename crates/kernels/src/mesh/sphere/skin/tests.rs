@@ -19,6 +19,10 @@ fn specs() -> Vec<SphereSpec> {
             }
         }
     }
+    // Companions of 4 inside.
+    for levels in 1..=3 {
+        specs.extend([1.1, 1.3].map(|fine_zone| spec(0.2087, 2, fine_zone, levels)));
+    }
     specs
 }
 
@@ -140,6 +144,7 @@ fn levels_are_nested_and_the_half_has_its_own() {
                 for p in hierarchy {
                     assert_eq!(p.row_start.len(), rows + 1);
                     for row in p.row_start.windows(2).map(|w| w[0] as usize..w[1] as usize) {
+                        assert!([1, 2, 4, 8].contains(&row.len()));
                         assert!((p.weight[row.clone()].iter().sum::<f64>() - 1.0).abs() < 1e-15);
                         assert!(p.column[row].is_sorted_by(|a, b| a < b));
                     }
@@ -178,5 +183,36 @@ fn the_faces_that_meet_others_are_one_surface() {
             (before, at, length) = (at, next, length + 1);
         }
         assert_eq!(length, rim.len(), "{spec:?}");
+    }
+}
+
+/// What a level adds lies in the middle of the nodes that it is interpolated from, by its indices.
+#[test]
+fn interpolation_is_from_the_middle_of_parents() {
+    for spec in [spec(0.2087, 4, 1.3, 2), spec(0.01, 6, 1.1, 1)] {
+        let layout = Layout::new(&spec).unwrap();
+        let skin = Skin::new(&layout);
+        for (k, p) in skin.prolongations().iter().enumerate() {
+            let level = skin.levels - k;
+            for n in skin.up_to[level - 1]..skin.up_to[level] {
+                let row = p.row_start[n] as usize..p.row_start[n + 1] as usize;
+                let site = skin.sites[n];
+                // The names of the parents in the block of the node, for there they are next to it.
+                let size = 1 << skin.levels - level;
+                let odd: Vec<usize> = (0..3).filter(|&axis| site.at[axis] / size % 2 == 1).collect();
+                assert_eq!(row.len(), 1 << odd.len(), "{spec:?}: {site:?}");
+                let mut expected: Vec<u32> = (0..row.len())
+                    .map(|side| {
+                        let mut at = site.at;
+                        odd.iter().enumerate().for_each(|(bit, &axis)| {
+                            at[axis] = if side >> bit & 1 == 1 { at[axis] + size } else { at[axis] - size };
+                        });
+                        skin.number[skin.finest.number(Site { at, ..site }) as usize].expect("a node")
+                    })
+                    .collect();
+                expected.sort_unstable();
+                assert_eq!(p.column[row], expected, "{spec:?}: {site:?}");
+            }
+        }
     }
 }
