@@ -58,8 +58,8 @@ const TIGHT: &str = "[mesh]\nelements_per_contact_radius = 6\n[solver]\ntoleranc
 fn a_small_elastic_contact_has_mindlins() {
     let sphere = |nu| ElasticSphere { radius: 1.0, youngs_modulus: 1.0, poissons_ratio: nu };
     for (nu, opponent, bodies) in [
-        // Shear and pressure have next to nothing to do with each other, as in Mindlin's solution; at
-        // nu = 0.3 what sticks to a plane is 4 % stiffer.
+        // Shear and pressure have next to nothing to do with each other, as in Mindlin's solution;
+        // at nu = 0.3 what sticks to a plane is 4 % stiffer.
         (0.49, "", 1.0),
         (0.49, "[opponent]\nrigid = true\nradius = 3.0\n", 1.0),
         // Nor between equal bodies: each has the whole force, and half of the motion.

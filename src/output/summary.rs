@@ -104,8 +104,8 @@ pub struct Summary {
     /// Greatest |F_T| of the shear.
     #[serde(rename = "F_T_max")]
     pub f_t_max: Option<f64>,
-    /// Displacement from the start of the shear to |F_T|/F_N = 0.90 mu, interpolated linearly within
-    /// the step.
+    /// Displacement from the start of the shear to |F_T|/F_N = 0.90 mu, interpolated linearly
+    /// within the step.
     #[serde(rename = "delta_T_90")]
     pub delta_t_90: Option<f64>,
     /// The same to 0.95 mu.
@@ -329,8 +329,9 @@ fn in_full_slip(record: &StepRecord, point: &ShearPoint, mu: f64) -> bool {
     all_slip || point.ratio.is_some_and(|ratio| ratio >= FULL_SLIP_RATIO * mu)
 }
 
-/// The displacement at which a curve of |F_T|/F_N over it, which begins at the origin, first reaches
-/// `wanted`, linear between its points; `None` if it does not, or at a point without a ratio before.
+/// The displacement at which a curve of |F_T|/F_N over it, which begins at the origin, first
+/// reaches `wanted`, linear between its points; `None` if it does not, or at a point without a
+/// ratio before.
 fn displacement_at(curve: impl Iterator<Item = (f64, Option<f64>)>, wanted: f64) -> Option<f64> {
     let (mut before, mut ratio) = (0.0, 0.0);
     for (displacement, now) in curve {

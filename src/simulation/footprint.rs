@@ -37,10 +37,10 @@ struct Polar {
 
 /// Width of the ring that the pressure profile is taken from, in spacings.
 const RING: f64 = 4.0;
-/// Width of the rim outside the ring, in spacings, whose points carry more or less than their share.
+/// Width of the rim outside the ring, in spacings: its points carry more or less than their share.
 const RIM: f64 = 1.0;
-/// Exponents m of profiles p^m that are linear in s^2: that of Hertz's pressure and of a uniform one,
-/// and the least.
+/// Exponents m of profiles p^m that are linear in s^2: that of Hertz's pressure and of a uniform
+/// one, and the least.
 const EXPONENTS: [f64; 2] = [2.0, 0.5];
 /// Width of the band outside the contact in which the gap is looked at, in spacings.
 const BAND: f64 = 3.0;

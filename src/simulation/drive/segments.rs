@@ -149,9 +149,9 @@ impl Drive<'_> {
         Ok(Ending::Done)
     }
 
-    /// The stiffness with which the contact sets out for a shear, of the whole sphere: nothing slips,
-    /// and what flowed flows on where the shear goes on loading it. `None` where the state has no
-    /// answer.
+    /// The stiffness with which the contact sets out for a shear, of the whole sphere: nothing
+    /// slips, and what flowed flows on where the shear goes on loading it. `None` where the state
+    /// has no answer.
     fn tangential_stiffness(&mut self, hold: Hold) -> Result<Option<f64>, SimulationError> {
         let StepRecord { f_n, a, contact_points, .. } = self.state.record;
         if contact_points == 0 || f_n <= 0.0 || self.problem.model.friction == Friction::Coulomb(0.0) {
