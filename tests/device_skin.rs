@@ -10,8 +10,8 @@ use std::process::Command;
 use asperity::internals::compute::gpu::Precision;
 use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 
-/// The reference case, tightly solved, so that what is left is not which iterate was the first to be
-/// good enough.
+/// The reference case, tightly solved, so that what is left is not which iterate was the first to
+/// be good enough.
 const STUDY: &str = r#"
 [base.sphere]
 radius = 1.0

@@ -7,7 +7,7 @@ use asperity::internals::compute::{Answer, Blocks, Call, CaseModel, Compute, Ene
 use asperity::internals::contact::coulomb::{Friction, Rows};
 use asperity::internals::mesh::brick::brick;
 use asperity::internals::mesh::couple::{couple, scaled};
-use asperity::internals::mesh::{Mesh, SphereSpec, sphere_mesh};
+use asperity::internals::mesh::{Mesh, SphereSpec, flat_mesh, sphere_mesh};
 use asperity::internals::real::Real;
 use asperity::material::{Elasticity, Hardening, Material};
 use rand::{RngExt, SeedableRng};
@@ -76,11 +76,11 @@ pub fn distorted(cells: [usize; 3], seed: u64) -> Arc<Mesh> {
     Arc::new(mesh)
 }
 
-/// A ball with so many layers of elements that are halved again at its surface, whose corners hang
-/// where they end; the smallest elements are about 0.3 wide and all are distorted.
+/// A flat whose elements at the surface are halved so many times again, with corners that hang where
+/// sizes meet; the smallest elements are about 0.3 wide and all are distorted.
 pub fn with_skin(levels: usize, seed: u64) -> Arc<Mesh> {
     let spec = SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 3, fine_zone: 1.1, skin_levels: levels };
-    let mesh = sphere_mesh(&spec).unwrap();
+    let mesh = flat_mesh(&spec).unwrap();
     let edge = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
     let edges = (0..mesh.elements.len()).map(|e| mesh.corners(e)).flat_map(|x| [1, 3, 4].map(|b| edge(x[0], x[b])));
     let shortest = edges.fold(f64::INFINITY, f64::min);

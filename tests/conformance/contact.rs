@@ -89,7 +89,9 @@ fn rows_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, models: &
             counts[a.status as usize] += 1;
         }
     }
-    assert!(counts.iter().all(|&n| n > 20) && ties < 10, "{counts:?}, {ties} ties: the test tests nothing");
+    // Every 35th point has neither force nor gap.
+    let few = 28 * ties < rows.iter().flatten().count();
+    assert!(counts.iter().all(|&n| n > 20) && few, "{counts:?}, {ties} ties: the test tests nothing");
 }
 
 /// A force that is not a number must not pass for a point at rest.

@@ -206,9 +206,9 @@ impl<'a> Skin<'a> {
         self.leaves.iter().map(|leaf| self.element(leaf)).unzip()
     }
 
-    /// The faces on the sphere's surface over the first `rings` rings of level 0, of a skin those of
-    /// the finest level without a corner that hangs, so that they are one surface without a gap;
-    /// and all nodes of faces there, in increasing order.
+    /// The faces on the sphere's surface over the first `rings` rings of level 0, of a skin those
+    /// of the finest level without a corner that hangs, so that they are one surface without a
+    /// gap; and all nodes of faces there, in increasing order.
     pub fn contact(&self, rings: usize) -> (Vec<[u32; 4]>, Vec<u32>) {
         let is_near = |leaf: &&Leaf| leaf.block == BOTTOM || leaf.block == SIDE && leaf.cell[1] >> leaf.level < rings;
         let (mut faces, mut nodes) = (Vec::new(), Vec::new());
