@@ -7,7 +7,7 @@ use asperity::internals::compute::{Answer, Blocks, Call, CaseModel, Compute, Ene
 use asperity::internals::contact::coulomb::{Friction, Rows};
 use asperity::internals::mesh::brick::brick;
 use asperity::internals::mesh::couple::{couple, scaled};
-use asperity::internals::mesh::{Mesh, SphereSpec, flat_mesh, sphere_mesh};
+use asperity::internals::mesh::{Mesh, SphereSpec, flat_mesh};
 use asperity::internals::real::Real;
 use asperity::material::{Elasticity, Hardening, Material};
 use rand::{RngExt, SeedableRng};
@@ -76,8 +76,8 @@ pub fn distorted(cells: [usize; 3], seed: u64) -> Arc<Mesh> {
     Arc::new(mesh)
 }
 
-/// A flat whose elements at the surface are halved so many times again, with corners that hang where
-/// sizes meet; the smallest elements are about 0.3 wide and all are distorted.
+/// A flat whose elements at the surface are halved so many times again, with corners that hang
+/// where sizes meet; the smallest elements are about 0.3 wide and all are distorted.
 pub fn with_skin(levels: usize, seed: u64) -> Arc<Mesh> {
     let spec = SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 3, fine_zone: 1.1, skin_levels: levels };
     let mesh = flat_mesh(&spec).unwrap();
