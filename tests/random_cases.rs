@@ -14,7 +14,7 @@ const SEED: u64 = 7;
 const COUNT: usize = 40;
 /// Half of the cases have a surface that is finer than the inside.
 fn mesh(index: usize) -> Elements {
-    Elements { inside: 4, at_surface: if index / 8 % 2 == 0 { 4 } else { 8 } }
+    Elements { inside: 4, at_surface: if (index / 8).is_multiple_of(2) { 4 } else { 8 } }
 }
 
 #[test]

@@ -198,7 +198,7 @@ fn interpolation_is_from_the_middle_of_parents() {
                 let row = p.row_start[n] as usize..p.row_start[n + 1] as usize;
                 let site = skin.sites[n];
                 // The names of the parents in the block of the node, for there they are next to it.
-                let size = 1 << skin.levels - level;
+                let size = 1 << (skin.levels - level);
                 let odd: Vec<usize> = (0..3).filter(|&axis| site.at[axis] / size % 2 == 1).collect();
                 assert_eq!(row.len(), 1 << odd.len(), "{spec:?}: {site:?}");
                 let mut expected: Vec<u32> = (0..row.len())
