@@ -32,11 +32,6 @@ error_estimate = false
 [base.output]
 fields = "none"
 plots = false
-[[base.path]]
-indentation = 0.02
-[[base.path]]
-shear = 0.003
-[grid]
 "#;
 
 fn program(verb: &str, file: &Path, out: &Path, (device, precision): (&str, &str)) {
@@ -66,10 +61,10 @@ fn difference(ours: &[StepRecord], theirs: &[StepRecord]) -> f64 {
 
 /// Studies of so many cases on the CPU, and on the device in f64 and in f32 held to f64: the bounds
 /// are those of meshes without a skin.
-fn check(name: &str, dir: &Path, grid: &str, cases: usize) {
+fn check(name: &str, dir: &Path, path_and_grid: &str, cases: usize) {
     let Some(context) = device::device(name, Precision::F64) else { return };
     let file = dir.join("study.toml");
-    fs::write(&file, format!("{STUDY}{grid}")).expect("the study");
+    fs::write(&file, format!("{STUDY}{path_and_grid}")).expect("the study");
     program("study", &file, &dir.join("cpu"), ("cpu", "auto"));
     for (out, precision, most) in [("f64", "auto", 3e-7), ("mixed", "mixed", 1e-7)] {
         program("study", &file, &dir.join(out), ("gpu", precision));
@@ -96,7 +91,8 @@ fn case(dir: &Path, out: &str, number: usize) -> PathBuf {
 #[test]
 fn a_skin_has_the_cpus_histories_and_the_bits_of_its_case_alone() {
     let dir = tempfile::tempdir().expect("a scratch directory");
-    let grid = "\"contact.friction\" = [0.1, 0.3]\n\"mesh.surface_elements_per_contact_radius\" = [4, 8]\n";
+    let grid = "[[base.path]]\nindentation = 0.02\n[[base.path]]\nshear = 0.003\n\
+        [grid]\n\"contact.friction\" = [0.1, 0.3]\n\"mesh.surface_elements_per_contact_radius\" = [4, 8]\n";
     check("a_skin_has_the_cpus_histories_and_the_bits_of_its_case_alone", dir.path(), grid, 4);
     let of_study = case(dir.path(), "f64", 4);
     if of_study.exists() {
@@ -109,6 +105,8 @@ fn a_skin_has_the_cpus_histories_and_the_bits_of_its_case_alone() {
 #[test]
 fn a_skin_of_two_levels_has_the_cpus_histories() {
     let dir = tempfile::tempdir().expect("a scratch directory");
-    let grid = "\"contact.friction\" = [0.3]\n\"mesh.surface_elements_per_contact_radius\" = [16]\n";
+    // In steps that are not bisected.
+    let grid = "[[base.path]]\nindentation = 0.008\n[[base.path]]\nshear = 0.0008\n\
+        [grid]\n\"contact.friction\" = [0.3]\n\"mesh.surface_elements_per_contact_radius\" = [16]\n";
     check("a_skin_of_two_levels_has_the_cpus_histories", dir.path(), grid, 1);
 }
