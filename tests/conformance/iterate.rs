@@ -3,7 +3,7 @@
 
 use crate::batch::{random, tangents};
 use crate::device::device;
-use crate::linear::{mesh, meshes};
+use crate::linear::mesh;
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::compute::gpu::{Gpu, Precision};
 use asperity::internals::compute::handle::CaseHandle;
@@ -13,7 +13,6 @@ use asperity::internals::compute::traffic::Traffic;
 use asperity::internals::compute::{Answer, Call, CaseModel, Compute, Fault, Outcome};
 use asperity::internals::contact::coulomb::{Friction, Status};
 use asperity::internals::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
-use asperity::internals::mesh::Mesh;
 use asperity::internals::solver::iterate::SetOut;
 use asperity::internals::solver::newton::Newton;
 use asperity::internals::solver::phases::PhaseTimes;
@@ -27,7 +26,8 @@ const DEPTH: f64 = 0.004;
 
 /// Spheres that are elastic and slide a little, plastic under full stick, and plastic without
 /// friction.
-fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
+fn models() -> Vec<CaseModel> {
+    let mesh = mesh();
     let cases = [
         (Hardening::Elastic, Friction::Coulomb(0.3)),
         (Hardening::ideal(2e-3).unwrap(), Friction::Stick),
@@ -50,9 +50,9 @@ struct Pressed {
     displacement: Vec<Vec<f64>>,
 }
 
-fn pressed(name: &str, mesh: &Arc<Mesh>) -> Option<Pressed> {
+fn pressed(name: &str) -> Option<Pressed> {
     let context = Arc::new(device(name, Precision::F64)?);
-    let models = models(mesh);
+    let models = models();
     let mut gpu = Gpu::<f64>::new(context, models.clone()).unwrap();
     let mut cpu = Cpu::<f64>::new(models.clone()).unwrap();
     let settings =
@@ -120,13 +120,7 @@ fn near(what: &str, ours: f64, theirs: f64, scale: f64) {
 /// The same trials on both: every number by which the iteration goes on.
 #[test]
 fn a_trial_reads_as_on_the_cpu() {
-    for mesh in meshes() {
-        let Some(pressed) = pressed("a_trial_reads_as_on_the_cpu", &mesh) else { return };
-        trials_read_as_on_the_cpu(pressed);
-    }
-}
-
-fn trials_read_as_on_the_cpu(mut pressed: Pressed) {
+    let Some(mut pressed) = pressed("a_trial_reads_as_on_the_cpu") else { return };
     for case in 0..pressed.models.len() {
         for held in [None, Some(1e-4)] {
             let mesh = pressed.models[case].mesh.clone();
@@ -190,13 +184,7 @@ fn corrected(answer: &Reply) -> Corrected {
 /// under a held force brings the plate's to it.
 #[test]
 fn a_correction_solves_the_hosts_system() {
-    for mesh in meshes() {
-        let Some(pressed) = pressed("a_correction_solves_the_hosts_system", &mesh) else { return };
-        corrections_solve_the_hosts_system(pressed);
-    }
-}
-
-fn corrections_solve_the_hosts_system(mut pressed: Pressed) {
+    let Some(mut pressed) = pressed("a_correction_solves_the_hosts_system") else { return };
     for case in 0..pressed.models.len() {
         let mesh = pressed.models[case].mesh.clone();
         let start = pressed.displacement[case].clone();
@@ -247,7 +235,7 @@ fn corrections_solve_the_hosts_system(mut pressed: Pressed) {
 /// batch, in one submission and one wait, where a force is held too.
 #[test]
 fn a_batch_reads_as_its_cases_alone_and_little_passes() {
-    let Some(mut pressed) = pressed("a_batch_reads_as_its_cases_alone_and_little_passes", &mesh()) else { return };
+    let Some(mut pressed) = pressed("a_batch_reads_as_its_cases_alone_and_little_passes") else { return };
     let gpu = &mut pressed.gpu;
     for held in [None, Some(2e-4)] {
         let control = Control { h: DEPTH + 2e-4, delta_t: 0.0, normal_force: held };
@@ -276,7 +264,7 @@ fn a_batch_reads_as_its_cases_alone_and_little_passes() {
 /// takes more, nor where the response to the plate does, nor where both do.
 #[test]
 fn a_list_that_is_too_short_changes_no_bit() {
-    let Some(mut pressed) = pressed("a_list_that_is_too_short_changes_no_bit", &mesh()) else { return };
+    let Some(mut pressed) = pressed("a_list_that_is_too_short_changes_no_bit") else { return };
     let gpu = &mut pressed.gpu;
     for held in [None, Some(2e-4)] {
         let control = Control { h: DEPTH + 2e-4, delta_t: 0.0, normal_force: held };
