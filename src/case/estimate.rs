@@ -5,33 +5,31 @@ use super::error::CaseError;
 use super::reader::Reader;
 use super::{Case, Opponent};
 use crate::memory::{GIB, Room};
+use crate::mesh::{SphereSpec, element_count};
 
 /// Memory of an element with its share of the linear systems, in bytes: its tangent and the 3x3
 /// blocks, twice, with their multigrid levels in f32, Krylov basis, states at quadrature points.
 pub const BYTES_PER_ELEMENT: f64 = 10_000.0;
 
-/// An estimate of the number of elements of the case's mesh, from its keys alone, to about a fifth.
-///
-/// N = n^2 (n/16)^0.35 [18 + 36 f + 12 ln(0.2 R/a)], n = `elements_per_contact_radius`, f =
-/// `fine_zone`: a fit to the O-grids themselves, n from 8 to 32, f from 1.1 to 3, a/R from 0.0005
-/// to 0.3. Where a is not given it is (2 R h)^(1/2), h the largest indentation, between the elastic
-/// and the ideally plastic contact, with R* in place of R where the opponent is a sphere.
+/// An estimate of the number of elements of the case's mesh, from its keys alone: those of the mesh
+/// for a contact radius that is given, and else for (2 R h)^(1/2), h the largest indentation,
+/// between the elastic and the ideally plastic contact, with R* in place of R where the opponent is
+/// a sphere.
 pub fn estimated_elements(case: &Case) -> usize {
     let deepest = case.greatest_indentation();
     let radius = case.sphere.radius;
     let share = case.effective_radius() / radius;
     let contact = case.mesh.contact_radius.map_or((2.0 * share * deepest / radius).sqrt(), |a| a / radius).clamp(0.0005, 0.3);
-    let n = case.mesh.elements_per_contact_radius as f64;
-    // Another body counts as much: the ratio of a to its radius hardly matters.
-    let meshed = if matches!(case.opponent, Some(Opponent::Deforming { .. })) { 2.0 } else { 1.0 };
-    let inside = n * n * (n / 16.0).powf(0.35) * (18.0 + 36.0 * case.mesh.fine_zone + 12.0 * (0.2 / contact).ln());
-    // A level of the skin has eight elements in place of each of two layers within the fine zone.
-    let level = |k: usize| {
-        let n = n * f64::from(1 << k);
-        14.0 * n * n * (2.0 * case.mesh.fine_zone - 0.5 + 2.0 / n)
+    let spec = SphereSpec {
+        contact_radius: contact,
+        elements_per_contact_radius: case.mesh.elements_per_contact_radius,
+        fine_zone: case.mesh.fine_zone,
+        skin_levels: case.mesh.skin_levels(),
     };
-    let skin: f64 = (0..case.mesh.skin_levels()).map(level).sum();
-    (meshed * (inside + skin)).ceil() as usize
+    // Another body counts as much: the ratio of a to its radius hardly matters.
+    let meshed = if matches!(case.opponent, Some(Opponent::Deforming { .. })) { 2 } else { 1 };
+    // What cannot be meshed is refused before it gets here.
+    element_count(&spec).map_or(usize::MAX, |elements| elements.saturating_mul(meshed))
 }
 
 /// An estimate of the memory that the case's simulation takes, in GiB.

@@ -79,6 +79,10 @@ fn growth(count: usize, sum: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0 + sum);
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
+        // Two numbers without one between them: it stays there.
+        if middle == low || middle == high {
+            break;
+        }
         if total(middle) < sum { low = middle } else { high = middle }
     }
     0.5 * (low + high)
