@@ -33,7 +33,7 @@ fn unseen(law: &Law) -> [f64; 2] {
     let mut greatest = [0.0_f64; 2];
     for (hardening, friction, h) in [(0, 0.15, 0.005), (0, 0.4, 0.02), (1, 0.2, 0.015), (1, 0.35, 0.006)] {
         let case = Case::parse(&synthetic::case_text(hardenings[hardening], friction, h), "unseen.toml", &[]).expect("a case");
-        let (inputs, curve) = synthetic::truth(&case, friction, 2.0 * h);
+        let (inputs, curve, _) = synthetic::truth(&case, friction, 2.0 * h);
         let prediction = predict(law, &case, NormalSource::Formulas).expect("a prediction");
         assert!(prediction.out_of_range.is_empty(), "{:?}", prediction.out_of_range);
         let peak = curve.iter().fold(0.0_f64, |peak, point| peak.max(point[1]));

@@ -105,13 +105,16 @@ fn make_pairs(slot: u32, element: u32, first_point: u32, b: u32, offset: u32, bo
     var volume_b = vec3<real>();
     for (var q = 0u; q < 8u; q++) {
         let at = first_point + q;
+        // Before all else, while few registers are taken.
+        let derivative_b = named_derivative(hanging, b, q);
+        let derivative_first = named_derivative(hanging, a.x, q);
         let natural = mat3x3<real>(load_vector(at, 0u), load_vector(at, 3u), load_vector(at, 6u));
         let normal = load_sym(at, 15u);
         let x = load_sym(at, 21u);
-        let of_b = at_node(natural, normal, x, named_derivative(hanging, b, q));
+        let of_b = at_node(natural, normal, x, derivative_b);
         let tau_b = load_sym(at, 9u) * of_b.g;
         volume_b += component(at, 29u) * of_b.g;
-        let of_first = at_node(natural, normal, x, named_derivative(hanging, a.x, q));
+        let of_first = at_node(natural, normal, x, derivative_first);
         first = with_point(first, at, of_first, of_b, tau_b);
         if both {
             let of_second = at_node(natural, normal, x, named_derivative(hanging, a.y, q));

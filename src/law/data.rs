@@ -159,10 +159,13 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
     }
     let history = read_history(&directory.history())?;
     let summary = Summary::from_history(&history, &SummaryInputs::of(&case));
-    let (Some(h0), Some(a0), Some(f_n0), Some(k_t0), Some(delta_t_slip), Some(_)) =
-        (summary.h0, summary.a0, summary.f_n0, summary.k_t0, summary.delta_t_slip, summary.f_n_slip)
+    let (Some(h0), Some(a0), Some(f_n0), Some(delta_t_slip), Some(_)) =
+        (summary.h0, summary.a0, summary.f_n0, summary.delta_t_slip, summary.f_n_slip)
     else {
         return Ok(Usable::No("without full slip"));
+    };
+    let Some(k_t0) = summary.k_t0 else {
+        return Ok(Usable::No("without k_T in their history, as of an earlier version"));
     };
     let curve = first_stroke(&history, f_n0);
     let f_n_slip = curve.last().map_or(f_n0, |point| point.f_n);

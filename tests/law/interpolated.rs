@@ -28,7 +28,7 @@ fn a_known_law_is_interpolated() {
         let file = folder.path().join("case.toml");
         fs::write(&file, &case).expect("a file");
         let case = Case::parse(&case, "case.toml", &[]).expect("a case");
-        let (inputs, curve) = synthetic::truth(&case, friction, 2.0 * h);
+        let (inputs, curve, _) = synthetic::truth(&case, friction, 2.0 * h);
         let peak = curve.iter().fold(0.0_f64, |peak, point| peak.max(point[1]));
         let answer = asperity(&["law", "predict", text(&folder.path().join("law.json")), text(&file)]).code(0);
         let answer = String::from_utf8(answer.get_output().stdout.clone()).expect("text");

@@ -42,8 +42,9 @@ pub fn hardenings() -> Vec<String> {
     all
 }
 
-/// The normal data and the curve (delta_T, F_T, F_N) of a case that follows the law.
-pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>) {
+/// The normal data and the curve (delta_T, F_T, F_N) of a case that follows the law,
+/// and the stiffness at its start.
+pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>, f64) {
     let body = Body::from_case(case).expect("a hardening law");
     let inputs = Axisymmetric::of(&body, friction, h, normal().state(&body, friction, h));
     let parameters = model::contact(&CONSTANTS, &inputs);
@@ -54,7 +55,7 @@ pub fn truth(case: &Case, friction: f64, h: f64) -> (Axisymmetric, Vec<[f64; 3]>
             [d, f_t, f_n]
         })
         .collect();
-    (inputs, curve)
+    (inputs, curve, parameters.k_t0)
 }
 
 /// Writes a study of every hardening, three friction coefficients and three indentations (thinned
@@ -76,7 +77,7 @@ pub fn write_study(dir: &Path, noise: f64) {
                 }
                 let text = case_text(hardening, friction, h);
                 let case = Case::parse(&text, "synthetic.toml", &[]).expect("a case");
-                let (inputs, curve) = truth(&case, friction, 2.0 * h);
+                let (inputs, curve, k_t0) = truth(&case, friction, 2.0 * h);
                 let id = format!("c{count:04}");
                 let directory = OutputDirectory::create(dir.join("cases").join(&id)).expect("a directory");
                 directory.write_case(&case.to_toml()).expect("case.toml");
@@ -101,6 +102,7 @@ pub fn write_study(dir: &Path, noise: f64) {
                             delta_t: d * size,
                             f_t: f_t * force * small,
                             f_n: f_n * force,
+                            k_t: (step == 0).then_some(k_t0 * force / size),
                             slipping_points: if step == 24 { 50 } else { 10 },
                             ..start
                         })
