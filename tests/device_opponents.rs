@@ -2,13 +2,16 @@
 //! step by step, and the same bits again, alone or in a study.
 
 mod device;
+#[path = "common/histories.rs"]
+mod histories;
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 use asperity::internals::compute::gpu::Precision;
-use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
+use asperity::output::{OutputDirectory, Status, Summary, read_history};
+use histories::{difference, history};
 
 /// Two cases of one mesh, the first with friction that slips, tightly solved.
 const STUDY: &str = r#"
@@ -58,25 +61,6 @@ fn program(verb: &str, file: &Path, out: &Path, device: &str) {
     command.arg(verb).arg(file).arg("--out").arg(out).args(["--device", device, "--quiet"]);
     let output = command.output().expect("the program runs");
     assert_eq!(output.status.code(), Some(0), "{verb}: {}", String::from_utf8_lossy(&output.stderr));
-}
-
-/// The history as a study has it, in which no case has a companion.
-fn history(dir: &Path) -> Vec<StepRecord> {
-    let mut rows = read_history(&OutputDirectory::existing(dir).history()).expect("a history");
-    rows.iter_mut().for_each(StepRecord::forget_limits);
-    rows
-}
-
-/// The largest difference of F_N, F_T and a over the steps; forces by the largest F_N.
-fn difference(ours: &[StepRecord], theirs: &[StepRecord]) -> f64 {
-    assert_eq!(ours.len(), theirs.len(), "another number of steps");
-    let largest = |of: fn(&StepRecord) -> f64| theirs.iter().fold(0.0_f64, |m, row| m.max(of(row)));
-    let (force, radius) = (largest(|row| row.f_n), largest(|row| row.a));
-    let pairs = ours.iter().zip(theirs);
-    pairs.fold(0.0_f64, |m, (ours, theirs)| {
-        let force = (ours.f_n - theirs.f_n).abs().max((ours.f_t - theirs.f_t).abs()) / force;
-        m.max(force).max((ours.a - theirs.a).abs() / radius)
-    })
 }
 
 fn check(test: &str, opponent: &str) {

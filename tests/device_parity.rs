@@ -2,12 +2,15 @@
 //! friction and path have the same history, step by step.
 
 mod device;
+#[path = "common/histories.rs"]
+mod histories;
 
 use std::path::Path;
 use std::process::Command;
 
 use asperity::internals::compute::gpu::Precision;
 use asperity::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
+use histories::difference;
 
 const STUDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/studies/parity.toml");
 
@@ -36,18 +39,6 @@ fn cases(dir: &Path, tolerance: f64, (device, precision): (&str, &str)) -> Vec<(
     };
     directories.iter().map(read).collect()
 }
-
-/// The largest difference of F_N, F_T and a over the steps of a case; forces by its largest F_N.
-fn difference(ours: &[StepRecord], theirs: &[StepRecord]) -> f64 {
-    assert_eq!(ours.len(), theirs.len(), "another number of steps");
-    let largest = |of: fn(&StepRecord) -> f64| theirs.iter().fold(0.0_f64, |m, r| m.max(of(r).abs()));
-    let columns: [Column; 3] = [(|r| r.f_n, largest(|r| r.f_n)), (|r| r.f_t, largest(|r| r.f_n)), (|r| r.a, largest(|r| r.a))];
-    let gap = |(of, scale): Column| ours.iter().zip(theirs).fold(0.0_f64, |m, (a, b)| m.max((of(a) - of(b)).abs())) / scale;
-    columns.into_iter().map(gap).fold(0.0, f64::max)
-}
-
-/// A column of the history, and what its differences are measured by.
-type Column = (fn(&StepRecord) -> f64, f64);
 
 /// Solved tightly, what is left is not which iterate was the first to be good enough.
 #[test]

@@ -91,8 +91,6 @@ fn a_run_with_a_fine_surface_goes_on_to_the_same_bits() {
     let whole = scratch.run("whole", &[]);
     assert_eq!(whole.status.code(), Some(0), "{}", stderr(&whole));
     assert!(stderr(&whole).contains("4 elements along the contact radius and 8 at the surface"), "{}", stderr(&whole));
-    // Broken off by a file that cannot be written any more is a case of its own; here the process
-    // is told to stop.
     let mut child =
         common::program().args(scratch.args("out", &[])).stderr(std::process::Stdio::null()).spawn().expect("it runs");
     let out = scratch.path("out");

@@ -1,7 +1,7 @@
-// The blocks of the elements' tangents, d f_a/d u_b of each pair of the nodes that they name once. A workgroup has
-// eight elements: first each thread makes the moduli of a quadrature point, in the form in which
-// they are applied, then it has a node b and the pairs of it with b, b + 1, b + 2, b + 3 and, for
-// the first four nodes, b + 4 (modulo 8):
+// The blocks of the elements' tangents, d f_a/d u_b of each pair of the nodes that they name, once.
+// A workgroup has eight elements: first each thread makes the moduli of a quadrature point, in the
+// form in which they are applied, then it has a node b and the pairs of it with b, b + 1, b + 2,
+// b + 3 and, for the first four nodes, b + 4 (modulo 8):
 //   g_a . c . g_b = m/2 (g_a.g_b 1 + g_b (x) g_a) - m/3 g_a (x) g_b
 //                   + (n g_a) (x) (x g_b) + (x g_a) (x) (n g_b).
 

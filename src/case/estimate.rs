@@ -71,8 +71,8 @@ fn too_large(case: &Case, root: &Reader<'_>, available: &str) -> Result<CaseErro
     let mesh = root.table("mesh")?;
     let (elements, gib) = (estimated_elements(case), estimated_memory(case));
     let takes = format!("a mesh of about {elements} elements takes about {gib:.2} GiB, of {available}");
-    let allowed = "fewer mesh.elements_per_contact_radius or mesh.surface_elements_per_contact_radius, a smaller mesh.fine_zone, more memory for this process, or a \
-                   larger solver.max_memory_gib, which is taken as it is given";
+    let allowed = "fewer mesh.elements_per_contact_radius or mesh.surface_elements_per_contact_radius, a smaller \
+                   mesh.fine_zone, more memory for this process, or a larger solver.max_memory_gib, which is taken as it is given";
     // Named is what the user gave: the limit, or else the keys that make the mesh large.
     let names = ["surface_elements_per_contact_radius", "elements_per_contact_radius", "fine_zone"];
     let limit = root.table("solver")?.get("max_memory_gib");

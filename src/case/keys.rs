@@ -276,7 +276,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1, 2, 4 or 8 times elements_per_contact_radius, at most 64",
-        meaning: "the same in the elements at the surface, which are halved in all directions so many times; F_T over delta_T needs them",
+        meaning: "the same at the surface, where elements are halved once, twice or three times in all directions",
         example: "16",
         ..key("mesh", "surface_elements_per_contact_radius", Whole(4, 64), Optional("as many as inside"))
     },

@@ -71,8 +71,8 @@ pub fn checks(runner: &mut Runner<'_>) -> Result<Vec<Check>, VerifyError> {
             at_h.a,
             hertz::contact_radius(&ball, hertz::indentation(&ball, at_h.f_n)),
             0.01,
-            "Hertz's radius for the force that is there, so without the body's share; a is found to less than a tenth of an element, \
-             of which a has 8",
+            "Hertz's radius for the computed force, so without the body's share; a is found to less than a tenth of \
+             an element, of which a has 8",
         ),
         Check::relative(
             "first yield",
