@@ -87,7 +87,7 @@ fn phases(criterion: &mut Criterion<Processor>, elements_per_contact_radius: usi
     }
     let plate = boundary.plate.first().map_or(0, |&node| 3 * node as usize + 2);
     trial.h = -trial.u[plate];
-    let control = Control { h: trial.h, delta_t: 0.0, normal_force: None };
+    let control = Control { h: trial.h, pose: Default::default(), normal_force: None };
     let mut handle = CaseHandle { backend: &mut backend, case: 0 };
     handle.begin_step(0.0)?;
     let outcome = trial.evaluate(&mut handle, &boundary, &control, &mut PhaseTimes::default())?;

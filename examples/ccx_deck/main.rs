@@ -163,6 +163,11 @@ fn deck(case: &Case, problem: &Problem, settings: &Settings) -> Result<String, F
                 return Err("a deck cannot ask for full slip: give the shear a displacement, as in path.1.shear=0.03".into());
             }
             Segment::Shear { .. } => return Err("a held normal force is not written to decks: hold the indentation".into()),
+            Segment::Motion { .. } | Segment::Slip { .. } => {
+                return Err(
+                    "what moves across the x axis or turns is not written to decks: they are of half of the sphere".into()
+                );
+            }
             Segment::Release { .. } => {
                 return Err("a release has no end known in advance: give an indentation to go back to".into());
             }

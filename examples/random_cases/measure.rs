@@ -200,6 +200,8 @@ fn describe(case: &Case) -> String {
             asperity::case::Segment::Release { share: 0.0 } => "release".to_owned(),
             asperity::case::Segment::Release { share } => format!("release to {share:.2}"),
             asperity::case::Segment::Oblique { indentation, shear } => format!("h {indentation:.1e} and {shear:.1e}"),
+            asperity::case::Segment::Motion { to, hold } => format!("{to:?} {hold:?}"),
+            asperity::case::Segment::Slip { direction, hold } => format!("slip at {direction} {hold:?}"),
             asperity::case::Segment::Shear { shear, hold } => {
                 let held = if *hold == asperity::case::Hold::NormalForce { " held" } else { "" };
                 match shear {

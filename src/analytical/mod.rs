@@ -26,6 +26,7 @@ pub mod jackson_green;
 pub mod jaeger_ciavarella;
 pub mod johnson;
 pub mod kogut_etsion;
+pub mod lubkin;
 pub mod mesarovic_johnson;
 pub mod olsson_larsson;
 pub mod yielding;

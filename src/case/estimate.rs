@@ -28,6 +28,7 @@ pub fn estimated_elements(case: &Case) -> usize {
     };
     // Another body counts as much: the ratio of a to its radius hardly matters.
     let meshed = if matches!(case.opponent, Some(Opponent::Deforming { .. })) { 2 } else { 1 };
+    let meshed = if case.is_even() { meshed } else { 2 * meshed };
     // What cannot be meshed is refused before it gets here.
     element_count(&spec).map_or(usize::MAX, |elements| elements.saturating_mul(meshed))
 }

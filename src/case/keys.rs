@@ -3,7 +3,7 @@
 //! `asperity explain`, `asperity init` and `asperity schema` are made from [`KEYS`]. The tests
 //! below hold it against the parser: a key that one of the two lacks fails them.
 
-use Kind::{Material, Number, Points, ShareOrTrue, Text, Truth, Whole, Word};
+use Kind::{Components, Material, Number, Points, ShareOrTrue, Text, Truth, Whole, Word};
 use Limit::{Above, AtLeast, AtMost, Free};
 use Presence::{Defaults, Optional, Required};
 
@@ -48,6 +48,8 @@ pub enum Kind {
     Word(&'static [&'static str]),
     /// Any text of the range that the key gives.
     Text,
+    /// A number, two of them, or one of some words in their place.
+    Components(&'static [&'static str]),
     /// Pairs of numbers.
     Points,
     /// A table with the keys of `[material]`, and below it those of its hardening.
@@ -407,19 +409,45 @@ pub const KEYS: &[Key] = &[
             "path",
             "indentation",
             Number(AtLeast(0.0), Free, &[]),
-            Optional("the segment shears or releases; with shear beside it both go in proportion"),
+            Optional("the segment shears, turns or releases; with others beside it all go in proportion"),
         )
     },
     Key {
         unit: LENGTH,
-        range: "-0.5 R to 0.5 R, or \"full-slip\"",
-        meaning: "shear to this delta_T, a total of either sign; with \"full-slip\", until every point slips",
+        range: "-0.5 R to 0.5 R, [x, y] of such lengths, or \"full-slip\"",
+        meaning: "shear to this delta_T, a total of either sign: along x, or along x and y, for which all of the sphere is meshed and not half of it; with \"full-slip\", until every point slips",
         example: "\"full-slip\"",
-        ..key("path", "shear", Number(Free, Free, &["full-slip"]), Optional("the segment presses or releases"))
+        ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
+    },
+    Key {
+        unit: "degrees",
+        range: "-360 to 360",
+        meaning: "direction of shear, from x towards y: of its length, which is then no total along x, or of full slip",
+        example: "30.0",
+        ..key(
+            "path",
+            "shear_direction",
+            Number(AtLeast(-360.0), AtMost(360.0), &[]),
+            Optional("shear is along x, or has two components"),
+        )
+    },
+    Key {
+        unit: "rad",
+        range: "-100 to 100",
+        meaning: "twist the sphere about the normal to this angle, a total of either sign; all of the sphere is meshed",
+        example: "0.05",
+        ..key("path", "twist", Number(AtLeast(-100.0), AtMost(100.0), &[]), Optional("the sphere does not turn about the normal"))
+    },
+    Key {
+        unit: "rad",
+        range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
+        meaning: "roll the sphere to this angle about y, a total of either sign, or to two angles about x and y; its centre goes along, so that delta_T stays as it is",
+        example: "0.02",
+        ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },
     Key {
         range: "\"indentation\" or \"normal-force\"",
-        meaning: "what a shear keeps constant: h or F_N",
+        meaning: "what a shear, twist or roll keeps constant: h or F_N",
         example: "\"indentation\"",
         ..key("path", "hold", Word(&["indentation", "normal-force"]), Defaults("\"indentation\""))
     },
@@ -452,7 +480,7 @@ pub fn find(name: &str) -> Vec<&'static Key> {
 pub fn takes_decimals(name: &str) -> bool {
     // Strain and stress of a point of a table.
     let within_points = name.split('.').any(|part| part == "points");
-    find(name).first().map_or(within_points, |key| matches!(key.kind, Number(..) | ShareOrTrue))
+    find(name).first().map_or(within_points, |key| matches!(key.kind, Number(..) | Components(_) | ShareOrTrue))
 }
 
 /// The known name closest to an unknown one.

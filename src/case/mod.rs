@@ -13,6 +13,7 @@ mod hints;
 pub mod keys;
 mod material;
 mod mistakes;
+mod motion;
 mod opponent;
 mod path;
 mod pictures;
@@ -36,7 +37,7 @@ pub use estimate::{BYTES_PER_ELEMENT, estimated_elements, estimated_memory};
 pub use hardening::Hardening;
 pub(crate) use hints::nearest;
 pub use mistakes::mistakes;
-pub use path::{Hold, Segment, ShearTarget};
+pub use path::{Hold, Motion, Segment, ShearTarget, unit};
 pub use pictures::{PictureFormat, PictureWidth, UnitLabels, WIDTHS, WidthUnit};
 pub use plausible::Doubt;
 pub(crate) use read::CONTACT_RADII;
@@ -133,12 +134,24 @@ pub enum Opponent {
 
 impl Case {
     /// Number of bodies of which only one is simulated: two in an equal pair, where each has half
-    /// of h and delta_T and of the energies.
+    /// of h and delta_T and of the energies. An image does not serve every motion: where one sphere
+    /// turns or moves across the x axis, both are simulated.
     pub fn bodies(&self) -> f64 {
         match self.opponent {
             None | Some(Opponent::Rigid { .. } | Opponent::Deforming { .. }) => 1.0,
-            Some(Opponent::Equal) => 2.0,
+            Some(Opponent::Equal) => {
+                if self.moves_along_x() {
+                    2.0
+                } else {
+                    1.0
+                }
+            }
         }
+    }
+
+    /// Whether the plate moves along x and the normal alone.
+    pub fn moves_along_x(&self) -> bool {
+        self.is_even() && !self.turns()
     }
 
     /// How much more than the sphere alone both bodies give way: along the normal (1/E* over (1 -
@@ -176,9 +189,20 @@ impl Case {
     pub fn deepest_press(&self) -> Option<(usize, f64)> {
         let presses = self.path.iter().enumerate().filter_map(|(i, segment)| match *segment {
             Segment::Indentation { indentation } | Segment::Oblique { indentation, .. } => Some((i, indentation)),
-            Segment::Shear { .. } | Segment::Release { .. } => None,
+            Segment::Motion { to, .. } => Some((i, to.indentation?)),
+            Segment::Shear { .. } | Segment::Slip { .. } | Segment::Release { .. } => None,
         });
         presses.reduce(|most, next| if next.1 > most.1 { next } else { most })
+    }
+
+    /// Whether all of the path is even in y: half of the sphere is meshed then, and all of it if not.
+    pub fn is_even(&self) -> bool {
+        self.path.iter().all(Segment::is_even)
+    }
+
+    /// Whether the plate turns somewhere on the path.
+    pub fn turns(&self) -> bool {
+        self.path.iter().any(Segment::turns)
     }
 
     /// The greatest indentation of the path, a length; 0 where nothing presses.

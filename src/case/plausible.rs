@@ -137,10 +137,14 @@ impl Case {
             Segment::Oblique { shear, .. } | Segment::Shear { shear: ShearTarget::Displacement(shear), .. } => {
                 Some((i, shear.abs()))
             }
+            Segment::Motion { to, .. } => to.shear.map(|[x, y]| (i, x.hypot(y))),
             _ => None,
         });
         let furthest = shears.reduce(|most, next| if next.1 > most.1 { next } else { most });
-        let to_slip = self.path.iter().any(|segment| matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. }));
+        let to_slip = self
+            .path
+            .iter()
+            .any(|segment| matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. }));
         if let Some((at, shear)) = furthest.filter(|&(_, shear)| shear > 0.0 && shear < SHORTEST_SHEAR * deepest && !to_slip) {
             let what = format!(
                 "is {shear:?}, the furthest of the path, and the sphere is pressed to {deepest:?}: next to nothing slips. \

@@ -59,7 +59,7 @@ impl Case {
             solver: read_solver(&root.table("solver")?)?,
             output: read_output(&root.table("output")?)?,
             units: UnitLabels::read(&root.table("units")?)?,
-            path: path::read(&root, &path::Lengths::of(&sphere, opponent.as_ref()), contact.friction)?,
+            path: path::read(&root, &sphere, opponent.as_ref(), contact.friction)?,
             opponent,
             sphere,
             material,

@@ -171,6 +171,18 @@ impl<'d> Field<'d> {
         Ok(items.iter().enumerate().map(|(index, entry)| Field { key: format!("{}.{index}", self.key), entry }).collect())
     }
 
+    /// Whether it is an array.
+    pub fn is_array(&self) -> bool {
+        matches!(self.entry.value, Value::Array(_))
+    }
+
+    /// The two items of an array, `allowed` for others.
+    pub fn pair(&self, allowed: &str) -> Result<[Field<'d>; 2], CaseError> {
+        let items = self.array(allowed)?;
+        let count = items.len();
+        items.try_into().map_err(|_| self.refuse(&format!("has {count} components"), allowed))
+    }
+
     /// The value as a table.
     pub fn table(&self) -> Result<Reader<'d>, CaseError> {
         match &self.entry.value {

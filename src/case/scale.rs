@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Case, Contact, Material, Mesh, Opponent, Segment, ShearTarget, Sphere};
+use super::{Case, Contact, Material, Mesh, Motion, Opponent, Segment, ShearTarget, Sphere};
 
 /// Lengths over R, stresses over E, forces over E R^2, energies over E R^3, of one body. It is no
 /// `T`, and none is made of it unseen: what is in the user's units is not taken for what is scaled,
@@ -26,7 +26,15 @@ impl Case {
             Segment::Oblique { indentation, shear } => {
                 Segment::Oblique { indentation: indentation / travel, shear: shear / travel }
             }
-            unscaled => unscaled,
+            Segment::Motion { to, hold } => Segment::Motion {
+                to: Motion {
+                    indentation: to.indentation.map(|h| h / travel),
+                    shear: to.shear.map(|delta| delta.map(|delta| delta / travel)),
+                    ..to
+                },
+                hold,
+            },
+            Segment::Release { .. } | Segment::Slip { .. } | Segment::Shear { shear: ShearTarget::FullSlip, .. } => *segment,
         };
         Scaled(Case {
             sphere: Sphere { radius: 1.0, flat: self.sphere.flat },
@@ -44,6 +52,15 @@ impl Case {
                         youngs_modulus: material.youngs_modulus / modulus,
                         poissons_ratio: material.poissons_ratio,
                         hardening: material.hardening.scaled(modulus),
+                    },
+                }),
+                // Both are meshed.
+                Some(Opponent::Equal) if !self.moves_along_x() => Some(Opponent::Deforming {
+                    radius: Some(1.0),
+                    material: Material {
+                        youngs_modulus: 1.0,
+                        poissons_ratio: self.material.poissons_ratio,
+                        hardening: self.material.hardening.scaled(modulus),
                     },
                 }),
                 Some(Opponent::Equal) => Some(Opponent::Equal),

@@ -88,7 +88,10 @@ fn case(whole: bool) -> Value {
 fn path() -> Value {
     let mut segment = object(KEYS.iter().filter(|key| key.table == "path"), false);
     segment["minProperties"] = 1.into();
-    segment["dependentRequired"] = json!({ "hold": ["shear"] });
+    segment["dependentRequired"] = json!({ "shear_direction": ["shear"] });
+    segment["dependentSchemas"] = json!({
+        "hold": { "anyOf": [{ "required": ["shear"] }, { "required": ["twist"] }, { "required": ["roll"] }] }
+    });
     json!({ "type": "array", "minItems": 1, "items": segment })
 }
 
@@ -127,6 +130,10 @@ fn property(key: &Key) -> Value {
         Kind::Number(low, high, words) => {
             let number = number(low, high);
             if words.is_empty() { number } else { json!({ "anyOf": [number, { "enum": words }] }) }
+        }
+        Kind::Components(words) => {
+            let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" } });
+            json!({ "anyOf": [number(Limit::Free, Limit::Free), pair, { "enum": words }] })
         }
         Kind::Whole(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         Kind::Truth => json!({ "type": "boolean" }),

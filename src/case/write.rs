@@ -2,7 +2,7 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::{Case, Friction, Hold, Opponent, Output, Segment, ShearTarget, Solver, UnitLabels};
+use super::{Case, Friction, Hold, Motion, Opponent, Output, Segment, ShearTarget, Solver, UnitLabels};
 
 impl Case {
     /// The case as TOML.
@@ -64,6 +64,28 @@ impl Serialize for Segment {
             Segment::Oblique { indentation, shear } => {
                 map.serialize_entry("indentation", indentation)?;
                 map.serialize_entry("shear", shear)?;
+            }
+            Segment::Motion { to: Motion { indentation, shear, roll, twist }, hold } => {
+                if let Some(indentation) = indentation {
+                    map.serialize_entry("indentation", indentation)?;
+                }
+                if let Some(shear) = shear {
+                    map.serialize_entry("shear", shear)?;
+                }
+                if let Some(roll) = roll {
+                    map.serialize_entry("roll", roll)?;
+                }
+                if let Some(twist) = twist {
+                    map.serialize_entry("twist", twist)?;
+                }
+                if indentation.is_none() {
+                    map.serialize_entry("hold", hold)?;
+                }
+            }
+            Segment::Slip { direction, hold } => {
+                map.serialize_entry("shear", &ShearTarget::FullSlip)?;
+                map.serialize_entry("shear_direction", direction)?;
+                map.serialize_entry("hold", hold)?;
             }
             Segment::Release { share } if *share > 0.0 => map.serialize_entry("release", share)?,
             Segment::Release { .. } => map.serialize_entry("release", &true)?,

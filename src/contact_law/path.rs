@@ -149,6 +149,8 @@ impl<'a> Follower<'a> {
             }
             Segment::Release { share } => self.release(share),
             Segment::Shear { shear, hold } => self.shear(shear, hold == Hold::NormalForce),
+            // Refused by `law::LawFile::follow`.
+            Segment::Motion { .. } | Segment::Slip { .. } => {}
         }
     }
 

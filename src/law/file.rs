@@ -10,7 +10,7 @@ use super::range::OutOfRange;
 use super::table::{self, Tabulated};
 use super::variables::Body;
 use super::{Law, LawError};
-use crate::case::{Case, Friction};
+use crate::case::{Case, Friction, Segment};
 use crate::contact_law::path::{PathPoint, follow_centres};
 use crate::contact_law::{Centres, ContactParameters};
 
@@ -124,6 +124,12 @@ impl LawFile {
     /// # Errors
     /// Those of [`LawFile::contact_parameters`].
     pub fn follow(&self, case: &Case) -> Result<(Vec<PathPoint>, Vec<OutOfRange>), LawError> {
+        if case.turns() || !case.is_even() || case.path.iter().any(|segment| matches!(segment, Segment::Slip { .. })) {
+            return Err(LawError::NotCovered {
+                problem: "the case turns the sphere, or shears it across the x axis, and laws are driven along x",
+                remedy: "Give the path segments of indentation, of shear as a number and of release, or simulate the case with `asperity run`",
+            });
+        }
         let points = follow_centres(&self.contact_parameters(case)?, Centres::of(case), &case.path);
         let deepest = points.iter().map(|point| point.h).fold(0.0, f64::max);
         let out_of_range = if deepest > 0.0 { self.out_of_range(case, deepest)? } else { Vec::new() };

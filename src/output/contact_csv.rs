@@ -2,6 +2,7 @@
 //!
 //! The table holds the whole contact: a node on the symmetry plane once, with the area that it has
 //! on both halves, every other node twice, as it was computed and, after all of those, mirrored.
+//! Where all of the sphere is meshed, every node stands there once.
 //! Sums over all rows are therefore of the whole sphere: F_N of pressure times area, -F_T of
 //! traction_x times area.
 
@@ -36,6 +37,25 @@ pub enum Half {
     Both,
     /// The other one, Y < 0: the mirror image of the meshed node of the same number.
     Mirrored,
+    /// All of the sphere is meshed, and no point has an image.
+    Whole,
+}
+
+impl Half {
+    /// Whether a point at Y, on this half, lies on what is shown as the meshed or the mirrored one.
+    pub fn is_shown_as(self, shown: Self, y: f64) -> bool {
+        match self {
+            Self::Both => true,
+            Self::Whole => {
+                if shown == Self::Meshed {
+                    y >= 0.0
+                } else {
+                    y <= 0.0
+                }
+            }
+            half => half == shown,
+        }
+    }
 }
 
 /// One point of the surface that can touch the plane.

@@ -6,7 +6,7 @@ use crate::compute::CaseFields;
 use crate::mesh::Mesh;
 use std::path::Path;
 
-/// Writes the meshed half (y >= 0; the other is its mirror image, which the file says) at its
+/// Writes what is meshed (half, y >= 0, of which the other is the mirror image, as the file says, or all) at its
 /// reference positions with, on the nodes, `displacement`, `contact_pressure`, `contact_traction`,
 /// `gap` and `contact_status` (0 open or away from the contact surface, 1 stick, 2 slip; the gap
 /// is -1 away from it) and, on the elements, `stress` (Cauchy), `mises`, `alpha` and `plastic` (1
@@ -62,7 +62,12 @@ pub fn write_fields(
     ];
     cell_fields.extend(bodies(mesh).map(|bodies| Field::integer("body", bodies)));
     let cells = space.elements();
-    write_vtu(path, &Grid { points: &positions, cells: &cells, symmetry_plane: Some(0.0) }, &point_fields, &cell_fields)
+    write_vtu(
+        path,
+        &Grid { points: &positions, cells: &cells, symmetry_plane: (mesh.copies == 2).then_some(0.0) },
+        &point_fields,
+        &cell_fields,
+    )
 }
 
 /// Mises' equivalent stress sqrt(3/2 s:s) of xx, yy, zz, xy, yz, zx.

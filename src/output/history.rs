@@ -161,6 +161,8 @@ mod tests {
             // One that has something to compare with, and one that has not.
             f_t_limit: step.is_multiple_of(2).then_some(-3.25),
             f_n_error: step.is_multiple_of(2).then_some(1.0),
+            delta_t_y: -0.1 / step as f64,
+            m_roll_y: 0.7 / step as f64,
             ..StepRecord::default()
         }
     }
@@ -172,7 +174,7 @@ mod tests {
         HistoryWriter::create(&path).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.starts_with("step,segment,h,delta_T,F_N,F_T,a,stick_radius,newton_iterations,cutbacks,a_gap,"), "{text}");
-        assert!(text.ends_with(",h_opponent,work_plastic_opponent,curvature,k_T,F_T_limit,F_N_limit,F_T_error,F_N_error\n"));
+        assert!(text.ends_with(",h_opponent,work_plastic_opponent,curvature,k_T,F_T_limit,F_N_limit,F_T_error,F_N_error,delta_T_y,F_T_y,twist,roll_x,roll_y,M_twist,M_roll_x,M_roll_y\n"));
         assert!(read_history(&path).unwrap().is_empty());
     }
 
@@ -228,7 +230,7 @@ mod tests {
         let error = fails(good.replace("148.8123456789012", "many"));
         assert!(error.contains("line 2") && error.contains("column F_N"), "{error}");
         let error = fails(good.clone() + "3,0,0.01\n");
-        assert!(error.contains("line 4") && error.contains("3 values where there are 31"), "{error}");
+        assert!(error.contains("line 4") && error.contains("3 values where there are 39"), "{error}");
         let error = fails(good.replace("delta_T", "shear"));
         assert!(error.contains("line 1") && error.contains("delta_T"), "{error}");
         let error = fails(String::new());

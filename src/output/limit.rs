@@ -19,7 +19,7 @@
 
 use super::curve::Curve;
 use super::{StepRecord, Units};
-use crate::case::{Case, Friction, Scaled, Segment};
+use crate::case::{Case, Friction, Motion, Scaled, Segment};
 use crate::simulation::scout::Scout;
 
 /// Steps over which differences are averaged, as a root mean square: one alone may be small by
@@ -177,10 +177,10 @@ impl Limits {
     /// before the first shear, where all of the difference is ripple and what falls faster than at
     /// first order.
     fn beyond_ripple(&self, before: &[StepRecord], row: &StepRecord, here: &Counterpart) -> f64 {
-        if !matches!(self.path.get(row.segment), Some(Segment::Shear { .. })) {
+        if !matches!(self.path.get(row.segment), Some(Segment::Shear { .. } | Segment::Slip { .. })) {
             return 0.0;
         }
-        let is_sheared = |segment: &Segment| matches!(segment, Segment::Shear { .. } | Segment::Oblique { .. });
+        let is_sheared = |segment: &Segment| !matches!(segment, Segment::Indentation { .. } | Segment::Release { .. });
         let first = self.path.iter().position(is_sheared).unwrap_or(row.segment);
         let press = before.partition_point(|earlier| earlier.segment < first);
         let pressed = self.last_compared(&before[..press], WINDOW);
@@ -271,8 +271,8 @@ fn start_of(before: &[StepRecord]) -> StepRecord {
     before.last().copied().unwrap_or_default()
 }
 
-/// The place of a row in a segment that begins at `start`: a share of a press or an oblique one, a
-/// length of the others.
+/// The place of a row in a segment that begins at `start`: a share of a press or of one that goes to
+/// several targets, a length of the others.
 fn place(segment: &Segment, start: &StepRecord, row: &StepRecord) -> f64 {
     let (h, delta_t) = (row.h - start.h, row.delta_t - start.delta_t);
     let share = |whole_h: f64, whole_delta: f64| {
@@ -282,10 +282,36 @@ fn place(segment: &Segment, start: &StepRecord, row: &StepRecord) -> f64 {
     match *segment {
         Segment::Indentation { indentation } => share(indentation - start.h, 0.0),
         Segment::Oblique { indentation, shear } => share(indentation - start.h, shear - start.delta_t),
+        Segment::Motion { to, .. } => share_of(&to, start, row),
+        Segment::Slip { .. } => delta_t.hypot(row.delta_t_y - start.delta_t_y),
         // After a reversal F_T goes with the way from it, wherever it was.
         Segment::Shear { .. } => delta_t.abs(),
         Segment::Release { .. } => h.abs(),
     }
+}
+
+/// The share of a motion that is behind a row: of what it moves furthest.
+pub(super) fn share_of(to: &Motion, start: &StepRecord, row: &StepRecord) -> f64 {
+    let part = |to: Option<f64>, start: f64, row: f64| to.map(|to| (to - start, row - start));
+    let ([x, y], [about_x, about_y]) = (both(to.shear), both(to.roll));
+    let angles = [
+        part(about_x, start.roll_x, row.roll_x),
+        part(about_y, start.roll_y, row.roll_y),
+        part(to.twist, start.twist, row.twist),
+    ];
+    let lengths =
+        [part(to.indentation, start.h, row.h), part(x, start.delta_t, row.delta_t), part(y, start.delta_t_y, row.delta_t_y)];
+    // All go in proportion, so that any of one kind tells it.
+    let projected = |parts: [Option<(f64, f64)>; 3]| {
+        let square: f64 = parts.iter().flatten().map(|(whole, _)| whole * whole).sum();
+        let product: f64 = parts.iter().flatten().map(|(whole, done)| whole * done).sum();
+        (square > 0.0).then(|| product / square)
+    };
+    projected(lengths).or_else(|| projected(angles)).unwrap_or(1.0)
+}
+
+fn both(pair: Option<[f64; 2]>) -> [Option<f64>; 2] {
+    pair.map_or([None; 2], |pair| pair.map(Some))
 }
 
 #[cfg(test)]

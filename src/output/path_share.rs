@@ -1,6 +1,7 @@
 //! What share of its path a run has behind it: for a bar, not for science.
 
 use super::StepRecord;
+use super::limit::share_of;
 use crate::case::{Segment, ShearTarget};
 use crate::simulation::path::SHEAR_GROWTH;
 
@@ -59,7 +60,8 @@ impl PathShare {
             Segment::Shear { shear: ShearTarget::Displacement(target), .. } => {
                 part(self.start.delta_t, record.delta_t, target).max(0.0).powf(SHEAR_POWER)
             }
-            Segment::Shear { shear: ShearTarget::FullSlip, .. } => {
+            Segment::Motion { to, .. } => share_of(&to, &self.start, record),
+            Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. } => {
                 let steps = self.steps as f64;
                 steps / (steps + FULL_SLIP_HALF)
             }

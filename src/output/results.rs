@@ -400,8 +400,16 @@ impl ResultWriter {
 
     fn detail(&self, row: &StepRecord) -> String {
         let mut text = format!("h {:.4e}  F_N {:.4e}", row.h, row.f_n);
-        if row.delta_t != 0.0 {
+        if row.delta_t_y != 0.0 {
+            text += &format!("  delta_T [{:.4e}, {:.4e}]  F_T [{:.4e}, {:.4e}]", row.delta_t, row.delta_t_y, row.f_t, row.f_t_y);
+        } else if row.delta_t != 0.0 {
             text += &format!("  delta_T {:.4e}  F_T {:.4e}", row.delta_t, row.f_t);
+        }
+        if row.twist != 0.0 {
+            text += &format!("  twist {:.4e}  M_twist {:.4e}", row.twist, row.m_twist);
+        }
+        if row.roll_x != 0.0 || row.roll_y != 0.0 {
+            text += &format!("  roll [{:.4e}, {:.4e}]", row.roll_x, row.roll_y);
         }
         text + &format!("  {} iterations", row.newton_iterations)
     }

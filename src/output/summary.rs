@@ -291,14 +291,15 @@ impl Summary {
 /// The last record before the first shear and the records of that shear, up to where it stops or
 /// turns. Without a shear the record of the greatest indentation and nothing.
 pub(super) fn first_shear<'a>(history: &'a [StepRecord], oblique: &[usize]) -> (Option<&'a StepRecord>, &'a [StepRecord]) {
-    let sheared = |pair: &[StepRecord]| pair[1].delta_t != pair[0].delta_t && !oblique.contains(&pair[1].segment);
+    let way = |pair: &[StepRecord]| [pair[1].delta_t - pair[0].delta_t, pair[1].delta_t_y - pair[0].delta_t_y];
+    let sheared = |pair: &[StepRecord]| way(pair) != [0.0; 2] && !oblique.contains(&pair[1].segment);
     let begin = history.windows(2).position(sheared);
     let Some(begin) = begin else {
         let deepest = history.iter().reduce(|deepest, record| if record.h >= deepest.h { record } else { deepest });
         return (deepest, &[]);
     };
-    let direction = (history[begin + 1].delta_t - history[begin].delta_t).signum();
-    let on = |pair: &&[StepRecord]| sheared(pair) && direction * (pair[1].delta_t - pair[0].delta_t) > 0.0;
+    let [x, y] = way(&history[begin..begin + 2]);
+    let on = |pair: &&[StepRecord]| sheared(pair) && x * way(pair)[0] + y * way(pair)[1] > 0.0;
     let length = history[begin..].windows(2).take_while(on).count();
     (Some(&history[begin]), &history[begin + 1..=begin + length])
 }
@@ -315,11 +316,11 @@ struct ShearPoint {
 
 impl ShearPoint {
     fn new(start: &StepRecord, record: &StepRecord) -> Self {
-        let moved = record.delta_t - start.delta_t;
+        let [x, y] = record.tangential_force();
         Self {
-            displacement: moved.abs(),
-            force: record.f_t.abs(),
-            ratio: (record.f_n > 0.0).then(|| record.f_t.abs() / record.f_n),
+            displacement: (record.delta_t - start.delta_t).hypot(record.delta_t_y - start.delta_t_y),
+            force: x.hypot(y),
+            ratio: (record.f_n > 0.0).then(|| x.hypot(y) / record.f_n),
         }
     }
 }

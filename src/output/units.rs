@@ -64,7 +64,12 @@ impl Scaled<StepRecord> {
             f_n_limit: scaled.f_n_limit.map(|limit| limit * force),
             f_t_error: scaled.f_t_error.map(|error| error * force),
             f_n_error: scaled.f_n_error.map(|error| error * force),
-            // Counts, indices and ratios have no unit.
+            delta_t_y: scaled.delta_t_y * travel,
+            f_t_y: scaled.f_t_y * force,
+            m_twist: scaled.m_twist * force * length,
+            m_roll_x: scaled.m_roll_x * force * length,
+            m_roll_y: scaled.m_roll_y * force * length,
+            // Counts, indices, angles and ratios have no unit.
             ..*scaled
         }
     }
@@ -77,7 +82,11 @@ impl ContactPoint {
     pub fn in_units(scaled: &record::ContactPoint, units: &Units) -> Self {
         let length = units.radius;
         let per_area = if scaled.area > 0.0 { units.youngs_modulus / scaled.area } else { 0.0 };
-        let (halves, half) = if scaled.on_symmetry_plane { (2.0, Half::Both) } else { (1.0, Half::Meshed) };
+        let (halves, half) = match (scaled.on_symmetry_plane, scaled.is_of_whole) {
+            (true, _) => (2.0, Half::Both),
+            (false, true) => (1.0, Half::Whole),
+            (false, false) => (1.0, Half::Meshed),
+        };
         Self {
             point: scaled.node,
             reference_x: scaled.reference[0] * length,
@@ -117,6 +126,15 @@ pub(super) fn coefficient(friction: case::Friction) -> Option<f64> {
     }
 }
 
+/// Whether a segment shears and does something else as well.
+fn does_more_than_shear(segment: &Segment) -> bool {
+    match segment {
+        Segment::Oblique { .. } => true,
+        Segment::Motion { to, .. } => to.turns() || to.indentation.is_some(),
+        Segment::Indentation { .. } | Segment::Shear { .. } | Segment::Slip { .. } | Segment::Release { .. } => false,
+    }
+}
+
 impl SummaryInputs {
     /// Those of a case in the user's units.
     pub fn of(case: &Case) -> Self {
@@ -124,7 +142,7 @@ impl SummaryInputs {
             radius: case.sphere.radius,
             youngs_modulus: case.material.youngs_modulus,
             friction: coefficient(case.contact.friction),
-            oblique: (0..case.path.len()).filter(|&i| matches!(case.path[i], Segment::Oblique { .. })).collect(),
+            oblique: (0..case.path.len()).filter(|&i| does_more_than_shear(&case.path[i])).collect(),
         }
     }
 }
@@ -162,6 +180,7 @@ mod tests {
             area: 0.5,
             gap: 0.0,
             on_symmetry_plane: false,
+            is_of_whole: false,
             status: Status::Slip,
         };
         let point = ContactPoint::in_units(&scaled, &UNITS);

@@ -42,6 +42,10 @@ pub(super) fn plan(case: &Case, computed_on: &Description) -> String {
     )
 }
 
+fn held(hold: Hold) -> &'static str {
+    if hold == Hold::NormalForce { " at constant F_N" } else { "" }
+}
+
 fn segment(segment: &Segment) -> String {
     match segment {
         Segment::Indentation { indentation } => format!("press to h = {indentation}"),
@@ -51,9 +55,25 @@ fn segment(segment: &Segment) -> String {
                 ShearTarget::FullSlip => "full slip".to_owned(),
                 ShearTarget::Displacement(shear) => shear.to_string(),
             };
-            let held = if *hold == Hold::NormalForce { " at constant F_N" } else { "" };
-            format!("shear to {target}{held}")
+            format!("shear to {target}{}", held(*hold))
         }
+        Segment::Motion { to, hold } => {
+            let mut parts = Vec::new();
+            if let Some(h) = to.indentation {
+                parts.push(format!("press to h = {h}"));
+            }
+            if let Some([x, y]) = to.shear {
+                parts.push(format!("shear to [{x}, {y}]"));
+            }
+            if let Some(twist) = to.twist {
+                parts.push(format!("twist to {twist}"));
+            }
+            if let Some([about_x, about_y]) = to.roll {
+                parts.push(format!("roll to [{about_x}, {about_y}]"));
+            }
+            format!("{}{}", parts.join(" and "), held(*hold))
+        }
+        Segment::Slip { direction, hold } => format!("shear to full slip at {direction} degrees{}", held(*hold)),
         Segment::Release { share } if *share > 0.0 => format!("release to {share} F_N"),
         Segment::Release { .. } => "release".to_owned(),
     }

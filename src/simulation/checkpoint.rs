@@ -8,12 +8,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::SimulationError;
-use super::path::{Start, Target};
+use super::path::{Start, Target, way_length};
 use super::record::{ContactPoint, StepRecord};
 use crate::compute::CaseState;
 use crate::contact::coulomb::Status;
 use crate::mesh::Mesh;
 use crate::solver::opponent::Opponent;
+use crate::solver::pose::{Pose, product, rotation};
 
 /// Greatest number that a state may have, which is scaled: displacements are over R, forces over E
 /// R^2.
@@ -29,8 +30,14 @@ pub(super) struct Committed {
     pub u: Vec<f64>,
     /// Displacement one accepted step before, for extrapolation.
     pub u_before: Vec<f64>,
-    /// Change of h and delta_T in the last step of the present segment, `None` if there is none.
-    pub last_increment: Option<[f64; 2]>,
+    /// Where the plate stands, and stood one accepted step before, at which indentation.
+    pub pose: Pose,
+    pub pose_before: Pose,
+    pub h_before: f64,
+    /// How far the centre has moved with what the sphere has rolled.
+    pub travel: [f64; 2],
+    /// What the last step of the present segment moved, `None` if there is none.
+    pub last_increment: Option<Increment>,
     /// Length of the last step as [`Committed::length_to`] measures it.
     pub last_length: f64,
     pub force: Vec<f64>,
@@ -44,8 +51,23 @@ pub(super) struct Committed {
     pub h_max: f64,
     /// Longest elastic recovery of any state so far.
     pub longest_recovery: f64,
-    /// Direction of the last shear.
+    /// Direction of the last shear along x, 0 before the first that is not even in x.
     pub direction: f64,
+    /// Direction of the last shear along x and y and about z (see
+    /// [`super::drive::Drive::way_of`]).
+    pub way: [f64; 3],
+    /// Moment of the plate about the sphere's centre.
+    pub moment: [f64; 3],
+}
+
+/// What a step has moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Increment {
+    pub h: f64,
+    /// delta_T along x and y.
+    pub along: [f64; 2],
+    /// Roll about x and y and twist, in rad.
+    pub turned: [f64; 3],
 }
 
 impl Committed {
@@ -59,11 +81,45 @@ impl Committed {
         state
     }
 
-    /// Length of a step to (h, delta_T) in the measure in which plastic flow goes on evenly: the
-    /// contact radius grows as sqrt(h) under pressing, and shear is measured by itself.
-    pub fn length_to(&self, h: f64, delta_t: f64) -> f64 {
+    /// Length of a step to a target in the measure in which plastic flow goes on evenly: the contact
+    /// radius grows as sqrt(h) under pressing, and what moves along and about the surface is
+    /// measured by itself.
+    pub fn length_to(&self, target: &Target) -> f64 {
         let radius = |h: f64| h.max(0.0).sqrt();
-        (radius(h) - radius(self.record.h)).abs() + (delta_t - self.record.delta_t).abs()
+        let (along, turned) = self.way_to(target);
+        (radius(target.h) - radius(self.record.h)).abs() + way_length((along, turned), self.record.a)
+    }
+
+    /// What a step to a target moves along x and y, and turns.
+    pub fn way_to(&self, target: &Target) -> ([f64; 2], [f64; 3]) {
+        let (r, angles) = (&self.record, self.record.angles());
+        let turned = std::array::from_fn(|i| target.angles[i] - angles[i]);
+        ([target.delta_t - r.delta_t, target.across - r.delta_t_y], turned)
+    }
+
+    /// Where the plate stands at a target. As the sphere turns, its centre moves so that delta_T,
+    /// the displacement of the surfaces, stays as it is: by (R - h) times the angle of a roll.
+    pub fn pose_at(&self, target: &Target) -> Pose {
+        let [x, y] = self.travel_to(target);
+        let (_, turned) = self.way_to(target);
+        let turn = match (self.pose.turn, turned == [0.0; 3]) {
+            (turn, true) => turn,
+            (None, false) => Some(rotation(turned)),
+            (Some(turn), false) => Some(product(&rotation(turned), &turn)),
+        };
+        Pose { shift: [target.delta_t + x, target.across + y], turn }
+    }
+
+    /// How far the centre has moved at a target with what the sphere has rolled.
+    pub fn travel_to(&self, target: &Target) -> [f64; 2] {
+        let (_, [about_x, about_y, _]) = self.way_to(target);
+        let arm = 1.0 - 0.5 * (self.record.h + target.h);
+        [self.travel[0] + arm * about_y, self.travel[1] - arm * about_x]
+    }
+
+    /// The direction of a path that goes on without a component along x.
+    pub fn odd_direction(&self) -> f64 {
+        if self.direction != 0.0 { self.direction } else { 1.0 }
     }
 
     /// Distance from the axis to the outermost closed point, in the undeformed body; zero without
@@ -79,7 +135,7 @@ impl Committed {
         let Self { u, force, statuses, gaps, points, .. } = self;
         let point = |(i, (&node, &status)): (usize, (&u32, &Status))| {
             let (base, x) = (3 * node as usize, mesh.nodes[node as usize]);
-            let on_symmetry_plane = mesh.symmetry_nodes.binary_search(&node).is_ok();
+            let on_symmetry_plane = mesh.is_on_symmetry_plane(node);
             let exerted = [force[base], if on_symmetry_plane { 0.0 } else { force[base + 1] }, force[base + 2]];
             ContactPoint {
                 node: node as usize,
@@ -89,6 +145,7 @@ impl Committed {
                 gap: gaps[i],
                 area: mesh.contact_area[i],
                 on_symmetry_plane,
+                is_of_whole: mesh.copies == 1,
                 status,
             }
         };
@@ -111,8 +168,8 @@ pub(super) struct Place {
     /// the next one last.
     pub under_way: bool,
     pub waiting: Vec<Target>,
-    /// F_T when it was set out for.
-    pub force_before: f64,
+    /// F_T along x and y when it was set out for.
+    pub force_before: [f64; 2],
     /// Tangential stiffness at the start of the shear, until its first step is recorded.
     pub stiffness: Option<f64>,
     /// Iterations of failed attempts and bisections since the last accepted step.
@@ -165,13 +222,24 @@ impl Snapshot {
             // Under full stick the coefficient of friction is infinite, and it may be any number.
             let friction = if start.friction > 0.0 { 0.0 } else { start.friction };
             let [own, both] = start.compliance;
-            [start.h, start.h_max, start.delta_t, start.f_n, start.a, friction, start.nu, own, both]
+            let [about_x, about_y, twist] = start.angles;
+            [start.h, start.h_max, start.delta_t, start.across, start.f_n, start.a, friction, start.nu, own, both]
+                .into_iter()
+                .chain([about_x, about_y, twist])
         });
-        let targets = place.waiting.iter().flat_map(|target| [target.h, target.delta_t]);
+        let targets = place.waiting.iter().flat_map(|target| {
+            let Target { h, delta_t, across, angles: [about_x, about_y, twist], .. } = *target;
+            [h, delta_t, across, about_x, about_y, twist]
+        });
         let points = case.points.iter().flatten().flat_map(|point| point.be.iter().chain([&point.alpha]));
         let flow = case.flow.iter().flatten().flat_map(|flow| flow.strain.iter().chain([&flow.alpha]));
         let record = [state.record.h, state.record.delta_t, state.record.f_n, state.record.f_t, state.record.a];
-        let single = [state.last_length, state.h_max, state.direction, place.force_before];
+        let record = record.into_iter().chain([state.record.delta_t_y]).chain(state.record.angles());
+        let single = [state.last_length, state.h_max, state.direction, state.h_before];
+        let poses = [state.pose, state.pose_before];
+        let poses = poses.iter().flat_map(|pose| pose.shift.iter().chain(pose.turn.iter().flatten().flatten()));
+        let vectors = place.force_before.iter().chain(&state.travel).chain(&state.way).chain(&state.moment).chain(poses);
+        let single = single.into_iter().chain(vectors.copied());
         let wrong = |what: &str| Some(format!("{what} beyond {LARGEST:e}, or none"));
         if !state.u.iter().chain(&state.u_before).chain(&case.displacement).chain(&state.gaps).all(sound) {
             return wrong("a displacement or a gap");
@@ -179,7 +247,8 @@ impl Snapshot {
         if !state.force.iter().chain(force_scales).all(sound) || !points.chain(flow).chain(&case.plastic_work).all(sound) {
             return wrong("a force, a strain or a work");
         }
-        let increment = state.last_increment.iter().flatten().chain(&place.stiffness).copied();
+        let last = state.last_increment.iter().flat_map(|last| last.along.iter().chain(&last.turned).chain([&last.h]));
+        let increment = last.chain(&place.stiffness).copied();
         if !start.chain(targets).chain(record).chain(single).chain(increment).all(|value| sound(&value)) {
             return wrong("a number of its place on the path");
         }

@@ -2,6 +2,7 @@
 //! accepted.
 
 mod accept;
+mod motion;
 mod paused;
 mod safe;
 mod segments;
@@ -13,10 +14,10 @@ use super::checkpoint::{Committed, Place, Snapshot};
 pub use super::ending::{Ending, Outgrowth};
 use super::observer::Displacement;
 pub use super::observer::{Observer, StepView};
-use super::path::{Resolution, Start, Target, indentation_targets, oblique_targets};
+use super::path::{Resolution, Start, Target, indentation_targets, straight_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
-use crate::case::{Scaled, Segment, ShearTarget};
+use crate::case::{Scaled, Segment, ShearTarget, unit};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Keeps, Plate, Settled};
 use crate::compute::traffic::Traffic;
@@ -201,11 +202,16 @@ impl<'a> Drive<'a> {
                     self.reach(&indentation_targets(&start, *indentation, &self.resolution()), observer)?
                 }
                 Segment::Oblique { indentation, shear } => {
-                    self.reach(&oblique_targets(&start, *indentation, *shear, &self.resolution()), observer)?
+                    let end = Target { h: *indentation, delta_t: *shear, ..start.place() };
+                    self.reach(&straight_targets(&start, &end, &self.resolution()), observer)?
+                }
+                Segment::Motion { to, hold } => self.motion(&start, to, *hold, observer)?,
+                Segment::Slip { direction, hold } => {
+                    self.shear(&start, ShearTarget::FullSlip, unit(*direction), *hold, observer)?
                 }
                 Segment::Release { share } if *share > 0.0 => self.release_to(&start, *share, observer)?,
                 Segment::Release { .. } => self.release(&start, observer)?,
-                Segment::Shear { shear, hold } => self.shear(&start, *shear, *hold, observer)?,
+                Segment::Shear { shear, hold } => self.shear(&start, *shear, [self.state.direction, 0.0], *hold, observer)?,
             };
             observer.segment_end(&mut self.view()).map_err(SimulationError::Observer)?;
             if ending != Ending::Done {
@@ -234,7 +240,13 @@ impl<'a> Drive<'a> {
                 ShearTarget::FullSlip => 1.0,
             };
             start.reversed = self.state.direction * direction < 0.0;
-            self.state.direction = direction;
+            (self.state.direction, self.state.way) = (direction, [direction, 0.0, 0.0]);
+        }
+        if let Some(way) = self.way_of(segment, &start) {
+            start.reversed = way.iter().zip(self.state.way).map(|(a, b)| a * b).sum::<f64>() < 0.0;
+            self.state.way = way;
+            // Whatever moves so is not even in x.
+            self.state.direction = if way[0] != 0.0 { way[0].signum() } else { self.state.odd_direction() };
         }
         self.place.start = Some(start);
         start
@@ -246,6 +258,8 @@ impl<'a> Drive<'a> {
             h: r.h,
             h_max: self.state.h_max,
             delta_t: r.delta_t,
+            across: r.delta_t_y,
+            angles: r.angles(),
             f_n: r.f_n,
             a: r.a,
             longest_recovery: self.state.longest_recovery,
@@ -269,7 +283,7 @@ impl<'a> Drive<'a> {
         if !self.place.under_way {
             self.place.under_way = true;
             self.set_out(target);
-            self.place.force_before = self.state.record.f_t;
+            self.place.force_before = self.state.record.tangential_force();
         }
         loop {
             if let Some(reason) = self.outgrown() {
@@ -332,7 +346,7 @@ impl<'a> Drive<'a> {
                 failure.remedy(),
             )));
         }
-        self.place.waiting.push(Target { h: 0.5 * (r.h + next.h), delta_t: 0.5 * (r.delta_t + next.delta_t), ..*next });
+        self.place.waiting.push(next.part(&self.start().place(), 0.5));
         None
     }
 
@@ -348,13 +362,10 @@ impl<'a> Drive<'a> {
 
     /// Makes `target` the next one, in as many equal parts as hard steps before it ask for.
     fn set_out(&mut self, target: &Target) {
-        let StepRecord { h, delta_t, .. } = self.state.record;
+        let start = self.start().place();
         let parts = 1usize << self.place.pace;
         self.place.waiting.push(*target);
-        self.place.waiting.extend((1..parts).rev().map(|i| {
-            let share = i as f64 / parts as f64;
-            Target { h: h + share * (target.h - h), delta_t: delta_t + share * (target.delta_t - delta_t), ..*target }
-        }));
+        self.place.waiting.extend((1..parts).rev().map(|i| target.part(&start, i as f64 / parts as f64)));
     }
 
     /// One Newton solve under full stick. A point that comes down within the step has no place to
@@ -395,20 +406,16 @@ impl<'a> Drive<'a> {
         self.newton.set_may_miss(self.place.depth >= SHALLOW);
         let keeps = self.keeps();
         let ratio = self.extrapolation(target);
-        let mut guess = if keeps == Keeps::Steps { None } else { ratio.map(|ratio| self.guess(ratio)) };
-        let h = match (target.hold_force, self.state.last_increment) {
-            // Where the force is held the indentation is an unknown, and goes on as the
-            // displacements do.
-            (true, Some([last_h, last_delta_t])) if ratio.is_some() && last_delta_t != 0.0 => {
-                let r = &self.state.record;
-                r.h + last_h * (target.delta_t - r.delta_t) / last_delta_t
-            }
-            _ => target.h,
+        let h = self.expected_h(target, ratio);
+        let pose = self.state.pose_at(target);
+        let mut guess = match keeps {
+            Keeps::Steps => None,
+            _ if pose.turn != self.state.pose.turn => ratio.map(|ratio| self.turned_guess(ratio, h, &pose)),
+            _ => ratio.map(|ratio| self.guess(ratio)),
         };
-        let control =
-            Control { h, delta_t: target.delta_t, normal_force: if target.hold_force { self.held_force } else { None } };
+        let control = Control { h, pose, normal_force: if target.hold_force { self.held_force } else { None } };
         let weight = match self.state.last_increment {
-            Some(_) => multistep::weight(self.state.length_to(target.h, target.delta_t) / self.state.last_length),
+            Some(_) => multistep::weight(self.state.length_to(target) / self.state.last_length),
             None => 0.0,
         };
         let expected = guess.as_deref().unwrap_or(&self.state.u);
@@ -424,8 +431,14 @@ impl<'a> Drive<'a> {
         self.handle().begin_step(weight)?;
         lap.end(&mut self.newton.times, Phase::Commit);
         let extrapolation = ratio.map(|ratio| Extrapolation { ratio, lift: !self.problem.pressed_in_full });
-        let StepRecord { h, delta_t, .. } = self.state.record;
-        let start = SetOut { displacement: &self.state.u, h, delta_t, guess: guess.as_deref(), extrapolation, came_off: &[] };
+        let start = SetOut {
+            displacement: &self.state.u,
+            h: self.state.record.h,
+            pose: self.state.pose,
+            guess: guess.as_deref(),
+            extrapolation,
+            came_off: &[],
+        };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
         let outcome = self.newton.solve(&mut handle, &start, &control)?;
         self.place.wasted += self.newton.take_given_up();
@@ -457,13 +470,13 @@ impl<'a> Drive<'a> {
     /// The same is done where a body is nearly incompressible, and between two bodies of which one
     /// is stiffer and one flows (see [`Problem::pressed_in_full`]).
     fn extrapolation(&self, target: &Target) -> Option<f64> {
-        let [last_h, last_delta_t] = self.state.last_increment.filter(|_| target.extrapolate)?;
+        let last = self.state.last_increment.filter(|_| target.extrapolate)?;
         let r = &self.state.record;
-        if last_delta_t != 0.0 {
-            Some((target.delta_t - r.delta_t) / last_delta_t)
-        } else if last_h != 0.0 {
+        if let Some(ratio) = self.way_ratio(target, &last) {
+            Some(ratio)
+        } else if last.h != 0.0 {
             let share = if self.problem.pressed_in_full { 1.0 } else { PRESS_EXTRAPOLATION };
-            Some(share * (target.h - r.h) / last_h)
+            Some(share * (target.h - r.h) / last.h)
         } else {
             None
         }

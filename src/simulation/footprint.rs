@@ -6,6 +6,8 @@
 //! finds the radius at which a node just touches. The pressure says more: nodes within half an
 //! element of that radius carry less than their share, and what they lack tells where the edge is.
 
+use std::f64::consts::PI;
+
 use super::record::ContactPoint;
 use crate::contact::coulomb::Status;
 
@@ -50,14 +52,15 @@ const NEAR: f64 = 1.0;
 const FEWEST_POINTS: usize = 6;
 
 /// Measures the contact of one committed state; `spacing` is the typical distance of contact
-/// points.
-pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
+/// points, of which so many `copies` make the contact.
+pub fn footprint(points: &[ContactPoint], spacing: f64, copies: usize) -> Footprint {
+    let copies = copies as f64;
     let closed = || points.iter().filter(|p| p.status != Status::Open);
     let area: f64 = closed().map(|p| p.area).sum();
     if !(area > 0.0) {
         return Footprint::default();
     }
-    let disc = |area: f64| (2.0 * area / std::f64::consts::PI).sqrt();
+    let disc = |area: f64| (copies * area / PI).sqrt();
     let stick_area: f64 = closed().filter(|p| p.status == Status::Stick).map(|p| p.area).sum();
     let polar = polar(points);
     // Stretched as the surface is there: more in the middle of a plastic contact than at its edge.
@@ -65,7 +68,7 @@ pub fn footprint(points: &[ContactPoint], spacing: f64) -> Footprint {
     let edge = disc(area);
     let touching = now(edge);
     Footprint {
-        radius: edge_from_pressure(&polar, edge, spacing).map_or(touching, now),
+        radius: edge_from_pressure(&polar, edge, spacing, 2.0 * PI / copies).map_or(touching, now),
         radius_gap: radius_from_gap(&polar, touching, spacing).unwrap_or(touching),
         stick_radius: if stick_area > 0.0 { now(disc(stick_area)) } else { 0.0 },
     }
@@ -79,16 +82,19 @@ fn polar(points: &[ContactPoint]) -> Vec<Polar> {
         let sum: f64 = closed().map(weight).sum();
         if sum > 0.0 { closed().map(|p| weight(p) * of(p)).sum::<f64>() / sum } else { 0.0 }
     };
-    let centre = mean(|p| p.force[2], |p| p.position[0]);
-    let x = mean(|p| p.area, |p| p.reference[0]);
+    // Of a half the middle is at y = 0.
+    let is_whole = points.iter().any(|p| p.is_of_whole);
+    let across = |y: f64| if is_whole { y } else { 0.0 };
+    let centre = [mean(|p| p.force[2], |p| p.position[0]), across(mean(|p| p.force[2], |p| p.position[1]))];
+    let [x, y] = [mean(|p| p.area, |p| p.reference[0]), across(mean(|p| p.area, |p| p.reference[1]))];
     // A sphere through the origin has z = kappa |x|^2/2 everywhere.
     let (by_square, squares) = points.iter().fold((0.0, 0.0), |(by_square, squares), p| {
         let square: f64 = p.reference.iter().map(|x| x * x).sum();
         (by_square + square * p.reference[2], squares + square * square)
     });
-    let middle = [x, 0.0, if squares > 0.0 { by_square / squares * x * x } else { 0.0 }];
+    let middle = [x, y, if squares > 0.0 { by_square / squares * (x * x + y * y) } else { 0.0 }];
     let point = |p: &ContactPoint| Polar {
-        r: (p.position[0] - centre).hypot(p.position[1]),
+        r: (p.position[0] - centre[0]).hypot(p.position[1] - centre[1]),
         s: p.reference.iter().zip(middle).map(|(x, c)| (x - c) * (x - c)).sum::<f64>().sqrt(),
         area: p.area,
         force: p.force[2],
@@ -162,13 +168,13 @@ impl Profile {
         if self.slope < 0.0 { (-self.at_zero / self.slope).max(0.0).sqrt() } else { f64::INFINITY }
     }
 
-    /// What it carries between two radii, on half of a disc: integral pi s p ds, with s^2 the
-    /// variable.
-    fn carried(&self, from: f64, to: f64) -> f64 {
+    /// What it carries between two radii of a sector of this `angle`, pi for half of a disc: integral
+    /// angle s p ds, with s^2 the variable.
+    fn carried(&self, from: f64, to: f64, angle: f64) -> f64 {
         let (lo, hi) = (from * from, to * to);
         let n = 64;
         let step = (hi - lo) / f64::from(n);
-        (0..n).map(|i| self.pressure(lo + (f64::from(i) + 0.5) * step) * step).sum::<f64>() * std::f64::consts::FRAC_PI_2
+        (0..n).map(|i| self.pressure(lo + (f64::from(i) + 0.5) * step) * step).sum::<f64>() * (0.5 * angle)
     }
 }
 
@@ -180,7 +186,7 @@ impl Profile {
 /// abruptly, so far inside `touching` that it carries as much as they do. Where they carry more, as
 /// under friction, which moves the pressure of an elastic contact inwards, it runs out more slowly
 /// than Hertz's: with that power of p, less than the second, with which it carries what they do.
-fn edge_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option<f64> {
+fn edge_from_pressure(points: &[Polar], touching: f64, spacing: f64, angle: f64) -> Option<f64> {
     let inside = touching - RIM * spacing;
     let from = (inside - RING * spacing).max(0.0);
     let ring = || points.iter().filter(|p| p.closed && (from..inside).contains(&p.s));
@@ -195,7 +201,7 @@ fn edge_from_pressure(points: &[Polar], touching: f64, spacing: f64) -> Option<f
     let mut profile = fit(hertz)?;
     let missing = lacking(&profile);
     if missing > 0.0 {
-        let cut = |s: f64| profile.carried(s, touching) <= missing;
+        let cut = |s: f64| profile.carried(s, touching, angle) <= missing;
         return Some(halved(from, profile.end().min(touching), |s| !cut(s)));
     }
     let exponent = halved(least, hertz, |exponent| fit(exponent).is_some_and(|profile| lacking(&profile) > 0.0));

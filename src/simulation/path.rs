@@ -7,8 +7,12 @@ use serde::{Deserialize, Serialize};
 pub struct Target {
     /// Indentation, or the first guess of it when the normal force is held.
     pub h: f64,
-    /// Tangential displacement.
+    /// Tangential displacement along x.
     pub delta_t: f64,
+    /// Along y.
+    pub across: f64,
+    /// How far the sphere has rolled about x and y and been twisted about z, in rad.
+    pub angles: [f64; 3],
     /// Normal force is held at what it was when the segment began.
     pub hold_force: bool,
     /// Extrapolating the last two steps is a good first guess.
@@ -22,8 +26,12 @@ pub struct Start {
     pub h: f64,
     /// Largest indentation so far.
     pub h_max: f64,
-    /// Tangential displacement.
+    /// Tangential displacement along x.
     pub delta_t: f64,
+    /// Along y.
+    pub across: f64,
+    /// See [`Target::angles`].
+    pub angles: [f64; 3],
     /// Normal force, whole sphere.
     pub f_n: f64,
     /// Contact radius.
@@ -74,6 +82,34 @@ const LARGEST_SHEAR_STEP: f64 = 0.05;
 /// displacement says nothing.
 const MOST_LATER_STEPS: f64 = 120.0;
 
+impl Target {
+    /// Part of the way from `start` to this one.
+    pub fn part(&self, start: &Self, share: f64) -> Self {
+        let between = |from: f64, to: f64| from + share * (to - from);
+        Self {
+            h: between(start.h, self.h),
+            delta_t: between(start.delta_t, self.delta_t),
+            across: between(start.across, self.across),
+            angles: std::array::from_fn(|i| between(start.angles[i], self.angles[i])),
+            ..*self
+        }
+    }
+
+    /// What moves from `start` to here: along x and y, and the angles.
+    pub fn way_from(&self, start: &Self) -> ([f64; 2], [f64; 3]) {
+        let turned = std::array::from_fn(|i| self.angles[i] - start.angles[i]);
+        ([self.delta_t - start.delta_t, self.across - start.across], turned)
+    }
+}
+
+/// Length of a way along and about the surface, over R, for a contact of radius `a`: what turns
+/// counts as far as it moves a point at the contact's edge, and what rolls as far as it moves the
+/// contact.
+pub fn way_length(([x, y], [about_x, about_y, twist]): ([f64; 2], [f64; 3]), a: f64) -> f64 {
+    let along = if y == 0.0 { x.abs() } else { x.hypot(y) };
+    along + a * twist.abs() + about_x.hypot(about_y)
+}
+
 impl Resolution {
     /// Step of h of an unloading.
     pub fn release_step(&self, start: &Start) -> f64 {
@@ -82,6 +118,12 @@ impl Resolution {
 }
 
 impl Start {
+    /// Where the segment starts, as a target.
+    pub fn place(&self) -> Target {
+        let Self { h, delta_t, across, angles, .. } = *self;
+        Target { h, delta_t, across, angles, hold_force: false, extrapolate: true }
+    }
+
     /// Elastic modulus E/(1 - nu^2), scaled; with another body that of both, E*.
     fn plane_modulus(&self) -> f64 {
         1.0 / ((1.0 - self.nu * self.nu) * self.compliance[0])
@@ -125,7 +167,7 @@ fn press(n: usize, h: f64) -> Vec<f64> {
 
 /// Targets of an indentation segment from `start` to indentation `h`.
 pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Vec<Target> {
-    let target = |h, extrapolate| Target { h, delta_t: start.delta_t, hold_force: false, extrapolate };
+    let target = |h, extrapolate| Target { h, extrapolate, ..start.place() };
     let mut targets = Vec::new();
     let mut from = start.h;
     if h > from && from < start.h_max {
@@ -182,29 +224,27 @@ pub fn indentation_targets(start: &Start, h: f64, resolution: &Resolution) -> Ve
     targets
 }
 
-/// Targets of a segment from `start` to `h` and `delta_t` together: at every place no longer than
-/// the steps of the press and of the shear alone would be there.
-pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolution) -> Vec<Target> {
-    let rise = h - start.h;
-    let length = (delta_t - start.delta_t).abs();
-    let pressed: Vec<Target> = indentation_targets(start, h, resolution);
-    // Where the segment stands at the end of each step, as shares of it.
-    let mut ends: Vec<f64> = pressed.iter().map(|t| (t.h - start.h) / rise).collect();
-    let sheared: Vec<f64> = if start.a > 0.0 {
-        let steps = ShearSteps::new(start, length, false, resolution);
-        (1..).map(|i| steps.distance(i) / length).take_while(|&share| share < 1.0 - 1e-9).chain([1.0]).collect()
+/// Targets of a segment from `start` to `end` in a straight line: at every place no longer than the
+/// steps of the press and of the shear alone would be there.
+pub fn straight_targets(start: &Start, end: &Target, resolution: &Resolution) -> Vec<Target> {
+    let rise = end.h - start.h;
+    let length = way_length(end.way_from(&start.place()), start.a);
+    let sheared = sheared_ends(start, end.h, length, end.hold_force, resolution);
+    let ends = if end.hold_force || rise == 0.0 {
+        vec![1.0]
     } else {
-        // What begins to touch has no slip displacement yet; where all of it slips, steps of a
-        // share of its radius do.
-        let longest = LARGEST_SHEAR_STEP * resolution.coarseness * h.max(0.0).sqrt();
-        let count = (length / longest.max(1e-12)).ceil().clamp(1.0, MOST_LATER_STEPS / resolution.coarseness);
-        (1..=count as usize).map(|i| i as f64 / count).collect()
+        // Where the segment stands at the end of each step, as shares of it.
+        let pressed: Vec<Target> = indentation_targets(start, end.h, resolution);
+        let mut ends: Vec<f64> = pressed.iter().map(|t| (t.h - start.h) / rise).collect();
+        if let Some(last) = ends.last_mut() {
+            *last = 1.0;
+        }
+        ends
     };
-    if let Some(last) = ends.last_mut() {
-        *last = 1.0;
-    }
-    // Beyond 1.5 recoveries nothing touches any more, and no step is too long.
-    let free = if rise < 0.0 { (1.5 * start.recovery() / -rise).min(1.0) } else { 1.0 };
+    // Beyond 1.5 recoveries nothing touches any more, and no step is too long; unless another part of
+    // the surface comes down.
+    let rolls = end.angles[..2] != start.angles[..2];
+    let free = if rise < 0.0 && !rolls { (1.5 * start.recovery() / -rise).min(1.0) } else { 1.0 };
     let around = |ends: &mut dyn Iterator<Item = f64>, at: f64| {
         let mut from = 0.0;
         for end in ends {
@@ -222,17 +262,26 @@ pub fn oblique_targets(start: &Start, h: f64, delta_t: f64, resolution: &Resolut
         let step = press.min(shear);
         // A rest of less than a third of a step goes with it.
         at = if at + 1.33 * step >= 1.0 { 1.0 } else { at + step };
-        targets.push(Target {
-            h: start.h + at * rise,
-            delta_t: start.delta_t + at * (delta_t - start.delta_t),
-            hold_force: false,
-            extrapolate: true,
-        });
+        targets.push(end.part(&start.place(), at));
     }
     if let Some(last) = targets.last_mut() {
-        (last.h, last.delta_t) = (h, delta_t);
+        *last = *end;
     }
     targets
+}
+
+/// Ends of the steps of a way of this length along the surface, as shares of it; it ends at `h`.
+fn sheared_ends(start: &Start, h: f64, length: f64, held: bool, resolution: &Resolution) -> Vec<f64> {
+    if start.a > 0.0 {
+        let steps = ShearSteps::new(start, length, held, resolution);
+        (1..).map(|i| steps.distance(i) / length).take_while(|&share| share < 1.0 - 1e-9).chain([1.0]).collect()
+    } else {
+        // What begins to touch has no slip displacement yet; where all of it slips, steps of a
+        // share of its radius do.
+        let longest = LARGEST_SHEAR_STEP * resolution.coarseness * h.max(0.0).sqrt();
+        let count = (length / longest.max(1e-12)).ceil().clamp(1.0, MOST_LATER_STEPS / resolution.coarseness);
+        (1..=count as usize).map(|i| i as f64 / count).collect()
+    }
 }
 
 /// Tangential displacements of a shear segment, as distances from its start: increments that grow;
@@ -295,6 +344,8 @@ mod tests {
             h: 0.02,
             h_max: 0.02,
             delta_t: 0.0,
+            across: 0.0,
+            angles: [0.0; 3],
             f_n: 7e-4 * (a / 0.2).powi(2),
             a,
             longest_recovery: 0.002,
@@ -364,7 +415,7 @@ mod tests {
             (later, 0.0199, -0.01),
             (Start { h: 0.019, delta_t: 0.001, ..later }, 0.03, -0.002),
         ] {
-            let targets = oblique_targets(&from, h, d, &resolution);
+            let targets = straight_targets(&from, &Target { h, delta_t: d, ..from.place() }, &resolution);
             let last = targets[targets.len() - 1];
             assert_eq!((last.h, last.delta_t), (h, d));
             assert!(targets.len() <= 160, "{h} {d}: {} steps", targets.len());
@@ -384,7 +435,7 @@ mod tests {
             }
         }
         // The shear alone bounds the first steps of one that hardly presses.
-        let targets = oblique_targets(&later, 0.0201, 0.03, &resolution);
+        let targets = straight_targets(&later, &Target { h: 0.0201, delta_t: 0.03, ..later.place() }, &resolution);
         let steps = ShearSteps::new(&later, 0.03, false, &resolution);
         assert!(targets[0].delta_t <= steps.distance(1) * 1.0001, "{:?}", targets[0]);
     }

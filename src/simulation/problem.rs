@@ -15,7 +15,7 @@ use crate::material::{Hardening, Material, MaterialError};
 use crate::memory;
 use crate::mesh::couple::{self, couple};
 use crate::mesh::sphere::{SphereSpec, flat_mesh, opponent_mesh, sphere_mesh};
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::{Mesh, MeshError, whole};
 use crate::solver::newton::Newton;
 use crate::solver::opponent;
 use crate::solver::opponent::couple::TwoBodies;
@@ -131,11 +131,14 @@ fn mesh_of(Scaled(case): &Scaled<Case>, zone: &Zone) -> Result<Mesh, MeshError> 
         skin_levels: case.mesh.skin_levels(),
     };
     let own = if case.sphere.flat { flat_mesh(&spec(1.0))? } else { sphere_mesh(&spec(1.0))? };
+    // Of what is even in y, half tells all.
+    let meshed = |half: Mesh| if case.is_even() { half } else { whole(&half) };
+    let own = meshed(own);
     Ok(match case.opponent {
         Some(Opponent::Deforming { radius: Some(radius), .. }) => {
-            couple(own, couple::scaled(opponent_mesh(&spec(radius))?, radius))
+            couple(own, couple::scaled(meshed(opponent_mesh(&spec(radius))?), radius))
         }
-        Some(Opponent::Deforming { radius: None, .. }) => couple(own, flat_mesh(&spec(1.0))?),
+        Some(Opponent::Deforming { radius: None, .. }) => couple(own, meshed(flat_mesh(&spec(1.0))?)),
         None | Some(Opponent::Equal | Opponent::Rigid { .. }) => own,
     })
 }
@@ -151,7 +154,9 @@ fn opponent_material(Scaled(case): &Scaled<Case>) -> Result<Option<Material<f64>
 /// The two bodies of a scaled case whose opponent deforms.
 fn two_bodies(Scaled(case): &Scaled<Case>, slaves_are_exchanged: bool) -> Option<TwoBodies> {
     match &case.opponent {
-        Some(Opponent::Deforming { material, .. }) => Some(TwoBodies::new(material.youngs_modulus, slaves_are_exchanged)),
+        Some(Opponent::Deforming { material, radius }) => {
+            Some(TwoBodies::new(material.youngs_modulus, *radius, slaves_are_exchanged))
+        }
         _ => None,
     }
 }
@@ -294,8 +299,8 @@ impl Problem {
             None => Box::new(Plane),
             Some(Opponent::Rigid { radius }) => Box::new(RigidSphere::new(Rigid { curvature: 1.0 / radius })),
             Some(Opponent::Equal) => Box::new(Joint::new(mesh, EqualPair)),
-            Some(Opponent::Deforming { material, .. }) => {
-                Box::new(Joint::new(mesh, TwoBodies::new(material.youngs_modulus, self.slaves_are_exchanged)))
+            Some(Opponent::Deforming { material, radius }) => {
+                Box::new(Joint::new(mesh, TwoBodies::new(material.youngs_modulus, *radius, self.slaves_are_exchanged)))
             }
         }
     }
@@ -311,6 +316,6 @@ impl Problem {
         };
         let (mesh, opponent) = (&self.model.mesh, self.opponent());
         let systems = opponent.systems(mesh, kind).map_err(SolverError::from)?.ok_or(SimulationError::NotMirrored)?;
-        Ok(Newton::new(mesh, systems, self.settings).against(opponent))
+        Ok(Newton::new(mesh, systems, self.settings).against(opponent).with_any_motion(!self.case.0.moves_along_x()))
     }
 }

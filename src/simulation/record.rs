@@ -101,9 +101,45 @@ pub struct StepRecord {
     /// Of what `f_n` lacks.
     #[serde(default, rename = "F_N_error")]
     pub f_n_error: Option<f64>,
+    /// Tangential displacement along y; `delta_t` is that along x.
+    #[serde(default, rename = "delta_T_y")]
+    pub delta_t_y: f64,
+    /// Tangential force along y, as `f_t` along x.
+    #[serde(default, rename = "F_T_y")]
+    pub f_t_y: f64,
+    /// How far the sphere has been twisted about the normal, in rad.
+    #[serde(default)]
+    pub twist: f64,
+    /// How far it has rolled about x, in rad.
+    #[serde(default)]
+    pub roll_x: f64,
+    /// About y, which takes it along x.
+    #[serde(default)]
+    pub roll_y: f64,
+    /// Moment about the normal that the plate exerts in the direction of `twist`: that of the
+    /// tractions about the foot of the perpendicular from the sphere's centre to the plane, or about
+    /// the point of the opponent's surface on the line of centres.
+    #[serde(default, rename = "M_twist")]
+    pub m_twist: f64,
+    /// The same about x, in the direction of `roll_x`.
+    #[serde(default, rename = "M_roll_x")]
+    pub m_roll_x: f64,
+    /// About y.
+    #[serde(default, rename = "M_roll_y")]
+    pub m_roll_y: f64,
 }
 
 impl StepRecord {
+    /// Angles of roll about x and y, and of twist.
+    pub fn angles(&self) -> [f64; 3] {
+        [self.roll_x, self.roll_y, self.twist]
+    }
+
+    /// The tangential force along x and y.
+    pub fn tangential_force(&self) -> [f64; 2] {
+        [self.f_t, self.f_t_y]
+    }
+
     /// The row as a run without a companion has it.
     pub fn forget_limits(&mut self) {
         (self.f_t_limit, self.f_n_limit, self.f_t_error, self.f_n_error) = (None, None, None, None);
@@ -129,6 +165,14 @@ impl StepRecord {
             ("h_opponent", self.h_opponent),
             ("work_plastic_opponent", self.work_plastic_opponent),
             ("curvature", self.curvature),
+            ("delta_T_y", self.delta_t_y),
+            ("F_T_y", self.f_t_y),
+            ("twist", self.twist),
+            ("roll_x", self.roll_x),
+            ("roll_y", self.roll_y),
+            ("M_twist", self.m_twist),
+            ("M_roll_x", self.m_roll_x),
+            ("M_roll_y", self.m_roll_y),
         ];
         let optional = [
             ("k_T", self.k_t),
@@ -160,6 +204,8 @@ pub struct ContactPoint {
     pub area: f64,
     /// The point lies on the symmetry plane: half of it is meshed.
     pub on_symmetry_plane: bool,
+    /// All of the sphere is meshed, and not half of it.
+    pub is_of_whole: bool,
     /// Open, sticking or slipping.
     pub status: crate::contact::coulomb::Status,
 }

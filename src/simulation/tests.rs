@@ -141,6 +141,17 @@ fn so_it_is_against_a_rigid_sphere() {
 }
 
 #[test]
+fn so_it_is_where_the_plate_turns() {
+    let mut problem = problem("0.3", "");
+    let text = "[[path]]\nindentation = 0.01\n[[path]]\nshear = [0.001, 0.001]\ntwist = 0.01\n[[path]]\nroll = [0.003, -0.004]\n\
+                hold = \"normal-force\"\n[[path]]\nindentation = 0.011\ntwist = 0.0\n[[path]]\nshear = \"full-slip\"\n\
+                shear_direction = 130.0\n[[path]]\nrelease = true\n";
+    let head = problem.case.0.to_toml().split("[[path]]").next().unwrap_or_default().to_owned();
+    problem = Problem::new(&Case::parse(&(head + text), "case.toml", &[]).unwrap()).unwrap();
+    stop_and_go::<f64>(&problem);
+}
+
+#[test]
 fn so_it_is_between_two_bodies() {
     let text = include_str!("../../fixtures/cases/unlike.toml");
     let sets = [

@@ -4,13 +4,14 @@
 //! the host or on a device. `system` holds the residual and matrix of the host's, `opponent` all
 //! that depends on what the body is pressed against; `systems` solves for the correction, with
 //! `pair` for two equal spheres and `couple` for two bodies (`tied` is what these have in common),
-//! `phases` is what its parts cost. Choosing steps and bisecting them is the simulation's business.
+//! `phases` is what its parts cost, `pose` where the plate stands. Choosing steps and bisecting them is the simulation's business.
 
 pub mod iterate;
 pub mod newton;
 pub mod opponent;
 pub mod outcome;
 pub mod phases;
+pub mod pose;
 pub mod system;
 pub mod systems;
 
@@ -21,6 +22,7 @@ use crate::compute::ComputeError;
 use crate::linalg::LinalgError;
 use crate::material::Elasticity;
 pub use outcome::{Iteration, StepFailure, StepOutcome, StepReport, Worst};
+use pose::Pose;
 
 /// How a step is to be solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,8 +88,8 @@ pub fn loosest_linear(poissons_ratio: f64) -> f64 {
 pub struct Control {
     /// Indentation h at the end of the step; the starting guess when `normal_force` is set.
     pub h: f64,
-    /// Tangential displacement at the end of the step.
-    pub delta_t: f64,
+    /// Where the plate stands at the end of the step otherwise.
+    pub pose: Pose,
     /// Normal force of the meshed half to be reached, with h free.
     pub normal_force: Option<f64>,
 }

@@ -67,6 +67,8 @@ pub struct Newton {
     iterates: ResidentIterate,
     /// The present step's are on the device.
     is_resident: bool,
+    /// They stay on the host whatever the device can do: it knows a plate that moves along x alone.
+    is_at_home: bool,
     settings: Settings,
     /// Tolerance of the merit: that of the settings, in f32 no tighter than [`SINGLE`].
     tolerance: f64,
@@ -90,6 +92,7 @@ impl Newton {
         Self {
             iterates: ResidentIterate::new(HostIterate::new(mesh, linear.into())),
             is_resident: false,
+            is_at_home: false,
             settings,
             tolerance: settings.tolerance,
             last_scale: 0.0,
@@ -107,6 +110,12 @@ impl Newton {
         self
     }
 
+    /// The same for a plate that may move across the x axis, or turn.
+    pub fn with_any_motion(mut self, any: bool) -> Self {
+        self.is_at_home = any;
+        self
+    }
+
     /// What the body is pressed against.
     pub fn opponent(&self) -> &dyn Opponent {
         &*self.iterates.host.boundary().opponent
@@ -114,7 +123,8 @@ impl Newton {
 
     /// Which iterates of the case stay on this backend.
     pub fn keeps_on(&self, case: &CaseHandle<'_>) -> Keeps {
-        if self.iterates.host.is_over_plane_by_multigrid() { case.keeps() } else { Keeps::Nothing }
+        let is_known = self.iterates.host.is_over_plane_by_multigrid() && !self.is_at_home;
+        if is_known { case.keeps() } else { Keeps::Nothing }
     }
 
     /// The last accepted trial, if its vectors are on the host.

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::opponent::Opponent;
 use super::opponent::plane::Plane;
 use super::phases::{Lap, Phase, PhaseTimes};
+use super::pose::{CENTRE, Pose};
 use super::{Control, Worst};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{missing_weight, prescribed};
@@ -21,6 +22,8 @@ use crate::real::Real;
 pub struct Boundary {
     /// Nodes of the rigid plate that moves; that of another body stands still.
     pub plate: Vec<u32>,
+    /// How far from the sphere's centre they lie in the undeformed body.
+    pub from_centre: Vec<[f64; 3]>,
     /// Per unknown: prescribed by the plate or by symmetry.
     pub prescribed: Vec<bool>,
     /// Per contact point: slides without friction in the present step, whatever the case says. For
@@ -44,8 +47,11 @@ impl Boundary {
     pub fn new(mesh: &Mesh) -> Self {
         let frictionless = vec![false; mesh.contact_nodes.len()];
         let own_nodes = mesh.own_nodes();
+        let plate: Vec<u32> = mesh.plate_nodes.iter().copied().filter(|&n| (n as usize) < own_nodes).collect();
+        let from_centre = |&n: &u32| std::array::from_fn(|k| mesh.nodes[n as usize][k] - CENTRE[k]);
         Self {
-            plate: mesh.plate_nodes.iter().copied().filter(|&n| (n as usize) < own_nodes).collect(),
+            from_centre: plate.iter().map(from_centre).collect(),
+            plate,
             prescribed: prescribed(mesh),
             frictionless,
             stuck: false,
@@ -66,9 +72,9 @@ impl Boundary {
     }
 
     /// Writes the plate's position into a displacement.
-    pub fn place_plate(&self, u: &mut [f64], h: f64, delta_t: f64) {
-        for &n in &self.plate {
-            u[3 * n as usize..3 * n as usize + 3].copy_from_slice(&[delta_t, 0.0, -h]);
+    pub fn place_plate(&self, u: &mut [f64], h: f64, pose: &Pose) {
+        for (&n, from_centre) in self.plate.iter().zip(&self.from_centre) {
+            u[3 * n as usize..3 * n as usize + 3].copy_from_slice(&pose.displacement(h, from_centre));
         }
     }
 }
@@ -187,10 +193,10 @@ impl Trial {
                 self.residual[i] = self.u[i];
             }
         }
-        let target = [control.delta_t, 0.0, -self.h];
         self.plate_force = 0.0;
-        for &n in &boundary.plate {
+        for (&n, from_centre) in boundary.plate.iter().zip(&boundary.from_centre) {
             let base = 3 * n as usize;
+            let target = control.pose.displacement(self.h, from_centre);
             for i in 0..3 {
                 self.residual[base + i] = self.u[base + i] - target[i];
             }

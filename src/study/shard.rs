@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::case::{Case, Friction, Segment, estimated_elements};
+use crate::case::{Case, Friction, Motion, Segment, estimated_elements};
 use crate::simulation::path::RELEASE_STEPS;
 use crate::simulation::problem::press_steps;
 
@@ -74,7 +74,11 @@ pub fn cost(case: &Case) -> f64 {
                 deepest = deepest.max(indentation / radius);
                 press_steps(case) as f64
             }
-            Segment::Shear { .. } => SHEAR_STEPS,
+            Segment::Motion { to: Motion { indentation: Some(indentation), .. }, .. } => {
+                deepest = deepest.max(indentation / radius);
+                press_steps(case) as f64
+            }
+            Segment::Shear { .. } | Segment::Slip { .. } | Segment::Motion { .. } => SHEAR_STEPS,
             Segment::Release { .. } => RELEASE_STEPS,
         };
     }

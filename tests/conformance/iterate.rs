@@ -16,6 +16,7 @@ use asperity::internals::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind
 use asperity::internals::solver::iterate::SetOut;
 use asperity::internals::solver::newton::Newton;
 use asperity::internals::solver::phases::PhaseTimes;
+use asperity::internals::solver::pose::Pose;
 use asperity::internals::solver::system::{Boundary, Trial, apply_contact, fixed_unknowns, plate_functional, right_hand_side};
 use asperity::internals::solver::{Control, Settings, StepOutcome};
 use asperity::material::{Elasticity, Hardening, Material};
@@ -57,7 +58,7 @@ fn pressed(name: &str) -> Option<Pressed> {
     let mut cpu = Cpu::<f64>::new(models.clone()).unwrap();
     let settings =
         Settings { tolerance: 1e-4, max_iterations: 60, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 };
-    let control = Control { h: DEPTH, delta_t: 0.0, normal_force: None };
+    let control = Control { h: DEPTH, pose: Pose::along_x(0.0), normal_force: None };
     let mut displacement = Vec::new();
     for (case, model) in models.iter().enumerate() {
         let mesh = &model.mesh;
@@ -65,7 +66,8 @@ fn pressed(name: &str) -> Option<Pressed> {
         let linear = LinearSolver::<f32>::new(SolverKind::Multigrid, &pattern, &mesh.hierarchy).unwrap();
         let mut newton = Newton::new(mesh, linear, settings);
         let zero = vec![0.0; 3 * mesh.nodes.len()];
-        let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None, came_off: &[] };
+        let start =
+            SetOut { displacement: &zero, h: 0.0, pose: Pose::default(), guess: None, extrapolation: None, came_off: &[] };
         let mut handle = CaseHandle { backend: &mut gpu, case };
         assert_eq!(newton.keeps_on(&handle), Keeps::Steps);
         let outcome = newton.solve(&mut handle, &start, &control).unwrap();
@@ -80,7 +82,7 @@ fn pressed(name: &str) -> Option<Pressed> {
 }
 
 fn plate(control: &Control) -> Plate {
-    Plate { h: control.h, delta_t: control.delta_t, held: control.normal_force }
+    Plate { h: control.h, delta_t: control.pose.shift[0], held: control.normal_force }
 }
 
 fn ask(gpu: &mut Gpu<f64>, asks: &[(usize, bool, Plate, Ask)]) -> Vec<Reply> {
@@ -124,7 +126,7 @@ fn a_trial_reads_as_on_the_cpu() {
     for case in 0..pressed.models.len() {
         for held in [None, Some(1e-4)] {
             let mesh = pressed.models[case].mesh.clone();
-            let control = Control { h: DEPTH + 1e-4, delta_t: 2e-4, normal_force: held };
+            let control = Control { h: DEPTH + 1e-4, pose: Pose::along_x(2e-4), normal_force: held };
             let start = pressed.displacement[case].clone();
             let at_start = reading(&ask(&mut pressed.gpu, &[(case, false, plate(&control), begin())])[0]);
             let (current, boundary) = on_host(&mut pressed, case, &start, control.h, &control);
@@ -140,7 +142,7 @@ fn a_trial_reads_as_on_the_cpu() {
                 let h = control.h + length * delta_h;
                 let mut u: Vec<f64> = start.iter().zip(&correction).map(|(u, d)| u + length * d).collect();
                 if length == 1.0 {
-                    boundary.place_plate(&mut u, h, control.delta_t);
+                    boundary.place_plate(&mut u, h, &control.pose);
                 }
                 let (trial, _) = on_host(&mut pressed, case, &u, h, &control);
                 near("merit", tried.merit, trial.merit, trial.merit);
@@ -189,7 +191,7 @@ fn a_correction_solves_the_hosts_system() {
         let mesh = pressed.models[case].mesh.clone();
         let start = pressed.displacement[case].clone();
         for held in [false, true] {
-            let mut control = Control { h: DEPTH, delta_t: 1e-4, normal_force: None };
+            let mut control = Control { h: DEPTH, pose: Pose::along_x(1e-4), normal_force: None };
             let (current, boundary) = on_host(&mut pressed, case, &start, control.h, &control);
             let target = 1.1 * current.plate_force;
             control.normal_force = held.then_some(target);
@@ -238,7 +240,7 @@ fn a_batch_reads_as_its_cases_alone_and_little_passes() {
     let Some(mut pressed) = pressed("a_batch_reads_as_its_cases_alone_and_little_passes") else { return };
     let gpu = &mut pressed.gpu;
     for held in [None, Some(2e-4)] {
-        let control = Control { h: DEPTH + 2e-4, delta_t: 0.0, normal_force: held };
+        let control = Control { h: DEPTH + 2e-4, pose: Pose::along_x(0.0), normal_force: held };
         let round = |gpu: &mut Gpu<f64>, cases: &[usize]| -> Vec<(Reading, Corrected)> {
             let (answers, passed) = correct_from_start(gpu, cases, &control, 0.1, [12, 12]);
             let count = cases.len() as u64;
@@ -267,7 +269,7 @@ fn a_list_that_is_too_short_changes_no_bit() {
     let Some(mut pressed) = pressed("a_list_that_is_too_short_changes_no_bit") else { return };
     let gpu = &mut pressed.gpu;
     for held in [None, Some(2e-4)] {
-        let control = Control { h: DEPTH + 2e-4, delta_t: 0.0, normal_force: held };
+        let control = Control { h: DEPTH + 2e-4, pose: Pose::along_x(0.0), normal_force: held };
         let (expected, _) = correct_from_start(gpu, &[0, 1, 2], &control, 1e-3, [20, 20]);
         for lists in [[0, 20], [20, 0], [0, 0]] {
             let (found, passed) = correct_from_start(gpu, &[0, 1, 2], &control, 1e-3, lists);

@@ -59,7 +59,7 @@ fn the_keys_of_hardening_are_those_of_its_laws() {
 /// The segment, or the table, to which a key belongs.
 fn place(key: &Key) -> String {
     match key.name {
-        "shear" | "hold" => format!("path.1.{}", key.name),
+        "shear" | "shear_direction" | "twist" | "roll" | "hold" => format!("path.1.{}", key.name),
         "release" => "path.2.release".to_owned(),
         _ => key.dotted().replace("N", "0"),
     }
@@ -67,7 +67,10 @@ fn place(key: &Key) -> String {
 
 fn refused(law: &str, key: &Key, value: &str) -> bool {
     match parsed(law, &[format!("{}={value}", place(key))]) {
-        Err(CaseError::NotAllowed { key: named, .. } | CaseError::WrongType { key: named, .. }) => named == place(key),
+        Err(CaseError::NotAllowed { key: named, .. } | CaseError::WrongType { key: named, .. }) => {
+            // Of a pair the component.
+            named == place(key) || matches!(key.kind, Components(_)) && named.starts_with(&format!("{}.", place(key)))
+        }
         _ => false,
     }
 }
@@ -137,6 +140,14 @@ fn examples_and_words_are_taken_and_values_beyond_the_limits_are_refused() {
                 assert!(refused(law, key, "\"no such word\""), "{}", key.dotted());
             }
             Text => assert!(refused(law, key, "1.0") && refused(law, key, "\"\""), "{}", key.dotted()),
+            Components(words) => {
+                words.iter().for_each(|word| takes(&format!("{word:?}")));
+                takes("[0.001, 0.002]");
+                let wrong = ["nan", "[]", "[0.1]", "[0.1, 0.1, 0.1]", "[0.1, nan]", "[10.0, 0.0]", "10.0", "\"no such word\""];
+                for value in wrong {
+                    assert!(refused(law, key, value), "{} = {value}", key.dotted());
+                }
+            }
             Points | Material => assert!(refused(law, key, "1.0"), "{}", key.dotted()),
         }
     }

@@ -176,7 +176,7 @@ impl Map<'_> {
         for (half, upper) in [(Half::Meshed, true), (Half::Mirrored, false)] {
             let own: Vec<&ContactPoint> = points
                 .iter()
-                .filter(|point| (point.half == half || point.half == Half::Both) && self.window.is_near(point))
+                .filter(|point| point.half.is_shown_as(half, point.reference_y) && self.window.is_near(point))
                 .filter(|point| point.current_x.is_finite() && point.current_y.is_finite())
                 .collect();
             let field = Field::new(own.iter().map(|point| self.pixel(point.current_x, point.current_y)).collect());

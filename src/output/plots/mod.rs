@@ -22,6 +22,7 @@ mod print;
 mod replot;
 mod segments;
 mod text;
+mod turning;
 
 pub use super::tables::{SlipPanel, Tables};
 pub use contact_map::{plot_contact, plot_slip};
@@ -31,6 +32,7 @@ pub use pressure::plot_pressure;
 pub use replot::replot;
 pub use sheet::Sheet;
 pub use style::Picture;
+pub use turning::{plot_moments, plot_plane};
 
 use self::axes::{Axes, AxisUnits};
 use super::{OutputDirectory, OutputError, StepRecord};
@@ -81,7 +83,8 @@ fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
 }
 
 /// Every picture for which there is something to show: `indentation` and `pressure` of the press,
-/// `forces`, `ratio`, `stick` and `slip` of the shear, `contact` of the last step in contact.
+/// `forces`, `ratio`, `stick` and `slip` of the shear along x, `plane` of one across it, `moments` of
+/// what turns, `contact` of the last step in contact.
 ///
 /// # Errors
 /// A drawing fails.
@@ -106,6 +109,13 @@ pub fn run_pictures(
             plot_ratio(history, friction, view)?,
             plot_stick(history, friction, view)?,
         ]);
+    }
+    let [across, turns] = turning::is_needed(history);
+    if across {
+        pictures.push(plot_plane(history, inputs.friction, view)?);
+    }
+    if turns {
+        pictures.push(plot_moments(history, view)?);
     }
     if !tables.shear.is_empty() {
         pictures.push(plot_slip(&spread(&tables.shear, PANELS), view)?);

@@ -40,6 +40,12 @@ impl SegmentSteps<'_> {
         let from = if self.number == 0 && self.steps.len() == 1 { &StepRecord::default() } else { first };
         let (h, delta_t) = (last.h - from.h, last.delta_t - from.delta_t);
         let held_force = (last.f_n - from.f_n).abs() < 1e-3 * from.f_n.abs();
+        if last.angles() != from.angles() {
+            return "turn";
+        }
+        if last.delta_t_y != from.delta_t_y {
+            return "shear";
+        }
         match (delta_t, h) {
             (0.0, h) if h < 0.0 => "unload",
             (0.0, _) => "press",

@@ -7,6 +7,7 @@ use crate::compute::{Energies, Fault, Outcome};
 use crate::contact::coulomb::Status;
 use crate::contact::plane::gap;
 use crate::simulation::SimulationError;
+use crate::simulation::checkpoint::Increment;
 use crate::simulation::footprint::{bulge, footprint};
 use crate::simulation::path::Target;
 use crate::simulation::record::StepRecord;
@@ -26,6 +27,16 @@ struct Taken {
     forces: Vec<[f64; 3]>,
     statuses: Vec<Status>,
     gaps: Vec<f64>,
+}
+
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The plate's moment about another point, from that about `from`; its force is along x, y and down.
+fn shifted(moment: [f64; 3], [x, y, down]: [f64; 3], from: &[f64; 3], to: &[f64; 3]) -> [f64; 3] {
+    let more = cross(&std::array::from_fn(|k| from[k] - to[k]), &[x, y, 0.0 - down]);
+    std::array::from_fn(|k| moment[k] + more[k])
 }
 
 impl Drive<'_> {
@@ -55,7 +66,7 @@ impl Drive<'_> {
         let slaves = self.newton.opponent().contacts(&self.mesh);
         let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
         let (contact_points, slipping_points) = (count(Status::Stick) + count(Status::Slip), count(Status::Slip));
-        let length = self.state.length_to(target.h, target.delta_t);
+        let length = self.state.length_to(target);
         let friction_work = self.newton.friction_work(&StepTaken {
             mesh: &self.mesh,
             friction: self.problem.model.friction,
@@ -71,17 +82,30 @@ impl Drive<'_> {
         }
         (self.state.statuses, self.state.gaps) = (statuses, gaps);
         self.newton.committed();
-        self.state.last_increment = Some([h - before.h, target.delta_t - before.delta_t]);
+        let (along, turned) = self.state.way_to(target);
+        self.state.last_increment = Some(Increment { h: h - before.h, along, turned });
+        let (pose, travel) = (self.state.pose_at(target), self.state.travel_to(target));
+        let centres = [self.state.pose.shift, pose.shift];
+        (self.state.pose_before, self.state.h_before) = (std::mem::replace(&mut self.state.pose, pose), before.h);
+        self.state.travel = travel;
         self.state.last_length = length;
         self.state.h_max = self.state.h_max.max(h);
         self.state.place_points(&self.mesh);
-        let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing);
+        let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing, self.mesh.copies);
         // A slave that is the opponent lies the other way round.
         let side = if slaves.start == 0 { 1.0 } else { -1.0 };
         let shape = self.mesh.couple.as_ref().and_then(|_| bulge(&self.state.points[slaves]));
         let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
         // 0 - x, not -x: no force is 0, not -0.
-        let (f_n, f_t) = (2.0 * force[2], 0.0 - 2.0 * force[0]);
+        let copies = self.mesh.copies as f64;
+        let (f_n, f_t) = (copies * force[2], 0.0 - copies * force[0]);
+        // The halves pull each other along y.
+        let f_t_y = if self.mesh.copies == 1 { 0.0 - force[1] } else { 0.0 };
+        let moment = self.moment(&pose.centre(h));
+        let turn_work: f64 = (0..3).map(|k| 0.5 * (self.state.moment[k] + moment[k]) * turned[k]).sum();
+        self.state.moment = moment;
+        let contact = self.newton.opponent().contact_point(&pose.centre(h));
+        let [m_roll_x, m_roll_y, m_twist] = shifted(moment, [f_t, f_t_y, f_n], &pose.centre(h), &contact);
         self.state.record = StepRecord {
             step: before.step + 1,
             segment: before.segment,
@@ -98,10 +122,12 @@ impl Drive<'_> {
             merit: report.merit,
             work_external: before.work_external
                 + 0.5 * (before.f_n + f_n) * (h - before.h)
-                + 0.5 * (before.f_t + f_t) * (target.delta_t - before.delta_t),
-            energy_elastic: 2.0 * energies.elastic,
-            work_plastic: 2.0 * energies.plastic,
-            work_friction: before.work_friction + 2.0 * friction_work,
+                + 0.5 * (before.f_t + f_t) * (centres[1][0] - centres[0][0])
+                + 0.5 * (before.f_t_y + f_t_y) * (centres[1][1] - centres[0][1])
+                + turn_work,
+            energy_elastic: copies * energies.elastic,
+            work_plastic: copies * energies.plastic,
+            work_friction: before.work_friction + copies * friction_work,
             contact_points,
             slipping_points,
             max_alpha: energies.max_alpha,
@@ -109,9 +135,17 @@ impl Drive<'_> {
             relaxed: usize::from(report.relaxed),
             landed_again: report.landed_again,
             h_opponent: depth,
-            work_plastic_opponent: 2.0 * energies.opponent_plastic,
+            work_plastic_opponent: copies * energies.opponent_plastic,
             curvature,
             k_t: self.place.stiffness.take(),
+            delta_t_y: target.across,
+            f_t_y,
+            roll_x: target.angles[0],
+            roll_y: target.angles[1],
+            twist: target.angles[2],
+            m_twist,
+            m_roll_x,
+            m_roll_y,
             // A run alone knows no limits.
             ..StepRecord::default()
         };
@@ -148,6 +182,18 @@ impl Drive<'_> {
         self.backend.take_notes().iter().for_each(|note| observer.note(note));
         observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
         Ok(None)
+    }
+
+    /// Moment of the plate about the sphere's centre, against that of the contact, about x, y and z;
+    /// of the whole sphere.
+    fn moment(&self, centre: &[f64; 3]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for point in &self.state.points[..self.mesh.own_contacts()] {
+            let arm: [f64; 3] = std::array::from_fn(|k| point.position[k] - centre[k]);
+            sum.iter_mut().zip(cross(&arm, &point.force)).for_each(|(sum, moment)| *sum -= moment);
+        }
+        // What is even in y has a moment about y alone.
+        if self.mesh.copies == 2 { [0.0, 2.0 * sum[1], 0.0] } else { sum }
     }
 
     /// Commits the accepted trial, whose vectors are on the host.

@@ -46,7 +46,7 @@ impl Drive<'_> {
         while self.place.under_way || self.state.record.contact_points > 0 {
             let f = (self.state.record.f_n / start.f_n).clamp(0.0, 1.0);
             let h = self.state.record.h - step * (0.2 + 0.8 * f.sqrt());
-            let target = Target { h, delta_t: start.delta_t, hold_force: false, extrapolate: false };
+            let target = Target { h, extrapolate: false, ..start.place() };
             let ending = self.advance(&target, observer)?;
             if ending != Ending::Done {
                 return Ok(ending);
@@ -69,14 +69,14 @@ impl Drive<'_> {
             observer.note("release: nothing touches, so there is nothing to release");
             return Ok(Ending::Done);
         }
-        self.held_force = Some(0.5 * wanted);
+        self.held_force = Some(wanted / self.mesh.copies as f64);
         // A force that is asked for is met to 5e-5.
         while self.place.under_way || self.state.record.f_n > wanted * (1.0 + 1e-4) {
             let StepRecord { h, a, f_n, .. } = self.state.record;
             let rest = (f_n - wanted) / start.unloading_stiffness(a.max(1e-12));
             let hold_force = rest <= LANDING * step;
             let h = h - if hold_force { rest } else { step };
-            let target = Target { h, delta_t: start.delta_t, hold_force, extrapolate: false };
+            let target = Target { h, hold_force, extrapolate: false, ..start.place() };
             let ending = self.advance(&target, observer)?;
             if ending != Ending::Done {
                 self.held_force = None;
@@ -87,10 +87,12 @@ impl Drive<'_> {
         Ok(Ending::Done)
     }
 
+    /// Shears along x to a displacement, or in any direction, a unit vector, to full slip.
     pub(super) fn shear(
         &mut self,
         start: &Start,
         shear: ShearTarget,
+        direction: [f64; 2],
         hold: Hold,
         observer: &mut dyn Observer,
     ) -> Result<Ending, SimulationError> {
@@ -98,16 +100,15 @@ impl Drive<'_> {
             if start.f_n <= 0.0 {
                 observer.note("shear: nothing touches, so the sphere moves freely");
             }
-            self.place.stiffness = self.tangential_stiffness(hold)?;
+            self.place.stiffness = self.tangential_stiffness(hold, direction)?;
         }
-        let direction = self.state.direction;
         let length = match shear {
             ShearTarget::Displacement(d) => (d - start.delta_t).abs(),
             ShearTarget::FullSlip => f64::INFINITY,
         };
         let steps = ShearSteps::new(start, length, hold == Hold::NormalForce, &self.resolution());
         let bound = steps.bound(start.a);
-        self.held_force = (hold == Hold::NormalForce).then_some(0.5 * start.f_n);
+        self.held_force = (hold == Hold::NormalForce).then(|| start.f_n / self.mesh.copies as f64);
         loop {
             let i = self.place.reached + 1;
             let distance = steps.distance(i);
@@ -116,10 +117,12 @@ impl Drive<'_> {
                 h: self.state.record.h,
                 delta_t: match shear {
                     ShearTarget::Displacement(d) if ends => d,
-                    _ => start.delta_t + direction * distance,
+                    _ => start.delta_t + direction[0] * distance,
                 },
+                across: start.across + direction[1] * distance,
                 hold_force: self.held_force.is_some(),
                 extrapolate: i > 1,
+                ..start.place()
             };
             let ending = self.advance(&target, observer)?;
             if ending != Ending::Done {
@@ -131,7 +134,9 @@ impl Drive<'_> {
             }
             if length.is_infinite() {
                 let before = self.place.force_before;
-                if self.slips_fully() && (self.state.record.f_t - before) * direction <= PLATEAU * before.abs() {
+                let along = |force: [f64; 2]| force[0] * direction[0] + force[1] * direction[1];
+                let risen = along(self.state.record.tangential_force()) - along(before);
+                if self.slips_fully() && risen <= PLATEAU * along(before).abs() {
                     break;
                 }
                 if distance >= bound {
@@ -152,7 +157,7 @@ impl Drive<'_> {
     /// The stiffness with which the contact sets out for a shear, of the whole sphere: nothing
     /// slips, and what flowed flows on where the shear goes on loading it. `None` where the state
     /// has no answer.
-    fn tangential_stiffness(&mut self, hold: Hold) -> Result<Option<f64>, SimulationError> {
+    pub(super) fn tangential_stiffness(&mut self, hold: Hold, direction: [f64; 2]) -> Result<Option<f64>, SimulationError> {
         let StepRecord { f_n, a, contact_points, .. } = self.state.record;
         if contact_points == 0 || f_n <= 0.0 || self.problem.model.friction == Friction::Coulomb(0.0) {
             return Ok(Some(0.0));
@@ -164,12 +169,12 @@ impl Drive<'_> {
         let start = SetOff {
             displacement: &self.state.u,
             probe: STIFFNESS_PROBE * f_n / (PI * a.max(self.problem.spacing)),
-            direction: self.state.direction,
+            direction,
             holds_force: hold == Hold::NormalForce,
         };
         let mut handle = CaseHandle { backend: &mut *self.backend, case: self.case };
         let stiffness = self.newton.tangential_stiffness(&mut handle, &start)?;
-        Ok(stiffness.map(|half| 2.0 * half))
+        Ok(stiffness.map(|meshed| self.mesh.copies as f64 * meshed))
     }
 
     /// Every point slips, but for points at the edge that carry next to nothing.

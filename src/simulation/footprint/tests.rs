@@ -26,6 +26,7 @@ fn contact(spacing: f64, reach: f64, pressure: impl Fn(f64) -> f64, moved: impl 
             gap: if force > 0.0 { 0.0 } else { 0.1 * spacing },
             area: half * spacing * spacing,
             on_symmetry_plane,
+            is_of_whole: false,
             status: if force > 0.0 { Status::Stick } else { Status::Open },
         });
     }
@@ -39,7 +40,7 @@ fn a_pressure_that_runs_out_ends_where_it_does() {
         for elements in [6.0, 8.0, 16.0] {
             let a = 0.01;
             let pressure = |s: f64| (1.0 - s * s / (a * a)).max(0.0).powf(power);
-            let found = footprint(&contact(a / elements, 1.3 * a, pressure, |s| s), a / elements).radius;
+            let found = footprint(&contact(a / elements, 1.3 * a, pressure, |s| s), a / elements, 2).radius;
             assert!((found / a - 1.0).abs() < 0.16 / elements, "{power}, {elements} elements: {}", found / a);
         }
     }
@@ -53,7 +54,7 @@ fn a_pressure_that_ends_abruptly_ends_there_however_the_surface_has_stretched() 
     for elements in [6.0, 8.0, 16.0] {
         let pressure = |s: f64| if s < edge { 1.0 - 0.5 * (s / edge).powi(2) } else { 0.0 };
         let spacing = edge / elements;
-        let found = footprint(&contact(spacing, 1.4 * edge, pressure, moved), spacing);
+        let found = footprint(&contact(spacing, 1.4 * edge, pressure, moved), spacing, 2);
         assert!((found.radius / moved(edge) - 1.0).abs() < 0.01, "{elements} elements: {}", found.radius / moved(edge));
         // All of it sticks: in whole points.
         let off = found.stick_radius / moved(edge) - 1.0;
@@ -68,7 +69,7 @@ fn a_contact_that_has_moved_is_as_large() {
         let pressure = |s: f64| (1.0 - s * s / (edge * edge)).max(0.0).sqrt();
         let mut points = contact(spacing, 0.3, pressure, |s| 1.05 * s);
         points.iter_mut().for_each(|p| p.position[0] += shift);
-        footprint(&points, spacing)
+        footprint(&points, spacing, 2)
     };
     let (here, there) = (of(0.0), of(0.03));
     assert!((here.radius - there.radius).abs() < 1e-12, "{here:?}, {there:?}");
@@ -76,8 +77,8 @@ fn a_contact_that_has_moved_is_as_large() {
 
 #[test]
 fn few_points_have_a_size_and_none_has_none() {
-    let nothing = footprint(&contact(0.01, 0.05, |_| 0.0, |s| s), 0.01);
+    let nothing = footprint(&contact(0.01, 0.05, |_| 0.0, |s| s), 0.01, 2);
     assert_eq!(nothing, Footprint::default());
-    let small = footprint(&contact(0.01, 0.05, |s| if s < 0.008 { 1.0 } else { 0.0 }, |s| s), 0.01);
+    let small = footprint(&contact(0.01, 0.05, |s| if s < 0.008 { 1.0 } else { 0.0 }, |s| s), 0.01, 2);
     assert!(small.radius > 0.004 && small.radius < 0.02, "{small:?}");
 }

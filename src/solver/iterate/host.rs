@@ -201,6 +201,29 @@ impl HostIterate {
         landed
     }
 
+    /// Moves the body, which touches nothing, with the plate; its forces turn with it.
+    fn follow_plate(&mut self, mesh: &Mesh, start: &SetOut<'_>, control: &Control) {
+        let own = self.boundary.own_nodes;
+        if control.pose.turn == start.pose.turn {
+            let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
+            let from_centre = self.boundary.from_centre.first().copied().unwrap_or_default();
+            let target = control.pose.displacement(self.current.h, &from_centre);
+            let shift: [f64; 3] = std::array::from_fn(|i| target[i] - start.displacement[plate + i]);
+            for u in self.current.u.chunks_exact_mut(3).take(own) {
+                u.iter_mut().zip(shift).for_each(|(u, s)| *u += s);
+            }
+            return;
+        }
+        let motion = start.pose.motion_to(start.h, &control.pose, self.current.h);
+        for (u, x) in self.current.u.chunks_exact_mut(3).zip(&mesh.nodes).take(own) {
+            let moved = motion.moved([x[0] + u[0], x[1] + u[1], x[2] + u[2]]);
+            u.iter_mut().zip(moved).zip(x).for_each(|((u, moved), x)| *u = moved - x);
+        }
+        for f in self.current.force.chunks_exact_mut(3).take(own) {
+            f.copy_from_slice(&motion.turned([f[0], f[1], f[2]]));
+        }
+    }
+
     /// Evaluates the candidate at a step length.
     fn evaluate(
         &mut self,
@@ -215,7 +238,7 @@ impl HostIterate {
         self.candidate.h = self.current.h + length * self.delta_h;
         if length == 1.0 {
             // Rounding must not leave the plate a hair from where it belongs.
-            self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, control.delta_t);
+            self.boundary.place_plate(&mut self.candidate.u, self.candidate.h, &control.pose);
         }
         self.candidate.evaluate(case, &self.boundary, control, times)
     }
@@ -236,7 +259,7 @@ impl Iterate for HostIterate {
         if let Some(guess) = start.guess {
             self.current.h = control.h;
             self.current.u.copy_from_slice(guess);
-            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
+            self.boundary.place_plate(&mut self.current.u, self.current.h, &control.pose);
             let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
             let landed = if outcome == Outcome::Valid { self.let_landed_slide() } else { 0 };
             if landed > 0 {
@@ -252,14 +275,8 @@ impl Iterate for HostIterate {
         let mut outcome = self.current.evaluate(case, &self.boundary, control, times)?;
         if outcome == Outcome::Valid && self.current.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.
-            let plate = self.boundary.plate.first().map_or(0, |&n| 3 * n as usize);
-            let shift = [control.delta_t - start.displacement[plate], 0.0, -self.current.h - start.displacement[plate + 2]];
-            for (u, s) in self.current.u.chunks_exact_mut(3).take(self.boundary.own_nodes).zip(std::iter::repeat(shift)) {
-                for i in 0..3 {
-                    u[i] += s[i];
-                }
-            }
-            self.boundary.place_plate(&mut self.current.u, self.current.h, control.delta_t);
+            self.follow_plate(&mesh, start, control);
+            self.boundary.place_plate(&mut self.current.u, self.current.h, &control.pose);
             // A shift leaves the forces as they are. Evaluated anew they would be those of an
             // unloaded body, nothing but rounding, and which points stick would hang on it: the
             // step would go another way on every device.
@@ -273,10 +290,10 @@ impl Iterate for HostIterate {
     }
 
     fn plate_is_placed(&self, control: &Control) -> bool {
-        self.boundary.plate.iter().all(|&n| {
-            let base = 3 * n as usize;
-            let u = &self.current.u[base..base + 3];
-            (u[0] - control.delta_t).abs() <= 1e-14 && (u[2] + self.current.h).abs() <= 1e-14
+        self.boundary.plate.iter().zip(&self.boundary.from_centre).all(|(&n, from_centre)| {
+            let u = &self.current.u[3 * n as usize..3 * n as usize + 3];
+            let target = control.pose.displacement(self.current.h, from_centre);
+            u.iter().zip(target).all(|(u, target)| (u - target).abs() <= 1e-14)
         })
     }
 

@@ -12,6 +12,7 @@ pub mod stiffness;
 
 use super::outcome::Halt;
 use super::phases::PhaseTimes;
+use super::pose::Pose;
 use super::{Control, Worst};
 use crate::compute::Fault;
 use crate::compute::handle::CaseHandle;
@@ -22,10 +23,10 @@ use crate::compute::iterate::Reading;
 pub struct SetOut<'a> {
     /// The committed displacement, three a node. A device that keeps iterates has its own.
     pub displacement: &'a [f64],
-    /// Indentation and tangential displacement there.
+    /// Indentation there.
     pub h: f64,
-    /// See `h`.
-    pub delta_t: f64,
+    /// Where the plate stands there otherwise.
+    pub pose: Pose,
     /// The first iterate on the host, three a node, if there is a better one than the start.
     pub guess: Option<&'a [f64]>,
     /// The same where a device keeps iterates.

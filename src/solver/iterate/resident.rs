@@ -64,7 +64,7 @@ impl ResidentIterate {
     }
 
     fn plate(&self, control: &Control) -> Plate {
-        Plate { h: self.h, delta_t: control.delta_t, held: control.normal_force }
+        Plate { h: self.h, delta_t: control.pose.shift[0], held: control.normal_force }
     }
 
     fn ask(&mut self, case: &mut CaseHandle<'_>, control: &Control, ask: Ask) -> Result<Reply, SolverError> {
@@ -154,7 +154,7 @@ impl Iterate for ResidentIterate {
         }
         self.h = if control.normal_force.is_some() { start.h } else { control.h };
         let mut reading = self.begin_from(case, control, From::Start)?;
-        let missing = [control.delta_t - start.delta_t, start.h - self.h];
+        let missing = [control.pose.shift[0] - start.pose.shift[0], start.h - self.h];
         self.is_placed = missing.iter().all(|u| u.abs() <= 1e-14);
         if reading.outcome == Outcome::Valid && reading.force_scale == 0.0 {
             // Nothing touches: the body follows the plate as it is.

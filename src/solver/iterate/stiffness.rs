@@ -14,6 +14,7 @@ use crate::mesh::Mesh;
 use crate::solver::Control;
 use crate::solver::outcome::{Halt, StepFailure};
 use crate::solver::phases::PhaseTimes;
+use crate::solver::pose::Pose;
 use crate::solver::system::fixed_unknowns;
 use crate::solver::systems::{Matrix, OneBody, Systems};
 
@@ -24,9 +25,9 @@ const UNIT_MOTION: f64 = 1e-3;
 /// nothing new.
 const MOST_SYSTEMS: usize = 8;
 const SETTLED: f64 = 1e-4;
-/// Axis and size of a unit motion of the plate.
-const SIDEWAYS: (usize, f64) = (0, 1.0);
-const DOWN: (usize, f64) = (2, -1.0);
+/// Unit motions of the plate.
+const ALONG_X: [f64; 3] = [1.0, 0.0, 0.0];
+const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 
 /// A committed state, and the shear that is to start from it.
 #[derive(Clone, Copy, Debug)]
@@ -36,10 +37,18 @@ pub struct SetOff<'a> {
     /// Motion of the plate that tells what flows: small against the yield strain times the contact
     /// radius, above the rounding of tangents in f32.
     pub probe: f64,
-    /// 1 or -1.
-    pub direction: f64,
+    /// Along x and y, of length 1.
+    pub direction: [f64; 2],
     /// The normal force is held, and not the indentation.
     pub holds_force: bool,
+}
+
+impl SetOff<'_> {
+    /// A unit motion of the plate, and its sign.
+    fn sideways(&self) -> ([f64; 3], f64) {
+        let [x, y] = self.direction;
+        if y == 0.0 { (ALONG_X, x) } else { ([x, y, 0.0], 1.0) }
+    }
 }
 
 /// What unit motions of the plate make of the bodies.
@@ -85,19 +94,19 @@ impl HostIterate {
         let mesh = &case.model().mesh.clone();
         self.furnish(mesh)?;
         self.current.u.copy_from_slice(start.displacement);
-        let control = Control { h: self.current.h, delta_t: 0.0, normal_force: None };
+        let control = Control { h: self.current.h, pose: Pose::default(), normal_force: None };
         let outcome = self.current.evaluate(case, &self.boundary, &control, times)?;
         outcome.check().map_err(|fault| StepFailure::Invalid { fault, when: "at the start of a shear" })?;
         fixed_unknowns(mesh, &self.boundary, &self.current.rows, &mut self.fixed);
         let mut motions = Motions::default();
         let mut stiffness = 0.0;
         for _ in 0..MOST_SYSTEMS {
-            let before = std::mem::replace(&mut stiffness, self.tangent_stiffness(case, start.holds_force, &mut motions, times)?);
+            let before = std::mem::replace(&mut stiffness, self.tangent_stiffness(case, start, &mut motions, times)?);
             log::debug!("  tangential stiffness {stiffness:.6e}");
             if (stiffness - before).abs() <= SETTLED * stiffness.abs() {
                 break;
             }
-            let probe = start.direction * start.probe;
+            let probe = start.sideways().1 * start.probe;
             let moved = start.displacement.iter().zip(&motions.of_both).map(|(u, d)| u + probe * d);
             self.current.u.iter_mut().zip(moved).for_each(|(u, moved)| *u = moved);
         }
@@ -108,7 +117,7 @@ impl HostIterate {
     fn tangent_stiffness(
         &mut self,
         case: &mut CaseHandle<'_>,
-        holds_force: bool,
+        start: &SetOff<'_>,
         motions: &mut Motions,
         times: &mut PhaseTimes,
     ) -> Result<f64, Halt> {
@@ -119,14 +128,14 @@ impl HostIterate {
             Some(Matrix::Single(matrix)) => form(matrix, case, &self.boundary, &self.current, None, times)?,
         }
         self.boundary.opponent.refresh(&mut self.linear, &self.current, &self.boundary, &self.fixed)?;
-        self.respond(mesh, SIDEWAYS, &mut motions.sideways)?;
-        if holds_force {
+        self.respond(mesh, start.sideways().0, &mut motions.sideways)?;
+        if start.holds_force {
             self.respond(mesh, DOWN, &mut motions.down)?;
         }
         let work = |x: &[f64], f: &[f64]| x.iter().zip(f).map(|(x, f)| x * f).sum::<f64>();
         let (mut motion, by_sideways) = self.forces_along(mesh, &motions.sideways)?;
         let mut stiffness = work(&motion, &by_sideways);
-        if holds_force {
+        if start.holds_force {
             // The plate gives way as far as keeps its normal force.
             let (down, by_down) = self.forces_along(mesh, &motions.down)?;
             let share = work(&down, &by_sideways) / work(&down, &by_down);
@@ -140,15 +149,17 @@ impl HostIterate {
         Ok(stiffness)
     }
 
-    /// Solves for the response to a motion of the plate along an axis, by so much. The guess is
+    /// Solves for the response to a unit motion of the plate. The guess is
     /// what is in `motion`, at first a body that moves as one; what that leaves at the contact is
     /// the measure (see `unit_tolerance`).
-    fn respond(&mut self, mesh: &Mesh, (axis, size): (usize, f64), motion: &mut Vec<f64>) -> Result<(), Halt> {
+    fn respond(&mut self, mesh: &Mesh, unit: [f64; 3], motion: &mut Vec<f64>) -> Result<(), Halt> {
         self.unit_rhs.fill(0.0);
-        self.boundary.plate.iter().for_each(|&n| self.unit_rhs[3 * n as usize + axis] = size);
+        for &n in &self.boundary.plate {
+            self.unit_rhs[3 * n as usize..3 * n as usize + 3].copy_from_slice(&unit);
+        }
         let mut as_one = vec![0.0; self.unit_rhs.len()];
         let alone = self.linear.residual_norm(&self.unit_rhs, &as_one)?;
-        as_one.iter_mut().skip(axis).step_by(3).take(self.boundary.own_nodes).for_each(|u| *u = size);
+        as_one.chunks_exact_mut(3).take(self.boundary.own_nodes).for_each(|u| u.copy_from_slice(&unit));
         self.boundary.opponent.contract(&self.current, mesh, &mut as_one);
         let moving = self.linear.residual_norm(&self.unit_rhs, &as_one)?;
         if motion.is_empty() {

@@ -18,17 +18,19 @@ pub struct TwoBodies {
     pub slave: usize,
     /// What they are in series.
     pub series: Series,
+    /// Radius of the opponent; `None` of a flat.
+    pub radius: Option<f64>,
 }
 
 impl TwoBodies {
-    /// A sphere of Young's modulus 1 and an opponent of this one. The softer body is the slave, of
+    /// A sphere of Young's modulus and radius 1 and an opponent of these. The softer body is the slave, of
     /// equal ones the sphere; if they are `exchanged`, the other one.
-    pub fn new(opponent: f64, exchanged: bool) -> Self {
+    pub fn new(opponent: f64, radius: Option<f64>, exchanged: bool) -> Self {
         let (slave, series) = if opponent < 1.0 { (1, Series::new(opponent, 1.0)) } else { (0, Series::new(1.0, opponent)) };
         if exchanged {
-            return Self { slave: 1 - slave, series: Series { master_share: 1.0 - series.master_share, ..series } };
+            return Self { slave: 1 - slave, series: Series { master_share: 1.0 - series.master_share, ..series }, radius };
         }
-        Self { slave, series }
+        Self { slave, series, radius }
     }
 }
 
@@ -52,6 +54,18 @@ impl Bodies for TwoBodies {
     fn contacts(&self, mesh: &Mesh) -> Range<usize> {
         let (own, all) = (mesh.own_contacts(), mesh.contact_nodes.len());
         if self.slave == 1 { own..all } else { 0..own }
+    }
+
+    /// Of two spheres that divides the line of centres as their radii do.
+    fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3] {
+        let [x, y, z] = *centre;
+        match self.radius {
+            Some(radius) => {
+                let share = radius / (1.0 + radius);
+                [share * x, share * y, share * (z + radius) - radius]
+            }
+            None => [x, y, 0.0],
+        }
     }
 
     fn gap_of_unfaced(&self, height: f64) -> f64 {

@@ -47,6 +47,9 @@ pub trait Bodies: Debug + Send + Sync {
         0..mesh.own_contacts()
     }
 
+    /// See [`Opponent::contact_point`].
+    fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3];
+
     /// Gap of a contact node at the rim that nothing faces, from its height over the plane between
     /// the undeformed bodies.
     fn gap_of_unfaced(&self, height: f64) -> f64;
@@ -174,6 +177,10 @@ impl<B: Bodies> Opponent for Joint<B> {
 
     fn contacts(&self, mesh: &Mesh) -> Range<usize> {
         self.bodies.contacts(mesh)
+    }
+
+    fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3] {
+        self.bodies.contact_point(centre)
     }
 
     fn set_out(&mut self, mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) {

@@ -81,6 +81,12 @@ pub trait Opponent: Debug + Send + Sync {
         x[2]
     }
 
+    /// The point of its surface on the normal through the sphere's centre: over a plane the foot of
+    /// the perpendicular, on a sphere the point on the line of centres.
+    fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3] {
+        [centre[0], centre[1], 0.0]
+    }
+
     /// Sets out for a step from the displacement `start`, which is expected to lead to `expected`;
     /// both and the step are even in x if it is `symmetric`.
     fn set_out(&mut self, mesh: &Mesh, start: &[f64], expected: &[f64], symmetric: bool) {

@@ -31,6 +31,11 @@ impl Bodies for EqualPair {
     }
 
     /// The gap to the node's own mirror image.
+    /// Half-way to the image of the centre, which is turned half round y.
+    fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3] {
+        [0.0, centre[1], 0.0]
+    }
+
     fn gap_of_unfaced(&self, height: f64) -> f64 {
         2.0 * height
     }

@@ -38,7 +38,7 @@ impl Opponent for Plane {
                 return [0.0; 3];
             }
             let tangential = |c: usize| trial.force[3 * node + c] - rows.residual[c];
-            let across = if mesh.nodes[node][1] == 0.0 { 0.0 } else { tangential(1) };
+            let across = if mesh.is_on_symmetry_plane(node as u32) { 0.0 } else { tangential(1) };
             [tangential(0), across, trial.force[3 * node + 2].max(0.0)]
         };
         (0..trial.rows.len()).map(force).collect()
@@ -50,7 +50,7 @@ impl Opponent for Plane {
 
     fn needed_forces(&self, trial: &Trial, mesh: &Mesh) -> Vec<([f64; 3], Status)> {
         let nodes = mesh.contact_nodes.iter().zip(&trial.rows);
-        nodes.map(|(&n, rows)| needed(rows, trial.force_at(n), mesh.nodes[n as usize][1] != 0.0)).collect()
+        nodes.map(|(&n, rows)| needed(rows, trial.force_at(n), !mesh.is_on_symmetry_plane(n))).collect()
     }
 
     fn friction_work(&self, _trial: &Trial, step: &StepTaken<'_>) -> f64 {

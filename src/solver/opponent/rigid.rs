@@ -49,6 +49,11 @@ impl Opponent for RigidSphere {
         self.surface.gap(x)
     }
 
+    fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3] {
+        let ([_, _, n], gap) = (self.surface.frame(centre), self.surface.gap(centre));
+        std::array::from_fn(|k| centre[k] - gap * n[k])
+    }
+
     fn set_out(&mut self, mesh: &Mesh, start: &[f64], _expected: &[f64], _symmetric: bool) {
         self.start = mesh.contact_nodes.iter().map(|&node| position(mesh, start, node)).collect();
     }
@@ -107,7 +112,7 @@ impl Opponent for RigidSphere {
             }
             let frame = &trial.frames[i];
             let [t1, t2, n] = to_frame(frame, &trial.force_at(node));
-            let across = if mesh.nodes[node as usize][1] == 0.0 { 0.0 } else { t2 - rows.residual[1] };
+            let across = if mesh.is_on_symmetry_plane(node) { 0.0 } else { t2 - rows.residual[1] };
             from_frame(frame, &[t1 - rows.residual[0], across, n.max(0.0)])
         };
         (0..trial.rows.len()).map(force).collect()
@@ -120,7 +125,7 @@ impl Opponent for RigidSphere {
     fn needed_forces(&self, trial: &Trial, mesh: &Mesh) -> Vec<([f64; 3], Status)> {
         let nodes = mesh.contact_nodes.iter().zip(&trial.rows).zip(&trial.frames);
         let force = |n: u32, frame| to_frame(frame, &trial.force_at(n));
-        nodes.map(|((&n, rows), frame)| needed(rows, force(n, frame), mesh.nodes[n as usize][1] != 0.0)).collect()
+        nodes.map(|((&n, rows), frame)| needed(rows, force(n, frame), !mesh.is_on_symmetry_plane(n))).collect()
     }
 
     fn friction_work(&self, _trial: &Trial, step: &StepTaken<'_>) -> f64 {

@@ -8,6 +8,7 @@
 
 use super::*;
 use crate::mesh::brick;
+use crate::solver::pose::Pose;
 
 const LENGTH: f64 = 1.0;
 const THICKNESS: f64 = 0.02;
@@ -131,7 +132,7 @@ fn the_normal_force_is_held_while_the_layer_is_sheared() {
         (4.0, None, 0.0),
         (1.0, Some(Status::Slip), -1.0),
     ] {
-        let report = rig.step(&Control { h: rig.h, delta_t: part * slip, normal_force: Some(held) });
+        let report = rig.step(&Control { h: rig.h, pose: Pose::along_x(part * slip), normal_force: Some(held) });
         let (f_n, f_t) = rig.forces();
         assert!((f_n / held - 1.0).abs() < 1e-10, "at {part}: {}", f_n / held);
         assert!(report.iterations.len() <= 8, "at {part}: {} iterations", report.iterations.len());

@@ -4,6 +4,7 @@ use super::*;
 use crate::mesh::brick;
 use crate::solver::loosest_linear;
 use crate::solver::phases::{Phase, PhaseTimes};
+use crate::solver::pose::Pose;
 
 fn plastic() -> Material<f64> {
     Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::linear(2e-3, 0.02).unwrap() }
@@ -20,7 +21,7 @@ fn rig(max_iterations: usize) -> Rig {
 }
 
 fn control(h: f64, delta_t: f64) -> Control {
-    Control { h, delta_t, normal_force: None }
+    Control { h, pose: Pose::along_x(delta_t), normal_force: None }
 }
 
 #[test]
@@ -100,7 +101,8 @@ fn the_time_of_a_failed_attempt_is_told_with_the_step_that_follows() {
 fn a_normal_force_that_nothing_carries_is_a_failure() {
     let mut rig = rig(10);
     rig.to(-0.1, 0.0);
-    let failure = rig.attempt(&Control { h: -0.1, delta_t: 0.0, normal_force: Some(0.01) }).expect_err("nothing touches");
+    let failure =
+        rig.attempt(&Control { h: -0.1, pose: Pose::along_x(0.0), normal_force: Some(0.01) }).expect_err("nothing touches");
     // The plate is moved on until there is a force, which is never the right one.
     let StepFailure::Iterations { iterations: 10, merit, .. } = failure else { panic!("{failure}") };
     assert!(merit > 1e-10, "{failure}");
@@ -117,7 +119,7 @@ fn at_last_a_held_force_may_be_missed_by_a_little() {
         let linear = LinearSolver::<f64>::new(SolverKind::Direct, &pattern, &rig.mesh.hierarchy).unwrap();
         rig.newton = Newton::new(&rig.mesh, linear, Settings { tolerance: 1e-3, max_iterations: 1, ..TIGHT });
         rig.newton.set_may_miss(may_miss);
-        let taken = rig.attempt(&Control { h: 0.03, delta_t: 0.0, normal_force: Some(force) });
+        let taken = rig.attempt(&Control { h: 0.03, pose: Pose::along_x(0.0), normal_force: Some(force) });
         taken.map(|report| (report.relaxed, (rig.forces().0 / force - 1.0).abs()))
     };
     let mut missed = 0;

@@ -4,10 +4,11 @@ use super::*;
 use crate::compute::iterate::{Ask, Corrected, Keeps, Reading, Reply, Vectors};
 use crate::compute::{About, Answer, Call, ComputeError, Fault};
 use crate::mesh::{SphereSpec, sphere_mesh};
+use crate::solver::pose::Pose;
 
 const SETTINGS: Settings =
     Settings { tolerance: 1e-6, max_iterations: 30, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 };
-const CONTROL: Control = Control { h: 4e-3, delta_t: 0.0, normal_force: None };
+const CONTROL: Control = Control { h: 4e-3, pose: Pose::along_x(0.0), normal_force: None };
 
 /// What a device makes of a step.
 #[derive(Clone)]
@@ -103,7 +104,7 @@ struct Made {
 fn solved(friction: Friction<f64>, device: Option<Device>) -> Made {
     let model = model(friction);
     let zero = vec![0.0; 3 * model.mesh.nodes.len()];
-    let start = SetOut { displacement: &zero, h: 0.0, delta_t: 0.0, guess: None, extrapolation: None, came_off: &[] };
+    let start = SetOut { displacement: &zero, h: 0.0, pose: Pose::along_x(0.0), guess: None, extrapolation: None, came_off: &[] };
     let mut newton = newton(&model.mesh);
     let mut cpu = Cpu::<f64, f32>::with_tangents(vec![model]).unwrap();
     let outcome = match device {

@@ -7,6 +7,7 @@ mod guesses;
 mod patch;
 mod quadratic;
 
+use super::pose::Pose;
 use std::sync::Arc;
 
 use super::iterate::SetOut;
@@ -60,8 +61,14 @@ impl Rig {
     pub fn attempt_from(&mut self, guess: Option<&[f64]>, control: &Control) -> StepOutcome {
         let mut handle = at(&mut self.backend, 0);
         let plate = self.mesh.plate_nodes.first().map_or(0, |&n| 3 * n as usize);
-        let start =
-            SetOut { displacement: &self.u, h: self.h, delta_t: self.u[plate], guess, extrapolation: None, came_off: &[] };
+        let start = SetOut {
+            displacement: &self.u,
+            h: self.h,
+            pose: Pose::along_x(self.u[plate]),
+            guess,
+            extrapolation: None,
+            came_off: &[],
+        };
         self.newton.solve(&mut handle, &start, control).unwrap()
     }
 
@@ -83,7 +90,7 @@ impl Rig {
 
     /// Press to h, shear to delta_t, h held.
     pub fn to(&mut self, h: f64, delta_t: f64) -> StepReport {
-        self.step(&Control { h, delta_t, normal_force: None })
+        self.step(&Control { h, pose: Pose::along_x(delta_t), normal_force: None })
     }
 
     /// Normal and tangential force of the plane on the body, F_T positive against the motion of the

@@ -4,6 +4,7 @@
 //! A wrong tangent still finds the answer, only not quadratically: the history is what shows it.
 //! `ASPERITY_BLESS=1` writes the fixture.
 
+use crate::solver::pose::Pose;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -48,7 +49,7 @@ fn plastic() -> Material<f64> {
 }
 
 fn histories() -> Vec<History> {
-    let to = |h, delta_t| Control { h, delta_t, normal_force: None };
+    let to = |h, delta_t| Control { h, pose: Pose::along_x(delta_t), normal_force: None };
     let mut all = Vec::new();
 
     // Bonded: prescribed rows alone.
@@ -67,12 +68,20 @@ fn histories() -> Vec<History> {
     let mut rig = cube(elastic(0.3), Friction::Stick);
     rig.to(0.03, 0.0);
     let held = rig.forces().0;
-    all.push(history("stick, normal force held", &mut rig, &Control { h: 0.03, delta_t: 0.04, normal_force: Some(held) }));
+    all.push(history(
+        "stick, normal force held",
+        &mut rig,
+        &Control { h: 0.03, pose: Pose::along_x(0.04), normal_force: Some(held) },
+    ));
     let mut rig = cube(elastic(0.3), Friction::Coulomb(0.1));
     rig.to(0.03, 0.0);
     rig.to(0.03, 0.02);
     let raised = 1.3 * rig.forces().0;
-    all.push(history("slip, normal force raised", &mut rig, &Control { h: 0.03, delta_t: 0.04, normal_force: Some(raised) }));
+    all.push(history(
+        "slip, normal force raised",
+        &mut rig,
+        &Control { h: 0.03, pose: Pose::along_x(0.04), normal_force: Some(raised) },
+    ));
 
     // Plastic flow everywhere: the symmetrised moduli leave linear convergence at a small rate.
     let mut rig = cube(plastic(), Friction::Stick);

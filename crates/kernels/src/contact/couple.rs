@@ -75,7 +75,7 @@ impl CoupleInterface {
         let mut most = vec![0.0; contacts];
         for (k, row) in rows.iter().enumerate() {
             let contact = first + row.slave;
-            let on_symmetry = mesh.nodes[node(contact)][1] == 0.0;
+            let on_symmetry = mesh.is_on_symmetry_plane(mesh.contact_nodes[contact]);
             let mut normal = up[row.slave].map(|n| (1.0 - of_master) * n);
             for &(j, w) in &row.image {
                 let other = across(other_up[j]);

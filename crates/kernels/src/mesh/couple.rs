@@ -73,6 +73,7 @@ pub fn couple(sphere: Mesh, opponent: Mesh) -> Mesh {
         contact_size: [sphere.contact_size, opponent.contact_size].concat(),
         plate_nodes: after(sphere.plate_nodes, opponent.plate_nodes),
         symmetry_nodes: after(sphere.symmetry_nodes, opponent.symmetry_nodes),
+        copies: sphere.copies,
         // Each body has its own: see `Couple`.
         hierarchy: Vec::new(),
         half: None,

@@ -43,6 +43,13 @@ impl Hanging {
         if corners == 0 { Self::NONE } else { Self { octant: octant as u8, corners } }
     }
 
+    /// The same of an element that names its corners in another order: `from[a]` is the corner that
+    /// is now `a`.
+    pub fn renamed(self, from: [usize; CORNERS]) -> Self {
+        let octant = from.iter().position(|&corner| corner == self.octant()).unwrap_or(0);
+        Self::new(octant, |a| self.hangs(from[a]))
+    }
+
     /// No corner hangs.
     #[inline(always)]
     pub fn is_none(self) -> bool {

@@ -1,5 +1,5 @@
-//! The mesh: hex8 elements of half the lower hemisphere, connectivity, node-to-element lists and
-//! the index hierarchy.
+//! The mesh: hex8 elements of half the lower hemisphere, or of all of it, connectivity,
+//! node-to-element lists and the index hierarchy.
 //!
 //! Lengths are in sphere radii. The pole is the origin, the rigid plane is z = 0, the centre of the
 //! sphere is (0, 0, 1), the symmetry plane is y = 0 and the body fills y >= 0, 0 <= z <= 1. A flat
@@ -7,8 +7,8 @@
 //!
 //! `sphere` builds the body, `brick` a box for tests. Both lay logical blocks of cells
 //! (`hierarchy`) whose indices give the numbering, the coordinates and the multigrid levels;
-//! `connectivity` derives lists and areas, `quality` measures elements, `couple` makes one mesh of
-//! two bodies.
+//! `connectivity` derives lists and areas, `quality` measures elements, `whole` joins a half with its
+//! mirror image, `couple` makes one mesh of two bodies.
 
 pub mod brick;
 pub mod connectivity;
@@ -17,6 +17,7 @@ pub mod hanging;
 pub mod hierarchy;
 pub mod quality;
 pub mod sphere;
+pub mod whole;
 
 pub use brick::brick;
 pub use couple::{Couple, couple};
@@ -25,6 +26,7 @@ pub use sphere::{
     FINE_ZONES, FINEST_SURFACE, LARGEST_CONTACT, LARGEST_FINE_RADIUS, SphereSpec, element_count, flat_mesh, opponent_mesh,
     sphere_mesh,
 };
+pub use whole::whole;
 
 /// What is wrong with the description of a mesh, and what to do about it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -123,8 +125,11 @@ pub struct Mesh {
     pub contact_size: Vec<f64>,
     /// Nodes that move as the rigid plate (the equator plane), in increasing order.
     pub plate_nodes: Vec<u32>,
-    /// Nodes on the symmetry plane y = 0, in increasing order.
+    /// Nodes on the symmetry plane y = 0, in increasing order; none of a whole body.
     pub symmetry_nodes: Vec<u32>,
+    /// How many of it make the body: 2 of a half, 1 of all of it. Forces and energies of the body
+    /// are so many times those of the mesh.
+    pub copies: usize,
     /// Interpolations, finest first; empty if the mesh has no hierarchy.
     pub hierarchy: Vec<Prolongation>,
     /// The half at x >= 0, if no element crosses x = 0.
@@ -145,6 +150,12 @@ impl Mesh {
             hanging.to_corners(&mut corners);
         }
         corners
+    }
+
+    /// Whether a node lies on the symmetry plane, across which the other half of the body pulls.
+    #[inline]
+    pub fn is_on_symmetry_plane(&self, node: u32) -> bool {
+        self.copies == 2 && self.nodes[node as usize][1] == 0.0
     }
 
     /// Number of nodes of the sphere: those of an opponent that deforms come after them.

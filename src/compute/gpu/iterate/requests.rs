@@ -252,7 +252,7 @@ impl<R: DeviceReal> Gpu<R> {
                     let vector = |first: usize| std::array::from_fn(|i| committed.at_points[(first + i) * count + k]);
                     let mut force: [f64; 3] = vector(3);
                     // The symmetry plane's force is not the contact's.
-                    if mesh.nodes[mesh.contact_nodes[k] as usize][1] == 0.0 {
+                    if mesh.is_on_symmetry_plane(mesh.contact_nodes[k]) {
                         force[1] = 0.0;
                     }
                     let status = match committed.status[k] {

@@ -106,6 +106,7 @@ fn mesh_with(layout: &Layout, finest: &Layout) -> Mesh {
         node_elements: node_elements(nodes.len(), &elements),
         plate_nodes: (0..).zip(skin.sites()).filter(|(_, site)| geometry.is_on_plate(**site)).map(|(n, _)| n).collect(),
         symmetry_nodes: on(&|x| x[1] == 0.0),
+        copies: 2,
         nodes,
         elements,
         hanging,

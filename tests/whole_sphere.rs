@@ -1,0 +1,214 @@
+//! A sphere that is sheared in any direction, twisted and rolled: turned and mirrored paths against
+//! each other, closed forms, no forces where nothing resists, and the energy of every way to move.
+
+use asperity::analytical::lubkin::Torsion;
+use asperity::case::Case;
+use asperity::internals::simulation::drive::Ending;
+use asperity::internals::simulation::follow::{follow, on_cpu};
+use asperity::internals::simulation::problem::Problem;
+use asperity::output::{Recorder, StepRecord};
+
+/// A material of this law, pressed and then moved, in the units of E = 1000 and R = 1.
+fn text(law: &str, friction: &str, elements: usize, path: &[&str]) -> String {
+    let segments: String = path.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
+    format!(
+        "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1000.0\npoissons_ratio = 0.3\n[material.hardening]\n{law}\n\
+         [contact]\nfriction = {friction}\n[mesh]\nelements_per_contact_radius = {elements}\n[solver]\nerror_estimate = false\n{segments}"
+    )
+}
+
+const IDEAL: &str = "law = \"ideal\"\nyield_stress = 2.0";
+const ELASTIC: &str = "law = \"elastic\"";
+
+/// The rows of a case, which is done.
+fn rows(text: &str, settings: &[&str]) -> Vec<StepRecord> {
+    let settings: Vec<String> = settings.iter().map(|set| (*set).to_owned()).collect();
+    let case = Case::parse(text, "case.toml", &settings).unwrap_or_else(|error| panic!("{error}"));
+    let mut recorder = Recorder::new(&case, None);
+    let followed = follow(Problem::new(&case).expect("a problem"), None, &mut |problem| on_cpu(problem), &mut recorder);
+    assert_eq!(followed.expect("no failure of the program").ending, Ending::Done, "{text}");
+    assert!(recorder.rows.iter().all(|row| row.relaxed == 0));
+    recorder.rows
+}
+
+fn last(rows: &[StepRecord], segment: usize) -> &StepRecord {
+    rows.iter().rev().find(|row| row.segment == segment).expect("a row of the segment")
+}
+
+/// What was put in is stored and dissipated, to this share of it.
+fn assert_energy(rows: &[StepRecord], share: f64, what: &str) {
+    let end = rows.last().expect("rows");
+    let found = end.energy_elastic + end.work_plastic + end.work_friction;
+    let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external));
+    assert!((found - end.work_external).abs() < share * most, "{what}: {found} of {}", end.work_external);
+}
+
+/// F_N and the forces along and across a direction, at a distance along it, between two steps.
+fn at(rows: &[StepRecord], direction: f64, distance: f64) -> [f64; 3] {
+    let (sin, cos) = direction.to_radians().sin_cos();
+    let of = |row: &StepRecord| {
+        let along = |x: f64, y: f64| x * cos + y * sin;
+        (along(row.delta_t, row.delta_t_y), [row.f_n, along(row.f_t, row.f_t_y), row.f_t_y * cos - row.f_t * sin])
+    };
+    let points: Vec<(f64, [f64; 3])> =
+        std::iter::once(last(rows, 0)).chain(rows.iter().filter(|row| row.segment == 1)).map(of).collect();
+    let k = points.partition_point(|point| point.0 < distance).clamp(1, points.len() - 1);
+    let ((a, from), (b, to)) = (points[k - 1], points[k]);
+    std::array::from_fn(|i| from[i] + (to[i] - from[i]) * (distance - a) / (b - a))
+}
+
+/// The mesh's own anisotropy: on eight elements, half of the default's, 0.9 % at 90 degrees in F_N
+/// and F_T, 0.3 % at 45.
+#[test]
+fn turned_axes_have_the_forces_of_the_x_axis() {
+    let path = |shear: &str| text(IDEAL, "0.3", 8, &["indentation = 0.02", shear]);
+    let along = rows(&path("shear = 0.004"), &[]);
+    let peak = along.iter().fold(0.0, |most: f64, row| most.max(row.f_t));
+    for direction in [17.0, 45.0, 90.0] {
+        let turned = rows(&path(&format!("shear = 0.004\nshear_direction = {direction:?}")), &[]);
+        assert_energy(&turned, 0.005, "turned");
+        for i in 1..=20 {
+            let distance = 0.0002 * f64::from(i);
+            let ([f_n, f_t, _], [n, t, across]) = (at(&along, 0.0, distance), at(&turned, direction, distance));
+            assert!((f_t - t).abs() < 0.01 * peak, "{direction} {distance}: F_T {t} for {f_t}");
+            assert!((f_n - n).abs() < 0.01 * f_n, "{direction} {distance}: F_N {n} for {f_n}");
+            assert!(across.abs() < 0.003 * peak, "{direction} {distance}: {across} across");
+        }
+    }
+}
+
+/// Whatever the mesh is, its mirror image in y is itself.
+#[test]
+fn mirrored_paths_have_mirrored_forces() {
+    let path = |sign: f64| {
+        let first =
+            format!("shear = [0.001, {:?}]\ntwist = {:?}\nroll = [{:?}, -0.004]", sign * 0.0015, sign * 0.01, sign * 0.003);
+        text(IDEAL, "0.3", 4, &["indentation = 0.01", &first, "shear = [0.0, 0.0]\ntwist = 0.0\nhold = \"normal-force\""])
+    };
+    let tight = ["solver.tolerance=1e-9"];
+    let (ours, images) = (rows(&path(1.0), &tight), rows(&path(-1.0), &tight));
+    assert_eq!(ours.len(), images.len());
+    let force = last(&ours, 0).f_n;
+    for (one, other) in ours.iter().zip(&images) {
+        let pairs = [
+            (one.f_n, other.f_n),
+            (one.f_t, other.f_t),
+            (one.f_t_y, -other.f_t_y),
+            (one.m_twist, -other.m_twist),
+            (one.m_roll_x, -other.m_roll_x),
+            (one.m_roll_y, other.m_roll_y),
+        ];
+        assert!(pairs.iter().all(|(a, b)| (a - b).abs() < 1e-6 * force), "step {}: {pairs:?}", one.step);
+    }
+    assert_energy(&ours, 0.005, "shear, twist and roll");
+    // Not because nothing happens.
+    assert!(last(&ours, 1).m_twist > 1e-3 * force && last(&ours, 1).f_t_y.abs() > 0.01 * force);
+}
+
+/// What is even in y is on the whole mesh what it is on half of it. Without slip, for what slips is
+/// found to the tolerance of its status.
+#[test]
+fn a_whole_sphere_is_two_halves() {
+    let path = |y: &str| text(ELASTIC, "\"stick\"", 4, &["indentation = 0.01", y]);
+    let tight = ["solver.tolerance=1e-9"];
+    let (half, whole) = (rows(&path("shear = 0.001"), &tight), rows(&path("shear = [0.001, 1e-14]"), &tight));
+    assert_eq!(half.len(), whole.len());
+    for (half, whole) in half.iter().zip(&whole) {
+        let force = half.f_n.max(1e-12);
+        for (a, b) in [(half.f_n, whole.f_n), (half.f_t, whole.f_t), (half.m_roll_y, whole.m_roll_y)] {
+            assert!((a - b).abs() < 1e-6 * force, "step {}: {a} {b}", half.step);
+        }
+        assert!((half.a - whole.a).abs() <= 1e-6 * half.a, "step {}: {} {}", half.step, half.a, whole.a);
+        assert!((half.energy_elastic - whole.energy_elastic).abs() <= 1e-6 * half.energy_elastic);
+    }
+}
+
+#[test]
+fn without_contact_a_turned_sphere_has_no_forces() {
+    let path = ["indentation = 0.01", "release = true", "indentation = 1e-6\ntwist = 2.0\nroll = [0.02, -0.01]"];
+    for friction in ["0.0", "0.3"] {
+        let all = rows(&text(IDEAL, friction, 4, &path), &[]);
+        let (before, after) = (last(&all, 1), last(&all, 2));
+        assert!((after.twist, after.roll_x, after.roll_y) == (2.0, 0.02, -0.01) && after.contact_points == 0);
+        assert!(after.f_n == 0.0 && after.m_twist == 0.0);
+        // Its residual stresses turn with it.
+        assert!((after.energy_elastic / before.energy_elastic - 1.0).abs() < 1e-9, "{before:?} {after:?}");
+        assert!((after.work_plastic / before.work_plastic - 1.0).abs() < 1e-12);
+        assert!((after.work_external - before.work_external).abs() < 1e-9 * before.work_external);
+    }
+}
+
+#[test]
+fn without_friction_a_twist_has_no_moment() {
+    let all = rows(&text(IDEAL, "0.0", 4, &["indentation = 0.02", "twist = 1.0"]), &["solver.tolerance=1e-8"]);
+    let pressed = last(&all, 0);
+    for row in all.iter().filter(|row| row.segment == 1) {
+        assert!((row.f_n / pressed.f_n - 1.0).abs() < 1e-6, "{}: {}", row.twist, row.f_n);
+        assert!(row.m_twist.abs() < 1e-6 * pressed.f_n * pressed.a, "{}", row.m_twist);
+        assert_eq!((row.f_t, row.f_t_y, row.work_friction), (0.0, 0.0, 0.0));
+    }
+    assert_eq!(last(&all, 1).twist, 1.0);
+}
+
+/// Reissner and Sagoci's stiffness, of a sphere that sticks to the plane; and Lubkin's moments of two
+/// equal spheres at a quarter, half and nine tenths of the limit. Over a plane the friction of the
+/// press, along the radius, takes its share: moments are 9 % lower half-way there at nu = 0.3.
+#[test]
+fn an_elastic_torsion_is_lubkins() {
+    let theory = |pressed: &StepRecord, shear_modulus: f64| Torsion {
+        contact_radius: pressed.a,
+        shear_modulus,
+        friction: 0.3,
+        normal_force: pressed.f_n,
+    };
+    let path = ["indentation = 0.002", "twist = 0.07"];
+    let all = rows(&text(ELASTIC, "0.3", 10, &path), &["opponent={equal=true}"]);
+    let pair = theory(last(&all, 0), 500.0 / 2.6);
+    let twisted: Vec<&StepRecord> = all.iter().filter(|row| row.segment == 1).collect();
+    for share in [0.25, 0.5, 0.9] {
+        let row = twisted.iter().find(|row| row.m_twist > share * pair.slip_moment()).expect("so far");
+        let expected = pair.moment(row.twist);
+        assert!((row.m_twist / expected - 1.0).abs() < 0.02, "{share}: {} for {expected}", row.m_twist);
+    }
+    let end = twisted.last().expect("rows");
+    assert!((end.m_twist / pair.slip_moment() - 1.0).abs() < 0.01, "{} for {}", end.m_twist, pair.slip_moment());
+    let stuck = rows(&text(ELASTIC, "\"stick\"", 16, &["indentation = 0.001", "twist = 0.003"]), &[]);
+    let (pressed, end) = (last(&stuck, 0), last(&stuck, 1));
+    let stiffness = theory(pressed, 1000.0 / 2.6).initial_stiffness();
+    assert!((end.m_twist / end.twist / stiffness - 1.0).abs() < 0.02, "{} for {stiffness}", end.m_twist / end.twist);
+}
+
+/// A sphere that rolls takes its contact along, and back.
+#[test]
+fn a_roll_takes_the_contact_along() {
+    let path = ["indentation = 0.01", "roll = 0.05", "roll = 0.0"];
+    for law in [IDEAL, ELASTIC] {
+        let all = rows(&text(law, "0.3", 5, &path), &[]);
+        let rolled = last(&all, 1);
+        assert!(rolled.delta_t == 0.0 && rolled.roll_y == 0.05 && rolled.delta_t_y == 0.0);
+        // Where it touches now is the angle away from the pole.
+        assert!((rolled.reach - (0.05 + rolled.a)).abs() < 0.4 * rolled.a, "{rolled:?}");
+        assert_energy(&all, 0.005, law);
+    }
+    let forth = rows(&text(IDEAL, "0.3", 5, &["indentation = 0.01", "roll = [0.0, 0.03]\nhold = \"normal-force\""]), &[]);
+    let back = rows(&text(IDEAL, "0.3", 5, &["indentation = 0.01", "roll = [0.0, -0.03]\nhold = \"normal-force\""]), &[]);
+    let (forth, back) = (last(&forth, 1), last(&back, 1));
+    // The pressure is ahead of the centre: it resists.
+    assert!(forth.m_roll_y > 0.0 && (forth.m_roll_y + back.m_roll_y).abs() < 0.01 * forth.m_roll_y, "{forth:?} {back:?}");
+}
+
+/// With every opponent, the energy of all the ways to move at once; a pair is two bodies then.
+#[test]
+fn every_opponent_takes_every_motion() {
+    let unlike = "opponent={radius=1.5, material={youngs_modulus=3000.0, poissons_ratio=0.25, hardening={law=\"elastic\"}}}";
+    for (opponent, bodies) in [("opponent={rigid=true, radius=2.0}", 1.0), ("opponent={equal=true}", 2.0), (unlike, 1.0)] {
+        let indentation = format!("indentation = {:?}", 0.01 * bodies);
+        let moved = "shear = [0.001, 0.0015]\ntwist = 0.01\nroll = [0.002, -0.003]";
+        let all =
+            rows(&text(IDEAL, "0.3", 4, &[&indentation, moved, "shear = \"full-slip\"\nshear_direction = -120.0"]), &[opponent]);
+        assert_energy(&all, 0.006, opponent);
+        let end = last(&all, 2);
+        let (ratio, direction) = (end.f_t.hypot(end.f_t_y) / end.f_n, end.f_t_y.atan2(end.f_t).to_degrees());
+        assert!((ratio - 0.3).abs() < 0.01 && (direction + 120.0).abs() < 6.0, "{opponent}: {ratio} at {direction}");
+    }
+}
