@@ -127,13 +127,14 @@ fn a_whole_sphere_is_two_halves() {
 fn without_contact_a_turned_sphere_has_no_forces() {
     let path = ["indentation = 0.01", "release = true", "indentation = 1e-6\ntwist = 2.0\nroll = [0.02, -0.01]"];
     for friction in ["0.0", "0.3"] {
-        let all = rows(&text(IDEAL, friction, 4, &path), &[]);
+        let all = rows(&text(IDEAL, friction, 4, &path), &["solver.tolerance=1e-9"]);
         let (before, after) = (last(&all, 1), last(&all, 2));
         assert!((after.twist, after.roll_x, after.roll_y) == (2.0, 0.02, -0.01) && after.contact_points == 0);
         assert!(after.f_n == 0.0 && after.m_twist == 0.0);
         // Its residual stresses turn with it.
-        assert!((after.energy_elastic / before.energy_elastic - 1.0).abs() < 1e-9, "{before:?} {after:?}");
-        assert!((after.work_plastic / before.work_plastic - 1.0).abs() < 1e-12);
+        let elastic = after.energy_elastic / before.energy_elastic;
+        assert!((elastic - 1.0).abs() < 1e-6, "{elastic}");
+        assert!((after.work_plastic / before.work_plastic - 1.0).abs() < 1e-6);
         assert!((after.work_external - before.work_external).abs() < 1e-9 * before.work_external);
     }
 }
@@ -150,9 +151,9 @@ fn without_friction_a_twist_has_no_moment() {
     assert_eq!(last(&all, 1).twist, 1.0);
 }
 
-/// Reissner and Sagoci's stiffness, of a sphere that sticks to the plane; and Lubkin's moments of two
-/// equal spheres at a quarter, half and nine tenths of the limit. Over a plane the friction of the
-/// press, along the radius, takes its share: moments are 9 % lower half-way there at nu = 0.3.
+/// Reissner and Sagoci's stiffness, of a sphere that sticks to the plane; and Lubkin's moments of
+/// two equal spheres at a quarter, half and nine tenths of the limit. Over a plane the friction of
+/// the press, along the radius, takes its share: moments are 9 % lower half-way there at nu = 0.3.
 #[test]
 fn an_elastic_torsion_is_lubkins() {
     let theory = |pressed: &StepRecord, shear_modulus: f64| Torsion {
@@ -161,21 +162,26 @@ fn an_elastic_torsion_is_lubkins() {
         friction: 0.3,
         normal_force: pressed.f_n,
     };
-    let path = ["indentation = 0.002", "twist = 0.07"];
+    let path = ["indentation = 0.002", "twist = 0.25"];
     let all = rows(&text(ELASTIC, "0.3", 10, &path), &["opponent={equal=true}"]);
-    let pair = theory(last(&all, 0), 500.0 / 2.6);
+    // h is held, and F_N falls a little.
+    let pair = |row: &StepRecord| Torsion { normal_force: row.f_n, ..theory(last(&all, 0), 500.0 / 2.6) };
     let twisted: Vec<&StepRecord> = all.iter().filter(|row| row.segment == 1).collect();
     for share in [0.25, 0.5, 0.9] {
-        let row = twisted.iter().find(|row| row.m_twist > share * pair.slip_moment()).expect("so far");
-        let expected = pair.moment(row.twist);
+        let row = twisted.iter().find(|row| row.m_twist > share * pair(row).slip_moment()).expect("so far");
+        let expected = pair(row).moment(row.twist);
         assert!((row.m_twist / expected - 1.0).abs() < 0.02, "{share}: {} for {expected}", row.m_twist);
     }
     let end = twisted.last().expect("rows");
-    assert!((end.m_twist / pair.slip_moment() - 1.0).abs() < 0.01, "{} for {}", end.m_twist, pair.slip_moment());
-    let stuck = rows(&text(ELASTIC, "\"stick\"", 16, &["indentation = 0.001", "twist = 0.003"]), &[]);
-    let (pressed, end) = (last(&stuck, 0), last(&stuck, 1));
-    let stiffness = theory(pressed, 1000.0 / 2.6).initial_stiffness();
-    assert!((end.m_twist / end.twist / stiffness - 1.0).abs() < 0.02, "{} for {stiffness}", end.m_twist / end.twist);
+    let limit = pair(end).slip_moment();
+    assert!((end.m_twist / limit - 1.0).abs() < 0.01, "{} for {limit}", end.m_twist);
+    // The sphere gives way more than a half-space, by 0.4 a/R: in a shallow contact.
+    let surface = ["mesh.surface_elements_per_contact_radius=32"];
+    let stuck = rows(&text(ELASTIC, "\"stick\"", 8, &["indentation = 0.0001", "twist = 0.0005"]), &surface);
+    let first = stuck.iter().find(|row| row.segment == 1).expect("a twist");
+    let stiffness = theory(last(&stuck, 0), 1000.0 / 2.6).initial_stiffness();
+    let found = first.m_twist / first.twist;
+    assert!((found / stiffness - 1.0).abs() < 0.01, "{found} for {stiffness}");
 }
 
 /// A sphere that rolls takes its contact along, and back.
