@@ -39,7 +39,8 @@ plots = false
 const EQUAL: &str = "[base.opponent]\nequal = true\n[[base.path]]\nindentation = 0.02\n[[base.path]]\nshear = 0.004\n";
 const RIGID: &str =
     "[base.opponent]\nrigid = true\nradius = 0.8\n[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = 0.002\n";
-/// Over the plane, but not along x: all of the sphere is meshed, and Newton's vectors stay on the host.
+/// Over the plane, but not along x: all of the sphere is meshed, and Newton's vectors stay on the
+/// host.
 const TURNED: &str =
     "[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = [0.001, 0.0015]\ntwist = 0.01\nroll = [0.0, 0.002]\n";
 const UNLIKE: &str = r#"

@@ -147,6 +147,8 @@ fn what_cannot_be_extended_is_refused_and_stays_as_it_is() {
     );
     refused("out", &[PRESSED], &["path.1.", " there and absent here"]);
     refused("out", &["path=[{indentation=0.02},{shear=0.001},{release=true}]"], &["path.1.shear is 0.002 there and 0.001 here"]);
+    let across = "path=[{indentation=0.02},{shear=0.002},{shear=[0.001,0.001]}]";
+    refused("out", &[across], &["the longer path leaves the x axis", "the whole sphere"]);
     // Deeper, the mesh would be another one.
     let deeper = "path=[{indentation=0.02},{shear=0.002},{indentation=0.04}]";
     refused("out", &[deeper], &["from the beginning, the longer path would have another mesh", "mesh.contact_radius"]);

@@ -59,7 +59,7 @@ fn the_keys_of_hardening_are_those_of_its_laws() {
 /// The segment, or the table, to which a key belongs.
 fn place(key: &Key) -> String {
     match key.name {
-        "shear" | "shear_direction" | "twist" | "roll" | "hold" => format!("path.1.{}", key.name),
+        "shear" | "shear_direction" | "hold" => format!("path.1.{}", key.name),
         "release" => "path.2.release".to_owned(),
         _ => key.dotted().replace("N", "0"),
     }
