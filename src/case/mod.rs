@@ -195,7 +195,8 @@ impl Case {
         presses.reduce(|most, next| if next.1 > most.1 { next } else { most })
     }
 
-    /// Whether all of the path is even in y: half of the sphere is meshed then, and all of it if not.
+    /// Whether all of the path is even in y: half of the sphere is meshed then, and all of it if
+    /// not.
     pub fn is_even(&self) -> bool {
         self.path.iter().all(Segment::is_even)
     }

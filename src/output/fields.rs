@@ -6,12 +6,13 @@ use crate::compute::CaseFields;
 use crate::mesh::Mesh;
 use std::path::Path;
 
-/// Writes what is meshed (half, y >= 0, of which the other is the mirror image, as the file says, or all) at its
-/// reference positions with, on the nodes, `displacement`, `contact_pressure`, `contact_traction`,
-/// `gap` and `contact_status` (0 open or away from the contact surface, 1 stick, 2 slip; the gap
-/// is -1 away from it) and, on the elements, `stress` (Cauchy), `mises`, `alpha` and `plastic` (1
-/// where the element has yielded), in the user's units; of two bodies also `body` (0 the sphere, 1
-/// the opponent). `displacement` and `fields` are scaled, `points` are in the user's units.
+/// Writes what is meshed (half, y >= 0, of which the other is the mirror image, as the file says,
+/// or all) at its reference positions with, on the nodes, `displacement`, `contact_pressure`,
+/// `contact_traction`, `gap` and `contact_status` (0 open or away from the contact surface, 1
+/// stick, 2 slip; the gap is -1 away from it) and, on the elements, `stress` (Cauchy), `mises`,
+/// `alpha` and `plastic` (1 where the element has yielded), in the user's units; of two bodies also
+/// `body` (0 the sphere, 1 the opponent). `displacement` and `fields` are scaled, `points` are in
+/// the user's units.
 pub fn write_fields(
     path: &Path,
     mesh: &Mesh,

@@ -271,8 +271,8 @@ fn start_of(before: &[StepRecord]) -> StepRecord {
     before.last().copied().unwrap_or_default()
 }
 
-/// The place of a row in a segment that begins at `start`: a share of a press or of one that goes to
-/// several targets, a length of the others.
+/// The place of a row in a segment that begins at `start`: a share of a press or of one that goes
+/// to several targets, a length of the others.
 fn place(segment: &Segment, start: &StepRecord, row: &StepRecord) -> f64 {
     let (h, delta_t) = (row.h - start.h, row.delta_t - start.delta_t);
     let share = |whole_h: f64, whole_delta: f64| {

@@ -81,9 +81,9 @@ impl Committed {
         state
     }
 
-    /// Length of a step to a target in the measure in which plastic flow goes on evenly: the contact
-    /// radius grows as sqrt(h) under pressing, and what moves along and about the surface is
-    /// measured by itself.
+    /// Length of a step to a target in the measure in which plastic flow goes on evenly: the
+    /// contact radius grows as sqrt(h) under pressing, and what moves along and about the surface
+    /// is measured by itself.
     pub fn length_to(&self, target: &Target) -> f64 {
         let radius = |h: f64| h.max(0.0).sqrt();
         let (along, turned) = self.way_to(target);

@@ -168,8 +168,8 @@ impl Profile {
         if self.slope < 0.0 { (-self.at_zero / self.slope).max(0.0).sqrt() } else { f64::INFINITY }
     }
 
-    /// What it carries between two radii of a sector of this `angle`, pi for half of a disc: integral
-    /// angle s p ds, with s^2 the variable.
+    /// What it carries between two radii of a sector of this `angle`, pi for half of a disc:
+    /// integral angle s p ds, with s^2 the variable.
     fn carried(&self, from: f64, to: f64, angle: f64) -> f64 {
         let (lo, hi) = (from * from, to * to);
         let n = 64;

@@ -241,8 +241,8 @@ pub fn straight_targets(start: &Start, end: &Target, resolution: &Resolution) ->
         }
         ends
     };
-    // Beyond 1.5 recoveries nothing touches any more, and no step is too long; unless another part of
-    // the surface comes down.
+    // Beyond 1.5 recoveries nothing touches any more, and no step is too long; unless another part
+    // of the surface comes down.
     let rolls = end.angles[..2] != start.angles[..2];
     let free = if rise < 0.0 && !rolls { (1.5 * start.recovery() / -rise).min(1.0) } else { 1.0 };
     let around = |ends: &mut dyn Iterator<Item = f64>, at: f64| {

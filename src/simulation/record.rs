@@ -117,8 +117,8 @@ pub struct StepRecord {
     #[serde(default)]
     pub roll_y: f64,
     /// Moment about the normal that the plate exerts in the direction of `twist`: that of the
-    /// tractions about the foot of the perpendicular from the sphere's centre to the plane, or about
-    /// the point of the opponent's surface on the line of centres.
+    /// tractions about the foot of the perpendicular from the sphere's centre to the plane, or
+    /// about the point of the opponent's surface on the line of centres.
     #[serde(default, rename = "M_twist")]
     pub m_twist: f64,
     /// The same about x, in the direction of `roll_x`.

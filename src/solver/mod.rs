@@ -4,7 +4,8 @@
 //! the host or on a device. `system` holds the residual and matrix of the host's, `opponent` all
 //! that depends on what the body is pressed against; `systems` solves for the correction, with
 //! `pair` for two equal spheres and `couple` for two bodies (`tied` is what these have in common),
-//! `phases` is what its parts cost, `pose` where the plate stands. Choosing steps and bisecting them is the simulation's business.
+//! `phases` is what its parts cost, `pose` where the plate stands. Choosing steps and bisecting
+//! them is the simulation's business.
 
 pub mod iterate;
 pub mod newton;

@@ -83,8 +83,8 @@ fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
 }
 
 /// Every picture for which there is something to show: `indentation` and `pressure` of the press,
-/// `forces`, `ratio`, `stick` and `slip` of the shear along x, `plane` of one across it, `moments` of
-/// what turns, `contact` of the last step in contact.
+/// `forces`, `ratio`, `stick` and `slip` of the shear along x, `plane` of one across it, `moments`
+/// of what turns, `contact` of the last step in contact.
 ///
 /// # Errors
 /// A drawing fails.

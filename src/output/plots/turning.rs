@@ -1,5 +1,5 @@
-//! What a plate does that moves across the x axis, or turns: the friction used in its plane, and the
-//! moments over the angles.
+//! What a plate does that moves across the x axis, or turns: the friction used in its plane, and
+//! the moments over the angles.
 
 use super::super::{OutputError, StepRecord};
 use super::View;
@@ -7,7 +7,7 @@ use super::chart::{Axis, Chart, Mark, Series, draw_chart, extent};
 use super::curves::{from_zero, greatest};
 use super::style::{BLUE, INK, Picture, TEAL, VERMILION, tick};
 
-const SQUARE: (u32, u32) = (600, 560);
+const SQUARE: (u32, u32) = (600, 640);
 const SIZE: (u32, u32) = (760, 480);
 /// Points of a circle.
 const CIRCLE: usize = 120;
@@ -46,8 +46,8 @@ pub fn plot_moments(history: &[StepRecord], view: &View) -> Result<Picture, Outp
     type Of = fn(&StepRecord) -> f64;
     let curves: [(&str, _, Of, Of); 3] = [
         ("twist, M_twist", BLUE, |step| step.twist, |step| step.m_twist),
-        ("roll about y, M_roll_y", VERMILION, |step| step.roll_y, |step| step.m_roll_y),
-        ("roll about x, M_roll_x", TEAL, |step| step.roll_x, |step| step.m_roll_x),
+        ("roll about y, M_roll,y", VERMILION, |step| step.roll_y, |step| step.m_roll_y),
+        ("roll about x, M_roll,x", TEAL, |step| step.roll_x, |step| step.m_roll_x),
     ];
     let mut series = Vec::new();
     for (label, colour, angle, moment) in curves {

@@ -33,7 +33,8 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The plate's moment about another point, from that about `from`; its force is along x, y and down.
+/// The plate's moment about another point, from that about `from`; its force is along x, y and
+/// down.
 fn shifted(moment: [f64; 3], [x, y, down]: [f64; 3], from: &[f64; 3], to: &[f64; 3]) -> [f64; 3] {
     let more = cross(&std::array::from_fn(|k| from[k] - to[k]), &[x, y, 0.0 - down]);
     std::array::from_fn(|k| moment[k] + more[k])
@@ -184,8 +185,8 @@ impl Drive<'_> {
         Ok(None)
     }
 
-    /// Moment of the plate about the sphere's centre, against that of the contact, about x, y and z;
-    /// of the whole sphere.
+    /// Moment of the plate about the sphere's centre, against that of the contact, about x, y and
+    /// z; of the whole sphere.
     fn moment(&self, centre: &[f64; 3]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for point in &self.state.points[..self.mesh.own_contacts()] {

@@ -67,8 +67,8 @@ impl Drive<'_> {
         (square > 0.0).then(|| product(&now, &before) / square)
     }
 
-    /// The indentation at which a step is expected to end: where the force is held it is an unknown,
-    /// and goes on as the displacements do.
+    /// The indentation at which a step is expected to end: where the force is held it is an
+    /// unknown, and goes on as the displacements do.
     pub(super) fn expected_h(&self, target: &Target, ratio: Option<f64>) -> f64 {
         let r = &self.state.record;
         match self.state.last_increment.filter(|_| target.hold_force && ratio.is_some()) {
@@ -81,9 +81,9 @@ impl Drive<'_> {
         }
     }
 
-    /// The displacements of a body that turns with the plate to `pose` at `h`, and goes on deforming
-    /// as in the last step, `ratio` times as much. A straight way there would strain what turns; the
-    /// first step of a segment, the shortest, has no other.
+    /// The displacements of a body that turns with the plate to `pose` at `h`, and goes on
+    /// deforming as in the last step, `ratio` times as much. A straight way there would strain what
+    /// turns; the first step of a segment, the shortest, has no other.
     pub(super) fn turned_guess(&self, ratio: f64, h: f64, pose: &Pose) -> Vec<f64> {
         let state = &self.state;
         let onwards = state.pose.motion_to(state.record.h, pose, h);

@@ -23,8 +23,8 @@ pub struct TwoBodies {
 }
 
 impl TwoBodies {
-    /// A sphere of Young's modulus and radius 1 and an opponent of these. The softer body is the slave, of
-    /// equal ones the sphere; if they are `exchanged`, the other one.
+    /// A sphere of Young's modulus and radius 1 and an opponent of these. The softer body is the
+    /// slave, of equal ones the sphere; if they are `exchanged`, the other one.
     pub fn new(opponent: f64, radius: Option<f64>, exchanged: bool) -> Self {
         let (slave, series) = if opponent < 1.0 { (1, Series::new(opponent, 1.0)) } else { (0, Series::new(1.0, opponent)) };
         if exchanged {

@@ -7,8 +7,8 @@
 //!
 //! `sphere` builds the body, `brick` a box for tests. Both lay logical blocks of cells
 //! (`hierarchy`) whose indices give the numbering, the coordinates and the multigrid levels;
-//! `connectivity` derives lists and areas, `quality` measures elements, `whole` joins a half with its
-//! mirror image, `couple` makes one mesh of two bodies.
+//! `connectivity` derives lists and areas, `quality` measures elements, `whole` joins a half with
+//! its mirror image, `couple` makes one mesh of two bodies.
 
 pub mod brick;
 pub mod connectivity;

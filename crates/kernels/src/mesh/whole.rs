@@ -1,8 +1,8 @@
 //! Both halves of a body as one mesh: half the lower hemisphere and its mirror image, y to -y.
 //!
 //! Nodes of the half keep their numbers; those of the image follow, but for what lies at y = 0,
-//! which both have. The levels of the hierarchy are joined in the same way, so that a coarse mesh is
-//! the whole of the half's.
+//! which both have. The levels of the hierarchy are joined in the same way, so that a coarse mesh
+//! is the whole of the half's.
 
 use super::connectivity::{node_elements, sweep_order};
 use super::{Half, Hanging, Mesh, Prolongation};
@@ -176,7 +176,8 @@ mod tests {
             assert!(right.node.iter().all(|&n| whole.nodes[n as usize][0] >= 0.0));
             assert_eq!(right.node.len(), whole.nodes.iter().filter(|x| x[0] >= 0.0).count());
             assert_eq!(right.hierarchy[0].row_start.len(), right.node.len() + 1);
-            // Where a level's node lies in the body; what takes from two sides takes from the middle.
+            // Where a level's node lies in the body; what takes from two sides takes from the
+            // middle.
             let mut y: Vec<f64> = whole.nodes.iter().map(|x| x[1]).collect();
             for level in &whole.hierarchy {
                 assert_eq!(level.row_start.len(), y.len() + 1);
