@@ -29,6 +29,16 @@ struct Taken {
     gaps: Vec<f64>,
 }
 
+/// What the plate exerts at the end of a step, on the whole sphere.
+struct Exerted {
+    /// F_T along x and y, and F_N.
+    force: [f64; 3],
+    /// About x, y and z, at the point of contact.
+    moment: [f64; 3],
+    /// External work since the start.
+    work: f64,
+}
+
 fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
@@ -67,7 +77,6 @@ impl Drive<'_> {
         let slaves = self.newton.opponent().contacts(&self.mesh);
         let count = |s: Status| statuses[slaves.clone()].iter().filter(|status| **status == s).count();
         let (contact_points, slipping_points) = (count(Status::Stick) + count(Status::Slip), count(Status::Slip));
-        let length = self.state.length_to(target);
         let friction_work = self.newton.friction_work(&StepTaken {
             mesh: &self.mesh,
             friction: self.problem.model.friction,
@@ -83,30 +92,15 @@ impl Drive<'_> {
         }
         (self.state.statuses, self.state.gaps) = (statuses, gaps);
         self.newton.committed();
-        let (along, turned) = self.state.way_to(target);
-        self.state.last_increment = Some(Increment { h: h - before.h, along, turned });
-        let (pose, travel) = (self.state.pose_at(target), self.state.travel_to(target));
-        let centres = [self.state.pose.shift, pose.shift];
-        (self.state.pose_before, self.state.h_before) = (std::mem::replace(&mut self.state.pose, pose), before.h);
-        self.state.travel = travel;
-        self.state.last_length = length;
-        self.state.h_max = self.state.h_max.max(h);
+        let turned = self.move_plate(target, h);
         self.state.place_points(&self.mesh);
         let size = footprint(&self.state.points[slaves.clone()], self.problem.spacing, self.mesh.copies);
         // A slave that is the opponent lies the other way round.
         let side = if slaves.start == 0 { 1.0 } else { -1.0 };
         let shape = self.mesh.couple.as_ref().and_then(|_| bulge(&self.state.points[slaves]));
         let [depth, curvature] = shape.map_or([0.0; 2], |[height, curvature]| [0.0 - side * height, side * curvature]);
-        // 0 - x, not -x: no force is 0, not -0.
         let copies = self.mesh.copies as f64;
-        let (f_n, f_t) = (copies * force[2], 0.0 - copies * force[0]);
-        // The halves pull each other along y.
-        let f_t_y = if self.mesh.copies == 1 { 0.0 - force[1] } else { 0.0 };
-        let moment = self.moment(&pose.centre(h));
-        let turn_work: f64 = (0..3).map(|k| 0.5 * (self.state.moment[k] + moment[k]) * turned[k]).sum();
-        self.state.moment = moment;
-        let contact = self.newton.opponent().contact_point(&pose.centre(h));
-        let [m_roll_x, m_roll_y, m_twist] = shifted(moment, [f_t, f_t_y, f_n], &pose.centre(h), &contact);
+        let Exerted { force: [f_t, f_t_y, f_n], moment: [m_roll_x, m_roll_y, m_twist], work } = self.exerted(force, h, turned);
         self.state.record = StepRecord {
             step: before.step + 1,
             segment: before.segment,
@@ -121,11 +115,7 @@ impl Drive<'_> {
             a_gap: size.radius_gap,
             krylov_iterations: report.krylov(),
             merit: report.merit,
-            work_external: before.work_external
-                + 0.5 * (before.f_n + f_n) * (h - before.h)
-                + 0.5 * (before.f_t + f_t) * (centres[1][0] - centres[0][0])
-                + 0.5 * (before.f_t_y + f_t_y) * (centres[1][1] - centres[0][1])
-                + turn_work,
+            work_external: work,
             energy_elastic: copies * energies.elastic,
             work_plastic: copies * energies.plastic,
             work_friction: before.work_friction + copies * friction_work,
@@ -151,23 +141,7 @@ impl Drive<'_> {
             ..StepRecord::default()
         };
         self.state.longest_recovery = self.state.longest_recovery.max(self.start().recovery());
-        log::info!(
-            "step {}: h = {h:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
-             contact {:.2}, linear update {:.2}, linear solve {:.2}, commit {:.2})",
-            self.state.record.step,
-            target.delta_t,
-            self.state.record.newton_iterations,
-            report.krylov(),
-            cutbacks,
-            report.merit,
-            report.times.total(),
-            report.times.seconds(Phase::Tangent),
-            report.times.seconds(Phase::Force),
-            report.times.seconds(Phase::Contact),
-            report.times.seconds(Phase::LinearUpdate),
-            report.times.seconds(Phase::LinearSolve),
-            report.times.seconds(Phase::Commit),
-        );
+        self.tell_step(&report);
         if let Some((what, value)) = self.state.record.not_finite() {
             return Err(SimulationError::NotFinite { step: self.state.record.step, what, value });
         }
@@ -183,6 +157,66 @@ impl Drive<'_> {
         self.backend.take_notes().iter().for_each(|note| observer.note(note));
         observer.step(&mut self.view()).map_err(SimulationError::Observer)?;
         Ok(None)
+    }
+
+    /// The plate is where it was to be, and at `h`; gives what it has turned.
+    fn move_plate(&mut self, target: &Target, h: f64) -> [f64; 3] {
+        let state = &mut self.state;
+        let before = state.record.h;
+        let (along, turned) = state.way_to(target);
+        state.last_increment = Some(Increment { h: h - before, along, turned });
+        state.last_length = state.length_to(target);
+        let (pose, travel) = (state.pose_at(target), state.travel_to(target));
+        (state.pose_before, state.h_before) = (std::mem::replace(&mut state.pose, pose), before);
+        state.travel = travel;
+        state.h_max = state.h_max.max(h);
+        turned
+    }
+
+    /// What the plate exerts, from the contact's force on the meshed part, after a step that has
+    /// `turned` it.
+    fn exerted(&mut self, force: [f64; 3], h: f64, turned: [f64; 3]) -> Exerted {
+        let (before, copies) = (self.state.record, self.mesh.copies as f64);
+        // 0 - x, not -x: no force is 0, not -0.
+        let (f_n, f_t) = (copies * force[2], 0.0 - copies * force[0]);
+        // The halves pull each other along y.
+        let f_t_y = if self.mesh.copies == 1 { 0.0 - force[1] } else { 0.0 };
+        let centre = self.state.pose.centre(h);
+        let about_centre = self.moment(&centre);
+        let turn_work: f64 = (0..3).map(|k| 0.5 * (self.state.moment[k] + about_centre[k]) * turned[k]).sum();
+        self.state.moment = about_centre;
+        let [from, to] = [self.state.pose_before.shift, self.state.pose.shift];
+        let work = before.work_external
+            + 0.5 * (before.f_n + f_n) * (h - before.h)
+            + 0.5 * (before.f_t + f_t) * (to[0] - from[0])
+            + 0.5 * (before.f_t_y + f_t_y) * (to[1] - from[1])
+            + turn_work;
+        let force = [f_t, f_t_y, f_n];
+        let contact = self.newton.opponent().contact_point(&centre);
+        Exerted { force, moment: shifted(about_centre, force, &centre, &contact), work }
+    }
+
+    /// Writes the step that was recorded last into the log.
+    fn tell_step(&self, report: &StepReport) {
+        let r = &self.state.record;
+        log::info!(
+            "step {}: h = {:.5}, delta_T = {:.5}, {} iterations, {} Krylov, {} cut-backs, merit {:.1e}, {:.2} s (tangent {:.2}, force {:.2}, \
+             contact {:.2}, linear update {:.2}, linear solve {:.2}, commit {:.2})",
+            r.step,
+            r.h,
+            r.delta_t,
+            r.newton_iterations,
+            report.krylov(),
+            r.cutbacks,
+            report.merit,
+            report.times.total(),
+            report.times.seconds(Phase::Tangent),
+            report.times.seconds(Phase::Force),
+            report.times.seconds(Phase::Contact),
+            report.times.seconds(Phase::LinearUpdate),
+            report.times.seconds(Phase::LinearSolve),
+            report.times.seconds(Phase::Commit),
+        );
     }
 
     /// Moment of the plate about the sphere's centre, against that of the contact, about x, y and
