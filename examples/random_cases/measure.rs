@@ -179,9 +179,11 @@ pub fn measure(seed: u64, index: usize, elements: Elements, against: Against) ->
 /// Largest departure of F_N from what is held.
 fn held_gap(case: &Case, rows: &[StepRecord]) -> Option<f64> {
     let mut worst: Option<f64> = None;
-    for (i, segment) in case.path.iter().enumerate() {
-        let asperity::case::Segment::Shear { hold: asperity::case::Hold::NormalForce, .. } = segment else { continue };
-        let held = rows.iter().rfind(|row| row.segment < i)?.f_n;
+    let holds = |i: usize| matches!(case.path[i], asperity::case::Segment::Shear { hold: asperity::case::Hold::NormalForce, .. });
+    for i in (0..case.path.len()).filter(|&i| holds(i)) {
+        // Shears that hold it one after the other hold the same force.
+        let first = (0..=i).rev().take_while(|&k| holds(k)).last()?;
+        let held = rows.iter().rfind(|row| row.segment < first)?.f_n;
         for row in rows.iter().filter(|row| row.segment == i && held > 0.0) {
             worst = Some(worst.unwrap_or(0.0).max((row.f_n / held - 1.0).abs()));
         }

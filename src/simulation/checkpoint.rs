@@ -172,6 +172,9 @@ pub(super) struct Place {
     pub force_before: [f64; 2],
     /// Tangential stiffness at the start of the shear, until its first step is recorded.
     pub stiffness: Option<f64>,
+    /// Normal force of the meshed part that a segment holds: what there was before the first of
+    /// those that hold it one after the other. What each of them misses of it does not add up so.
+    pub held_force: Option<f64>,
     /// Iterations of failed attempts and bisections since the last accepted step.
     pub wasted: usize,
     pub cutbacks: usize,
@@ -191,7 +194,8 @@ impl Place {
 
     /// At the start of the next segment.
     pub fn next_segment(&self) -> Self {
-        Self { begun: self.begun, segment: self.segment + 1, pace: self.pace, ..Self::default() }
+        let Self { begun, pace, held_force, .. } = *self;
+        Self { begun, segment: self.segment + 1, pace, held_force, ..Self::default() }
     }
 }
 
@@ -248,7 +252,7 @@ impl Snapshot {
             return wrong("a force, a strain or a work");
         }
         let last = state.last_increment.iter().flat_map(|last| last.along.iter().chain(&last.turned).chain([&last.h]));
-        let increment = last.chain(&place.stiffness).copied();
+        let increment = last.chain(&place.stiffness).chain(&place.held_force).copied();
         if !start.chain(targets).chain(record).chain(single).chain(increment).all(|value| sound(&value)) {
             return wrong("a number of its place on the path");
         }

@@ -17,7 +17,7 @@ pub use super::observer::{Observer, StepView};
 use super::path::{Resolution, Start, Target, indentation_targets, straight_targets};
 use super::problem::Problem;
 use super::record::{ContactPoint, StepRecord};
-use crate::case::{Scaled, Segment, ShearTarget, unit};
+use crate::case::{Hold, Scaled, Segment, ShearTarget, unit};
 use crate::compute::handle::CaseHandle;
 use crate::compute::iterate::{Ask, Keeps, Plate, Settled};
 use crate::compute::traffic::Traffic;
@@ -226,6 +226,12 @@ impl<'a> Drive<'a> {
     fn begin_segment(&mut self, segment: &Segment) -> Start {
         self.state.record.segment = self.place.segment;
         self.state.last_increment = None;
+        let holds_force = match segment {
+            Segment::Shear { hold, .. } | Segment::Slip { hold, .. } => *hold == Hold::NormalForce,
+            Segment::Motion { to, hold } => *hold == Hold::NormalForce && to.indentation.is_none(),
+            _ => false,
+        };
+        self.place.held_force = self.place.held_force.filter(|_| holds_force);
         let mut start = self.start();
         let target = match segment {
             Segment::Shear { shear, .. } => Some(*shear),

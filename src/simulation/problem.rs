@@ -24,7 +24,7 @@ use crate::solver::opponent::pair::EqualPair;
 use crate::solver::opponent::plane::Plane;
 use crate::solver::opponent::rigid::RigidSphere;
 use crate::solver::system::Boundary;
-use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, loosest_linear, monotone_from};
+use crate::solver::{FULLY_PLASTIC, Settings, SolverError, first_linear, held_linear, loosest_linear, monotone_from};
 
 /// A case ready to be simulated.
 #[derive(Clone, Debug)]
@@ -216,6 +216,7 @@ impl Problem {
                 tolerance: case.solver.tolerance,
                 max_iterations: case.solver.max_iterations,
                 loosest_linear: loosest_linear(largest_nu) * further,
+                held_linear: held_linear(lambda),
                 first_linear: if couple.is_some() { COUPLE_FIRST } else { first_linear(lambda) },
                 monotone_from: monotone_from(lambda),
             },

@@ -30,10 +30,6 @@ const TIGHTEST_FIRST: f64 = 1e-4;
 const HELD_TOLERANCE: f64 = 5e-5;
 /// Where a step has been bisected again and again, to this.
 const HELD_AT_LAST: f64 = 2e-4;
-/// Linear systems are solved to this relative residual, or further, where the normal force is held:
-/// what is missing of the solution would change the indentation, and with it which points slide. To
-/// 0.1, the steps of a shear took four times the iterations.
-const TIGHT_LINEAR: f64 = 0.01;
 /// Tangential residuals of points in contact against the friction that the normal force can bear.
 /// At mu = 0.3 the tolerance of the merit is the same.
 const TANGENTIAL: f64 = 10.0 / 3.0;
@@ -353,7 +349,7 @@ impl Newton {
             if iteration >= most && !self.is_about_to_converge(&report) || iteration == 2 * most {
                 break;
             }
-            let eta = self.forcing(previous).min(if control.normal_force.is_some() { TIGHT_LINEAR } else { 1.0 });
+            let eta = self.forcing(previous).min(if control.normal_force.is_some() { self.settings.held_linear } else { 1.0 });
             let mut times = std::mem::take(&mut self.times);
             let corrected = self.iterate().correct(case, Asked { control, eta, first: iteration == 0 }, &mut times);
             self.times = times;

@@ -56,8 +56,14 @@ fn pressed(name: &str) -> Option<Pressed> {
     let models = models();
     let mut gpu = Gpu::<f64>::new(context, models.clone()).unwrap();
     let mut cpu = Cpu::<f64>::new(models.clone()).unwrap();
-    let settings =
-        Settings { tolerance: 1e-4, max_iterations: 60, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 };
+    let settings = Settings {
+        tolerance: 1e-4,
+        max_iterations: 60,
+        loosest_linear: 0.1,
+        held_linear: 0.01,
+        first_linear: f64::INFINITY,
+        monotone_from: 2,
+    };
     let control = Control { h: DEPTH, pose: Pose::along_x(0.0), normal_force: None };
     let mut displacement = Vec::new();
     for (case, model) in models.iter().enumerate() {

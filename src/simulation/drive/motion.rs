@@ -26,7 +26,7 @@ impl Drive<'_> {
                 self.place.stiffness = self.tangential_stiffness(hold, [self.state.way[0], self.state.way[1]])?;
             }
         }
-        self.held_force = held.then(|| start.f_n / self.mesh.copies as f64);
+        self.set_held_force(start, held);
         let ending = self.reach(&straight_targets(start, &end, &self.resolution()), observer);
         self.held_force = None;
         ending

@@ -88,6 +88,13 @@ impl Drive<'_> {
     }
 
     /// Shears along x to a displacement, or in any direction, a unit vector, to full slip.
+    /// Says whether the segment holds the normal force: that which the one before held, or else
+    /// what there is.
+    pub(super) fn set_held_force(&mut self, start: &Start, is_held: bool) {
+        self.held_force = is_held.then(|| self.place.held_force.unwrap_or(start.f_n / self.mesh.copies as f64));
+        self.place.held_force = self.held_force;
+    }
+
     pub(super) fn shear(
         &mut self,
         start: &Start,
@@ -108,7 +115,7 @@ impl Drive<'_> {
         };
         let steps = ShearSteps::new(start, length, hold == Hold::NormalForce, &self.resolution());
         let bound = steps.bound(start.a);
-        self.held_force = (hold == Hold::NormalForce).then(|| start.f_n / self.mesh.copies as f64);
+        self.set_held_force(start, hold == Hold::NormalForce);
         loop {
             let i = self.place.reached + 1;
             let distance = steps.distance(i);

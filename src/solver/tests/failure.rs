@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::mesh::brick;
-use crate::solver::loosest_linear;
 use crate::solver::phases::{Phase, PhaseTimes};
 use crate::solver::pose::Pose;
+use crate::solver::{FULLY_PLASTIC, held_linear, loosest_linear};
 
 fn plastic() -> Material<f64> {
     Material { elasticity: Elasticity::new(1.0, 0.3), hardening: Hardening::linear(2e-3, 0.02).unwrap() }
@@ -16,7 +16,14 @@ fn rig(max_iterations: usize) -> Rig {
         mesh,
         plastic(),
         Friction::Coulomb(0.3),
-        Settings { tolerance: 1e-10, max_iterations, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 },
+        Settings {
+            tolerance: 1e-10,
+            max_iterations,
+            loosest_linear: 0.1,
+            held_linear: 0.01,
+            first_linear: f64::INFINITY,
+            monotone_from: 2,
+        },
     )
 }
 
@@ -144,4 +151,12 @@ fn linear_systems_are_solved_more_tightly_where_volume_is_stiff() {
     }
     assert!((loosest_linear(0.49) - 0.1 * (2.6 / 1.2) / (2.98 / 0.06)).abs() < 1e-15);
     assert!((1e-6..1e-5).contains(&loosest_linear(0.5 - 1e-16_f64.sqrt())));
+}
+
+#[test]
+fn linear_systems_of_a_held_force_are_solved_more_tightly_in_deep_plasticity() {
+    for lambda in [0.0, 1.0, FULLY_PLASTIC] {
+        assert_eq!(held_linear(lambda), 0.01);
+    }
+    assert!((held_linear(10.0 * FULLY_PLASTIC) / 1e-3 - 1.0).abs() < 1e-12);
 }

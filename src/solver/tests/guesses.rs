@@ -6,8 +6,14 @@ use crate::compute::{About, Answer, Call, ComputeError, Fault};
 use crate::mesh::{SphereSpec, sphere_mesh};
 use crate::solver::pose::Pose;
 
-const SETTINGS: Settings =
-    Settings { tolerance: 1e-6, max_iterations: 30, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 };
+const SETTINGS: Settings = Settings {
+    tolerance: 1e-6,
+    max_iterations: 30,
+    loosest_linear: 0.1,
+    held_linear: 0.01,
+    first_linear: f64::INFINITY,
+    monotone_from: 2,
+};
 const CONTROL: Control = Control { h: 4e-3, pose: Pose::along_x(0.0), normal_force: None };
 
 /// What a device makes of a step.

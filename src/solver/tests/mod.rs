@@ -36,8 +36,14 @@ pub struct Rig {
     pub energies: Energies,
 }
 
-pub const TIGHT: Settings =
-    Settings { tolerance: 1e-12, max_iterations: 30, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 };
+pub const TIGHT: Settings = Settings {
+    tolerance: 1e-12,
+    max_iterations: 30,
+    loosest_linear: 0.1,
+    held_linear: 0.01,
+    first_linear: f64::INFINITY,
+    monotone_from: 2,
+};
 
 impl Rig {
     pub fn new(mesh: Mesh, material: Material<f64>, friction: Friction<f64>, settings: Settings) -> Self {

@@ -93,7 +93,14 @@ fn a_body_that_lost_its_contact_is_in_equilibrium() {
         irregular_brick(),
         material,
         Friction::Coulomb(0.2),
-        Settings { tolerance: 3e-4, max_iterations: 25, loosest_linear: 0.1, first_linear: f64::INFINITY, monotone_from: 2 },
+        Settings {
+            tolerance: 3e-4,
+            max_iterations: 25,
+            loosest_linear: 0.1,
+            held_linear: 0.01,
+            first_linear: f64::INFINITY,
+            monotone_from: 2,
+        },
     );
     rig.to(0.004, 0.0);
     rig.to(0.008, 0.0);
