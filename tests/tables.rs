@@ -75,7 +75,16 @@ fn numbers_that_are_no_counts_have_a_point_in_every_table() {
     );
     assert!(table.contains("\nc0004,cases/c0004,done,,70000000000.0,stick,4,70000000000.0,"), "{table}");
     let [whole, decimal] = kinds(&study.join("study.csv"));
-    assert_eq!(whole, ["mesh.elements_per_contact_radius", "elements_per_contact_radius", "newton_iterations", "cutbacks"]);
+    assert_eq!(
+        whole,
+        [
+            "mesh.elements_per_contact_radius",
+            "elements_per_contact_radius",
+            "surface_elements_per_contact_radius",
+            "newton_iterations",
+            "cutbacks"
+        ]
+    );
     for name in ["material.youngs_modulus", "E", "sigma_Y", "mu", "R", "h0", "F_N0", "sigma_rep", "cpu_s"] {
         assert!(decimal.iter().any(|column| column == name), "{name} in {decimal:?}");
     }

@@ -69,12 +69,14 @@ impl Run {
 /// A quantity of the table: its name and its value, with and without units.
 type Quantity = (&'static str, fn(&Summary) -> Option<f64>, fn(&Summary) -> Option<f64>);
 
-const QUANTITIES: [Quantity; 9] = [
+const QUANTITIES: [Quantity; 11] = [
     ("F_N0", |s| s.f_n0, |s| s.normalized.f_n0),
     ("a0", |s| s.a0, |s| s.normalized.a0),
     ("h0", |s| s.h0, |s| s.normalized.h0),
     ("F_N_slip", |s| s.f_n_slip, |s| s.normalized.f_n_slip),
     ("F_T_max", |s| s.f_t_max, |s| s.normalized.f_t_max),
+    ("delta_T_90", |s| s.delta_t_90, |s| s.normalized.delta_t_90),
+    ("delta_T_95", |s| s.delta_t_95, |s| s.normalized.delta_t_95),
     ("delta_T_slip", |s| s.delta_t_slip, |s| s.normalized.delta_t_slip),
     ("k_T0", |s| s.k_t0, |s| s.normalized.k_t0),
     ("mu_at_slip", |s| s.mu_at_slip, |s| s.mu_at_slip),

@@ -25,6 +25,14 @@ impl Summary {
         line("h0", self.h0, None, "indentation there");
         line("F_N_slip", self.f_n_slip, None, "normal force at full slip");
         line("F_T_max", self.f_t_max, self.f_t_max_error, "greatest tangential force");
+        line("F_T_max_limit", self.f_t_max_limit, None, "the same in the limit of fine meshes and short steps");
+        line(
+            "delta_T_90",
+            self.delta_t_90,
+            self.delta_t_90_error,
+            "displacement at which F_T/F_N is 0.90 of the friction coefficient",
+        );
+        line("delta_T_95", self.delta_t_95, self.delta_t_95_error, "the same at 0.95");
         line("delta_T_slip", self.delta_t_slip, None, "displacement at which F_T/F_N is 0.99 of the friction coefficient");
         line("k_T0", self.k_t0, None, "initial tangential stiffness");
         let cutbacks = if self.cutbacks > 0 { format!(", {} cut-backs", self.cutbacks) } else { String::new() };

@@ -62,7 +62,7 @@ use Read::{Count, Decimal};
 /// A column by its name, and how it is read.
 type Column = (&'static str, Read);
 
-const COLUMNS: [Column; 20] = [
+const COLUMNS: [Column; 26] = [
     ("E", Decimal(|n| Some(n.case.material.youngs_modulus))),
     ("nu", Decimal(|n| Some(n.case.material.poissons_ratio))),
     ("sigma_Y", Decimal(|n| n.case.material.hardening.yield_stress(n.case.material.youngs_modulus))),
@@ -73,13 +73,19 @@ const COLUMNS: [Column; 20] = [
     ("F_N0", Decimal(|n| n.summary?.f_n0)),
     ("F_N_slip", Decimal(|n| n.summary?.f_n_slip)),
     ("F_T_max", Decimal(|n| n.summary?.f_t_max)),
+    ("delta_T_90", Decimal(|n| n.summary?.delta_t_90)),
+    ("delta_T_95", Decimal(|n| n.summary?.delta_t_95)),
     ("delta_T_slip", Decimal(|n| n.summary?.delta_t_slip)),
     ("k_T0", Decimal(|n| n.summary?.k_t0)),
     ("sigma_rep", Decimal(|n| Some(n.variables?.sigma_rep))),
     ("Lambda", Decimal(|n| Some(n.variables?.lambda))),
     ("Hbar", Decimal(|n| Some(n.variables?.hardness))),
     ("c2", Decimal(|n| Some(n.variables?.c_squared))),
+    ("F_T_max_limit", Decimal(|n| n.summary?.f_t_max_limit)),
+    ("F_N0_error", Decimal(|n| n.summary?.f_n0_error)),
+    ("F_T_max_error", Decimal(|n| n.summary?.f_t_max_error)),
     ("elements_per_contact_radius", Count(|n| Some(n.case.mesh.elements_per_contact_radius))),
+    ("surface_elements_per_contact_radius", Count(|n| Some(n.case.mesh.surface_elements()))),
     ("newton_iterations", Count(|n| Some(n.summary?.newton_iterations))),
     ("cutbacks", Count(|n| Some(n.summary?.cutbacks))),
     ("cpu_s", Decimal(|n| n.summary?.cpu_s)),
@@ -87,7 +93,8 @@ const COLUMNS: [Column; 20] = [
 
 /// Last columns of `study.csv`, in the case's own units; the four normalised variables are those
 /// just before the shear. What does not exist is empty: mu of full stick, sigma_Y and sigma_rep of
-/// an elastic sphere, the slip of a shear that stopped early.
+/// an elastic sphere, the slip of a shear that stopped early, limit and errors of a case that was
+/// computed without a companion, as a study does.
 pub const NUMBERS: [&str; COLUMNS.len()] = {
     let (mut names, mut i) = ([""; COLUMNS.len()], 0);
     while i < names.len() {

@@ -10,7 +10,7 @@ import pandas as pd
 
 counts = {
     "step", "segment", "newton_iterations", "cutbacks", "krylov_iterations", "contact_points", "slipping_points", "relaxed", "landed_again", "point",
-    "elements_per_contact_radius", "mesh.elements_per_contact_radius",
+    "elements_per_contact_radius", "surface_elements_per_contact_radius", "mesh.elements_per_contact_radius",
 }
 for name in sys.argv[1:]:
     for column, values in pd.read_csv(name).items():
