@@ -22,7 +22,10 @@ fn check_prints_every_good_fixture_resolved() {
         let printed = String::from_utf8(output.stdout).expect("TOML is UTF-8");
         let resolved = Case::parse(&printed, "printed", &[]).expect("what was printed is a case");
         assert_eq!(resolved, Case::load(&path, &[]).expect("the fixture is a case"), "{file}");
-        assert!(printed.contains("elements_per_contact_radius = 16"), "{file}: defaults are written out");
+        assert!(
+            printed.contains("elements_per_contact_radius = 10\nsurface_elements_per_contact_radius = 20"),
+            "{file}: defaults are written out"
+        );
     }
     assert!(tried >= 10, "only {tried} cases");
 }

@@ -127,10 +127,20 @@ fn elements_set_by_themselves_are_those_at_the_surface_too() {
     assert_eq!(mesh(&text, &["mesh.elements_per_contact_radius=8"]), (8, 8));
     assert_eq!(mesh(&text, &["mesh.elements_per_contact_radius=8", "mesh.surface_elements_per_contact_radius=16"]), (8, 16));
     assert_eq!(mesh(&text, &["mesh.surface_elements_per_contact_radius=12", "mesh.elements_per_contact_radius=12"]), (12, 12));
-    assert_eq!(mesh(IDEAL, &["mesh.surface_elements_per_contact_radius=32"]), (16, 32));
+    assert_eq!((mesh(IDEAL, &[]), mesh(IDEAL, &["mesh.elements_per_contact_radius=16"])), ((10, 20), (16, 16)));
+    assert_eq!(mesh(IDEAL, &["mesh.surface_elements_per_contact_radius=40"]), (10, 40));
+    assert_eq!(mesh(IDEAL, &["mesh.surface_elements_per_contact_radius=10"]), (10, 10));
+    let alone = format!("{IDEAL}\n[mesh]\nelements_per_contact_radius = 16\n");
+    assert_eq!(mesh(&alone, &[]), (16, 16));
     // What is written out is read as it was.
-    let written = Case::parse(IDEAL, "", &["mesh.surface_elements_per_contact_radius=32".to_owned()]).expect("a case").to_toml();
-    assert_eq!(mesh(&written, &[]), (16, 32));
+    for (setting, expected) in
+        [("surface_elements_per_contact_radius=40", (10, 40)), ("elements_per_contact_radius=16", (16, 16))]
+    {
+        let written = Case::parse(IDEAL, "", &[format!("mesh.{setting}")]).expect("a case").to_toml();
+        assert_eq!(mesh(&written, &[]), expected);
+    }
+    let written = Case::parse(IDEAL, "", &[]).expect("a case").to_toml();
+    assert_eq!(mesh(&written, &[]), (10, 20));
     assert_eq!(mesh(&written, &["mesh.elements_per_contact_radius=4"]), (4, 4));
     let error =
         Case::parse(&text, "case.toml", &["mesh.surface_elements_per_contact_radius=16".to_owned()]).unwrap_err().to_string();

@@ -137,7 +137,7 @@ fn write_deck(Arguments { case, out, set, settings }: &Arguments) -> Result<Stri
     let case = Case::load(case, set)?;
     let problem = Problem::new(&case)?;
     if problem.model.mesh.hanging.iter().any(|hanging| !hanging.is_none()) {
-        return Err("mesh.surface_elements_per_contact_radius: corners that hang are not written in a deck; leave it out".into());
+        return Err("mesh: corners that hang are not written in a deck; give elements_per_contact_radius alone".into());
     }
     std::fs::write(out, deck(&case, &problem, settings)?).map_err(|error| format!("{}: {error}", out.display()))?;
     let mesh = &problem.model.mesh;

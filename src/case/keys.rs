@@ -272,15 +272,20 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "4 to 32",
-        meaning: "elements along the contact radius; 8 is quick, 16 gives F_N to 0.5 %; the time grows as the 2.5th power",
-        example: "16",
-        ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("16"))
+        meaning: "elements along the contact radius; given alone, at the surface too: 8 is then quick; the time grows as the 2.5th power",
+        example: "10",
+        ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("10"))
     },
     Key {
         range: "1, 2, 4 or 8 times elements_per_contact_radius, at most 64",
         meaning: "the same at the surface, where elements are halved once, twice or three times in all directions",
-        example: "16",
-        ..key("mesh", "surface_elements_per_contact_radius", Whole(4, 64), Optional("as many as inside"))
+        example: "20",
+        ..key(
+            "mesh",
+            "surface_elements_per_contact_radius",
+            Whole(4, 64),
+            Optional("20, but as many as inside where these are given"),
+        )
     },
     Key {
         range: "1.1 to 3",
@@ -312,7 +317,7 @@ pub const KEYS: &[Key] = &[
         range: "1 to 100000",
         meaning: "load steps of a press from first touch; a press that goes on from there takes its share and two more",
         example: "26",
-        ..key("solver", "press_steps", Whole(1, 100_000), Optional("as many as the mesh asks for, 26 at 16 elements"))
+        ..key("solver", "press_steps", Whole(1, 100_000), Optional("as many as the mesh asks for, 25 on the default one"))
     },
     Key {
         range: "1 to 100000",

@@ -230,7 +230,7 @@ impl Case {
 pub struct Mesh {
     /// Elements along the contact radius, 4 to 32.
     pub elements_per_contact_radius: usize,
-    /// The same at the surface: once, twice, four or eight times as many; by default as many.
+    /// The same at the surface: once, twice, four or eight times as many; `None` for as many.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface_elements_per_contact_radius: Option<usize>,
     /// Radius of the finely meshed zone over the contact radius, 1.1 to 3.
@@ -345,7 +345,12 @@ impl Fields {
 
 impl Default for Mesh {
     fn default() -> Self {
-        Self { elements_per_contact_radius: 16, surface_elements_per_contact_radius: None, fine_zone: 1.3, contact_radius: None }
+        Self {
+            elements_per_contact_radius: 10,
+            surface_elements_per_contact_radius: Some(20),
+            fine_zone: 1.3,
+            contact_radius: None,
+        }
     }
 }
 

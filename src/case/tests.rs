@@ -23,8 +23,8 @@ fn the_reference_case_reads_with_the_documented_defaults() {
         material: Material { youngs_modulus: 200e3, poissons_ratio: 0.3, hardening: Hardening::Ideal { yield_stress: 400.0 } },
         contact: Contact { friction: Friction::Coefficient(0.3) },
         mesh: Mesh {
-            elements_per_contact_radius: 16,
-            surface_elements_per_contact_radius: None,
+            elements_per_contact_radius: 10,
+            surface_elements_per_contact_radius: Some(20),
             fine_zone: 1.3,
             contact_radius: None,
         },

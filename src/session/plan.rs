@@ -103,7 +103,7 @@ mod tests {
         let case = Case::parse(text, "reversal.toml", &[]).expect("a case");
         let device = Description { device: "CPU (2 threads)".to_owned(), precision: "f64" };
         let said = "press to h = 0.02, shear to 0.002, shear to -0.002, press to h = 0.025, 2 more segments; mu = 0.3; \
-                    16 elements along the contact radius; on CPU (2 threads) in f64";
+                    10 elements along the contact radius and 20 at the surface; on CPU (2 threads) in f64";
         assert_eq!(plan(&case, &device), said);
         let case = Case::parse(text, "", &["path=[{indentation=0.01},{release=0.5}]".into(), "contact.friction=stick".into()]);
         assert!(plan(&case.expect("a case"), &device).starts_with("press to h = 0.01, release to 0.5 F_N; full stick; "));

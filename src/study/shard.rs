@@ -139,7 +139,7 @@ mod tests {
         let text = include_str!("../../fixtures/cases/ideal.toml");
         let with = |set: &str| cost(&Case::parse(text, "ideal.toml", &[set.to_owned()]).expect("a case"));
         let base = with("contact.friction=0.3");
-        assert!(with("mesh.elements_per_contact_radius=20") > base);
+        assert!(with("mesh.elements_per_contact_radius=24") > base);
         assert!(with("material.hardening.yield_stress=100") > base);
         assert!(with("contact.friction=0.1") < base);
         assert_eq!(by_descending_cost(&[1.0, 3.0, 1.0, 2.0]), [1, 3, 0, 2]);

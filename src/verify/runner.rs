@@ -24,7 +24,7 @@ pub enum Level {
     /// Meshes with which all checks take about a minute.
     #[default]
     Quick,
-    /// The mesh that a case has by default, or the check's own where that is finer.
+    /// [`FINE`] elements, or the check's own where these are more.
     Fine,
 }
 
