@@ -41,8 +41,8 @@ fn a_force_that_is_held_by_one_shear_after_the_other_does_not_creep() {
 /// that throw it back.
 #[test]
 fn a_force_is_held_in_deep_plasticity_on_a_fine_surface() {
-    let text = "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 10630.0\npoissons_ratio = 0.21\n[material.hardening]\nlaw = \"linear\"\n\
-         yield_stress = 1.0\nmodulus = 6.68\n[contact]\nfriction = 0.337\n[mesh]\n\
+    let text = "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 10630.0\npoissons_ratio = 0.21\n[material.hardening]\n\
+         law = \"linear\"\nyield_stress = 1.0\nmodulus = 6.68\n[contact]\nfriction = 0.337\n[mesh]\n\
          elements_per_contact_radius = 4\nsurface_elements_per_contact_radius = 8\n[[path]]\nindentation = 0.0592\n\
          [[path]]\nshear = 8.6e-4\nhold = \"normal-force\"\n";
     let rows = rows(text, &[]);

@@ -349,7 +349,8 @@ impl Newton {
             if iteration >= most && !self.is_about_to_converge(&report) || iteration == 2 * most {
                 break;
             }
-            let eta = self.forcing(previous).min(if control.normal_force.is_some() { self.settings.held_linear } else { 1.0 });
+            let loosest = control.normal_force.map_or(1.0, |_| self.settings.held_linear);
+            let eta = self.forcing(previous).min(loosest);
             let mut times = std::mem::take(&mut self.times);
             let corrected = self.iterate().correct(case, Asked { control, eta, first: iteration == 0 }, &mut times);
             self.times = times;

@@ -271,7 +271,8 @@ fn the_table_has_the_promised_columns_and_normalised_variables() {
     assert_eq!(
         header[6..].join(","),
         "E,nu,sigma_Y,mu,R,h0,a0,F_N0,F_N_slip,F_T_max,delta_T_90,delta_T_95,delta_T_slip,k_T0,sigma_rep,Lambda,Hbar,c2,\
-         F_T_max_limit,F_N0_error,F_T_max_error,elements_per_contact_radius,surface_elements_per_contact_radius,newton_iterations,cutbacks,cpu_s"
+         F_T_max_limit,F_N0_error,F_T_max_error,elements_per_contact_radius,\
+         surface_elements_per_contact_radius,newton_iterations,cutbacks,cpu_s"
     );
     let records: Vec<csv::StringRecord> = reader.records().map(|record| record.expect("a row")).collect();
     let column = |row: usize, name: &str| &records[row][header.iter().position(|column| column == name).expect("a column")];

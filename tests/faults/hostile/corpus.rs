@@ -118,7 +118,8 @@ pub fn study(folder: &Path) -> Vec<u8> {
             fs::copy(whole().join(file), case.join(file)).expect("a copy");
         }
     }
-    let row = "200000.0,0.3,400.0,0.3,1.0,0.01,0.14,70.0,50.0,15.0,0.0015,0.0018,0.002,30000.0,400.0,60.0,2.8,1.1,15.2,0.9,0.4,4,8,100,0,1.5";
+    let row = "200000.0,0.3,400.0,0.3,1.0,0.01,0.14,70.0,50.0,15.0,0.0015,0.0018,0.002,30000.0,\
+               400.0,60.0,2.8,1.1,15.2,0.9,0.4,4,8,100,0,1.5";
     let head = "case,directory,status,reason,contact.friction,E,nu,sigma_Y,mu,R,h0,a0,F_N0,F_N_slip,F_T_max,delta_T_90,\
                 delta_T_95,delta_T_slip,k_T0,sigma_rep,Lambda,Hbar,c2,F_T_max_limit,F_N0_error,F_T_max_error,\
                 elements_per_contact_radius,surface_elements_per_contact_radius,newton_iterations,cutbacks,cpu_s";
