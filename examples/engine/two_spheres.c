@@ -18,7 +18,7 @@ static void kick(asperity_body *s, double inertia, const double force[3], const 
 
 int main(int argc, char **argv) {
     static asperity_table table;
-    asperity_law3d law = {&table, 200e3, 0.0};       /* E in MPa; lengths in mm, so masses in tonnes */
+    asperity_law3d law;                              /* E in MPa; lengths in mm, so masses in tonnes */
     asperity_body i = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 1.0, 3.3e-8}, j = i;
     asperity_contact contact = {0};                  /* all zero: before first contact */
     asperity_forces out = {0};
@@ -31,6 +31,9 @@ int main(int argc, char **argv) {
     if (table.plane) {
         printf("the table is of a sphere on a plane; it stands in for the pair\n");
         asperity_stand_in(&table);
+    }
+    if (asperity_pair_law(&law, &table, 200e3, 1.0) != ASPERITY_LAW_FITS) {
+        return 2;
     }
     j.position[2] = 2.001;
     j.velocity[0] = 300.0; /* mm/s */

@@ -6,7 +6,7 @@ use super::press::{press, taken};
 use super::shear::shear;
 use super::sliders::bounded;
 use super::virgin::{ContactParameters, SLIDERS};
-use super::yielding::force_at;
+use super::yielding::{MOST, force_at};
 
 /// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
 /// file as it is.
@@ -56,6 +56,21 @@ pub struct ContactResponse {
 }
 
 impl ContactState {
+    /// Whether it is a state that an update may have left: all its numbers finite, and each within
+    /// its bounds.
+    pub fn is_sound(&self) -> bool {
+        let positive = |value: f64| value.is_finite() && value >= 0.0;
+        let within = |value: f64, most: f64| (0.0..=most).contains(&value);
+        self.h.is_finite()
+            && self.approach.is_finite()
+            && self.deflection.iter().flatten().all(|q| q.is_finite())
+            && positive(self.h_max)
+            && positive(self.reach)
+            && within(self.x, MOST)
+            && within(self.sheared, MOST)
+            && within(self.reversed, 1.0)
+    }
+
     /// Turns the memory into axes that are turned by the angle whose cosine and sine are given: the
     /// new components of a vector v are (c v0 + s v1, -s v0 + c v1). Call it when the tangent frame
     /// follows the contact's normal.
@@ -69,11 +84,12 @@ impl ContactState {
 impl ContactParameters {
     /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in
     /// the tangent frame), the press first. A pure function of the state before. Where `h` or the
-    /// increment is not finite, nothing in the answer is a number and the state stays as it was.
+    /// increment is not finite, or the state is not [sound](ContactState::is_sound), nothing in the
+    /// answer is a number and the state stays as it was.
     pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
         let mut next = *state;
         let mut out = ContactResponse::default();
-        if !(h.is_finite() && increment[0].is_finite() && increment[1].is_finite()) {
+        if !(h.is_finite() && increment[0].is_finite() && increment[1].is_finite() && state.is_sound()) {
             let nan = f64::NAN;
             out = ContactResponse {
                 f_n: nan,
@@ -112,7 +128,11 @@ impl ContactParameters {
     }
 
     /// Elastic energy that the contact stores, force times length: no path gives back more than it.
+    /// No number where the state is not [sound](ContactState::is_sound).
     pub fn stored_energy(&self, state: &ContactState) -> f64 {
+        if !state.is_sound() {
+            return f64::NAN;
+        }
         if !(state.h_max > 0.0) || state.approach <= 0.0 {
             return 0.0;
         }

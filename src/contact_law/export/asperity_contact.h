@@ -26,7 +26,9 @@
 #include <stdint.h>
 #include <string.h>
 #ifndef ASPERITY_NO_FILES
+#include <locale.h>
 #include <stdio.h>
+#include <stdlib.h>
 #endif
 #else
 #define ASPERITY_NO_FILES
@@ -382,17 +384,21 @@ ASPERITY_FN asperity_real asperity_power(asperity_real base, asperity_real expon
     return base > ASPERITY_R(0.0) ? asperity_exponential(exponent * asperity_logarithm(base)) : ASPERITY_R(0.0);
 }
 
-/* ln(a/b), a, b > 0: by its series where they are near to each other, as from one step of time to the next. */
-ASPERITY_FN asperity_real asperity_log_ratio(asperity_real a, asperity_real b) {
-    asperity_real z = (a - b) / b;
-    return ASPERITY_ABS(z) > ASPERITY_R(0.015625) ? ASPERITY_LOG(a / b) : asperity_log_series(z);
-}
-
 /* Whether a number is finite, also where the compiler was told that all are. */
 ASPERITY_FN int asperity_is_finite(asperity_real x) {
     asperity_bits bits;
     memcpy(&bits, &x, sizeof bits);
     return (bits & ASPERITY_INFINITE_BITS) != ASPERITY_INFINITE_BITS;
+}
+
+/* ln(a/b), a, b > 0: by its series where they are near to each other, as from one step of time to the next. */
+ASPERITY_FN asperity_real asperity_log_ratio(asperity_real a, asperity_real b) {
+    asperity_real z = (a - b) / b, ratio;
+    if (ASPERITY_ABS(z) <= ASPERITY_R(0.015625)) {
+        return asperity_log_series(z);
+    }
+    ratio = a / b;
+    return ratio > ASPERITY_R(0.0) && asperity_is_finite(ratio) ? ASPERITY_LOG(ratio) : ASPERITY_LOG(a) - ASPERITY_LOG(b);
 }
 
 /* A NaN that no compiler folds away. */
@@ -485,8 +491,8 @@ ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h,
             grown[c] = hertz[c] * log_h;
         }
         slope = hertz[0];
-    } else if (position >= last) {
-        /* Logarithms go on straight, the others stay. */
+    } else if (!(position < last)) {
+        /* Logarithms go on straight, the others stay. What is no number comes here too. */
         i = ASPERITY_KNOTS - 1;
         for (c = 0; c < ASPERITY_COLUMNS; c++) {
             grown[c] = c < 4 ? t->knots[i][1][c] * (position - last) : ASPERITY_R(0.0);
@@ -1486,8 +1492,17 @@ ASPERITY_FN void asperity_end(const asperity_work *from, asperity_state *to) {
     }
 }
 
+/* Whether a state is one that the update may have left: all its numbers finite, and each within its bounds. */
+ASPERITY_FN int asperity_is_sound(const asperity_state *s) {
+    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
+    /* A sum of products is finite only if all of its factors are. */
+    return asperity_is_finite(s->h) && asperity_is_finite(s->approach) && asperity_is_finite(s->h_max + s->reach + s->x + s->sheared + s->reversed) &&
+           asperity_is_finite(asperity_sum(s->deflection[0], s->deflection[1])) && s->h_max >= zero && s->reach >= zero && s->x >= zero &&
+           s->x <= ASPERITY_ALL_LOST && s->sheared >= zero && s->sheared <= ASPERITY_ALL_LOST && s->reversed >= zero && s->reversed <= one;
+}
+
 /* Moves a contact to the indentation h and along the plane by `increment`, the press first. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
- * nothing in the answer is a number and the state stays as it was. */
+ * or the state is not sound, nothing in the answer is a number and the state stays as it was. */
 ASPERITY_FN void asperity_update(
     const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_real h, const asperity_real increment[2],
     asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
@@ -1507,7 +1522,7 @@ ASPERITY_FN void asperity_update(
     h /= radius; /* not by its inverse: an unloading takes small differences of it */
     d0 = increment[0] * inverse;
     d1 = increment[1] * inverse;
-    if (!asperity_is_finite(h) || !asperity_is_finite(d0) || !asperity_is_finite(d1)) {
+    if (!asperity_is_finite(h) || !asperity_is_finite(d0) || !asperity_is_finite(d1) || !asperity_is_sound(state)) {
         asperity_real bad = asperity_no_number();
         out->f_n = out->f_t[0] = out->f_t[1] = out->stiffness = out->stored = out->plastic = out->friction = bad;
         if (tangent) {
@@ -1669,11 +1684,40 @@ ASPERITY_FN void asperity_update(
 ASPERITY_FN asperity_real asperity_stored_energy(const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state) {
     asperity_curve v;
     asperity_state s = *state;
+    if (!asperity_is_sound(state)) {
+        return asperity_no_number();
+    }
     if (!(s.h_max > ASPERITY_R(0.0)) || s.approach <= ASPERITY_R(0.0)) {
         return ASPERITY_R(0.0);
     }
     asperity_first_loading(t, s.h_max, 0, &v);
     return modulus * radius * radius * radius * asperity_energy(&v, asperity_force_at(&v, s.reach, asperity_logarithm(s.approach / s.reach)), s.approach, s.deflection);
+}
+
+/* A number by which a table is told from others, for restart files: FNV-1a of the bits of all that it has, plane or pair included. */
+ASPERITY_FN uint64_t asperity_mix(uint64_t hash, const void *numbers, size_t bytes) {
+    const unsigned char *at = (const unsigned char *)numbers;
+    size_t i;
+    for (i = 0; i < bytes; i++) {
+        hash = (hash ^ at[i]) * 0x100000001b3ull;
+    }
+    return hash;
+}
+
+ASPERITY_FN uint64_t asperity_fingerprint(const asperity_table *t) {
+    uint64_t hash = asperity_mix(0xcbf29ce484222325ull, &t->plane, sizeof t->plane);
+    hash = asperity_mix(hash, &t->form, sizeof t->form);
+    hash = asperity_mix(hash, &t->share, sizeof t->share);
+    hash = asperity_mix(hash, &t->poissons_ratio, sizeof t->poissons_ratio);
+    hash = asperity_mix(hash, &t->friction, sizeof t->friction);
+    hash = asperity_mix(hash, &t->effective_modulus, sizeof t->effective_modulus);
+    hash = asperity_mix(hash, &t->effective_radius, sizeof t->effective_radius);
+    hash = asperity_mix(hash, &t->deepest, sizeof t->deepest);
+    hash = asperity_mix(hash, &t->first, sizeof t->first);
+    hash = asperity_mix(hash, &t->log_step, sizeof t->log_step);
+    hash = asperity_mix(hash, &t->gentle, sizeof t->gentle);
+    hash = asperity_mix(hash, t->knots, sizeof t->knots);
+    return asperity_mix(hash, t->shapes, sizeof t->shapes);
 }
 
 /* Whether a contact has been deeper than the law was made for. */
@@ -1682,29 +1726,51 @@ ASPERITY_FN int asperity_out_of_range(const asperity_table *t, const asperity_st
 }
 
 #ifndef ASPERITY_NO_FILES
-/* One line "name value" of a table's file. */
-static inline int asperity_read_number(FILE *file, const char *name, asperity_real *value) {
-    char found[32];
+/* A number as the files have it, whatever the decimal point of the program's locale is. Whether there was one, and nothing else in the word. */
+static inline int asperity_scan_number(FILE *file, asperity_real *value) {
+    char word[48], local[64], *end, *dot;
+    const char *point = localeconv()->decimal_point;
     double number;
-    if (fscanf(file, "%31s %lf", found, &number) != 2 || strcmp(found, name) != 0) {
+    if (fscanf(file, "%47s", word) != 1) {
         return 0;
     }
+    dot = strchr(word, '.');
+    if (dot && strcmp(point, ".") != 0 && strlen(point) < sizeof local - sizeof word) {
+        size_t before = (size_t)(dot - word), size = strlen(point);
+        memcpy(local, word, before);
+        memcpy(local + before, point, size);
+        memcpy(local + before + size, dot + 1, strlen(dot + 1) + 1);
+    } else {
+        memcpy(local, word, sizeof word);
+    }
+    number = strtod(local, &end);
     *value = ASPERITY_R(number);
-    return asperity_is_finite(*value);
+    return end != local && *end == '\0' && asperity_is_finite(*value);
+}
+
+/* One line "name value" of a table's file. */
+static inline int asperity_scan_named(FILE *file, const char *name, asperity_real *value) {
+    char found[32];
+    return fscanf(file, "%31s", found) == 1 && strcmp(found, name) == 0 && asperity_scan_number(file, value);
+}
+
+static inline int asperity_scan_word(FILE *file, const char *word) {
+    char found[32];
+    return fscanf(file, "%31s", found) == 1 && strcmp(found, word) == 0;
 }
 
 static inline int asperity_is_within(asperity_real x, double least, double most) {
-    return (double)x >= least && (double)x <= most; /* not, if it is no number */
+    return asperity_is_finite(x) && (double)x >= least && (double)x <= most;
 }
 
 /* Whether the numbers of a table are such that the update may count on them. */
-static inline int asperity_is_sound(const asperity_table *t) {
+static inline int asperity_is_sound_table(const asperity_table *t) {
     int i, j, k;
-    int good = asperity_is_within(t->share, 1e-6, 1e6) && asperity_is_within(t->poissons_ratio, -1.0, 0.5) &&
-               asperity_is_within(t->friction, 0.0, 1e9) && asperity_is_within(t->effective_modulus, 1e-30, 1e30) &&
-               asperity_is_within(t->effective_radius, 1e-30, 1e30) && asperity_is_within(t->deepest, 0.0, 10.0) &&
-               asperity_is_within(t->first, 1e-30, 10.0) && asperity_is_within(t->log_step, 1e-6, 10.0) &&
-               asperity_is_within(t->gentle, -1e9, 1e9);
+    int good = (t->plane == 0 || t->plane == 1) && t->form >= 0 && t->form <= 2 && asperity_is_within(t->share, 1e-6, 1e6) &&
+               asperity_is_within(t->poissons_ratio, -1.0, 0.5) && asperity_is_within(t->friction, 0.0, 1e9) &&
+               asperity_is_within(t->effective_modulus, 1e-30, 1e30) && asperity_is_within(t->effective_radius, 1e-30, 1e30) &&
+               asperity_is_within(t->deepest, 0.0, 10.0) && asperity_is_within(t->first, 1e-30, 10.0) &&
+               asperity_is_within(t->log_step, 1e-6, 10.0) && asperity_is_within(t->gentle, -1e9, 1e9);
     for (i = 0; good && i < ASPERITY_KNOTS; i++) {
         for (j = 0; good && j < 4; j++) {
             for (k = 0; good && k < ASPERITY_COLUMNS; k++) {
@@ -1727,8 +1793,8 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
     char body[32];
     asperity_real form;
     int version, i, j, k, good;
-    double number;
     FILE *file = fopen(path, "r");
+    memset(t, 0, sizeof *t);
     if (!file) {
         return 1;
     }
@@ -1737,35 +1803,33 @@ static inline int asperity_read_table(const char *path, asperity_table *t) {
         return 2;
     }
     t->plane = strcmp(body, "plane") == 0;
-    good = asperity_read_number(file, "share", &t->share) && asperity_read_number(file, "poissons_ratio", &t->poissons_ratio) &&
-           asperity_read_number(file, "friction", &t->friction) && asperity_read_number(file, "effective_modulus", &t->effective_modulus) &&
-           asperity_read_number(file, "effective_radius", &t->effective_radius) &&
-           asperity_read_number(file, "deepest", &t->deepest) && asperity_read_number(file, "form", &form) &&
-           asperity_read_number(file, "first", &t->first) && asperity_read_number(file, "log_step", &t->log_step) &&
-           asperity_read_number(file, "gentle", &t->gentle);
+    good = asperity_scan_named(file, "share", &t->share) && asperity_scan_named(file, "poissons_ratio", &t->poissons_ratio) &&
+           asperity_scan_named(file, "friction", &t->friction) && asperity_scan_named(file, "effective_modulus", &t->effective_modulus) &&
+           asperity_scan_named(file, "effective_radius", &t->effective_radius) &&
+           asperity_scan_named(file, "deepest", &t->deepest) && asperity_scan_named(file, "form", &form) &&
+           asperity_scan_named(file, "first", &t->first) && asperity_scan_named(file, "log_step", &t->log_step) &&
+           asperity_scan_named(file, "gentle", &t->gentle);
     good = good && (form == ASPERITY_R(0.0) || form == ASPERITY_R(1.0) || form == ASPERITY_R(2.0));
     t->form = good ? (int)form : 0;
-    good = good && fscanf(file, " %31s", body) == 1 && strcmp(body, "knots") == 0;
+    good = good && asperity_scan_word(file, "knots");
     for (i = 0; good && i < ASPERITY_KNOTS; i++) {
         for (j = 0; good && j < 4; j++) {
             for (k = 0; good && k < ASPERITY_COLUMNS; k++) {
-                good = fscanf(file, "%lf", &number) == 1;
-                t->knots[i][j][k] = ASPERITY_R(number);
+                good = asperity_scan_number(file, &t->knots[i][j][k]);
             }
         }
     }
-    good = good && fscanf(file, " %31s", body) == 1 && strcmp(body, "shapes") == 0;
+    good = good && asperity_scan_word(file, "shapes");
     for (i = 0; good && i < ASPERITY_LEVELS; i++) {
         for (j = 0; good && j < 2; j++) {
             for (k = 0; good && k < ASPERITY_POINTS; k++) {
-                good = fscanf(file, "%lf", &number) == 1;
-                t->shapes[i][j][k] = ASPERITY_R(number);
+                good = asperity_scan_number(file, &t->shapes[i][j][k]);
             }
         }
     }
-    good = good && fscanf(file, " %31s", body) == 1 && strcmp(body, "end") == 0;
+    good = good && asperity_scan_word(file, "end");
     fclose(file);
-    return good && asperity_is_sound(t) ? 0 : 3;
+    return good && asperity_is_sound_table(t) ? 0 : 3;
 }
 #endif
 

@@ -1,15 +1,22 @@
 /* asperity_contact3d.h: two spheres, or a sphere and a plane wall, in three dimensions: what an engine wraps round the update of asperity_contact.h.
  *
- * A contact's memory is one asperity_contact: 43 numbers, all zero before first contact; copy it, write it to a restart file as it is. Each step, for each pair that is kept:
+ * Once, for each pair of materials and for each material and wall; what does not fit together is refused here, with a code (ASPERITY_LAW_...):
+ *     asperity_pair_law(&law, &table, E, restitution) != 0 || asperity_wall_law(&wall_law, &wall_table, E, restitution) != 0
+ * A contact's memory is one asperity_contact: 43 numbers, all zero before first contact; copy it, write it to a restart file as it is, with asperity_fingerprint(&table) beside it.
+ * Each step, for each pair that is kept:
  *     asperity_spheres(&law, &i, &j, dt, &contact, &contact, &out);
  * and add out.force_i, out.torque_i, out.force_j, out.torque_j. With `wall` in place of j: asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
  *
  * - The tangent frame is carried along: e1 is stored with the contact, turned by the mean spin of the two bodies and laid into the new tangent plane, e2 = n x e1. Any rigid motion of
- *   the pair gives the same forces.
+ *   the pair gives the same forces, if velocities and places are of one time. With those of the middle of the step a turn by the angle a slips by
+ *   a^3/6 of the distance of the centres.
  * - Exchanged particles: asperity_exchange().
  * - Two radii of one material: R = 2 R_i R_j/(R_i + R_j), as in Hertz's contact, each sphere taking half of the overlap.
- * - A rigid plane wall needs a table of a sphere on a plane, two spheres one of a pair; the other is refused with the flag ASPERITY_WRONG_TABLE and no force. A table of
- *   a plane that is to stand for a pair has to be made into one, by hand: asperity_stand_in().
+ * - A rigid plane wall needs a table of a sphere on a plane, two spheres one of a pair. A table of a plane that is to stand for a pair has to be made into one, by hand:
+ *   asperity_stand_in().
+ * - What has no answer gets none: where the centres coincide, a place, a velocity or the memory is no number, or the table is of the other kind, the forces are no numbers, a flag
+ *   says why, and the memory stays as it was.
+ * - A body that no force moves (frozen, driven) has the mass INFINITY, one of a rigid body the mass of that: damping goes by it.
  */
 #ifndef ASPERITY_CONTACT3D_H
 #define ASPERITY_CONTACT3D_H
@@ -20,19 +27,30 @@
 enum {
     ASPERITY_TOUCHES = 1,
     ASPERITY_OUT_OF_RANGE = 2, /* has been deeper than the law was made for */
-    ASPERITY_WRONG_TABLE = 4
+    ASPERITY_WRONG_TABLE = 4,  /* a wall's table between spheres, or a pair's at a wall: no forces */
+    ASPERITY_NO_NUMBER = 8     /* the centres coincide, or something is no number: no forces */
+};
+
+/* What asperity_pair_law() and asperity_wall_law() return. */
+enum {
+    ASPERITY_LAW_FITS = 0,
+    ASPERITY_LAW_OF_A_WALL = 1, /* the table is of a sphere on a plane */
+    ASPERITY_LAW_OF_A_PAIR = 2, /* the table is of two spheres */
+    ASPERITY_LAW_MODULUS = 3,   /* Young's modulus is not positive or not finite */
+    ASPERITY_LAW_RESTITUTION = 4 /* the restitution coefficient is not from 0.1 to 1 */
 };
 
 /* The law of a pair of materials, in the units of the engine. */
 typedef struct asperity_law3d {
     const asperity_table *table;
-    asperity_real modulus; /* Young's */
-    asperity_real damping; /* of asperity_damping(), 0: none but the law's own losses */
+    asperity_real modulus;    /* Young's */
+    asperity_real damping;    /* of asperity_damping(), 0: none but the law's own losses */
+    asperity_real tangential; /* dashpot along the plane over that across it, 0: none. It is bounded by friction */
 } asperity_law3d;
 
 typedef struct asperity_body {
     asperity_real position[3], velocity[3], spin[3]; /* spin: angular velocity */
-    asperity_real radius, mass;
+    asperity_real radius, mass;                      /* mass: INFINITY of what no force moves */
 } asperity_body;
 
 /* A rigid plane through `point`; the unit normal points to where the spheres are. */
@@ -169,30 +187,110 @@ ASPERITY_FN void asperity_stand_in(asperity_table *table) {
     table->share = ASPERITY_R(0.5);
 }
 
+/* What both kinds of set-up share. */
+ASPERITY_FN int asperity_make_law(asperity_law3d *law, const asperity_table *table, asperity_real modulus, asperity_real restitution) {
+    law->table = table;
+    law->modulus = modulus;
+    law->damping = law->tangential = ASPERITY_R(0.0);
+    if (!asperity_is_finite(modulus) || !(modulus > ASPERITY_R(0.0))) {
+        return ASPERITY_LAW_MODULUS;
+    }
+    if (!asperity_is_finite(restitution) || !(restitution >= ASPERITY_R(0.1) && restitution <= ASPERITY_R(1.0))) {
+        return ASPERITY_LAW_RESTITUTION;
+    }
+    law->damping = restitution < ASPERITY_R(1.0) ? asperity_damping(restitution) : ASPERITY_R(0.0);
+    return ASPERITY_LAW_FITS;
+}
+
+/* The law of two spheres: Young's modulus (of two materials that of the sphere in the table's case), and the restitution coefficient of an impact that stays elastic, 1: no damping. */
+ASPERITY_FN int asperity_pair_law(asperity_law3d *law, const asperity_table *table, asperity_real modulus, asperity_real restitution) {
+    int code = asperity_make_law(law, table, modulus, restitution);
+    return table->plane ? ASPERITY_LAW_OF_A_WALL : code;
+}
+
+/* The same of a sphere and a rigid plane wall. */
+ASPERITY_FN int asperity_wall_law(asperity_law3d *law, const asperity_table *table, asperity_real modulus, asperity_real restitution) {
+    int code = asperity_make_law(law, table, modulus, restitution);
+    return table->plane ? code : ASPERITY_LAW_OF_A_PAIR;
+}
+
+/* The mass of a body against one that does not move. 0, which is no damping, where no force moves it either. */
+ASPERITY_FN asperity_real asperity_damped_mass(asperity_real mass) {
+    return asperity_is_finite(mass) && mass > ASPERITY_R(0.0) ? mass : ASPERITY_R(0.0);
+}
+
+/* The mass of two bodies against each other. */
+ASPERITY_FN asperity_real asperity_effective_mass(asperity_real one, asperity_real other) {
+    if (!asperity_is_finite(one)) {
+        return asperity_damped_mass(other);
+    }
+    if (!asperity_is_finite(other)) {
+        return asperity_damped_mass(one);
+    }
+    return one > ASPERITY_R(0.0) && other > ASPERITY_R(0.0) ? one / (ASPERITY_R(1.0) + one / other) : ASPERITY_R(0.0);
+}
+
+/* No answer, and why. */
+ASPERITY_FN void asperity_no_answer(int flag, const asperity_contact *before, asperity_contact *after, asperity_forces *out) {
+    asperity_real bad = asperity_no_number();
+    int k;
+    for (k = 0; k < 3; k++) {
+        out->force_i[k] = out->torque_i[k] = out->force_j[k] = out->torque_j[k] = bad;
+    }
+    out->f_n = out->f_t = out->overlap = out->stored = out->damped = bad;
+    out->flags = flag;
+    *after = *before;
+}
+
+/* The share of the dashpot d along the plane that friction leaves beside f: as much as keeps the sum within the bound. */
+ASPERITY_FN asperity_real asperity_allowed(const asperity_real f[2], const asperity_real d[2], asperity_real bound) {
+    asperity_real a = d[0] * d[0] + d[1] * d[1], b = f[0] * d[0] + f[1] * d[1], c = f[0] * f[0] + f[1] * f[1] - bound * bound, share;
+    if (!(a > ASPERITY_R(0.0)) || !(c < ASPERITY_R(0.0))) {
+        return ASPERITY_R(0.0);
+    }
+    share = (ASPERITY_SQRT(b * b - a * c) - b) / a;
+    return share < ASPERITY_R(1.0) ? share : ASPERITY_R(1.0);
+}
+
 /* What both kinds of contact do once normal, lever arms and relative velocity are known: n from j to i, v that of i's point of contact relative to j's. */
 ASPERITY_FN void asperity_contact_forces(
     const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real overlap, const asperity_real n[3], const asperity_real v[3],
     const asperity_real spin[3], asperity_real arm_i, asperity_real arm_j, asperity_real dt, const asperity_contact *before, asperity_contact *after, asperity_forces *out) {
     asperity_contact c = *before;
     asperity_response answer;
-    asperity_real e1[3], e2[3], d[2], share = law->table->share, approaching = -asperity_dot(v, n), tangential[3], turn[3], f_n, dashpot = ASPERITY_R(0.0);
+    asperity_real e1[3], e2[3], d[2], along[2], share = law->table->share, approaching = -asperity_dot(v, n), tangential[3], turn[3], f_n, factor, dashpot = ASPERITY_R(0.0);
     int k;
     memset(out, 0, sizeof *out);
     out->overlap = overlap;
     asperity_carry(c.axis, spin, dt, n, e1, e2);
-    d[0] = share * asperity_dot(v, e1) * dt;
-    d[1] = share * asperity_dot(v, e2) * dt;
+    along[0] = asperity_dot(v, e1);
+    along[1] = asperity_dot(v, e2);
+    d[0] = share * along[0] * dt;
+    d[1] = share * along[1] * dt;
     asperity_update(law->table, radius, law->modulus, &c.state, share * overlap, d, &c.state, &answer, NULL);
+    if (!asperity_is_finite(answer.f_n) || !asperity_is_finite(answer.f_t[0] + answer.f_t[1])) {
+        asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
+        return;
+    }
     /* The law's work is that of h and d: of what the centres move, `share`. */
     c.plastic += answer.plastic / share;
     c.slip += answer.friction / share;
     out->stored = answer.stored / share;
     f_n = answer.f_n;
     if (f_n > ASPERITY_R(0.0) && law->damping > ASPERITY_R(0.0)) {
-        dashpot = law->damping * ASPERITY_SQRT(mass * answer.stiffness * share) * approaching;
+        factor = law->damping * ASPERITY_SQRT(mass * answer.stiffness * share);
+        dashpot = factor * approaching;
         dashpot = dashpot < -f_n ? -f_n : dashpot; /* never a pull */
         out->damped = dashpot * approaching * dt;
         f_n += dashpot;
+        if (law->tangential > ASPERITY_R(0.0)) {
+            d[0] = law->tangential * factor * along[0];
+            d[1] = law->tangential * factor * along[1];
+            factor = asperity_allowed(answer.f_t, d, law->table->friction * (f_n < answer.f_n ? f_n : answer.f_n));
+            answer.f_t[0] += factor * d[0];
+            answer.f_t[1] += factor * d[1];
+            out->damped += factor * (d[0] * along[0] + d[1] * along[1]) * dt;
+        }
     }
     out->f_n = f_n;
     out->f_t = ASPERITY_SQRT(answer.f_t[0] * answer.f_t[0] + answer.f_t[1] * answer.f_t[1]);
@@ -217,9 +315,7 @@ ASPERITY_FN void asperity_spheres(
     asperity_real n[3], spin[3], v[3], across_i[3], across_j[3], distance, overlap, arm_i, arm_j, share = law->table->share;
     int k;
     if (law->table->plane) {
-        memset(out, 0, sizeof *out);
-        out->flags = ASPERITY_WRONG_TABLE;
-        *after = *before;
+        asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
         return;
     }
     for (k = 0; k < 3; k++) {
@@ -227,6 +323,10 @@ ASPERITY_FN void asperity_spheres(
         spin[k] = ASPERITY_R(0.5) * (i->spin[k] + j->spin[k]);
     }
     distance = ASPERITY_SQRT(asperity_dot(n, n));
+    if (!asperity_is_finite(distance) || !(distance > ASPERITY_R(0.0))) {
+        asperity_no_answer(ASPERITY_NO_NUMBER, before, after, out);
+        return;
+    }
     overlap = i->radius + j->radius - distance;
     arm_i = i->radius - ASPERITY_R(0.5) * overlap;
     arm_j = j->radius - ASPERITY_R(0.5) * overlap;
@@ -240,7 +340,7 @@ ASPERITY_FN void asperity_spheres(
     }
     /* The table's sphere, whose R* is effective_radius; a plane that stands in is that of each sphere by itself. */
     asperity_contact_forces(
-        law, i->radius * j->radius / (i->radius + j->radius) / (share * law->table->effective_radius), i->mass * j->mass / (i->mass + j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
+        law, i->radius * j->radius / (i->radius + j->radius) / (share * law->table->effective_radius), asperity_effective_mass(i->mass, j->mass), overlap, n, v, spin, arm_i, arm_j, dt, before, after, out);
 }
 
 /* A sphere on a rigid plane; force_j and torque_j are those on the wall, about the point of contact. */
@@ -250,9 +350,7 @@ ASPERITY_FN void asperity_sphere_wall(
     asperity_real spin[3], v[3], across_i[3], across_wall[3], from[3], distance, arm;
     int k;
     if (!law->table->plane) {
-        memset(out, 0, sizeof *out);
-        out->flags = ASPERITY_WRONG_TABLE;
-        *after = *before;
+        asperity_no_answer(ASPERITY_WRONG_TABLE, before, after, out);
         return;
     }
     for (k = 0; k < 3; k++) {
@@ -269,7 +367,7 @@ ASPERITY_FN void asperity_sphere_wall(
     for (k = 0; k < 3; k++) {
         v[k] = i->velocity[k] - arm * across_i[k] - wall->velocity[k] - across_wall[k];
     }
-    asperity_contact_forces(law, i->radius / law->table->effective_radius, i->mass, i->radius - distance, wall->normal, v, spin, arm, ASPERITY_R(0.0), dt, before, after, out);
+    asperity_contact_forces(law, i->radius / law->table->effective_radius, asperity_damped_mass(i->mass), i->radius - distance, wall->normal, v, spin, arm, ASPERITY_R(0.0), dt, before, after, out);
 }
 
 #endif

@@ -24,6 +24,12 @@ class State:
         """An independent copy."""
         return State(self.h, self.h_max, self.approach, self.reach, self.x, self.sheared, self.reversed, [list(q) for q in self.deflection])
 
+    def is_sound(self):
+        """Whether it is a state that an update may have left: all its numbers finite, and each within its bounds."""
+        numbers = [self.h, self.approach, self.h_max, self.reach] + [v for q in self.deflection for v in q]
+        return (all(math.isfinite(v) for v in numbers) and self.h_max >= 0.0 and self.reach >= 0.0 and 0.0 <= self.x <= MOST
+                and 0.0 <= self.sheared <= MOST and 0.0 <= self.reversed <= 1.0)
+
     def to_bytes(self):
         """The memory as bytes."""
         return self._LAYOUT.pack(self.h, self.h_max, self.approach, self.reach, self.x, self.sheared, self.reversed, *(v for q in self.deflection for v in q))

@@ -712,10 +712,10 @@ def rotate(state, cosine, sine):
 def update(p, state, h, increment):
     """Moves a contact to the indentation h and along the plane by `increment`, the press first. Returns the new state and the response.
 
-    Where h or the increment is not finite, nothing in the response is a number and the state stays as it was."""
+    Where h or the increment is not finite, or the state is not sound, nothing in the response is a number and the state stays as it was."""
     s = state.copy()
     out = Response()
-    if not (math.isfinite(h) and math.isfinite(increment[0]) and math.isfinite(increment[1])):
+    if not (math.isfinite(h) and math.isfinite(increment[0]) and math.isfinite(increment[1]) and state.is_sound()):
         nan = math.nan
         out.f_n, out.f_t, out.df_n_dh, out.df_n_ddelta, out.a = nan, [nan, nan], nan, [nan, nan], nan
         out.df_t_ddelta = [[nan, nan], [nan, nan]]
@@ -743,7 +743,9 @@ def update(p, state, h, increment):
 
 
 def stored_energy(p, state):
-    """Elastic energy that the contact stores: no path gives back more than it."""
+    """Elastic energy that the contact stores: no path gives back more than it. No number where the state is not sound."""
+    if not state.is_sound():
+        return math.nan
     if not state.h_max > 0.0 or state.approach <= 0.0:
         return 0.0
     v = virgin(p, state.h_max)

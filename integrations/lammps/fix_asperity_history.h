@@ -1,0 +1,263 @@
+// The memory of the contacts between spheres. Each owned atom has that of all its contacts, so that it moves, is written and read
+// with the atom, whoever owns the partner. Under the GNU General Public License, version 2.
+#ifndef FIX_ASPERITY_HISTORY_H
+#define FIX_ASPERITY_HISTORY_H
+
+#include "asperity_common.h"
+
+namespace LAMMPS_NS {
+
+// A contact as its atom holds it.
+struct Record {
+  tagint partner;
+  bool seen;
+  asperity_contact contact;
+};
+
+class FixAsperityHistory : public Fix {
+ public:
+  std::vector<std::vector<Record>> rows;
+  double total[3] = {0.0, 0.0, 0.0};    // work dissipated by plastic flow, slip and damping, this process's share
+  std::map<std::pair<int, int>, Identity> laws, restarted;    // by types: those of now, those of the restart file
+
+  FixAsperityHistory(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+  {
+    restart_peratom = 1;
+    restart_global = 1;
+    create_attribute = 1;
+    maxexchange_dynamic = 1;
+    maxexchange = 2;
+    FixAsperityHistory::grow_arrays(atom->nmax);
+    atom->add_callback(Atom::GROW);
+    atom->add_callback(Atom::RESTART);
+  }
+
+  ~FixAsperityHistory() override
+  {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+  }
+
+  int setmask() override { return FixConst::PRE_EXCHANGE; }
+
+  // Every command that moves or writes atoms begins with this.
+  void init() override
+  {
+    follow_ids();
+    pre_exchange();
+  }
+  void setup_pre_exchange() override { pre_exchange(); }
+  void pre_exchange() override
+  {
+    size_t most = 0;
+    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, rows[i].size());
+    maxexchange = 2 + (NUMBERS + 1) * static_cast<int>(most);
+  }
+
+  // A sphere that was made in this run is known from now on by the ID that it has.
+  void know(int i)
+  {
+    if (known_as[i] == 0) known_as[i] = atom->tag[i];
+  }
+
+  Record *find(int i, tagint partner)
+  {
+    for (auto &record : rows[i])
+      if (record.partner == partner) return &record;
+    return nullptr;
+  }
+
+  void put(int i, tagint partner, const asperity_contact &contact)
+  {
+    if (Record *record = find(i, partner)) {
+      record->contact = contact;
+      record->seen = true;
+    } else {
+      rows[i].push_back({partner, true, contact});
+    }
+  }
+
+  void drop(int i, tagint partner)
+  {
+    auto &row = rows[i];
+    for (size_t k = 0; k < row.size(); k++)
+      if (row[k].partner == partner) {
+        row[k] = row.back();
+        row.pop_back();
+        return;
+      }
+  }
+
+  // Forgets the contacts that left the neighbour list.
+  void drop_unseen(int i)
+  {
+    auto &row = rows[i];
+    row.erase(std::remove_if(row.begin(), row.end(), [](const Record &record) { return !record.seen; }), row.end());
+  }
+
+  void grow_arrays(int nmax) override
+  {
+    if (rows.size() >= static_cast<size_t>(nmax)) return;
+    rows.resize(nmax);
+    known_as.resize(nmax, 0);
+  }
+  void copy_arrays(int i, int j, int) override
+  {
+    rows[j] = rows[i];
+    known_as[j] = known_as[i];
+  }
+  void set_arrays(int i) override
+  {
+    rows[i].clear();
+    known_as[i] = 0;
+  }
+
+  int pack_exchange(int i, double *buf) override
+  {
+    const int m = pack(i, buf);
+    rows[i].clear();
+    return m;
+  }
+  int unpack_exchange(int i, double *buf) override { return unpack(i, buf); }
+  int size_restart(int i) override { return 3 + (NUMBERS + 1) * static_cast<int>(rows[i].size()); }
+  int maxsize_restart() override
+  {
+    int most = 0, all;
+    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, size_restart(i));
+    MPI_Allreduce(&most, &all, 1, MPI_INT, MPI_MAX, world);
+    return all;
+  }
+  int pack_restart(int i, double *buf) override
+  {
+    const int m = 1 + pack(i, buf + 1);
+    buf[0] = m;
+    return m;
+  }
+  void unpack_restart(int i, int nth) override
+  {
+    double *extra = atom->extra[i];
+    int m = 0;
+    for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
+    if (unpack(i, extra + m + 1) != static_cast<int>(extra[m]) - 1)
+      error->one(FLERR, "pair_style asperity: the contacts of sphere {} in the restart file are damaged", atom->tag[i]);
+  }
+
+  void write_restart(FILE *fp) override
+  {
+    double sum[3];
+    MPI_Allreduce(total, sum, 3, MPI_DOUBLE, MPI_SUM, world);
+    if (comm->me != 0) return;
+    std::vector<double> buf;
+    begin_layout(buf);
+    buf.insert(buf.end(), sum, sum + 3);
+    buf.push_back(static_cast<double>(laws.size()));
+    for (const auto &[types, law] : laws) {
+      double packed[2];
+      law.pack(packed);
+      for (const double number : {static_cast<double>(types.first), static_cast<double>(types.second), packed[0], packed[1]})
+        buf.push_back(number);
+    }
+    write_buffer(fp, buf);
+  }
+  void restart(char *buf) override
+  {
+    require_layout(lmp, buf, "pair_style asperity");
+    double head[7];
+    memcpy(head, buf, sizeof head);
+    if (comm->me == 0) std::copy(head + 3, head + 6, total);
+    for (int k = 0; k < static_cast<int>(head[6]); k++) {
+      double numbers[4];
+      memcpy(numbers, buf + sizeof head + k * sizeof numbers, sizeof numbers);
+      restarted[{static_cast<int>(numbers[0]), static_cast<int>(numbers[1])}].unpack(numbers + 2);
+    }
+  }
+
+ private:
+  std::vector<tagint> known_as;    // the ID by which the contacts of others know an owned sphere; 0 of a new one
+  bigint spheres = -1;             // how many there were when the IDs were last looked at
+
+  int pack(int i, double *buf)
+  {
+    int m = 0;
+    buf[m++] = static_cast<double>(rows[i].size());
+    buf[m++] = ubuf(known_as[i]).d;
+    for (const auto &record : rows[i]) {
+      buf[m++] = ubuf(record.partner).d;
+      memcpy(buf + m, &record.contact, sizeof record.contact);
+      m += NUMBERS;
+    }
+    return m;
+  }
+  int unpack(int i, const double *buf)
+  {
+    int m = 0;
+    const int count = static_cast<int>(buf[m++]);
+    known_as[i] = static_cast<tagint>(ubuf(buf[m++]).i);
+    rows[i].clear();
+    for (int k = 0; k < count; k++) {
+      Record record;
+      record.partner = static_cast<tagint>(ubuf(buf[m++]).i);
+      record.seen = true;
+      memcpy(&record.contact, buf + m, sizeof record.contact);
+      m += NUMBERS;
+      rows[i].push_back(record);
+    }
+    return m;
+  }
+
+  // IDs are LAMMPS' own: delete_atoms and reset_atoms give new ones. A sphere carries the ID by which others know it, and where
+  // that is not the one that it has, all contacts are told the new ones. Those with spheres that are gone go too.
+  void follow_ids()
+  {
+    bigint mine[2] = {atom->nlocal, 0}, all[2];
+    for (int i = 0; i < atom->nlocal; i++) mine[1] += known_as[i] != atom->tag[i];
+    MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all[1] == 0 && all[0] == spheres) return;
+    spheres = all[0];
+
+    const std::vector<std::pair<tagint, tagint>> names = all_names();
+    for (int i = 0; i < atom->nlocal; i++) {
+      auto &row = rows[i];
+      for (size_t k = 0; k < row.size();) {
+        Record &record = row[k];
+        const auto at = std::lower_bound(names.begin(), names.end(), std::make_pair(record.partner, static_cast<tagint>(0)));
+        if (at == names.end() || at->first != record.partner) {
+          row[k] = row.back();
+          row.pop_back();
+          continue;
+        }
+        // The memory is of the two in the order of their IDs.
+        const bool was_first = known_as[i] < record.partner, is_first = atom->tag[i] < at->second;
+        if (was_first != is_first) asperity_exchange(&record.contact);
+        record.partner = at->second;
+        k++;
+      }
+    }
+    for (int i = 0; i < atom->nlocal; i++) known_as[i] = atom->tag[i];
+  }
+
+  // Of every sphere of all processes the ID by which others know it and the one that it has, in the order of the first.
+  std::vector<std::pair<tagint, tagint>> all_names()
+  {
+    std::vector<tagint> mine;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (known_as[i] != 0) {
+        mine.push_back(known_as[i]);
+        mine.push_back(atom->tag[i]);
+      }
+    int count = static_cast<int>(mine.size());
+    std::vector<int> counts(comm->nprocs), starts(comm->nprocs, 0);
+    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+    for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + counts[p - 1];
+    std::vector<tagint> all(starts.back() + counts.back() + 1);
+    MPI_Allgatherv(mine.data(), count, MPI_LMP_TAGINT, all.data(), counts.data(), starts.data(), MPI_LMP_TAGINT, world);
+    std::vector<std::pair<tagint, tagint>> names;
+    for (size_t k = 0; k + 1 < all.size(); k += 2) names.emplace_back(all[k], all[k + 1]);
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
