@@ -1,4 +1,4 @@
-// What the styles of the plug-in share: laws and what tells them apart, and what LAMMPS has by convention (masses, radii to come).
+// What the styles of the plug-in share: laws and what tells them apart, and conventions of LAMMPS (masses, radii to come).
 // Under the GNU General Public License, version 2 (LICENSE beside it), as the file that includes it.
 #ifndef ASPERITY_COMMON_H
 #define ASPERITY_COMMON_H
@@ -74,8 +74,8 @@ struct Identity {
       lmp->error->all(FLERR, "asperity: {} is another table than the one with which the restart file was written, {}. "
                              "Give that one, or say `changed`", law.file, what);
     if (std::abs(law.law.modulus / modulus - 1.0) > 1e-9)
-      lmp->error->all(FLERR, "asperity: Young's modulus is {}, and the restart file was written with {}, {}. Give that one, or say `changed`",
-                      law.law.modulus, modulus, what);
+      lmp->error->all(FLERR, "asperity: Young's modulus is {}, and the restart file was written with {}, {}. "
+                             "Give that one, or say `changed`", law.law.modulus, modulus, what);
   }
 };
 

@@ -23,13 +23,20 @@ struct lammpsplugin_t {
 typedef void (*registration)(lammpsplugin_t *, void *);
 
 static void *make_pair(void *lmp) { return static_cast<Pair *>(new PairAsperity(static_cast<LAMMPS *>(lmp))); }
-static void *make_history(void *lmp, int narg, char **arg) { return static_cast<Fix *>(new FixAsperityHistory(static_cast<LAMMPS *>(lmp), narg, arg)); }
-static void *make_wall(void *lmp, int narg, char **arg) { return static_cast<Fix *>(new FixWallAsperity(static_cast<LAMMPS *>(lmp), narg, arg)); }
+static void *make_history(void *lmp, int narg, char **arg)
+{
+  return static_cast<Fix *>(new FixAsperityHistory(static_cast<LAMMPS *>(lmp), narg, arg));
+}
+static void *make_wall(void *lmp, int narg, char **arg)
+{
+  return static_cast<Fix *>(new FixWallAsperity(static_cast<LAMMPS *>(lmp), narg, arg));
+}
 
 void lammpsplugin_init(void *lmp, void *handle, void *reg)
 {
   auto add = reinterpret_cast<registration>(reg);
-  lammpsplugin_t plugin = {ASPERITY_LAMMPS_VERSION, "pair", "asperity", "computed contact laws of elastic-plastic spheres", "Asperity", {nullptr}, handle};
+  const char *about = "computed contact laws of elastic-plastic spheres";
+  lammpsplugin_t plugin = {ASPERITY_LAMMPS_VERSION, "pair", "asperity", about, "Asperity", {nullptr}, handle};
   plugin.creator.v1 = make_pair;
   add(&plugin, lmp);
   plugin.style = "fix";

@@ -15,8 +15,8 @@ class FixWallAsperity : public Fix {
   Masses masses;
   std::vector<asperity_contact> contacts;
   asperity_wall wall;
-  // Sums of this process: force on the wall, work dissipated by plastic flow, slip and damping, elastic energy, contacts, those out
-  // of range; and the work that the wall has done.
+  // Sums of this process: force on the wall, work dissipated by plastic flow, slip and damping, elastic energy, contacts, those
+  // out of range; and the work that the wall has done.
   double sum[9] = {}, all[9] = {}, done = 0.0, before_force[3] = {};
   int extensive[LENGTH];
   double **peratom = nullptr;
@@ -57,7 +57,8 @@ class FixWallAsperity : public Fix {
         utils::bounds(FLERR, arg[k + 1], 1, atom->ntypes, lo, hi, error);
         last = make_law(lmp, arg[k + 2], arg[k + 3]);
         if (!last->table.plane)
-          error->all(FLERR, "fix wall/asperity: {} is the table of two spheres, and a wall needs that of a sphere on a plane", arg[k + 2]);
+          error->all(FLERR, "fix wall/asperity: {} is the table of two spheres, and a wall needs that of a sphere on a plane",
+                     arg[k + 2]);
         for (int type = lo; type <= hi; type++) laws[type] = last;
         k += 4;
       } else if (strcmp(arg[k], "velocity") == 0 && k + 3 < narg) {
@@ -113,7 +114,8 @@ class FixWallAsperity : public Fix {
       if (mask[i] & groupbit) mine[type[i]] = 1;
     MPI_Allreduce(mine.data(), there.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
     for (int t = 1; t <= atom->ntypes; t++)
-      if (there[t] && !laws[t]) error->all(FLERR, "fix wall/asperity {}: there is no table for spheres of type {}: type {} TABLE E", id, t, t);
+      if (there[t] && !laws[t])
+        error->all(FLERR, "fix wall/asperity {}: there is no table for spheres of type {}: type {} TABLE E", id, t, t);
   }
 
   void setup(int vflag) override { post_force(vflag); }
@@ -171,13 +173,14 @@ class FixWallAsperity : public Fix {
   {
     const int type = atom->type[i];
     if (!laws[type])
-      error->one(FLERR, "fix wall/asperity {}: sphere {} is of type {}, for which there is no table: type {} TABLE E", id, atom->tag[i], type, type);
+      error->one(FLERR, "fix wall/asperity {}: sphere {} is of type {}, for which there is no table: type {} TABLE E", id,
+                 atom->tag[i], type, type);
     asperity_body body;
     fill(body, atom, masses, i);
     asperity_sphere_wall(&laws[type]->law, &body, &wall, dt, &contacts[i], &after, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
-      error->one(FLERR, "fix wall/asperity {}: there is no force on sphere {}: its place, its velocity or the memory of the contact "
-                        "is no number", id, atom->tag[i]);
+      error->one(FLERR, "fix wall/asperity {}: there is no force on sphere {}: its place, its velocity or the memory of the "
+                        "contact is no number", id, atom->tag[i]);
   }
 
   void tally(int i, double distance, const double *force)

@@ -45,8 +45,8 @@ class PairAsperity : public Pair {
   void require_known(int i)
   {
     if (atom->radius[i] > radii[atom->type[i]] * (1.0 + 1e-9))
-      error->one(FLERR, "pair_style asperity: sphere {} of type {} has the radius {}, and the greatest one known when the run began "
-                        "was {}. Say so first: pair_style asperity largest R",
+      error->one(FLERR, "pair_style asperity: sphere {} of type {} has the radius {}, and the greatest one known when the run "
+                        "began was {}. Say so first: pair_style asperity largest R",
                  atom->tag[i], atom->type[i], atom->radius[i], radii[atom->type[i]]);
   }
 
@@ -87,7 +87,8 @@ class PairAsperity : public Pair {
       if (Record *other = history->find(j, tag[i])) other->seen = true;
     }
     if (evflag)
-      ev_tally_xyz(i, j, nlocal, 0, out.stored, 0.0, fi[0], fi[1], fi[2], x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]);
+      ev_tally_xyz(i, j, nlocal, 0, out.stored, 0.0, fi[0], fi[1], fi[2],
+                   x[i][0] - x[j][0], x[i][1] - x[j][1], x[i][2] - x[j][2]);
   }
 
  public:
@@ -153,10 +154,11 @@ class PairAsperity : public Pair {
     }
     if (law->table.plane && !stands_in)
       error->all(FLERR,
-                 "asperity: {} is the table of a sphere on a plane, and types {} and {} need that of two spheres. Make one, or say "
-                 "plane-for-pair to let it stand in",
+                 "asperity: {} is the table of a sphere on a plane, and types {} and {} need that of two spheres. Make one, or "
+                 "say plane-for-pair to let it stand in",
                  arg[2], arg[0], arg[1]);
-    if (!law->table.plane && stands_in) error->all(FLERR, "asperity: {} is the table of a pair; leave plane-for-pair out", arg[2]);
+    if (!law->table.plane && stands_in)
+      error->all(FLERR, "asperity: {} is the table of a pair; leave plane-for-pair out", arg[2]);
     if (stands_in) {
       if (comm->me == 0)
         error->warning(FLERR,

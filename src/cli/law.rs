@@ -1,23 +1,21 @@
 //! `asperity law`: fits a contact law to a study, and applies it to a case.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use clap::builder::PossibleValue;
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 
 use serde_json::{Value, json};
 
 use super::input::Input;
 use super::law_check::{CheckArgs, check_law};
 use super::law_compose::{ComposeArgs, compose_tables};
+use super::law_export::{ExportArgs, export_law};
 use super::law_tabulate::{TabulateArgs, tabulate};
 use super::{CliError, Outcome, print, print_json};
 use crate::case::Case;
 use crate::contact_law::path::PathPoint;
-use crate::law::export::{Language, law_files, law_source};
 use crate::law::file::BUILT_IN;
 use crate::law::formulas::fit::fit;
 use crate::law::formulas::predict::{NormalSource, Prediction, predict};
@@ -25,7 +23,7 @@ use crate::law::formulas::prior::Prior;
 use crate::law::interpolated::{self, Interpolated};
 use crate::law::range::OutOfRange;
 use crate::law::{Law, LawError, LawFile, report};
-use crate::output::{decimal, refuse_foreign, refuse_input, write_own};
+use crate::output::{decimal, refuse_foreign, refuse_input};
 
 /// Make a contact law and use it.
 #[derive(Clone, Debug, Args)]
@@ -52,8 +50,9 @@ pub enum LawCommand {
     Predict(PredictArgs),
     /// Simulate a protocol of paths and print how far the law is from each.
     Check(CheckArgs),
-    /// Export the law for a DEM code: an incremental contact update as C headers with a table or as
-    /// a Python module, to stdout, or with test vectors to a directory.
+    /// Export the law for a DEM code: all that an engine starts from, or an incremental contact
+    /// update as C headers with a table or as a Python module, to stdout, or with test vectors to a
+    /// directory.
     Export(ExportArgs),
 }
 
@@ -100,46 +99,6 @@ pub struct PredictArgs {
     /// Print JSON instead of CSV: the curve, and what lies outside the range of the law.
     #[arg(long)]
     pub json: bool,
-}
-
-/// The arguments of `law export`.
-#[derive(Clone, Debug, Args)]
-pub struct ExportArgs {
-    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`, the law by
-    /// interpolation that comes with the program.
-    #[arg(value_name = "LAW.json")]
-    pub law: PathBuf,
-    /// The material and the friction, for C: with them a law of formulas is written for an engine,
-    /// as a table is; without, as one header for all materials. `-` for standard input.
-    #[arg(value_name = "CASE.toml")]
-    pub case: Option<PathBuf>,
-    /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
-    #[arg(long, value_name = "KEY=VALUE", requires = "case")]
-    pub set: Vec<String>,
-    /// The language.
-    #[arg(long, value_enum, value_name = "LANGUAGE")]
-    pub format: Language,
-    /// Write the files to this directory: for C of one material asperity_law.h (the table as a
-    /// constant), law.asperity (the same, read when an engine starts), asperity_contact.h (the
-    /// update), asperity_contact3d.h (spheres and walls) and a program that checks them; for C of
-    /// all materials asperity_law.h and its checking program; for Python asperity_law.py; both with
-    /// asperity_law_vectors.csv. Existing files of these names are replaced [default:
-    /// asperity_law.h or asperity_law.py alone, to stdout].
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-}
-
-impl ValueEnum for Language {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[Self::C, Self::Python]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(match self {
-            Self::C => PossibleValue::new("c").help("Headers and a table, C99, C++17 and CUDA"),
-            Self::Python => PossibleValue::new("python").help("One module, Python 3.8 or later"),
-        })
-    }
 }
 
 /// Runs a subcommand of `asperity law`.
@@ -286,61 +245,6 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
     let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press)?;
     let point = |p: &crate::law::data::Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };
     Ok((curve.iter().map(point).collect(), out_of_range))
-}
-
-fn export_law(args: &ExportArgs) -> Result<Outcome, CliError> {
-    let input = args.case.as_deref().map(Input::read).transpose()?;
-    let case = input.as_ref().map(|input| input.case(&args.set)).transpose()?;
-    let law = LawFile::read_or_built_in(&args.law)?;
-    let in_case = |source: LawError| match &input {
-        Some(input) => CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) },
-        None => source.into(),
-    };
-    let Some(dir) = &args.out else {
-        print(&law_source(&law, args.format, case.as_ref()).map_err(in_case)?)?;
-        return Ok(Outcome::Done);
-    };
-    let failed = |what| move |source| CliError::Out { dir: dir.clone(), what, source };
-    fs::create_dir_all(dir).map_err(failed("be created"))?;
-    let files = law_files(&law, args.format, case.as_ref()).map_err(in_case)?;
-    files.iter().try_for_each(|file| refuse_foreign(&dir.join(file.name)))?;
-    for file in files {
-        let path = dir.join(file.name);
-        write_own(&path, |out| out.write_all(file.content.as_bytes()))?;
-        print(&format!("{}: {}\n", path.display(), purpose(file.name)))?;
-    }
-    let dir = dir.display();
-    let whole_law = case.is_none() && matches!(law, LawFile::Formulas(_));
-    let (using, checking) = match args.format {
-        Language::C if whole_law => (
-            format!("#include \"asperity_law.h\", and compile with: cc -std=c99 -I {dir} YOURS.c -lm (or c++ -std=c++17)"),
-            "cc -std=c99 -O2 asperity_law_check.c -lm -o check && ./check asperity_law_vectors.csv",
-        ),
-        Language::C => (
-            format!(
-                "#include \"asperity_contact3d.h\" and \"asperity_law.h\", and compile with: cc -std=c99 -I {dir} YOURS.c -lm \
-                 (or c++ -std=c++17)"
-            ),
-            "cc -std=c99 -O2 asperity_contact_check.c -lm -o check && ./check asperity_law_vectors.csv",
-        ),
-        Language::Python => {
-            (format!("import asperity_law, with {dir} on PYTHONPATH"), "python3 asperity_law.py asperity_law_vectors.csv")
-        }
-    };
-    print(&format!("To use it: {using}\nTo check it here: cd {dir} && {checking}\n"))?;
-    Ok(Outcome::Done)
-}
-
-/// What a file of an export is for.
-fn purpose(file: &str) -> &'static str {
-    match file {
-        "asperity_contact.h" => "the update of one contact",
-        "asperity_contact3d.h" => "two spheres, or a sphere and a wall, in three dimensions",
-        "asperity_law.h" | "asperity_law.py" => "the law",
-        "law.asperity" => "the law, to be read when an engine starts",
-        csv if csv.ends_with(".csv") => "paths with the forces that the law gives along them",
-        _ => "compares the law with these",
-    }
 }
 
 /// Says on stderr what of a case lies outside of a law's range.

@@ -14,6 +14,7 @@ pub mod input;
 pub mod law;
 mod law_check;
 mod law_compose;
+mod law_export;
 mod law_tabulate;
 pub mod options;
 pub mod plot;

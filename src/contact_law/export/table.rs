@@ -25,6 +25,8 @@ pub(crate) struct EngineTable {
     pub(crate) deepest: f64,
     /// What it is, in words.
     pub(crate) source: String,
+    /// What of its deepest contact the law was not made for, in words.
+    pub(crate) warnings: Vec<String>,
 }
 
 impl EngineTable {
@@ -84,6 +86,12 @@ impl EngineTable {
         text.push_str("shapes\n");
         self.parameters.shapes.iter().flatten().for_each(|values| text.push_str(&row(values)));
         text.push_str("end\n");
+        // What comes after the end is for readers, and for engines that warn.
+        let _ =
+            writeln!(text, "# {}, h/R up to {}; written by asperity {}", self.source, self.deepest, env!("CARGO_PKG_VERSION"));
+        for warning in &self.warnings {
+            let _ = writeln!(text, "# warning: {warning}");
+        }
         text
     }
 
@@ -94,12 +102,13 @@ impl EngineTable {
         let numbers = self.numbers().map(|(_, value)| number(value));
         let [share, nu, friction, modulus, curvature, deepest, _, first, log_step, gentle] = numbers;
         let mut text = format!(
-            "/* asperity_law.h: {}, h/R up to {}. Written by asperity {}. */\n#ifndef ASPERITY_LAW_H\n#define ASPERITY_LAW_H\n\n\
+            "/* asperity_law.h: {}, h/R up to {}. Written by asperity {}.{} */\n#ifndef ASPERITY_LAW_H\n#define ASPERITY_LAW_H\n\n\
              #include \"asperity_contact.h\"\n\nstatic const asperity_table asperity_law = {{\n    {}, {}, {share}, {nu}, {friction}, {modulus}, {curvature}, \
              {deepest}, {first}, {log_step}, {gentle},\n    {{\n",
             self.source,
             self.deepest,
             env!("CARGO_PKG_VERSION"),
+            self.warnings.iter().map(|warning| format!("\n * Warning: {warning}.")).collect::<String>(),
             u8::from(self.plane),
             self.parameters.form,
         );

@@ -5,6 +5,7 @@ use super::{ExportedFile, plain};
 use crate::case::Case;
 use crate::contact_law::KNOTS;
 use crate::contact_law::export::{EngineTable, HEADER_NAME, check_program, header, header_3d};
+use crate::law::range::OutOfRange;
 use crate::law::table::{Against, is_on_a_flat};
 use crate::law::{LawError, LawFile};
 
@@ -22,6 +23,8 @@ impl Unit {
         if let (Some(case), LawFile::Table(table)) = (case, law) {
             table.covers(case)?;
         }
+        let warnings = case.map_or_else(|| Ok(Vec::new()), |case| beyond_the_law(law, case))?;
+        let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
         let (parameters, deepest, source, case, against) = match (law, case) {
             (LawFile::Table(table), _) => {
                 let case = table.deepest_case()?;
@@ -50,7 +53,9 @@ impl Unit {
                 (parameters, deepest, source, unit, Against::Plane)
             }
             (LawFile::Interpolated(law), Some(case)) => {
-                return Self::new(&LawFile::Table(Box::new(law.compose(case)?)), Some(case));
+                let mut unit = Self::new(&LawFile::Table(Box::new(law.compose(case)?)), Some(case))?;
+                unit.table.warnings = warnings;
+                return Ok(unit);
             }
             (LawFile::Interpolated(_), None) => return Err(LawFile::without_a_case()),
             (LawFile::Formulas(_), None) => {
@@ -63,8 +68,38 @@ impl Unit {
         let plane = is_on_a_flat(&case);
         let body = if plane { Against::Plane.word() } else { against.word() };
         let poissons_ratio = case.material.poissons_ratio;
-        Ok(Self { table: EngineTable { parameters, poissons_ratio, body, plane, deepest, source }, case })
+        Ok(Self { table: EngineTable { parameters, poissons_ratio, body, plane, deepest, source, warnings }, case })
     }
+
+    /// 2 sqrt(m/k) of a contact at its deepest over sqrt(m/(E R)), m being the mass of the sphere
+    /// and the other body immovable: as `asperity_time_step` has it.
+    fn time_step(&self) -> f64 {
+        let virgin = self.table.parameters.virgin(self.table.deepest.max(1e-3));
+        let normal = (virgin.gamma * virgin.point.f_n0 / virgin.depth).max(virgin.slope);
+        2.0 / normal.max(3.5 * virgin.point.k_t).sqrt()
+    }
+}
+
+/// A table for an engine, as a file.
+pub(super) struct TableFile {
+    /// What [`asperity_read_table`](super) reads.
+    pub(super) content: String,
+    /// The critical time step over sqrt(m/(E R)).
+    pub(super) time_step: f64,
+}
+
+/// The table of the contact of a case.
+pub(super) fn table_file(law: &LawFile, case: &Case) -> Result<TableFile, LawError> {
+    let unit = Unit::new(law, Some(case))?;
+    Ok(TableFile { content: unit.table.file(), time_step: unit.time_step() })
+}
+
+/// What of the deepest contact of a case lies outside of what a law was made for.
+///
+/// # Errors
+/// The hardening law of the case.
+pub fn beyond_the_law(law: &LawFile, case: &Case) -> Result<Vec<OutOfRange>, LawError> {
+    case.deepest_press().map_or_else(|| Ok(Vec::new()), |(_, h)| law.out_of_range(case, h))
 }
 
 /// The law as a C constant. A law of formulas needs the case of a material and a friction.
@@ -91,6 +126,6 @@ pub fn engine_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFi
         ("asperity_law_vectors.csv", vectors),
         ("asperity_contact_check.c", check_program("asperity_contact_check.c")),
     ]
-    .map(|(name, content)| ExportedFile { name, content })
+    .map(|(name, content)| ExportedFile { name: name.to_owned(), content })
     .into())
 }

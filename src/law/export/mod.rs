@@ -7,9 +7,11 @@
 //! whole law makes them.
 
 mod engine;
+mod start;
 mod vectors;
 
-pub use engine::{engine_files, engine_source};
+pub use engine::{beyond_the_law, engine_files, engine_source};
+pub use start::{Engine, Start, start_files};
 pub use vectors::{table_vectors, unit_vectors, vectors};
 
 use super::formulas::contact_parameters::LAST;
@@ -41,7 +43,7 @@ pub enum Language {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportedFile {
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// Its content.
     pub content: String,
 }
@@ -59,12 +61,15 @@ pub fn files(law: &Law) -> Vec<ExportedFile> {
 /// # Errors
 /// A table without numbers; what [`engine_files`] has.
 pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
-    match (language, law.of_case(case)?.as_ref()) {
-        (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(header_files(law)),
-        (Language::C, law) => engine_files(law, case),
-        (Language::Python, LawFile::Formulas(law)) => Ok(files(law)),
-        (Language::Python, LawFile::Interpolated(_)) => Err(LawFile::without_a_case()),
-        (Language::Python, LawFile::Table(table)) => Ok(python_files(table_source(table)?, table_vectors(table, vectors::SEED)?)),
+    match (language, law) {
+        (Language::C, LawFile::Formulas(law)) if case.is_none() => return Ok(header_files(law)),
+        (Language::C, law) => return engine_files(law, case),
+        (Language::Python, _) => {}
+    }
+    match law.of_case(case)?.as_ref() {
+        LawFile::Formulas(law) => Ok(files(law)),
+        LawFile::Interpolated(_) => Err(LawFile::without_a_case()),
+        LawFile::Table(table) => Ok(python_files(table_source(table)?, table_vectors(table, vectors::SEED)?)),
     }
 }
 
@@ -73,12 +78,15 @@ pub fn law_files(law: &LawFile, language: Language, case: Option<&Case>) -> Resu
 /// # Errors
 /// As [`law_files`].
 pub fn law_source(law: &LawFile, language: Language, case: Option<&Case>) -> Result<String, LawError> {
-    match (language, law.of_case(case)?.as_ref()) {
-        (Language::C, LawFile::Formulas(law)) if case.is_none() => Ok(in_one_file(&source(law, Language::C))),
-        (Language::C, law) => Ok(in_one_file(&engine_source(law, case)?)),
-        (Language::Python, LawFile::Formulas(law)) => Ok(source(law, Language::Python)),
-        (Language::Python, LawFile::Interpolated(_)) => Err(LawFile::without_a_case()),
-        (Language::Python, LawFile::Table(table)) => table_source(table),
+    match (language, law) {
+        (Language::C, LawFile::Formulas(law)) if case.is_none() => return Ok(in_one_file(&source(law, Language::C))),
+        (Language::C, law) => return Ok(in_one_file(&engine_source(law, case)?)),
+        (Language::Python, _) => {}
+    }
+    match law.of_case(case)?.as_ref() {
+        LawFile::Formulas(law) => Ok(source(law, Language::Python)),
+        LawFile::Interpolated(_) => Err(LawFile::without_a_case()),
+        LawFile::Table(table) => table_source(table),
     }
 }
 
@@ -91,18 +99,18 @@ fn in_one_file(text: &str) -> String {
 /// checks them.
 fn header_files(law: &Law) -> Vec<ExportedFile> {
     vec![
-        ExportedFile { name: "asperity_law.h", content: source(law, Language::C) },
-        ExportedFile { name: HEADER_NAME, content: header() },
-        ExportedFile { name: "asperity_contact3d.h", content: header_3d() },
-        ExportedFile { name: "asperity_law_vectors.csv", content: vectors(law, vectors::SEED) },
-        ExportedFile { name: "asperity_law_check.c", content: check_program("asperity_law_check.c") },
+        ExportedFile { name: "asperity_law.h".to_owned(), content: source(law, Language::C) },
+        ExportedFile { name: HEADER_NAME.to_owned(), content: header() },
+        ExportedFile { name: "asperity_contact3d.h".to_owned(), content: header_3d() },
+        ExportedFile { name: "asperity_law_vectors.csv".to_owned(), content: vectors(law, vectors::SEED) },
+        ExportedFile { name: "asperity_law_check.c".to_owned(), content: check_program("asperity_law_check.c") },
     ]
 }
 
 fn python_files(source: String, vectors: String) -> Vec<ExportedFile> {
     vec![
-        ExportedFile { name: "asperity_law.py", content: source },
-        ExportedFile { name: "asperity_law_vectors.csv", content: vectors },
+        ExportedFile { name: "asperity_law.py".to_owned(), content: source },
+        ExportedFile { name: "asperity_law_vectors.csv".to_owned(), content: vectors },
     ]
 }
 
