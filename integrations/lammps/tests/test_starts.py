@@ -217,16 +217,23 @@ def deleted():
         worst = max(abs(a - b) for one, two in zip(before, after) for a, b in zip(one[4:7], two[4:7])) / size
         moved = sum(one[0] != two[0] for one, two in zip(before, after))
         expect(worst < 1e-12 and len(after) == len(before) and moved > 50, f"delete_atoms (compress), {ranks} rank(s): change of forces, new IDs", f"{worst:.1e} {moved}")
-    # The number of a sphere that is gone is given to another one, in its place: that is a new contact.
-    script = packed() + "run 400\ngroup last id 64\nvariable px equal xcm(last,x)\nvariable py equal xcm(last,y)\nvariable pz equal xcm(last,z)\n" + dump("before")
-    script += ("print \"${px} ${py} ${pz}\"\nvariable gx equal ${px}\nvariable gy equal ${py}\nvariable gz equal ${pz}\ndelete_atoms group last compress no\n"
-               "create_atoms 1 single ${gx} ${gy} ${gz} units box\nset group all diameter 1 density 1\ncompute c all pair/local p5\n"
-               "compute plastic all reduce sum c_c inputs local\nrun 0\nvariable plastic equal c_plastic\nprint \"found $(v_plastic)\"\n" + dump("after"))
+    number_of_one_that_is_gone()
+
+
+def number_of_one_that_is_gone():
+    """A new sphere with the number of one that is gone, in its place: its contacts are new, as if there had been none."""
+    script = packed() + "run 400\ngroup last id 64\n"
+    script += "".join(f"variable m{c} equal xcm(last,{c})\nvariable g{c} equal ${{m{c}}}\n" for c in "xyz")
+    script += ("delete_atoms group last compress no\ncreate_atoms 1 single ${gx} ${gy} ${gz} units box\n"
+               "set group all diameter 1 density 1\nrun 0\n") + dump("after")
     _, dumps = told(script)
-    last = [row for row in dumps["after.dump"] if row[0] == 64][0]
-    before = [row for row in dumps["before.dump"] if row[0] == 64][0]
-    change = max(abs(a - b) for a, b in zip(last[4:7], before[4:7]))
-    expect(change > 1e-6, "a new sphere under the ID of one that is gone has fresh contacts: change", f"{change:.1e}")
+    rows = dumps["after.dump"]
+    start = PACKED.format(pair=PAIR, E=E).split("lattice")[0] + "".join("create_atoms 1 single {:.17g} {:.17g} {:.17g} units box\n".format(*row[1:4]) for row in rows)
+    _, dumps = told(start + "set group all diameter 1 density 1\npair_style asperity\npair_coeff 1 1 " + f"{PAIR} {E}\nrun 0\n" + dump("fresh"))
+    last, fresh = rows[-1], dumps["fresh.dump"][-1]
+    size = max(abs(v) for v in fresh[4:7])
+    worst = max(abs(a - b) for a, b in zip(last[4:7], fresh[4:7])) / size
+    expect(worst < 1e-12 and last[0] == 64, "a new sphere with the ID of one that is gone has new contacts: forces", f"{worst:.1e}")
 
 
 # ---- masses

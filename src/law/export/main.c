@@ -1,6 +1,6 @@
 /* Two spheres that collide obliquely, and a sphere that hits a wall, by a computed law. Written by `asperity law export`.
  *     cc -std=c99 -O2 main.c -o main -lm && ./main
- * Run it where the tables are. Lengths and stresses are in the units of the case.
+ * Keep your changes under another name: the next export replaces this file. Run it where the tables are. Lengths and stresses are in the units of the case.
 @DESCRIBED@
  */
 #include "asperity_contact3d.h"
@@ -43,7 +43,7 @@ static void kick(asperity_body *s, const double force[3], const double torque[3]
     }
 }
 
-/* A sphere comes down with 0.003 sqrt(E/density), and a third of that along, on another one that rests, or on a wall. */
+/* A sphere comes down with 0.0015 sqrt(E/density), and a third of that along, on another one that rests, or on a wall. */
 static int collide(const struct contact *where, const asperity_table *table) {
     const int on_wall = where->second == WALL;
     const struct material *m = &materials[where->first], *other = on_wall ? m : &materials[where->second];
@@ -52,7 +52,7 @@ static int collide(const struct contact *where, const asperity_table *table) {
     asperity_law3d law;
     asperity_contact contact;
     asperity_forces out;
-    double speed = 0.003 * sqrt(m->modulus / m->density), before, after, missing, dt;
+    double speed = 0.0015 * sqrt(m->modulus / m->density), before, after, missing, dt;
     int step, k, touched = 0, flags = 0;
     const int code = on_wall ? asperity_wall_law(&law, table, m->modulus, 1.0) : asperity_pair_law(&law, table, m->modulus, 1.0);
     if (code != ASPERITY_LAW_FITS) {

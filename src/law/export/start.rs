@@ -127,7 +127,8 @@ fn mixed(one: Friction, other: Friction) -> Friction {
 /// Names of the materials that can be parts of the names of files; different ones.
 fn names(cases: &[(String, Case)]) -> Vec<String> {
     let plain = |name: &str| name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect::<String>();
-    let names: Vec<String> = cases.iter().map(|(name, _)| plain(name)).collect();
+    let told = |name: &str| if name.chars().any(|c| c.is_ascii_alphanumeric()) { plain(name) } else { String::new() };
+    let names: Vec<String> = cases.iter().map(|(name, _)| told(name)).collect();
     let different = names.iter().enumerate().all(|(i, name)| !name.is_empty() && name != "in" && !names[..i].contains(name));
     if different {
         return names;
