@@ -291,6 +291,33 @@ def masses():
     expect(abs(e - 0.5) < 0.02, "    of a body of two on a wall", f"{e:.3f}")
 
 
+def tangential():
+    """A sphere that is drawn along a wall at its depth: only a dashpot along the wall takes work that is damping's."""
+    taken = []
+    for words in ("", "tangential 1.0"):
+        lmp = quiet()
+        lmp.commands_string(HEAD + f"""boundary f f f
+region box block -5 5 -5 5 -5 5
+create_box 1 box
+create_atoms 1 single 0 0 0.495
+set group all diameter 1 density 1
+velocity all set 0.01 0 0
+pair_style asperity
+pair_coeff 1 1 {PAIR} {E}
+fix floor all wall/asperity 0 0 0 0 0 1 type 1 {WALL} {E} restitution 0.5 {words}
+fix move all nve/noforce
+timestep 0.002
+run 20
+""")
+        f = lmp.numpy.extract_atom("f")[0]
+        taken.append(lmp.extract_fix("floor", 0, 1, 8))
+        bound = math.hypot(f[0], f[1]) / f[2]
+        lmp.close()
+    expect(taken[0] == 0.0 and taken[1] > 0.0 and bound <= 0.3 * (1 + 1e-12), "a dashpot along a wall: its work, F_T/F_N", f"{taken[1]:.2g} {bound:.3f}")
+    refuses("boundary f f f\nregion box block -5 5 -5 5 -5 5\ncreate_box 1 box\npair_style asperity\n"
+            f"pair_coeff 1 1 {PAIR} {E} restitution 0.5 tangential -1\n", "a tangential damping of -1 times the normal one is not 0 or more")
+
+
 # ---- output, restart, what has no answer
 
 def normalised():
@@ -407,9 +434,9 @@ def input_runs():
 
 if __name__ == "__main__":
     only = os.environ.get("ASPERITY_ONLY", "").split()
-    tests = [lambda: poured(1), lambda: poured(2), larger_ones_poured, deposited, grown, types_without_tables, renumbered, deleted, masses, normalised, restarted,
+    tests = [lambda: poured(1), lambda: poured(2), larger_ones_poured, deposited, grown, types_without_tables, renumbered, deleted, masses, tangential, normalised, restarted,
              no_answers, neighbours, input_runs]
-    names = ["poured", "poured2", "larger", "deposited", "grown", "types", "renumbered", "deleted", "masses", "normalised", "restarted", "no_answers", "neighbours", "input"]
+    names = ["poured", "poured2", "larger", "deposited", "grown", "types", "renumbered", "deleted", "masses", "tangential", "normalised", "restarted", "no_answers", "neighbours", "input"]
     for name, test in zip(names, tests):
         if not only or name in only:
             test()
