@@ -417,19 +417,15 @@ def neighbours():
 # ---- the input that the program writes
 
 def input_runs():
-    """As it is; then with another density, which changes nothing that has no time in it."""
-    said = []
+    """As it is, and with another density."""
     for folder, types, words in ((METAL, 2, []), (ELASTIC, 1, []), (ELASTIC, 1, ["-var", "density1", "7.8e-9"])):
         command = [str(Path(sys.prefix, "bin", "lmp")), "-in", "in.asperity", "-log", "none", "-var", "plugin", PLUGIN, *words]
         run = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=900)
         assert run.returncode == 0, run.stdout[-3000:] + run.stderr[-1000:]
         forces = [float(line.split("F_N = ")[1].split(",")[0]) for line in run.stdout.splitlines() if "F_N = " in line and "$" not in line]
         friction = float(run.stdout.split("F_T = ")[-1].split()[0]) / forces[-1]
-        said.append(forces)
         good = len(forces) == 4 and forces[0] > 0 and forces[1] < 0.1 * forces[0] and 0 < forces[2] < 1.2 * forces[0] and 0 < abs(friction) < 0.31
         expect(good, f"in.asperity, {types} material(s) {' '.join(words[1:])}: pressed, released, pressed; F_T/F_N", " ".join(f"{f:.4g}" for f in forces[:3]) + f" {friction:.2f}")
-    worst = max(abs(a / b - 1) for a, b in zip(said[1], said[2]) if b)
-    expect(worst < 0.05, "    another density: greatest change of these forces", f"{worst:.1e}")
 
 
 if __name__ == "__main__":
