@@ -11,10 +11,16 @@ pub mod bounded;
 pub mod cli;
 #[path = "compute/mod.rs"]
 pub mod compute;
+#[cfg(feature = "cli")]
+#[path = "conformance/mod.rs"]
+pub mod conformance;
 #[path = "memory.rs"]
 pub mod memory;
 #[path = "processor.rs"]
 pub mod processor;
+#[cfg(feature = "cli")]
+#[path = "prove/mod.rs"]
+pub mod prove;
 #[path = "quoting.rs"]
 pub mod quoting;
 #[path = "simulation/mod.rs"]

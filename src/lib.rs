@@ -89,7 +89,7 @@ pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
 
 #[cfg(feature = "cli")]
-pub(crate) use internals::{bench, processor, verify};
+pub(crate) use internals::{bench, conformance, processor, prove, verify};
 pub(crate) use internals::{bounded, compute, contact, element, lanes, linalg, memory, mesh, quoting, real, simulation, solver};
 
 /// The Rust of the documents, which runs.

@@ -1,25 +1,12 @@
-//! One body for every backend: CPU f64, CPU f32, GPU f64, GPU f32.
-//!
-//! The reference is the CPU in f64, fed with what the backend under test was fed with after
-//! rounding. Each backend has to stay within its bound of the reference *and* to obey the equations
-//! by itself, so that a fault shared with the reference shows too.
+//! One body for every backend: CPU f64, CPU f32, GPU f64, GPU f32. The bodies are those of
+//! `asperity prove`, in `src/conformance`; here each is a test of its own.
 
 #[path = "conformance/assembly.rs"]
 mod assembly;
-#[path = "conformance/batch.rs"]
-mod batch;
-#[path = "conformance/contact.rs"]
-mod contact;
-#[path = "conformance/element.rs"]
-mod element;
 #[path = "conformance/iterate.rs"]
 mod iterate;
-#[path = "conformance/kernels.rs"]
-mod kernels;
 #[path = "conformance/linear.rs"]
 mod linear;
-#[path = "conformance/material.rs"]
-mod material;
 #[path = "conformance/memory.rs"]
 mod memory;
 #[path = "conformance/press.rs"]
@@ -27,29 +14,77 @@ mod press;
 
 mod device;
 
-/// Instantiates a body, `fn body<R, B: Backend<R>>(backend: &B)`, for the four backends.
+/// Instantiates bodies of a file, `fn body<R, B: Backend<R>>(backend: &B, bounds: &Bounds)`, for
+/// the four backends.
 macro_rules! for_every_backend {
-    ($($body:ident),+ $(,)?) => {
-        mod cpu_f64 {
-            $(#[test] fn $body() { super::$body::<f64, _>(&super::Cpu, &super::Bounds::F64); })+
-        }
-        mod cpu_f32 {
-            $(#[test] fn $body() { super::$body::<f32, _>(&super::Cpu, &super::Bounds::F32); })+
-        }
-        mod gpu_f64 {
-            $(#[test] fn $body() {
-                let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64);
-                let Some(context) = context else { return };
-                super::$body::<f64, _>(&super::Gpu(context), &super::Bounds::F64);
-            })+
-        }
-        mod gpu_f32 {
-            $(#[test] fn $body() {
-                let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F32);
-                let Some(context) = context else { return };
-                super::$body::<f32, _>(&super::Gpu(context), &super::Bounds::F32);
-            })+
+    ($module:ident, $cpu:path, $gpu:path: $($body:ident),+ $(,)?) => {
+        mod $module {
+            use asperity::internals::conformance::$module as bodies;
+            mod cpu_f64 {
+                $(#[test] fn $body() { super::bodies::$body::<f64, _>(&$cpu, &super::bodies::Bounds::F64); })+
+            }
+            mod cpu_f32 {
+                $(#[test] fn $body() { super::bodies::$body::<f32, _>(&$cpu, &super::bodies::Bounds::F32); })+
+            }
+            mod gpu_f64 {
+                $(#[test] fn $body() {
+                    let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64);
+                    let Some(context) = context else { return };
+                    super::bodies::$body::<f64, _>(&$gpu(context.into()), &super::bodies::Bounds::F64);
+                })+
+            }
+            mod gpu_f32 {
+                $(#[test] fn $body() {
+                    let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F32);
+                    let Some(context) = context else { return };
+                    super::bodies::$body::<f32, _>(&$gpu(context.into()), &super::bodies::Bounds::F32);
+                })+
+            }
         }
     };
 }
-pub(crate) use for_every_backend;
+
+/// Instantiates bodies of a file that compare a device in f64.
+macro_rules! for_a_device {
+    ($module:ident: $($body:ident),+ $(,)?) => {
+        $(#[test] fn $body() {
+            let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64);
+            let Some(context) = context else { return };
+            asperity::internals::conformance::$module::$body(&context.into());
+        })+
+    };
+}
+
+use asperity::internals::conformance::{batch, material as points};
+
+for_every_backend!(material, crate::points::Cpu, crate::points::Gpu:
+    agrees_with_the_reference,
+    obeys_its_equations,
+    reports_what_has_no_answer,
+    is_deterministic,
+    follows_a_cycle,
+);
+for_every_backend!(element, crate::batch::OnCpu, crate::batch::OnGpu:
+    two_bodies_answer_as_each_by_itself,
+    forces_and_tangents_agree,
+    commits_and_energies_agree,
+    a_state_survives_being_taken_and_restored,
+    obeys_its_equations,
+    bad_displacements_are_refused,
+);
+for_every_backend!(contact, crate::batch::OnCpu, crate::batch::OnGpu: rows_agree, nan_is_not_swallowed);
+
+/// What a batch leaves.
+mod whole {
+    for_every_backend!(assembly, crate::batch::OnCpu, crate::batch::OnGpu: a_batch_has_the_bits_of_its_cases_alone);
+}
+
+/// Those of the linear solver by themselves.
+mod kernels {
+    for_a_device!(kernels: every_level_has_the_cpus_matrix_and_its_v_cycle, a_krylov_cycle_obeys_its_equations);
+}
+
+/// Newton's iterates against the CPU's.
+mod iterates {
+    for_a_device!(iterate: a_trial_reads_as_on_the_cpu, a_correction_solves_the_hosts_system);
+}

@@ -7,8 +7,10 @@ use asperity::case::Case;
 use asperity::internals::bench::input;
 use asperity::internals::bench::traffic::Sizes;
 use asperity::internals::compute::Compute;
+use asperity::internals::compute::gpu::adapters::adapters;
 use asperity::internals::compute::gpu::linear::parts::Part;
 use asperity::internals::compute::gpu::material::{self, Answers};
+use asperity::internals::compute::gpu::report::{Surroundings, report};
 use asperity::internals::compute::gpu::shader_sources::{Binding, Kernel, Precision, Source};
 use asperity::internals::compute::gpu::{DeviceRequest, Evaluation, Gpu, GpuContext, GpuError, KernelTimes};
 use asperity::internals::compute::traffic::Traffic;
@@ -21,7 +23,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 static DOUBLE: Kernel = Kernel {
     name: "double",
@@ -60,6 +62,32 @@ fn kernels_of_a_list_run_in_order_and_come_back() {
         let expected: Vec<f32> = start.iter().map(|x| 32.0 * x).collect();
         assert_eq!(double(&context, &start, 5).unwrap(), expected);
     }
+}
+
+/// As a driver that gives a device up after two seconds needs it. The first list goes whole, as
+/// nothing is known before it; the account has it as one submission, like the others.
+#[test]
+fn a_list_after_a_slow_one_goes_in_pieces_with_the_same_numbers() {
+    let Some(context) = device("device_layer", Precision::F32) else { return };
+    let context = context.with_longest_submission(Duration::ZERO);
+    let values = context.array("values", &[1.0f32; 1000]).unwrap();
+    let bound = context.bind(&context.pipeline(&DOUBLE, Precision::F32).unwrap(), vec![values.binding()]).unwrap();
+    let before = context.traffic();
+    for (lists, ahead) in [(1, 0), (2, 4), (3, 8)] {
+        let mut list = context.record();
+        for _ in 0..5 {
+            list.dispatch(&bound, 1000, 1).unwrap();
+        }
+        // Comes before all of the list, however many pieces that has.
+        context.upload(&values, &[3.0; 1000]).unwrap();
+        let mut out = [0.0; 1000];
+        list.submit_and_read(&mut [values.read(0, &mut out).unwrap()]).unwrap();
+        assert_eq!(out, [96.0; 1000]);
+        assert_eq!((context.pieces_sent_ahead(), (context.traffic() - before).submissions), (ahead, lists));
+    }
+    let context = context.with_longest_submission(Duration::from_secs(1000));
+    assert_eq!(double(&context, &[1.0; 10], 5).unwrap(), [32.0; 10]);
+    assert_eq!(context.pieces_sent_ahead(), 0);
 }
 
 /// Of the account that `summary.json` has: every transfer comes with a ticket of eight bytes, by
@@ -328,10 +356,11 @@ impl Observer for Bits {
     }
 }
 
-/// Whole paths, one of which holds a force, with a profile and without: the same bits and the same
-/// traffic; every kernel has its time, and all of them no more than the run.
+/// Whole paths, one of which holds a force, with a profile and without, and in pieces of one kernel
+/// each: the same bits and, with a profile, the same traffic; every kernel has its time, and all of
+/// them no more than the run.
 #[test]
-fn a_profile_changes_no_bit_of_a_run() {
+fn neither_a_profile_nor_pieces_change_a_bit_of_a_run() {
     let Some(_) = device("device_layer", Precision::F64) else { return };
     for name in ["ideal", "normal-force"] {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("fixtures/cases/{name}.toml"));
@@ -345,12 +374,15 @@ fn a_profile_changes_no_bit_of_a_run() {
             assert!(matches!(ending, Ending::Done), "{name}: {ending:?}");
             let product = gpu.solver().unwrap().account(Part::Product);
             let product = bits.1 * 4 * (product.numbers + product.shared);
-            (bits.0, gpu.about().traffic.unwrap(), context.kernel_times(), (begun.elapsed().as_secs_f64(), product as u64))
+            let cost = (begun.elapsed().as_secs_f64(), product as u64, context.pieces_sent_ahead());
+            (bits.0, gpu.about().traffic.unwrap(), context.kernel_times(), cost)
         };
         let open = || GpuContext::open(DeviceRequest::Gpu).unwrap().unwrap();
         let (bits, traffic, nothing, _) = run(open());
         assert!(nothing.is_none() && bits.len() > 1000);
-        let (again, profiled, times, (wall, product)) = run(open().with_profile());
+        let (cut, .., (_, _, ahead)) = run(open().with_longest_submission(Duration::ZERO));
+        assert!(cut == bits && ahead > traffic.submissions, "{name}: other bits in {ahead} pieces");
+        let (again, profiled, times, (wall, product, _)) = run(open().with_profile());
         assert!(again == bits, "{name}: other bits with a profile");
         assert_eq!(profiled, traffic, "{name}");
         let times = times.unwrap();
@@ -418,10 +450,7 @@ fn without_a_driver_the_cpu_is_chosen_and_gpu_is_one_clear_error() {
     assert!(GpuContext::open(DeviceRequest::Auto).unwrap().is_none());
     let error = GpuContext::open(DeviceRequest::Gpu).unwrap_err();
     assert_eq!(error, GpuError::NoAdapter);
-    assert!(
-        asperity::internals::compute::gpu::report::report(&asperity::internals::compute::gpu::adapters::adapters(), None)
-            .contains("No GPU adapter")
-    );
+    assert!(report(&adapters(), &Surroundings::default()).contains("No GPU adapter"));
     println!("child: done");
 }
 

@@ -44,6 +44,7 @@ fn run_case(dir: &Path, case: &str, options: &[&str], environment: &[(&str, &str
     command.arg("run").arg(dir.join("case.toml")).arg("--out").arg(dir.join("out")).arg("--force").args(options);
     command
         .env_remove("ASPERITY_ADAPTER")
+        .env_remove("ASPERITY_DEVICE")
         .env_remove("ASPERITY_GPU_MEMORY")
         .env_remove(LOSE_VARIABLE)
         .envs(environment.iter().copied());
@@ -146,6 +147,62 @@ fn without_a_driver_auto_is_the_cpu_and_gpu_ends_with_2() {
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.starts_with("error: --device gpu: no GPU found") && said.lines().count() == 1, "{said}");
     assert!(!dir.path().join("out").exists());
+}
+
+/// `ASPERITY_DEVICE` stands for an option that is not given.
+#[test]
+#[cfg(target_os = "linux")]
+fn the_variable_names_the_device_where_no_option_does() {
+    let gpu = [("VK_DRIVER_FILES", "/dev/null"), ("VK_ICD_FILENAMES", "/dev/null"), ("ASPERITY_DEVICE", "gpu")];
+    let dir = tempfile::tempdir().unwrap();
+    let output = run(dir.path(), &[], &gpu);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.starts_with("error: ASPERITY_DEVICE=gpu: no GPU found") && said.lines().count() == 1, "{said}");
+    for device in ["cpu", "auto"] {
+        let (summary, _) = done(dir.path(), &["--device", device], &gpu);
+        assert!(summary.device.starts_with("CPU") && summary.messages.is_empty(), "{device}: {summary:?}");
+    }
+    for wrong in ["", "GPU", "cuda"] {
+        let output = run(dir.path(), &["--device", "cpu"], &[("ASPERITY_DEVICE", wrong)]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        let expected = format!("error: ASPERITY_DEVICE={wrong}: is no device. Allowed: auto, cpu, gpu");
+        assert!(said.starts_with(&expected) && said.lines().count() == 1, "{said}");
+    }
+}
+
+#[test]
+fn the_variable_takes_a_device_and_the_cpu() {
+    let Some(context) = device::device("the_variable_takes_a_device_and_the_cpu", Precision::F64) else { return };
+    let dir = tempfile::tempdir().unwrap();
+    let (gpu, _) = done(dir.path(), &[], &[("ASPERITY_DEVICE", "gpu")]);
+    assert!(gpu.device.contains(&context.adapter().name), "{}", gpu.device);
+    let named = [("ASPERITY_DEVICE", "cpu"), ("ASPERITY_ADAPTER", context.adapter().name.as_str())];
+    let (cpu, _) = done(dir.path(), &[], &named);
+    assert!(cpu.device.starts_with("CPU"), "{}", cpu.device);
+}
+
+/// A driver whose library is not there is another thing than none.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_broken_driver_is_told_of_as_such() {
+    let dir = tempfile::tempdir().unwrap();
+    let manifest = dir.path().join("broken_icd.json");
+    let text = r#"{"file_format_version": "1.0.0", "ICD": {"library_path": "/nowhere/libbroken.so", "api_version": "1.3.0"}}"#;
+    fs::write(&manifest, text).unwrap();
+    let manifest = manifest.to_str().unwrap();
+    let broken = [("VK_DRIVER_FILES", manifest), ("VK_ICD_FILENAMES", manifest)];
+    let output = run(dir.path(), &["--device", "gpu"], &broken);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let expected = "error: --device gpu: no GPU can be used: Vulkan's drivers are installed (broken_icd.json) and none of them";
+    assert!(said.contains(expected), "{said}");
+    let (summary, _) = done(dir.path(), &[], &broken);
+    assert!(summary.device.starts_with("CPU"), "{}", summary.device);
+    let devices = Command::new(assert_cmd::cargo::cargo_bin!("asperity")).arg("devices").envs(broken).output().unwrap();
+    let text = String::from_utf8_lossy(&devices.stdout).into_owned();
+    assert!(text.contains("a Vulkan driver is installed (broken_icd.json), and it opens no device"), "{text}");
 }
 
 /// Press and shear on a device that is lost after the sixth step; `ASPERITY_TEST_LOSE_DEVICE_AFTER`

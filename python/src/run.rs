@@ -17,7 +17,9 @@ use crate::wait::{News, Told, wait};
 
 fn device(word: &str) -> PyResult<DeviceChoice> {
     match word {
-        "auto" => Ok(DeviceChoice::Auto),
+        // As the program does where it has no option.
+        "auto" => DeviceChoice::of_environment()
+            .map_err(|value| refused(format!("ASPERITY_DEVICE={value}: is no device. Allowed: auto, cpu, gpu"))),
         "cpu" => Ok(DeviceChoice::Cpu),
         "gpu" => Ok(DeviceChoice::Gpu),
         other => Err(refused(format!("device: is {other:?}. Allowed: \"auto\", \"cpu\", \"gpu\""))),

@@ -68,8 +68,8 @@ impl Header {
             let features = [yes("f64", a.double_precision), yes("timestamps", a.timestamps)];
             let limits = [
                 format!("arrays up to {} MiB in a kernel", a.max_binding >> 20),
-                format!("{} arrays a kernel", a.max_storage_buffers),
-                format!("workgroups of {}", a.max_workgroup),
+                format!("{} arrays a kernel", a.limits.storage_buffers),
+                format!("workgroups of {}", a.limits.threads),
             ];
             Adapter {
                 name: a.name.clone(),
@@ -259,7 +259,7 @@ fn day(since_1970: u64) -> String {
 }
 
 /// The processor's name where the system tells it, else its architecture.
-fn processor() -> String {
+pub(crate) fn processor() -> String {
     let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name =
         told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':').map(|(_, name)| name.trim().to_owned()));

@@ -1,7 +1,7 @@
 //! Whole simulations: one on all cores, then batches of them on a device, as a study computes them;
 //! and, after these, the same on the device with timestamps around every kernel.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::kernels::{self, Kernels};
 use super::{BenchError, copy};
 use crate::compute::gpu::{DeviceRequest, GpuContext};
-use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice};
+use crate::compute::select::{DeviceChoice, Devices, PrecisionChoice, SharedCalls};
 use crate::compute::traffic::Traffic;
 use crate::output::Summary;
 use crate::study::{Options, Study, StudyDirectory, StudyError, StudyProgress, backends, run_on};
@@ -71,6 +71,9 @@ pub struct WholeJob {
     /// backend counted while the case with the most of it ran, times the number of backends: about
     /// what all of them moved.
     pub traffic: Option<Traffic>,
+    /// Cases that a call of iterates served in the mean, of so many as share a backend; none on the
+    /// CPU.
+    pub cases_a_call: Option<[f64; 2]>,
 }
 
 /// What is run.
@@ -157,7 +160,7 @@ fn on(
     begun: Instant,
 ) -> Result<WholeJob, BenchError> {
     let study = study(batch, options.elements)?;
-    let dir = Scratch::new(batch);
+    let dir = Scratch::new(&format!("whole-job-{batch}"));
     let how = Options {
         device,
         precision: PrecisionChoice::Auto,
@@ -186,6 +189,7 @@ fn on(
             krylov_iterations: 0,
             wall_s,
             traffic: None,
+            cases_a_call: None,
         });
         row.newton_iterations += summary.newton_iterations;
         row.krylov_iterations += summary.krylov_iterations;
@@ -203,15 +207,24 @@ fn on(
     {
         *traffic += *traffic;
     }
+    if let (Some(row), SharedCalls { calls: calls @ 1.., cases }) = (&mut out, devices.shared_calls()) {
+        row.cases_a_call = Some([cases as f64 / calls as f64, (batch / backends(batch)) as f64]);
+    }
     out.ok_or(BenchError::Case { case: "1".to_owned(), why: "there is no case".to_owned() })
 }
 
 /// A folder for results that nobody will look at, removed at the end.
-struct Scratch(PathBuf);
+pub(crate) struct Scratch(PathBuf);
 
 impl Scratch {
-    fn new(batch: usize) -> Self {
-        Self(std::env::temp_dir().join(format!("asperity-whole-job-{}-{batch}", std::process::id())))
+    /// Of this process, with a name among its own.
+    pub fn new(name: &str) -> Self {
+        Self(std::env::temp_dir().join(format!("asperity-{name}-{}", std::process::id())))
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.0
     }
 }
 

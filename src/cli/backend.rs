@@ -6,10 +6,17 @@ use crate::compute::{CaseModel, ComputeError};
 
 /// `--device` as `compute` has it.
 pub fn device_choice(args: &DeviceArgs) -> DeviceChoice {
-    match args.device {
-        Device::Auto => DeviceChoice::Auto,
-        Device::Cpu => DeviceChoice::Cpu,
-        Device::Gpu => DeviceChoice::Gpu,
+    device_or_variable(args.device)
+}
+
+/// What `--device` says, or else `ASPERITY_DEVICE`, which [`super::environment::check`] has looked
+/// at.
+pub fn device_or_variable(device: Option<Device>) -> DeviceChoice {
+    match device {
+        Some(Device::Auto) => DeviceChoice::Auto,
+        Some(Device::Cpu) => DeviceChoice::Cpu,
+        Some(Device::Gpu) => DeviceChoice::Gpu,
+        None => DeviceChoice::of_environment().unwrap_or_default(),
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::backend::device_or_variable;
 use super::options::{Device, Verbosity};
 use super::{CliError, Outcome};
 use crate::bench::whole_job::{self, WholeJobs};
@@ -20,9 +21,10 @@ use crate::output::write_own;
 /// driver for the GPU. Takes some minutes.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
-    /// What to measure beside the CPU.
-    #[arg(long, value_enum, default_value_t, value_name = "DEVICE")]
-    pub device: Device,
+    /// What to measure beside the CPU; by default what ASPERITY_DEVICE says, and auto where it is
+    /// not set.
+    #[arg(long, value_enum, value_name = "DEVICE")]
+    pub device: Option<Device>,
     /// Small meshes, small batches, few repetitions: a minute.
     #[arg(long)]
     pub quick: bool,
@@ -51,10 +53,10 @@ pub struct BenchArgs {
 /// Measures, prints the table and writes the numbers.
 pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
-    let device = match args.device {
-        Device::Auto => bench::Device::Auto,
-        Device::Cpu => bench::Device::Cpu,
-        Device::Gpu => bench::Device::Gpu,
+    let device = match device_or_variable(args.device) {
+        DeviceChoice::Auto => bench::Device::Auto,
+        DeviceChoice::Cpu => bench::Device::Cpu,
+        DeviceChoice::Gpu => bench::Device::Gpu,
     };
     let threads = args.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let mut options = if args.quick { Options::quick(device, threads) } else { Options::full(device, threads) };
@@ -86,12 +88,10 @@ pub fn bench(args: &BenchArgs) -> Result<Outcome, CliError> {
 
 /// Runs whole jobs, prints their table and writes the numbers.
 fn whole_job(args: &BenchArgs, options: &Options, say: &mut dyn FnMut(&str)) -> Result<Outcome, CliError> {
-    let device = match args.device {
+    let device = match device_or_variable(args.device) {
         // Without a device worth using there are the CPU's rows alone.
-        Device::Auto if !select::is_there(DeviceChoice::Auto).unwrap_or(false) => DeviceChoice::Cpu,
-        Device::Auto => DeviceChoice::Auto,
-        Device::Cpu => DeviceChoice::Cpu,
-        Device::Gpu => DeviceChoice::Gpu,
+        DeviceChoice::Auto if !select::is_there(DeviceChoice::Auto).unwrap_or(false) => DeviceChoice::Cpu,
+        choice => choice,
     };
     let batches = if args.quick { vec![1, 2] } else { vec![1, 4, 16, 64, 256] };
     let jobs = WholeJobs { device, threads: options.threads, batches, elements: options.elements, copied: options.copied };

@@ -3,12 +3,16 @@
 use clap::Args;
 
 use super::{CliError, Outcome};
-use crate::compute::gpu::{
-    adapters,
-    report::{report, report_json},
-};
+use crate::compute::gpu::adapters;
+use crate::compute::gpu::drivers::Drivers;
+use crate::compute::gpu::report::{Surroundings, report, report_json};
+use crate::compute::select::{DEVICE_VARIABLE, measured};
 
-/// List GPU adapters, what they can do, and which would be chosen and why.
+/// List GPU adapters, what they can do and what the kernels need of them, and which would be chosen
+/// and why.
+///
+/// A GPU that auto may take is measured for a twentieth of a second, once a machine; the result is
+/// kept in the user's cache folder.
 #[derive(Clone, Debug, Args)]
 pub struct DevicesArgs {
     /// Print JSON.
@@ -18,11 +22,17 @@ pub struct DevicesArgs {
 
 /// Prints the adapters and the choices; a machine without any is no error.
 pub fn devices(args: &DevicesArgs) -> Result<Outcome, CliError> {
-    let (adapters, wanted) = (adapters::adapters(), adapters::wanted_name());
+    let adapters = adapters::adapters();
+    let around = Surroundings {
+        adapter: adapters::wanted_name(),
+        device: std::env::var(DEVICE_VARIABLE).ok(),
+        measured: measured(),
+        drivers: Drivers::found(),
+    };
     if args.json {
-        super::print_json(&report_json(&adapters, wanted.as_deref()))?;
+        super::print_json(&report_json(&adapters, &around))?;
     } else {
-        super::print(&report(&adapters, wanted.as_deref()))?;
+        super::print(&report(&adapters, &around))?;
     }
     Ok(Outcome::Done)
 }

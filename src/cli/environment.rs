@@ -4,22 +4,32 @@
 use super::CliError;
 use crate::case::short;
 use crate::compute::gpu::memory::MEMORY_VARIABLE;
+use crate::compute::select::{DEVICE_VARIABLE, DeviceChoice};
 
 /// Refuses environment variables that mean nothing.
 ///
 /// # Errors
 /// [`CliError::Variable`].
 pub fn check() -> Result<(), CliError> {
+    let refused = |name: &'static str, value: &str, what: &'static str| {
+        Err(CliError::Variable { name, value: short(value).into_owned(), what })
+    };
+    if let Err(value) = DeviceChoice::of_environment() {
+        return refused(DEVICE_VARIABLE, &value, "is no device. Allowed: auto, cpu, gpu");
+    }
     let Some(value) = std::env::var_os(MEMORY_VARIABLE) else { return Ok(()) };
     let value = value.to_string_lossy();
     if memory(&value) {
         return Ok(());
     }
-    Err(CliError::Variable {
-        name: MEMORY_VARIABLE,
-        value: short(&value).into_owned(),
-        what: "is not a whole number of MiB greater than 0, as in 4096",
-    })
+    refused(MEMORY_VARIABLE, &value, "is not a whole number of MiB greater than 0, as in 4096")
+}
+
+/// Where it stands that a GPU is to be used, as it would be typed.
+pub fn gpu_asked_by() -> String {
+    let is_option = |argument: std::ffi::OsString| argument.to_string_lossy().starts_with("--device");
+    let by_variable = DeviceChoice::of_environment() == Ok(DeviceChoice::Gpu) && !std::env::args_os().any(is_option);
+    if by_variable { format!("{DEVICE_VARIABLE}=gpu") } else { "--device gpu".to_owned() }
 }
 
 fn memory(value: &str) -> bool {

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::environment::gpu_asked_by;
 use super::snippet;
 use crate::bench::BenchError;
 use crate::case::CaseError;
@@ -95,8 +96,14 @@ pub enum CliError {
     #[error(transparent)]
     Processor(#[from] TooOld),
     /// A GPU was asked for and cannot be used.
-    #[error("--device gpu: {what}")]
+    #[error("{}: {what}", gpu_asked_by())]
     Device {
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// There is no device that `prove` could compare.
+    #[error("there is nothing to prove: {what}")]
+    Prove {
         /// What is wrong and what to do.
         what: String,
     },

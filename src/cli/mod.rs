@@ -19,6 +19,7 @@ mod law_tabulate;
 pub mod options;
 pub mod plot;
 pub mod point;
+pub mod prove;
 pub mod run;
 pub mod schema;
 pub mod shell;
@@ -59,6 +60,7 @@ enum Command {
     Verify(verify::VerifyArgs),
     Devices(devices::DevicesArgs),
     Bench(bench::BenchArgs),
+    Prove(prove::ProveArgs),
     Point(point::PointArgs),
     Schema(schema::SchemaArgs),
     Completions(shell::CompletionsArgs),
@@ -73,6 +75,7 @@ impl Command {
             Command::Verify(args) => verify::verify(args),
             Command::Devices(args) => devices::devices(args),
             Command::Bench(args) => bench::bench(args),
+            Command::Prove(args) => prove::prove(args),
             Command::Point(args) => point::point(args),
             Command::Study(args) => study::study(args),
             Command::Law(args) => law::law(args),

@@ -12,7 +12,7 @@ use crate::output::plots::axes::AxisUnits;
 /// Where the kernels run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Device {
-    /// A GPU if one is worth using, otherwise the CPU; never a software adapter.
+    /// A GPU if a short measurement finds it faster than the CPU; never a software adapter.
     #[default]
     Auto,
     /// The CPU.
@@ -82,9 +82,9 @@ impl From<Units> for AxisUnits {
 /// Where and how precisely to compute.
 #[derive(Clone, Debug, Args)]
 pub struct DeviceArgs {
-    /// Where the kernels run.
-    #[arg(long, value_enum, default_value_t, value_name = "DEVICE")]
-    pub device: Device,
+    /// Where the kernels run; by default where ASPERITY_DEVICE says, and auto where it is not set.
+    #[arg(long, value_enum, value_name = "DEVICE")]
+    pub device: Option<Device>,
     /// Floating-point precision of the kernels.
     #[arg(long, value_enum, default_value_t, value_name = "PRECISION")]
     pub precision: Precision,

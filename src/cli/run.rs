@@ -83,6 +83,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     let in_case = |error: SessionError| match error {
         // The same with its line.
         SessionError::Case(error) => input.check_room(&case, &args.set).err().unwrap_or_else(|| error.into()),
+        SessionError::Device { what } => CliError::Device { what },
         SessionError::Simulation(source) => CliError::Problem { file: input.name.clone().into(), source },
         error => error.into(),
     };

@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 
 use super::backend::{device_choice, precision_choice};
 use super::input::Input;
-use super::options::{Device, DeviceArgs, Precision, Verbosity};
+use super::options::{DeviceArgs, Precision, Verbosity};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, cluster};
 use crate::compute::ComputeError;
@@ -86,8 +86,8 @@ pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
 /// The options of this command that the tasks are to have too.
 fn options_of_tasks(args: &StudyArgs) -> Vec<String> {
     let mut options = Vec::new();
-    if args.device.device != Device::default() {
-        options.extend(args.device.device.to_possible_value().map(|value| format!("--device={}", value.get_name())));
+    if let Some(device) = args.device.device {
+        options.extend(device.to_possible_value().map(|value| format!("--device={}", value.get_name())));
     }
     if args.device.precision != Precision::default() {
         options.extend(args.device.precision.to_possible_value().map(|value| format!("--precision={}", value.get_name())));

@@ -7,21 +7,47 @@ use super::{CaseModel, Compute, ComputeError, wrong};
 #[cfg(feature = "gpu")]
 pub use device::Devices;
 #[cfg(feature = "gpu")]
-pub use device::select_on;
+pub use device::{measured, select_on};
 #[cfg(feature = "gpu")]
 use device::{on_device, opens};
+
+/// The environment variable that says which device is used where nothing else does.
+pub const DEVICE_VARIABLE: &str = "ASPERITY_DEVICE";
 
 /// The device wished for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DeviceChoice {
-    /// A GPU worth it, else the CPU; never a software adapter. Whatever fails there, the CPU takes
-    /// over.
+    /// A GPU that a short measurement finds faster than the CPU, else the CPU; never a software
+    /// adapter. Whatever fails there, the CPU takes over.
     #[default]
     Auto,
     /// The CPU.
     Cpu,
     /// A GPU, a software adapter if there is nothing else; what fails there is an error.
     Gpu,
+}
+
+impl DeviceChoice {
+    /// By its word; none for another.
+    pub fn of(word: &str) -> Option<Self> {
+        match word {
+            "auto" => Some(Self::Auto),
+            "cpu" => Some(Self::Cpu),
+            "gpu" => Some(Self::Gpu),
+            _ => None,
+        }
+    }
+
+    /// What [`DEVICE_VARIABLE`] says; `Auto` where it is not set.
+    ///
+    /// # Errors
+    /// Its value, if that is none of the words.
+    pub fn of_environment() -> Result<Self, String> {
+        match std::env::var_os(DEVICE_VARIABLE) {
+            None => Ok(Self::Auto),
+            Some(value) => value.to_str().and_then(Self::of).ok_or_else(|| value.to_string_lossy().into_owned()),
+        }
+    }
 }
 
 /// The precision wished for.
@@ -70,6 +96,22 @@ pub fn is_there(device: DeviceChoice) -> Result<bool, ComputeError> {
     }
 }
 
+/// Calls of iterates that cases of a batch have shared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SharedCalls {
+    /// How many.
+    pub calls: u64,
+    /// Cases that they served, summed.
+    pub cases: u64,
+}
+
+impl std::ops::AddAssign for SharedCalls {
+    fn add_assign(&mut self, other: Self) {
+        self.calls += other.calls;
+        self.cases += other.cases;
+    }
+}
+
 fn cpu(models: Vec<CaseModel>) -> Result<Box<dyn Compute>, ComputeError> {
     Ok(wrong::hooked(Cpu::<f64, f32>::with_tangents(models)?))
 }
@@ -96,6 +138,14 @@ impl Devices {
     /// [`ComputeError::Device`] if a GPU was asked for and cannot be had.
     pub fn open(choice: DeviceChoice) -> Result<Self, ComputeError> {
         opens(choice).map(|_| Self(choice))
+    }
+
+    /// There is nothing to share.
+    pub fn served(&self, _: SharedCalls) {}
+
+    /// Nothing is to be said of a choice of one.
+    pub fn notes(&self) -> &[String] {
+        &[]
     }
 
     /// Whether there is a device to be used.
@@ -141,23 +191,61 @@ fn opens(device: DeviceChoice) -> Result<bool, ComputeError> {
 mod device {
     use std::sync::{Arc, Mutex, PoisonError};
 
-    use super::{DeviceChoice, PrecisionChoice, Selected, cpu, notes_of};
+    use super::{DeviceChoice, PrecisionChoice, Selected, SharedCalls, cpu, notes_of};
     use crate::compute::fallback::Fallback;
+    use crate::compute::gpu::trial::Trial;
     use crate::compute::gpu::{DeviceRequest, Gpu, GpuContext, GpuError, KernelTimes, Mixed, Precision};
     use crate::compute::lost::hooked;
     use crate::compute::{CaseModel, Compute, ComputeError};
 
-    fn open(device: DeviceChoice) -> Result<Option<GpuContext>, GpuError> {
-        match device {
-            DeviceChoice::Cpu => Ok(None),
-            DeviceChoice::Gpu => GpuContext::open(DeviceRequest::Gpu),
-            DeviceChoice::Auto => GpuContext::open(DeviceRequest::Auto),
+    /// A device, or none, and what the user should know of how that was decided.
+    struct Opened {
+        context: Option<GpuContext>,
+        notes: Vec<String>,
+    }
+
+    fn open(device: DeviceChoice) -> Result<Opened, GpuError> {
+        let request = match device {
+            DeviceChoice::Cpu => return Ok(Opened { context: None, notes: Vec::new() }),
+            DeviceChoice::Gpu => DeviceRequest::Gpu,
+            DeviceChoice::Auto => DeviceRequest::Auto,
+        };
+        match GpuContext::open(request)? {
+            Some(context) if device == DeviceChoice::Auto && !context.is_named() => {
+                let trial = Trial::of(&context);
+                Ok(judged(context, trial))
+            }
+            context => Ok(Opened { context, notes: Vec::new() }),
         }
     }
 
-    fn opened(device: DeviceChoice, profiled: bool) -> Result<Option<GpuContext>, GpuError> {
-        let context = open(device)?;
-        Ok(if profiled { context.map(GpuContext::with_profile) } else { context })
+    /// A device that `auto` found, if the measurement is in favour of it.
+    fn judged(context: GpuContext, trial: Result<Trial, ComputeError>) -> Opened {
+        let name = context.adapter().name.clone();
+        let (takes, note) = match trial {
+            Ok(trial) if trial.takes_device() => (true, format!("{name} was chosen: {trial}")),
+            Ok(trial) => (false, format!("the CPU was chosen, not {name}: {trial}")),
+            Err(error) => (false, format!("the GPU could not be used ({error}); the CPU was taken instead")),
+        };
+        log::info!("device: {note}");
+        Opened { context: takes.then_some(context), notes: vec![note] }
+    }
+
+    fn opened(device: DeviceChoice, profiled: bool) -> Result<Opened, GpuError> {
+        let Opened { context, notes } = open(device)?;
+        Ok(Opened { context: if profiled { context.map(GpuContext::with_profile) } else { context }, notes })
+    }
+
+    /// The same with notes before its own.
+    fn noted(notes: &[String], selected: Selected) -> Selected {
+        Selected { notes: [notes, &selected.notes].concat(), ..selected }
+    }
+
+    /// Whether `auto` takes a GPU that is there and real, and why; none where there is none, or one
+    /// is named.
+    pub fn measured() -> Option<(bool, String)> {
+        let Opened { context, notes } = open(DeviceChoice::Auto).ok()?;
+        Some((context.is_some(), notes.into_iter().next()?))
     }
 
     pub(super) fn on_device(
@@ -165,7 +253,11 @@ mod device {
         precision: PrecisionChoice,
         models: Vec<CaseModel>,
     ) -> Result<Selected, ComputeError> {
-        select_on(open(device), device, precision, models)
+        let (opened, notes) = match open(device) {
+            Ok(Opened { context, notes }) => (Ok(context), notes),
+            Err(error) => (Err(error), Vec::new()),
+        };
+        select_on(opened, device, precision, models).map(|selected| noted(&notes, selected))
     }
 
     pub(super) fn opens(device: DeviceChoice) -> Result<bool, ComputeError> {
@@ -178,6 +270,9 @@ mod device {
         choice: DeviceChoice,
         profiled: bool,
         context: Mutex<Option<Arc<GpuContext>>>,
+        /// What the user should know of how the device was chosen.
+        notes: Vec<String>,
+        shared: Mutex<SharedCalls>,
     }
 
     impl Devices {
@@ -198,22 +293,37 @@ mod device {
         }
 
         fn new(choice: DeviceChoice, profiled: bool) -> Result<Self, ComputeError> {
-            let context = match opened(choice, profiled) {
-                Ok(None) if choice == DeviceChoice::Gpu => return Err(GpuError::NoAdapter.into()),
+            let Opened { context, notes } = match opened(choice, profiled) {
+                Ok(Opened { context: None, .. }) if choice == DeviceChoice::Gpu => return Err(GpuError::NoAdapter.into()),
                 Err(error) if choice == DeviceChoice::Gpu => return Err(error.into()),
-                Ok(context) => context.map(Arc::new),
+                Ok(opened) => opened,
                 Err(error) => {
                     log::info!("the GPU could not be used ({error}); the CPU was taken instead");
-                    None
+                    Opened { context: None, notes: Vec::new() }
                 }
             };
-            Ok(Self { choice, profiled, context: Mutex::new(context) })
+            Ok(Self { choice, profiled, context: Mutex::new(context.map(Arc::new)), notes, shared: Mutex::default() })
         }
 
         /// What the kernels came to since the device was opened, or opened anew after a loss;
         /// `None` without a device or a profile.
         pub fn kernel_times(&self) -> Option<KernelTimes> {
             self.context.lock().unwrap_or_else(PoisonError::into_inner).as_ref()?.kernel_times()
+        }
+
+        /// Takes in what a batch has shared.
+        pub fn served(&self, calls: SharedCalls) {
+            *self.shared.lock().unwrap_or_else(PoisonError::into_inner) += calls;
+        }
+
+        /// What batches have shared since the device was opened.
+        pub fn shared_calls(&self) -> SharedCalls {
+            *self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+        }
+
+        /// Whole sentences on how the device was chosen; none where the choice was the user's.
+        pub fn notes(&self) -> &[String] {
+            &self.notes
         }
 
         /// Whether there is a device to be used.
@@ -225,7 +335,7 @@ mod device {
         fn context(&self) -> Result<Option<Arc<GpuContext>>, GpuError> {
             let mut context = self.context.lock().unwrap_or_else(PoisonError::into_inner);
             if context.as_ref().is_some_and(|context| context.ask().is_err()) {
-                *context = opened(self.choice, self.profiled)?.map(Arc::new);
+                *context = opened(self.choice, self.profiled)?.context.map(Arc::new);
             }
             Ok(context.clone())
         }
@@ -236,7 +346,8 @@ mod device {
         /// As [`super::select`].
         pub fn select(&self, precision: PrecisionChoice, models: Vec<CaseModel>) -> Result<Selected, ComputeError> {
             let part = |context: Arc<GpuContext>| context.part(context.budget().limit());
-            select_on(self.context().map(|context| context.map(part)), self.choice, precision, models)
+            let selected = select_on(self.context().map(|context| context.map(part)), self.choice, precision, models)?;
+            Ok(noted(&self.notes, selected))
         }
 
         /// A batch on the device, for which there is one of `parts` parts of its memory.
@@ -248,7 +359,8 @@ mod device {
             let part = context.part(context.budget().limit() / parts.max(1));
             let (backend, notes) = gpu(Arc::new(part), precision, models)?;
             let watched = self.choice != DeviceChoice::Gpu;
-            Ok(Selected { backend: if watched { Box::new(Fallback::new(backend)) } else { backend }, notes })
+            let backend = if watched { Box::new(Fallback::new(backend)) } else { backend };
+            Ok(noted(&self.notes, Selected { backend, notes }))
         }
     }
 

@@ -215,7 +215,7 @@ fn serve(
     std::thread::scope(move |scope| {
         for host in hosts {
             // Should a backend panic, its guests find it gone, and that is their error.
-            scope.spawn(|| catch_unwind(AssertUnwindSafe(|| host.serve())));
+            scope.spawn(|| catch_unwind(AssertUnwindSafe(|| devices.served(host.serve()))));
         }
         let next = |desk: usize| desks[desk].first().as_ref().map(|(case, _)| *case).or_else(|| waiting.left().pop_front());
         let work = |desk: usize, case: usize| -> Option<Summary> {

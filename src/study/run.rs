@@ -194,7 +194,7 @@ pub(crate) fn run_on(
     let computed = if device {
         on_device(&simulator, (devices, options.precision), &pools, &order, &mut finished)
     } else {
-        on_cores(&simulator, options.precision, &pools, &order, &mut finished)
+        on_cores(&simulator, (devices, options.precision), &pools, &order, &mut finished)
     };
     progress.end();
     // Another process may have computed other shares in the meantime.
@@ -339,7 +339,7 @@ pub(super) type Finished<'a> = dyn FnMut(usize, Result<Summary, String>) -> Resu
 /// Every case on a core of its own.
 fn on_cores(
     simulator: &Simulator<'_>,
-    precision: PrecisionChoice,
+    (devices, precision): (&Devices, PrecisionChoice),
     pools: &[ThreadPool],
     order: &[usize],
     finished: &mut Finished<'_>,
@@ -354,7 +354,7 @@ fn on_cores(
         let Selected { backend, notes } = open(&problem)?;
         let computed_on = backend.about().description;
         let mut seat = seats((backend, 0), problem.zone, open);
-        simulator.follow(case, problem, &mut seat, computed_on, &notes)
+        simulator.follow(case, problem, &mut seat, computed_on, &[devices.notes(), &notes].concat())
     };
     let work = |case: usize| {
         simulator.progress.started();

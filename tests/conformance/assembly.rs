@@ -1,80 +1,56 @@
-//! A batch as a whole: what a case gets depends neither on the others, nor on the run, nor on how
-//! scratch memory cuts the batch up.
+//! How scratch memory cuts a batch up changes no bit.
 
-use crate::batch::{Backend, commits, displaced, for_every_batch, forces, models, random, tangents};
-use asperity::internals::compute::Compute;
+use crate::device::device;
 use asperity::internals::compute::gpu::{Gpu, Precision};
-use asperity::internals::compute::handle::CaseHandle;
-use asperity::internals::real::Real;
-
-pub struct Bounds;
-
-impl Bounds {
-    pub const F64: Self = Self;
-    pub const F32: Self = Self;
-}
-
-const CELLS: [usize; 3] = [3, 2, 2];
-
-/// The bits of everything that two steps leave.
-fn bits(backend: &mut dyn Compute, steps: &[Vec<(usize, Vec<f64>)>]) -> Vec<Vec<u64>> {
-    let mut out = vec![Vec::new(); steps[0].len()];
-    let mut push = |case: usize, values: &[f64]| out[case].extend(values.iter().map(|v| v.to_bits()));
-    for step in steps {
-        let (f, k, e) = (forces(backend, step), tangents(backend, step), commits(backend, step));
-        for (i, (case, _)) in step.iter().enumerate() {
-            push(i, &f[i].1);
-            push(i, k[i].1.as_flattened());
-            push(i, &[e[i].1.elastic, e[i].1.plastic, e[i].1.max_alpha]);
-            let state = CaseHandle { backend, case: *case }.state().unwrap();
-            push(i, &state.plastic_work);
-            state.points.iter().flatten().for_each(|p| push(i, &[p.be[0], p.be[1], p.be[3], p.alpha]));
-        }
-    }
-    out
-}
-
-fn steps<R: Real>(count: usize) -> Vec<Vec<(usize, Vec<f64>)>> {
-    let nodes = models(CELLS)[0].mesh.nodes.len();
-    let mut rng = random(100);
-    let first: Vec<_> = (0..count).map(|case| (case, displaced::<R>(&vec![0.0; 3 * nodes], 1e-2, &mut rng))).collect();
-    let second = first.iter().map(|(case, u)| (*case, displaced::<R>(u, 1e-2, &mut rng))).collect();
-    vec![first, second]
-}
-
-fn a_batch_has_the_bits_of_its_cases_alone<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
-    let models = models(CELLS);
-    let steps = steps::<R>(models.len());
-    let together = bits(backend.start(&models).as_mut(), &steps);
-    let again = bits(backend.start(&models).as_mut(), &steps);
-    assert!(together == again, "another run, other bits");
-    for case in [0, 3, 6] {
-        let own: Vec<_> = steps.iter().map(|step| vec![(0, step[case].1.clone())]).collect();
-        let alone = bits(backend.start(&models[case..=case]).as_mut(), &own);
-        assert!(alone[0] == together[case], "case {case} alone has other bits");
-    }
-    // some of the cases, in another order
-    let part: Vec<_> = steps.iter().map(|step| [5, 1].map(|case: usize| step[case].clone()).to_vec()).collect();
-    let some = bits(backend.start(&models).as_mut(), &part);
-    assert!(some[0] == together[5] && some[1] == together[1]);
-}
-
-for_every_batch!(a_batch_has_the_bits_of_its_cases_alone);
+use asperity::internals::conformance::assembly::{CELLS, bits, steps};
+use asperity::internals::conformance::batch::models;
 
 /// Scratch memory for two cases at a time: four dispatches in the place of one.
 #[test]
 fn short_memory_cuts_a_call_up_and_changes_no_bit() {
     let name = "short_memory_cuts_a_call_up_and_changes_no_bit";
-    let Some(context) = crate::device::device(name, Precision::F32) else { return };
+    let Some(context) = device(name, Precision::F32) else { return };
     let models = models(CELLS);
     let steps = steps::<f32>(models.len());
     let mut whole = Gpu::<f32>::new(context.into(), models.clone()).unwrap();
     let used = whole.context().unwrap().budget().used();
     let expected = bits(&mut whole, &steps);
-    let Some(context) = crate::device::device(name, Precision::F32) else { return };
+    let Some(context) = device(name, Precision::F32) else { return };
     // Enough for what stays of the cases and for some of the slots.
     let context = std::sync::Arc::new(context.with_budget(used / 3 * 2));
     let mut cut = Gpu::<f32>::new(context.clone(), models.clone()).unwrap();
     assert!(context.budget().used() < used / 3 * 2);
     assert!(bits(&mut cut, &steps) == expected);
+}
+
+/// A kernel that sees a short part of an array: fewer cases at a time, which is said.
+#[test]
+fn short_arrays_cut_a_batch_up_and_change_no_bit() {
+    let name = "short_arrays_cut_a_batch_up_and_change_no_bit";
+    let models = models(CELLS);
+    let steps = steps::<f32>(models.len());
+    let with = |bytes: Option<u64>| {
+        let context = device(name, Precision::F32)?;
+        let context = match bytes {
+            Some(bytes) => context.with_longest_array(bytes),
+            None => context,
+        };
+        Some(Gpu::<f32>::new(context.into(), models.clone()))
+    };
+    let Some(whole) = with(None) else { return };
+    let mut whole = whole.unwrap();
+    assert!(whole.notes().is_empty(), "{:?}", whole.notes());
+    let expected = bits(&mut whole, &steps);
+    let mut cut = 0;
+    for bytes in [200_000, 100_000, 60_000, 40_000] {
+        let Some(Ok(mut gpu)) = with(Some(bytes)) else { continue };
+        if let [note] = &gpu.notes()[..] {
+            assert!(note.contains("of 7 cases of a batch no more than"), "{note}");
+            assert!(bits(&mut gpu, &steps) == expected, "{bytes}");
+            cut += 1;
+        }
+    }
+    assert!(cut > 1, "no array was too short: the test tests nothing");
+    // Not one case fits.
+    assert!(with(Some(1000)).is_some_and(|gpu| gpu.is_err()));
 }

@@ -78,6 +78,7 @@ const COMMANDS: &[(&str, Writes)] = &[
     ("verify", Files { arguments: &["verify", "--only", "hertz", "--out", "verify.json"], files: &["verify.json"] }),
     ("devices", Nothing),
     ("bench", Files { arguments: &["bench", "--quick", "--device", "cpu", "--out", "bench.json"], files: &["bench.json"] }),
+    ("prove", Files { arguments: &["prove", "--quick", "--out", "prove.json"], files: &["prove.json", "prove.md"] }),
     ("point", Nothing),
     ("schema", Nothing),
     ("completions", Nothing),

@@ -1,6 +1,7 @@
 //! Which adapters there are, and which one is taken.
 
 use super::error::GpuError;
+use super::needs::{self, Limits};
 use std::fmt;
 
 /// The environment variable that selects an adapter by a part of its name (case does not matter).
@@ -80,10 +81,8 @@ pub struct Adapter {
     pub max_binding: u64,
     /// Longest array, bytes.
     pub max_buffer: u64,
-    /// Arrays a kernel may see at once.
-    pub max_storage_buffers: u32,
-    /// Threads in a workgroup.
-    pub max_workgroup: u32,
+    /// What a kernel may have of it.
+    pub limits: Limits,
     /// Workgroups in one direction of a dispatch.
     pub max_workgroups: u32,
 }
@@ -101,8 +100,13 @@ impl Adapter {
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
             max_binding: limits.max_storage_buffer_binding_size,
             max_buffer: limits.max_buffer_size,
-            max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
-            max_workgroup: limits.max_compute_invocations_per_workgroup,
+            limits: Limits {
+                storage_buffers: limits.max_storage_buffers_per_shader_stage.into(),
+                uniform_buffers: limits.max_uniform_buffers_per_shader_stage.into(),
+                uniform_bytes: limits.max_uniform_buffer_binding_size,
+                threads: limits.max_compute_invocations_per_workgroup.min(limits.max_compute_workgroup_size_x).into(),
+                shared_bytes: limits.max_compute_workgroup_storage_size.into(),
+            },
             max_workgroups: limits.max_compute_workgroups_per_dimension,
         }
     }
@@ -113,6 +117,8 @@ impl Adapter {
 pub struct Choice {
     /// Index into the adapters; none is the CPU backend.
     pub adapter: Option<usize>,
+    /// Whether the environment named it, so that nothing else is asked.
+    pub named: bool,
     /// The reason, for the log and for `asperity devices`.
     pub reason: String,
 }
@@ -171,16 +177,20 @@ pub fn wanted_name() -> Option<String> {
 /// A name (from [`ADAPTER_VARIABLE`]) decides alone. Otherwise a real GPU is taken: discrete before
 /// integrated before virtual, with double precision before without. A software adapter is slower
 /// than the CPU backend: `Auto` takes the CPU instead, `Gpu` takes the software adapter if there is
-/// nothing else.
+/// nothing else. An adapter whose limits are below what the kernels need is passed over.
 ///
 /// # Errors
 /// [`GpuError::NoSuchAdapter`] for a name that matches nothing, [`GpuError::NoAdapter`] for `Gpu`
-/// without any adapter.
+/// without any adapter, [`GpuError::Unfit`] where the one that is left has too low a limit.
 pub fn choose(adapters: &[Adapter], request: DeviceRequest, wanted: Option<&str>) -> Result<Choice, GpuError> {
     let best = |accept: &dyn Fn(&Adapter) -> bool| {
         (0..adapters.len())
             .filter(|&i| accept(&adapters[i]))
             .min_by_key(|&i| (adapters[i].kind, !adapters[i].double_precision, i))
+    };
+    let unfit = |i: usize| {
+        let what = needs::unmet(&adapters[i].limits)?;
+        Some(GpuError::Unfit { adapter: adapters[i].name.clone(), what })
     };
     if let Some(wanted) = wanted {
         let needle = wanted.trim().to_lowercase();
@@ -191,22 +201,31 @@ pub fn choose(adapters: &[Adapter], request: DeviceRequest, wanted: Option<&str>
                 _ => adapters.iter().map(|a| a.name.as_str()).collect::<Vec<_>>().join(", "),
             },
         })?;
-        return Ok(Choice { adapter: Some(found), reason: format!("named by {ADAPTER_VARIABLE}={wanted}") });
+        return match unfit(found) {
+            Some(error) => Err(error),
+            None => Ok(Choice { adapter: Some(found), named: true, reason: format!("named by {ADAPTER_VARIABLE}={wanted}") }),
+        };
     }
-    if let Some(found) = best(&|a| a.kind.is_real()) {
+    let fits = |a: &Adapter| needs::unmet(&a.limits).is_none();
+    if let Some(found) = best(&|a| a.kind.is_real() && fits(a)) {
         let others = adapters.iter().filter(|a| a.kind.is_real()).count() > 1;
         let reason = if others { "the best of the real GPUs" } else { "a real GPU" };
-        return Ok(Choice { adapter: Some(found), reason: reason.to_owned() });
+        return Ok(Choice { adapter: Some(found), named: false, reason: reason.to_owned() });
     }
-    match (request, best(&|_| true)) {
-        (DeviceRequest::Auto, None) => Ok(Choice { adapter: None, reason: "no adapter is present".to_owned() }),
-        (DeviceRequest::Auto, Some(_)) => Ok(Choice {
-            adapter: None,
-            reason: "only a software adapter is present, and it is slower than the CPU backend".to_owned(),
-        }),
-        (DeviceRequest::Gpu, None) => Err(GpuError::NoAdapter),
-        (DeviceRequest::Gpu, Some(found)) => {
-            Ok(Choice { adapter: Some(found), reason: "no real GPU is present: this is slower than --device cpu".to_owned() })
+    let refused = best(&|a| a.kind.is_real()).and_then(unfit);
+    let cpu = |reason: String| Ok(Choice { adapter: None, named: false, reason });
+    match (request, refused, best(&fits)) {
+        (DeviceRequest::Auto, Some(error), _) => cpu(error.to_string()),
+        (DeviceRequest::Auto, None, _) if adapters.is_empty() => cpu("no adapter is present".to_owned()),
+        (DeviceRequest::Auto, None, _) => {
+            cpu("only a software adapter is present, and it is slower than the CPU backend".to_owned())
+        }
+        (DeviceRequest::Gpu, _, Some(found)) => {
+            let reason = "no real GPU is of use: this is slower than --device cpu".to_owned();
+            Ok(Choice { adapter: Some(found), named: false, reason })
+        }
+        (DeviceRequest::Gpu, refused, None) => {
+            Err(refused.or_else(|| best(&|_| true).and_then(unfit)).unwrap_or(GpuError::NoAdapter))
         }
     }
 }
@@ -225,10 +244,33 @@ mod tests {
             timestamps: true,
             max_binding: 1 << 27,
             max_buffer: 1 << 31,
-            max_storage_buffers: 16,
-            max_workgroup: 256,
+            limits: needs::ENOUGH,
             max_workgroups: 65535,
         }
+    }
+
+    /// As `adapter`, with eight arrays a kernel.
+    fn with_eight(name: &str, kind: AdapterKind) -> Adapter {
+        let mut adapter = adapter(name, kind, true);
+        adapter.limits.storage_buffers = 8;
+        adapter
+    }
+
+    #[test]
+    fn an_adapter_that_is_too_small_is_passed_over() {
+        let small = [with_eight("small", AdapterKind::Discrete), adapter("Iris Xe", AdapterKind::Integrated, false)];
+        assert_eq!(taken(&small, DeviceRequest::Auto, None), Some(1));
+        let named = choose(&small, DeviceRequest::Auto, Some("small")).unwrap_err();
+        let GpuError::Unfit { adapter: name, what } = &named else { panic!("{named}") };
+        assert!(name == "small" && what.starts_with("needs ") && what.ends_with("the adapter has 8"), "{named}");
+        let software = [with_eight("small", AdapterKind::Discrete), adapter("llvmpipe", AdapterKind::Software, true)];
+        let choice = choose(&software, DeviceRequest::Auto, None).unwrap();
+        assert!(choice.adapter.is_none() && choice.reason.contains("storage buffers in one kernel ("), "{choice:?}");
+        assert_eq!(taken(&software, DeviceRequest::Gpu, None), Some(1));
+        assert_eq!(choose(&software[..1], DeviceRequest::Gpu, None), Err(named));
+        let only_software = [with_eight("llvmpipe", AdapterKind::Software)];
+        assert!(matches!(choose(&only_software, DeviceRequest::Gpu, None), Err(GpuError::Unfit { .. })));
+        assert_eq!(taken(&only_software, DeviceRequest::Auto, None), None);
     }
 
     fn taken(adapters: &[Adapter], request: DeviceRequest, name: Option<&str>) -> Option<usize> {

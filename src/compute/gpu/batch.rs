@@ -101,6 +101,21 @@ pub struct Dispatch {
     pub(super) cases: Vec<usize>,
 }
 
+/// What the user should know where an array in a kernel holds fewer cases than there are; none
+/// where it holds all, of which the widest takes so many bytes each.
+fn cut_by_bindings(context: &GpuContext, cases: usize, widest: u64) -> Result<Option<String>, GpuError> {
+    let chunks = context.chunks_of_bindings("an evaluation", cases, widest)?;
+    let most = chunks.iter().map(|chunk| chunk.count).max().unwrap_or(cases);
+    let note = || {
+        let mib = context.adapter().max_binding.min(context.adapter().max_buffer) as f64 / f64::from(1 << 20);
+        let name = &context.adapter().name;
+        format!("a kernel of {name} sees {mib} MiB of an array: of {cases} cases of a batch no more than {most} go at a time")
+    };
+    let note = (most < cases).then(note);
+    note.iter().for_each(|note| log::info!("{note}"));
+    Ok(note)
+}
+
 impl<R: DeviceReal> Batch<R> {
     /// Sends a batch of cases of one connectivity (there is at least one) and compiles its kernels.
     ///
@@ -181,6 +196,7 @@ impl<R: DeviceReal> Batch<R> {
         let set_aside = context.budget.reserve("lists of the linear solver", lists + of_cases + once)?;
         let slots = context.chunks("an evaluation", most, widest, all)?.iter().map(|c| c.count).max().unwrap_or(1);
         drop(set_aside);
+        notes.extend(cut_by_bindings(&context, models.len(), widest.max(sizes.resident_bytes::<R>().0))?);
         let pools = PoolBytes::new::<R>(sizes, &tangents, linear_plan.as_ref());
         let scratch = Scratch::new(&context, sizes, (slots, pools))?;
         let tangents = Tangents::new(&context, &connectivity, &scratch, &residents, models, (slots, in_single))?;

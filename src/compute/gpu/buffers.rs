@@ -9,6 +9,7 @@ use super::shader_sources::Precision;
 use crate::real::Real;
 use bytemuck::{Pod, cast_slice};
 use std::marker::PhantomData;
+use std::time::Instant;
 
 /// Uploads go through pieces of this size, so that the driver's copy of what is on the way stays
 /// small.
@@ -318,7 +319,7 @@ impl GpuContext {
     /// waits for them, and reads: one submission and one wait, however much there is to read.
     pub(super) fn read_after(
         &self,
-        mut encoder: wgpu::CommandEncoder,
+        (ahead, mut encoder): (Vec<wgpu::CommandBuffer>, wgpu::CommandEncoder),
         dispatches: u64,
         reads: &mut [Read<'_>],
     ) -> Result<wgpu::SubmissionIndex, GpuError> {
@@ -329,6 +330,7 @@ impl GpuContext {
         let staging = self.staging_for(&mut slot, bytes)?;
         staging.number += 1;
         let ticket = staging.number;
+        let begun = Instant::now();
         let submission = self.scoped(&what, || {
             self.queue.write_buffer(&staging.ticket, 0, &ticket.to_le_bytes());
             let mut at = 0;
@@ -337,7 +339,7 @@ impl GpuContext {
                 at += padded(read);
             }
             encoder.copy_buffer_to_buffer(&staging.ticket, 0, &staging.mapped, bytes, 8);
-            self.queue.submit([encoder.finish()])
+            self.send((ahead, encoder))
         })?;
         self.meter.submitted(dispatches);
         self.meter.went_up(size_of_val(&ticket) as u64);
@@ -349,6 +351,7 @@ impl GpuContext {
             let _ = report.send(result.is_ok());
         });
         let waited = self.wait(&what, submission.clone());
+        self.pace.took(dispatches, begun.elapsed());
         // Another thread that waits for the device may be the one that is told.
         if waited.is_err() || outcome.recv_timeout(PATIENCE) != Ok(true) {
             *slot = None; // its mapping is in an unknown state

@@ -2,19 +2,26 @@
 
 use super::adapters::{self, Adapter, AdapterKind, Choice, DeviceRequest};
 use super::compiled::PipelineCache;
+use super::drivers::Drivers;
 use super::error::GpuError;
 use super::health::DeviceHealth;
 use super::memory::{MemoryBudget, Staging};
 use super::meter::Meter;
+use super::pace::Pace;
 use super::profile::Profiling;
 use super::shader_sources::Precision;
 use crate::compute::traffic::Traffic;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// Longest time that one submission may take before the device is given up. Software adapters
 /// compile for a quarter of a minute at a kernel's first dispatch.
 pub(super) const PATIENCE: Duration = Duration::from_secs(300);
+
+/// The environment variable by which tests make a kernel faulty, which only builds with debug
+/// assertions look at: the kernel of this name computes nothing.
+pub const FAULT_VARIABLE: &str = "ASPERITY_TEST_FAULTY_KERNEL";
 
 /// The words of wgpu and of drivers, which come in indented lines, as a part of one message.
 fn one_line(text: &str) -> String {
@@ -34,9 +41,13 @@ pub struct GpuContext {
     pub(super) pipelines: Arc<PipelineCache>,
     pub(super) staging: Mutex<Option<Staging>>,
     pub(super) meter: Meter,
+    pub(super) pace: Pace,
+    /// A kernel that is left out.
+    fault: Option<String>,
     pub(super) profiling: Option<Profiling>,
     pub(super) checked: bool,
     adapter: Adapter,
+    named: bool,
     _closing: Arc<Closing>,
 }
 
@@ -68,22 +79,29 @@ impl GpuContext {
     pub fn open_named(request: DeviceRequest, wanted: Option<&str>) -> Result<Option<Self>, GpuError> {
         let found = adapters::enumerate(&adapters::instance());
         let described: Vec<Adapter> = found.iter().map(Adapter::of).collect();
-        let Choice { adapter, reason } = adapters::choose(&described, request, wanted)?;
+        let choice = adapters::choose(&described, request, wanted).map_err(|error| match error {
+            GpuError::NoAdapter => Drivers::found().nothing_found(),
+            error => error,
+        })?;
+        let Choice { adapter, named, reason } = choice;
         let Some(chosen) = adapter else {
-            log::info!("device: the CPU ({reason})");
+            let hint = Drivers::found().hint(&described).map_or_else(String::new, |hint| format!(". {hint}"));
+            log::info!("device: the CPU ({reason}{hint})");
             return Ok(None);
         };
         let description = described[chosen].clone();
         let notice = format!("device: {} ({}), {reason}", description.name, description.kind);
-        if description.kind == AdapterKind::Software {
+        // Once is enough for a program that opens it again and again.
+        static WARNED: AtomicBool = AtomicBool::new(false);
+        if description.kind == AdapterKind::Software && !WARNED.swap(true, Ordering::Relaxed) {
             log::warn!("{notice}")
         } else {
             log::info!("{notice}")
         }
-        Self::open_adapter(&found[chosen], description).map(Some)
+        Self::open_adapter(&found[chosen], description, named).map(Some)
     }
 
-    fn open_adapter(adapter: &wgpu::Adapter, description: Adapter) -> Result<Self, GpuError> {
+    fn open_adapter(adapter: &wgpu::Adapter, description: Adapter, named: bool) -> Result<Self, GpuError> {
         let wanted = wgpu::Features::SHADER_F64 | wgpu::Features::TIMESTAMP_QUERY;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("asperity"),
@@ -111,9 +129,12 @@ impl GpuContext {
             pipelines: Arc::default(),
             staging: Mutex::new(None),
             meter: Meter::default(),
+            pace: Pace::default(),
+            fault: std::env::var(FAULT_VARIABLE).ok().filter(|_| cfg!(debug_assertions)),
             profiling: None,
             checked: cfg!(debug_assertions),
             adapter: description,
+            named,
             _closing: Arc::new(Closing(device.clone())),
             device,
             queue,
@@ -132,9 +153,12 @@ impl GpuContext {
             pipelines: Arc::clone(&self.pipelines),
             staging: Mutex::new(None),
             meter: Meter::default(),
+            pace: self.pace.of_part(),
+            fault: self.fault.clone(),
             profiling: self.profile_of_part(),
             checked: self.checked,
             adapter: self.adapter.clone(),
+            named: self.named,
             _closing: Arc::clone(&self._closing),
         }
     }
@@ -168,9 +192,40 @@ impl GpuContext {
         self
     }
 
+    /// The same with kernels that see no more than so many bytes of an array, as on some adapters.
+    /// For tests of batches that are cut up by it.
+    pub fn with_longest_array(mut self, bytes: u64) -> Self {
+        self.adapter.max_binding = bytes;
+        self
+    }
+
+    /// The same with lists of kernels sent in pieces where the last one took longer than this,
+    /// instead of half a second. For tests of that.
+    pub fn with_longest_submission(mut self, longest: Duration) -> Self {
+        self.pace = Pace::with(longest);
+        self
+    }
+
+    /// Pieces of lists that were sent ahead of the last one, which the account of the traffic does
+    /// not count: there a list is one submission.
+    pub fn pieces_sent_ahead(&self) -> u64 {
+        self.pace.ahead()
+    }
+
+    /// Whether a test wants this kernel to compute nothing.
+    pub(super) fn leaves_out(&self, kernel: &str) -> bool {
+        self.fault.as_deref() == Some(kernel)
+    }
+
     /// The adapter behind this device.
     pub fn adapter(&self) -> &Adapter {
         &self.adapter
+    }
+
+    /// Whether the environment names this adapter (`ASPERITY_ADAPTER`), so that it is taken without
+    /// having been measured.
+    pub fn is_named(&self) -> bool {
+        self.named
     }
 
     /// The memory budget: what is taken of how much.

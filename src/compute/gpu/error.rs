@@ -7,10 +7,30 @@ use thiserror::Error;
 pub enum GpuError {
     /// No adapter at all.
     #[error(
-        "no GPU found: no Vulkan, Metal or DX12 adapter is present. Use --device cpu (or auto), or install a driver \
+        "no GPU found: no driver for Vulkan, Metal or DX12 is present. Use --device cpu (or auto), or install a driver \
          (software Vulkan: apt-get install mesa-vulkan-drivers libvulkan1); `asperity devices` lists what is found"
     )]
     NoAdapter,
+    /// Drivers are installed, and no adapter comes of them.
+    #[error(
+        "no GPU can be used: Vulkan's drivers are installed ({drivers}) and none of them opens a device. The driver is broken, \
+         is of another version than the system's, or may not see the card: `vulkaninfo --summary` says which.{hint} \
+         --device cpu needs none"
+    )]
+    BrokenDriver {
+        /// Their files.
+        drivers: String,
+        /// What else is known, a sentence with a space before it, or nothing.
+        hint: String,
+    },
+    /// A limit of an adapter is below what a kernel needs.
+    #[error("{adapter}: {what}. Another adapter may do (ASPERITY_ADAPTER), or --device cpu")]
+    Unfit {
+        /// Name of the adapter.
+        adapter: String,
+        /// The need, the kernel and the limit.
+        what: String,
+    },
     /// `ASPERITY_ADAPTER` matches nothing.
     #[error("ASPERITY_ADAPTER={wanted}: no adapter has this in its name. Present: {present}. Unset it or name one of these")]
     NoSuchAdapter {

@@ -1,10 +1,12 @@
 //! The device layer: from "is there a GPU" to "run this kernel on these arrays", with every failure
 //! an error.
 //!
-//! [`context`] finds and opens a device, [`buffers`] holds typed arrays on it within a memory
-//! budget, [`shader_sources`] lists the WGSL of every kernel, [`pipelines`] compiles and dispatches
-//! it, [`validate`](mod@validate) says where a source does not compile, [`profile`] sums the times
-//! of dispatches and [`moves`] their bytes, where that is asked for.
+//! [`adapters`] chooses one whose limits meet the [`needs`] of the kernels, [`trial`] measures
+//! whether it is worth it, and [`drivers`] looks for the reason where there is none. [`context`]
+//! opens a device, [`buffers`] holds typed arrays on it within a memory budget, [`shader_sources`]
+//! lists the WGSL of every kernel, [`pipelines`] compiles and dispatches it,
+//! [`validate`](mod@validate) says where a source does not compile, [`profile`] sums the times of
+//! dispatches and [`moves`] their bytes, where that is asked for.
 //!
 //! On top of it, [`batch`] runs the kernels of a batch of cases over what [`resident`] keeps on the
 //! device and arrays in memory that they have in turn, [`linear`] solves their linear systems,
@@ -22,6 +24,7 @@ pub mod block_plan;
 pub mod buffers;
 mod compiled;
 pub mod context;
+pub mod drivers;
 pub mod error;
 pub mod health;
 pub mod iterate;
@@ -31,6 +34,8 @@ pub mod memory;
 mod meter;
 pub mod mixed;
 pub mod moves;
+pub mod needs;
+mod pace;
 pub mod pipelines;
 mod pools;
 pub mod profile;
@@ -40,6 +45,7 @@ pub mod resident;
 pub mod scratch;
 pub mod shader_sources;
 pub mod tangents;
+pub mod trial;
 pub mod validate;
 
 pub use adapters::{Adapter, AdapterKind, Choice, DeviceRequest};

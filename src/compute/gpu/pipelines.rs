@@ -34,8 +34,12 @@ impl Bound {
 pub struct Recorder<'a> {
     context: &'a GpuContext,
     encoder: wgpu::CommandEncoder,
+    /// What goes ahead of that, each in a submission of its own.
+    ahead: Vec<wgpu::CommandBuffer>,
     commands: usize,
     dispatches: u64,
+    /// Kernels of a piece; none where the list goes whole.
+    most: Option<u64>,
     /// None without a profile.
     stamps: Option<Stamps>,
     counted: Option<usize>,
@@ -135,17 +139,35 @@ impl GpuContext {
         Ok(Bound { pipeline: Arc::clone(pipeline), group, moved })
     }
 
-    /// Starts a list of kernels to be run in one submission.
+    fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("kernels") })
+    }
+
+    /// Starts a list of kernels to be run in one submission, or in several where the last list took
+    /// too long for a driver's patience. They are sent one right after the other, once the list is
+    /// complete: what is uploaded meanwhile comes before all of them.
     pub fn record(&self) -> Recorder<'_> {
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("kernels") };
         Recorder {
             context: self,
-            encoder: self.device.create_command_encoder(&descriptor),
+            encoder: self.encoder(),
+            ahead: Vec::new(),
             commands: 0,
             dispatches: 0,
+            most: self.pace.most(),
             stamps: self.stamps(),
             counted: None,
         }
+    }
+}
+
+impl GpuContext {
+    /// Sends a list off: what goes ahead of the last piece, and that.
+    pub(super) fn send(&self, (ahead, last): (Vec<wgpu::CommandBuffer>, wgpu::CommandEncoder)) -> wgpu::SubmissionIndex {
+        for piece in ahead {
+            self.queue.submit([piece]);
+            self.pace.sent_ahead();
+        }
+        self.queue.submit([last.finish()])
     }
 }
 
@@ -192,6 +214,10 @@ impl Recorder<'_> {
         if groups == 0 || cases == 0 {
             return Ok(());
         }
+        if self.most.is_some_and(|most| self.dispatches > 0 && self.dispatches.is_multiple_of(most)) {
+            let piece = std::mem::replace(&mut self.encoder, self.context.encoder());
+            self.ahead.push(piece.finish());
+        }
         let timestamp_writes = match (&mut self.stamps, &bound.moved) {
             (Some(stamps), Some(moved)) => self.context.stamp(stamps, moved, self.counted.unwrap_or(cases).min(cases))?,
             _ => None,
@@ -201,6 +227,7 @@ impl Recorder<'_> {
         pass.set_pipeline(&bound.pipeline.raw);
         pass.set_bind_group(0, &bound.group, &[]);
         match calls {
+            _ if self.context.leaves_out(kernel.name) => pass.dispatch_workgroups(0, 0, 0),
             Some((calls, place)) => pass.dispatch_workgroups_indirect(&calls.raw, calls.first + place as u64 * INDEX),
             None => pass.dispatch_workgroups(groups as u32, cases as u32, 1),
         }
@@ -268,7 +295,7 @@ impl Recorder<'_> {
         if let Some(stamps) = &self.stamps {
             stamps.resolve(&mut self.encoder);
         }
-        let submission = self.context.read_after(self.encoder, self.dispatches, reads)?;
+        let submission = self.context.read_after((self.ahead, self.encoder), self.dispatches, reads)?;
         self.context.waited_for(self.stamps, &submission);
         Ok(())
     }
@@ -284,7 +311,7 @@ impl Recorder<'_> {
         if let Some(stamps) = &self.stamps {
             stamps.resolve(&mut self.encoder);
         }
-        self.context.scoped("a list of kernels", || self.context.queue.submit([self.encoder.finish()]))?;
+        self.context.scoped("a list of kernels", || self.context.send((self.ahead, self.encoder)))?;
         self.context.meter.submitted(self.dispatches);
         self.context.sent(self.stamps);
         Ok(())

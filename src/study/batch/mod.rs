@@ -17,6 +17,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub use self::guest::{Guest, Place};
+use crate::compute::select::SharedCalls;
 use crate::compute::{About, Answer, Call, Compute, ComputeError};
 
 /// What the backend says of itself, for all guests.
@@ -51,8 +52,10 @@ pub fn share(backend: Box<dyn Compute>) -> (Host, Vec<Place>) {
 }
 
 impl Host {
-    /// Serves until the last place and guest have gone.
-    pub fn serve(mut self) {
+    /// Serves until the last place and guest have gone; gives the calls of iterates that they
+    /// shared.
+    pub fn serve(mut self) -> SharedCalls {
+        let mut shared = SharedCalls::default();
         while let Ok(first) = self.requests.recv() {
             let mut alike: Vec<Vec<Request>> = vec![vec![first]];
             for request in self.requests.try_iter() {
@@ -60,6 +63,9 @@ impl Host {
                     Some(of) => of.push(request),
                     None => alike.push(vec![request]),
                 }
+            }
+            for of in alike.iter().filter(|of| matches!(of[0].call, Call::Iterate(_))) {
+                shared += SharedCalls { calls: 1, cases: of.len() as u64 };
             }
             let answered: Vec<_> = alike.into_iter().flat_map(|of| self.answer(of)).collect();
             let notes = self.backend.take_notes();
@@ -72,6 +78,7 @@ impl Host {
                 let _ = reply.send(answer);
             }
         }
+        shared
     }
 
     /// Answers requests of different cases, all of a kind, in one call.

@@ -2,13 +2,11 @@
 //! and leaves on every level are the CPU's, which are in f32 too; the vectors of FGMRES, which the
 //! CPU makes in another way, are held to the equations that define them, in f64.
 
-use crate::device::device;
-use crate::linear::{System, models, solve, system};
-use asperity::internals::compute::gpu::linear::inspect::OnLevel;
-use asperity::internals::compute::gpu::{Gpu, Precision};
-use asperity::internals::linalg::{BlockMatrix, Hierarchy};
-use asperity::internals::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh};
-use rand::RngExt;
+use super::linear::{System, models, own_numbers, solve, system};
+use crate::compute::gpu::linear::inspect::OnLevel;
+use crate::compute::gpu::{Gpu, GpuContext};
+use crate::linalg::{BlockMatrix, Hierarchy};
+use crate::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh};
 use std::sync::Arc;
 
 /// Of the largest number of an array.
@@ -96,15 +94,13 @@ fn gaps(device: &OnLevel, hierarchy: &Hierarchy, l: usize, is_fixed: &dyn Fn(usi
     [gap(blocks.into_iter()), inverse, vector(&device.b, host.b), vector(&device.x, host.x)]
 }
 
-#[test]
-fn every_level_has_the_cpus_matrix_and_its_v_cycle() {
-    let name = "every_level_has_the_cpus_matrix_and_its_v_cycle";
+/// Every level has the CPU's matrix, and takes and leaves the same in a V-cycle.
+pub fn every_level_has_the_cpus_matrix_and_its_v_cycle(context: &Arc<GpuContext>) {
     for mesh in meshes().into_iter().chain([down_to_one_element()]) {
         let models = models(&mesh);
         for masked in [false, true] {
             for case in 0..models.len() {
-                let Some(context) = device(name, Precision::F64).map(Arc::new) else { return };
-                let system = system(case, &models, masked);
+                let system = system(own_numbers, case, &models, masked);
                 let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
                 solve(&mut gpu, &[(0, &system)], 0.1);
                 let solver = gpu.solver().unwrap();
@@ -112,16 +108,16 @@ fn every_level_has_the_cpus_matrix_and_its_v_cycle() {
                 let mut hierarchy = hierarchy.with_rounded_smoothers();
                 hierarchy.update(&system.matrix, &system.fixed).unwrap();
                 let nodes = mesh.nodes.len();
-                let mut rng = crate::batch::random(7 + case as u64);
-                let v: Vec<f32> = system.fixed.iter().map(|&f| if f { 0.0 } else { rng.random_range(-1.0..1.0) }).collect();
+                let mut rng = super::batch::random(7 + case as u64);
+                let v: Vec<f32> = system.fixed.iter().map(|&f| if f { 0.0 } else { rng.between(-1.0, 1.0) as f32 }).collect();
                 let mut z = vec![0.0; v.len()];
                 hierarchy.v_cycle(&v, &mut z);
                 let by_component: Vec<f32> = (0..3).flat_map(|c| (0..nodes).map(move |n| 3 * n + c)).map(|i| v[i]).collect();
-                solver.v_cycle(&context, &by_component).unwrap();
+                solver.v_cycle(context, &by_component).unwrap();
                 for l in 0..solver.depth() {
-                    let on_device = solver.on_level(&context, l).unwrap();
+                    let on_device = solver.on_level(context, l).unwrap();
                     let found = gaps(&on_device, &hierarchy, l, &|node, c| l == 0 && system.fixed[3 * node + c]);
-                    eprintln!("{nodes} nodes, case {case}, masked {masked}, level {l}: matrix, inverse, b, x {found:?}");
+                    log::debug!("{nodes} nodes, case {case}, masked {masked}, level {l}: matrix, inverse, b, x {found:?}");
                     assert!(found.iter().all(|gap| *gap <= BOUND), "case {case}, masked {masked}, level {l}: {found:?}");
                 }
                 assert!(hierarchy.on_level(solver.depth()).is_none());
@@ -151,18 +147,15 @@ fn product(matrix: &BlockMatrix<f64>, fixed: &[bool], x: &[f64]) -> Vec<f64> {
 /// The basis is orthonormal and begins with the residual; A z_j lies in the span of the first j + 2
 /// vectors; the answer is the combination of the z_j that leaves the least, and as much is left as
 /// the recurrence says.
-#[test]
-fn a_krylov_cycle_obeys_its_equations() {
-    let name = "a_krylov_cycle_obeys_its_equations";
+pub fn a_krylov_cycle_obeys_its_equations(context: &Arc<GpuContext>) {
     let [mesh, ..] = meshes();
     let models = models(&mesh);
     for case in 0..models.len() {
-        let Some(context) = device(name, Precision::F64).map(Arc::new) else { return };
-        let system = system(case, &models, true);
+        let system = system(own_numbers, case, &models, true);
         let System { fixed, rhs, matrix, .. } = &system;
         let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
         let (_, report) = solve(&mut gpu, &[(0, &system)], 1e-4).remove(0);
-        let cycle = gpu.solver().unwrap().last_cycle(&context).unwrap();
+        let cycle = gpu.solver().unwrap().last_cycle(context).unwrap();
         let steps = cycle.steps;
         assert!(steps == report.iterations && steps > 2, "{steps} of {}", report.iterations);
         let n = rhs.len();
@@ -209,7 +202,7 @@ fn a_krylov_cycle_obeys_its_equations() {
             assert!(share.abs() <= 1e-5, "{share:e} of the first residual could still be taken along A z of step {j}");
         }
         let missing = (what_is_left - f64::from(cycle.residual)).abs() / norm;
-        eprintln!("case {case}: {steps} steps, left {what_is_left:.3e} of {norm:.3e}, recurrence {:.3e}", cycle.residual);
+        log::debug!("case {case}: {steps} steps, left {what_is_left:.3e} of {norm:.3e}, recurrence {:.3e}", cycle.residual);
         assert!(missing <= 1e-5, "left {what_is_left:e}, and {:e} by the recurrence, of {norm:e}", cycle.residual);
     }
 }

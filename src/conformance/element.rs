@@ -1,12 +1,12 @@
 //! The element on small distorted meshes: forces, tangents, commits and energies of every law
 //! against the CPU in f64.
 
-use crate::batch::{
-    Backend, OnCpu, commits, couples, difference, displaced, every_mesh, for_every_batch, forces, models, random, tangents,
+use crate::compute::handle::CaseHandle;
+use crate::compute::{CaseModel, CaseState, Compute, Outcome};
+use crate::conformance::batch::{
+    Backend, OnCpu, commits, couples, difference, displaced, every_mesh, forces, models, random, tangents,
 };
-use asperity::internals::compute::handle::CaseHandle;
-use asperity::internals::compute::{CaseModel, CaseState, Compute, Outcome};
-use asperity::internals::real::Real;
+use crate::real::Real;
 
 /// How far from the reference a backend may be, relative to the largest number of the answer.
 pub struct Bounds {
@@ -66,7 +66,7 @@ fn prepare<R: Real, B: Backend<R>>(backend: &B, models: &[CaseModel], kind: (&st
     Pair { ours, reference, trials }
 }
 
-fn forces_and_tangents_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+pub fn forces_and_tangents_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).iter().for_each(|models| forces_and_tangents_agree_on::<R, B>(backend, bounds, models));
 }
 
@@ -86,7 +86,7 @@ fn forces_and_tangents_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bo
         }
     }
     let elements = models[0].mesh.elements.len();
-    println!("{}, {elements} elements: worst force {worst_force:.1e}, tangent {worst_tangent:.1e}", R::NAME);
+    log::debug!("{}, {elements} elements: worst force {worst_force:.1e}, tangent {worst_tangent:.1e}", R::NAME);
 }
 
 fn distance(ours: &CaseState, reference: &CaseState) -> f64 {
@@ -95,7 +95,7 @@ fn distance(ours: &CaseState, reference: &CaseState) -> f64 {
     difference(&flat(ours), &flat(reference)).max(difference(&ours.plastic_work, &reference.plastic_work))
 }
 
-fn commits_and_energies_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+pub fn commits_and_energies_agree<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).iter().for_each(|models| commits_and_energies_agree_on::<R, B>(backend, bounds, models));
 }
 
@@ -120,11 +120,11 @@ fn commits_and_energies_agree_on<R: Real, B: Backend<R>>(backend: &B, bounds: &B
             worst = worst.max(error);
         }
     }
-    println!("{}: worst state and energies {worst:.1e}", R::NAME);
+    log::debug!("{}: worst state and energies {worst:.1e}", R::NAME);
 }
 
 /// A restored state is the one that was taken: the answers that follow have the same bits.
-fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
+pub fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
     let models = models(CELLS);
     let Pair { mut ours, trials, .. } = prepare(backend, &models, KINDS[3], 50);
     let expected = forces(ours.as_mut(), &trials);
@@ -138,7 +138,7 @@ fn a_state_survives_being_taken_and_restored<R: Real, B: Backend<R>>(backend: &B
 
 /// Newton's third law, no force from a shift of the whole body, and a tangent that is the
 /// derivative of the force.
-fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+pub fn obeys_its_equations<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).iter().for_each(|models| obeys_its_equations_on::<R, B>(backend, bounds, models));
 }
 
@@ -156,7 +156,7 @@ fn obeys_its_equations_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, 
     }
     let Some(bound) = bounds.differences else { return };
     let mesh = ours.models()[0].mesh.clone();
-    let pattern = asperity::internals::mesh::pattern::Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
+    let pattern = crate::mesh::pattern::Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
     // The moduli of plastic flow are the symmetrised ones: their part of the tangent is exact only
     // where the flow is radial.
     let elastic = vec![trials[0].clone()];
@@ -179,7 +179,7 @@ fn obeys_its_equations_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, 
 
 /// J <= 0 and NaN are named by element and point, and spoil neither the other cases nor the calls
 /// after them.
-fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
+pub fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
     let Pair { mut ours, mut reference, trials } = prepare(backend, &models(CELLS), KINDS[3], 70);
     let good = forces(ours.as_mut(), &trials);
     let mut bad = trials.clone();
@@ -204,7 +204,7 @@ fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bounds
 
 /// Two bodies in one mesh answer as each by itself, to the bit: forces, tangents, energies, and
 /// which part of the plastic work is the opponent's.
-fn two_bodies_answer_as_each_by_itself<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
+pub fn two_bodies_answer_as_each_by_itself<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).into_iter().for_each(|models| two_bodies_answer_on::<R, B>(backend, bounds, models));
 }
 
@@ -258,12 +258,3 @@ fn two_bodies_answer_on<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds, ow
         }
     }
 }
-
-for_every_batch!(
-    two_bodies_answer_as_each_by_itself,
-    forces_and_tangents_agree,
-    commits_and_energies_agree,
-    a_state_survives_being_taken_and_restored,
-    obeys_its_equations,
-    bad_displacements_are_refused,
-);

@@ -1,25 +1,27 @@
 //! Batches of cases for the conformance bodies, and who evaluates them.
 
-use asperity::internals::compute::cpu::Cpu;
-use asperity::internals::compute::gpu::{DeviceReal, Gpu, GpuContext};
-use asperity::internals::compute::handle::at_contact;
-use asperity::internals::compute::{Answer, Blocks, Call, CaseModel, Compute, Energies, Outcome};
-use asperity::internals::contact::coulomb::{Friction, Rows};
-use asperity::internals::mesh::brick::brick;
-use asperity::internals::mesh::couple::{couple, scaled};
-use asperity::internals::mesh::{Mesh, SphereSpec, flat_mesh};
-use asperity::internals::real::Real;
-use asperity::material::{Elasticity, Hardening, Material};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use crate::compute::cpu::Cpu;
+use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
+use crate::compute::handle::at_contact;
+use crate::compute::{Answer, Blocks, Call, CaseModel, Compute, Energies, Outcome};
+use crate::contact::coulomb::{Friction, Rows};
+use crate::material::{Elasticity, Hardening, Material};
+use crate::mesh::brick::brick;
+use crate::mesh::couple::{couple, scaled};
+use crate::mesh::{Mesh, SphereSpec, flat_mesh};
+use crate::random::Seeded;
+use crate::real::Real;
 use std::sync::Arc;
 
 /// Who evaluates a batch.
 pub trait Backend<R> {
+    /// A batch of cases in their virgin state.
     fn start(&self, models: &[CaseModel]) -> Box<dyn Compute>;
 }
 
+/// The CPU.
 pub struct OnCpu;
+/// A device.
 pub struct OnGpu(pub Arc<GpuContext>);
 
 impl<R: Real> Backend<R> for OnCpu {
@@ -34,36 +36,9 @@ impl<R: DeviceReal> Backend<R> for OnGpu {
     }
 }
 
-/// Instantiates a body, `fn body<R, B: Backend<R>>(backend: &B, bounds: &Bounds)`, for the four
-/// backends.
-macro_rules! for_every_batch {
-    ($($body:ident),+ $(,)?) => {
-        mod cpu_f64 {
-            $(#[test] fn $body() { super::$body::<f64, _>(&crate::batch::OnCpu, &super::Bounds::F64); })+
-        }
-        mod cpu_f32 {
-            $(#[test] fn $body() { super::$body::<f32, _>(&crate::batch::OnCpu, &super::Bounds::F32); })+
-        }
-        mod gpu_f64 {
-            $(#[test] fn $body() {
-                let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F64);
-                let Some(context) = context else { return };
-                super::$body::<f64, _>(&crate::batch::OnGpu(context.into()), &super::Bounds::F64);
-            })+
-        }
-        mod gpu_f32 {
-            $(#[test] fn $body() {
-                let context = crate::device::device(stringify!($body), asperity::internals::compute::gpu::Precision::F32);
-                let Some(context) = context else { return };
-                super::$body::<f32, _>(&crate::batch::OnGpu(context.into()), &super::Bounds::F32);
-            })+
-        }
-    };
-}
-pub(crate) use for_every_batch;
-
-pub fn random(seed: u64) -> ChaCha8Rng {
-    ChaCha8Rng::seed_from_u64(seed)
+/// Numbers of a seed.
+pub fn random(seed: u64) -> Seeded {
+    Seeded::new(seed)
 }
 
 /// A box of distorted elements, each about 0.3 wide.
@@ -71,7 +46,7 @@ pub fn distorted(cells: [usize; 3], seed: u64) -> Arc<Mesh> {
     let mut rng = random(seed);
     let mut mesh = brick(cells[0], cells[1], cells[2], cells.map(|n| 0.3 * n as f64)).unwrap();
     for x in &mut mesh.nodes {
-        x.iter_mut().for_each(|x| *x += rng.random_range(-0.04..0.04));
+        x.iter_mut().for_each(|x| *x += rng.between(-0.04, 0.04));
     }
     Arc::new(mesh)
 }
@@ -87,7 +62,7 @@ pub fn with_skin(levels: usize, seed: u64) -> Arc<Mesh> {
     let mut mesh = scaled(mesh, 0.3 / shortest);
     let mut rng = random(seed);
     for x in &mut mesh.nodes {
-        x.iter_mut().for_each(|x| *x += rng.random_range(-0.02..0.02));
+        x.iter_mut().for_each(|x| *x += rng.between(-0.02, 0.02));
     }
     assert!(mesh.hanging.iter().any(|hanging| !hanging.is_none()));
     Arc::new(mesh)
@@ -142,8 +117,8 @@ pub fn couples(own: Vec<CaseModel>) -> (Vec<CaseModel>, [Vec<CaseModel>; 2]) {
 
 /// A random displacement whose gradients are about `strain`, after `from`; the difference is a
 /// number of precision R.
-pub fn displaced<R: Real>(from: &[f64], strain: f64, rng: &mut ChaCha8Rng) -> Vec<f64> {
-    from.iter().map(|u| u + R::of(strain * rng.random_range(-0.1..0.1)).to_f64()).collect()
+pub fn displaced<R: Real>(from: &[f64], strain: f64, rng: &mut Seeded) -> Vec<f64> {
+    from.iter().map(|u| u + R::of(strain * rng.between(-0.1, 0.1)).to_f64()).collect()
 }
 
 type Displacements = [(usize, Vec<f64>)];

@@ -1,0 +1,174 @@
+//! What the kernels need of an adapter, and whether it has that: asked before it is chosen.
+//!
+//! The needs are read from the sources of [`KERNELS`] as naga reads them, so that a kernel which is
+//! added or grows needs nothing here.
+
+use super::shader_sources::{KERNELS, Kernel, Precision};
+use super::validate::{Checked, validate};
+use naga::AddressSpace;
+use std::fmt;
+use std::sync::OnceLock;
+
+/// What a kernel may have of an adapter, or takes of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Limits {
+    /// Arrays that it sees at once.
+    pub storage_buffers: u64,
+    /// Blocks of parameters that it sees at once.
+    pub uniform_buffers: u64,
+    /// Bytes of such a block.
+    pub uniform_bytes: u64,
+    /// Threads of a workgroup.
+    pub threads: u64,
+    /// Bytes that the threads of a workgroup share.
+    pub shared_bytes: u64,
+}
+
+/// Limits of an adapter on which every kernel runs, for tests.
+#[cfg(test)]
+pub(super) const ENOUGH: Limits =
+    Limits { storage_buffers: 16, uniform_buffers: 12, uniform_bytes: 64 << 10, threads: 256, shared_bytes: 32 << 10 };
+
+/// The most that any kernel takes of one limit.
+#[derive(Clone, Copy, Debug)]
+pub struct Need {
+    /// Of what, in words.
+    pub what: &'static str,
+    /// The limit's place among [`Limits`].
+    of: fn(&Limits) -> u64,
+    /// How much.
+    pub needed: u64,
+    /// The kernel.
+    pub kernel: &'static str,
+}
+
+impl Need {
+    /// What an adapter has of it.
+    pub fn has(&self, limits: &Limits) -> u64 {
+        (self.of)(limits)
+    }
+}
+
+impl fmt::Display for Need {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} ({})", self.needed, self.what, self.kernel)
+    }
+}
+
+/// The limits in words.
+const KINDS: [(&str, fn(&Limits) -> u64); 5] = [
+    ("storage buffers in one kernel", |limits| limits.storage_buffers),
+    ("uniform buffers in one kernel", |limits| limits.uniform_buffers),
+    ("bytes in one uniform buffer", |limits| limits.uniform_bytes),
+    ("threads in one workgroup", |limits| limits.threads),
+    ("bytes of memory in one workgroup", |limits| limits.shared_bytes),
+];
+
+/// What a kernel takes; nothing of a source that is not valid, which is an error when it is
+/// compiled.
+fn taken(kernel: &Kernel) -> Limits {
+    let mut taken = Limits { threads: kernel.workgroup.into(), ..Limits::default() };
+    // Numbers in double precision take the most.
+    let Ok(Checked { module, info }) = validate(&kernel.assemble(Precision::F64)) else { return taken };
+    // Files that kernels share declare more than each of them uses.
+    let used = info.get_entry_point(0);
+    for (_, variable) in module.global_variables.iter().filter(|(handle, _)| !used[*handle].is_empty()) {
+        let bytes = || u64::from(module.types[variable.ty].inner.try_size(module.to_ctx()).unwrap_or(u32::MAX));
+        match variable.space {
+            AddressSpace::Storage { .. } => taken.storage_buffers += 1,
+            AddressSpace::Uniform => {
+                taken.uniform_buffers += 1;
+                taken.uniform_bytes = taken.uniform_bytes.max(bytes());
+            }
+            AddressSpace::WorkGroup => taken.shared_bytes += bytes(),
+            _ => {}
+        }
+    }
+    for entry in &module.entry_points {
+        taken.threads = taken.threads.max(entry.workgroup_size.iter().map(|&threads| u64::from(threads)).product());
+    }
+    taken
+}
+
+fn most(kernels: &[&'static Kernel]) -> Vec<Need> {
+    let taken: Vec<(&'static str, Limits)> = kernels.iter().map(|kernel| (kernel.name, taken(kernel))).collect();
+    let of_kind = |&(what, of): &(&'static str, fn(&Limits) -> u64)| {
+        let (kernel, limits) = taken.iter().rev().max_by_key(|(_, limits)| of(limits))?;
+        Some(Need { what, of, needed: of(limits), kernel })
+    };
+    KINDS.iter().filter_map(of_kind).collect()
+}
+
+/// The needs of all kernels, one for each limit; found once.
+pub fn needs() -> &'static [Need] {
+    static NEEDS: OnceLock<Vec<Need>> = OnceLock::new();
+    NEEDS.get_or_init(|| most(KERNELS))
+}
+
+/// The first need that an adapter does not meet, in words; none if it meets all.
+pub fn unmet(limits: &Limits) -> Option<String> {
+    let need = needs().iter().find(|need| need.has(limits) < need.needed)?;
+    Some(format!("needs {need}, the adapter has {}", need.has(limits)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compute::gpu::shader_sources::{Binding, Source};
+
+    static SHARING: Kernel = Kernel {
+        name: "sharing",
+        sources: &[Source {
+            path: "tests",
+            text: "
+struct Block { a: vec4<u32>, b: real }
+@group(0) @binding(0) var<uniform> block: Block;
+@group(0) @binding(1) var<storage, read_write> values: array<real>;
+var<workgroup> shared_numbers: array<real, 32>;
+@compute @workgroup_size(8, 4)
+fn sharing(@builtin(local_invocation_index) i: u32) {
+    shared_numbers[i] = block.b;
+    values[i] = shared_numbers[i];
+}
+",
+        }],
+        bindings: &[Binding::Uniform, Binding::ReadWrite],
+        workgroup: 32,
+    };
+
+    #[test]
+    fn a_kernels_needs_are_those_of_its_source() {
+        let expected = Limits { storage_buffers: 1, uniform_buffers: 1, uniform_bytes: 32, threads: 32, shared_bytes: 256 };
+        assert_eq!(taken(&SHARING), expected);
+        let needs = most(&[&SHARING]);
+        assert!(needs.len() == KINDS.len() && needs.iter().all(|need| need.kernel == "sharing"));
+    }
+
+    #[test]
+    fn every_need_is_compared() {
+        assert_eq!(unmet(&ENOUGH), None);
+        for need in needs() {
+            assert!(need.needed > 0 && KERNELS.iter().any(|kernel| kernel.name == need.kernel), "{need}");
+        }
+        let short = [
+            (Limits { storage_buffers: 8, ..ENOUGH }, "storage buffers in one kernel (", "has 8"),
+            (Limits { uniform_buffers: 0, ..ENOUGH }, "uniform buffers in one kernel (", "has 0"),
+            (Limits { uniform_bytes: 16, ..ENOUGH }, "bytes in one uniform buffer (", "has 16"),
+            (Limits { threads: 128, ..ENOUGH }, "threads in one workgroup (", "has 128"),
+            (Limits { shared_bytes: 64, ..ENOUGH }, "bytes of memory in one workgroup (", "has 64"),
+        ];
+        for (limits, need, has) in short {
+            let said = unmet(&limits).unwrap();
+            assert!(said.starts_with("needs ") && said.contains(need) && said.ends_with(has), "{said}");
+        }
+    }
+
+    /// The list that a kernel is bound by says the same as its source.
+    #[test]
+    fn as_many_arrays_are_bound_as_are_declared() {
+        for kernel in KERNELS {
+            let declared = taken(kernel);
+            assert_eq!(declared.storage_buffers + declared.uniform_buffers, kernel.bindings.len() as u64, "{}", kernel.name);
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Linear systems solved on a device against the CPU's multigrid: what each leaves of the residual
+//! in f64, and how many iterations it takes for that.
+
+use super::batch::{random, tangents};
+use crate::compute::cpu::Cpu;
+use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
+use crate::compute::linear::{self, Ended, Side, SideReport, Solved};
+use crate::compute::{Answer, Call, CaseModel, Compute, Outcome};
+use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
+use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
+use crate::material::{Elasticity, Hardening, Material};
+use crate::mesh::{Mesh, SphereSpec, sphere_mesh};
+use crate::solver::system::{Boundary, apply_contact, fixed_unknowns, plate_functional};
+use std::sync::Arc;
+
+/// Cases of a batch.
+pub const CASES: usize = 3;
+
+/// A sphere of even elements.
+pub fn mesh() -> Arc<Mesh> {
+    let [mesh, ..] = meshes();
+    mesh
+}
+
+/// A sphere of even elements, and with elements at the surface that are halved once and twice
+/// again.
+pub fn meshes() -> [Arc<Mesh>; 3] {
+    [0, 1, 2].map(|skin_levels| {
+        let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels };
+        Arc::new(sphere_mesh(&spec).unwrap())
+    })
+}
+
+/// Three spheres: elastic, plastic, nearly incompressible.
+pub fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
+    let cases = [(Hardening::Elastic, 0.3), (Hardening::ideal(2e-3).unwrap(), 0.3), (Hardening::Elastic, 0.49)];
+    let model = |(hardening, nu): (Hardening<f64>, f64)| CaseModel {
+        mesh: mesh.clone(),
+        material: Material { elasticity: Elasticity::new(1.0, nu), hardening },
+        friction: Friction::Coulomb(0.3),
+        opponent: None,
+    };
+    cases.map(model).to_vec()
+}
+
+/// One system, and what is asked of it.
+pub struct System {
+    displacement: Vec<f64>,
+    rows: Vec<Rows<f64>>,
+    /// Unknowns that are prescribed.
+    pub fixed: Vec<bool>,
+    /// Right-hand side.
+    pub rhs: Vec<f64>,
+    /// The matrix with its contact rows.
+    pub matrix: BlockMatrix<f64>,
+    functional: Vec<f64>,
+}
+
+/// Numbers of a seed, each even between two bounds.
+pub type Numbers = fn(u64) -> Box<dyn FnMut(f64, f64) -> f64>;
+
+/// The program's own.
+pub fn own_numbers(seed: u64) -> Box<dyn FnMut(f64, f64) -> f64> {
+    let mut rng = random(seed);
+    Box::new(move |low, high| rng.between(low, high))
+}
+
+/// Points that stick, slide and are open by chance; every other free unknown has a random force,
+/// every fixed one a random displacement.
+pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool) -> System {
+    let mesh = &models[case].mesh;
+    let mut between = numbers(40 + case as u64);
+    let n = 3 * mesh.nodes.len();
+    let displacement: Vec<f64> = mesh
+        .nodes
+        .iter()
+        .flat_map(|x| [0.02 * x[0] * x[2], 0.0, -0.004 * x[2] * x[2]])
+        .map(|u| u + between(-1e-6, 1e-6))
+        .collect();
+    let blocks = tangents(&mut Cpu::<f64>::new(models.to_vec()).unwrap(), &[(case, displacement.clone())]).remove(0).1;
+    let rows: Vec<Rows<f64>> = (0..mesh.contact_nodes.len())
+        .map(|i| {
+            let point = Point {
+                force: [between(-1e-5, 1e-5), 0.0, between(-1e-5, 3e-5)],
+                gap: between(-1e-5, 1e-5),
+                slip: [between(-1e-4, 1e-4), 0.0],
+                weight: CONTACT_WEIGHT * mesh.contact_size[i],
+                on_symmetry_plane: mesh.symmetry_nodes.contains(&mesh.contact_nodes[i]),
+            };
+            contact_rows(Friction::Coulomb(0.3), &point)
+        })
+        .collect();
+    let boundary = Boundary::new(mesh);
+    let mut fixed = vec![false; n];
+    fixed_unknowns(mesh, &boundary, &rows, &mut fixed);
+    if masked {
+        fixed.iter_mut().for_each(|fixed| *fixed |= between(0.0, 1.0) < 0.2);
+    }
+    let size = |fixed: bool| if fixed { 1e-4 } else { 1e-6 };
+    let rhs = fixed.iter().map(|&fixed| size(fixed) * between(-1.0, 1.0)).collect();
+    let mut matrix = BlockMatrix::zeros(Pattern::from_elements(mesh.nodes.len(), &mesh.elements));
+    matrix.blocks.copy_from_slice(&blocks);
+    let mut functional = vec![0.0; n];
+    plate_functional(&matrix, &boundary.plate, &mut functional);
+    apply_contact(&mut matrix, mesh, &rows);
+    assert!([Status::Open, Status::Stick, Status::Slip].iter().all(|status| rows.iter().any(|row| row.status == *status)));
+    System { displacement, rows, fixed, rhs, matrix, functional }
+}
+
+impl System {
+    /// |b - A x| over the free unknowns over the same at x = 0, in f64; fixed unknowns have to be
+    /// right.
+    pub fn residual(&self, x: &[f64]) -> f64 {
+        let left = |x: &[f64]| {
+            let mut r = vec![0.0; x.len()];
+            self.matrix.residual(x, &self.rhs, &mut r);
+            r.iter().zip(&self.fixed).filter(|(_, fixed)| !**fixed).map(|(r, _)| r * r).sum::<f64>().sqrt()
+        };
+        let values = |x: f64, b: f64, fixed: bool| if fixed { b } else { x };
+        let zero: Vec<f64> = self.rhs.iter().zip(&self.fixed).map(|(b, fixed)| values(0.0, *b, *fixed)).collect();
+        for ((x, b), _) in x.iter().zip(&self.rhs).zip(&self.fixed).filter(|(_, fixed)| **fixed) {
+            assert!(x == b || b.is_nan());
+        }
+        left(x) / left(&zero)
+    }
+}
+
+/// What is asked of a system: a side of this tolerance from each guess.
+pub fn asked(system: &System, sides: &[(f64, Vec<f64>)], expected: usize, relative_to_guess: bool) -> linear::System {
+    let side = |(tolerance, guess): &(f64, Vec<f64>)| Side {
+        rhs: system.rhs.clone(),
+        tolerance: *tolerance,
+        relative_to_guess,
+        expected,
+        guess: guess.clone(),
+    };
+    let System { displacement, rows, fixed, .. } = system;
+    let (rows, fixed) = (rows.clone(), fixed.clone());
+    linear::System { displacement: displacement.as_slice().into(), rows, fixed, sides: sides.iter().map(side).collect() }
+}
+
+/// The answers to systems of cases.
+pub fn solved(backend: &mut dyn Compute, systems: Vec<(usize, linear::System)>) -> Vec<Solved> {
+    let answers = backend.call(systems.into_iter().map(|(case, system)| (case, Call::Solve(system.into()))).collect()).unwrap();
+    answers.into_iter().map(|answer| if let Answer::Solved(solved) = answer { solved } else { panic!("{answer:?}") }).collect()
+}
+
+/// The solutions of systems of cases, from zero.
+pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance: f64) -> Vec<(Vec<f64>, SideReport)> {
+    let zeros = |system: &System| vec![0.0; system.rhs.len()];
+    let one = |&(case, system): &(usize, &System)| (case, asked(system, &[(tolerance, zeros(system))], 2, false));
+    let answers = solved(backend, systems.iter().map(one).collect());
+    let solution = |mut solved: Solved| {
+        assert_eq!((solved.outcome, solved.solutions.len()), (Outcome::Valid, 1));
+        let solution = solved.solutions.remove(0);
+        (solution.x, solution.report)
+    };
+    answers.into_iter().map(solution).collect()
+}
+
+/// What a device leaves of residuals, and how many iterations it takes for that. In f32 a point that
+/// lies on the yield surface may fall to its other side, and then the matrix is another: the numbers
+/// have to leave no point there.
+pub fn meets_tolerances_as_the_cpu_does<R: DeviceReal>(context: &Arc<GpuContext>, numbers: Numbers) {
+    for mesh in meshes() {
+        meets_tolerances_on::<R>(context.clone(), numbers, &mesh);
+    }
+}
+
+fn meets_tolerances_on<R: DeviceReal>(context: Arc<GpuContext>, numbers: Numbers, mesh: &Arc<Mesh>) {
+    let models = models(mesh);
+    let mut gpu = Gpu::<R>::new(context, models.clone()).unwrap();
+    for masked in [false, true] {
+        let systems: Vec<System> = (0..CASES).map(|case| system(numbers, case, &models, masked)).collect();
+        let all: Vec<(usize, &System)> = systems.iter().enumerate().collect();
+        for tolerance in [0.1, 1e-2, 1e-3, 1e-5] {
+            for (case, (system, (x, report))) in systems.iter().zip(solve(&mut gpu, &all, tolerance)).enumerate() {
+                let mut host = LinearSolver::new(SolverKind::Multigrid, &system.matrix.pattern, &mesh.hierarchy).unwrap();
+                host.update(&system.matrix, &system.fixed).unwrap();
+                let mut reference = vec![0.0; x.len()];
+                let on_host = host.solve(&system.rhs, tolerance, &mut reference).unwrap();
+                let left = system.residual(&x);
+                log::debug!("{tolerance}: {left:.3e}, {} iterations, host {}", report.iterations, on_host.iterations);
+                assert_eq!(report.ended, Ended::Converged);
+                // f32 resolves 1.2e-5 of the first residual.
+                let nodes = mesh.nodes.len();
+                let which = format!("{nodes} nodes, case {case}, masked {masked}");
+                assert!(left <= 1.02 * tolerance.max(1.3e-5), "{which}: {left} of {tolerance}");
+                assert!(report.iterations.abs_diff(on_host.iterations) <= 1, "{} and {}", report.iterations, on_host.iterations);
+                let along: f64 = system.functional.iter().zip(&x).map(|(w, x)| w * x).sum();
+                let size: f64 = system.functional.iter().zip(&x).map(|(w, x)| (w * x).abs()).sum();
+                assert!((report.along - along).abs() <= 1e-5 * size, "{} and {along} of {size}", report.along);
+            }
+        }
+    }
+}
