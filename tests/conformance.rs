@@ -81,7 +81,7 @@ mod whole {
 
 /// Those of the linear solver by themselves.
 mod kernels {
-    for_a_device!(kernels: every_level_has_the_cpus_matrix_and_its_v_cycle, a_krylov_cycle_obeys_its_equations);
+    for_a_device!(kernels: a_krylov_cycle_obeys_its_equations);
 }
 
 /// Newton's iterates against the CPU's.

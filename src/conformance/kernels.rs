@@ -2,7 +2,7 @@
 //! and leaves on every level are the CPU's, which are in f32 too; the vectors of FGMRES, which the
 //! CPU makes in another way, are held to the equations that define them, in f64.
 
-use super::linear::{System, models, own_numbers, solve, system};
+use super::linear::{Numbers, System, models, own_numbers, solve, system};
 use crate::compute::gpu::linear::inspect::OnLevel;
 use crate::compute::gpu::{Gpu, GpuContext};
 use crate::linalg::{BlockMatrix, Hierarchy};
@@ -94,13 +94,14 @@ fn gaps(device: &OnLevel, hierarchy: &Hierarchy, l: usize, is_fixed: &dyn Fn(usi
     [gap(blocks.into_iter()), inverse, vector(&device.b, host.b), vector(&device.x, host.x)]
 }
 
-/// Every level has the CPU's matrix, and takes and leaves the same in a V-cycle.
-pub fn every_level_has_the_cpus_matrix_and_its_v_cycle(context: &Arc<GpuContext>) {
+/// Every level has the CPU's matrix, and takes and leaves the same in a V-cycle. A number that lies
+/// between two of bf16 may be rounded to either: the numbers have to leave none there.
+pub fn every_level_has_the_cpus_matrix_and_its_v_cycle(context: &Arc<GpuContext>, numbers: Numbers) {
     for mesh in meshes().into_iter().chain([down_to_one_element()]) {
         let models = models(&mesh);
         for masked in [false, true] {
             for case in 0..models.len() {
-                let system = system(own_numbers, case, &models, masked);
+                let system = system(numbers, case, &models, masked);
                 let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
                 solve(&mut gpu, &[(0, &system)], 0.1);
                 let solver = gpu.solver().unwrap();
@@ -108,8 +109,8 @@ pub fn every_level_has_the_cpus_matrix_and_its_v_cycle(context: &Arc<GpuContext>
                 let mut hierarchy = hierarchy.with_rounded_smoothers();
                 hierarchy.update(&system.matrix, &system.fixed).unwrap();
                 let nodes = mesh.nodes.len();
-                let mut rng = super::batch::random(7 + case as u64);
-                let v: Vec<f32> = system.fixed.iter().map(|&f| if f { 0.0 } else { rng.between(-1.0, 1.0) as f32 }).collect();
+                let mut between = numbers(7 + case as u64);
+                let v: Vec<f32> = system.fixed.iter().map(|&f| if f { 0.0 } else { between(-1.0, 1.0) as f32 }).collect();
                 let mut z = vec![0.0; v.len()];
                 hierarchy.v_cycle(&v, &mut z);
                 let by_component: Vec<f32> = (0..3).flat_map(|c| (0..nodes).map(move |n| 3 * n + c)).map(|i| v[i]).collect();

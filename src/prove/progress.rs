@@ -75,7 +75,7 @@ impl ProveProgress {
 
 /// The time to go in words, once enough is behind to tell.
 fn left(elapsed: f64, share: f64) -> Option<String> {
-    (elapsed >= 1.0 && share >= 0.02 && share < 1.0).then(|| in_words(elapsed * (1.0 - share) / share))
+    (elapsed >= 1.0 && (0.02..1.0).contains(&share)).then(|| in_words(elapsed * (1.0 - share) / share))
 }
 
 #[cfg(test)]

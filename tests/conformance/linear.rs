@@ -5,6 +5,7 @@ use asperity::internals::compute::gpu::{Gpu, GpuContext, Precision};
 use asperity::internals::compute::linear::{self, Ended, Side, SideReport, Solved};
 use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::conformance::batch;
+use asperity::internals::conformance::kernels::every_level_has_the_cpus_matrix_and_its_v_cycle;
 use asperity::internals::conformance::linear::{
     CASES, System, asked, meets_tolerances_as_the_cpu_does, mesh, models, solve, solved, system,
 };
@@ -50,6 +51,14 @@ fn a_device_in_f64_meets_tolerances_as_the_cpu_does() {
 fn a_device_in_f32_meets_tolerances_as_the_cpu_does() {
     let Some(context) = context("a_device_in_f32_meets_tolerances_as_the_cpu_does", Precision::F32) else { return };
     meets_tolerances_as_the_cpu_does::<f32>(&context, numbers);
+}
+
+/// Of kernels too: matrices, inverses and what a V-cycle takes and leaves on every level.
+#[test]
+fn kernels_leave_the_cpus_matrix_and_its_v_cycle_on_every_level() {
+    let name = "kernels_leave_the_cpus_matrix_and_its_v_cycle_on_every_level";
+    let Some(context) = context(name, Precision::F64) else { return };
+    every_level_has_the_cpus_matrix_and_its_v_cycle(&context, numbers);
 }
 
 /// A system alone, among others, in another slot, beside one that is done at once, and once more.

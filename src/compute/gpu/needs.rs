@@ -35,7 +35,7 @@ pub struct Need {
     /// Of what, in words.
     pub what: &'static str,
     /// The limit's place among [`Limits`].
-    of: fn(&Limits) -> u64,
+    of: OfLimits,
     /// How much.
     pub needed: u64,
     /// The kernel.
@@ -55,8 +55,11 @@ impl fmt::Display for Need {
     }
 }
 
+/// One of the limits.
+type OfLimits = fn(&Limits) -> u64;
+
 /// The limits in words.
-const KINDS: [(&str, fn(&Limits) -> u64); 5] = [
+const KINDS: [(&str, OfLimits); 5] = [
     ("storage buffers in one kernel", |limits| limits.storage_buffers),
     ("uniform buffers in one kernel", |limits| limits.uniform_buffers),
     ("bytes in one uniform buffer", |limits| limits.uniform_bytes),
@@ -92,7 +95,7 @@ fn taken(kernel: &Kernel) -> Limits {
 
 fn most(kernels: &[&'static Kernel]) -> Vec<Need> {
     let taken: Vec<(&'static str, Limits)> = kernels.iter().map(|kernel| (kernel.name, taken(kernel))).collect();
-    let of_kind = |&(what, of): &(&'static str, fn(&Limits) -> u64)| {
+    let of_kind = |&(what, of): &(&'static str, OfLimits)| {
         let (kernel, limits) = taken.iter().rev().max_by_key(|(_, limits)| of(limits))?;
         Some(Need { what, of, needed: of(limits), kernel })
     };
