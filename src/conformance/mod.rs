@@ -25,7 +25,7 @@ use crate::compute::gpu::{GpuContext, Precision};
 type Body = fn(&Arc<GpuContext>);
 
 /// What takes long on a software driver; other comparisons have the same kernels.
-const LONG: [&str; 2] = ["two bodies", "linear systems"];
+const LONG: [&str; 1] = ["two bodies"];
 
 /// A comparison of a device with the CPU in one precision.
 #[derive(Clone, Copy)]
