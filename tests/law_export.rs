@@ -748,7 +748,10 @@ fn the_command_writes_what_the_library_makes() {
     ] {
         let case = (arguments[0] == "case.toml").then(|| case(IDEAL));
         let printed = asperity(arguments);
-        assert!(printed.status.success() && printed.stderr.is_empty(), "{}", text(&printed));
+        let said = String::from_utf8_lossy(&printed.stderr).into_owned();
+        // The made-up law is not made for the depth of the case, and says so.
+        let good = if case.is_some() { said.starts_with("warning: case.toml lies outside") } else { said.is_empty() };
+        assert!(printed.status.success() && good, "{said}");
         let source = String::from_utf8(printed.stdout).unwrap();
         assert!(!source.contains("#include \"asperity_contact.h\""), "one file needs no other");
         assert_eq!(source, law_source(&either, language, case.as_ref()).unwrap());
