@@ -2,6 +2,7 @@
 //! in f64, and how many iterations it takes for that.
 
 use super::batch::{random, tangents};
+use super::kernels::down_to_one_element;
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{DeviceReal, Gpu, GpuContext};
 use crate::compute::linear::{self, Ended, Side, SideReport, Solved};
@@ -158,13 +159,19 @@ pub fn solve(backend: &mut dyn Compute, systems: &[(usize, &System)], tolerance:
     answers.into_iter().map(solution).collect()
 }
 
-/// What a device leaves of residuals, and how many iterations it takes for that. In f32 a point that
-/// lies on the yield surface may fall to its other side, and then the matrix is another: the numbers
-/// have to leave no point there.
+/// What a device leaves of residuals, and how many iterations it takes for that. In f32 a point
+/// that lies on the yield surface may fall to its other side, and then the matrix is another: the
+/// numbers have to leave no point there.
 pub fn meets_tolerances_as_the_cpu_does<R: DeviceReal>(context: &Arc<GpuContext>, numbers: Numbers) {
     for mesh in meshes() {
         meets_tolerances_on::<R>(context.clone(), numbers, &mesh);
     }
+}
+
+/// The same on a hierarchy that goes down to one element, whose last levels a workgroup has by
+/// itself.
+pub fn meets_tolerances_down_to_one_element(context: &Arc<GpuContext>) {
+    meets_tolerances_on::<f64>(context.clone(), own_numbers, &down_to_one_element());
 }
 
 fn meets_tolerances_on<R: DeviceReal>(context: Arc<GpuContext>, numbers: Numbers, mesh: &Arc<Mesh>) {

@@ -123,9 +123,10 @@ pub fn comparisons(has_double: bool) -> Vec<Comparison> {
         "contact rows of what is no number" nan_is_not_swallowed,
     );
     in_both!(all, assembly, batch::OnGpu: "a batch and its cases alone" a_batch_has_the_bits_of_its_cases_alone);
-    let in_double: [(&'static str, Body); 4] = [
+    let in_double: [(&'static str, Body); 5] = [
         // The solver's kernels are in f32 beside either residual.
         ("linear systems", |context| linear::meets_tolerances_as_the_cpu_does::<f64>(context, linear::own_numbers)),
+        ("linear systems, down to one element", linear::meets_tolerances_down_to_one_element),
         ("Krylov cycles: their equations", kernels::a_krylov_cycle_obeys_its_equations),
         ("trials of iterates", iterate::a_trial_reads_as_on_the_cpu),
         ("corrections of iterates", iterate::a_correction_solves_the_hosts_system),

@@ -7,7 +7,8 @@ use asperity::internals::compute::{CaseModel, Compute};
 use asperity::internals::conformance::batch;
 use asperity::internals::conformance::kernels::every_level_has_the_cpus_matrix_and_its_v_cycle;
 use asperity::internals::conformance::linear::{
-    CASES, System, asked, meets_tolerances_as_the_cpu_does, mesh, models, solve, solved, system,
+    CASES, System, asked, meets_tolerances_as_the_cpu_does, meets_tolerances_down_to_one_element, mesh, models, solve, solved,
+    system,
 };
 use asperity::material::Elasticity;
 use rand::{RngExt, SeedableRng};
@@ -53,12 +54,21 @@ fn a_device_in_f32_meets_tolerances_as_the_cpu_does() {
     meets_tolerances_as_the_cpu_does::<f32>(&context, numbers);
 }
 
+#[test]
+fn a_device_meets_tolerances_down_to_one_element() {
+    let Some(context) = context("a_device_meets_tolerances_down_to_one_element", Precision::F64) else { return };
+    meets_tolerances_down_to_one_element(&context);
+}
+
 /// Of kernels too: matrices, inverses and what a V-cycle takes and leaves on every level.
 #[test]
 fn kernels_leave_the_cpus_matrix_and_its_v_cycle_on_every_level() {
     let name = "kernels_leave_the_cpus_matrix_and_its_v_cycle_on_every_level";
     let Some(context) = context(name, Precision::F64) else { return };
-    every_level_has_the_cpus_matrix_and_its_v_cycle(&context, numbers);
+    every_level_has_the_cpus_matrix_and_its_v_cycle(&context, numbers, |seed| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        Box::new(move || rng.random_range(-1.0..1.0))
+    });
 }
 
 /// A system alone, among others, in another slot, beside one that is done at once, and once more.
