@@ -28,7 +28,7 @@ def test_numpy_numbers_and_tuples_are_numbers_and_lists() -> None:
     plain = asperity.Case(**TABLES)
     other = TABLES | {
         "contact": {"friction": np.float64(0.3)},
-        "mesh": {"elements_per_contact_radius": np.int64(16)},
+        "mesh": {"elements_per_contact_radius": np.int64(10), "surface_elements_per_contact_radius": np.int64(20)},
         "path": tuple(TABLES["path"]),
     }
     assert asperity.Case(**other) == plain
@@ -39,7 +39,7 @@ def test_numpy_numbers_and_tuples_are_numbers_and_lists() -> None:
 
 def test_values_by_their_keys() -> None:
     case = asperity.Case(**TABLES)
-    assert case["path.1.shear"] == "full-slip" and case["mesh.elements_per_contact_radius"] == 16
+    assert case["path.1.shear"] == "full-slip" and case["mesh.elements_per_contact_radius"] == 10
     softer = case.replace({"contact.friction": "stick", "path.1.shear": 0.001, "output.plots": False})
     assert (softer["contact.friction"], softer["path.1.shear"], softer["output.plots"]) == ("stick", 0.001, False)
     with pytest.raises(KeyError):

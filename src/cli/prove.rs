@@ -84,16 +84,16 @@ pub fn prove(args: &ProveArgs) -> Result<Outcome, CliError> {
     let threads = args.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let only = args.only.iter().copied().map(Part::from).collect();
     let options = Options { only, request, threads, quick: args.quick };
+    // Minutes of measuring are not lost to a file that cannot be written.
+    let markdown = args.out.with_extension("md");
+    for path in [&args.out, &markdown] {
+        refuse_foreign(path)?;
+    }
     // Asked for before anything is written.
     let refused = |error: GpuError| CliError::Prove { what: error.to_string() };
     if prove::open(request).map_err(refused)?.is_none() {
         let what = "auto finds no GPU that it may take. --device gpu takes a software adapter too; `asperity devices` says what is there";
         return Err(CliError::Prove { what: what.to_owned() });
-    }
-    let markdown = args.out.with_extension("md");
-    // Minutes of measuring are not lost to a file that cannot be written.
-    for path in [&args.out, &markdown] {
-        refuse_foreign(path)?;
     }
     for path in [&args.out, &markdown].into_iter().filter(|path| !path.exists()) {
         write_own(path, |_| Ok(()))?;

@@ -101,8 +101,7 @@ macro_rules! in_both {
 /// The comparisons that a device with these abilities is put to; without double precision those in
 /// f32.
 pub fn comparisons(has_double: bool) -> Vec<Comparison> {
-    #[allow(clippy::vec_init_then_push)] // by a macro
-    let mut all = Vec::new();
+    let mut all: Vec<Comparison> = Vec::with_capacity(32);
     in_both!(all, material, material::Gpu:
         "return mapping" agrees_with_the_reference,
         "return mapping: its equations" obeys_its_equations,

@@ -486,12 +486,6 @@ impl Simulation {
         let Some(dir) = &self.options.out else { return Err(SessionError::Over) };
         let mut shorter = case.clone();
         shorter.path.truncate(segments);
-        if (shorter.is_even(), shorter.moves_along_x()) != (case.is_even(), case.moves_along_x()) {
-            let why = "the longer path leaves the x axis, or turns the sphere, and from the beginning it would be simulated otherwise, \
-                       mostly on the whole sphere. Compute it in another directory, or with --force"
-                .to_owned();
-            return Err(SessionError::NotExtended { dir: dir.clone(), why });
-        }
         let zone = |case, scout| first_zone(case, scout).map_err(SessionError::Simulation);
         let (there, here) = (zone(&shorter, found.scout())?, zone(case, scout.as_ref())?);
         if there != here {
