@@ -7,7 +7,7 @@ use crate::random::Seeded;
 use crate::real::Real;
 use std::sync::Arc;
 
-/// Who maps the points: arrays are [case][component][point].
+/// Who maps the points: arrays are `[case][component][point]`.
 pub trait Backend<R> {
     /// Answers of all points.
     fn map(&self, materials: &[Material<R>], points: usize, relative: &[R], committed: &[R]) -> Answers<R>;

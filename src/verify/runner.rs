@@ -24,7 +24,7 @@ pub enum Level {
     /// Meshes with which all checks take about a minute.
     #[default]
     Quick,
-    /// [`FINE`] elements, or the check's own where these are more.
+    /// `FINE` elements, or the check's own where these are more.
     Fine,
 }
 
