@@ -78,6 +78,9 @@ pub const RELEASE_STEPS: f64 = 12.0;
 /// while it slips makes an error of the first order in this share: at friction 0.95 and h/R = 0.07,
 /// where sticking contacts allow increments five times as long, F_T is 7 % off with those.
 const LARGEST_SHEAR_STEP: f64 = 0.05;
+/// No step turns the sphere by more than this angle, in rad: what slips is moved along a chord in
+/// it, and friction would point beside the way by half of the angle.
+const LARGEST_TURN: f64 = 0.1;
 /// Most steps after the first part of a shear of given length: where nothing touches, say, the slip
 /// displacement says nothing.
 const MOST_LATER_STEPS: f64 = 120.0;
@@ -255,11 +258,14 @@ pub fn straight_targets(start: &Start, end: &Target, resolution: &Resolution) ->
         }
         1.0
     };
+    let (_, turned) = end.way_from(&start.place());
+    let turn = turned.iter().map(|angle| angle * angle).sum::<f64>().sqrt();
+    let longest = if turn > 0.0 { LARGEST_TURN / turn } else { 1.0 };
     let (mut at, mut targets) = (0.0, Vec::new());
     while at < 1.0 {
         let press = around(&mut ends.iter().copied(), at);
         let shear = if at < free - 1e-9 { around(&mut sheared.iter().copied(), at) } else { 1.0 };
-        let step = press.min(shear);
+        let step = press.min(shear).min(longest);
         // A rest of less than a third of a step goes with it.
         at = if at + 1.33 * step >= 1.0 { 1.0 } else { at + step };
         targets.push(end.part(&start.place(), at));
@@ -438,6 +444,26 @@ mod tests {
         let targets = straight_targets(&later, &Target { h: 0.0201, delta_t: 0.03, ..later.place() }, &resolution);
         let steps = ShearSteps::new(&later, 0.03, false, &resolution);
         assert!(targets[0].delta_t <= steps.distance(1) * 1.0001, "{:?}", targets[0]);
+    }
+
+    #[test]
+    fn no_step_turns_by_far() {
+        let resolution = Resolution { press_steps: 20, shear_steps: 15, coarseness: 1.0 };
+        let touching = start(0.2, 0.3);
+        let first = Start { h: 0.0, h_max: 0.0, f_n: 0.0, ..start(0.0, 0.3) };
+        for (from, h) in [(touching, touching.h), (first, 0.02)] {
+            for angles in [[0.0, 0.0, 3.0], [0.1, -0.4, 0.0], [0.0, 0.0, -0.02]] {
+                let targets = straight_targets(&from, &Target { h, angles, ..from.place() }, &resolution);
+                let mut before = from.place();
+                for target in &targets {
+                    let (_, turned) = target.way_from(&before);
+                    let turn = turned.iter().map(|angle| angle * angle).sum::<f64>().sqrt();
+                    assert!(turn <= 1.34 * LARGEST_TURN, "{angles:?}: {turn}");
+                    before = *target;
+                }
+                assert_eq!(before.angles, angles);
+            }
+        }
     }
 
     #[test]
