@@ -13,7 +13,8 @@ fn text(law: &str, friction: &str, elements: usize, path: &[&str]) -> String {
     let segments: String = path.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
     format!(
         "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1000.0\npoissons_ratio = 0.3\n[material.hardening]\n{law}\n\
-         [contact]\nfriction = {friction}\n[mesh]\nelements_per_contact_radius = {elements}\n[solver]\nerror_estimate = false\n{segments}"
+         [contact]\nfriction = {friction}\n[mesh]\nelements_per_contact_radius = {elements}\n[solver]\n\
+         error_estimate = false\n{segments}"
     )
 }
 

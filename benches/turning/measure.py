@@ -7,7 +7,7 @@ An elastic contact, one that has just yielded and two deep ones are pressed onto
 coefficients of friction, and then
   - twisted, with F_N held, until the moment rises no more: stiffness over 16/3 G a^3 and limit over that
     of Hertz's pressure, 3 pi/16 mu F_N a (uniform pressure: 1.13);
-  - sheared to nine tenths of mu F_N and twisted from there, and twisted first and sheared then: what is
+  - sheared by 1.5 of Cattaneo's slip displacements and twisted from there, and twisted first and sheared then: what is
     left of F_T, and of M_twist;
   - rolled by three contact radii and back, with F_N held: M_roll and F_T at the end of the way forth,
     the work that is lost over the way, and how much deeper the sphere lies.

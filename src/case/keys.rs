@@ -272,7 +272,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "4 to 32",
-        meaning: "elements along the contact radius; given alone, at the surface too: 8 is then quick; the time grows as the 2.5th power",
+        meaning: "elements along the contact radius; given alone, at the surface too: 8 is then quick; the time grows as the \
+                  2.5th power",
         example: "10",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("10"))
     },
@@ -420,7 +421,8 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: "-0.5 R to 0.5 R, [x, y] of such lengths, or \"full-slip\"",
-        meaning: "shear to this delta_T, a total of either sign: along x, or along x and y, for which all of the sphere is meshed and not half of it; with \"full-slip\", until every point slips",
+        meaning: "shear to this delta_T, a total of either sign: along x, or along x and y, for which all of the sphere is meshed \
+                  and not half of it; with \"full-slip\", until every point slips",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
@@ -446,7 +448,8 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
-        meaning: "roll the sphere to this angle about y, a total of either sign, or to two angles about x and y; its centre goes along, so that delta_T stays as it is",
+        meaning: "roll the sphere to this angle about y, a total of either sign, or to two angles about x and y; its centre goes \
+                  along, so that delta_T stays as it is",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

@@ -138,14 +138,8 @@ impl Case {
     /// turns or moves across the x axis, both are simulated.
     pub fn bodies(&self) -> f64 {
         match self.opponent {
-            None | Some(Opponent::Rigid { .. } | Opponent::Deforming { .. }) => 1.0,
-            Some(Opponent::Equal) => {
-                if self.moves_along_x() {
-                    2.0
-                } else {
-                    1.0
-                }
-            }
+            Some(Opponent::Equal) if self.moves_along_x() => 2.0,
+            None | Some(Opponent::Equal | Opponent::Rigid { .. } | Opponent::Deforming { .. }) => 1.0,
         }
     }
 

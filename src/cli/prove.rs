@@ -92,7 +92,8 @@ pub fn prove(args: &ProveArgs) -> Result<Outcome, CliError> {
     // Asked for before anything is written.
     let refused = |error: GpuError| CliError::Prove { what: error.to_string() };
     if prove::open(request).map_err(refused)?.is_none() {
-        let what = "auto finds no GPU that it may take. --device gpu takes a software adapter too; `asperity devices` says what is there";
+        let what = "auto finds no GPU that it may take. --device gpu takes a software adapter too; `asperity devices` says what is \
+                    there";
         return Err(CliError::Prove { what: what.to_owned() });
     }
     for path in [&args.out, &markdown].into_iter().filter(|path| !path.exists()) {

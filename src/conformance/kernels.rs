@@ -94,9 +94,9 @@ fn gaps(device: &OnLevel, hierarchy: &Hierarchy, l: usize, is_fixed: &dyn Fn(usi
     [gap(blocks.into_iter()), inverse, vector(&device.b, host.b), vector(&device.x, host.x)]
 }
 
-/// Every level has the CPU's matrix, and takes and leaves the same in a V-cycle. A number that lies
-/// between two of bf16 may be rounded to either: with other numbers some are off by 1.6e-5.
-/// `between` draws numbers from -1 to 1 for a seed.
+/// Every level has the CPU's matrix, and takes and leaves the same in a V-cycle. With some numbers
+/// a solution is off by 1.6e-5; perhaps a number between two of bf16 is rounded to either, which
+/// nobody has shown. `between` draws numbers from -1 to 1 for a seed.
 pub fn every_level_has_the_cpus_matrix_and_its_v_cycle(
     context: &Arc<GpuContext>,
     numbers: Numbers,

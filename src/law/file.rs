@@ -127,7 +127,8 @@ impl LawFile {
         if case.turns() || !case.is_even() || case.path.iter().any(|segment| matches!(segment, Segment::Slip { .. })) {
             return Err(LawError::NotCovered {
                 problem: "the case turns the sphere, or shears it across the x axis, and laws are driven along x",
-                remedy: "Give the path segments of indentation, of shear as a number and of release, or simulate the case with `asperity run`",
+                remedy: "Give the path segments of indentation, of shear as a number and of release, or simulate the case with \
+                         `asperity run`",
             });
         }
         let points = follow_centres(&self.contact_parameters(case)?, Centres::of(case), &case.path);

@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
-/// Those with which no point lies on the yield surface in f32.
+/// Those with which a device in f32 has always met its tolerances (see the comparison).
 fn numbers(seed: u64) -> Box<dyn FnMut(f64, f64) -> f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     Box::new(move |low, high| rng.random_range(low..high))
