@@ -341,7 +341,7 @@ pub const KEYS: &[Key] = &[
     Key {
         range: "true or false",
         meaning: "whether a coarse run goes first, for an eighth of the work; it finds how far the contact will reach and \
-                  gives limits and errors",
+                  gives limits and errors. In a study it has to be asked for",
         example: "true",
         ..key("solver", "error_estimate", Truth, Defaults("true"))
     },

@@ -246,6 +246,12 @@ impl Mesh {
         Self { elements_per_contact_radius: elements, surface_elements_per_contact_radius: None, ..self.clone() }
     }
 
+    /// The same mesh with so many elements along the contact radius inside, and twice as many at the
+    /// surface.
+    pub fn refined(&self, elements: usize) -> Self {
+        Self { surface_elements_per_contact_radius: Some(2 * elements), ..self.uniform(elements) }
+    }
+
     /// How many times the elements at the surface are halved.
     pub fn skin_levels(&self) -> usize {
         let at_surface = self.surface_elements_per_contact_radius.unwrap_or(self.elements_per_contact_radius);

@@ -28,8 +28,8 @@ pub struct TabulateArgs {
     /// --resume or --force is given.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Elements along the contact radius, at every depth.
-    #[arg(long, default_value_t = 8, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=32))]
+    /// Elements along the contact radius, at every depth; twice as many at the surface.
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16))]
     pub elements: u32,
     /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
     #[arg(long, value_name = "KEY=VALUE")]

@@ -44,7 +44,7 @@ struct Cli {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done; 2 bad input or usage; 3 did not converge or ran out of memory or room (what was computed is kept), or a check failed; \
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 a law that is checked misses its goal; 2 bad input or usage; 3 did not converge or ran out of memory or room (what was computed is kept), or a check failed; \
                           75 interrupted (--resume goes on).";
 
 #[derive(Debug, Subcommand)]
@@ -100,6 +100,8 @@ pub enum Outcome {
     NotConverged,
     /// A check of a verification failed: exit code 3.
     ChecksFailed,
+    /// A law is further from simulations than its goal allows: exit code 1.
+    GoalMissed,
     /// Cases of a study failed, all rows are kept: exit code 3.
     CasesFailed,
     /// Interrupted, what was computed is kept: exit code 75 (EX_TEMPFAIL of sysexits.h).
@@ -110,6 +112,7 @@ impl From<Outcome> for ExitCode {
     fn from(outcome: Outcome) -> Self {
         ExitCode::from(match outcome {
             Outcome::Done => 0,
+            Outcome::GoalMissed => 1,
             Outcome::NotConverged | Outcome::ChecksFailed | Outcome::CasesFailed => error::NOT_CONVERGED,
             Outcome::Interrupted => 75,
         })

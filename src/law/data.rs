@@ -157,7 +157,7 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
         }
         _ => return Ok(Usable::No("not pressed once and then sheared")),
     }
-    let history = read_history(&directory.history())?;
+    let history = at_the_limit(&read_history(&directory.history())?);
     let summary = Summary::from_history(&history, &SummaryInputs::of(&case));
     let (Some(h0), Some(a0), Some(f_n0), Some(delta_t_slip), Some(_)) =
         (summary.h0, summary.a0, summary.f_n0, summary.delta_t_slip, summary.f_n_slip)
@@ -194,6 +194,20 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
         curve,
         elements_per_contact_radius: case.mesh.elements_per_contact_radius,
     })))
+}
+
+/// A history at the limit of fine meshes, as far as it is known: in each segment whose rows all have
+/// one, F_N and F_T are those of the limit.
+pub fn at_the_limit(history: &[StepRecord]) -> Vec<StepRecord> {
+    let known = |segment: usize| {
+        history.iter().filter(|row| row.segment == segment).all(|row| row.f_t_limit.is_some() && row.f_n_limit.is_some())
+    };
+    let segments: Vec<bool> = (0..=history.last().map_or(0, |row| row.segment)).map(known).collect();
+    let limit = |row: &StepRecord| match (row.f_t_limit, row.f_n_limit) {
+        (Some(f_t), Some(f_n)) if segments.get(row.segment) == Some(&true) => StepRecord { f_n, f_t, ..*row },
+        _ => *row,
+    };
+    history.iter().map(limit).collect()
 }
 
 /// The first shear as far as it goes in one direction, its start included.

@@ -19,7 +19,7 @@
 
 use super::curve::Curve;
 use super::{StepRecord, Units};
-use crate::case::{Case, Friction, Motion, Scaled, Segment};
+use crate::case::{Case, Friction, Motion, Scaled, Segment, ShearTarget};
 use crate::simulation::scout::Scout;
 
 /// Steps over which differences are averaged, as a root mean square: one alone may be small by
@@ -230,9 +230,12 @@ impl Limits {
     fn counterpart(&self, before: &[StepRecord], row: &StepRecord) -> Option<Counterpart> {
         let (segment, stretch) = (self.path.get(row.segment)?, self.companion.get(row.segment)?);
         let from = before.partition_point(|earlier| earlier.segment < row.segment);
-        stretch.at(segment, place(segment, &start_of(&before[..from]), row))
+        stretch.at(segment, place(segment, &start_of(&before[..from]), row), self.friction)
     }
 }
+
+/// F_T/F_N over mu from which on a contact counts as sliding: what follows does not change it.
+const SLIDES: f64 = 0.98;
 
 impl Stretch {
     fn new(segment: &Segment, start: &StepRecord, rows: &[StepRecord]) -> Self {
@@ -246,9 +249,17 @@ impl Stretch {
     }
 
     /// `None` for a segment in which the companion had nothing to do, and beyond the end of one by
-    /// more than its last step.
-    fn at(&self, segment: &Segment, place: f64) -> Option<Counterpart> {
+    /// more than its last step. One that was sheared until all of it slips slides on as it is.
+    fn at(&self, segment: &Segment, place: f64, friction: Option<f64>) -> Option<Counterpart> {
         let [end, step] = self.f_n.end()?;
+        let full = matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. });
+        if full && place > end {
+            let last = Counterpart { f_n: self.f_n.at(end)?, f_t: self.f_t.at(end)?, a: self.a.at(end)? };
+            let most = friction? * last.f_n;
+            if last.f_t.abs() >= SLIDES * most {
+                return Some(Counterpart { f_t: last.f_t.signum() * most, ..last });
+            }
+        }
         let released = matches!(segment, Segment::Release { share } if *share == 0.0);
         if released && place >= end {
             // Nothing touches any more.

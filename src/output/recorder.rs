@@ -13,6 +13,8 @@ use crate::simulation::problem::Problem;
 pub struct Recorder {
     units: Units,
     stop: Option<Arc<AtomicBool>>,
+    /// Size of the elements in the contact, over R, once the run has started over on another mesh.
+    pub spacing: Option<f64>,
     /// The rows.
     pub rows: Vec<StepRecord>,
     /// The whole contact at the end of the last segment.
@@ -22,7 +24,7 @@ pub struct Recorder {
 impl Recorder {
     /// For a run of `case`, which ends early when `stop` is set.
     pub fn new(case: &Case, stop: Option<Arc<AtomicBool>>) -> Self {
-        Self { units: Units::of(case), stop, rows: Vec::new(), contact: Vec::new() }
+        Self { units: Units::of(case), stop, spacing: None, rows: Vec::new(), contact: Vec::new() }
     }
 }
 
@@ -37,7 +39,8 @@ impl Observer for Recorder {
         Ok(())
     }
 
-    fn starts_over(&mut self, _: &Problem, _: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    fn starts_over(&mut self, problem: &Problem, _: usize) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+        self.spacing = Some(problem.spacing);
         self.rows.clear();
         Ok(())
     }

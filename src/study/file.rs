@@ -53,7 +53,8 @@ pub struct Study {
     /// list.
     pub axes: Vec<(String, usize)>,
     /// Every combination, the last of those fastest. Where the base says nothing about it, a case
-    /// of a study writes contact tables, but no fields and no plots.
+    /// of a study writes contact tables, but no fields and no plots, and is computed without a
+    /// companion.
     pub cases: Vec<StudyCase>,
 }
 
@@ -164,15 +165,20 @@ fn values_of(value: &Value) -> usize {
     }
 }
 
-/// Contact tables alone, no fields and no plots, for each of hundreds of cases, unless the base
-/// says otherwise.
+/// Contact tables alone, no fields, no plots and no companions, for each of hundreds of cases,
+/// unless the base says otherwise.
 fn with_study_defaults(mut base: Document) -> Result<Document, CaseError> {
     let place = base.root.place.clone();
-    for (key, value) in [("fields", Value::String("contact".to_owned())), ("plots", Value::Boolean(false))] {
-        let given = Reader::new(&base)?.table("output")?.get(key).is_some();
+    let defaults = [
+        ("output", "fields", Value::String("contact".to_owned())),
+        ("output", "plots", Value::Boolean(false)),
+        ("solver", "error_estimate", Value::Boolean(false)),
+    ];
+    for (table, key, value) in defaults {
+        let given = Reader::new(&base)?.table(table)?.get(key).is_some();
         if !given {
             let entry = Entry { place: place.clone(), value };
-            base.set(&format!("output.{key}"), entry).map_err(|what| not_allowed(&place, "output", &what, "a table"))?;
+            base.set(&format!("{table}.{key}"), entry).map_err(|what| not_allowed(&place, table, &what, "a table"))?;
         }
     }
     Ok(base)

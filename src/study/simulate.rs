@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use super::StudyError;
 use super::directory::StudyDirectory;
@@ -18,6 +19,7 @@ use crate::simulation::SimulationError;
 use crate::simulation::drive::{Ending, Observer};
 use crate::simulation::follow::{Seat, follow};
 use crate::simulation::problem::Problem;
+use crate::simulation::scout::scout;
 
 /// What all cases have in common.
 pub struct Simulator<'a> {
@@ -137,12 +139,29 @@ impl Simulator<'_> {
                 }
             }
         }
+        let begun = Instant::now();
+        let scouts = checkpoint.is_none() && in_units.solver.error_estimate;
+        let companion = if scouts { scout(in_units, &self.stop)? } else { None };
+        let stopped = scouts && companion.is_none();
+        if let Some(companion) = &companion {
+            let zone = companion.zone(problem.zone, problem.spacing);
+            if zone != problem.zone {
+                problem = Problem::on(in_units, Some(zone))?;
+            }
+        }
+        let scout_took = begun.elapsed().as_secs_f64();
         let setting = Setting { computed_on, elements: problem.model.mesh.elements.len(), unknowns: problem.free_unknowns() };
         let progress = Box::new(CaseProgress { study: self.progress.clone(), case, id: id.clone() });
         let mut results =
             ResultWriter::create(in_units, out.root(), setting, clock, progress, self.stop.clone(), checkpoint.as_ref())?;
         results.meshed(&problem);
         notes.iter().filter(|_| checkpoint.is_none()).for_each(|note| results.note(note));
+        if let Some(companion) = companion {
+            results.scouted(companion, scout_took);
+        }
+        if stopped {
+            return Ok(results.finish(Status::Interrupted, Some("interrupted after step 0"))?);
+        }
         let followed = follow(problem, checkpoint.as_ref().map(Checkpoint::snapshot), seat, &mut results)?;
         results.computed_on(followed.computed_on);
         let (status, message) = match followed.ending {

@@ -1,6 +1,10 @@
 //! The exported update against simulations, path by path.
+//!
+//! The simulations have companions ([`crate::simulation::scout`]), and what counts are the curves at
+//! the limit of fine meshes, where they are known.
 
 mod protocol;
+mod random;
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -9,16 +13,28 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 
 use super::{LawError, LawFile};
-use crate::case::{Case, check_room};
+use crate::case::{Case, Fields, check_room};
 use crate::contact_law::path::{dissipated, drive_centres};
 use crate::contact_law::{Centres, ContactParameters};
+use crate::law::data::at_the_limit;
 use crate::memory;
-use crate::output::{Recorder, StepRecord, decimal};
+use crate::output::{Limits, Recorder, StepRecord, decimal};
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
+use crate::simulation::scout::scout;
 
-pub use protocol::{Path, materials, protocol};
+pub use protocol::{materials, protocol};
+pub use random::{KINDS, Ranges, drawn, opponent_of, random_paths};
+
+/// A path to be checked.
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// What it is.
+    pub name: &'static str,
+    /// The case to simulate.
+    pub case: Case,
+}
 
 /// Increments of the update between two steps of a simulation: an engine's steps are short, and an
 /// oblique press still depends on them a little.
@@ -26,13 +42,25 @@ const INCREMENTS: usize = 64;
 /// Aims: root mean square and worst error of a force over the greatest of its path.
 pub const AIMS: [f64; 2] = [0.05, 0.12];
 
+/// Mesh error, over the greatest size of the force, from which on a path says nothing about a law.
+pub const MOST_MESH_ERROR: f64 = 0.025;
+/// Share of what the extrapolation to the limit adds that may still be missing: on ten contacts on 5
+/// and 10 elements F_T at the limit lacks 0.3 to 0.6 of it, root mean square
+/// (`benches/limits/measure.py --meshes 5/10 --reference 12/24`).
+const STILL_MISSING: f64 = 0.5;
+
 /// One path, simulated and followed; in the case's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checked {
     /// The path's name.
     pub name: &'static str,
-    /// The simulated steps.
+    /// Its case.
+    pub case: Case,
+    /// The simulated steps, with F_N and F_T at the limit of fine meshes where that is known.
     pub rows: Vec<StepRecord>,
+    /// What F_T and F_N may lack of the limit, root mean square over the greatest size of each;
+    /// `None` where a part of the path has no limit.
+    pub mesh: Option<[f64; 2]>,
     /// F_N and F_T of the update at them.
     pub law: Vec<[f64; 2]>,
     /// Work that the simulation and the update have dissipated at the end.
@@ -63,10 +91,19 @@ impl Checked {
         [self.errors_of(|row| row.f_t, 1), self.errors_of(|row| row.f_n, 0)]
     }
 
+    /// Whether the simulation is good enough to judge by: it came to its end, and its mesh's error is
+    /// known and small.
+    pub fn counts(&self) -> bool {
+        self.failure.is_none() && self.mesh.is_some_and(|mesh| mesh.iter().all(|&error| error <= MOST_MESH_ERROR))
+    }
+
+    /// Whether F_T and F_N are within the aims.
+    pub fn within(&self) -> bool {
+        self.errors().iter().all(Errors::within)
+    }
+
     fn errors_of(&self, force: fn(&StepRecord) -> f64, component: usize) -> Errors {
-        let normal = self.rows.iter().map(|row| row.f_n).fold(0.0, f64::max);
-        // A press alone has no tangential force but that of the tolerance.
-        let peak = self.rows.iter().map(|row| force(row).abs()).fold(0.01 * normal, f64::max);
+        let peak = peak(&self.rows, force);
         if !(peak > 0.0) {
             return Errors::default();
         }
@@ -99,60 +136,94 @@ impl Checked {
     }
 }
 
-/// Simulates the protocol for the material, the friction and the greatest depth of `case`, on so
-/// many elements along the contact radius, and drives the update that the law exports along it.
-/// Paths side by side.
-///
-/// # Errors
-/// The law says nothing of the case; a simulation cannot be set up.
-pub fn check(law: &LawFile, case: &Case, elements: usize) -> Result<Vec<Checked>, LawError> {
-    check_until(law, case, elements, &Arc::default())
+/// The greatest size of a force. A press alone has no tangential force but that of the tolerance.
+fn peak(rows: &[StepRecord], force: fn(&StepRecord) -> f64) -> f64 {
+    let normal = rows.iter().map(|row| row.f_n).fold(0.0, f64::max);
+    rows.iter().map(|row| force(row).abs()).fold(0.01 * normal, f64::max)
 }
 
-/// As [`check`]; once `stop` is set, the simulations end after their present step, which their
-/// `failure` says.
+/// A case on the mesh of a check: so many elements along the contact radius inside and twice as many
+/// at the surface, with a companion, and no pictures.
+pub fn meshed(case: &Case, elements: usize) -> Case {
+    let mut case = case.clone();
+    case.mesh = case.mesh.refined(elements);
+    case.mesh.contact_radius = None;
+    case.solver.error_estimate = true;
+    case.output.fields = Fields::None;
+    case.output.plots = false;
+    case
+}
+
+/// Simulates paths and drives the update that the law exports along them, paths side by side; once
+/// `stop` is set, the simulations end after their present step, which their `failure` says.
 ///
 /// # Errors
-/// Those of [`check`].
-pub fn check_until(law: &LawFile, case: &Case, elements: usize, stop: &Arc<AtomicBool>) -> Result<Vec<Checked>, LawError> {
-    let parameters = law.contact_parameters(case)?;
-    let paths = protocol(case, &parameters, elements);
+/// The law says nothing of a case; a simulation cannot be set up.
+pub fn check(law: &LawFile, paths: &[Path], stop: &Arc<AtomicBool>) -> Result<Vec<Checked>, LawError> {
     let room = memory::room();
     paths.iter().try_for_each(|path| check_room(&path.case, None, &room))?;
-    paths.par_iter().with_max_len(1).map(|path| run(path, &parameters, stop)).collect()
+    let parameters = paths.iter().map(|path| law.contact_parameters(&path.case)).collect::<Result<Vec<_>, _>>()?;
+    paths.par_iter().zip(&parameters).with_max_len(1).map(|(path, parameters)| run(path, parameters, stop)).collect()
 }
 
 fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> Result<Checked, LawError> {
-    let mut recorder = Recorder::new(&path.case, Some(stop.clone()));
-    let followed = follow(Problem::new(&path.case)?, None, &mut |problem| on_cpu(problem), &mut recorder)?;
+    let case = &path.case;
+    let companion = scout(case, stop)?;
+    let mut problem = Problem::new(case)?;
+    if let Some(companion) = &companion {
+        problem = Problem::on(case, Some(companion.zone(problem.zone, problem.spacing)))?;
+    }
+    let mut recorder = Recorder::new(case, Some(stop.clone()));
+    let spacing = problem.spacing;
+    let followed = follow(problem, None, &mut |problem| on_cpu(problem), &mut recorder)?;
     let failure = match followed.ending {
         Ending::Done => None,
         Ending::NotConverged(reason) => Some(reason),
         Ending::Outgrown(outgrowth) => Some(outgrowth.to_string()),
         Ending::Interrupted => Some("interrupted".to_owned()),
     };
-    let rows: Vec<StepRecord> = recorder.rows.into_iter().filter(|row| row.step > 0).collect();
+    let mut rows: Vec<StepRecord> = recorder.rows.into_iter().filter(|row| row.step > 0).collect();
+    let spacing = recorder.spacing.unwrap_or(spacing);
+    if let Some(limits) = companion.and_then(|companion| Limits::new(case, &companion, spacing)) {
+        limits.write_into(&mut rows);
+    }
+    let limits = at_the_limit(&rows);
+    let mesh = mesh_errors(&rows);
+    let rows = limits;
     let places: Vec<[f64; 2]> = rows.iter().map(|row| [row.h, row.delta_t]).collect();
-    let centres = Centres::of(&path.case);
+    let centres = Centres::of(case);
     let law = drive_centres(parameters, centres, &places, INCREMENTS);
     let simulated = rows.last().map_or(0.0, |row| row.work_plastic + row.work_friction);
     let taken = dissipated(parameters, centres, &places, INCREMENTS);
-    Ok(Checked { name: path.name, dissipated: [simulated, taken], rows, law, failure })
+    Ok(Checked { name: path.name, case: case.clone(), dissipated: [simulated, taken], rows, mesh, law, failure })
+}
+
+/// See [`Checked::mesh`].
+fn mesh_errors(rows: &[StepRecord]) -> Option<[f64; 2]> {
+    let of = |force: fn(&StepRecord) -> f64, limit: fn(&StepRecord) -> Option<f64>| {
+        let peak = peak(rows, force);
+        let missing: Option<Vec<f64>> = rows.iter().map(|row| Some(STILL_MISSING * (limit(row)? - force(row)) / peak)).collect();
+        let squares: f64 = missing?.iter().map(|e| e * e).sum();
+        Some((squares / rows.len().max(1) as f64).sqrt())
+    };
+    Some([of(|row| row.f_t, |row| row.f_t_limit)?, of(|row| row.f_n, |row| row.f_n_limit)?])
 }
 
 /// The checked paths as a table, a line each.
 pub fn table(checked: &[Checked]) -> String {
     let mut text = format!(
-        "{:<30} {:>7} {:>7} {:>7} {:>7}   {:>15}   {:>22}\n",
-        "", "F_T rms", "worst", "F_N rms", "worst", "F_N left (law)", "dissipated (law)"
+        "{:<38} {:>7} {:>7} {:>7} {:>7} {:>11}   {:>15}   {:>22}\n",
+        "", "F_T rms", "worst", "F_N rms", "worst", "mesh F_T, N", "F_N left (law)", "dissipated (law)"
     );
     for one in checked {
         let [t, n] = one.errors().map(|e| [100.0 * e.rms, 100.0 * e.worst]);
         let ([left, left_law], [work, work_law]) = (one.left(), one.dissipated);
-        let mark = if one.errors().iter().all(Errors::within) { ' ' } else { '*' };
+        let mark = if one.within() { ' ' } else { '*' };
+        let mesh = one.mesh.map_or_else(|| "unknown".to_owned(), |[t, n]| format!("{:.1}, {:.1}", 100.0 * t, 100.0 * n));
+        let left_out = if one.counts() { "" } else { " not counted" };
         let _ = writeln!(
             text,
-            "{:<29}{mark} {:>7.1} {:>7.1} {:>7.1} {:>7.1}   {:>6.3} ({:>6.3})   {:>9.3e} ({:>9.3e}){}",
+            "{:<37}{mark} {:>7.1} {:>7.1} {:>7.1} {:>7.1} {mesh:>11}   {:>6.3} ({:>6.3})   {:>9.3e} ({:>9.3e}){left_out}{}",
             one.name,
             t[0],
             t[1],

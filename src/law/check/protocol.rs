@@ -1,19 +1,11 @@
 //! The paths that the update is held against: what contacts in a packing go through, alone and at
 //! once.
 
-use crate::case::{Case, Fields, Friction, Hardening, Hold, Segment, ShearTarget};
+use super::{Path, meshed};
+use crate::case::{Case, Friction, Hardening, Hold, Segment, ShearTarget};
 use crate::contact_law::ContactParameters;
 use crate::contact_law::path::follow;
 use crate::output::SLIP_DISPLACEMENT_RATIO;
-
-/// A path of the protocol.
-#[derive(Clone, Debug)]
-pub struct Path {
-    /// What it is.
-    pub name: &'static str,
-    /// The case to simulate.
-    pub case: Case,
-}
 
 /// F_T/F_N over mu at which a shear counts as full.
 const FULL: f64 = SLIP_DISPLACEMENT_RATIO;
@@ -49,12 +41,7 @@ pub fn protocol(case: &Case, parameters: &ContactParameters, elements: usize) ->
     paths
         .into_iter()
         .map(|(name, path)| {
-            let mut case = case.clone();
-            case.mesh = case.mesh.uniform(elements);
-            case.mesh.contact_radius = None;
-            case.solver.error_estimate = false;
-            case.output.fields = Fields::None;
-            case.output.plots = false;
+            let mut case = meshed(case, elements);
             case.path = path;
             Path { name, case }
         })
@@ -62,7 +49,7 @@ pub fn protocol(case: &Case, parameters: &ContactParameters, elements: usize) ->
 }
 
 /// delta_T from a virgin contact at `h` at which F_T/F_N is 0.99 mu.
-fn slip_displacement(parameters: &ContactParameters, h: f64) -> f64 {
+pub(super) fn slip_displacement(parameters: &ContactParameters, h: f64) -> f64 {
     let full = Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation };
     let points = follow(parameters, &[Segment::Indentation { indentation: h }, full]);
     let slips = points.iter().find(|p| p.segment == 1 && p.f_t >= FULL * parameters.friction * p.f_n && p.delta_t > 0.0);

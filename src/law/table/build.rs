@@ -81,12 +81,13 @@ pub fn depths(case: &Case) -> Result<Vec<f64>, LawError> {
 }
 
 /// The case of the study at one of its depths: pressed, sheared to full slip and back, and released
-/// by half.
+/// by half; on so many elements along the contact radius and twice as many at the surface, with a
+/// companion, so that its curves are those of the limit of fine meshes.
 pub fn case_of(case: &Case, elements: usize) -> Case {
     let mut case = case.clone();
-    case.mesh = case.mesh.uniform(elements);
+    case.mesh = case.mesh.refined(elements);
     case.mesh.contact_radius = None;
-    case.solver.error_estimate = false;
+    case.solver.error_estimate = true;
     case.output.fields = crate::case::Fields::None;
     case.output.plots = false;
     case.path = vec![Segment::Indentation { indentation: 0.01 * case.effective_radius() }];

@@ -9,7 +9,7 @@ use crate::analytical::ElasticSphere;
 use crate::case::{Case, Friction, Segment};
 use crate::contact_law::{Centres, unloading_exponent};
 use crate::law::LawError;
-use crate::law::data::Point;
+use crate::law::data::{Point, at_the_limit};
 use crate::law::study_table::StudyTable;
 use crate::output::{OutputDirectory, StepRecord, read_history};
 
@@ -62,7 +62,7 @@ impl Measured {
     /// Of a case that was pressed and perhaps sheared to and fro and released, and of its history.
     pub fn of(case: &Case, history: &[StepRecord]) -> Option<Self> {
         let centres = Centres::of(case);
-        let history = &turned(centres, history);
+        let history = &turned(centres, &at_the_limit(history));
         let (radius, force) = (case.sphere.radius, case.material.youngs_modulus * case.sphere.radius * case.sphere.radius);
         let start = history.iter().rfind(|row| row.segment == 0)?;
         let mut curve = vec![Point { delta_t: 0.0, f_t: 0.0, f_n: start.f_n / force }];

@@ -164,6 +164,25 @@ fn nothing_is_said_where_there_is_nothing_to_compare_with() {
 }
 
 #[test]
+fn a_companion_that_slips_fully_slides_on() {
+    let case = case(PATH);
+    // Full slip is at 0.002, where the companion ends soon.
+    let sliding = |mut rows: Vec<StepRecord>| {
+        for row in rows.iter_mut().filter(|row| row.segment == 1) {
+            row.f_t = MU * row.f_n * (1.0 - (1.0 - (row.delta_t / 0.002).min(1.0)).powf(1.5));
+        }
+        rows
+    };
+    let (mut rows, coarse) = (sliding(run(16.0, 26, 20, 0.006)), sliding(run(8.0, 13, 10, 0.0021)));
+    Limits::new(&case, &scout(&coarse, 8, &case), 0.2 / 16.0).expect("limits").write_into(&mut rows);
+    for row in rows.iter().filter(|row| row.segment == 1) {
+        let [f_t, f_n] = [row.f_t_limit, row.f_n_limit].map(|limit| limit.expect("a limit"));
+        let slides = row.delta_t > 0.0021;
+        assert!(!slides || (f_t / f_n - MU).abs() < 1e-9, "{row:?}");
+    }
+}
+
+#[test]
 fn no_limit_is_beyond_coulombs() {
     let case = case(PATH);
     let mut rows = run(16.0, 26, 20, 0.0025);
