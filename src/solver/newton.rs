@@ -123,6 +123,11 @@ impl Newton {
         if is_known { case.keeps() } else { Keeps::Nothing }
     }
 
+    /// Whether this backend would keep the iterates of the case, if its plate moved along x alone.
+    pub fn is_held_back_on(&self, case: &CaseHandle<'_>) -> bool {
+        self.is_at_home && self.iterates.host.is_over_plane_by_multigrid() && case.keeps() != Keeps::Nothing
+    }
+
     /// The last accepted trial, if its vectors are on the host.
     pub fn accepted(&self) -> &Trial {
         self.iterates.host.current()

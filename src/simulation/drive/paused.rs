@@ -2,6 +2,7 @@
 
 use super::Drive;
 use super::safe::Safe;
+use crate::compute::handle::at;
 use crate::compute::{Compute, ComputeError};
 use crate::simulation::checkpoint::{Committed, Place};
 use crate::simulation::problem::Problem;
@@ -35,6 +36,12 @@ impl Paused {
     pub fn go_on<'a>(self, problem: &'a Problem, backend: &'a mut dyn Compute, case: usize) -> Drive<'a> {
         let Self { newton, state, safe, place, last_report } = self;
         Drive { state, safe, place, last_report, ..Drive::new(problem, backend, case, newton) }
+    }
+
+    /// What is told before the first step of a run on this backend, if anything.
+    pub fn first_note(&self, backend: &mut dyn Compute, case: usize) -> Option<&'static str> {
+        let is_held_back = !self.place.begun && self.newton.is_held_back_on(&at(backend, case));
+        is_held_back.then_some("the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host")
     }
 
     /// Displacement of the last accepted step, three numbers a node, scaled.
