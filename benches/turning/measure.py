@@ -15,12 +15,12 @@ Moments are over F_N a, forces over F_N. What is there already is not computed a
 """
 
 import argparse
-import csv
 import math
 import pathlib
-import subprocess
 
-E, NU = 200e3, 0.3
+from runs import HELD, E, case, rows, segment
+
+NU = 0.3
 G = E / (2 * (1 + NU))
 CONTACTS = [  # name, hardening, h
     ("elastic", 'law = "elastic"', 0.002),
@@ -29,52 +29,13 @@ CONTACTS = [  # name, hardening, h
     ("deep, hardening", 'law = "linear"\nyield_stress = 400.0\nmodulus = 4000.0', 0.01),
 ]
 FRICTIONS = [0.1, 0.3, 0.6]
-HELD = 'hold = "normal-force"'
-
-
-def case(hardening, friction, elements, path):
-    """A case file."""
-    segments = "".join("[[path]]\n" + "\n".join(segment) + "\n" for segment in path)
-    return f"""[sphere]
-radius = 1.0
-[material]
-youngs_modulus = {E}
-poissons_ratio = {NU}
-[material.hardening]
-{hardening}
-[contact]
-friction = {friction}
-[mesh]
-elements_per_contact_radius = {elements}
-[solver]
-error_estimate = false
-[output]
-plots = false
-fields = "none"
-{segments}"""
-
-
-def rows(args, name, text):
-    """The history of a case, computed if it is not there."""
-    out = args.out / name
-    if not (out / "history.csv").exists() or '"status": "done"' not in (out / "summary.json").read_text():
-        file = args.out / f"{name}.toml"
-        file.write_text(text)
-        subprocess.run([args.program, "run", file, "--out", out, "--force", "--device", "cpu", "--quiet"], check=True)
-    with open(out / "history.csv", newline="") as table:
-        return [{key: float(value) if value else math.nan for key, value in row.items()} for row in csv.DictReader(table)]
-
-
-def segment(history, number):
-    """The rows of a segment, with the one before it."""
-    first = next(i for i, row in enumerate(history) if row["segment"] == number)
-    return history[first - 1 : first] + [row for row in history if row["segment"] == number]
 
 
 def contact(args, number, name, hardening, h, friction):
     """One line of the table."""
     label = f"c{number}-{friction}"
-    make = lambda kind, path: rows(args, f"{label}-{kind}", case(hardening, friction, args.elements, path))
+    mesh = f"elements_per_contact_radius = {args.elements}"
+    make = lambda kind, path: rows(args, f"{label}-{kind}", case(hardening, friction, mesh, path))
     press = [f"indentation = {h}"]
     pressed = segment(make("press", [press]), 0)[-1]
     a, f_n = pressed["a"], pressed["F_N"]
