@@ -57,9 +57,14 @@ release = true
 ";
 
 const PATH: &str = "\
-The path is an array of tables, one for each segment. A segment has `indentation`, `shear`, both, or
-`release`. With both, h and delta_T move in proportion; `hold` goes with `shear` alone. Displacements are
-totals from first touch, not increments.
+The path is an array of tables, one for each segment. A segment has `release`, or one or several of
+`indentation`, `shear`, `twist` and `roll`, which then move in proportion; `hold` goes with the last three,
+where there is no `indentation`. Displacements and angles are totals from first touch, not increments.
+
+The sphere is moved as a rigid body by its equator: along the plane in any direction, down, and about all
+three axes. Its axes are the contact frame of an engine: z is the normal, delta_T the tangential
+displacement of the surfaces that the engine integrates in that frame, `twist` the spin about the normal, and
+`roll` leaves delta_T as it is.
 
 ```toml
 [[path]]
