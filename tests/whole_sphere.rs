@@ -77,9 +77,9 @@ fn turned_axes_have_the_forces_of_the_x_axis() {
     }
 }
 
-/// Two cycles, on half of the default mesh, step by step: F_T and F_N are within 1 %. What is across
-/// is 0.5 % at 45 degrees, and 0.15 % on the default mesh (`benches/turning/axes.py`). With the
-/// default tolerance single steps after a turn would be off by 0.4 %.
+/// Two cycles, on half of the default mesh, step by step: F_T and F_N are within 1 %. What is
+/// across is 0.5 % at 45 degrees, and 0.15 % on the default mesh (`benches/turning/axes.py`). With
+/// the default tolerance single steps after a turn would be off by 0.4 %.
 #[test]
 fn turned_cycles_have_the_forces_of_the_x_axis() {
     let cycle = |direction: f64| {

@@ -246,8 +246,8 @@ impl Mesh {
         Self { elements_per_contact_radius: elements, surface_elements_per_contact_radius: None, ..self.clone() }
     }
 
-    /// The same mesh with so many elements along the contact radius inside, and twice as many at the
-    /// surface.
+    /// The same mesh with so many elements along the contact radius inside, and twice as many at
+    /// the surface.
     pub fn refined(&self, elements: usize) -> Self {
         Self { surface_elements_per_contact_radius: Some(2 * elements), ..self.uniform(elements) }
     }

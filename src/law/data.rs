@@ -196,8 +196,8 @@ fn read_sample(id: &str, directory: &OutputDirectory, materials: &mut Vec<Scaled
     })))
 }
 
-/// A history at the limit of fine meshes, as far as it is known: in each segment whose rows all have
-/// one, F_N and F_T are those of the limit.
+/// A history at the limit of fine meshes, as far as it is known: in each segment whose rows all
+/// have one, F_N and F_T are those of the limit.
 pub fn at_the_limit(history: &[StepRecord]) -> Vec<StepRecord> {
     let known = |segment: usize| {
         history.iter().filter(|row| row.segment == segment).all(|row| row.f_t_limit.is_some() && row.f_n_limit.is_some())

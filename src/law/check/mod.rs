@@ -1,7 +1,7 @@
 //! The exported update against simulations, path by path.
 //!
-//! The simulations have companions ([`crate::simulation::scout`]), and what counts are the curves at
-//! the limit of fine meshes, where they are known.
+//! The simulations have companions ([`crate::simulation::scout`]), and what counts are the curves
+//! at the limit of fine meshes, where they are known.
 
 mod protocol;
 mod random;
@@ -44,8 +44,8 @@ pub const AIMS: [f64; 2] = [0.05, 0.12];
 
 /// Mesh error, over the greatest size of the force, from which on a path says nothing about a law.
 pub const MOST_MESH_ERROR: f64 = 0.025;
-/// Share of what the extrapolation to the limit adds that may still be missing: on ten contacts on 5
-/// and 10 elements F_T at the limit lacks 0.3 to 0.6 of it, root mean square
+/// Share of what the extrapolation to the limit adds that may still be missing: on ten contacts on
+/// 5 and 10 elements F_T at the limit lacks 0.3 to 0.6 of it, root mean square
 /// (`benches/limits/measure.py --meshes 5/10 --reference 12/24`).
 const STILL_MISSING: f64 = 0.5;
 
@@ -91,8 +91,8 @@ impl Checked {
         [self.errors_of(|row| row.f_t, 1), self.errors_of(|row| row.f_n, 0)]
     }
 
-    /// Whether the simulation is good enough to judge by: it came to its end, and its mesh's error is
-    /// known and small.
+    /// Whether the simulation is good enough to judge by: it came to its end, and its mesh's error
+    /// is known and small.
     pub fn counts(&self) -> bool {
         self.failure.is_none() && self.mesh.is_some_and(|mesh| mesh.iter().all(|&error| error <= MOST_MESH_ERROR))
     }
@@ -142,8 +142,8 @@ fn peak(rows: &[StepRecord], force: fn(&StepRecord) -> f64) -> f64 {
     rows.iter().map(|row| force(row).abs()).fold(0.01 * normal, f64::max)
 }
 
-/// A case on the mesh of a check: so many elements along the contact radius inside and twice as many
-/// at the surface, with a companion, and no pictures.
+/// A case on the mesh of a check: so many elements along the contact radius inside and twice as
+/// many at the surface, with a companion, and no pictures.
 pub fn meshed(case: &Case, elements: usize) -> Case {
     let mut case = case.clone();
     case.mesh = case.mesh.refined(elements);

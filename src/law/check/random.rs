@@ -112,8 +112,8 @@ fn material(draw: &mut Seeded, modulus: f64, ranges: &Ranges) -> Material {
     Material { youngs_modulus: modulus, poissons_ratio, hardening: hardening(draw, modulus, yield_stress) }
 }
 
-/// Contact number `index` of a seed, R = 1 and E = 1, with a press to its depth: in turn on a plane,
-/// with an equal sphere and with an unlike body; `base` has all that is not drawn.
+/// Contact number `index` of a seed, R = 1 and E = 1, with a press to its depth: in turn on a
+/// plane, with an equal sphere and with an unlike body; `base` has all that is not drawn.
 pub fn drawn(base: &Case, ranges: &Ranges, seed: u64, index: usize) -> Case {
     let mut draw = of(seed, index);
     let material = material(&mut draw, 1.0, ranges);
@@ -146,7 +146,8 @@ pub fn drawn(base: &Case, ranges: &Ranges, seed: u64, index: usize) -> Case {
 }
 
 fn of(seed: u64, index: usize) -> Seeded {
-    // The generator's own numbers as seeds of the contacts, so that neighbours have nothing in common.
+    // The generator's own numbers as seeds of the contacts, so that neighbours have nothing in
+    // common.
     let mut seeds = Seeded::new(seed);
     let mut number = seeds.bits();
     for _ in 0..index {
