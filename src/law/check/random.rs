@@ -124,7 +124,7 @@ pub fn drawn(base: &Case, ranges: &Ranges, seed: u64, index: usize) -> Case {
         1 => Some(Opponent::Equal),
         _ => {
             let modulus = logarithmic(&mut draw, ranges.unlike);
-            let radius = (draw.bits() % 3 > 0).then(|| logarithmic(&mut draw, ranges.unlike));
+            let radius = (!draw.bits().is_multiple_of(3)).then(|| logarithmic(&mut draw, ranges.unlike));
             let other = self::material(&mut draw, modulus, ranges);
             Some(Opponent::Deforming { radius, material: other })
         }
