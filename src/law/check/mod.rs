@@ -44,9 +44,9 @@ pub const AIMS: [f64; 2] = [0.05, 0.12];
 
 /// Mesh error, over the greatest size of the force, from which on a path says nothing about a law.
 pub const MOST_MESH_ERROR: f64 = 0.025;
-/// Share of what the extrapolation to the limit adds that may still be missing: on ten contacts on
-/// 5 and 10 elements F_T at the limit lacks 0.3 to 0.6 of it, root mean square
-/// (`benches/limits/measure.py --meshes 5/10 --reference 12/24`).
+/// Share of what the extrapolation to the limit adds that may still be missing: on three contacts
+/// on 5 and 10 elements F_T at the limit lacks 0.3 to 0.5 of it, root mean square
+/// (`benches/limits/measure.py OUT --meshes 5/10 --reference 12/24 --cases 3`).
 const STILL_MISSING: f64 = 0.5;
 
 /// One path, simulated and followed; in the case's units.
