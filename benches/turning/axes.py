@@ -10,11 +10,9 @@ the shear; and the step of the greatest one. Steps are solved to 1e-5 of F_N: wi
 turn are off by 1 %. Standard library only. OUT gets the runs, and what is there is not computed again.
 """
 
-import argparse
 import math
-import pathlib
 
-from runs import case, rows
+from runs import arguments, case, parsed, rows
 
 DISTANCE = 0.0017
 IDEAL = 'law = "ideal"\nyield_stress = 400.0'
@@ -38,14 +36,11 @@ def along(args, elements, direction):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
+    parser = arguments(__doc__, out="needed")
     parser.add_argument("--meshes", default="5,10")
     parser.add_argument("--directions", default="17,30,45,90")
     parser.add_argument("--tolerance", type=float, default=1e-5)
-    parser.add_argument("--program", default="target/release/asperity")
-    args = parser.parse_args()
-    args.out.mkdir(parents=True, exist_ok=True)
+    args = parsed(parser)
     print("| elements | direction | F_T | F_N | across | at |\n|---|---|---|---|---|---|")
     for elements in map(int, args.meshes.split(",")):
         straight = along(args, elements, 0.0)

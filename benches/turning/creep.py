@@ -10,8 +10,8 @@ four, with a creepage of one kind: longitudinal (the shear goes on along the way
 spin (a twist goes on). All are small: the force is some 6 % of mu F_N, mu = 1. Pure rolling is by about R d phi, and here
 delta_T is counted from (R - h) d phi: so the shear has h phi in it. About, as it is off by a part of h/R, of second order
 in a/R, and no less than a fifth of these creepages: the longitudinal one is simulated to both sides, and half of the
-difference counts. Kalker (Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer 1990, appendix E, table
-E3), nu = 0.25, a circle:
+difference counts. Kalker (Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer 1990; the coefficients as programs
+for wheels on rails have them), nu = 0.25, a circle:
 
     F_x = C11 G a^2 longitudinal,  F_y = C22 G a^2 lateral,  F_y = C23 G a^3 spin     C11 = 4.12, C22 = 3.67, C23 = 1.47
 
@@ -20,13 +20,11 @@ in the same way, on squares of two sizes and in the limit of small ones, an erro
 is. a is Hertz's, of F_N. `--check` prints the latter alone, and what they are without the shear ahead. With numpy.
 """
 
-import argparse
 import math
-import pathlib
 
 import numpy as np
 from half_spaces import F_N, HalfSpaces
-from runs import E, case, rows, segment
+from runs import E, arguments, case, parsed, rows, segment
 
 NU, MU = 0.25, 1.0
 G = E / (2 * (1 + NU))
@@ -118,15 +116,13 @@ def boundary(kind, squares, ahead):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path, nargs="?")
+    parser = arguments(__doc__)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--elements", type=int, default=6)
     parser.add_argument("--surface", type=int, default=0)
     parser.add_argument("--squares", default="10,20")
     parser.add_argument("--kinds", default=",".join(KINDS))
-    parser.add_argument("--program", default="target/release/asperity")
-    args = parser.parse_args()
+    args = parsed(parser)
     kinds = args.kinds.split(",")
     squares = [int(n) for n in args.squares.split(",")]
     print("| creepage | 1 a | 2 a | 3 a | 4 a |\n|---|---|---|---|---|")
@@ -135,7 +131,6 @@ def main():
             line(f"{kind}, nothing ahead", [at(computed(squares[0], kind, 0.0), way) for way in WAYS])
         boundary(kind, squares, AHEAD)
         if args.out is not None:
-            args.out.mkdir(parents=True, exist_ok=True)
             found = simulated(args, kind)
             line(f"{kind}, simulated", [at(found, way) for way in WAYS])
         line(f"{kind}, Kalker", [KINDS[kind]] * len(WAYS))

@@ -4,19 +4,18 @@
     python3 benches/turning/elastic.py OUT [--elements 6] [--program target/release/asperity]
     python3 benches/turning/elastic.py --check
 
-`half_spaces.py` has the boundary elements. `--check` prints the errors of that computation alone: against Cattaneo and Mindlin at nu = 0, where they are exact, and
-against itself on more squares. Otherwise the pair is simulated along each path, and the table has the difference of
-F_T/(mu F_N), a vector, at the steps of the simulation, root mean square / greatest, in per cent, where the boundary elements
-take the same steps and where they take sixteen along each side; and by how many degrees the direction of F_T differs. With numpy. OUT gets the runs, and what is there is not computed again.
+`half_spaces.py` has the boundary elements. `--check` prints the errors of that computation alone: against Cattaneo and
+Mindlin at nu = 0, where they are exact, and against itself on more squares. Otherwise the pair is simulated along each path,
+and the table has the difference of F_T/(mu F_N), a vector, at the steps of the simulation, root mean square / greatest, in
+per cent, where the boundary elements take the same steps and where they take sixteen along each side; and by how many degrees
+the direction of F_T differs. With numpy. OUT gets the runs, and what is there is not computed again.
 """
 
-import argparse
 import math
-import pathlib
 
 import numpy as np
 from half_spaces import F_N, HalfSpaces
-from runs import HELD, E, case, rows
+from runs import HELD, E, arguments, case, parsed, rows
 
 NU, MU = 0.3, 0.3
 H = 0.0008  # a = 0.02 R: the body's own part of the displacement is 1 %
@@ -116,19 +115,16 @@ def simulated(args, ends, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path, nargs="?")
+    parser = arguments(__doc__)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--elements", type=int, default=6)
     parser.add_argument("--sides", type=int, default=24)
     parser.add_argument("--steps", type=int, default=15)
     parser.add_argument("--paths", default="0,1,2,3")
     parser.add_argument("--squares", type=int, default=20)
-    parser.add_argument("--program", default="target/release/asperity")
-    args = parser.parse_args()
+    args = parsed(parser)
     if args.check or args.out is None:
         return check()
-    args.out.mkdir(parents=True, exist_ok=True)
     print("| path | the same steps | direction, degrees | short steps |\n|---|---|---|---|")
     for number, (name, ends) in enumerate(paths(args.sides).items()):
         if str(number) not in args.paths.split(","):

@@ -14,11 +14,9 @@ coefficients of friction, and then
 Moments are over F_N a, forces over F_N. What is there already is not computed again.
 """
 
-import argparse
 import math
-import pathlib
 
-from runs import HELD, E, case, rows, segment
+from runs import HELD, E, arguments, case, parsed, rows, segment
 
 NU = 0.3
 G = E / (2 * (1 + NU))
@@ -73,12 +71,9 @@ def contact(args, number, name, hardening, h, friction):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path)
+    parser = arguments(__doc__, out="needed")
     parser.add_argument("--elements", type=int, default=8)
-    parser.add_argument("--program", default="target/release/asperity")
-    args = parser.parse_args()
-    args.out.mkdir(parents=True, exist_ok=True)
+    args = parsed(parser)
     head = "contact,mu,a/R,k_twist,M_twist limit,F_T kept,M_twist kept,M_roll,F_T,loss forth,loss back,deeper"
     print("| " + " | ".join(head.split(",")) + " |\n" + "|---" * 12 + "|")
     for number, (name, hardening, h) in enumerate(CONTACTS):

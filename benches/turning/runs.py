@@ -1,11 +1,29 @@
 """Case files of the comparisons in this folder, and the histories that they leave. Standard library only."""
 
+import argparse
 import csv
 import math
+import pathlib
 import subprocess
 
 E = 200e3
 HELD = 'hold = "normal-force"'
+
+
+def arguments(text, out="optional"):
+    """The arguments that all have: the folder of the runs, and the program."""
+    parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path, nargs="?" if out == "optional" else None)
+    parser.add_argument("--program", default="target/release/asperity")
+    return parser
+
+
+def parsed(parser):
+    """What was given; the folder is made."""
+    args = parser.parse_args()
+    if args.out is not None:
+        args.out.mkdir(parents=True, exist_ok=True)
+    return args
 
 
 def case(hardening, friction, mesh, path, nu=0.3, opponent=""):

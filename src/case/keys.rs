@@ -236,7 +236,9 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the relative displacements of the two equators, twice what each moves; where the path leaves the x axis or turns, both spheres are meshed whole, for seven times the time",
+        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the \
+                  relative displacements of the two equators, twice what each moves; where the path leaves the x axis or \
+                  turns, both spheres are meshed whole, for seven times the time",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },

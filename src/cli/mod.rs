@@ -44,7 +44,8 @@ struct Cli {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 a law that is checked misses its goal; 2 bad input or usage; 3 did not converge or ran out of memory or room (what was computed is kept), or a check failed; \
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 a law that is checked misses its goal; 2 bad input or usage; \
+                          3 did not converge or ran out of memory or room (what was computed is kept), or a check failed; \
                           75 interrupted (--resume goes on).";
 
 #[derive(Debug, Subcommand)]

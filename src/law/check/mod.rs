@@ -22,7 +22,7 @@ use crate::output::{Limits, Recorder, StepRecord, decimal};
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
-use crate::simulation::scout::scout;
+use crate::simulation::scout::{first_zone, scout};
 
 pub use protocol::{materials, protocol};
 pub use random::{KINDS, Ranges, drawn, opponent_of, random_paths};
@@ -169,10 +169,7 @@ pub fn check(law: &LawFile, paths: &[Path], stop: &Arc<AtomicBool>) -> Result<Ve
 fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> Result<Checked, LawError> {
     let case = &path.case;
     let companion = scout(case, stop)?;
-    let mut problem = Problem::new(case)?;
-    if let Some(companion) = &companion {
-        problem = Problem::on(case, Some(companion.zone(problem.zone, problem.spacing)))?;
-    }
+    let problem = Problem::on(case, Some(first_zone(case, companion.as_ref())?))?;
     let mut recorder = Recorder::new(case, Some(stop.clone()));
     let spacing = problem.spacing;
     let followed = follow(problem, None, &mut |problem| on_cpu(problem), &mut recorder)?;
@@ -187,9 +184,8 @@ fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> R
     if let Some(limits) = companion.and_then(|companion| Limits::new(case, &companion, spacing)) {
         limits.write_into(&mut rows);
     }
-    let limits = at_the_limit(&rows);
     let mesh = mesh_errors(&rows);
-    let rows = limits;
+    let rows = at_the_limit(&rows);
     let places: Vec<[f64; 2]> = rows.iter().map(|row| [row.h, row.delta_t]).collect();
     let centres = Centres::of(case);
     let law = drive_centres(parameters, centres, &places, INCREMENTS);
