@@ -190,6 +190,33 @@ fn formulas_send_two_spheres_to_the_built_in_law() {
     assert!(String::from_utf8_lossy(&predicted.get_output().stdout).lines().count() > 100);
 }
 
+/// Random paths are those of their seed, and the exit code tells whether the goal is met.
+#[test]
+fn random_paths_are_checked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/paths/ideal-3200-mu-0.1.json");
+    let checked = |seed: &str, to: &str| {
+        let out = folder.path().join(to);
+        let args = ["law", "check", text(&table), "--random", "2", "--seed", seed, "--elements", "4", "--out", text(&out), "-q"];
+        let run = asperity(&args);
+        let output = run.get_output();
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let met = said.contains("not counted: met.");
+        assert_eq!(output.status.code(), Some(i32::from(!met)), "{said}");
+        assert!(met || said.contains("not counted: missed."), "{said}");
+        assert!(
+            said.contains(&format!("random paths: 2, seed {seed}")) && said.contains("reversals of falling amplitude"),
+            "{said}"
+        );
+        assert_eq!(fs::read_dir(&out).expect("curves").count(), 2);
+        said
+    };
+    let said = checked("5", "one");
+    assert_eq!(said, checked("5", "two"));
+    assert_ne!(said, checked("6", "three"));
+    asperity(&["law", "check", text(&table), "--seed", "1"]).code(2);
+}
+
 #[test]
 fn what_is_no_study_and_no_law_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -38,6 +38,10 @@ const COUPLED_SHARE: f64 = 4.0;
 /// Estimated error of F_T in what F_T/F_N lacks, times F_N; that of F_N comes to it.
 pub(super) const TANGENTIAL_SHARE: f64 = 1.75;
 
+/// F_T/F_N over mu from which on a companion that was sheared to full slip counts as sliding. It is
+/// nearer to mu where every point slips, but for a pair whose spheres have passed each other.
+const SLIDES: f64 = 0.98;
+
 /// The companion of a run, and how it is compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
@@ -234,9 +238,6 @@ impl Limits {
     }
 }
 
-/// F_T/F_N over mu from which on a contact counts as sliding: what follows does not change it.
-const SLIDES: f64 = 0.98;
-
 impl Stretch {
     fn new(segment: &Segment, start: &StepRecord, rows: &[StepRecord]) -> Self {
         let curve = |of: fn(&StepRecord) -> f64| {
@@ -249,10 +250,11 @@ impl Stretch {
     }
 
     /// `None` for a segment in which the companion had nothing to do, and beyond the end of one by
-    /// more than its last step. One that was sheared until all of it slips slides on as it is.
+    /// more than its last step. One that was sheared along x until all of it slips slides on as it
+    /// is.
     fn at(&self, segment: &Segment, place: f64, friction: Option<f64>) -> Option<Counterpart> {
         let [end, step] = self.f_n.end()?;
-        let full = matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. });
+        let full = matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. });
         if full && place > end {
             let last = Counterpart { f_n: self.f_n.at(end)?, f_t: self.f_t.at(end)?, a: self.a.at(end)? };
             let most = friction? * last.f_n;

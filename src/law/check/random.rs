@@ -134,13 +134,11 @@ pub fn drawn(base: &Case, ranges: &Ranges, seed: u64, index: usize) -> Case {
     case.material = material;
     case.contact.friction = Friction::Coefficient(friction);
     case.opponent = opponent;
-    // Nine tenths leave the kinds that press a tenth deeper their depth.
-    let whole = match case.opponent {
+    let indentation = match case.opponent {
         None => depth,
         Some(Opponent::Equal) => 2.0 * depth,
         Some(_) => 2.0 * depth * case.effective_radius(),
     };
-    let indentation = 0.9 * whole;
     case.path = vec![Segment::Indentation { indentation }];
     case
 }
@@ -157,8 +155,8 @@ fn of(seed: u64, index: usize) -> Seeded {
 }
 
 /// So many random paths: of the contact of `case`, with its depth, or of contacts that are
-/// [`drawn`] where it is `None`; the kinds in turn, three paths each for the three opponents. The
-/// displacements go with the one at which the law has 0.99 mu.
+/// [`drawn`] where it is `None`; the kinds in turn, each with all three opponents before the next.
+/// The displacements go with the one at which the law has 0.99 mu.
 ///
 /// # Errors
 /// The law says nothing of a contact.
@@ -220,7 +218,8 @@ fn path(draw: &mut Seeded, kind: usize, h: f64, slip: f64) -> Vec<Segment> {
             let far = slip * draw.between(0.5, 1.2);
             let share = draw.between(0.12, 0.5);
             let back = -far * draw.between(0.15, 0.3);
-            vec![press(h), shear(far), Segment::Release { share }, shear(back), press(h), both(1.1 * h, far)]
+            let first = h / 1.1;
+            vec![press(first), shear(far), Segment::Release { share }, shear(back), press(first), both(h, far)]
         }
         4 => {
             let first = 0.9 * h * draw.between(10.0, 60.0).to_radians().tan();
