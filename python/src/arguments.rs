@@ -36,7 +36,7 @@ fn briefly(value: &Bound<'_, PyAny>) -> String {
 
 /// Elements along the contact radius of simulations for a law.
 pub fn elements(value: &Bound<'_, PyAny>) -> PyResult<usize> {
-    whole("elements", value, 4..=32, "4 to 32")
+    whole("elements", value, 4..=16, "4 to 16")
 }
 
 /// Refuses a text that is longer than the file in which it would be read.

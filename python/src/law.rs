@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use asperity::Canceller;
 use asperity::contact_law::path::PathPoint;
-use asperity::law::check::{Checked, check_until};
+use asperity::law::check::{Checked, check, protocol};
 use asperity::law::data::Point;
 use asperity::law::export::{Language, law_files, law_source};
 use asperity::law::formulas::fit::fit;
@@ -193,7 +193,8 @@ impl NativeLaw {
         let law = self.law.clone();
         let work = move |news| {
             let _news: std::sync::mpsc::Sender<_> = news;
-            check_until(&law, &case, elements, &stop)
+            let paths = protocol(&case, &law.contact_parameters(&case)?, elements);
+            check(&law, &paths, &stop)
         };
         let (checked, raised) = wait(py, None, &canceller, None, work)?;
         let paths = checked.map_err(failed)?.iter().map(|one| path(py, one)).collect::<PyResult<Vec<_>>>()?;
@@ -272,7 +273,8 @@ fn path<'py>(py: Python<'py>, checked: &Checked) -> PyResult<Bound<'py, PyDict>>
     answer.set_item("F_N_worst", normal.worst)?;
     answer.set_item("dissipated", checked.dissipated[0])?;
     answer.set_item("law_dissipated", checked.dissipated[1])?;
-    answer.set_item("within", tangential.within() && normal.within())?;
+    answer.set_item("within", checked.within())?;
+    answer.set_item("counts", checked.counts())?;
     answer.set_item("failure", checked.failure.as_deref().unwrap_or_default())?;
     Ok(answer)
 }

@@ -131,9 +131,11 @@ def test_a_table_is_a_law_of_one_material(table: asperity.Law, case: asperity.Ca
     again = asperity.Law.load(tmp_path / "law.json")
     assert again.to_dict() == table.to_dict() and "a table of" in repr(again)
     curve = again.predict(case)
-    # The same mesh: what is left is the table's interpolation.
-    assert curve["F_T"].max() == pytest.approx(done.summary["F_T_max"], rel=0.03)
-    assert curve["F_N"].max() == pytest.approx(done.summary["F_N0"], rel=0.02)
+    # A table is of the limit of fine meshes, and nearer to it than a run on its mesh: two axisymmetric codes have F_N0 =
+    # 148.8 +- 1.0, and the largest F_T between 30 and 31.6.
+    assert curve["F_N"].max() == pytest.approx(148.8, rel=0.01)
+    assert abs(curve["F_N"].max() - 148.8) < abs(done.summary["F_N0"] - 148.8)
+    assert 0.98 * 30.0 < curve["F_T"].max() < 1.02 * 31.6
     assert "asperity_" in again.export("c", case=case)
     with pytest.raises(asperity.AsperityError, match="no formulas"):
         again.formulas()
@@ -141,7 +143,7 @@ def test_a_table_is_a_law_of_one_material(table: asperity.Law, case: asperity.Ca
         again.predict(case, press=True)
     with pytest.raises(asperity.AsperityError, match="of another material: mu = 0.1"):
         again.predict(case.replace({"contact.friction": 0.1}))
-    with pytest.raises(asperity.CaseError, match="elements: is 3. Allowed: 4 to 32"):
+    with pytest.raises(asperity.CaseError, match="elements: is 3. Allowed: 4 to 16"):
         asperity.Law.tabulate(case, elements=3)
     with pytest.raises(asperity.CaseError, match='friction = "stick"'):
         asperity.Law.tabulate(case.replace({"contact.friction": "stick", "path.1.shear": 0.001}))
@@ -157,7 +159,9 @@ def test_a_law_is_checked_path_by_path(table: asperity.Law, law: asperity.Law) -
         assert worst[row] == pytest.approx(np.abs(path["law_F_N"] - path["F_N"]).max() / greatest, rel=1e-12)
     # The press, its release and the press after it are what a table knows best.
     assert check.table["within"][0] and worst[0] < 0.05
-    assert f"of {len(check.paths)} paths within" in repr(check)
+    counted = check.table["counts"]
+    assert 0 < counted.sum() <= 11
+    assert f"{(check.table['within'] & counted).sum()} of {counted.sum()} paths within" in repr(check)
     with pytest.raises(asperity.CaseError, match="case: is missing"):
         law.check()
 
