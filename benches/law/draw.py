@@ -131,9 +131,10 @@ def study(cases, equal, what, seed):
         "[base.sphere]\nradius = 1.0\n\n"
         f"[base.material]\nyoungs_modulus = {YOUNGS_MODULUS / 1e3:.0f}e3\n\n"
         "[base.contact]\n\n"
-        "[base.mesh]\nelements_per_contact_radius = 6\n"
-        "# Sheared with high friction, a contact wanders; so coarse a mesh has few elements to spare.\n"
-        "fine_zone = 1.6\n\n"
+        "[base.mesh]\nelements_per_contact_radius = 5\nsurface_elements_per_contact_radius = 10\n\n"
+        "# Companions: what a law is made of are the curves at the limit of fine meshes.\n"
+        "[base.solver]\nerror_estimate = true\n\n"
+        '[base.output]\nfields = "none"\n\n'
         + ("[base.opponent]\nequal = true\n\n" if equal else "")
         + '[[base.path]]\n\n[[base.path]]\nshear = "full-slip"\nhold = "indentation"\n\n'
         + ("" if equal else '[[base.path]]\nshear = 0.0\nhold = "indentation"\n\n')

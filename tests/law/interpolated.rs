@@ -48,7 +48,8 @@ fn a_known_law_is_interpolated() {
 }
 
 /// The overlap of two spheres falls as they pass each other, and the update takes that for an
-/// unloading: no reason to lose more than Hertz's contact does.
+/// unloading: no reason to lose more than Hertz's contact does, but for the law's own error, 0.06 % of
+/// F_N rms and 0.4 % at the worst over the elastic pairs that it is made from.
 #[test]
 fn two_spheres_that_do_not_yield_keep_their_force() {
     let law = LawFile::Interpolated(Box::new(Interpolated::built_in().expect("a law")));
@@ -68,7 +69,7 @@ fn two_spheres_that_do_not_yield_keep_their_force() {
         for point in points.iter().filter(|point| point.segment == 1) {
             let lost = 1.0 - point.f_n / pressed;
             let passed = 1.5 * point.delta_t.powi(2) / (4.0 * h);
-            assert!(lost < 1.1 * passed + 1e-3, "{hardening}, mu = {friction}: {lost} and {passed} at {}", point.delta_t);
+            assert!(lost < 1.1 * passed + 2e-3, "{hardening}, mu = {friction}: {lost} and {passed} at {}", point.delta_t);
         }
     }
 }
