@@ -48,8 +48,8 @@ fn a_known_law_is_interpolated() {
 }
 
 /// The overlap of two spheres falls as they pass each other, and the update takes that for an
-/// unloading: no reason to lose more than Hertz's contact does, but for the law's own error, 0.06 % of
-/// F_N rms and 0.4 % at the worst over the elastic pairs that it is made from.
+/// unloading: no reason to lose more than Hertz's contact does, but for the law's own error, 0.06 %
+/// of F_N rms and 0.4 % at the worst over the elastic pairs that it is made from.
 #[test]
 fn two_spheres_that_do_not_yield_keep_their_force() {
     let law = LawFile::Interpolated(Box::new(Interpolated::built_in().expect("a law")));
