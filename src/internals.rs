@@ -14,6 +14,9 @@ pub mod compute;
 #[cfg(feature = "cli")]
 #[path = "conformance/mod.rs"]
 pub mod conformance;
+#[cfg(feature = "explore")]
+#[path = "explore/mod.rs"]
+pub mod explore;
 #[path = "memory.rs"]
 pub mod memory;
 #[path = "processor.rs"]

@@ -50,7 +50,8 @@
 //! | `law` | [`study`], [`law`] and [`contact_law`]: grids of cases, fits, tables, exports, the update of a contact |
 //! | `plots` | pictures of runs, with `law` those of studies and laws, and their report |
 //! | `gpu` | Vulkan, Metal and DX12; the largest part of the time to compile |
-//! | `cli` | the program, with all of the others |
+//! | `cli` | the program, with all of the above |
+//! | `explore` | `asperity explore`, the page in the browser |
 //!
 //! # Units and signs
 //!
@@ -88,6 +89,8 @@ pub use asperity_kernels::material;
 pub use case::Case;
 pub use session::{Canceller, Earlier, Options, Outcome, SessionError, Simulation};
 
+#[cfg(feature = "explore")]
+pub(crate) use internals::explore;
 #[cfg(feature = "cli")]
 pub(crate) use internals::{bench, conformance, processor, prove, verify};
 pub(crate) use internals::{bounded, compute, contact, element, lanes, linalg, memory, mesh, quoting, real, simulation, solver};

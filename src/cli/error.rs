@@ -110,6 +110,15 @@ pub enum CliError {
     /// The kernels cannot be measured.
     #[error("bench: {0}")]
     Bench(#[from] BenchError),
+    /// The page of `explore` cannot be served.
+    #[cfg(feature = "explore")]
+    #[error("--port {port}: the page cannot be served: {source}. Give another port, or 0 for any that is free")]
+    Serve {
+        /// The port.
+        port: u16,
+        /// What the system says.
+        source: io::Error,
+    },
     /// The signals cannot be caught.
     #[error("cannot listen for signals: {source}. This system allows no signal handlers, which a run needs")]
     Signals {

@@ -9,6 +9,8 @@ pub mod devices;
 pub mod environment;
 pub mod error;
 pub mod explain;
+#[cfg(feature = "explore")]
+pub mod explore;
 pub mod init;
 pub mod input;
 pub mod law;
@@ -58,6 +60,8 @@ enum Command {
     Plot(plot::PlotArgs),
     Compare(compare::CompareArgs),
     Law(law::LawArgs),
+    #[cfg(feature = "explore")]
+    Explore(explore::ExploreArgs),
     Verify(verify::VerifyArgs),
     Devices(devices::DevicesArgs),
     Bench(bench::BenchArgs),
@@ -80,6 +84,8 @@ impl Command {
             Command::Point(args) => point::point(args),
             Command::Study(args) => study::study(args),
             Command::Law(args) => law::law(args),
+            #[cfg(feature = "explore")]
+            Command::Explore(args) => explore::explore(args),
             Command::Plot(args) => plot::plot(args),
             Command::Init(args) => init::init(args),
             Command::Explain(args) => explain::explain(args),

@@ -159,27 +159,36 @@ pub const LAMBDA_BOUNDS: [f64; 2] = [20.0, 160.0];
 /// Boundaries of mu likewise.
 pub const FRICTION_BOUNDS: [f64; 2] = [0.2, 0.4];
 
+/// The regions of Lambda, and those of mu, in words.
+const LEVELS: [&str; 4] = ["elastic", "Lambda < 20", "Lambda 20 to 160", "Lambda > 160"];
+const FRICTIONS: [&str; 3] = ["mu < 0.2", "mu 0.2 to 0.4", "mu >= 0.4"];
+
+/// The numbers of the regions of a contact: of Lambda, whose first yield is at `first`, and of mu.
+fn numbers(lambda: f64, first: f64, mu: f64) -> (usize, usize) {
+    let ([low, high], [weak, strong]) = (LAMBDA_BOUNDS, FRICTION_BOUNDS);
+    let level = if lambda <= first {
+        0
+    } else if lambda < low {
+        1
+    } else {
+        2 + usize::from(lambda > high)
+    };
+    (level, usize::from(mu >= weak) + usize::from(mu >= strong))
+}
+
+/// The region of a contact, as [`by_region`] calls it.
+pub fn region(lambda: f64, first: f64, mu: f64) -> String {
+    let (level, friction) = numbers(lambda, first, mu);
+    format!("{}, {}", LEVELS[level], FRICTIONS[friction])
+}
+
 /// Errors by region of Lambda and mu, regions without cases left out; the last row is for all.
 /// `cases`: (Lambda, Lambda_Y, mu, errors).
 pub fn by_region(cases: &[(f64, f64, f64, CaseErrors)]) -> Vec<RegionError> {
-    let [low, high] = LAMBDA_BOUNDS;
-    let [weak, strong] = FRICTION_BOUNDS;
-    let levels = ["elastic", "Lambda < 20", "Lambda 20 to 160", "Lambda > 160"];
-    let frictions = ["mu < 0.2", "mu 0.2 to 0.4", "mu >= 0.4"];
-    let level = |lambda: f64, first: f64| {
-        if lambda <= first {
-            0
-        } else if lambda < low {
-            1
-        } else {
-            2 + usize::from(lambda > high)
-        }
-    };
-    let friction = |mu: f64| usize::from(mu >= weak) + usize::from(mu >= strong);
     let mut rows = Vec::new();
-    for (i, level_name) in levels.iter().enumerate() {
-        for (j, friction_name) in frictions.iter().enumerate() {
-            let inside = cases.iter().filter(|(lambda, first, mu, _)| level(*lambda, *first) == i && friction(*mu) == j);
+    for (i, level_name) in LEVELS.iter().enumerate() {
+        for (j, friction_name) in FRICTIONS.iter().enumerate() {
+            let inside = cases.iter().filter(|(lambda, first, mu, _)| numbers(*lambda, *first, *mu) == (i, j));
             let errors = Errors::over(inside.map(|(_, _, _, errors)| errors));
             if errors.cases > 0 {
                 rows.push(RegionError { region: format!("{level_name}, {friction_name}"), errors });

@@ -27,7 +27,7 @@ use super::range::{Interval, OutOfRange};
 use crate::case::{self, Case, Friction, Opponent};
 use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINTS, Shapes, VirginPoint};
 
-pub use against::{Against, equivalent, is_on_a_flat};
+pub use against::{Against, equivalent, first_yield, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
 pub(super) use build::{backbone_of, reversal, unloading_radius};
 pub(super) use checked::check_levels;

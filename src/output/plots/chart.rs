@@ -2,6 +2,7 @@
 //! lines above it, a colour bar beside it.
 
 use super::canvas::{Anchor, Canvas, Colour, Drawn, Ink, Paint, Place, Stroke, Writing};
+use super::field::clipped;
 use super::style::{FAINT, INK, PALE, WHITE, tick, viridis};
 use super::text::text_width;
 
@@ -138,12 +139,21 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// Whether an arrow on the line shows in which order the points follow each other.
     pub arrow: bool,
+    /// Whether the area that the points go round is filled.
+    pub filled: bool,
 }
 
 impl Series {
     /// A line of two pixels.
     pub fn solid(label: impl Into<String>, colour: Colour, points: Vec<(f64, f64)>) -> Self {
-        Self { label: label.into(), colour, opacity: 1.0, line: Some(Line::Solid(2.0)), mark: None, points, arrow: false }
+        let line = Some(Line::Solid(2.0));
+        Self { label: label.into(), colour, opacity: 1.0, line, mark: None, points, arrow: false, filled: false }
+    }
+
+    /// The area between two curves, pale.
+    pub fn band(label: impl Into<String>, colour: Colour, low: Vec<(f64, f64)>, high: Vec<(f64, f64)>) -> Self {
+        let points = low.into_iter().chain(high.into_iter().rev()).collect();
+        Self { line: None, opacity: 0.2, filled: true, ..Self::solid(label, colour, points) }
     }
 
     /// A line of dashes, `dash` pixels long.
@@ -248,7 +258,14 @@ impl Frame<'_> {
     fn shows(&self, series: &Series) -> bool {
         let finite = finite(&series.points);
         let marked = series.mark.is_some() && finite.iter().any(|&(x, y)| self.holds((self.x(x), self.y(y))));
-        series.points.is_empty() || marked || series.line.is_some() && !self.pieces(&finite).is_empty()
+        let drawn = series.line.is_some() && !self.pieces(&finite).is_empty();
+        series.points.is_empty() || marked || drawn || series.filled && !self.area(&finite).is_empty()
+    }
+
+    /// The part of a filled area inside of the frame, in pixels.
+    fn area(&self, points: &[(f64, f64)]) -> Vec<Place> {
+        let places = points.iter().map(|&(x, y)| (self.x(x), self.y(y))).filter(|(x, y)| x.is_finite() && y.is_finite());
+        clipped(&places.collect::<Vec<Place>>(), [(self.left, self.top), (self.right, self.bottom)])
     }
 
     /// The pieces of a curve inside of the frame, in pixels.
@@ -385,6 +402,9 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
     root.text(&chart.title, (left, 22.0), INK, title)?;
     for (entry, x, line) in legend {
         let (x, y) = (left + x, 48.0 + LEGEND_LINE * line as f64);
+        if entry.filled {
+            root.rectangle([(x, y - 6.0), (x + SAMPLE, y + 6.0)], Paint::fill(entry.colour.mix(entry.opacity)))?;
+        }
         let ink = entry.colour.mix(entry.opacity.max(0.8));
         if let Some(stroke) = entry.line {
             draw_line(root, stroke, ink, &[(x, y), (x + SAMPLE, y)])?;
@@ -416,6 +436,12 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
     for series in &chart.series {
         let ink = series.colour.mix(series.opacity);
         let finite = finite(&series.points);
+        if series.filled {
+            let area = frame.area(&finite);
+            if area.len() > 2 {
+                root.polygon(&area, Paint::fill(ink))?;
+            }
+        }
         if let Some(line) = series.line {
             let pieces = frame.pieces(&finite);
             for piece in &pieces {

@@ -44,11 +44,21 @@ pub fn plot_contact(points: &[ContactPoint], view: &View) -> Result<Picture, Out
 /// Maps of some steps in the order of the shear, all to one scale: how slip eats into the contact
 /// from its edge.
 pub fn plot_slip(panels: &[SlipPanel], view: &View) -> Result<Picture, OutputError> {
+    slip_maps(panels, panels, view)
+}
+
+/// The map of one of these steps, to the scale of them all: a frame of a film.
+pub fn plot_slip_frame(panels: &[SlipPanel], frame: usize, view: &View) -> Result<Picture, OutputError> {
+    slip_maps(panels.get(frame..=frame).unwrap_or_default(), panels, view)
+}
+
+/// Maps of the steps that are `shown`, to the scale of all `panels`.
+fn slip_maps(shown: &[SlipPanel], panels: &[SlipPanel], view: &View) -> Result<Picture, OutputError> {
     const HEAD: f64 = 74.0;
     const NARROWEST: f64 = 170.0;
     /// Narrowest square over which what it shows stands on one line.
     const ONE_LINE: f64 = 200.0;
-    let most = match panels.len() {
+    let most = match shown.len() {
         4 => 2,
         count => count.clamp(1, 3),
     };
@@ -56,7 +66,7 @@ pub fn plot_slip(panels: &[SlipPanel], view: &View) -> Result<Picture, OutputErr
     let columns = ((width / NARROWEST) as usize).clamp(1, most);
     let across = width / columns as f64;
     let side = (across - MARGIN - 14.0).min(300.0);
-    let rows = panels.len().div_ceil(columns).max(1);
+    let rows = shown.len().div_ceil(columns).max(1);
     // Over a panel's square, for what it shows.
     let title = if side < ONE_LINE { 46.0 } else { 28.0 };
     // Only the lowest panels name their axis.
@@ -71,7 +81,7 @@ pub fn plot_slip(panels: &[SlipPanel], view: &View) -> Result<Picture, OutputErr
     Picture::draw("slip", caption, size, |root| {
         root.text("Stick and slip during the shear", (MARGIN, 24.0), INK, text(18.0))?;
         status_names(root, None, (MARGIN, 54.0))?;
-        for (i, panel) in panels.iter().enumerate() {
+        for (i, panel) in shown.iter().enumerate() {
             let corner = ((i % columns) as f64 * across, HEAD + down(i / columns));
             let area = root.panel(corner, (across, title + side + FOOT));
             let map = Map { window, scales: &scales, square: Square { left: MARGIN, top: title, side } };
@@ -87,7 +97,7 @@ pub fn plot_slip(panels: &[SlipPanel], view: &View) -> Result<Picture, OutputErr
                 let size = 14.0 * (side / text_width(line, 14.0)).min(1.0);
                 area.text(line, (MARGIN, title - 13.0 - 18.0 * i as f64), INK, text(size))?;
             }
-            map.axes(&area, [i + columns >= panels.len(), i % columns == 0])?;
+            map.axes(&area, [i + columns >= shown.len(), i % columns == 0])?;
         }
         let length = (width - MARGIN - 40.0).min(420.0);
         pressure_bar(root, &scales, (MARGIN, HEAD + down(rows) - 32.0 + FOOT), length)

@@ -15,14 +15,14 @@ const SIZE: (u32, u32) = (760, 480);
 const CURVE_POINTS: usize = 120;
 
 /// The vertical axis over some values and zero, with room above and below.
-pub(super) fn from_zero(label: &str, values: impl IntoIterator<Item = f64>) -> Axis {
+pub fn from_zero(label: &str, values: impl IntoIterator<Item = f64>) -> Axis {
     let (low, high) = extent(values.into_iter().chain([0.0]));
     let room = 0.06 * (high - low);
     Axis::linear(label, if low < 0.0 { low - room } else { 0.0 }, if high > 0.0 { high + room } else { 0.0 })
 }
 
 /// Greatest magnitude of some values.
-pub(super) fn greatest(values: impl IntoIterator<Item = f64>) -> f64 {
+pub fn greatest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().filter(|value| value.is_finite()).fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 

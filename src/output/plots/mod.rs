@@ -25,8 +25,8 @@ mod text;
 mod turning;
 
 pub use super::tables::{SlipPanel, Tables};
-pub use contact_map::{plot_contact, plot_slip};
-pub use curves::{plot_forces, plot_indentation, plot_law, plot_ratio, plot_stick};
+pub use contact_map::{plot_contact, plot_slip, plot_slip_frame};
+pub use curves::{from_zero, greatest, plot_forces, plot_indentation, plot_law, plot_ratio, plot_stick};
 pub use overlay::{OverlaidRun, plot_overlay};
 pub use pressure::plot_pressure;
 pub use replot::replot;

@@ -1,0 +1,152 @@
+//! What a law says of one case, with the closed forms beside it.
+
+use crate::analytical::{ElasticSphere, cattaneo_mindlin::CattaneoMindlin, hertz};
+use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::contact_law::path::{PathPoint, follow_centres};
+use crate::contact_law::{Centres, ContactParameters, ContactState};
+use crate::law::range::OutOfRange;
+use crate::law::report::LAMBDA_BOUNDS;
+use crate::law::table::{equivalent, first_yield};
+use crate::law::variables::{Body, yield_lambda};
+use crate::law::{LawError, LawFile};
+use crate::output::{StepRecord, Summary, SummaryInputs};
+
+use super::trust::Trust;
+
+/// A law at one case, in the case's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curves {
+    /// The case.
+    pub case: Case,
+    /// The greatest indentation.
+    pub h: f64,
+    /// mu.
+    pub friction: f64,
+    /// Pressed to `h` and sheared to full slip.
+    pub shear: Vec<StepRecord>,
+    /// Along the cycle: the path of the case, where that goes back, else to full slip and back.
+    pub cycle: Vec<StepRecord>,
+    /// Both in some numbers, as a run's.
+    pub summary: Summary,
+    /// The sphere on a plane that makes the same elastic contact.
+    pub elastic: ElasticSphere,
+    /// h at first yield; `None` where nothing yields.
+    pub first_yield: Option<f64>,
+    /// Contact radius at `h`.
+    pub a: f64,
+    /// Stiffness of a shear without slip at `h`.
+    pub k_t: f64,
+    /// Lambda, that of first yield, and the normalised hardness.
+    pub lambda: f64,
+    /// See `lambda`.
+    pub yield_lambda: f64,
+    /// See `lambda`.
+    pub hardness: f64,
+    /// What of the contact lies outside of the law's range.
+    pub out_of_range: Vec<OutOfRange>,
+    /// Where the law comes from, and its errors.
+    pub trust: Trust,
+}
+
+/// The path of a press and a shear to full slip.
+fn to_slip(h: f64) -> Vec<Segment> {
+    vec![Segment::Indentation { indentation: h }, Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation }]
+}
+
+/// A place on the law's path as a row of a history, so that law and simulation are reduced to
+/// numbers by the same rules.
+fn record(point: &PathPoint) -> StepRecord {
+    let PathPoint { segment, h, delta_t, f_n, f_t } = *point;
+    StepRecord { segment, h, delta_t, f_n, f_t, ..StepRecord::default() }
+}
+
+impl Curves {
+    /// Follows the paths with parameters that belong to the case.
+    ///
+    /// # Errors
+    /// What the law says of the case.
+    pub fn new(law: &LawFile, case: Case, parameters: &ContactParameters) -> Result<Self, LawError> {
+        let Friction::Coefficient(friction) = case.contact.friction else {
+            return Err(LawError::NotCovered {
+                problem: "friction is \"stick\", and the law describes slip",
+                remedy: "Give a number, or simulate the case",
+            });
+        };
+        let (h, centres) = (case.greatest_indentation(), Centres::of(&case));
+        let along =
+            |path: &[Segment]| -> Vec<StepRecord> { follow_centres(parameters, centres, path).iter().map(record).collect() };
+        let shear = along(&to_slip(h));
+        let cycle = along(&cycle_of(&case, h));
+        let a = parameters.update(&ContactState::default(), h, [0.0; 2]).1.a;
+        // Of the path that is followed here, not of the case's.
+        let inputs = SummaryInputs { oblique: Vec::new(), ..SummaryInputs::of(&case) };
+        let summary = Summary::from_history(&shear, &inputs);
+        let f_n0 = summary.f_n0.unwrap_or(0.0);
+        let body = Body::from_case(&case)?;
+        let variables = body.variables(h / case.bodies(), a, f_n0);
+        let first = yield_lambda(case.material.poissons_ratio);
+        Ok(Self {
+            h,
+            friction,
+            elastic: equivalent(&case),
+            first_yield: first_yield(&case)?,
+            a,
+            k_t: parameters.virgin(h).point.k_t,
+            lambda: variables.lambda,
+            yield_lambda: first,
+            hardness: variables.hardness,
+            out_of_range: law.out_of_range(&case, h)?,
+            trust: Trust::of(law, &case, [variables.lambda, first], friction)?,
+            shear,
+            cycle,
+            summary,
+            case,
+        })
+    }
+
+    /// The part of the shear's path that presses.
+    pub fn press(&self) -> &[StepRecord] {
+        let end = self.shear.iter().take_while(|record| record.segment == 0).count();
+        &self.shear[..end]
+    }
+
+    /// The part that shears.
+    pub fn slip(&self) -> &[StepRecord] {
+        &self.shear[self.press().len()..]
+    }
+
+    /// Cattaneo and Mindlin's contact at the indentation.
+    pub fn mindlin(&self) -> CattaneoMindlin {
+        CattaneoMindlin::at_indentation(self.elastic, self.friction, self.h)
+    }
+
+    /// F_N at first yield, by Hertz.
+    pub fn yield_force(&self) -> Option<f64> {
+        self.first_yield.map(|h| hertz::force(&self.elastic, h))
+    }
+
+    /// Whether anything has yielded.
+    pub fn yields(&self) -> bool {
+        self.first_yield.is_some_and(|first| self.h > first)
+    }
+
+    /// Whether the contact is elastic, elastic-plastic or fully plastic (Johnson's levels).
+    pub fn regime(&self) -> &'static str {
+        match self.lambda {
+            _ if !self.yields() => "elastic: nothing has yielded (Johnson's level I)",
+            lambda if lambda <= LAMBDA_BOUNDS[1] => "elastic-plastic: between first yield and Λ = 160 (Johnson's level II)",
+            _ => "fully plastic: Λ above 160 (Johnson's level III)",
+        }
+    }
+}
+
+/// The cycle: the case's own path, if a law can follow it and it goes back somewhere; else to full
+/// slip and back.
+fn cycle_of(case: &Case, h: f64) -> Vec<Segment> {
+    let along_x = case.moves_along_x() && !case.path.iter().any(|segment| matches!(segment, Segment::Slip { .. }));
+    if along_x && case.path.len() > 2 {
+        return case.path.clone();
+    }
+    let back = Segment::Shear { shear: ShearTarget::Displacement(0.0), hold: Hold::Indentation };
+    to_slip(h).into_iter().chain([back, Segment::Release { share: 0.0 }]).collect()
+}

@@ -1,0 +1,81 @@
+//! The numbers beside the curves: of the law, of closed forms, of a simulation.
+
+use serde_json::{Value, json};
+
+use super::curves::Curves;
+use crate::analytical::hertz;
+use crate::case::Case;
+use crate::output::plots::style::tick;
+use crate::output::{SLIP_DISPLACEMENT_RATIO, Summary, SummaryInputs};
+
+/// What a number is a multiple of, for its unit.
+#[derive(Clone, Copy)]
+enum Kind {
+    Length,
+    Force,
+    Stiffness,
+    Plain,
+}
+
+/// The unit of a number in the words of the case.
+fn unit(case: &Case, kind: Kind) -> String {
+    let name = |label: &Option<String>| label.clone().unwrap_or_default();
+    let (length, force) = (name(&case.units.length), name(&case.units.force));
+    match kind {
+        Kind::Length => length,
+        Kind::Force => force,
+        Kind::Stiffness if length.is_empty() || force.is_empty() => String::new(),
+        Kind::Stiffness => format!("{force}/{length}"),
+        Kind::Plain => String::new(),
+    }
+}
+
+/// The rows of the table: what it is, its symbol, its unit, and the numbers, empty where there is
+/// none. `simulation` is what a simulation of the same contact has.
+pub fn rows(curves: &Curves, simulation: Option<&Summary>) -> Vec<Value> {
+    let (law, mindlin) = (&curves.summary, curves.mindlin());
+    let of = |number: fn(&Summary) -> Option<f64>| [number(law), simulation.and_then(number)];
+    let row = |words: &str, symbol: &str, kind: Kind, [law, run]: [Option<f64>; 2], closed: Option<f64>| {
+        let told = |number: Option<f64>| number.filter(|number| number.is_finite()).map_or_else(String::new, tick);
+        json!({
+            "words": words, "symbol": symbol, "unit": unit(&curves.case, kind),
+            "law": told(law), "closed": told(closed), "simulation": told(run),
+        })
+    };
+    let limit = mindlin.friction * mindlin.normal_force;
+    // Where Mindlin's curve reaches the same share of its limit.
+    let to_share = mindlin.slip_displacement() * (1.0 - (1.0 - SLIP_DISPLACEMENT_RATIO).powf(2.0 / 3.0));
+    let ratio = |summary: &Summary| Some(summary.f_n_slip? / summary.f_n0?);
+    vec![
+        row("indentation", "h", Kind::Length, [Some(curves.h), None], None),
+        row("indentation at first yield", "h_Y", Kind::Length, [None; 2], curves.first_yield),
+        row("normal force at first yield", "F_Y", Kind::Force, [None; 2], curves.yield_force()),
+        row("Johnson's parameter", "Λ", Kind::Plain, [Some(curves.lambda), None], None),
+        row("Johnson's parameter at first yield", "Λ_Y", Kind::Plain, [None; 2], curves.first_yield.map(|_| curves.yield_lambda)),
+        row("normalised hardness", "H", Kind::Plain, [Some(curves.hardness), None], None),
+        row("normal force before the shear", "F_N0", Kind::Force, of(|s| s.f_n0), Some(hertz::force(&curves.elastic, curves.h))),
+        row(
+            "contact radius there",
+            "a_0",
+            Kind::Length,
+            [Some(curves.a), simulation.and_then(|s| s.a0)],
+            Some(hertz::contact_radius(&curves.elastic, curves.h)),
+        ),
+        row("normal force at full slip", "F_N,slip", Kind::Force, of(|s| s.f_n_slip), Some(mindlin.normal_force)),
+        row("what is left of it", "F_N,slip/F_N0", Kind::Plain, of(ratio), Some(1.0)),
+        row("greatest tangential force", "F_T,max", Kind::Force, of(|s| s.f_t_max), Some(limit)),
+        row("displacement to F_T = 0.99 μ F_N", "δ_T,slip", Kind::Length, of(|s| s.delta_t_slip), Some(to_share)),
+        row(
+            "stiffness of a shear without slip",
+            "k_T",
+            Kind::Stiffness,
+            [Some(curves.k_t), None],
+            Some(mindlin.initial_stiffness()),
+        ),
+    ]
+}
+
+/// The summary of a simulation that may still run.
+pub fn summary_of(run: &super::simulate::Run) -> Summary {
+    run.summary.clone().unwrap_or_else(|| Summary::from_history(&run.history, &SummaryInputs::of(&run.case)))
+}

@@ -1,0 +1,262 @@
+//! What a browser asks for: one request is read, up to limits, and held against the rules of who
+//! may ask.
+//!
+//! The server is on the loopback address, where every page that the user has open may send requests
+//! to it. So a request has to know the token of the address, has to call the server by its own name
+//! (or a name that somebody else has pointed at 127.0.0.1 would do), and must not come from a page
+//! of another origin.
+
+use std::io::Read;
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use super::answer::{Answer, Status};
+
+/// Longest head of a request, bytes; browsers send some 700 without the query.
+const LONGEST_HEAD: usize = 12 * 1024;
+/// Longest query, bytes.
+pub const LONGEST_QUERY: usize = 4096;
+/// Most headers.
+const MOST_HEADERS: usize = 64;
+/// A request has to be there within this time, however slowly it is sent.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// How a request is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Asks, and changes nothing.
+    Get,
+    /// The same without the body of the answer.
+    Head,
+    /// Starts or ends something.
+    Post,
+}
+
+/// A request that may be answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// How it is meant.
+    pub method: Method,
+    /// The path below the token, without a slash at the start: empty for the page itself.
+    pub path: String,
+    /// What stands after the question mark, as it came.
+    pub query: String,
+}
+
+/// Who may ask.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Gate {
+    token: String,
+    port: u16,
+}
+
+impl Gate {
+    /// For a server on this port of the loopback address.
+    pub fn new(token: String, port: u16) -> Self {
+        Self { token, port }
+    }
+
+    /// The address that opens the page.
+    pub fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/{}/", self.port, self.token)
+    }
+
+    /// The names by which the server may be called.
+    fn names(&self) -> [String; 2] {
+        ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port))
+    }
+
+    /// Reads a request from a connection and judges it; `None` where nobody asks anything.
+    pub fn receive(&self, stream: &mut TcpStream) -> Option<Result<Request, Answer>> {
+        match read_head(stream) {
+            Head::Nothing => None,
+            Head::TooSlow => Some(Err(refused(Status::Timeout, "the request was not complete after 5 seconds"))),
+            Head::TooLong => Some(Err(refused(Status::HeadTooLong, "the head of the request is longer than 12 KiB"))),
+            Head::Whole(bytes) => Some(self.judge(&bytes)),
+        }
+    }
+
+    /// A request from its head, or why it is not answered.
+    ///
+    /// # Errors
+    /// The answer that says what is wrong.
+    pub fn judge(&self, head: &[u8]) -> Result<Request, Answer> {
+        let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
+        let mut parsed = httparse::Request::new(&mut headers);
+        match parsed.parse(head) {
+            Ok(httparse::Status::Complete(_)) => {}
+            Ok(httparse::Status::Partial) => return Err(refused(Status::Bad, "the request ends in its head")),
+            Err(error) => return Err(refused(Status::Bad, &format!("this is no HTTP request: {error}"))),
+        }
+        let header = |name: &str| -> Result<Option<&str>, Answer> {
+            let mut found = parsed.headers.iter().filter(|header| header.name.eq_ignore_ascii_case(name));
+            let Some(first) = found.next() else { return Ok(None) };
+            let text = std::str::from_utf8(first.value).ok().filter(|_| found.next().is_none());
+            text.map(Some).ok_or_else(|| refused(Status::Bad, &format!("the header {name} is no text, or is there twice")))
+        };
+        if !header("host")?.is_some_and(|host| self.names().iter().any(|name| name.eq_ignore_ascii_case(host))) {
+            return Err(refused(
+                Status::Misdirected,
+                "this server is called 127.0.0.1 or localhost, with its port, and by no other name",
+            ));
+        }
+        let origin = header("origin")?;
+        if origin.is_some_and(|origin| !self.names().iter().any(|name| origin == format!("http://{name}"))) {
+            return Err(refused(Status::Forbidden, "the request comes from a page of another origin"));
+        }
+        let method = match parsed.method {
+            Some("GET") => Method::Get,
+            Some("HEAD") => Method::Head,
+            Some("POST") if origin.is_none() => {
+                return Err(refused(Status::Forbidden, "a POST has to say from which page it comes"));
+            }
+            Some("POST") => Method::Post,
+            _ => return Err(refused(Status::Method, "GET, HEAD and POST are answered, nothing else")),
+        };
+        let has_body =
+            header("content-length")?.is_some_and(|length| length.trim() != "0") || header("transfer-encoding")?.is_some();
+        if has_body {
+            return Err(refused(Status::TooLarge, "requests have no body here"));
+        }
+        self.place(method, parsed.path.unwrap_or_default(), header("sec-fetch-site")?, header("sec-fetch-mode")?)
+    }
+
+    /// Holds the path against the token.
+    fn place(&self, method: Method, target: &str, site: Option<&str>, mode: Option<&str>) -> Result<Request, Answer> {
+        let (path, query) = target.split_once('?').unwrap_or((target, ""));
+        if query.len() > LONGEST_QUERY || path.len() > LONGEST_QUERY {
+            return Err(refused(Status::QueryTooLong, "the query is longer than 4096 bytes"));
+        }
+        let (token, rest) = path.strip_prefix('/').unwrap_or(path).split_once('/').unwrap_or((path, ""));
+        if !same(token.as_bytes(), self.token.as_bytes()) {
+            return Err(refused(
+                Status::Forbidden,
+                "the address has not the token of this server; open the one that `asperity explore` printed",
+            ));
+        }
+        // A picture or a script on a page of somebody else's; a link there may be followed.
+        if site == Some("cross-site") && mode != Some("navigate") {
+            return Err(refused(Status::Forbidden, "the request comes from a page of another site"));
+        }
+        Ok(Request { method, path: rest.to_owned(), query: query.to_owned() })
+    }
+}
+
+fn refused(status: Status, why: &str) -> Answer {
+    Answer::plain(status, &format!("asperity explore: {why}.\n"))
+}
+
+/// Whether two words are the same, in a time that tells nothing of where they differ.
+fn same(one: &[u8], other: &[u8]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
+}
+
+/// What came over a connection.
+enum Head {
+    Nothing,
+    TooSlow,
+    TooLong,
+    Whole(Vec<u8>),
+}
+
+fn read_head(stream: &mut TcpStream) -> Head {
+    let begun = Instant::now();
+    let mut head = Vec::new();
+    let mut part = [0u8; 2048];
+    loop {
+        let left = PATIENCE.saturating_sub(begun.elapsed());
+        if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
+            return if head.is_empty() { Head::Nothing } else { Head::TooSlow };
+        }
+        match stream.read(&mut part) {
+            Ok(0) => return Head::Nothing,
+            Ok(count) => head.extend_from_slice(&part[..count]),
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
+            Err(_) => return if head.is_empty() { Head::Nothing } else { Head::TooSlow },
+        }
+        if head.windows(4).any(|end| end == b"\r\n\r\n") {
+            return Head::Whole(head);
+        }
+        if head.len() > LONGEST_HEAD {
+            return Head::TooLong;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOKEN: &str = "0123456789abcdef0123456789abcdef";
+
+    fn judged(text: &str) -> Result<Request, u16> {
+        let head = text.replace('\n', "\r\n") + "\r\n\r\n";
+        Gate::new(TOKEN.to_owned(), 8123).judge(head.as_bytes()).map_err(|answer| answer.status.code())
+    }
+
+    fn get(path: &str, more: &str) -> Result<Request, u16> {
+        judged(&format!("GET {path} HTTP/1.1\nHost: 127.0.0.1:8123{more}"))
+    }
+
+    #[test]
+    fn who_has_the_address_is_answered() {
+        let request = get(&format!("/{TOKEN}/curves?E=1&nu=0.3"), "").unwrap();
+        assert_eq!((request.method, request.path.as_str(), request.query.as_str()), (Method::Get, "curves", "E=1&nu=0.3"));
+        assert_eq!(get(&format!("/{TOKEN}/"), "").unwrap().path, "");
+        assert!(judged(&format!("GET /{TOKEN}/ HTTP/1.1\nHost: localhost:8123")).is_ok());
+    }
+
+    #[test]
+    fn another_token_is_refused() {
+        for path in ["/", "/curves", "/0123456789abcdef0123456789abcdeg/", "/0123456789abcdef/", &format!("//{TOKEN}/"), TOKEN] {
+            assert_eq!(get(path, ""), Err(403), "{path}");
+        }
+        // Case matters, and so does what stands before the token.
+        assert_eq!(get(&format!("/{}/", TOKEN.to_uppercase()), ""), Err(403));
+        assert_eq!(get(&format!("http://127.0.0.1:8123/{TOKEN}/"), ""), Err(403));
+    }
+
+    #[test]
+    fn a_name_that_was_pointed_at_the_loopback_address_is_refused() {
+        for host in ["evil.example:8123", "evil.example", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:8123.evil.example", ""] {
+            assert_eq!(judged(&format!("GET /{TOKEN}/ HTTP/1.1\nHost: {host}")), Err(421), "{host}");
+        }
+        assert_eq!(judged(&format!("GET /{TOKEN}/ HTTP/1.1\nAccept: */*")), Err(421));
+        assert_eq!(get(&format!("/{TOKEN}/"), "\nHost: evil.example"), Err(400));
+    }
+
+    #[test]
+    fn a_foreign_origin_is_refused() {
+        let path = format!("/{TOKEN}/curves");
+        for origin in ["http://evil.example", "https://127.0.0.1:8123", "http://127.0.0.1:8124", "null", "http://127.0.0.1:8123/"]
+        {
+            assert_eq!(get(&path, &format!("\nOrigin: {origin}")), Err(403), "{origin}");
+        }
+        for origin in ["http://127.0.0.1:8123", "http://localhost:8123"] {
+            assert!(get(&path, &format!("\nOrigin: {origin}")).is_ok());
+        }
+        assert_eq!(get(&path, "\nSec-Fetch-Site: cross-site\nSec-Fetch-Mode: no-cors"), Err(403));
+        assert!(get(&path, "\nSec-Fetch-Site: cross-site\nSec-Fetch-Mode: navigate").is_ok());
+    }
+
+    #[test]
+    fn only_the_page_itself_starts_something() {
+        let post = |more: &str| judged(&format!("POST /{TOKEN}/simulate HTTP/1.1\nHost: 127.0.0.1:8123{more}"));
+        assert_eq!(post(""), Err(403));
+        assert_eq!(post("\nOrigin: http://evil.example"), Err(403));
+        assert_eq!(post("\nOrigin: http://127.0.0.1:8123\nContent-Length: 0").unwrap().method, Method::Post);
+        assert_eq!(post("\nOrigin: http://127.0.0.1:8123\nContent-Length: 5"), Err(413));
+        assert_eq!(post("\nOrigin: http://127.0.0.1:8123\nTransfer-Encoding: chunked"), Err(413));
+    }
+
+    #[test]
+    fn what_is_too_long_or_no_request_is_refused() {
+        let path = format!("/{TOKEN}/curves?{}", "a".repeat(LONGEST_QUERY + 1));
+        assert_eq!(get(&path, ""), Err(414));
+        assert_eq!(get(&format!("/{TOKEN}/"), &"\nA: b".repeat(100)), Err(400));
+        assert_eq!(judged("PUT / HTTP/1.1\nHost: 127.0.0.1:8123"), Err(405));
+        for wrong in ["", "GET", "GET / HTTP/9.9", "\0\0\0", "GET / HTTP/1.1\nHost : x"] {
+            assert_eq!(judged(wrong), Err(400), "{wrong:?}");
+        }
+    }
+}
