@@ -22,7 +22,7 @@ begin() {
 }
 
 # A Vulkan driver that runs on the CPU, for the GPU tests, spirv-val, strace, which kills at chosen
-# system calls, and what compiles and runs the exported laws. Only where apt-get is there and
+# system calls, what compiles and runs the exported laws, and a browser. Only where apt-get is there and
 # something is missing.
 install_packages() {
     local package missing=()
@@ -30,7 +30,7 @@ install_packages() {
     command -v gcc >/dev/null || missing+=(gcc)
     command -v g++ >/dev/null || missing+=(g++)
     command -v python3 >/dev/null || missing+=(python3 python3-venv)
-    for package in libvulkan1 mesa-vulkan-drivers spirv-tools strace; do
+    for package in libvulkan1 mesa-vulkan-drivers spirv-tools strace chromium; do
         dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
     done
     [ "${#missing[@]}" -gt 0 ] || return 0
@@ -84,6 +84,10 @@ done
 begin "cargo doc"
 RUSTDOCFLAGS="-Dwarnings" cargo doc --no-deps
 
+# The program without the page, which shares what was compiled for it.
+begin "cargo clippy --no-default-features --features cli"
+cargo clippy --quiet --no-default-features --features cli --lib --bins -- -D warnings
+
 # A library on the CPU alone runs a case, and says what it was built without.
 begin "cargo test --no-default-features --lib session"
 cargo test --quiet --no-default-features --lib session
@@ -126,6 +130,12 @@ begin "lammps"
 code=0
 ASPERITY_PROGRAM="$PWD/target/debug/asperity" timeout 600 bash integrations/lammps/run.sh || code=$?
 [ "$code" -eq 0 ] || { [ "$code" -eq 77 ] && [ "${ASPERITY_REQUIRE_LAMMPS:-}" != 1 ]; }
+
+# The page of `asperity explore` in a browser. ASPERITY_REQUIRE_CHROMIUM=1 makes a skip a failure.
+begin "explore"
+code=0
+bash tests/explore/run.sh target/debug/asperity || code=$?
+[ "$code" -eq 0 ] || { [ "$code" -eq 77 ] && [ "${ASPERITY_REQUIRE_CHROMIUM:-}" != 1 ]; }
 
 # Every test target runs, whatever failed before it: one run tells all.
 begin "cargo test"

@@ -46,6 +46,12 @@ impl CattaneoMindlin {
         size.copysign(displacement)
     }
 
+    /// The displacement at which [`force`](Self::force) has come to a share of mu F_N on first
+    /// loading, d_s [1 - (1 - share)^(2/3)]; 0 to 1.
+    pub fn displacement(&self, share: f64) -> f64 {
+        self.slip_displacement() * (1.0 - (1.0 - share.clamp(0.0, 1.0)).powf(2.0 / 3.0))
+    }
+
     /// Shear forward to `turning` > 0 and then back: F = F_1 - 2 mu F_N {1 - [1 - (d_1 - d)/(2
     /// d_s)]^1.5} until -d_1, where first loading in the other direction goes on (Mindlin &
     /// Deresiewicz 1953). A turning point beyond d_s counts as d_s from the point of return.
@@ -92,6 +98,15 @@ pub fn initial_stiffness(sphere: &ElasticSphere, a: f64) -> f64 {
 mod tests {
     use super::*;
     use std::f64::consts::PI;
+
+    #[test]
+    fn displacement_is_the_inverse_of_force() {
+        let contact = contact();
+        for share in [0.0, 0.3, 0.99, 1.0] {
+            let force = contact.force(contact.displacement(share));
+            assert!((force - share * contact.friction * contact.normal_force).abs() < 1e-12 * contact.normal_force);
+        }
+    }
 
     fn contact() -> CattaneoMindlin {
         let sphere = ElasticSphere { radius: 1.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };

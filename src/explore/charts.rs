@@ -116,10 +116,12 @@ impl Page<'_> {
     fn law_curve(&self, errors: [f64; 2], what: &str) -> Curve {
         let (trust, outside) = (&self.curves.trust, &self.curves.out_of_range);
         let list: Vec<String> = outside.iter().map(ToString::to_string).collect();
-        let far = if list.is_empty() {
-            format!("{what}: {}, of {}; the band is twice the rms", percent(errors), trust.over)
+        let far = if list.is_empty() && !trust.is_known {
+            "How far it is off is not known: compare it with a simulation".to_owned()
+        } else if list.is_empty() {
+            format!("{what} is off by {}, over {}. The band is twice the rms", percent(errors), trust.over)
         } else {
-            format!("outside of what the law was made from ({}): compare it with a simulation", list.join(", "))
+            format!("Outside of what the law was made from ({}): compare it with a simulation", list.join(", "))
         };
         Curve { name: "law", source: trust.source.clone(), trust: far }
     }
@@ -127,10 +129,10 @@ impl Page<'_> {
     fn closed_form(&self, name: &'static str, whose: &str) -> Curve {
         let yields = self.curves.first_yield.filter(|first| *first < self.curves.h);
         let trust = match yields {
-            Some(first) => format!("of an elastic contact; this one yields from h = {} on", tick(first)),
-            None => "exact for a small elastic contact, 1 % off in the force at a/R = 0.1".to_owned(),
+            Some(first) => format!("This contact yields from h = {} on, and is elastic no more", tick(first)),
+            None => "Exact for a small elastic contact, 1 % off in the force at a/R = 0.1".to_owned(),
         };
-        Curve { name, source: format!("closed form, {whose}"), trust }
+        Curve { name, source: format!("closed form of an elastic contact ({whose})"), trust }
     }
 
     /// A simulation of this contact along this path, or along one that begins with the same press.
@@ -139,7 +141,7 @@ impl Page<'_> {
         let mesh = run.case.mesh.elements_per_contact_radius;
         let error = run.summary.as_ref().and_then(|summary| Some(summary.f_n0_error? / summary.f_n0?));
         let error = error.map_or_else(
-            || "its error is estimated when it has ended".to_owned(),
+            || "Its error is estimated when it has ended".to_owned(),
             |error| format!("F_N0 within {:.1} % by its own estimate", 100.0 * error),
         );
         let source = format!("finite elements, {mesh} along the contact radius ({})", run.stage.word());
@@ -151,7 +153,7 @@ impl Page<'_> {
         let curve = Curve {
             name: "study",
             source: format!("finite elements, case {id} of the study"),
-            trust: "as accurate as the study's mesh".to_owned(),
+            trust: "As accurate as the mesh of the study".to_owned(),
         };
         Some((rows, curve))
     }
@@ -199,7 +201,8 @@ impl Page<'_> {
         if !others.is_empty() {
             series.push(Series::marks("study", PURPLE, Mark::Square, others));
             if !curves.iter().any(|curve| curve.name == "study") {
-                let (source, trust) = ("finite elements, cases of the study of this contact", "as accurate as the study's mesh");
+                let (source, trust) =
+                    ("finite elements, cases of the study of this contact", "As accurate as the mesh of the study");
                 curves.push(Curve { name: "study", source: source.to_owned(), trust: trust.to_owned() });
             }
         }
@@ -207,8 +210,8 @@ impl Page<'_> {
         if let Some(first) = c.first_yield.filter(|first| *first <= c.h) {
             let x = scales.x.factor * first;
             series.push(Series::dashed("first yield", ORANGE, 5.0, vec![(x, 0.0), (x, top)]));
-            let source = "closed form: Hertz's contact, Mises' yield criterion".to_owned();
-            curves.push(Curve { name: "first yield", source, trust: "exact for a small contact without friction".to_owned() });
+            let source = "closed form (Hertz's contact, Mises' criterion)".to_owned();
+            curves.push(Curve { name: "first yield", source, trust: "Exact for a small contact without friction".to_owned() });
         }
         let chart = Chart {
             title: "Normal force of a press".into(),
@@ -235,19 +238,20 @@ impl Page<'_> {
         let mindlin = c.mindlin();
         let closed = (0..=POINTS).map(|i| end * (i as f64 / POINTS as f64).powi(2)).map(|d| scales.at(d, mindlin.force(d)));
         let error = BAND * c.trust.tangential[0] * peak;
-        // Where it sets out there is none.
-        let begins = |row: &StepRecord| error * (row.f_t / peak.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0).sqrt();
+        // Where the shear sets out the force is none, and no error is more than it.
+        let begins = |row: &StepRecord| error.min(row.f_t);
         let mut series = self.law(&scales, rows, [|row| row.delta_t, |row| row.f_t], begins);
         series.push(Series::dashed("Mindlin", GREY, 3.0, closed.collect()));
         let mut curves = vec![
             self.law_curve(c.trust.tangential, "F_T, of its peak"),
-            self.closed_form("Mindlin", "Cattaneo 1938 and Mindlin 1949, at the same h"),
+            self.closed_form("Mindlin", "Cattaneo 1938, Mindlin 1949, at the same h"),
         ];
         let (marks, of) = self.marks(&scales, [|row| row.delta_t, |row| row.f_t], first_shear);
         series.extend(marks);
         curves.extend(of);
         let words = format!(
-            "Tangential force over the displacement at constant indentation. The law's peak is {}; Mindlin's elastic contact slips at {}.",
+            "Tangential force over the displacement at constant indentation. The law's peak is {}; Mindlin's elastic contact \
+             slips at {}.",
             tick(peak),
             tick(mindlin.friction * mindlin.normal_force)
         );
@@ -267,7 +271,7 @@ impl Page<'_> {
         series.push(Series::dashed("Hertz", GREY, 3.0, vec![scales.at(0.0, elastic), scales.at(end, elastic)]));
         let mut curves = vec![
             self.law_curve(c.trust.normal, "F_N, of F_N0"),
-            self.closed_form("Hertz", "Hertz 1882: an elastic contact keeps its F_N"),
+            self.closed_form("Hertz", &format!("Hertz 1882: it keeps its F_N, {}", tick(elastic))),
         ];
         let (marks, of) = self.marks(&scales, [|row| row.delta_t, |row| row.f_n], first_shear);
         series.extend(marks);
@@ -312,7 +316,7 @@ impl Page<'_> {
         let update = Curve {
             name: "law",
             source: "the update that an engine calls, driven along the path".to_owned(),
-            trust: "beyond a first shear no error is known for each contact; docs/laws.md has those of random paths".to_owned(),
+            trust: "Of a whole cycle no error is known for each contact; docs/laws.md has those of random paths".to_owned(),
         };
         let mut curves = vec![update];
         let simulated = self.simulated().filter(|_| self.over.run.is_some_and(|run| run.case.path == self.curves.case.path));

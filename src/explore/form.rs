@@ -23,7 +23,8 @@ const PLAIN: [&str; 12] = [
     "displacement",
     "elements",
     "axes",
-    // No field of the page, but how wide its pictures are, and which step of a simulation is asked for.
+    // No field of the page, but how wide its pictures are, and which step of a simulation is asked
+    // for.
     "width",
     "frame",
 ];
@@ -468,7 +469,9 @@ mod tests {
 
     #[test]
     fn fields_are_what_they_say() {
-        let made = case("radius=2&youngs_modulus=70e3&poissons_ratio=0.2&law=power&yield_stress=100&coefficient=300&exponent=0.5&friction=0.1&indentation=0.03&path=cycle&displacement=0.01&opponent=equal").unwrap();
+        let material = "youngs_modulus=70e3&poissons_ratio=0.2&law=power&yield_stress=100&coefficient=300&exponent=0.5";
+        let contact = "radius=2&friction=0.1&indentation=0.03&path=cycle&displacement=0.01&opponent=equal";
+        let made = case(&format!("{material}&{contact}")).unwrap();
         assert_eq!((made.sphere.radius, made.material.youngs_modulus, made.material.poissons_ratio), (2.0, 70e3, 0.2));
         assert_eq!(made.material.hardening, Hardening::Power { yield_stress: 100.0, coefficient: 300.0, exponent: 0.5 });
         assert_eq!(

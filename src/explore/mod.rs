@@ -33,7 +33,7 @@ use self::curves::Curves;
 use self::form::Form;
 use self::request::{Method, Request};
 use self::results::same_contact;
-use self::simulate::{Run, Simulator};
+use self::simulate::{Run, Simulator, Stage};
 use crate::case::Case;
 use crate::contact_law::ContactParameters;
 use crate::law::{LawError, LawFile};
@@ -153,7 +153,8 @@ impl Explorer {
         let study = self.study.of_contact(case);
         let of_depth = self.study.of_depth(case).map(|one| (one.id.clone(), one.history()));
         let drawn = charts::drawings(&curves, &Overlay { run: shown, study, of_depth }, &view)?;
-        let summary = shown.map(numbers::summary_of);
+        // What a part of a path has would be taken for the whole.
+        let summary = shown.filter(|run| run.stage == Stage::Done).and_then(|run| run.summary.as_ref());
         let warnings: Vec<String> = curves.out_of_range.iter().map(ToString::to_string).collect();
         Ok(json!({
             "mistakes": [],
@@ -161,7 +162,7 @@ impl Explorer {
             "warnings": warnings,
             "regime": curves.regime(),
             "drawings": drawn.iter().map(charts::Drawing::json).collect::<Vec<_>>(),
-            "numbers": numbers::rows(&curves, summary.as_ref()),
+            "numbers": numbers::rows(&curves, summary),
             "simulated": shown.is_some(),
             "other": run.is_some() && shown.is_none(),
         }))

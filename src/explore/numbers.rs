@@ -6,7 +6,7 @@ use super::curves::Curves;
 use crate::analytical::hertz;
 use crate::case::Case;
 use crate::output::plots::style::tick;
-use crate::output::{SLIP_DISPLACEMENT_RATIO, Summary, SummaryInputs};
+use crate::output::{SLIP_DISPLACEMENT_RATIO, Summary};
 
 /// What a number is a multiple of, for its unit.
 #[derive(Clone, Copy)]
@@ -43,8 +43,7 @@ pub fn rows(curves: &Curves, simulation: Option<&Summary>) -> Vec<Value> {
         })
     };
     let limit = mindlin.friction * mindlin.normal_force;
-    // Where Mindlin's curve reaches the same share of its limit.
-    let to_share = mindlin.slip_displacement() * (1.0 - (1.0 - SLIP_DISPLACEMENT_RATIO).powf(2.0 / 3.0));
+    let to_share = mindlin.displacement(SLIP_DISPLACEMENT_RATIO);
     let ratio = |summary: &Summary| Some(summary.f_n_slip? / summary.f_n0?);
     vec![
         row("indentation", "h", Kind::Length, [Some(curves.h), None], None),
@@ -53,7 +52,7 @@ pub fn rows(curves: &Curves, simulation: Option<&Summary>) -> Vec<Value> {
         row("Johnson's parameter", "Λ", Kind::Plain, [Some(curves.lambda), None], None),
         row("Johnson's parameter at first yield", "Λ_Y", Kind::Plain, [None; 2], curves.first_yield.map(|_| curves.yield_lambda)),
         row("normalised hardness", "H", Kind::Plain, [Some(curves.hardness), None], None),
-        row("normal force before the shear", "F_N0", Kind::Force, of(|s| s.f_n0), Some(hertz::force(&curves.elastic, curves.h))),
+        row("normal force before the shear", "F_N0", Kind::Force, of(|s| s.f_n0), Some(mindlin.normal_force)),
         row(
             "contact radius there",
             "a_0",
@@ -73,9 +72,4 @@ pub fn rows(curves: &Curves, simulation: Option<&Summary>) -> Vec<Value> {
             Some(mindlin.initial_stiffness()),
         ),
     ]
-}
-
-/// The summary of a simulation that may still run.
-pub fn summary_of(run: &super::simulate::Run) -> Summary {
-    run.summary.clone().unwrap_or_else(|| Summary::from_history(&run.history, &SummaryInputs::of(&run.case)))
 }

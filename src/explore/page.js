@@ -1,5 +1,5 @@
-// The page asks the server for everything: it draws nothing and computes no force. What is here moves values between fields, sliders
-// and the address, and puts answers in their places.
+// The page asks the server for everything: it draws nothing and computes no force. What is here
+// moves values between fields, sliders and the address, and puts answers in their places.
 "use strict";
 
 const byId = (id) => document.getElementById(id);
@@ -9,23 +9,26 @@ const STEPS = 1000;
 const POLL = 300;
 const PLAY = 350;
 
-// A field is asked about only where it is shown: not those of another hardening law, nor of a body that is not there.
+// A field is asked about only where it is shown: not those of another hardening law, nor of a body
+// that is not there.
 const isShown = (field) => !field.closest("[hidden]");
 const named = () => [...form.querySelectorAll("[name]")].filter(isShown);
 const valueOf = (name) => {
   const field = named().find((one) => one.name === name);
   return field ? field.value : "";
 };
+// Not by form.elements, which a field of that name stands before.
+const chosen = (name) => form.querySelector(`[name="${name}"]`).value;
 
 // What depends on another field is shown or hidden.
 function reveal() {
   // From the outside in: what is in a hidden part stays hidden.
   for (const part of form.querySelectorAll("[data-show]")) {
     const [name, words] = part.dataset.show.split("=");
-    part.hidden = !words.split(",").includes(form.elements.namedItem(name).value);
+    part.hidden = !words.split(",").includes(chosen(name));
   }
   for (const part of form.querySelectorAll("[data-law]")) {
-    part.hidden = form.elements.namedItem(part.dataset.of).value !== part.dataset.law;
+    part.hidden = chosen(part.dataset.of) !== part.dataset.law;
   }
   const fixed = valueOf("path") === "case";
   const depth = byId("f-indentation");
@@ -56,7 +59,8 @@ function short(value) {
 function place(slider) {
   const [from, to] = ends(slider);
   const value = Number(fieldOf(slider).value);
-  const share = slider.dataset.scale === "log" ? Math.log(value / from) / Math.log(to / from) : (value - from) / (to - from);
+  const share =
+    slider.dataset.scale === "log" ? Math.log(value / from) / Math.log(to / from) : (value - from) / (to - from);
   if (Number.isFinite(share)) slider.value = String(Math.round(STEPS * Math.min(1, Math.max(0, share))));
   slider.setAttribute("aria-valuetext", fieldOf(slider).value);
 }
@@ -88,7 +92,12 @@ async function update() {
   const drawings = byId("drawings");
   drawings.setAttribute("aria-busy", "true");
   try {
-    const width = Math.round(Math.min(620, Math.max(320, drawings.clientWidth > 850 ? drawings.clientWidth / 2 - 30 : drawings.clientWidth - 16)));
+    const width = Math.round(
+      Math.min(
+        620,
+        Math.max(320, drawings.clientWidth > 850 ? drawings.clientWidth / 2 - 30 : drawings.clientWidth - 16),
+      ),
+    );
     const answer = await fetch(`curves?${asked}&width=${width}`);
     if (answer.ok) show(await answer.json(), asked);
     else complain([await answer.text()]);
@@ -144,7 +153,9 @@ function show(answer, asked) {
     return;
   }
   byId("regime").textContent = answer.regime;
-  const warnings = answer.warnings.map((text) => `Outside of what the law was made from: ${text}. Compare with a simulation.`);
+  const warnings = answer.warnings.map(
+    (text) => `Outside of what the law was made from: ${text}. Compare with a simulation.`,
+  );
   list(byId("warnings"), warnings.concat(answer.doubts));
   byId("drawings").replaceChildren(...answer.drawings.map(figure));
   numbers(answer.numbers);
@@ -155,11 +166,13 @@ function show(answer, asked) {
 
 function list(where, lines) {
   where.hidden = lines.length === 0;
-  where.replaceChildren(...lines.map((line) => {
-    const item = document.createElement("li");
-    item.textContent = line;
-    return item;
-  }));
+  where.replaceChildren(
+    ...lines.map((line) => {
+      const item = document.createElement("li");
+      item.textContent = line;
+      return item;
+    }),
+  );
 }
 
 // The server's pictures are drawings alone; whatever else might be in one is not taken over.
@@ -204,27 +217,43 @@ function symbol(text) {
 }
 
 function numbers(rows) {
-  byId("numbers").replaceChildren(...rows.map((row) => {
-    const line = document.createElement("tr");
-    const head = document.createElement("th");
-    head.scope = "row";
-    head.textContent = row.words;
-    line.append(head, symbol(row.symbol));
-    for (const [text, kind] of [[row.law, "number"], [row.closed, "number"], [row.simulation, "number"], [row.unit, ""]]) {
-      const cell = document.createElement("td");
-      cell.textContent = text;
-      if (kind) cell.className = kind;
-      line.append(cell);
-    }
-    return line;
-  }));
+  byId("numbers").replaceChildren(
+    ...rows.map((row) => {
+      const line = document.createElement("tr");
+      const head = document.createElement("th");
+      head.scope = "row";
+      head.textContent = row.words;
+      line.append(head, symbol(row.symbol));
+      for (const [text, kind] of [
+        [row.law, "number"],
+        [row.closed, "number"],
+        [row.simulation, "number"],
+        [row.unit, ""],
+      ]) {
+        const cell = document.createElement("td");
+        cell.textContent = text;
+        if (kind) cell.className = kind;
+        line.append(cell);
+      }
+      return line;
+    }),
+  );
 }
+
+// The pictures are as wide as there is room for them.
+let resizing = 0;
+addEventListener("resize", () => {
+  clearTimeout(resizing);
+  resizing = setTimeout(update, 200);
+});
 
 // What a screen reader says, when the values have stood for a moment.
 let saying = 0;
 function say(text) {
   clearTimeout(saying);
-  saying = setTimeout(() => { byId("said").textContent = text; }, 900);
+  saying = setTimeout(() => {
+    byId("said").textContent = text;
+  }, 900);
 }
 
 async function copy(text, told) {
@@ -235,7 +264,9 @@ async function copy(text, told) {
     told.textContent = "the browser does not allow it; select and copy by hand";
   }
   say(told.textContent);
-  setTimeout(() => { told.textContent = ""; }, 4000);
+  setTimeout(() => {
+    told.textContent = "";
+  }, 4000);
 }
 
 function copyNumbers() {
@@ -355,13 +386,24 @@ form.addEventListener("input", (event) => {
 });
 byId("simulate").addEventListener("click", start);
 byId("cancel").addEventListener("click", () => post("cancel"));
-byId("back").addEventListener("click", () => { location.search = `?${simulated}`; });
-byId("show-case").addEventListener("click", () => { location.search = `?${byId("study").value}`; });
+byId("back").addEventListener("click", () => {
+  location.search = `?${simulated}`;
+});
+byId("show-case").addEventListener("click", () => {
+  location.search = `?${byId("study").value}`;
+});
 byId("copy-numbers").addEventListener("click", copyNumbers);
 byId("copy-address").addEventListener("click", () => copy(location.href, byId("copied-address")));
-byId("frame").addEventListener("input", () => { stop(); frame(); });
+byId("frame").addEventListener("input", () => {
+  stop();
+  frame();
+});
 byId("play").addEventListener("click", play);
 
+// On a narrow screen the curves stand below the fields, and what is needed less often folds away.
+if (matchMedia("(max-width: 56rem)").matches) {
+  for (const part of form.querySelectorAll("details.later")) part.open = false;
+}
 reveal();
 placeAll(null);
 update();

@@ -66,8 +66,9 @@ impl Field<'_> {
         let scale = if *logarithmic { "log" } else { "even" };
         format!(
             "<div class=\"field\"><label for=\"{id}\">{label}{symbol} <span class=\"unit\">{unit}</span></label>\
-             <input type=\"text\" inputmode=\"decimal\" autocomplete=\"off\" spellcheck=\"false\" id=\"{id}\" name=\"{name}\" value=\"{value}\" \
-             aria-describedby=\"{id}-wrong\"><input type=\"range\" min=\"0\" max=\"1000\" step=\"1\" aria-label=\"{label}, slider\" \
+             <input type=\"text\" inputmode=\"decimal\" autocomplete=\"off\" spellcheck=\"false\" id=\"{id}\" name=\"{name}\" \
+             value=\"{value}\" aria-describedby=\"{id}-wrong\">\
+             <input type=\"range\" min=\"0\" max=\"1000\" step=\"1\" aria-label=\"{label}, slider\" \
              data-for=\"{id}\" data-from=\"{from}\" data-to=\"{to}\" data-scale=\"{scale}\" data-times=\"{times}\">\
              <p class=\"wrong\" id=\"{id}-wrong\" hidden></p></div>\n"
         )
@@ -197,8 +198,8 @@ fn material(form: &Form, base: &Case, prefix: &'static str, stress: &str) -> Str
                 let _ = write!(
                     text,
                     "<div class=\"field\"><label for=\"{id}\">Strain and stress, pairs with semicolons between</label>\
-                     <input type=\"text\" class=\"wide\" id=\"{id}\" name=\"{name}\" value=\"{}\" autocomplete=\"off\" spellcheck=\"false\" \
-                     aria-describedby=\"{id}-wrong\"><p class=\"wrong\" id=\"{id}-wrong\" hidden></p></div>",
+                     <input type=\"text\" class=\"wide\" id=\"{id}\" name=\"{name}\" value=\"{}\" autocomplete=\"off\" \
+                     spellcheck=\"false\" aria-describedby=\"{id}-wrong\"><p class=\"wrong\" id=\"{id}-wrong\" hidden></p></div>",
                     escape(value.as_str())
                 );
                 continue;

@@ -18,8 +18,11 @@ const LONGEST_HEAD: usize = 12 * 1024;
 pub const LONGEST_QUERY: usize = 4096;
 /// Most headers.
 const MOST_HEADERS: usize = 64;
-/// A request has to be there within this time, however slowly it is sent.
+/// A request has to be there within this time, however slowly it is sent,
 const PATIENCE: Duration = Duration::from_secs(5);
+/// and to begin within this: browsers open connections beforehand, which others should not wait
+/// for.
+const SILENCE: Duration = Duration::from_secs(1);
 
 /// How a request is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,7 +167,7 @@ fn read_head(stream: &mut TcpStream) -> Head {
     let mut head = Vec::new();
     let mut part = [0u8; 2048];
     loop {
-        let left = PATIENCE.saturating_sub(begun.elapsed());
+        let left = if head.is_empty() { SILENCE } else { PATIENCE }.saturating_sub(begun.elapsed());
         if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
             return if head.is_empty() { Head::Nothing } else { Head::TooSlow };
         }

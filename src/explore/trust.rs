@@ -1,6 +1,7 @@
 //! Where a law comes from, and how far it can be trusted for one contact.
 
 use crate::case::Case;
+use crate::law::interpolated::Source;
 use crate::law::report::{RegionError, region};
 use crate::law::table::Against;
 use crate::law::{LawError, LawFile};
@@ -19,6 +20,8 @@ pub struct Trust {
     pub normal: [f64; 2],
     /// Of which contacts these are the errors.
     pub over: String,
+    /// Whether they are known: of a table that was put together none are.
+    pub is_known: bool,
 }
 
 impl Trust {
@@ -32,23 +35,19 @@ impl Trust {
             LawFile::Interpolated(law) => {
                 let body = Against::of(case);
                 let own = law.pair.as_deref().filter(|pair| pair.body == body).unwrap_or(law);
-                let source = format!(
-                    "law by interpolation between {} simulated contacts of {} materials with {}",
-                    own.source.cases, own.source.materials, own.body
-                );
+                let Source { cases, materials, .. } = &own.source;
+                let mut source =
+                    format!("interpolated between {cases} simulated contacts of {materials} materials with {}", own.body);
                 let (row, mut over) = near(&own.errors, &wanted);
-                let mut source = source;
-                if own.body != body && body != Against::RigidSphere {
-                    source += ", of each body by itself, the two put in series";
-                    over += "; what putting two bodies in series adds is not in it (simulated pairs: F_T 4 % rms off)";
-                } else if own.body != body {
-                    source += ", which a rigid sphere is taken for by its R*";
+                if own.body != body {
+                    source += ", of each body by itself, and the two put in series";
+                    over += ", without what putting in series adds (4 % rms of F_T in simulated pairs)";
                 }
                 Ok(Self { source, press: own.normal_errors.f_n0, over, ..Self::from_row(row) })
             }
             LawFile::Formulas(law) => {
                 let p = &law.provenance;
-                let source = format!("formulas fitted to {} simulated cases of {} materials", p.cases, p.materials);
+                let source = format!("formulas, fitted to {} simulated cases of {} materials", p.cases, p.materials);
                 let (row, over) = near(&law.errors_predicted, &wanted);
                 let kept = law.normal_candidates.iter().find(|candidate| candidate.kept);
                 let press = kept.map_or([0.0; 2], |kept| [kept.f_n_rms, kept.f_n_max]);
@@ -65,10 +64,11 @@ impl Trust {
                 }
                 let [press, tangential, normal] = of;
                 Ok(Self {
-                    source: format!("table of {} simulated depths of this one contact", table.levels.len()),
+                    source: format!("table of {} depths of this one contact", table.levels.len()),
                     press,
                     tangential,
                     normal,
+                    is_known: !table.errors.is_empty(),
                     over: format!("{} depths between those of a table of every other one", table.errors.len()),
                 })
             }
@@ -83,6 +83,7 @@ impl Trust {
             tangential: [errors.f_t_rms, errors.f_t_max],
             normal: [errors.f_n_rms, errors.f_n_max],
             over: String::new(),
+            is_known: errors.cases > 0,
         }
     }
 }
@@ -90,12 +91,9 @@ impl Trust {
 /// The row of a region, or that of all where there is none; and which it is, in words.
 fn near<'a>(rows: &'a [RegionError], wanted: &str) -> (Option<&'a RegionError>, String) {
     let row = rows.iter().find(|row| row.region == wanted).or_else(|| rows.iter().find(|row| row.region == "all"));
-    let words = row.map_or_else(
-        || "no contacts: the law tells no errors".to_owned(),
-        |row| {
-            let region = if row.region == "all" { "all regions".to_owned() } else { row.region.clone() };
-            format!("{} contacts of materials that were left out ({region})", row.errors.cases)
-        },
-    );
+    let words = row.map_or_else(String::new, |row| {
+        let region = if row.region == "all" { "all regions" } else { &row.region };
+        format!("{} contacts of unseen materials ({region})", row.errors.cases)
+    });
     (row, words)
 }

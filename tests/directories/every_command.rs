@@ -75,6 +75,7 @@ const COMMANDS: &[(&str, Writes)] = &[
             files: &["export/asperity_law.h", "export/law.asperity", "export/asperity_law_vectors.csv"],
         },
     ),
+    ("explore", Nothing),
     ("verify", Files { arguments: &["verify", "--only", "hertz", "--out", "verify.json"], files: &["verify.json"] }),
     ("devices", Nothing),
     ("bench", Files { arguments: &["bench", "--quick", "--device", "cpu", "--out", "bench.json"], files: &["bench.json"] }),

@@ -37,8 +37,12 @@ const CONSTRAINT: f64 = 0.6;
 const LEAST: f64 = 0.5;
 /// Places of the mean pressure, even in ln h.
 const PLACES: usize = 200;
-/// Halvings of a bracket.
-const HALVINGS: usize = 60;
+/// A root is found when its bracket has become as narrow as by so many halvings,
+const HALVINGS: i32 = 60;
+/// or after so many steps, of which every fourth halves it at the latest.
+const MOST_STEPS: usize = 4 * 60;
+/// Steps of regula falsi in which the bracket has to become half as wide.
+const STEPS: usize = 3;
 /// Rounds in which the contact radius and the two curvatures settle.
 const ROUNDS: usize = 20;
 /// Steps of F_T/F_N along a shear.
@@ -54,11 +58,38 @@ const NAMES: [&str; 2] = ["sphere", "opponent"];
 /// Share of the approach below which a creep is none.
 const NO_CREEP: f64 = 1e-4;
 
-/// Where a rising function becomes positive.
+/// Where a rising function becomes positive: by regula falsi with halved weights (the Illinois
+/// algorithm, Dowell & Jarratt 1971), and by halving where three of its steps have not halved the
+/// bracket. Roots are sought within roots: halving alone took 60 times 60 evaluations.
 fn root(mut low: f64, mut high: f64, rising: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..HALVINGS {
+    let (mut below, mut above) = (rising(low), rising(high));
+    let narrow = (high - low) * 0.5f64.powi(HALVINGS);
+    let (mut width, mut left, mut side) = (high - low, STEPS, 0);
+    for _ in 0..MOST_STEPS {
         let middle = 0.5 * (low + high);
-        if rising(middle) > 0.0 { high = middle } else { low = middle }
+        if high - low <= narrow || middle <= low || middle >= high {
+            return middle;
+        }
+        let straight = high - above * (high - low) / (above - below);
+        let bisects = left == 0 || !(below <= 0.0 && above > 0.0 && straight > low && straight < high);
+        // A root at an end of the bracket is found from both of its sides.
+        let nudge = (2.0 * f64::EPSILON * straight.abs()).max(narrow);
+        let nudged = if low + nudge < high - nudge { straight.clamp(low + nudge, high - nudge) } else { middle };
+        let at = if bisects { middle } else { nudged };
+        let value = rising(at);
+        if value > 0.0 {
+            (high, above) = (at, value);
+            below *= if side == 1 && !bisects { 0.5 } else { 1.0 };
+            side = 1;
+        } else {
+            (low, below) = (at, value);
+            above *= if side == -1 && !bisects { 0.5 } else { 1.0 };
+            side = -1;
+        }
+        left = left.saturating_sub(1);
+        if high - low <= 0.5 * width || bisects {
+            (width, left) = (high - low, STEPS);
+        }
     }
     0.5 * (low + high)
 }
