@@ -129,7 +129,7 @@ impl Page<'_> {
     fn closed_form(&self, name: &'static str, whose: &str) -> Curve {
         let yields = self.curves.first_yield.filter(|first| *first < self.curves.h);
         let trust = match yields {
-            Some(first) => format!("This contact yields from h = {} on, and is elastic no more", tick(first)),
+            Some(first) => format!("This contact yields from h = {} on", tick(first)),
             None => "Exact for a small elastic contact, 1 % off in the force at a/R = 0.1".to_owned(),
         };
         Curve { name, source: format!("closed form of an elastic contact ({whose})"), trust }
@@ -199,8 +199,9 @@ impl Page<'_> {
         let others: Vec<(f64, f64)> =
             self.over.study.iter().filter_map(|one| Some(scales.at(one.summary.h0?, one.summary.f_n0?))).collect();
         if !others.is_empty() {
-            series.push(Series::marks("study", PURPLE, Mark::Square, others));
-            if !curves.iter().any(|curve| curve.name == "study") {
+            let is_named = curves.iter().any(|curve| curve.name == "study");
+            series.push(Series::marks(if is_named { "" } else { "study" }, PURPLE, Mark::Square, others));
+            if !is_named {
                 let (source, trust) =
                     ("finite elements, cases of the study of this contact", "As accurate as the mesh of the study");
                 curves.push(Curve { name: "study", source: source.to_owned(), trust: trust.to_owned() });

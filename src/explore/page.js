@@ -80,6 +80,14 @@ function placeAll(but) {
 // Asking: one request at a time, and the last state wins.
 let asking = false;
 let again = false;
+let said = "";
+
+// Browsers take an address a few times a second at the most.
+let noting = 0;
+function note(asked) {
+  clearTimeout(noting);
+  noting = setTimeout(() => history.replaceState(null, "", `?${asked}`), 150);
+}
 
 async function update() {
   if (asking) {
@@ -88,7 +96,7 @@ async function update() {
   }
   asking = true;
   const asked = query();
-  history.replaceState(null, "", `?${asked}`);
+  note(asked);
   const drawings = byId("drawings");
   drawings.setAttribute("aria-busy", "true");
   try {
@@ -161,6 +169,9 @@ function show(answer, asked) {
   numbers(answer.numbers);
   byId("other").hidden = !answer.other;
   const number = (symbol) => answer.numbers.find((row) => row.symbol === symbol).law;
+  // Not again for each step of a simulation.
+  if (asked === said) return;
+  said = asked;
   say(`F_N0 ${number("F_N0")}, greatest F_T ${number("F_T,max")}, Lambda ${number("Λ")}, ${answer.regime}`);
 }
 
@@ -193,7 +204,7 @@ function figure({ name, title, svg, words, curves }) {
     const term = document.createElement("dt");
     const about = document.createElement("dd");
     term.textContent = `${curve.name}:`;
-    about.textContent = `${curve.source}. ${curve.trust}.`;
+    write(about, `${curve.source}. ${curve.trust}.`);
     terms.append(term, about);
   }
   caption.append(terms);
@@ -202,18 +213,17 @@ function figure({ name, title, svg, words, curves }) {
 }
 
 // F_N,slip as F with N,slip below.
-function symbol(text) {
-  const cell = document.createElement("td");
-  for (const [i, part] of text.split("/").entries()) {
-    const [letter, below] = part.split("_");
-    cell.append(i > 0 ? `/${letter}` : letter);
-    if (below) {
-      const sub = document.createElement("sub");
-      sub.textContent = below;
-      cell.append(sub);
+function write(where, text) {
+  for (const [i, part] of text.split(/_([A-Za-z0-9]+(?:,[a-z]+)?)/).entries()) {
+    if (i % 2 === 0) {
+      where.append(part);
+      continue;
     }
+    const sub = document.createElement("sub");
+    sub.textContent = part;
+    where.append(sub);
   }
-  return cell;
+  return where;
 }
 
 function numbers(rows) {
@@ -222,8 +232,8 @@ function numbers(rows) {
       const line = document.createElement("tr");
       const head = document.createElement("th");
       head.scope = "row";
-      head.textContent = row.words;
-      line.append(head, symbol(row.symbol));
+      write(head, row.words);
+      line.append(head, write(document.createElement("td"), row.symbol));
       for (const [text, kind] of [
         [row.law, "number"],
         [row.closed, "number"],

@@ -193,6 +193,8 @@ async function mistakes(page) {
 
 // What reload and another window show is the same page.
 async function shared(browser, page) {
+  // The address follows a moment later.
+  await page.waitForTimeout(400);
   const address = page.url();
   const state = (page) =>
     page.evaluate(() => [
@@ -454,6 +456,7 @@ async function main() {
     await settled(page);
     await simulation(page);
     await accessible(page, "with a simulation");
+    await page.waitForTimeout(400);
     await looks(browser, page.url());
     await keyboard(page);
     assert.deepEqual(faults, []);
