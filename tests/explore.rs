@@ -349,7 +349,7 @@ fn a_simulation_is_started_watched_and_cancelled() {
 fn a_thousand_requests_at_once_do_no_harm() {
     let page = Page::open(&[]);
     let request = |i: usize| {
-        let path = if i % 10 == 0 { format!("curves?indentation=0.0{}", 1 + i % 7) } else { "page.css".to_owned() };
+        let path = if i.is_multiple_of(10) { format!("curves?indentation=0.0{}", 1 + i % 7) } else { "page.css".to_owned() };
         format!("GET /{}/{path} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n", page.token, page.port)
     };
     let place = SocketAddr::from((Ipv4Addr::LOCALHOST, page.port));

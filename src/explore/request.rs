@@ -66,7 +66,9 @@ impl Gate {
 
     /// The names by which the server may be called.
     fn names(&self) -> [String; 2] {
-        ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port))
+        // Browsers leave out the port that HTTP has by itself.
+        let port = if self.port == 80 { String::new() } else { format!(":{}", self.port) };
+        ["127.0.0.1", "localhost"].map(|name| format!("{name}{port}"))
     }
 
     /// Reads a request from a connection and judges it; `None` where nobody asks anything.
@@ -130,13 +132,11 @@ impl Gate {
         if query.len() > LONGEST_QUERY || path.len() > LONGEST_QUERY {
             return Err(refused(Status::QueryTooLong, "the query is longer than 4096 bytes"));
         }
-        let (token, rest) = path.strip_prefix('/').unwrap_or(path).split_once('/').unwrap_or((path, ""));
-        if !same(token.as_bytes(), self.token.as_bytes()) {
-            return Err(refused(
-                Status::Forbidden,
-                "the address has not the token of this server; open the one that `asperity explore` printed",
-            ));
-        }
+        let parts = path.strip_prefix('/').and_then(|path| path.split_once('/'));
+        let Some((_, rest)) = parts.filter(|(token, _)| same(token.as_bytes(), self.token.as_bytes())) else {
+            let why = "the address has not the token of this server; open the one that `asperity explore` printed";
+            return Err(refused(Status::Forbidden, why));
+        };
         // A picture or a script on a page of somebody else's; a link there may be followed.
         if site == Some("cross-site") && mode != Some("navigate") {
             return Err(refused(Status::Forbidden, "the request comes from a page of another site"));
