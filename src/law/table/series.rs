@@ -17,6 +17,8 @@
 //!
 //! Exact for two equal bodies and in Hertz's limit.
 
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
 use super::against::{Against, equivalent};
 use super::build::{LENGTH, NEARLY_SLIPPING, depths, hertzian, points};
 use super::{Curves, FORMAT, Level, Tabulated, VERSION, check_levels};
@@ -60,7 +62,9 @@ const NO_CREEP: f64 = 1e-4;
 
 /// Where a rising function becomes positive: by regula falsi with halved weights (the Illinois
 /// algorithm, Dowell & Jarratt 1971), and by halving where three of its steps have not halved the
-/// bracket. Roots are sought within roots: halving alone took 60 times 60 evaluations.
+/// bracket. Roots are sought within roots: halving alone took 60 times 60 evaluations. Where the
+/// sign does not change it halves all the way: two bodies of one material stand on both of their
+/// limit curves at once, and another rounding there would choose another of them.
 fn root(mut low: f64, mut high: f64, rising: impl Fn(f64) -> f64) -> f64 {
     let (mut below, mut above) = (rising(low), rising(high));
     let narrow = (high - low) * 0.5f64.powi(HALVINGS);
@@ -494,8 +498,7 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
     let sheared = [body(0, None)?, body(1, None)?];
     let radius = scaled.effective_radius();
     let sphere = equivalent(&scaled);
-    let mut levels = Vec::new();
-    for h in depths(case)? {
+    let level = |h: f64| {
         let series = Series::new(&bodies, radius, friction, h);
         for (i, body) in bodies.iter().enumerate() {
             let place = series.pressed[i].h / (body.share * series.pressed[i].radius);
@@ -503,8 +506,11 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
                 return Err(LawError::Shallow { body: NAMES[i], has: body.range.to, needs: place });
             }
         }
-        levels.push(Series::new(&sheared, radius, friction, h).level(&sphere).pressed_as(&series));
-    }
+        Ok(Series::new(&sheared, radius, friction, h).level(&sphere).pressed_as(&series))
+    };
+    // All of them, so that the error does not depend on which is the first to be done.
+    let levels: Vec<Result<Level, LawError>> = depths(case)?.into_par_iter().map(level).collect();
+    let levels = levels.into_iter().collect::<Result<Vec<Level>, LawError>>()?;
     check_levels(&levels).map_err(|problem| LawError::NoTable { problem })?;
     let range = Interval { from: levels[0].h, to: levels[levels.len() - 1].h };
     let elements = tables.map(|table| table.elements_per_contact_radius);
