@@ -200,6 +200,7 @@ commands_of! {
     commands_of_clusters: "docs/clusters.md";
     commands_of_dem: "docs/dem.md";
     commands_of_equal_spheres: "docs/equal-spheres.md";
+    commands_of_the_page_to_look_at: "docs/explore.md";
     commands_of_full_stick: "docs/full-stick.md";
     commands_of_installation: "docs/installation.md";
     commands_of_laws: "docs/laws.md";

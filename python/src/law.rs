@@ -246,7 +246,7 @@ impl NativeLaw {
             return Err(refused("press: is True, and the law has no formulas that take F_N0 and a0. Allowed: False"));
         };
         let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press).map_err(failed)?;
-        let point = |p: &Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };
+        let point = |p: &Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t, slips: false };
         Ok((curve.iter().map(point).collect(), out_of_range))
     }
 }

@@ -243,7 +243,14 @@ fn pressed(law: &LawFile, case: &Case, path: &Path) -> Result<(Vec<PathPoint>, V
         return Err(LawError::NoFormulas { path: path.to_owned(), what: "--press" });
     };
     let Prediction { curve, out_of_range, inputs, .. } = predict(law, case, NormalSource::Press)?;
-    let point = |p: &crate::law::data::Point| PathPoint { segment: 1, h: inputs.h, delta_t: p.delta_t, f_n: p.f_n, f_t: p.f_t };
+    let point = |p: &crate::law::data::Point| PathPoint {
+        segment: 1,
+        h: inputs.h,
+        delta_t: p.delta_t,
+        f_n: p.f_n,
+        f_t: p.f_t,
+        slips: false,
+    };
     Ok((curve.iter().map(point).collect(), out_of_range))
 }
 

@@ -18,6 +18,8 @@ pub struct PathPoint {
     pub f_n: f64,
     /// Tangential force F_T along delta_T.
     pub f_t: f64,
+    /// Whether the contact slips as a whole: F_T has come to mu F_N in its own frame.
+    pub slips: bool,
 }
 
 /// Steps of a press, of an unloading, of a shear up to the slip displacement.
@@ -108,7 +110,9 @@ impl<'a> Follower<'a> {
 
     fn tell(&mut self) {
         let [f_n, f_t] = self.force;
-        self.points.push(PathPoint { segment: self.number, h: self.h, delta_t: self.delta_t, f_n, f_t });
+        let limit = self.parameters.friction * self.out.f_n;
+        let slips = limit > 0.0 && self.out.f_t[0].abs() >= SLIPPING * limit;
+        self.points.push(PathPoint { segment: self.number, h: self.h, delta_t: self.delta_t, f_n, f_t, slips });
     }
 
     /// The answer at a place, and its F_N and F_T along the fixed axes.

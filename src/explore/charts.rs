@@ -159,7 +159,12 @@ impl Page<'_> {
     }
 
     /// Adds marks of a simulation's rows that are left by `which`.
-    fn marks(&self, scales: &Scales, [x, y]: [Of; 2], which: fn(&[StepRecord]) -> &[StepRecord]) -> (Vec<Series>, Vec<Curve>) {
+    fn marks(
+        &self,
+        scales: &Scales,
+        [x, y]: [Of; 2],
+        which: impl Fn(&[StepRecord]) -> &[StepRecord],
+    ) -> (Vec<Series>, Vec<Curve>) {
         let (mut series, mut curves) = (Vec::new(), Vec::new());
         for (found, colour, mark) in [(self.simulated(), VERMILION, Mark::Ring), (self.of_study(), PURPLE, Mark::Square)] {
             let Some((rows, curve)) = found else { continue };
@@ -247,7 +252,7 @@ impl Page<'_> {
             self.law_curve(c.trust.tangential, "F_T, of its peak"),
             self.closed_form("Mindlin", "Cattaneo 1938, Mindlin 1949, at the same h"),
         ];
-        let (marks, of) = self.marks(&scales, [|row| row.delta_t, |row| row.f_t], first_shear);
+        let (marks, of) = self.marks(&scales, [|row| row.delta_t, |row| row.f_t], |rows| first_shear(rows, c.h));
         series.extend(marks);
         curves.extend(of);
         let words = format!(
@@ -274,7 +279,7 @@ impl Page<'_> {
             self.law_curve(c.trust.normal, "F_N, of F_N0"),
             self.closed_form("Hertz", &format!("Hertz 1882: it keeps its F_N, {}", tick(elastic))),
         ];
-        let (marks, of) = self.marks(&scales, [|row| row.delta_t, |row| row.f_n], first_shear);
+        let (marks, of) = self.marks(&scales, [|row| row.delta_t, |row| row.f_n], |rows| first_shear(rows, c.h));
         series.extend(marks);
         curves.extend(of);
         let last = rows.last().map_or(0.0, |row| row.f_n);
@@ -373,11 +378,15 @@ fn sheared(rows: &[StepRecord]) -> &[StepRecord] {
     &rows[pressing(rows).len().saturating_sub(1)..]
 }
 
-/// The rows of the first shear, with where it starts, if it is one at constant h.
-fn first_shear(rows: &[StepRecord]) -> &[StepRecord] {
+/// The rows of the first shear, with where it starts, if it is one at this h.
+fn first_shear(rows: &[StepRecord], h: f64) -> &[StepRecord] {
     let rows = sheared(rows);
     let Some(first) = rows.get(1) else { return &[] };
-    let stays = |row: &&StepRecord| row.segment == first.segment && (row.h / first.h - 1.0).abs() < 1e-6;
+    let is_there = |row: &StepRecord| (row.h / h - 1.0).abs() < 1e-6;
+    if !is_there(first) {
+        return &[];
+    }
+    let stays = |row: &&StepRecord| row.segment == first.segment && is_there(row);
     let length = rows[1..].iter().take_while(stays).count();
     &rows[..=length]
 }

@@ -1,13 +1,13 @@
 //! What a law says of one case, with the closed forms beside it.
 
 use crate::analytical::{ElasticSphere, cattaneo_mindlin::CattaneoMindlin, hertz};
-use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::case::{Case, Friction, Hold, Material, Opponent, Segment, ShearTarget};
 use crate::contact_law::path::{PathPoint, follow_centres};
 use crate::contact_law::{Centres, ContactParameters, ContactState};
 use crate::law::range::OutOfRange;
 use crate::law::report::LAMBDA_BOUNDS;
 use crate::law::table::{equivalent, first_yield};
-use crate::law::variables::{Body, yield_lambda};
+use crate::law::variables::{Body, Variables, yield_lambda};
 use crate::law::{LawError, LawFile};
 use crate::output::{StepRecord, Summary, SummaryInputs};
 
@@ -49,15 +49,33 @@ pub struct Curves {
 }
 
 /// The path of a press and a shear to full slip.
-fn to_slip(h: f64) -> Vec<Segment> {
+pub(super) fn to_slip(h: f64) -> Vec<Segment> {
     vec![Segment::Indentation { indentation: h }, Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation }]
 }
 
 /// A place on the law's path as a row of a history, so that law and simulation are reduced to
 /// numbers by the same rules.
 fn record(point: &PathPoint) -> StepRecord {
-    let PathPoint { segment, h, delta_t, f_n, f_t } = *point;
-    StepRecord { segment, h, delta_t, f_n, f_t, ..StepRecord::default() }
+    let PathPoint { segment, h, delta_t, f_n, f_t, slips } = *point;
+    // A law knows one point of contact, which slips or does not.
+    let slipping_points = usize::from(slips);
+    StepRecord { segment, h, delta_t, f_n, f_t, contact_points: 1, slipping_points, ..StepRecord::default() }
+}
+
+/// Lambda, H and Lambda at first yield of the body that is nearer to plastic: each body with the
+/// radius with which it alone has the contact's E*/R*, as a sphere on a plane and an equal pair do.
+fn nearest_to_plastic(case: &Case, h: f64, a: f64, f_n0: f64) -> Result<(Variables, f64), LawError> {
+    let elastic = equivalent(case);
+    let of = |material: &Material| -> Result<(Variables, f64), LawError> {
+        let (youngs_modulus, poissons_ratio) = (material.youngs_modulus, material.poissons_ratio);
+        let own = ElasticSphere { radius: 1.0, youngs_modulus, poissons_ratio }.effective_modulus();
+        let body = Body::new(elastic.radius * own / elastic.effective_modulus(), material)?;
+        Ok((body.variables(h / case.bodies(), a, f_n0), yield_lambda(poissons_ratio)))
+    };
+    let sphere = of(&case.material)?;
+    let Some(Opponent::Deforming { material, .. }) = &case.opponent else { return Ok(sphere) };
+    let other = of(material)?;
+    Ok(if other.0.lambda / other.1 > sphere.0.lambda / sphere.1 { other } else { sphere })
 }
 
 impl Curves {
@@ -82,9 +100,7 @@ impl Curves {
         let inputs = SummaryInputs { oblique: Vec::new(), ..SummaryInputs::of(&case) };
         let summary = Summary::from_history(&shear, &inputs);
         let f_n0 = summary.f_n0.unwrap_or(0.0);
-        let body = Body::from_case(&case)?;
-        let variables = body.variables(h / case.bodies(), a, f_n0);
-        let first = yield_lambda(case.material.poissons_ratio);
+        let (variables, first) = nearest_to_plastic(&case, h, a, f_n0)?;
         Ok(Self {
             h,
             friction,

@@ -67,7 +67,7 @@ pub struct Form {
 /// What is wrong with it: no page of this program has sent it.
 pub fn parse(query: &str) -> Result<Vec<(String, String)>, String> {
     if query.len() > LONGEST_QUERY {
-        return Err(format!("the query is longer than {LONGEST_QUERY} bytes"));
+        return Err("the query is longer than 48 KiB".to_owned());
     }
     let mut fields: Vec<(String, String)> = Vec::new();
     for part in query.split('&').filter(|part| !part.is_empty()) {
@@ -285,8 +285,10 @@ fn of_case(error: &CaseError) -> Mistake {
     let key = error.key().unwrap_or_default();
     let text = error.to_string();
     let what = text.split_once(&format!("{key}: ")).filter(|_| !key.is_empty()).map_or(text.as_str(), |(_, what)| what);
-    let last = key.rsplit('.').next().unwrap_or_default();
-    let field = match key.split('.').collect::<Vec<_>>().as_slice() {
+    let parts: Vec<&str> = key.split('.').collect();
+    // A point of a table has its numbers behind the key.
+    let last = parts.iter().find(|part| **part == "points").or(parts.last()).copied().unwrap_or_default();
+    let field = match parts.as_slice() {
         ["opponent", "radius"] => "opponent.radius".to_owned(),
         ["opponent", ..] => format!("{OTHER}{last}"),
         ["mesh", ..] => "elements".to_owned(),

@@ -29,7 +29,7 @@ use serde_json::{Value, json};
 
 use self::answer::{Answer, Status};
 use self::charts::Overlay;
-use self::curves::Curves;
+use self::curves::{Curves, to_slip};
 use self::form::Form;
 use self::request::{Method, Request};
 use self::results::same_contact;
@@ -153,8 +153,9 @@ impl Explorer {
         let study = self.study.of_contact(case);
         let of_depth = self.study.of_depth(case).map(|one| (one.id.clone(), one.history()));
         let drawn = charts::drawings(&curves, &Overlay { run: shown, study, of_depth }, &view)?;
-        // What a part of a path has would be taken for the whole.
-        let summary = shown.filter(|run| run.stage == Stage::Done).and_then(|run| run.summary.as_ref());
+        // What a part of a path has would be taken for the whole, and another path for the law's.
+        let is_whole = |run: &&Run| run.stage == Stage::Done && run.case.path.starts_with(&to_slip(curves.h));
+        let summary = shown.filter(is_whole).and_then(|run| run.summary.as_ref());
         let warnings: Vec<String> = curves.out_of_range.iter().map(ToString::to_string).collect();
         Ok(json!({
             "mistakes": [],

@@ -13,9 +13,9 @@ use std::time::{Duration, Instant};
 use super::answer::{Answer, Status};
 
 /// Longest head of a request, bytes; browsers send some 700 without the query.
-const LONGEST_HEAD: usize = 12 * 1024;
-/// Longest query, bytes.
-pub const LONGEST_QUERY: usize = 4096;
+const LONGEST_HEAD: usize = 64 * 1024;
+/// Longest query, bytes: a table of some thousand measured points.
+pub const LONGEST_QUERY: usize = 48 * 1024;
 /// Most headers.
 const MOST_HEADERS: usize = 64;
 /// A request has to be there within this time, however slowly it is sent,
@@ -76,7 +76,7 @@ impl Gate {
         match read_head(stream) {
             Head::Nothing => None,
             Head::TooSlow => Some(Err(refused(Status::Timeout, "the request was not complete after 5 seconds"))),
-            Head::TooLong => Some(Err(refused(Status::HeadTooLong, "the head of the request is longer than 12 KiB"))),
+            Head::TooLong => Some(Err(refused(Status::HeadTooLong, "the head of the request is longer than 64 KiB"))),
             Head::Whole(bytes) => Some(self.judge(&bytes)),
         }
     }
@@ -130,7 +130,7 @@ impl Gate {
     fn place(&self, method: Method, target: &str, site: Option<&str>, mode: Option<&str>) -> Result<Request, Answer> {
         let (path, query) = target.split_once('?').unwrap_or((target, ""));
         if query.len() > LONGEST_QUERY || path.len() > LONGEST_QUERY {
-            return Err(refused(Status::QueryTooLong, "the query is longer than 4096 bytes"));
+            return Err(refused(Status::QueryTooLong, "the query is longer than 48 KiB"));
         }
         let parts = path.strip_prefix('/').and_then(|path| path.split_once('/'));
         let Some((_, rest)) = parts.filter(|(token, _)| same(token.as_bytes(), self.token.as_bytes())) else {
