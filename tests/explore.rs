@@ -32,6 +32,13 @@ hardening = { law = "ideal", yield_stress = 400.0 }
 "#;
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// Ctrl-C, or SIGTERM where these tests were started with that ignored, as in the background of a
+/// script: the program leaves it so.
+fn interrupt() -> Signal {
+    let ignored = asperity::internals::cli::signals::is_ignored(Signal::INT.as_raw());
+    if ignored { Signal::TERM } else { Signal::INT }
+}
+
 /// A server, ended with the test.
 struct Page {
     child: Child,
@@ -430,7 +437,7 @@ fn a_thousand_requests_at_once_do_no_harm() {
     });
     assert_eq!(answered, 1000);
     assert_eq!(page.get("curves").status, 200);
-    let (code, said) = page.end(Signal::INT);
+    let (code, said) = page.end(interrupt());
     assert_eq!(code, Some(0), "{said}");
 }
 
@@ -455,7 +462,7 @@ fn it_listens_on_the_loopback_address_alone() {
 fn it_ends_with_a_signal_and_tells_of_a_simulation_that_was_running() {
     let page = Page::open(&[]);
     assert_eq!(page.post("simulate?elements=8").json()["stage"], "running");
-    let (code, said) = page.end(Signal::INT);
+    let (code, said) = page.end(interrupt());
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("the simulation that was running is cancelled") && said.trim_end().ends_with("ended"), "{said}");
     let (code, _) = Page::open(&[]).end(Signal::TERM);
