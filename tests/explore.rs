@@ -16,7 +16,7 @@ use asperity::Case;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 
-use common::{asperity, program, stderr};
+use common::{asperity, interruption, program, stderr};
 
 /// A coarse case, so that a simulation takes seconds.
 const CASE: &str = r#"
@@ -31,13 +31,6 @@ poissons_ratio = 0.3
 hardening = { law = "ideal", yield_stress = 400.0 }
 "#;
 const PATIENCE: Duration = Duration::from_secs(60);
-
-/// Ctrl-C, or SIGTERM where these tests were started with that ignored, as in the background of a
-/// script: the program leaves it so.
-fn interrupt() -> Signal {
-    let ignored = asperity::internals::cli::signals::is_ignored(Signal::INT.as_raw());
-    if ignored { Signal::TERM } else { Signal::INT }
-}
 
 /// A server, ended with the test.
 struct Page {
@@ -437,7 +430,7 @@ fn a_thousand_requests_at_once_do_no_harm() {
     });
     assert_eq!(answered, 1000);
     assert_eq!(page.get("curves").status, 200);
-    let (code, said) = page.end(interrupt());
+    let (code, said) = page.end(interruption());
     assert_eq!(code, Some(0), "{said}");
 }
 
@@ -462,7 +455,7 @@ fn it_listens_on_the_loopback_address_alone() {
 fn it_ends_with_a_signal_and_tells_of_a_simulation_that_was_running() {
     let page = Page::open(&[]);
     assert_eq!(page.post("simulate?elements=8").json()["stage"], "running");
-    let (code, said) = page.end(interrupt());
+    let (code, said) = page.end(interruption());
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("the simulation that was running is cancelled") && said.trim_end().ends_with("ended"), "{said}");
     let (code, _) = Page::open(&[]).end(Signal::TERM);

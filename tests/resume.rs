@@ -21,7 +21,7 @@ use asperity::internals::simulation::drive::{Drive, Ending};
 use asperity::internals::simulation::problem::Problem;
 use asperity::internals::simulation::scout::scout;
 use asperity::output::{Clock, OutputDirectory, Position, Progress, ResultWriter, Setting, Summary, read_history};
-use common::{Scratch, difference, files, program, stderr};
+use common::{Scratch, difference, files, interruption, program, stderr};
 use rustix::process::{Pid, Signal, kill_process};
 
 /// Pressed, sheared to full slip and released, with fields of every step.
@@ -68,12 +68,6 @@ fn resumed(scratch: &Scratch, name: &str, options: &[&str]) -> String {
     let output = scratch.run(name, &[&["--resume"], options].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     stderr(&output)
-}
-
-/// SIGINT, unless these tests were started in the background, where runs are to ignore it.
-fn interruption() -> Signal {
-    let ignored = asperity::internals::cli::signals::is_ignored(Signal::INT.as_raw());
-    if ignored { Signal::TERM } else { Signal::INT }
 }
 
 /// Begins or goes on, and sends a signal once the history has `rows` rows.

@@ -52,9 +52,9 @@ pub struct ExploreArgs {
 pub fn explore(args: &ExploreArgs) -> Result<Outcome, CliError> {
     let stop = stop_flag()?;
     let law = LawFile::read_or_built_in(&args.law)?;
-    let earlier = args.case.clone().filter(|case| case.is_dir());
+    let earlier = args.case.as_deref().filter(|case| case.is_dir()).map(read_run).transpose()?;
     let base = match (&args.case, &earlier) {
-        (_, Some(dir)) => read_run(dir)?.0,
+        (_, Some(run)) => run.case.clone(),
         (Some(file), None) => Input::read(file)?.case(&[])?,
         (None, None) => Case::parse(FIRST_CASE, "first.toml", &[])?,
     };
@@ -63,7 +63,7 @@ pub fn explore(args: &ExploreArgs) -> Result<Outcome, CliError> {
     let threads = args.device.threads.or_else(|| NonZeroUsize::new(cores - 1)).unwrap_or(NonZeroUsize::MIN);
     let place = Place { device: device_choice(&args.device), precision: precision_choice(&args.device), threads };
     let beginning = Beginning { law, base, study, earlier, place, tell };
-    let explorer = Arc::new(Explorer::new(beginning)?);
+    let explorer = Arc::new(Explorer::new(beginning));
     let failed = |source| CliError::Serve { port: args.port, source };
     let server = Server::bind(args.port, token()).map_err(failed)?;
     let address = server.address();

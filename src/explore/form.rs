@@ -67,7 +67,7 @@ pub struct Form {
 /// What is wrong with it: no page of this program has sent it.
 pub fn parse(query: &str) -> Result<Vec<(String, String)>, String> {
     if query.len() > LONGEST_QUERY {
-        return Err("the query is longer than 48 KiB".to_owned());
+        return Err(format!("the query is longer than {} KiB", LONGEST_QUERY / 1024));
     }
     let mut fields: Vec<(String, String)> = Vec::new();
     for part in query.split('&').filter(|part| !part.is_empty()) {

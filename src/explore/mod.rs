@@ -22,7 +22,6 @@ mod tar;
 mod trust;
 
 use std::hash::{BuildHasher, Hasher, RandomState};
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::{Value, json};
@@ -33,7 +32,7 @@ use self::curves::{Curves, to_slip};
 use self::form::Form;
 use self::request::{Method, Request};
 use self::results::same_contact;
-use self::simulate::{Run, Simulator, Stage};
+use self::simulate::{Simulator, Stage};
 use crate::case::Case;
 use crate::contact_law::ContactParameters;
 use crate::law::{LawError, LawFile};
@@ -41,7 +40,7 @@ use crate::output::plots::plot_slip_frame;
 
 pub use results::{StudyCases, read_run};
 pub use serve::{End, Server, Service};
-pub use simulate::Place;
+pub use simulate::{Place, Run};
 
 /// Contacts whose parameters are kept: a slider that goes back, and what follows one change of a
 /// page (curves, exports), find theirs.
@@ -73,7 +72,7 @@ pub struct Beginning {
     /// A study whose cases lie over the law.
     pub study: StudyCases,
     /// A run that lies over the law.
-    pub earlier: Option<PathBuf>,
+    pub earlier: Option<Run>,
     /// Where simulations compute.
     pub place: Place,
     /// Told of what the user of the terminal should know.
@@ -93,13 +92,9 @@ pub fn token() -> String {
 
 impl Explorer {
     /// A page that has answered nothing yet.
-    ///
-    /// # Errors
-    /// Results that cannot be read.
-    pub fn new(beginning: Beginning) -> Result<Self, LawError> {
+    pub fn new(beginning: Beginning) -> Self {
         let Beginning { law, base, study, earlier, place, tell } = beginning;
-        let earlier = earlier.map(|dir| read_run(&dir)).transpose()?.map(|(_, run)| run);
-        Ok(Self { law, base, study, earlier, simulator: Simulator::default(), place, contacts: Mutex::default(), tell })
+        Self { law, base, study, earlier, simulator: Simulator::default(), place, contacts: Mutex::default(), tell }
     }
 
     /// Ends a simulation that runs; whether one did.

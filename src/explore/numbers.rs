@@ -45,12 +45,13 @@ pub fn rows(curves: &Curves, simulation: Option<&Summary>) -> Vec<Value> {
     let limit = mindlin.friction * mindlin.normal_force;
     let to_share = mindlin.displacement(SLIP_DISPLACEMENT_RATIO);
     let ratio = |summary: &Summary| Some(summary.f_n_slip? / summary.f_n0?);
+    let first = curves.first_yield.map(|_| curves.yield_lambda);
     vec![
         row("indentation", "h", Kind::Length, [Some(curves.h), None], None),
         row("indentation at first yield", "h_Y", Kind::Length, [None; 2], curves.first_yield),
         row("normal force at first yield", "F_Y", Kind::Force, [None; 2], curves.yield_force()),
         row("Johnson's parameter", "Λ", Kind::Plain, [Some(curves.lambda), None], None),
-        row("Johnson's parameter at first yield", "Λ_Y", Kind::Plain, [None; 2], curves.first_yield.map(|_| curves.yield_lambda)),
+        row("Johnson's parameter at first yield", "Λ_Y", Kind::Plain, [None; 2], first),
         row("normalised hardness", "H", Kind::Plain, [Some(curves.hardness), None], None),
         row("normal force before the shear", "F_N0", Kind::Force, of(|s| s.f_n0), Some(mindlin.normal_force)),
         row(

@@ -76,7 +76,7 @@ impl Gate {
         match read_head(stream) {
             Head::Nothing => None,
             Head::TooSlow => Some(Err(refused(Status::Timeout, "the request was not complete after 5 seconds"))),
-            Head::TooLong => Some(Err(refused(Status::HeadTooLong, "the head of the request is longer than 64 KiB"))),
+            Head::TooLong => Some(Err(refused(Status::HeadTooLong, &longer("head of the request", LONGEST_HEAD)))),
             Head::Whole(bytes) => Some(self.judge(&bytes)),
         }
     }
@@ -130,7 +130,7 @@ impl Gate {
     fn place(&self, method: Method, target: &str, site: Option<&str>, mode: Option<&str>) -> Result<Request, Answer> {
         let (path, query) = target.split_once('?').unwrap_or((target, ""));
         if query.len() > LONGEST_QUERY || path.len() > LONGEST_QUERY {
-            return Err(refused(Status::QueryTooLong, "the query is longer than 48 KiB"));
+            return Err(refused(Status::QueryTooLong, &longer("query", LONGEST_QUERY)));
         }
         let parts = path.strip_prefix('/').and_then(|path| path.split_once('/'));
         let Some((_, rest)) = parts.filter(|(token, _)| same(token.as_bytes(), self.token.as_bytes())) else {
@@ -143,6 +143,10 @@ impl Gate {
         }
         Ok(Request { method, path: rest.to_owned(), query: query.to_owned() })
     }
+}
+
+fn longer(what: &str, bytes: usize) -> String {
+    format!("the {what} is longer than {} KiB", bytes / 1024)
 }
 
 fn refused(status: Status, why: &str) -> Answer {

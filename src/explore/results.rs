@@ -84,7 +84,7 @@ pub fn same_contact(one: &Case, other: &Case) -> bool {
 ///
 /// # Errors
 /// No case there, or results that cannot be read.
-pub fn read_run(dir: &Path) -> Result<(Case, Run), LawError> {
+pub fn read_run(dir: &Path) -> Result<Run, LawError> {
     let out = OutputDirectory::existing(dir);
     let case = out.load_case()?;
     let history = read_history(&out.history())?;
@@ -98,16 +98,15 @@ pub fn read_run(dir: &Path) -> Result<(Case, Run), LawError> {
         }
     }
     let summary = Summary::read(&out.summary()).ok();
-    let run = Run {
+    Ok(Run {
         query: String::new(),
         stage: Stage::Done,
         fraction: 1.0,
         message: format!("read from {}", dir.display()),
         seconds: summary.as_ref().map_or(0.0, |summary| summary.wall_s),
-        case: case.clone(),
+        case,
         history,
         frames: Arc::new(frames),
         summary,
-    };
-    Ok((case, run))
+    })
 }

@@ -13,6 +13,12 @@ use asperity::output::{Checkpoint, Summary, TimeByPhase};
 use asperity::output::{DeviceTraffic, Traffic};
 use tempfile::TempDir;
 
+/// SIGINT, unless these tests were started in the background, where runs are to ignore it.
+pub fn interruption() -> rustix::process::Signal {
+    let ignored = asperity::internals::cli::signals::is_ignored(rustix::process::Signal::INT.as_raw());
+    if ignored { rustix::process::Signal::TERM } else { rustix::process::Signal::INT }
+}
+
 /// The program.
 pub fn program() -> Command {
     Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
