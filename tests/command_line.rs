@@ -35,7 +35,7 @@ fn usage_errors_end_with_2_and_help_with_0() {
     for arguments in [
         &["check"][..],
         &["check", "--no-such-flag", "case.toml"],
-        &["run", "fixtures/cases/ideal.toml"],
+        &["run"],
         &["run", "fixtures/cases/ideal.toml", "--out", "x", "--device", "tpu"],
         &["run", "fixtures/cases/ideal.toml", "--out", "x", "--precision", "f16"],
         &["run", "fixtures/cases/ideal.toml", "--out", "x", "--threads", "0"],

@@ -81,6 +81,55 @@ fn init_writes_a_case_of_every_law_that_is_taken_and_one_runs() {
 }
 
 #[test]
+fn a_short_case_has_twenty_lines_at_most_and_its_results_the_name_of_its_file() {
+    let scratch = Scratch::new("", &[]);
+    let here = |arguments: &[&str]| program().args(arguments).current_dir(scratch.dir.path()).output().expect("the program runs");
+    for law in LAWS {
+        let output = here(&["init", "--short", "--material", law, law]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let short = fs::read_to_string(scratch.path(format!("{law}.toml"))).expect("a case");
+        assert!(short.lines().count() <= 20, "{short}");
+        // It is the long one less its comments.
+        let long = stdout(&here(&["init", "--material", law, "-"]));
+        let [short, long] = [short, long].map(|text| Case::parse(&text, "a case", &[]).expect("a case"));
+        assert_eq!(short, long);
+    }
+    let run = [&["run", "ideal.toml", "-q"][..], &QUICK].concat();
+    let output = here(&run);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(scratch.path("ideal/history.csv").exists());
+    // Nothing is replaced by that name either.
+    assert!(refused(&here(&run)).contains("--force"));
+    assert!(stderr(&here(&["run", "-"])).contains("--out"));
+    assert!(stderr(&here(&["study", "--merge", "ideal"])).contains("--out"));
+}
+
+#[test]
+fn a_law_predicts_a_contact_that_is_given_by_options() {
+    let scratch = Scratch::new("", &[]);
+    let case = |opponent: &str| {
+        format!(
+            "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 70e3\npoissons_ratio = 0.34\n[material.hardening]\n\
+             law = \"ideal\"\nyield_stress = 95.0\n[contact]\nfriction = 0.45\n{opponent}[[path]]\nindentation = 0.013\n\
+             [[path]]\nshear = \"full-slip\"\n"
+        )
+    };
+    let options = ["--E", "70e3", "--nu", "0.34", "--yield", "95", "--mu", "0.45", "--h", "0.013"];
+    let predict = |more: &[&str]| asperity(&[&["law", "predict", "built-in"], more].concat());
+    for (opponent, more) in [("", &[][..]), ("[opponent]\nequal = true\n", &["--equal"])] {
+        fs::write(scratch.path("case.toml"), case(opponent)).expect("a file");
+        let [by_file, by_options] =
+            [predict(&[text(&scratch.path("case.toml"))]), predict(&[&options[..], more].concat())].map(|output| stdout(&output));
+        assert!(by_file.lines().count() > 20 && by_file == by_options, "{by_options}");
+    }
+    assert!(stderr(&predict(&options[..8])).contains("--h"));
+    assert!(stderr(&predict(&[])).contains("CASE.toml"));
+    assert!(refused(&predict(&[&options[..9], &["-0.01"]].concat())).contains("path[0].indentation"));
+    let both = predict(&[&[text(&scratch.path("case.toml"))], &options[..]].concat());
+    assert!(both.status.code() == Some(2) && stderr(&both).contains("cannot be used"), "{}", stderr(&both));
+}
+
+#[test]
 fn init_adds_the_ending_and_replaces_nothing_unasked() {
     let scratch = Scratch::new("", &[]);
     let init = |arguments: &[&str]| {

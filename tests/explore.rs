@@ -342,6 +342,12 @@ fn what_is_exported_can_be_used() {
     }
     run("tar xf engine-c.tar && tar xf engine-lammps.tar");
     assert!(fs::read_to_string(dir.path().join("engine-lammps/in.asperity")).unwrap().contains("sphere.asperity"));
+    // What LAMMPS gets is what `law export` writes, which the tests of the plug-in run.
+    fs::rename(dir.path().join("case.toml"), dir.path().join("sphere.toml")).unwrap();
+    let export = ["law", "export", "built-in", "sphere.toml", "--for", "lammps", "--out", "exported"];
+    let exported = program().args(export).current_dir(dir.path()).output().unwrap();
+    assert!(exported.status.success(), "{}", stderr(&exported));
+    run("diff -r engine-lammps exported");
     if Command::new("cc").arg("--version").output().is_err() {
         assert!(std::env::var_os("ASPERITY_REQUIRE_COMPILERS").is_none(), "there is no cc");
         eprintln!("SKIPPED the C of the page: there is no cc");

@@ -152,25 +152,15 @@ fn leaves_every_file_of_the_contract() {
         .collect();
     assert!(times.len() == 2 && (times[0] - 0.02).abs() < 1e-12 && (times[1] - 0.02 - last.delta_t).abs() < 1e-12, "{times:?}");
 
-    // A person is told what came out, and where it is.
+    // A person is told in three lines what came out, how well, and where it is.
     let told = stdout(&output);
-    for word in [
-        "F_N0 ",
-        "a0 ",
-        "F_N_slip ",
-        "F_T_max ",
-        "delta_T_slip ",
-        "Newton iterations",
-        " s on CPU",
-        "\ntime by phase ",
-        "\nelement tangents ",
-        &dir.to_string_lossy(),
-    ] {
+    assert_eq!(told.lines().count(), 3, "{told}");
+    for word in ["F_N0 ", "a0 ", "F_N_slip ", "F_T_max ", "\nerrors: ", "done in ", &format!("\nresults in {}\n", dir.display())] {
         assert!(told.contains(word), "{word}: {told}");
     }
     // Not a terminal: plain lines.
     assert!(
-        stderr(&output).contains(" %  step 1  segment 0 (last 1)  ") && !stderr(&output).contains('\u{1b}'),
+        stderr(&output).contains(" %  segment 0, step 1  h ") && !stderr(&output).contains('\u{1b}'),
         "{}",
         stderr(&output)
     );
@@ -185,6 +175,19 @@ fn leaves_every_file_of_the_contract() {
         .expect("the program runs");
     assert_eq!((again.status.code(), again.stdout.len(), again.stderr.len()), (Some(0), 0, 0), "{}", stderr(&again));
     assert_eq!(fs::read(scratch.path("again").join("history.csv")).expect("a history"), text.as_bytes());
+
+    // Whoever wants to know more is told every result and what took the time.
+    let more = program()
+        .arg("run")
+        .args([&dir.join("case.toml"), Path::new("--out"), &scratch.path("more")])
+        .args(CPU)
+        .arg("-v")
+        .output()
+        .expect("the program runs");
+    let told = stdout(&more);
+    for word in ["F_N0 ", "delta_T_slip ", "Newton iterations", " s on CPU", "\ntime by phase ", "\nelement tangents "] {
+        assert!(told.contains(word), "{word}: {told}");
+    }
 }
 
 #[test]

@@ -10,6 +10,7 @@ from .case import Case
 from .errors import AsperityError, CaseError, Interrupted, MissingPackage, NotConverged
 from .fields import Fields, Mesh
 from .law import Check, Contacts, Law
+from .picture import Picture
 
 # The functions come after the modules of the same names: `asperity.run` is the function.
 from .run import Run, run
@@ -27,6 +28,7 @@ __all__ = [
     "Mesh",
     "MissingPackage",
     "NotConverged",
+    "Picture",
     "Run",
     "Study",
     "Table",

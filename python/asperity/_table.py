@@ -10,10 +10,13 @@ from typing import Any
 import numpy as np
 
 from ._arguments import as_array, items
+from ._html import table
 from ._optional import need
 from .errors import AsperityError, CaseError
 
 __all__ = ["Table"]
+
+_MOST_SHOWN = 20
 
 
 class Table(Mapping[str, np.ndarray]):
@@ -57,6 +60,20 @@ class Table(Mapping[str, np.ndarray]):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self.rows} rows of {', '.join(self._columns)}>"
+
+    def _repr_html_(self) -> str:
+        # The first and the last rows of a long one.
+        rows = list(range(self.rows))
+        if self.rows > _MOST_SHOWN:
+            rows = [*rows[: _MOST_SHOWN // 2], *rows[-_MOST_SHOWN // 2 :]]
+
+        def cell(value: Any) -> str:
+            return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+        lines = [tuple(cell(column[row]) for column in self._columns.values()) for row in rows]
+        if self.rows > _MOST_SHOWN:
+            lines.insert(_MOST_SHOWN // 2, ("...",) * len(self._columns))
+        return table(lines, tuple(self._columns))
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -124,6 +125,9 @@ class Case:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self).parse, (self.to_toml(),)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self.to_toml())}</pre>"
 
     def __repr__(self) -> str:
         return f"Case.parse('''{self.to_toml()}''')"

@@ -14,10 +14,12 @@ from numpy.typing import ArrayLike
 
 from ._arguments import described, numbers, path, text, truth
 from ._asperity import NativeContacts, NativeLaw, fit_law, interpolate_law, table_law, table_study
+from ._html import table
 from ._kept import Scratch
 from ._table import Table
 from .case import Case, as_case
 from .errors import CaseError, Interrupted
+from .picture import Picture, asked
 from .study import Study
 from .study import study as run_study
 
@@ -208,9 +210,26 @@ class Law:
             sheared once at constant indentation.
         """
         columns, outside = self._native.predict(as_case(case)._native, truth("press", press))
-        if outside:
-            warnings.warn(f"the case lies outside of what the law was fitted to: {', '.join(outside)}. compare with a run", stacklevel=2)
+        _warn_outside(outside)
         return Table(columns)
+
+    def plot(
+        self,
+        case: Case | Mapping[str, Any] | str | os.PathLike[str],
+        name: str | None = None,
+        *,
+        width: str | None = None,
+        title: bool = True,
+    ) -> Picture:
+        """A picture, as ``asperity plot`` draws it, of what :meth:`predict` gives for a case.
+
+        :param name: ``"forces"`` of the shear, ``"ratio"`` F_T/F_N, or ``"indentation"``, F_N over h; by default the forces, without a shear F_N over h.
+        :param width: as ``"85mm"``, ``"3.3in"`` or ``"640px"``; the picture is laid out for it.
+        :param title: whether it has a title.
+        """
+        picture, outside = self._native.plot(as_case(case)._native, *asked(name, width, title))
+        _warn_outside(outside)
+        return Picture(picture)
 
     def export(
         self,
@@ -262,6 +281,13 @@ class Law:
         increment = numbers("delta", delta, (number, 2), one="the two components (x, y)")
         return Table(state._native.update(depth, increment))
 
+    def _repr_html_(self) -> str:
+        law = self.to_dict()
+        rows = [("law", repr(self).removeprefix("<Law: ").removesuffix(">"))]
+        if "levels" in law:
+            rows += [("h", f"{law['range']['from']:.3g} to {law['range']['to']:.3g} R")]
+        return table(rows)
+
     def __repr__(self) -> str:
         law = self.to_dict()
         if "levels" in law:
@@ -270,6 +296,11 @@ class Law:
             return f"<Law: by interpolation between {law['source']['cases']} contacts of {law['source']['materials']} materials>"
         provenance = law["provenance"]
         return f"<Law: fitted to {provenance['cases']} cases of {provenance['materials']} materials>"
+
+
+def _warn_outside(outside: list[str]) -> None:
+    if outside:
+        warnings.warn(f"the case lies outside of what the law was fitted to: {', '.join(outside)}. compare with a run", stacklevel=3)
 
 
 def _of_json(kind: type[Law], law: str, pair: str | None = None) -> Law:

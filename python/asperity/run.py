@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import operator
 import os
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _asperity, _table
 from ._arguments import described, path, text, truth
+from ._html import summary_table
 from ._kept import Directory, Scratch
 from ._optional import need
 from ._progress import Bar, Listener, bar_wanted
@@ -21,8 +23,16 @@ from ._table import Table
 from .case import Case, as_case
 from .errors import AsperityError, CaseError, Interrupted, NotConverged
 from .fields import Fields, Mesh, read_vtu
+from .picture import Picture, asked
+
+if TYPE_CHECKING:
+    from .law import Law
 
 __all__ = ["Run", "run"]
+
+# Of the program's pictures, with their names of forces and lengths.
+_BLUE, _VERMILION = "#0072b2", "#d55e00"
+_F_N, _F_T, _DELTA_T, _H = "$F_\\mathrm{N}$", "$F_\\mathrm{T}$", "$\\delta_\\mathrm{T}$", "$h$"
 
 
 class Run(Directory):
@@ -115,6 +125,27 @@ class Run(Directory):
         fields = self.fields()
         return Mesh(fields.points, fields.cells)
 
+    def plot(self, name: str | None = None, *, law: Law | None = None, width: str | None = None, title: bool = True) -> Picture:
+        """A picture as ``asperity plot`` draws it, which a notebook shows and ``save`` writes.
+
+        :param name: ``"forces"``, ``"ratio"``, ``"stick"``, ``"slip"``, ``"indentation"``, ``"pressure"``, ``"contact"``, ``"plane"``, ``"moments"`` or, with
+            ``law``, ``"law"``; by default the last of these with a law, else the forces of the shear or, without one, of the press.
+        :param law: a law to draw beside the run.
+        :param width: as ``"85mm"``, ``"3.3in"`` or ``"640px"``; the picture is laid out for it.
+        :param title: whether diagrams have titles.
+        """
+        if law is not None and not hasattr(law, "_native"):
+            raise CaseError(f"law: is {described(law)}. Allowed: a Law, None")
+        chosen = asked(name, width, title)
+        self._file("history.csv")
+        return Picture(_asperity.run_picture(self.directory, chosen[0], None if law is None else law._native, chosen[1], chosen[2]))
+
+    def _repr_html_(self) -> str:
+        picture = ""
+        with contextlib.suppress(AsperityError, OSError):
+            picture = self.plot(width="640px").svg
+        return summary_table(self.summary) + picture
+
     def plot_forces(self, ax: Any = None) -> Any:
         """F_N and F_T over delta_T in shear, or F_N over h where there is none; gives the axes of matplotlib."""
         ax = _axes(ax)
@@ -123,25 +154,30 @@ class Run(Directory):
         if len(sheared):
             # From the last step before it moves along the plane.
             rows = slice(max(sheared[0] - 1, 0), None)
-            x, label = history["delta_T"][rows], "delta_T"
-            ax.plot(x, history["F_T"][rows], marker=".", label="F_T")
+            x, label = history["delta_T"][rows], _DELTA_T
+            ax.plot(x, history["F_T"][rows], color=_VERMILION, linestyle="--", marker="o", markerfacecolor="none", label=f"{_F_T}, tangential")
         else:
             rows = slice(None)
-            x, label = history["h"], "h"
-        ax.plot(x, history["F_N"][rows], marker=".", label="F_N")
-        ax.set_xlabel(label)
-        ax.set_ylabel("force")
+            x, label = history["h"], _H
+        ax.plot(x, history["F_N"][rows], color=_BLUE, marker=".", label=f"{_F_N}, normal")
+        ax.set_xlabel(self._labelled(label, "length"))
+        ax.set_ylabel(self._labelled("force", "force"))
         ax.legend()
         return ax
+
+    def _labelled(self, what: str, dimension: str) -> str:
+        """With the unit that the case names."""
+        unit = self.case.to_dict().get("units", {}).get(dimension)
+        return what if unit is None else f"{what} in {unit}"
 
     def plot_press(self, ax: Any = None) -> Any:
         """F_N over h, as far as the sphere is not sheared; gives the axes of matplotlib."""
         ax = _axes(ax)
         history = self.history
         pressed = history["delta_T"] == 0.0
-        ax.plot(history["h"][pressed], history["F_N"][pressed], marker=".")
-        ax.set_xlabel("h")
-        ax.set_ylabel("F_N")
+        ax.plot(history["h"][pressed], history["F_N"][pressed], color=_BLUE, marker=".")
+        ax.set_xlabel(self._labelled(_H, "length"))
+        ax.set_ylabel(self._labelled(_F_N, "force"))
         return ax
 
     def plot_pressure(self, step: int | None = None, ax: Any = None) -> Any:
@@ -150,10 +186,10 @@ class Run(Directory):
         contact = self.contact(step)
         closed = contact["status"] != "open"
         shown = ax.scatter(contact["x"][closed], contact["y"][closed], c=contact["pressure"][closed], s=12)
-        ax.figure.colorbar(shown, ax=ax, label="pressure")
+        ax.figure.colorbar(shown, ax=ax, label=self._labelled("pressure", "stress"))
         ax.set_aspect("equal")
-        ax.set_xlabel("x")
-        ax.set_ylabel("y")
+        ax.set_xlabel(self._labelled("$x$", "length"))
+        ax.set_ylabel(self._labelled("$y$", "length"))
         return ax
 
 

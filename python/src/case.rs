@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::Case;
-use asperity::case::CaseError;
+use asperity::case::{CaseError, Document, mistakes};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 
@@ -26,14 +26,16 @@ impl NativeCase {
             let kind = table.get_type().name()?;
             return Err(refused(format!("case: is a {kind}, which is the wrong type. Allowed: a dictionary of tables")));
         };
-        Case::from_table(&Reading::default().table(table, "")?).map(|case| Self { case }).map_err(refused)
+        Self::of(&Document::from_table(&Reading::default().table(table, "")?))
     }
 
     /// Of the text of a case file.
     #[staticmethod]
     fn parse(text: &str, name: &str, settings: Vec<String>) -> PyResult<Self> {
         check_length(name, text)?;
-        Case::parse(text, name, &settings).map(|case| Self { case }).map_err(refused)
+        let mut document = Document::parse(text, name).map_err(refused)?;
+        document.set_arguments(&settings).map_err(refused)?;
+        Self::of(&document)
     }
 
     /// Of a case file.
@@ -45,7 +47,11 @@ impl NativeCase {
             Err(CaseError::Unreadable { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
                 Err(pyo3::exceptions::PyFileNotFoundError::new_err(format!("{}: {source}", file.display())))
             }
-            Err(error) => Err(refused(error)),
+            // All that is wrong with it; what cannot be read twice has been told once.
+            Err(first) => match std::fs::read_to_string(&file).map(|text| Document::parse(&text, &file.display().to_string())) {
+                Ok(Ok(mut document)) if document.set_arguments(&settings).is_ok() => Self::of(&document),
+                _ => Err(refused(first)),
+            },
         }
     }
 
@@ -63,6 +69,16 @@ impl NativeCase {
     fn to_dict(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let table = toml::Value::try_from(&self.case).map_err(refused)?;
         Ok(from_value(py, &table)?.unbind())
+    }
+}
+
+impl NativeCase {
+    /// The case, or all that is wrong with it, a line each.
+    fn of(document: &Document) -> PyResult<Self> {
+        Case::from_document(document).map(|case| Self { case }).map_err(|first| match mistakes(document) {
+            found if found.len() > 1 => refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
+            _ => refused(first),
+        })
     }
 }
 

@@ -25,6 +25,7 @@ use crate::arguments::{self, whole};
 use crate::case::NativeCase;
 use crate::contacts::Contacts;
 use crate::errors::{failed, refused};
+use crate::pictures::{NativePicture, law_picture};
 use crate::process::compute;
 use crate::wait::wait;
 
@@ -170,6 +171,20 @@ impl NativeLaw {
         Ok((columns, outside.iter().map(ToString::to_string).collect()))
     }
 
+    /// A picture of what it predicts along the path of a case.
+    fn plot(
+        &self,
+        py: Python<'_>,
+        case: &NativeCase,
+        name: Option<&str>,
+        width: Option<&str>,
+        title: bool,
+    ) -> PyResult<(NativePicture, Vec<String>)> {
+        let case = &case.case;
+        let (points, outside) = compute(py, || self.law.follow(case).map_err(failed))??;
+        Ok((law_picture(&points, case, name, width, title)?, outside.iter().map(ToString::to_string).collect()))
+    }
+
     /// Simulates the paths of `law check` for the material, the friction and the depth of a case
     /// (without one, of the table) and follows them with the law: a dictionary a path; and the
     /// exception that interrupted it.
@@ -233,6 +248,11 @@ impl NativeLaw {
 }
 
 impl NativeLaw {
+    /// The law itself.
+    pub fn file(&self) -> &LawFile {
+        &self.law
+    }
+
     fn of(law: LawFile) -> Self {
         Self { law: Arc::new(law) }
     }

@@ -7,6 +7,7 @@ mod contacts;
 mod errors;
 mod law;
 mod memory;
+mod pictures;
 mod process;
 mod results;
 mod run;
@@ -24,6 +25,8 @@ mod _asperity {
     use super::contacts::Contacts;
     #[pymodule_export]
     use super::law::{NativeLaw, fit_law, interpolate_law, table_law, table_study};
+    #[pymodule_export]
+    use super::pictures::{NativePicture, program, run_picture};
     #[pymodule_export]
     use super::results::{history, resolved_case};
     #[pymodule_export]

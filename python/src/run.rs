@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arguments::{check_length, whole};
 use crate::case::NativeCase;
-use crate::errors::{failed, refused};
+use crate::errors::{failed, in_python, refused};
 use crate::wait::{News, Told, wait};
 
 fn device(word: &str) -> PyResult<DeviceChoice> {
@@ -93,7 +93,7 @@ pub fn run(
         error => failed(error),
     })?;
     let status = serde_json::to_value(outcome.status).map_err(failed)?;
-    Ok((status.as_str().unwrap_or_default().to_owned(), outcome.message, raised))
+    Ok((status.as_str().unwrap_or_default().to_owned(), outcome.message.map(in_python), raised))
 }
 
 /// Computes a study into a directory; gives the numbers of cases that are done, failed and pending,

@@ -44,7 +44,7 @@ pub(crate) use read::CONTACT_RADII;
 pub use reader::{Field, Reader};
 pub use scale::Scaled;
 pub use schema::{case_schema, study_schema};
-pub use starter::starter_case;
+pub use starter::{short_case, starter_case};
 
 use serde::Serialize;
 

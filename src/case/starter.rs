@@ -37,6 +37,29 @@ pub fn starter_case(law: &str, file: &str) -> String {
     text
 }
 
+/// The same in twenty lines: the keys that a case must have, and an opponent to take.
+pub fn short_case(law: &str, file: &str) -> String {
+    let mut text = format!(
+        "# `asperity run {file} --out out` runs it, `asperity explain KEY` says what a key means.\n\
+         # Any consistent units: with mm and MPa forces are in N.\n"
+    );
+    for (table, _) in TABLES.into_iter().filter(|(table, _)| *table != "path") {
+        let required = KEYS.iter().filter(|key| key.table == table && key.fits(law) && key.presence == Presence::Required);
+        let lines: Vec<String> = required
+            .map(|key| match key.name {
+                "law" => format!("law = {law:?}\n"),
+                name => format!("{name} = {}\n", key.example),
+            })
+            .collect();
+        if !lines.is_empty() {
+            text.push_str(&format!("[{table}]\n{}", lines.concat()));
+        }
+    }
+    text.push_str("# [opponent]\n# equal = true   # another such sphere; without it a rigid plane\n");
+    text.push_str("[[path]]\nindentation = 0.02\n[[path]]\nshear = \"full-slip\"\n");
+    text
+}
+
 /// A press and a shear.
 fn path(text: &mut String, about: &str, keys: &[&Key]) {
     text.push_str(&format!("\n# [[path]]: {about}. The keys of a segment:\n"));

@@ -14,10 +14,9 @@ use crate::bench::{self, BenchError, Options, table};
 use crate::compute::select::{self, DeviceChoice};
 use crate::output::write_own;
 
-/// Measure the kernels (return mapping, internal force, tangent, contact, commit) on a GPU and on
-/// the CPU.
+/// Measure the kernels on a GPU and on the CPU.
 ///
-/// On a GPU also parts of the linear solver by themselves. Needs nothing but this program, and a
+/// These are return mapping, internal force, tangent, contact and commit. On a GPU also parts of the linear solver by themselves. Needs nothing but this program, and a
 /// driver for the GPU. Takes some minutes.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {

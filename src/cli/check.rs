@@ -11,8 +11,10 @@ use crate::case::{Case, estimated_elements, estimated_memory};
 use crate::simulation::problem::{press_steps, shear_steps};
 use crate::study::{Study, StudyCase, estimated_seconds};
 
-/// Check a case without running it, and print it with every default and its size; of a study, check
-/// every combination, print how many there are, and the first.
+/// Check a case or a study without running it.
+///
+/// Prints the case with every default and its size; of a study how many combinations there are, all
+/// of them checked, and the first.
 #[derive(Clone, Debug, Args)]
 pub struct CheckArgs {
     /// A case or study file; `-` for standard input.

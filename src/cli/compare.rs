@@ -13,7 +13,7 @@ use crate::output::plots::axes::{Axes, AxisUnits};
 use crate::output::plots::{OverlaidRun, Sheet, View, plot_overlay};
 use crate::output::{OutputDirectory, Status, StepRecord, Summary, read_history};
 
-/// Compare runs: a table of results with differences, and the curves in one picture.
+/// Compare runs, in a table and a picture.
 ///
 /// Differences are in per cent of the first run. Runs of different radius or Young's modulus are
 /// compared without units: forces over E R^2, lengths over R, stiffnesses over E R.
@@ -28,6 +28,9 @@ pub struct CompareArgs {
     /// Width of the picture, as in 85mm, 3.3in or 640px.
     #[arg(long, value_name = "WIDTH", value_parser = PictureWidth::from_str)]
     pub width: Option<PictureWidth>,
+    /// Leave out the title.
+    #[arg(long)]
+    pub no_title: bool,
     /// Print the table as JSON.
     #[arg(long)]
     pub json: bool,
@@ -107,7 +110,7 @@ pub fn compare(args: &CompareArgs) -> Result<Outcome, CliError> {
     let first = &runs[0].case;
     // What is divided already has no unit any more.
     let axes = if unlike { Axes::normalised(1.0, 1.0) } else { Axes::of(first, AxisUnits::Auto) };
-    let picture = plot_overlay(&overlaid, &View { axes, sheet: Sheet { width: args.width } })?;
+    let picture = plot_overlay(&overlaid, &View { axes, sheet: Sheet { width: args.width, untitled: args.no_title } })?;
     picture.write(&args.out, format_of(&args.out).unwrap_or_default())?;
     if args.json {
         print_json(&as_json(&runs, unlike))?;

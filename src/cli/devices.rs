@@ -8,10 +8,9 @@ use crate::compute::gpu::drivers::Drivers;
 use crate::compute::gpu::report::{Surroundings, report, report_json};
 use crate::compute::select::{DEVICE_VARIABLE, measured};
 
-/// List GPU adapters, what they can do and what the kernels need of them, and which would be chosen
-/// and why.
+/// List GPUs, and say which would be chosen and why.
 ///
-/// A GPU that auto may take is measured for a twentieth of a second, once a machine; the result is
+/// With what each can do and what the kernels need of it. A GPU that auto may take is measured for a twentieth of a second, once a machine; the result is
 /// kept in the user's cache folder.
 #[derive(Clone, Debug, Args)]
 pub struct DevicesArgs {

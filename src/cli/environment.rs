@@ -28,7 +28,7 @@ pub fn check() -> Result<(), CliError> {
 /// Where it stands that a GPU is to be used, as it would be typed.
 pub fn gpu_asked_by() -> String {
     let is_option = |argument: std::ffi::OsString| argument.to_string_lossy().starts_with("--device");
-    let by_variable = DeviceChoice::of_environment() == Ok(DeviceChoice::Gpu) && !std::env::args_os().any(is_option);
+    let by_variable = DeviceChoice::of_environment() == Ok(DeviceChoice::Gpu) && !super::arguments().into_iter().any(is_option);
     if by_variable { format!("{DEVICE_VARIABLE}=gpu") } else { "--device gpu".to_owned() }
 }
 
@@ -39,7 +39,7 @@ fn memory(value: &str) -> bool {
 /// A message in which long arguments of this program are shortened; `None` if there are none.
 pub fn shortened(message: &str) -> Option<String> {
     let mut text = message.to_owned();
-    for argument in std::env::args_os().skip(1) {
+    for argument in super::arguments().into_iter().skip(1) {
         let argument = argument.to_string_lossy().into_owned();
         let value = argument.split_once('=').map_or(argument.as_str(), |(_, value)| value);
         for long in [argument.as_str(), value] {

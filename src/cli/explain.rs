@@ -31,7 +31,9 @@ const STUDY: [(&str, &str); 4] = [
     ),
 ];
 
-/// Explain a key of case and study files: meaning, unit, range and default.
+/// Explain a key of case and study files.
+///
+/// Says what it means, its unit, range and default.
 #[derive(Clone, Debug, Args)]
 pub struct ExplainArgs {
     /// A key such as contact.friction or friction, or a table such as mesh. Without one, all keys

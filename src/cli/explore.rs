@@ -18,10 +18,11 @@ use crate::explore::{Beginning, End, Explorer, FIRST_CASE, Place, Server, StudyC
 use crate::law::LawFile;
 use crate::law::file::BUILT_IN;
 
-/// Look at a law in the browser: forces over displacements at once for any material, friction and
-/// depth, with its errors and closed forms beside it; simulate what is shown, and export it. The
-/// page is served on this machine alone, ends with Ctrl-C, and by itself after an hour without a
-/// request.
+/// Look at a law in the browser, simulate what is shown, export it.
+///
+/// Shows forces over displacements at once for any material, friction and depth, with the law's
+/// errors and closed forms beside it. The page is served on this machine alone, ends with Ctrl-C,
+/// and by itself after an hour without a request.
 #[derive(Clone, Debug, Args)]
 pub struct ExploreArgs {
     /// The case that the page begins with, or the directory of a run, whose results are laid over

@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 
 use super::{CliError, Outcome, print};
 use crate::case::keys::LAWS;
-use crate::case::starter_case;
+use crate::case::{short_case, starter_case};
 use crate::output::write_atomically;
 use crate::quoting;
 
@@ -23,6 +23,9 @@ pub struct InitArgs {
     /// The hardening law of the material.
     #[arg(long, value_name = "LAW", default_value = "ideal", value_parser = PossibleValuesParser::new(LAWS))]
     pub material: String,
+    /// Twenty lines: only the keys that a case must have, and how to run it.
+    #[arg(long)]
+    pub short: bool,
     /// Replace an existing file.
     #[arg(long)]
     pub force: bool,
@@ -30,8 +33,9 @@ pub struct InitArgs {
 
 /// Writes the file and says what to do with it.
 pub fn init(args: &InitArgs) -> Result<Outcome, CliError> {
+    let case = if args.short { short_case } else { starter_case };
     if args.name.as_os_str() == "-" {
-        print(&starter_case(&args.material, "case.toml"))?;
+        print(&case(&args.material, "case.toml"))?;
         return Ok(Outcome::Done);
     }
     let mut file = args.name.clone();
@@ -42,7 +46,7 @@ pub fn init(args: &InitArgs) -> Result<Outcome, CliError> {
     if file.exists() && !args.force {
         return Err(CliError::FileThere { file });
     }
-    write_atomically(&file, |out| out.write_all(starter_case(&args.material, &name).as_bytes()))?;
+    write_atomically(&file, |out| out.write_all(case(&args.material, &name).as_bytes()))?;
     print(&format!("{} written; `asperity run {name} --out out` runs it\n", file.display()))?;
     Ok(Outcome::Done)
 }

@@ -8,6 +8,7 @@ use clap::{Args, Subcommand};
 
 use serde_json::{Value, json};
 
+use super::contact::ContactArgs;
 use super::input::Input;
 use super::law_check::{CheckArgs, check_law};
 use super::law_compose::{ComposeArgs, compose_tables};
@@ -22,6 +23,7 @@ use crate::law::formulas::predict::{NormalSource, Prediction, predict};
 use crate::law::formulas::prior::Prior;
 use crate::law::interpolated::{self, Interpolated};
 use crate::law::range::OutOfRange;
+use crate::law::report::RegionError;
 use crate::law::{Law, LawError, LawFile, report};
 use crate::output::{decimal, refuse_foreign, refuse_input};
 
@@ -77,6 +79,10 @@ pub struct FitArgs {
     /// Print the law as JSON, as in DIR/law.json, instead of the tables.
     #[arg(long)]
     pub json: bool,
+    /// Print also how every other form does, and the errors of each region of materials and
+    /// friction.
+    #[arg(short, long, conflicts_with = "json")]
+    pub verbose: bool,
 }
 
 /// The arguments of `law predict`.
@@ -87,8 +93,11 @@ pub struct PredictArgs {
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The case, with any path; `-` for standard input.
-    #[arg(value_name = "CASE.toml")]
-    pub case: PathBuf,
+    #[arg(value_name = "CASE.toml", required_unless_present = "youngs_modulus")]
+    pub case: Option<PathBuf>,
+    /// A contact without a case file.
+    #[command(flatten)]
+    pub contact: ContactArgs,
     /// Take F_N0 and a0 from a simulation of the press, not from the formulas of the law; for a
     /// case with one press and one shear at constant indentation.
     #[arg(long)]
@@ -138,7 +147,7 @@ fn fit_law(args: &FitArgs) -> Result<Outcome, CliError> {
     if args.json {
         print_json(&law)?;
     } else {
-        print(&format!("{}\nlaw in {}\n", summary(&law), path.display()))?;
+        print(&format!("{}\nlaw in {}\n", summary(&law, args.verbose), path.display()))?;
     }
     Ok(Outcome::Done)
 }
@@ -164,7 +173,7 @@ fn summary_of_interpolation(law: &Interpolated) -> String {
 }
 
 /// What `law fit` prints.
-fn summary(law: &Law) -> String {
+fn summary(law: &Law, verbose: bool) -> String {
     let p = &law.provenance;
     let (coarsest, finest) = p.elements_per_contact_radius;
     let mut text = format!(
@@ -186,6 +195,22 @@ fn summary(law: &Law) -> String {
             weight(prior.normal.map(|weights| weights[1]))
         );
     }
+    if !verbose {
+        for (what, regions) in [("known", &law.errors), ("predicted from h", &law.errors_predicted)] {
+            // The last region is all of them.
+            if let Some(RegionError { errors, .. }) = regions.last() {
+                let [f_t, most, f_n, normal_most] =
+                    [errors.f_t_rms, errors.f_t_max, errors.f_n_rms, errors.f_n_max].map(|error| 100.0 * error);
+                let _ = writeln!(
+                    text,
+                    "F_N0 and a0 {what}: F_T {f_t:.2} % rms ({most:.1} at worst), F_N {f_n:.2} ({normal_most:.1}), cross-validated"
+                );
+            }
+        }
+        text.push('\n');
+        text.push_str(&law.formulas());
+        return text;
+    }
     let predicted = "Errors with F_N0 and a0 predicted from h, cross-validated, in per cent";
     let known = "Errors of the kept fit (*) with F_N0 and a0 known, cross-validated, in per cent";
     for table in [
@@ -201,7 +226,11 @@ fn summary(law: &Law) -> String {
 }
 
 fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
-    let input = Input::read(&args.case)?;
+    let input = match (args.contact.input(), &args.case) {
+        (Some(input), _) => input,
+        // Clap lets nothing pass without one of the two.
+        (None, file) => Input::read(file.as_deref().unwrap_or(Path::new("")))?,
+    };
     let case = input.case(&args.set)?;
     let law = LawFile::read_or_built_in(&args.law)?;
     let in_case = |source: LawError| CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) };

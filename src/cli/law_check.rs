@@ -10,7 +10,7 @@ use clap::Args;
 
 use super::options::{DeviceArgs, Verbosity};
 use super::{CliError, Outcome, print};
-use crate::case::Case;
+use crate::case::{Case, Friction, Material};
 use crate::law::check::{
     AIMS, Checked, MOST_MESH_ERROR, Path, Ranges, check, materials, opponent_of, protocol, random_paths, table,
 };
@@ -100,10 +100,13 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
             (None, LawFile::Formulas(_) | LawFile::Interpolated(_)) => materials(&base),
         };
         for (name, case) in &cases {
-            let friction = case.contact.friction;
             let paths = protocol(case, &law.contact_parameters(case).map_err(in_case)?, elements);
-            let title = format!("{name}, {friction:?}, {:?}", case.scaled().0.material.hardening);
-            simulate(&paths, &title, &format!("{name} {friction:?}"))?;
+            let friction = match case.contact.friction {
+                Friction::Coefficient(mu) => format!("mu {mu}"),
+                Friction::Stick => "full stick".to_owned(),
+            };
+            let title = format!("{name}: {friction}, {}", in_words(&case.scaled().0.material));
+            simulate(&paths, &title, &format!("{name} {friction}"))?;
         }
     }
     let goal = GOALS[usize::from(!matches!(law, LawFile::Table(_)))];
@@ -120,6 +123,14 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
         return Ok(Outcome::NotConverged);
     }
     Ok(if met { Outcome::Done } else { Outcome::GoalMissed })
+}
+
+/// A material in the words of a case file: `hardening ideal, yield_stress 0.002, E 1`.
+fn in_words(material: &Material) -> String {
+    // A hardening law is always TOML.
+    let hardening = toml::to_string(&material.hardening).unwrap_or_default().replace('"', "").replace(" = ", " ");
+    let numbers: Vec<&str> = hardening.lines().collect();
+    format!("{}, E {}, nu {}", numbers.join(", ").replacen("law ", "", 1), material.youngs_modulus, material.poissons_ratio)
 }
 
 /// How many paths are within the aims, by kind and by opponent, and whether that is enough.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::options::{DeviceArgs, Verbosity};
+use super::options::{DeviceArgs, Verbosity, out_or_name};
 use super::study::{compute, options};
 use super::{CliError, Outcome, print};
 use crate::case::{Case, PictureFormat};
@@ -25,9 +25,10 @@ pub struct TabulateArgs {
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Directory for the study and its law.json: new or empty, or one with an earlier table if
-    /// --resume or --force is given.
+    /// --resume or --force is given. Without it, the name of the case file less its extension, in
+    /// the current directory.
     #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
     /// Elements along the contact radius, at every depth; twice as many at the surface.
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16))]
     pub elements: u32,
@@ -55,14 +56,15 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     let case = Case::load(&args.case, &args.set)?;
     let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
     let elements = args.elements as usize;
+    let out = out_or_name(args.out.as_ref(), &args.case);
     let depths = depths(&case).map_err(in_case)?;
     let study = Study::parse(&study_text(&case, elements, &depths), "tabulate")?;
     // Before hours of simulations.
     for name in ["law.json", "tabulated.svg"] {
-        refuse_foreign(&args.out.join(name))?;
+        refuse_foreign(&out.join(name))?;
     }
     let options = Options { resume: args.resume, force: args.force, ..options(&args.device) };
-    let (report, interrupted) = compute(&study, &args.out, &options, args.verbosity.quiet)?;
+    let (report, interrupted) = compute(&study, &out, &options, args.verbosity.quiet)?;
     if report.pending > 0 || interrupted {
         // A closed stderr does not change how it went.
         let _ = writeln!(
@@ -70,16 +72,16 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
             "error: interrupted with {} depths to go. What was computed is kept in {}; to go on, run the same command \
              with --resume",
             report.pending,
-            args.out.display()
+            out.display()
         );
         return Ok(Outcome::Interrupted);
     }
     // Nobody begins another study there before its table is written.
-    let _study = hold(&args.out, &study)?;
-    let built = build(&args.out, &case, elements)?;
-    let law = args.out.join("law.json");
+    let _study = hold(&out, &study)?;
+    let built = build(&out, &case, elements)?;
+    let law = out.join("law.json");
     built.table.write(&law)?;
-    let drawn = args.out.join("tabulated.svg");
+    let drawn = out.join("tabulated.svg");
     table_picture(&built)?.write(&drawn, PictureFormat::Svg)?;
     print(&format!("{}\nlaw in {}, picture in {}\n", summary(&built), law.display(), drawn.display()))?;
     Ok(if built.missing.is_empty() { Outcome::Done } else { Outcome::CasesFailed })

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod check;
 pub mod cluster;
 pub mod compare;
+pub mod contact;
 pub mod devices;
 pub mod environment;
 pub mod error;
@@ -32,15 +33,19 @@ pub mod verify;
 
 pub use error::CliError;
 
+use std::ffi::OsString;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::OnceLock;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use serde::Serialize;
 
 /// Simulates elastic-plastic spheres pressed onto a rigid plane and sheared along it.
 #[derive(Debug, Parser)]
 #[command(name = "asperity", version, propagate_version = true, after_help = EXIT_CODES)]
+#[command(help_template = "{about}\n\n{usage-heading} {usage}\n\n{before-help}Options:\n{options}{after-help}")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -49,6 +54,33 @@ struct Cli {
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 a law that is checked misses its goal; 2 bad input or usage; \
                           3 did not converge or ran out of memory or room (what was computed is kept), or a check failed; \
                           75 interrupted (--resume goes on).";
+
+/// The subcommands by what they are for, as `--help` lists them.
+const GROUPS: [(&str, &[&str]); 4] = [
+    ("Simulate", &["init", "check", "run", "study", "plot", "compare", "explain"]),
+    ("Laws", &["law", "explore"]),
+    ("This program and this machine", &["verify", "devices", "prove", "bench", "point"]),
+    ("Editors and shells", &["schema", "completions", "man", "help"]),
+];
+
+/// The command line, its help with the subcommands in [`GROUPS`].
+fn command_line() -> clap::Command {
+    let command = Cli::command();
+    let mut list = String::new();
+    for (group, names) in GROUPS {
+        list.push_str(&format!("\n{group}:\n"));
+        for name in names {
+            let about = command.find_subcommand(name).and_then(clap::Command::get_about).map(ToString::to_string);
+            match about {
+                Some(about) => list.push_str(&format!("  {name:<12} {about}\n")),
+                None if *name == "help" => list.push_str("  help         The options of a subcommand: `asperity help run`\n"),
+                // One that was left out of the build.
+                None => {}
+            }
+        }
+    }
+    command.before_help(list.trim_start().trim_end().to_owned())
+}
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -97,6 +129,13 @@ impl Command {
     }
 }
 
+impl Cli {
+    /// The arguments that the program was called with.
+    fn from_command_line() -> Result<Self, clap::Error> {
+        Self::from_arg_matches(&command_line().try_get_matches_from(arguments())?)
+    }
+}
+
 /// How a subcommand that had good input ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -115,36 +154,66 @@ pub enum Outcome {
     Interrupted,
 }
 
-impl From<Outcome> for ExitCode {
-    fn from(outcome: Outcome) -> Self {
-        ExitCode::from(match outcome {
+impl Outcome {
+    fn exit_code(self) -> u8 {
+        match self {
             Outcome::Done => 0,
             Outcome::GoalMissed => 1,
             Outcome::NotConverged | Outcome::ChecksFailed | Outcome::CasesFailed => error::NOT_CONVERGED,
             Outcome::Interrupted => 75,
-        })
+        }
+    }
+}
+
+/// What the program was called with, where it runs within another one.
+static CALLED_WITH: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// What the program was called with, its name first.
+fn arguments() -> Vec<OsString> {
+    CALLED_WITH.get().cloned().unwrap_or_else(|| std::env::args_os().collect())
+}
+
+/// The program's file, as a script can call it.
+///
+/// # Errors
+/// What the system says where it does not tell.
+fn program() -> std::io::Result<PathBuf> {
+    match CALLED_WITH.get().and_then(|arguments| arguments.first()) {
+        Some(name) => std::path::absolute(name),
+        None => std::env::current_exe(),
     }
 }
 
 /// The program: reads the arguments, runs the subcommand, reports an error on stderr and ends with
 /// its exit code.
 pub fn main() -> ExitCode {
+    called().into()
+}
+
+/// The program within another one, called with these arguments, the first of which is the file that
+/// scripts call. Gives the exit code; to be called once.
+pub fn main_within(arguments: Vec<OsString>) -> u8 {
+    let _ = CALLED_WITH.set(arguments);
+    called()
+}
+
+fn called() -> u8 {
     signals::begin();
     let checked = crate::processor::check().map_err(CliError::from).and_then(|()| environment::check());
-    let outcome = checked.and_then(|()| match Cli::try_parse() {
-        Ok(cli) => cli.command.run().map(ExitCode::from),
+    let outcome = checked.and_then(|()| match Cli::from_command_line() {
+        Ok(cli) => cli.command.run().map(Outcome::exit_code),
         Err(usage) => {
             // Help and version come this way too, with exit code 0.
             let _ = match environment::shortened(&usage.to_string()) {
                 None => usage.print(),
                 Some(text) => write!(std::io::stderr(), "{text}"),
             };
-            Ok(ExitCode::from(u8::try_from(usage.exit_code()).unwrap_or(error::BAD_INPUT)))
+            Ok(u8::try_from(usage.exit_code()).unwrap_or(error::BAD_INPUT))
         }
     });
     outcome.unwrap_or_else(|error| {
         report(&error);
-        ExitCode::from(error.exit_code())
+        error.exit_code()
     })
 }
 
@@ -178,5 +247,28 @@ pub fn print(text: &str) -> Result<(), CliError> {
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(source) if source.kind() != std::io::ErrorKind::BrokenPipe => Err(CliError::Stdout { source }),
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_subcommand_stands_in_one_group_on_a_line_of_its_own() {
+        let listed: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| *names).copied().filter(|name| *name != "help").collect();
+        let command = Cli::command();
+        let mut known: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+        let mut sorted = listed.clone();
+        sorted.retain(|name| cfg!(feature = "explore") || *name != "explore");
+        sorted.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(sorted, known);
+        let help = command_line().render_help().to_string();
+        for name in known {
+            let lines: Vec<&str> = help.lines().filter(|line| line.starts_with(&format!("  {name} "))).collect();
+            assert!(lines.len() == 1 && lines[0].len() <= 80, "{name}: {help}");
+        }
+        assert!(help.contains("Laws:") && help.contains("--version") && help.contains("Exit codes"), "{help}");
     }
 }

@@ -1,6 +1,7 @@
 //! The options that several subcommands share.
 
 use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args, ValueEnum};
 use log::LevelFilter;
@@ -99,9 +100,16 @@ pub struct Verbosity {
     /// Print errors only, no progress.
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Print more; given twice, every Newton iteration.
+    /// Print more, at the end every result and the time of each phase; given twice, every Newton
+    /// iteration.
     #[arg(short, long, action = ArgAction::Count)]
     pub verbose: u8,
+}
+
+/// Where the results of `file` go: into `out`, and without it into the directory of the file's name
+/// less its extension.
+pub fn out_or_name(out: Option<&PathBuf>, file: &Path) -> PathBuf {
+    out.cloned().unwrap_or_else(|| file.file_stem().map_or_else(PathBuf::new, PathBuf::from))
 }
 
 /// Most threads that are taken for meant, unless the machine has more: beyond it, it is their

@@ -17,9 +17,9 @@ use crate::output::plots::{Sheet, View, replot};
 use crate::output::{OutputDirectory, read_history, refuse_foreign};
 use crate::study::{StudyDirectory, report};
 
-/// Draw the results in a directory: DIR/plots, and DIR/report.html for a study.
+/// Draw the results in a directory.
 ///
-/// A run may be unfinished; of a study, the finished cases are drawn.
+/// Writes DIR/plots, and DIR/report.html for a study. A run may be unfinished; of a study, the finished cases are drawn.
 #[derive(Clone, Debug, Args)]
 pub struct PlotArgs {
     /// The directory of a run or of a study.
@@ -36,6 +36,9 @@ pub struct PlotArgs {
     /// By default that of the case, or each picture's own.
     #[arg(long, value_name = "WIDTH", value_parser = PictureWidth::from_str)]
     pub width: Option<PictureWidth>,
+    /// Leave out the titles, for pictures with a caption.
+    #[arg(long)]
+    pub no_title: bool,
     /// Units on the axes of a run's pictures.
     #[arg(long, value_enum, default_value_t, value_name = "UNITS")]
     pub units: Units,
@@ -80,7 +83,7 @@ fn plot_study(study: &StudyDirectory, args: &PlotArgs) -> Result<Outcome, CliErr
         Some(LawFile::Table(_) | LawFile::Interpolated(_)) | None => None,
     };
     let format = args.format.map_or(PictureFormat::Svg, PictureFormat::from);
-    let written = report::write_report(study, formulas, Sheet { width: args.width }, format)?;
+    let written = report::write_report(study, formulas, Sheet { width: args.width, untitled: args.no_title }, format)?;
     tell(&written)
 }
 
@@ -90,7 +93,7 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError>
     let law = args.law.as_deref().map(LawFile::read_or_built_in).transpose()?;
     let history = read_history(&run.history())?;
     let width = args.width.or(case.output.plot_width);
-    let view = View { axes: Axes::of(&case, args.units.into()), sheet: Sheet { width } };
+    let view = View { axes: Axes::of(&case, args.units.into()), sheet: Sheet { width, untitled: args.no_title } };
     let mut pictures = replot(run, &case, &history, &view)?;
     if let Some(law) = &law {
         let in_case = |source: LawError| CliError::LawCase { file: run.case(), source: Box::new(source) };

@@ -44,7 +44,7 @@ impl From<ProvedPart> for Part {
     }
 }
 
-/// Prove a GPU: each kernel and eight whole cases against the CPU, and what it is worth.
+/// Prove a GPU against the CPU, and measure what it is worth.
 ///
 /// Compares its limits with what the kernels need, each kernel with the CPU in every precision that
 /// it has, and the cases of fixtures/studies/parity.toml (differences, iterations, bits again and

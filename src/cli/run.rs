@@ -1,14 +1,14 @@
 //! `asperity run`: one case, from its file to its results.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
 
 use super::backend::{device_choice, precision_choice};
 use super::input::Input;
-use super::options::{DeviceArgs, Verbosity};
+use super::options::{DeviceArgs, Verbosity, out_or_name};
 use super::signals::stop_flag;
 use super::{CliError, Outcome};
 use crate::output::{LoggedProgress, OutputDirectory, RESULT_MARKER, Status, progress, refuse_input};
@@ -22,9 +22,10 @@ pub struct RunArgs {
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Directory for the results: new or empty, or one with earlier results if --resume, --extend
-    /// or --force is given.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    /// or --force is given. Without it, the name of the case file less its extension, in the
+    /// current directory.
+    #[arg(long, value_name = "DIR", required_if_eq("case", "-"))]
+    pub out: Option<PathBuf>,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
     /// repeated.
     #[arg(long, value_name = "KEY=VALUE")]
@@ -61,7 +62,8 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     args.device.start_threads()?;
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
-    let written = OutputDirectory::existing(&args.out).case();
+    let out = out_or_name(args.out.as_ref(), &args.case);
+    let written = OutputDirectory::existing(&out).case();
     if input.text != format!("{RESULT_MARKER}\n{}", case.to_toml()) {
         refuse_input(&written, &[&args.case])?;
     }
@@ -70,7 +72,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
         precision: precision_choice(&args.device),
         // The pool of the whole program has their number.
         threads: None,
-        out: Some(args.out.clone()),
+        out: Some(out.clone()),
         earlier: match (args.force, args.resume, args.extend) {
             (true, _, _) => Earlier::Replace,
             (_, true, _) => Earlier::Resume,
@@ -94,21 +96,21 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     }
     if simulation.outcome().is_none() {
         let head = format!("asperity {}: {}", env!("CARGO_PKG_VERSION"), command_line());
-        let log = LoggedProgress::new(progress(args.verbosity.quiet), &OutputDirectory::existing(&args.out), &head);
+        let log = LoggedProgress::new(progress(args.verbosity.quiet), &OutputDirectory::existing(&out), &head);
         simulation = simulation.watched_by(Box::new(log));
     }
     let outcome = simulation.run().map_err(in_case)?;
-    report(&outcome, simulation.history().len(), args)
+    report(&outcome, simulation.history().len(), &out, &args.verbosity)
 }
 
 /// The arguments of the program, as they would be typed.
 fn command_line() -> String {
-    std::env::args_os().skip(1).map(quoting::word).collect::<Vec<_>>().join(" ")
+    super::arguments().into_iter().skip(1).map(quoting::word).collect::<Vec<_>>().join(" ")
 }
 
 /// Says how it went, and gives the exit code.
-fn report(outcome: &crate::session::Outcome, steps: usize, args: &RunArgs) -> Result<Outcome, CliError> {
-    let (summary, dir, quiet) = (&outcome.summary, args.out.display(), args.verbosity.quiet);
+fn report(outcome: &crate::session::Outcome, steps: usize, out: &Path, verbosity: &Verbosity) -> Result<Outcome, CliError> {
+    let (summary, dir, quiet) = (&outcome.summary, out.display(), verbosity.quiet);
     let code = match outcome.status {
         Status::Done => Outcome::Done,
         Status::Interrupted => Outcome::Interrupted,
@@ -125,7 +127,8 @@ fn report(outcome: &crate::session::Outcome, steps: usize, args: &RunArgs) -> Re
         )
     } else {
         if !quiet {
-            super::print(&format!("{}results in {dir}\n", summary.report()))?;
+            let text = if verbosity.verbose > 0 { summary.report() } else { summary.brief() };
+            super::print(&format!("{text}results in {dir}\n"))?;
         }
         let message = outcome.message.clone().unwrap_or_default();
         format!("{message}. What was computed is kept in {dir} ({steps} steps)")

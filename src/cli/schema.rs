@@ -14,7 +14,7 @@ pub enum FileKind {
     Study,
 }
 
-/// Print the JSON Schema of case or study files, with which editors complete and check them.
+/// Print the JSON Schema of case or study files, for editors.
 ///
 /// Editors with Even Better TOML (taplo) find it through a first line `#:schema
 /// ./case.schema.json`. Ranges that depend on other keys are checked by `asperity check` only.

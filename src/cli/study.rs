@@ -10,15 +10,15 @@ use clap::{Args, ValueEnum};
 
 use super::backend::{device_choice, precision_choice};
 use super::input::Input;
-use super::options::{DeviceArgs, Precision, Verbosity};
+use super::options::{DeviceArgs, Precision, Verbosity, out_or_name};
 use super::signals::stop_flag;
 use super::{CliError, Outcome, cluster};
 use crate::compute::ComputeError;
 use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgress};
 
-/// Simulate every combination of a grid of cases, with a directory and a row of study.csv for each.
+/// Simulate every combination of a grid of cases.
 ///
-/// A case that fails does not stop the others: its row says why. An interrupted study goes on with
+/// Each has a directory, and a row of study.csv. A case that fails does not stop the others: its row says why. An interrupted study goes on with
 /// --resume.
 #[derive(Clone, Debug, Args)]
 pub struct StudyArgs {
@@ -26,9 +26,10 @@ pub struct StudyArgs {
     #[arg(value_name = "STUDY.toml", required_unless_present = "merge", conflicts_with = "merge")]
     pub study: Option<PathBuf>,
     /// Directory for the results: new or empty, or one with an earlier study if --resume, --shard
-    /// or --force is given.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    /// or --force is given. Without it, the name of the study file less its extension, in the
+    /// current directory.
+    #[arg(long, value_name = "DIR", required_if_eq("study", "-"), required_unless_present = "study")]
+    pub out: Option<PathBuf>,
     /// Compute only the I-th of N shares of about equal size. Several machines may work in one
     /// directory, a share each; `--resume` without a share then gathers all rows.
     #[arg(long, value_name = "I/N")]
@@ -68,19 +69,21 @@ pub struct StudyArgs {
 /// Reads and checks the study, computes what there is to compute, and reports.
 pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
+    // Clap lets no study pass without its file, and nothing be merged without --out.
+    let file = args.study.as_deref().unwrap_or(Path::new(""));
+    let out = out_or_name(args.out.as_ref(), file);
     if let Some(sources) = &args.merge {
-        return cluster::merge(sources, &args.out, args.verbosity.quiet);
+        return cluster::merge(sources, &out, args.verbosity.quiet);
     }
     args.device.start_threads()?;
-    // Clap lets no study pass without its file.
-    let study = Input::read(args.study.as_deref().unwrap_or(Path::new("")))?.study()?;
+    let study = Input::read(file)?.study()?;
     if let Some(arguments) = &args.slurm {
-        return cluster::slurm(&study, arguments, &args.out, &options_of_tasks(args), args.submit);
+        return cluster::slurm(&study, arguments, &out, &options_of_tasks(args), args.submit);
     }
     let options =
         Options { shard: args.shard, resume: args.resume, retry: args.retry, force: args.force, ..options(&args.device) };
-    let (report, interrupted) = compute(&study, &args.out, &options, args.verbosity.quiet)?;
-    conclude(&report, interrupted, args)
+    let (report, interrupted) = compute(&study, &out, &options, args.verbosity.quiet)?;
+    conclude(&report, interrupted, &out, args.verbosity.quiet)
 }
 
 /// The options of this command that the tasks are to have too.
@@ -125,9 +128,9 @@ pub(super) fn compute(study: &Study, out: &Path, options: &Options, quiet: bool)
 }
 
 /// Says how it went and gives the exit code.
-fn conclude(report: &Report, interrupted: bool, args: &StudyArgs) -> Result<Outcome, CliError> {
-    let (dir, Report { done, failed, pending, .. }) = (args.out.display(), report);
-    if !args.verbosity.quiet {
+fn conclude(report: &Report, interrupted: bool, out: &Path, quiet: bool) -> Result<Outcome, CliError> {
+    let (dir, Report { done, failed, pending, .. }) = (out.display(), report);
+    if !quiet {
         let elsewhere = match report.pending_elsewhere {
             0 => String::new(),
             count => format!(", {count} of other shares pending"),

@@ -270,7 +270,7 @@ impl Form {
         Case::from_document(&document).map_err(|first| {
             let all = mistakes(&document);
             let all = if all.is_empty() { vec![first] } else { all };
-            all.iter().map(of_case).collect()
+            all.iter().map(|error| of_case(error, self.get("path"))).collect()
         })
     }
 
@@ -281,7 +281,7 @@ impl Form {
 }
 
 /// What the parser of case files says, at the field that it is about.
-fn of_case(error: &CaseError) -> Mistake {
+fn of_case(error: &CaseError, path: &str) -> Mistake {
     let key = error.key().unwrap_or_default();
     let text = error.to_string();
     let what = text.split_once(&format!("{key}: ")).filter(|_| !key.is_empty()).map_or(text.as_str(), |(_, what)| what);
@@ -292,6 +292,8 @@ fn of_case(error: &CaseError) -> Mistake {
         ["opponent", "radius"] => "opponent.radius".to_owned(),
         ["opponent", ..] => format!("{OTHER}{last}"),
         ["mesh", ..] => "elements".to_owned(),
+        // The other paths have no field for it.
+        ["path", _, "shear"] if path != "cycle" => "path".to_owned(),
         ["path", _, "shear"] => "displacement".to_owned(),
         _ => last.to_owned(),
     };
@@ -494,6 +496,7 @@ mod tests {
         assert_eq!(fields("indentation=0.5"), ["indentation"]);
         assert_eq!(fields("opponent=sphere&opponent.radius=1000"), ["opponent.radius"]);
         assert_eq!(fields("path=cycle&displacement=3"), ["displacement"]);
+        assert_eq!(fields("friction=stick"), ["path"]);
         assert_eq!(fields("opponent=moon&law=soft&axes=left&path=away"), ["axes", "law", "opponent", "path"]);
         assert_eq!(fields("law=table&points=1"), ["points"]);
         let what = &case("poissons_ratio=0.7").unwrap_err()[0].what;

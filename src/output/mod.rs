@@ -68,7 +68,7 @@ pub use plots::{Picture, PlotInputs, write_plots};
 pub(crate) use progress::BAR_PARTS;
 #[cfg(feature = "bars")]
 pub use progress::BarProgress;
-pub use progress::{PlainProgress, Position, Progress, SilentProgress, in_words, last_line, progress};
+pub use progress::{PlainProgress, Position, Progress, SilentProgress, detail, in_words, last_line, progress};
 pub use recorder::Recorder;
 pub use results::{ResultWriter, Setting};
 pub use run_log::LoggedProgress;

@@ -13,22 +13,21 @@ pub struct PathShare {
     start: StepRecord,
     segment: usize,
     last: StepRecord,
-    /// Steps of the present segment.
-    steps: usize,
     share: f64,
 }
 
 /// Shear increments grow as a power of their number, so that the number grows as this power of the
 /// distance.
 const SHEAR_POWER: f64 = 1.0 / (1.0 + SHEAR_GROWTH);
-/// A shear to full slip is half-way after this many steps; where it ends is not known before.
-const FULL_SLIP_HALF: f64 = 12.0;
+/// F_T/(mu F_N) is 1 - (c/a)^3 where points within c stick (Cattaneo 1938): where full slip comes
+/// is not known before, how much still sticks is.
+const STICK_POWER: i32 = 3;
 
 impl PathShare {
     /// At the start of a path.
     pub fn new(path: &[Segment]) -> Self {
         let start = StepRecord::default();
-        Self { path: path.to_vec(), start, segment: 0, last: start, steps: 0, share: 0.0 }
+        Self { path: path.to_vec(), start, segment: 0, last: start, share: 0.0 }
     }
 
     /// Number of segments.
@@ -39,9 +38,8 @@ impl PathShare {
     /// The share after an accepted step, 0 to 1; never falls.
     pub fn after(&mut self, record: &StepRecord) -> f64 {
         if record.segment != self.segment {
-            (self.segment, self.start, self.steps) = (record.segment, self.last, 0);
+            (self.segment, self.start) = (record.segment, self.last);
         }
-        self.steps += 1;
         self.last = *record;
         let within = self.path.get(self.segment).map_or(0.0, |segment| self.within(segment, record));
         let within = if within.is_finite() { within.clamp(0.0, 1.0) } else { 0.0 };
@@ -62,8 +60,7 @@ impl PathShare {
             }
             Segment::Motion { to, .. } => share_of(&to, &self.start, record),
             Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. } => {
-                let steps = self.steps as f64;
-                steps / (steps + FULL_SLIP_HALF)
+                1.0 - (record.stick_radius / record.a).powi(STICK_POWER)
             }
         }
     }
@@ -86,15 +83,18 @@ mod tests {
             Segment::Release { share: 0.0 },
             Segment::Oblique { indentation: 0.02, shear: 0.0 },
         ];
-        let record = |segment, h, delta_t, f_n| StepRecord { segment, h, delta_t, f_n, ..StepRecord::default() };
+        let record = |segment, h, delta_t, f_n| {
+            // The further it is sheared, the less sticks.
+            StepRecord { segment, h, delta_t, f_n, a: 1.0, stick_radius: 1.0 - delta_t.abs(), ..StepRecord::default() }
+        };
         let mut share = PathShare::new(&path);
         assert_eq!(share.segments(), 7);
         let mut last = 0.0;
         for (record, expected) in [
             (record(0, 0.01, 0.0, 5.0), Some(0.25 / 7.0)),
             (record(0, 0.04, 0.0, 10.0), Some(1.0 / 7.0)),
-            (record(1, 0.04, 0.1, 10.0), None),
-            (record(1, 0.04, 0.5, 10.0), None),
+            (record(1, 0.04, 0.1, 10.0), Some((2.0 - 0.9f64.powi(3)) / 7.0)),
+            (record(1, 0.04, 0.5, 10.0), Some(1.875 / 7.0)),
             (record(2, 0.04, 0.2, 10.0), None),
             (record(2, 0.04, -1.0, 10.0), Some(3.0 / 7.0)),
             (record(3, 0.03, -1.0, 4.0), Some(4.0 / 7.0)),

@@ -1,7 +1,8 @@
 //! How far the run is: a bar on a terminal, plain lines elsewhere, nothing with `-q`. All of it on
 //! stderr.
 
-use super::Status;
+use super::report::rounded;
+use super::{Status, StepRecord};
 #[cfg(feature = "bars")]
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
@@ -18,14 +19,27 @@ pub struct Position {
     pub segments: usize,
     /// Share of the whole path that is behind, 0 to 1.
     pub fraction: f64,
-    /// What there is to say of the step, such as `h 0.0100  F_N 72.6  5 iterations`.
+    /// What there is to say of the step, such as `h 0.01000  F_N 72.60`.
     pub detail: String,
 }
 
+/// Where a step stands and what it has: h, F_N, what it is sheared and turned by, in few digits.
+pub fn detail(row: &StepRecord) -> String {
+    let number = |value: f64| rounded(value, 4);
+    let mut text = format!("h {}  F_N {}", number(row.h), number(row.f_n));
+    if row.delta_t != 0.0 || row.delta_t_y != 0.0 {
+        text += &format!("  F_T {}", number(row.f_t.hypot(row.f_t_y).copysign(if row.f_t_y == 0.0 { row.f_t } else { 1.0 })));
+    }
+    if row.twist != 0.0 {
+        text += &format!("  M_twist {}", number(row.m_twist));
+    }
+    text
+}
+
 impl Position {
-    /// The segment and the number of the last one.
+    /// The segment and the step.
     pub(super) fn place(&self) -> String {
-        format!("segment {} (last {})", self.segment, self.segments.saturating_sub(1))
+        format!("segment {}, step {}", self.segment, self.step)
     }
 }
 
@@ -63,12 +77,12 @@ struct Remaining {
 }
 
 impl Remaining {
-    /// `, about 4 min left`; nothing as long as too little is behind to tell.
+    /// `, 4 min left`; nothing as long as too little is behind to tell.
     fn after(&mut self, fraction: f64) -> String {
         let (begun, at) = *self.first.get_or_insert((Instant::now(), fraction));
         let (elapsed, gone) = (begun.elapsed().as_secs_f64(), fraction - at);
         let known = elapsed >= 1.0 && gone >= 0.02 && fraction < 1.0;
-        if known { format!(", about {} left", in_words(elapsed * (1.0 - fraction) / gone)) } else { String::new() }
+        if known { format!(", {} left", in_words(elapsed * (1.0 - fraction) / gone)) } else { String::new() }
     }
 }
 
@@ -125,7 +139,7 @@ impl BarProgress {
     fn on(target: ProgressDrawTarget) -> Self {
         let bar = ProgressBar::with_draw_target(Some(BAR_PARTS), target);
         // The template is fixed; should it ever be refused, the default style serves.
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:20} {percent:>3} %  {msg}") {
             bar.set_style(style);
         }
         Self { bar, remaining: Remaining::default() }
@@ -143,7 +157,7 @@ impl Default for BarProgress {
 impl Progress for BarProgress {
     fn step(&mut self, position: &Position) {
         let left = self.remaining.after(position.fraction);
-        self.bar.set_message(format!("{}  {}{left}", position.place(), position.detail));
+        self.bar.set_message(format!("{}{left}", position.detail));
         self.bar.set_position((position.fraction.clamp(0.0, 1.0) * BAR_PARTS as f64) as u64);
     }
 
@@ -188,7 +202,7 @@ impl<W: Write + Send> Progress for PlainProgress<W> {
         if due || position.fraction >= 1.0 {
             self.last = Some(Instant::now());
             let percent = 100.0 * position.fraction.clamp(0.0, 1.0);
-            self.line(&format!("{percent:5.1} %  step {}  {}  {}{left}", position.step, position.place(), position.detail));
+            self.line(&format!("{percent:5.1} %  {}  {}{left}", position.place(), position.detail));
         }
     }
 
@@ -216,7 +230,20 @@ mod tests {
         plain.step(&position(3, 0.25));
         plain.message("note");
         plain.finish("done");
-        assert_eq!(String::from_utf8(text).unwrap(), " 25.0 %  step 3  segment 1 (last 1)  F_N 72.6\nnote\ndone\n");
+        assert_eq!(String::from_utf8(text).unwrap(), " 25.0 %  segment 1, step 3  F_N 72.6\nnote\ndone\n");
+    }
+
+    #[test]
+    fn a_step_is_told_in_a_line_of_80_columns() {
+        let row = StepRecord { h: 0.0123456, f_n: 123.456, delta_t: 0.1, f_t: -1.2345e-5, ..StepRecord::default() };
+        assert_eq!(detail(&row), "h 0.01235  F_N 123.5  F_T -1.234e-5");
+        let most = StepRecord { h: 1.23456e-7, f_n: 1.23456e9, ..row };
+        let position = Position { step: 123, segment: 3, segments: 4, fraction: 0.5, detail: detail(&most) };
+        let line = format!(" 50.0 %  {}  {}, 59 min left", position.place(), position.detail);
+        assert!(line.len() <= 80 && detail(&row) != detail(&most), "{line}");
+        assert_eq!(detail(&StepRecord { f_t: 0.0, delta_t: 0.0, ..row }), "h 0.01235  F_N 123.5");
+        let turned = StepRecord { f_t: 3.0, f_t_y: -4.0, delta_t_y: 0.1, ..row };
+        assert!(detail(&turned).ends_with("F_T 5.000"));
     }
 
     #[test]
@@ -234,7 +261,7 @@ mod tests {
         assert_eq!([12.4, 89.0, 5400.0, 20_000.0].map(in_words), ["12 s", "1 min", "1.5 h", "5.6 h"]);
         let mut remaining = Remaining { first: Some((Instant::now() - Duration::from_secs(100), 0.5)) };
         // A quarter of the path took 100 s, and a quarter is to come.
-        assert_eq!(remaining.after(0.75), ", about 2 min left");
+        assert_eq!(remaining.after(0.75), ", 2 min left");
         assert_eq!(remaining.after(0.51), "", "too little to tell");
         assert_eq!(remaining.after(1.0), "");
         assert_eq!(Remaining::default().after(0.5), "", "the first step of a run that was resumed");

@@ -5,6 +5,30 @@ use std::fmt::Write;
 use super::Summary;
 
 impl Summary {
+    /// Two lines: forces in the user's units, their errors, and what the run took.
+    pub fn brief(&self) -> String {
+        let named = [
+            ("F_N0", self.f_n0, self.f_n0_error),
+            ("F_N_slip", self.f_n_slip, None),
+            ("F_T_max", self.f_t_max, self.f_t_max_error),
+            ("F_T_max_limit", self.f_t_max_limit, None),
+            ("a0", self.a0, self.a0_error),
+        ];
+        let there = || named.iter().filter_map(|(name, value, error)| value.map(|value| (name, value, error)));
+        let values: Vec<String> = there().map(|(name, value, _)| format!("{name} {}", significant(value))).collect();
+        let told = |(name, value, error): (&&str, f64, &Option<f64>)| {
+            let share = error.filter(|_| value != 0.0)? / value.abs();
+            Some(format!("{name} +- {:.1} %", 100.0 * share))
+        };
+        let errors: Vec<String> = there().filter_map(told).collect();
+        let errors = if errors.is_empty() { "not estimated".to_owned() } else { errors.join(", ") };
+        let mut text = String::new();
+        if !values.is_empty() {
+            text += &format!("{}\nerrors: {errors}; ", values.join("  "));
+        }
+        text + &format!("{} in {:.1} s, {} steps", self.status, self.wall_s, self.steps) + "\n"
+    }
+
     /// Some lines: what came out, in the user's units, and what it took.
     pub fn report(&self) -> String {
         let mut text = String::new();
@@ -55,8 +79,17 @@ impl Summary {
 
 /// Six significant digits, without an exponent where that is readable.
 fn significant(value: f64) -> String {
-    let digits = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
-    if (-4..6).contains(&digits) { format!("{value:.*}", (5 - digits).max(0) as usize) } else { format!("{value:.5e}") }
+    rounded(value, 6)
+}
+
+/// So many significant digits, without an exponent where that is readable.
+pub(super) fn rounded(value: f64, digits: i32) -> String {
+    let place = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    if (-4..6).contains(&place) {
+        format!("{value:.*}", (digits - 1 - place).max(0) as usize)
+    } else {
+        format!("{value:.*e}", (digits - 1) as usize)
+    }
 }
 
 #[cfg(test)]
@@ -71,6 +104,17 @@ mod tests {
         {
             assert_eq!(significant(value), expected);
         }
+    }
+
+    #[test]
+    fn two_lines_have_what_there_is() {
+        let mut summary = Summary { status: Status::Done, steps: 7, wall_s: 2.04, ..Summary::default() };
+        assert_eq!(summary.brief(), "done in 2.0 s, 7 steps\n");
+        (summary.f_n0, summary.a0) = (Some(150.0), Some(0.2));
+        assert_eq!(summary.brief(), "F_N0 150.000  a0 0.200000\nerrors: not estimated; done in 2.0 s, 7 steps\n");
+        (summary.f_n0_error, summary.f_t_max) = (Some(1.5), Some(30.0));
+        let expected = "F_N0 150.000  F_T_max 30.0000  a0 0.200000\nerrors: F_N0 +- 1.0 %; done in 2.0 s, 7 steps\n";
+        assert_eq!(summary.brief(), expected);
     }
 
     #[test]

@@ -14,7 +14,7 @@ use super::tables::is_panel;
 use super::units::coefficient;
 use super::{
     Collection, ContactPoint, ErrorEstimate, HistoryWriter, Limits, OutputDirectory, OutputError, Position, Progress, Status,
-    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, last_line, write_contact, write_fields, write_parquet,
+    StepRecord, Summary, SummaryInputs, TimeByPhase, Units, detail, last_line, write_contact, write_fields, write_parquet,
 };
 use crate::case::{Case, Fields, PictureFormat};
 use crate::compute::{ComputeError, Description};
@@ -397,22 +397,6 @@ impl ResultWriter {
         self.ledger.tables.add(&self.ledger.rows, contact);
         Ok(())
     }
-
-    fn detail(&self, row: &StepRecord) -> String {
-        let mut text = format!("h {:.4e}  F_N {:.4e}", row.h, row.f_n);
-        if row.delta_t_y != 0.0 {
-            text += &format!("  delta_T [{:.4e}, {:.4e}]  F_T [{:.4e}, {:.4e}]", row.delta_t, row.delta_t_y, row.f_t, row.f_t_y);
-        } else if row.delta_t != 0.0 {
-            text += &format!("  delta_T {:.4e}  F_T {:.4e}", row.delta_t, row.f_t);
-        }
-        if row.twist != 0.0 {
-            text += &format!("  twist {:.4e}  M_twist {:.4e}", row.twist, row.m_twist);
-        }
-        if row.roll_x != 0.0 || row.roll_y != 0.0 {
-            text += &format!("  roll [{:.4e}, {:.4e}]", row.roll_x, row.roll_y);
-        }
-        text + &format!("  {} iterations", row.newton_iterations)
-    }
 }
 
 impl Observer for ResultWriter {
@@ -445,7 +429,7 @@ impl Observer for ResultWriter {
             segment: row.segment,
             segments: self.share.segments(),
             fraction: self.share.after(&row),
-            detail: self.detail(&row),
+            detail: detail(&row),
         };
         self.progress.step(&position);
         self.ledger.outside.output += begun.elapsed().as_secs_f64();

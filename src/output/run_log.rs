@@ -35,7 +35,7 @@ impl LoggedProgress {
 
 impl Progress for LoggedProgress {
     fn step(&mut self, position: &Position) {
-        self.line(&format!("step {}  {}  {}", position.step, position.place(), position.detail));
+        self.line(&format!("{}  {}", position.place(), position.detail));
         self.inner.step(position);
     }
 
@@ -70,7 +70,7 @@ mod tests {
         logged(&out, "second");
         let text = std::fs::read_to_string(out.log()).unwrap();
         let said: Vec<&str> = text.lines().map(|line| line.split_once(" s  ").unwrap().1).collect();
-        let step = "step 3  segment 1 (last 1)  F_N 72.6";
+        let step = "segment 1, step 3  F_N 72.6";
         assert_eq!(said, ["first", "a note", step, "done: 3 steps", "second", "a note", step, "done: 3 steps"]);
     }
 

@@ -5,7 +5,7 @@ use crate::case::Case;
 use crate::compute::traffic::Account;
 use crate::output::{
     Clock, ErrorEstimate, Limits, OutsideSteps, PathShare, Position, Progress, Setting, Status, StepRecord, Summary,
-    SummaryInputs, TimeByPhase, Units, last_line,
+    SummaryInputs, TimeByPhase, Units, detail, last_line,
 };
 use crate::simulation::drive::{Observer, StepView};
 use crate::simulation::problem::Problem;
@@ -130,7 +130,7 @@ impl Observer for Memory {
             segment: row.segment,
             segments: self.share.segments(),
             fraction: self.share.after(&row),
-            detail: format!("h {:.4e}  F_N {:.4e}  {} iterations", row.h, row.f_n, row.newton_iterations),
+            detail: detail(&row),
         });
         Ok(())
     }

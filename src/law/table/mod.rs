@@ -384,6 +384,7 @@ fn alike(a: &serde_json::Value, b: &serde_json::Value) -> bool {
 
 /// What is tabulated as smooth curves in ln h: everything over the power of h that it has in
 /// Hertz's contact.
+#[derive(PartialEq)]
 pub(super) struct Curves {
     columns: Vec<Spline>,
 }

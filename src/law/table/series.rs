@@ -62,9 +62,7 @@ const NO_CREEP: f64 = 1e-4;
 
 /// Where a rising function becomes positive: by regula falsi with halved weights (the Illinois
 /// algorithm, Dowell & Jarratt 1971), and by halving where three of its steps have not halved the
-/// bracket. Roots are sought within roots: halving alone took 60 times 60 evaluations. Where the
-/// sign does not change it halves all the way: two bodies of one material stand on both of their
-/// limit curves at once, and another rounding there would choose another of them.
+/// bracket. Roots are sought within roots: halving alone took 60 times 60 evaluations.
 fn root(mut low: f64, mut high: f64, rising: impl Fn(f64) -> f64) -> f64 {
     let (mut below, mut above) = (rising(low), rising(high));
     let narrow = (high - low) * 0.5f64.powi(HALVINGS);
@@ -156,6 +154,12 @@ impl Body {
             body.pressures.push(before);
         }
         body
+    }
+
+    /// Whether the two have the same law, at the same constraint.
+    fn like(&self, other: &Self) -> bool {
+        let numbers = |body: &Self| (body.share, body.modulus, body.effective_modulus, body.curvature);
+        numbers(self) == numbers(other) && self.curves == other.curves
     }
 
     /// What the table says at h over R; below its first level the contact is Hertz's.
@@ -311,11 +315,18 @@ struct Series<'a> {
     pressed: [Pressed; 2],
     friction: f64,
     h: f64,
+    /// The two are one body twice, whatever their true radii: each has half of all.
+    alike: bool,
 }
 
 impl<'a> Series<'a> {
     /// Presses the bodies together by `h`, the radii being shared out of `radius`, R*.
     fn new(bodies: &'a [Body; 2], radius: f64, friction: f64, h: f64) -> Self {
+        let alike = bodies[0].like(&bodies[1]);
+        if alike {
+            let pressed = [0, 1].map(|i| bodies[i].pressed(2.0 * radius, 0.5 * h));
+            return Self { bodies, pressed, friction, h, alike };
+        }
         let at = |a: f64| {
             // Of the curvature 1/R* the first body has the share k.
             let k = root(1e-9, 1.0 - 1e-9, |k| bodies[0].pressure(a, radius / k) - bodies[1].pressure(a, radius / (1.0 - k)));
@@ -327,7 +338,7 @@ impl<'a> Series<'a> {
         for _ in 0..ROUNDS {
             pressed = at(mean_radius(&pressed));
         }
-        Self { bodies, pressed, friction, h }
+        Self { bodies, pressed, friction, h, alike }
     }
 
     /// By how much body `i` gives way under F_N = `force` where its limit curve is at `cap` times
@@ -351,7 +362,8 @@ impl<'a> Series<'a> {
             let ratio = end * (1.0 - (1.0 - n as f64 / RATIOS as f64).powf(1.5));
             let places = [0, 1].map(|i| limits[i].at_ratio(ratio));
             let gap = |force: f64| (0..2).map(|i| self.gives_way(i, force, places[i][1])).sum::<f64>() - self.h;
-            let force = root(0.0, both[0].force, gap);
+            // Two that are alike stand on their limit curves together: the gap jumps there.
+            let force = if self.alike { places[0][1] * both[0].force } else { root(0.0, both[0].force, gap) };
             let flows = [0, 1].map(|i| force >= ON_CURVE * places[i][1] * both[i].force);
             let way: [f64; 2] = [0, 1].map(|i: usize| match (flows[i], flows[1 - i]) {
                 // Where the other is elastic, this one takes what that gives back.

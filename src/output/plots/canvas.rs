@@ -133,12 +133,14 @@ pub struct Canvas {
     pub width: f64,
     /// Height in pixels.
     pub height: f64,
+    /// Whether diagrams on it have no titles.
+    pub untitled: bool,
 }
 
 impl Canvas {
     /// An empty picture.
     pub fn new(size: Size) -> Self {
-        let Size { width, height, .. } = size;
+        let Size { width, height, untitled, .. } = size;
         // A width in pixels that was asked for has its unit; it stands for that many pixels of a
         // PNG.
         let [across, down] = size.printed().map(|side| match (size.printed, side.unit) {
@@ -151,7 +153,7 @@ impl Canvas {
             number(width),
             number(height)
         );
-        Self { svg: Rc::new(RefCell::new(head)), left: 0.0, top: 0.0, width, height }
+        Self { svg: Rc::new(RefCell::new(head)), left: 0.0, top: 0.0, width, height, untitled }
     }
 
     /// The whole `<svg>` element.
@@ -161,7 +163,7 @@ impl Canvas {
 
     /// A panel on the same picture.
     pub fn panel(&self, (left, top): Place, (width, height): (f64, f64)) -> Self {
-        Self { svg: self.svg.clone(), left: self.left + left, top: self.top + top, width, height }
+        Self { svg: self.svg.clone(), left: self.left + left, top: self.top + top, width, height, untitled: self.untitled }
     }
 
     /// `count` panels of equal size, row by row.
@@ -313,7 +315,7 @@ mod tests {
     const BLACK: Colour = Colour(0, 0, 0);
 
     fn canvas(width: f64, height: f64) -> Canvas {
-        Canvas::new(Size { width, height, printed: None })
+        Canvas::new(Size { width, height, printed: None, untitled: false })
     }
 
     #[test]
@@ -342,7 +344,7 @@ mod tests {
         canvas.text(" inf < a & F_N ", (1.0, 2.0), BLACK, Writing { upwards: true, ..Writing::new(12.4, Anchor::End) }).unwrap();
         let svg = canvas.finish();
         assert!(svg.contains("text-anchor=\"end\" font-family=\"sans-serif\" font-size=\"10\" opacity=\"1\""), "{svg}");
-        assert!(svg.contains(" transform=\"rotate(270, 1, 2)\">inf &lt; a &amp; F<tspan "), "{svg}");
+        assert!(svg.contains(" transform=\"rotate(270, 1, 2)\">inf &lt; <tspan font-style=\"italic\">a</tspan> &amp; <tspan font-style=\"italic\">F</tspan><tspan "), "{svg}");
     }
 
     #[test]

@@ -357,6 +357,8 @@ fn draw_mark(root: &Canvas, (mark, r): (Mark, f64), ink: Ink, (x, y): Place) -> 
     }
 }
 
+/// Height of the title.
+const TITLE: f64 = 28.0;
 /// Height of a line of the legend.
 const LEGEND_LINE: f64 = 20.0;
 const LEGEND_SIZE: f64 = 13.0;
@@ -395,13 +397,17 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
     // What is off the scale has no entry. The height of the frame does not matter for that.
     let shown: Vec<Series> = chart.series.iter().filter(|series| frame.shows(series)).cloned().collect();
     let (legend, lines) = legend_places(&shown, right - left);
-    let frame = Frame { top: 46.0 + LEGEND_LINE * lines as f64, ..frame };
+    // The first line below the title, or below the edge.
+    let first = if root.untitled || chart.title.is_empty() { 48.0 - TITLE } else { 48.0 };
+    let frame = Frame { top: first - 2.0 + LEGEND_LINE * lines as f64, ..frame };
     let x_ticks = chart.x.ticks(((right - left) / 70.0).clamp(2.0, MOST_TICKS));
 
-    let title = Writing::new(fitting(&chart.title, 18.0, right - left), Anchor::Start);
-    root.text(&chart.title, (left, 22.0), INK, title)?;
+    if !root.untitled {
+        let title = Writing::new(fitting(&chart.title, 18.0, right - left), Anchor::Start);
+        root.text(&chart.title, (left, 22.0), INK, title)?;
+    }
     for (entry, x, line) in legend {
-        let (x, y) = (left + x, 48.0 + LEGEND_LINE * line as f64);
+        let (x, y) = (left + x, first + LEGEND_LINE * line as f64);
         if entry.filled {
             root.rectangle([(x, y - 6.0), (x + SAMPLE, y + 6.0)], Paint::fill(entry.colour.mix(entry.opacity)))?;
         }
@@ -527,7 +533,7 @@ mod tests {
         let (x, y) = (Axis::linear("", 0.0, 1.0), Axis::linear("", 0.0, 1.0));
         let curve = (0..=200).map(|i| 0.005 * f64::from(i)).map(|x| (x, 0.2 + 0.3 * x * x)).collect();
         let chart = Chart { title: String::new(), x, y, series: vec![Series::solid("", INK, curve)], bar: None };
-        let canvas = Canvas::new(Size { width: 700.0, height: 400.0, printed: None });
+        let canvas = Canvas::new(Size { width: 700.0, height: 400.0, printed: None, untitled: false });
         draw_chart(&canvas, &chart).unwrap();
         let svg = canvas.finish();
         let drawn = svg.lines().find(|line| line.contains("stroke-width=\"2\"")).unwrap();

@@ -67,7 +67,7 @@ pub struct View {
 impl View {
     /// As the case has it.
     pub fn of(case: &Case) -> Self {
-        Self { axes: Axes::of(case, AxisUnits::Auto), sheet: Sheet { width: case.output.plot_width } }
+        Self { axes: Axes::of(case, AxisUnits::Auto), sheet: Sheet { width: case.output.plot_width, untitled: false } }
     }
 }
 

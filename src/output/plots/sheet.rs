@@ -15,6 +15,8 @@ const NARROWEST_PANEL: f64 = 340.0;
 pub struct Sheet {
     /// On paper or on the screen.
     pub width: Option<PictureWidth>,
+    /// Whether diagrams have no titles, where a caption says what they show.
+    pub untitled: bool,
 }
 
 /// The size of one picture.
@@ -26,6 +28,8 @@ pub struct Size {
     pub height: f64,
     /// Width on paper; that of the layout if none is asked for.
     pub printed: Option<PictureWidth>,
+    /// Whether its diagrams have no titles.
+    pub untitled: bool,
 }
 
 impl Size {
@@ -46,7 +50,7 @@ impl Sheet {
 
     /// The size of a layout whose width is known.
     pub fn size(&self, width: f64, height: f64) -> Size {
-        Size { width, height: height.round(), printed: self.width }
+        Size { width, height: height.round(), printed: self.width, untitled: self.untitled }
     }
 
     /// One diagram: a narrow one is less wide for its height.
@@ -77,7 +81,7 @@ mod tests {
     use super::*;
 
     fn sheet(width: &str) -> Sheet {
-        Sheet { width: Some(width.parse().unwrap()) }
+        Sheet { width: Some(width.parse().unwrap()), untitled: false }
     }
 
     #[test]

@@ -211,7 +211,7 @@ fn a_dip_on_the_axis_is_explained_where_there_is_one() {
 
 #[test]
 fn a_narrow_picture_keeps_its_text_on_the_card() {
-    let sheet = Sheet { width: Some("85mm".parse().unwrap()) };
+    let sheet = Sheet { width: Some("85mm".parse().unwrap()), untitled: false };
     let narrow = View { sheet, ..view() };
     let pictures = run_pictures(&history(), &tables(), &INPUTS, &narrow).unwrap();
     for picture in &pictures {

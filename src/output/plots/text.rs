@@ -63,10 +63,11 @@ pub fn wrapped(text: &str, height: f64, width: f64) -> Vec<String> {
 /// superscripts: what follows a `_` is lowered and what follows a `^` is raised, up to the end of
 /// the word or of the braces. A letter before a combining macron (U+0304) gets a bar, drawn, as few
 /// fonts place theirs well. `size` is that of the letters, in pixels: sizes in per cent or in ems
-/// are not read alike everywhere.
+/// are not read alike everywhere. Symbols are slanted.
 pub fn subscripts(text: &str, size: f64) -> String {
     let mut out = String::new();
-    let mut rest = text;
+    let marked = symbols_marked(text);
+    let mut rest = marked.as_str();
     let mut height = 0.0;
     while !rest.is_empty() {
         let (plain, after) = rest.split_at(rest.find(['_', '^']).unwrap_or(rest.len()));
@@ -90,12 +91,43 @@ pub fn subscripts(text: &str, size: f64) -> String {
         };
         if !inner.is_empty() {
             let (shift, small) = (number((target - height) * size), number(SMALL * size));
+            // An exponent may be a symbol; what is lowered is a label.
+            let symbol = target < 0.0 && inner.len() == 1 && inner.chars().all(char::is_alphabetic);
+            let inner = if symbol { format!("{}{inner}{}", SLANTED[0], SLANTED[1]) } else { inner.to_owned() };
             out.push_str(&format!("<tspan dy=\"{shift}\" font-size=\"{small}\">{inner}</tspan>"));
             height = target;
         }
         rest = after;
     }
-    barred(&out)
+    barred(&out).replace(SLANTED[0], "<tspan font-style=\"italic\">").replace(SLANTED[1], "</tspan>")
+}
+
+/// Opens and closes what is slanted, until the text is an SVG: letters for private use.
+const SLANTED: [char; 2] = ['\u{e000}', '\u{e001}'];
+
+/// Marks the symbols of quantities: Greek letters, and single Latin ones. A unit (`in N`), the
+/// article and what is lowered or raised are upright (ISO 80000-1, 7.1 and 7.2).
+fn symbols_marked(text: &str) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let mut out = String::with_capacity(text.len());
+    for (i, &letter) in letters.iter().enumerate() {
+        let before = |count: usize| i.checked_sub(count).map(|at| letters[at]);
+        let after = |count: usize| letters.get(i + count).copied();
+        let greek = ('\u{391}'..='\u{3c9}').contains(&letter);
+        let alone = letter.is_ascii_alphabetic()
+            && before(1).is_none_or(|c| !c.is_alphanumeric() && !"_^{,&'’.-".contains(c))
+            && after(1).is_none_or(|c| !c.is_alphanumeric() && !"';.-".contains(c));
+        let unit = before(1) == Some(' ') && (before(2) == Some('n') && before(3) == Some('i') || before(2).is_some_and(|c| c.is_ascii_digit()));
+        let article = letter == 'a' && after(1) == Some(' ') && after(2).is_some_and(|c| c.is_lowercase());
+        if greek || alone && !unit && !article {
+            // A bar belongs to its letter.
+            let bar = after(1).filter(|next| *next == MACRON);
+            out.extend([SLANTED[0], letter].into_iter().chain(bar).chain([SLANTED[1]]));
+        } else if letter != MACRON || !out.ends_with(SLANTED[1]) {
+            out.push(letter);
+        }
+    }
+    out
 }
 
 /// A letter and its macron as a letter under a line.
@@ -126,14 +158,42 @@ mod tests {
     fn subscripts_are_lowered_and_the_line_goes_on() {
         let low = |text: &str| format!("<tspan dy=\"3\" font-size=\"9\">{text}</tspan>");
         let back = |text: &str| format!("<tspan dy=\"-3\" xml:space=\"preserve\">{text}</tspan>");
+        let symbol = |letter: &str| format!("<tspan font-style=\"italic\">{letter}</tspan>");
         let subscripts = |text: &str| subscripts(text, 12.0);
         assert_eq!(subscripts("plain &amp; simple"), "plain &amp; simple");
-        assert_eq!(subscripts("F_N"), format!("F{}", low("N")));
-        assert_eq!(subscripts("F_N/δ_{T,slip} x"), format!("F{}{}{}{}", low("N"), back("/δ"), low("T,slip"), back(" x")));
-        let up = "<tspan dy=\"-4.5\" font-size=\"9\">n</tspan>";
-        assert_eq!(subscripts("(1 − x)^n b"), format!("(1 − x){up}<tspan dy=\"4.5\" xml:space=\"preserve\"> b</tspan>"));
-        assert_eq!(subscripts("a_"), "a");
-        assert_eq!(subscripts("H\u{304} = F_N"), format!("<tspan text-decoration=\"overline\">H</tspan> = F{}", low("N")));
+        assert_eq!(subscripts("F_N"), format!("{}{}", symbol("F"), low("N")));
+        let delta = back(&format!("/{}", symbol("δ")));
+        let x = back(&format!(" {}", symbol("x")));
+        assert_eq!(subscripts("F_N/δ_{T,slip} x"), format!("{}{}{delta}{}{x}", symbol("F"), low("N"), low("T,slip")));
+        let up = format!("<tspan dy=\"-4.5\" font-size=\"9\">{}</tspan>", symbol("n"));
+        let power = format!("(1 − {}){up}<tspan dy=\"4.5\" xml:space=\"preserve\"> {}</tspan>", symbol("x"), symbol("b"));
+        assert_eq!(subscripts("(1 − x)^n b"), power);
+        assert_eq!(subscripts("a_"), symbol("a"));
+        let mean = "<tspan font-style=\"italic\"><tspan text-decoration=\"overline\">H</tspan></tspan>";
+        assert_eq!(subscripts("H\u{304} = F_N"), format!("{mean} = {}{}", symbol("F"), low("N")));
+    }
+
+    #[test]
+    fn symbols_are_slanted_and_units_and_words_are_not() {
+        let slanted = |text: &str| {
+            let svg = subscripts(text, 12.0);
+            let letters: Vec<String> =
+                svg.split("italic\">").skip(1).map(|after| after.split('<').next().unwrap_or_default().to_owned()).collect();
+            letters.concat()
+        };
+        for (text, expected) in [
+            ("h / R", "hR"),
+            ("F_N in N", "F"),
+            ("δ_T in m", "δ"),
+            ("a / R", "aR"),
+            ("closed form of a contact", ""),
+            ("Johnson's map", ""),
+            ("E/σ_Y = 500, μ = 0.3", "Eσμ"),
+            ("p &lt; 1e-5, 85 m", "p"),
+            ("F_N, main", "F"),
+        ] {
+            assert_eq!(slanted(text), expected, "{text}");
+        }
     }
 
     #[test]

@@ -102,6 +102,23 @@ fn two_equal_bodies_are_their_own_table_at_any_radius() {
 }
 
 #[test]
+fn two_bodies_that_hardly_differ_are_as_two_alike() {
+    let steel = material(200e3, 0.3, IDEAL);
+    let (one, mut other) = (table(&steel, plastic), table(&steel, plastic));
+    let pair = case(1.0, &steel, "opponent = { radius = 2.0 }", 0.02);
+    let alike = compose(&pair, [&one, &one]).unwrap();
+    // By a rounding, which is found by the roots of all pairs.
+    other.levels[3].unloading_radius *= 1.0 + 1e-13;
+    let hardly = compose(&pair, [&one, &other]).unwrap();
+    let (one, other) = (alike.contact_parameters(1.0, 1.0).unwrap(), hardly.contact_parameters(1.0, 1.0).unwrap());
+    for level in &alike.levels {
+        let (point, end) = (one.virgin(level.h).point, level.delta_t_end);
+        let places: Vec<[f64; 2]> = [0.0, 0.02, 0.1, 0.2, 0.4, 0.9].map(|x| [level.h, x * end]).to_vec();
+        agree(&drive(&one, &places, 20), &drive(&other, &places, 20), 8e-3 * point.f_n0);
+    }
+}
+
+#[test]
 fn elastic_bodies_are_hertz_and_cattaneo_and_mindlin() {
     let (steel, soft) = (material(200e3, 0.3, ELASTIC), material(70e3, 0.42, ELASTIC));
     let tables = [table(&steel, elastic), table(&soft, elastic)];

@@ -8,6 +8,8 @@ use svg2pdf::{ConversionOptions, PageOptions};
 
 /// DejaVu Sans, less the letters that no picture has (see `font/README.md`).
 const FONT: &[u8] = include_bytes!("font/DejaVuSans.ttf");
+/// The letters of its slanted sister, for symbols.
+const OBLIQUE: &[u8] = include_bytes!("font/DejaVuSans-Oblique.ttf");
 /// Pixels of CSS to the inch, and those of a PNG whose width is a length.
 const CSS: f32 = 96.0;
 const PIXELS_PER_INCH: f32 = 300.0;
@@ -19,6 +21,7 @@ fn fonts() -> Arc<Database> {
     let load = || {
         let mut fonts = Database::new();
         fonts.load_font_data(FONT.to_vec());
+        fonts.load_font_data(OBLIQUE.to_vec());
         fonts.set_sans_serif_family("DejaVu Sans");
         Arc::new(fonts)
     };
@@ -126,5 +129,7 @@ mod tests {
             assert!(picture != nothing && picture != unknown, "{letter} is missing");
         }
         assert_ne!(drawn("<tspan text-decoration=\"overline\">H</tspan>"), drawn("H"), "the bar is drawn");
+        assert_ne!(drawn("<tspan font-style=\"italic\">H</tspan>"), drawn("H"), "it is slanted");
+        assert_ne!(drawn("<tspan font-style=\"italic\">δ</tspan>"), drawn("δ"), "and so are Greek letters");
     }
 }

@@ -1,0 +1,130 @@
+//! The program's pictures.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use asperity::case::{Case, PictureFormat, PictureWidth};
+use asperity::contact_law::path::PathPoint;
+use asperity::law::LawFile;
+use asperity::law::plots::{law_beside_run, table_beside_run};
+use asperity::output::plots::{Picture, PlotInputs, Sheet, View, plot_forces, plot_indentation, plot_ratio, replot};
+use asperity::output::{OutputDirectory, StepRecord, read_history};
+use pyo3::prelude::*;
+
+use crate::errors::{failed, refused};
+use crate::law::NativeLaw;
+use crate::process::compute;
+
+/// A picture as an SVG, with what it shows.
+#[pyclass(name = "NativePicture", frozen)]
+pub struct NativePicture {
+    picture: Picture,
+}
+
+#[pymethods]
+impl NativePicture {
+    fn name(&self) -> &'static str {
+        self.picture.name
+    }
+
+    fn caption(&self) -> &str {
+        &self.picture.caption
+    }
+
+    fn svg(&self) -> &str {
+        &self.picture.svg
+    }
+
+    /// Writes a file of the format that its name ends with.
+    fn save(&self, file: PathBuf) -> PyResult<()> {
+        let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let format = match ending {
+            "svg" => PictureFormat::Svg,
+            "pdf" => PictureFormat::Pdf,
+            "png" => PictureFormat::Png,
+            _ => return Err(refused(format!("file: is {:?}. Allowed: a name that ends with .svg, .pdf or .png", file.display()))),
+        };
+        self.picture.write(&file, format).map_err(failed)
+    }
+}
+
+fn view(case: &Case, width: Option<&str>, title: bool) -> PyResult<View> {
+    let width = match width {
+        None => case.output.plot_width,
+        Some(text) => {
+            let of = |what| refused(format!("width: is {text:?}, {what}. Allowed: as 85mm, 3.3in or 640px"));
+            Some(PictureWidth::from_str(text).map_err(of)?)
+        }
+    };
+    Ok(View { sheet: Sheet { width, untitled: !title }, ..View::of(case) })
+}
+
+/// The one of this name; without one the first that there is of `FIRST`.
+fn chosen(mut pictures: Vec<Picture>, name: Option<&str>) -> PyResult<NativePicture> {
+    const FIRST: [&str; 5] = ["law", "forces", "plane", "moments", "indentation"];
+    let at = |name: &str| pictures.iter().position(|picture| picture.name == name);
+    let index = match name {
+        Some(name) => at(name).ok_or_else(|| {
+            let names: Vec<String> = pictures.iter().map(|picture| format!("{:?}", picture.name)).collect();
+            refused(format!("name: is {name:?}. Allowed: {}", names.join(", ")))
+        })?,
+        None => FIRST.into_iter().find_map(at).ok_or_else(|| failed("there is nothing to draw yet"))?,
+    };
+    Ok(NativePicture { picture: pictures.swap_remove(index) })
+}
+
+/// A picture of a run, of its directory.
+#[pyfunction]
+pub fn run_picture(
+    py: Python<'_>,
+    dir: PathBuf,
+    name: Option<&str>,
+    law: Option<&NativeLaw>,
+    width: Option<&str>,
+    title: bool,
+) -> PyResult<NativePicture> {
+    let out = OutputDirectory::existing(dir);
+    let case = out.load_case().map_err(failed)?;
+    let view = view(&case, width, title)?;
+    let pictures = compute(py, || -> PyResult<Vec<Picture>> {
+        let history = read_history(&out.history()).map_err(failed)?;
+        let mut pictures = replot(&out, &case, &history, &view).map_err(failed)?;
+        if let Some(law) = law {
+            let beside = match law.file() {
+                LawFile::Formulas(law) => law_beside_run(law, &case, &history, &view).map(|(picture, _)| picture),
+                law => table_beside_run(law, &case, &history, &view).map(|(picture, _)| picture),
+            };
+            pictures.push(beside.map_err(failed)?);
+        }
+        Ok(pictures)
+    })??;
+    chosen(pictures, name)
+}
+
+/// A picture of what a law predicts along the path of a case.
+pub fn law_picture(points: &[PathPoint], case: &Case, name: Option<&str>, width: Option<&str>, title: bool) -> PyResult<NativePicture> {
+    let view = view(case, width, title)?;
+    let record = |(step, point): (usize, &PathPoint)| StepRecord {
+        step,
+        segment: point.segment,
+        h: point.h,
+        delta_t: point.delta_t,
+        f_n: point.f_n,
+        f_t: point.f_t,
+        ..StepRecord::default()
+    };
+    let history: Vec<StepRecord> = points.iter().enumerate().map(record).collect();
+    let inputs = PlotInputs::of(case);
+    let mut pictures = vec![plot_indentation(&history, &inputs, &view).map_err(failed)?];
+    if history.iter().any(|record| record.delta_t != 0.0) {
+        pictures.push(plot_forces(&history, &view).map_err(failed)?);
+        pictures.push(plot_ratio(&history, inputs.friction, &view).map_err(failed)?);
+    }
+    chosen(pictures, name)
+}
+
+/// The program `asperity`, called with these arguments, the file of the script first; its exit code.
+#[pyfunction]
+pub fn program(arguments: Vec<std::ffi::OsString>) -> u8 {
+    asperity::internals::cli::main_within(arguments)
+}
