@@ -150,13 +150,13 @@ class Law:
         resume: bool = False,
         force: bool = False,
     ) -> Law:
-        """The law of one material, one friction and one opponent (a plane or an equal sphere) as curves over h, from a simulation at each of some ten to twenty
-        depths up to the greatest indentation of the case, at the limit of fine meshes. Half a minute of processor time.
+        """The law of one material, one friction coefficient and one opponent as curves over h. The opponent may be a plane, an equal or rigid sphere, or another body
+        that deforms. Simulates 13 to 23 depths up to the greatest indentation of the case, at the limit of fine meshes; half a minute of processor time on a plane.
 
         :param out: directory for the simulations and ``law.json``; without one nothing is kept but the law.
         :param elements: elements along the contact radius, at every depth, 4 to 16; twice as many at the surface.
         :param device: as of :func:`asperity.study`, like ``threads``, ``progress``, ``precision``, ``resume`` and ``force``.
-        :raises CaseError: the case has no law (``friction = "stick"``, a rigid sphere as the opponent), or an argument is refused.
+        :raises CaseError: the case has no law (``friction = "stick"``), or an argument is refused.
         :raises Interrupted: as :func:`asperity.study`; with ``resume`` it goes on.
         """
         native = as_case(case)._native
