@@ -6,7 +6,7 @@
 //!
 //! `tangent` is E_t/E of the linear hardening (0: none), `indentation` h/R, `stiffness` E/sigma_Y,
 //! `shear` the length of the shear over the predicted contact radius. What the columns say, and
-//! what they are held against, is in `docs/full-stick.md`.
+//! what they are held against, is in `benches/full_stick/README.md`.
 
 use std::process::ExitCode;
 

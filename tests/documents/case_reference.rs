@@ -9,13 +9,16 @@ const HEAD: &str = "\
 
 <!-- Made from src/case/keys.rs: ASPERITY_BLESS=1 cargo test --test documents -->
 
-A case file is TOML. `asperity init` writes one with every key explained, `asperity check` prints one
-with every default, `asperity explain KEY` says on the terminal what is said here, and `asperity schema
-case` prints a JSON Schema for editors. In a study file the same tables stand under `base`; see
-[Studies](studies.md).
+A case file is TOML. `asperity init` writes one with every key explained, `asperity check` prints one with
+every default, `asperity explain KEY` prints an entry of this page, and `asperity schema case` prints a JSON
+Schema for editors. In a study file the same tables stand under `base`; see [Studies](studies.md).
 
-Any one consistent system of units will do: `radius` sets the unit of length and `youngs_modulus` that of
-stress; forces are stress times length squared. With millimetres and MPa, forces are in newtons.
+Use any one consistent system of units: `radius` sets the unit of length and `youngs_modulus` that of stress;
+forces are stress times length squared. With millimetres and MPa, forces are in newtons.
+
+Yield stresses are Kirchhoff stresses, that is true stresses times J, the ratio of present to original volume.
+Plastic strains are logarithmic. Both are those of a tensile test in true stress and strain, as J is 1 to the
+elastic change of volume.
 
 On the command line, `--set KEY=VALUE` replaces a value by its dotted key. Segments of the path count
 from 0: `--set path.0.indentation=0.01`.
@@ -57,14 +60,14 @@ release = true
 ";
 
 const PATH: &str = "\
-The path is an array of tables, one for each segment. A segment has `release`, or one or several of
-`indentation`, `shear`, `twist` and `roll`, which then move in proportion; `hold` goes with the last three,
-where there is no `indentation`. Displacements and angles are totals from first touch, not increments.
+The path is an array of tables, one for each segment. A segment has either `release`, or one or several of
+`indentation`, `shear`, `twist` and `roll`, which then move in proportion. `hold` goes with the last three if
+there is no `indentation`. Displacements and angles are totals from first touch, not increments.
 
-The sphere is moved as a rigid body by its equator: along the plane in any direction, down, and about all
-three axes. Its axes are the contact frame of an engine: z is the normal, delta_T the tangential
-displacement of the surfaces that the engine integrates in that frame, `twist` the spin about the normal, and
-`roll` leaves delta_T as it is.
+The equator of the sphere moves as a rigid plate: along the plane in any direction, down, and about all three
+axes ([What the sphere meets](opponents.md)). Its axes are the contact frame of an engine: z is the normal,
+delta_T the tangential displacement of the surfaces that the engine integrates, `twist` the spin about the
+normal; `roll` leaves delta_T unchanged.
 
 ```toml
 [[path]]

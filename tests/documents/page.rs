@@ -29,6 +29,23 @@ pub fn pages() -> Vec<Page> {
     paths.iter().map(|path| Page::read(path)).collect()
 }
 
+/// What stands beside scripts and data: each README.md below benches and fixtures.
+pub fn records() -> Vec<Page> {
+    let (mut folders, mut pages): (Vec<PathBuf>, _) = (["benches", "fixtures"].map(PathBuf::from).into(), Vec::new());
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.ends_with("README.md") {
+                pages.push(Page::read(&path));
+            }
+        }
+    }
+    assert!(pages.len() > 5, "{} records", pages.len());
+    pages
+}
+
 impl Page {
     pub fn read(path: &Path) -> Self {
         let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
