@@ -16,7 +16,7 @@ mod rooms;
 #[path = "documents/shell.rs"]
 mod shell;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -83,6 +83,26 @@ fn every_file_that_is_named_is_there() {
             }
         }
     }
+}
+
+/// A row of figures has one place: where it stands twice, one of the two rots.
+#[test]
+fn no_row_of_numbers_stands_twice() {
+    let mut places: BTreeMap<String, String> = BTreeMap::new();
+    for page in pages().into_iter().chain(records()) {
+        let lines = page.prose();
+        for (index, (number, line)) in lines.iter().enumerate() {
+            let heading = lines.get(index + 1).is_some_and(|(_, next)| next.starts_with("|---"));
+            let words = line.split(|c: char| c.is_whitespace() || "|/(),".contains(c));
+            let numbers = words.filter(|word| word.trim_end_matches('%').parse::<f64>().is_ok()).count();
+            if line.starts_with('|') && !heading && numbers > 2 {
+                let place = format!("{}:{number}", page.path.display());
+                let before = places.insert((*line).to_owned(), place.clone());
+                assert!(before.is_none(), "{place} is a row that stands at {} too: {line}", before.unwrap_or_default());
+            }
+        }
+    }
+    assert!(places.len() > 200, "{} rows of numbers", places.len());
 }
 
 /// mdBook takes along what lies below docs/.
