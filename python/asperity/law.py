@@ -122,8 +122,8 @@ class Law:
         """Fits a law to a study and writes ``law.json`` into its directory.
 
         :param prior: constants to start from: ``"wear-2014"``, ``"none"``, or the path of another ``law.json``.
-        :param interpolate: a law by interpolation between the contacts of the study, of many materials, instead of formulas.
-        :param reversal: with ``interpolate``, where cases were not sheared back or released: the law by interpolation that knows the stiffness of a reversal and
+        :param interpolate: an interpolated law between the contacts of the study, of many materials, instead of formulas.
+        :param reversal: with ``interpolate``, where cases were not sheared back or released: the interpolated law that knows the stiffness of a reversal and
             of an unloading, as :meth:`built_in` does.
         """
         interpolate = truth("interpolate", interpolate)
@@ -181,7 +181,7 @@ class Law:
 
     @classmethod
     def wear_2014(cls) -> Law:
-        """The formulas that a small study starts from, fitted to 240 cases of 15 materials on a plane, Poisson's ratio 0.3: :meth:`built_in` holds for more and is nearer."""
+        """The formulas that a small study starts from, fitted to 240 cases of 15 materials on a plane, Poisson's ratio 0.3: :meth:`built_in` covers more and is more accurate."""
         return cls(NativeLaw.wear_2014())
 
     def save(self, file: str | os.PathLike[str]) -> None:
@@ -194,11 +194,11 @@ class Law:
         return law
 
     def table(self, case: Case | Mapping[str, Any] | str | os.PathLike[str]) -> Law:
-        """The table of a case's contact, a plane's or a pair's, as a law by interpolation makes it; another law as it is."""
+        """The table of a case's contact, a plane's or a pair's, as an interpolated law makes it; another law as it is."""
         return Law(self._native.table(as_case(case)._native))
 
     def formulas(self) -> str:
-        """The formulas with their constants; a table and a law by interpolation have none."""
+        """The formulas with their constants; a table and an interpolated law have none."""
         return self._native.formulas()
 
     def predict(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], press: bool = False) -> Table:

@@ -17,8 +17,8 @@ Use any one consistent system of units: `radius` sets the unit of length and `yo
 forces are stress times length squared. With millimetres and MPa, forces are in newtons.
 
 Yield stresses are Kirchhoff stresses, that is true stresses times J, the ratio of present to original volume.
-Plastic strains are logarithmic. Both are those of a tensile test in true stress and strain, as J is 1 to the
-elastic change of volume.
+Plastic strains are logarithmic. They equal the true stress and strain of a tensile test but for the elastic
+change of volume.
 
 On the command line, `--set KEY=VALUE` replaces a value by its dotted key. Segments of the path count
 from 0: `--set path.0.indentation=0.01`.
