@@ -101,11 +101,11 @@ fn path() -> std::ffi::OsString {
 fn compare(place: &str, shown: &str, printed: &str, numbers: bool) {
     let mut lines = printed.lines();
     for line in shown.lines() {
-        let rest = lines.clone();
+        let mut rest = lines.clone();
         if lines.any(|found| alike(line, found, numbers)) {
             continue;
         }
-        match rest.into_iter().find(|found| alike(line, found, false)) {
+        match rest.find(|found| alike(line, found, false)) {
             Some(found) => panic!("{place}: the page says\n{line}\nand the program\n{found}\nAll that it printed:\n{printed}"),
             None => panic!("{place}: `{line}` is not what is printed:\n{printed}"),
         }
