@@ -6,7 +6,7 @@
 //! force, and "sliding" is the point at which dF_T/d delta_T has fallen to a tenth of its first
 //! value. Fits to finite elements with E_t = 0.02 E. The constants are second-hand (not read in the
 //! papers). How they compare with this program, and why the tenth is no sharp point under
-//! hardening: `docs/full-stick.md`.
+//! hardening: `benches/full_stick/README.md`.
 
 use super::{ElasticSphere, yielding};
 

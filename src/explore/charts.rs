@@ -322,7 +322,7 @@ impl Page<'_> {
         let update = Curve {
             name: "law",
             source: "the update that an engine calls, driven along the path".to_owned(),
-            trust: "Of a whole cycle no error is known for each contact; docs/laws.md has those of random paths".to_owned(),
+            trust: "Of a whole cycle no error is known for each contact; docs/law-errors.md has those of random paths".to_owned(),
         };
         let mut curves = vec![update];
         let simulated = self.simulated().filter(|_| self.over.run.is_some_and(|run| run.case.path == self.curves.case.path));

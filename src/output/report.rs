@@ -5,7 +5,8 @@ use std::fmt::Write;
 use super::Summary;
 
 impl Summary {
-    /// Two lines: forces in the user's units, their errors, and what the run took.
+    /// Lines for forces in the user's units and their errors, if there are any, and the beginning of
+    /// one that says where they are: how the run ended, and what it took.
     pub fn brief(&self) -> String {
         let named = [
             ("F_N0", self.f_n0, self.f_n0_error),
@@ -24,9 +25,9 @@ impl Summary {
         let errors = if errors.is_empty() { "not estimated".to_owned() } else { errors.join(", ") };
         let mut text = String::new();
         if !values.is_empty() {
-            text += &format!("{}\nerrors: {errors}; ", values.join("  "));
+            text += &format!("{}\nerrors: {errors}\n", values.join("  "));
         }
-        text + &format!("{} in {:.1} s, {} steps", self.status, self.wall_s, self.steps) + "\n"
+        text + &format!("{} in {:.1} s, {} steps; ", self.status, self.wall_s, self.steps)
     }
 
     /// Some lines: what came out, in the user's units, and what it took.
@@ -107,13 +108,13 @@ mod tests {
     }
 
     #[test]
-    fn two_lines_have_what_there_is() {
+    fn the_brief_report_has_what_there_is() {
         let mut summary = Summary { status: Status::Done, steps: 7, wall_s: 2.04, ..Summary::default() };
-        assert_eq!(summary.brief(), "done in 2.0 s, 7 steps\n");
+        assert_eq!(summary.brief(), "done in 2.0 s, 7 steps; ");
         (summary.f_n0, summary.a0) = (Some(150.0), Some(0.2));
-        assert_eq!(summary.brief(), "F_N0 150.000  a0 0.200000\nerrors: not estimated; done in 2.0 s, 7 steps\n");
+        assert_eq!(summary.brief(), "F_N0 150.000  a0 0.200000\nerrors: not estimated\ndone in 2.0 s, 7 steps; ");
         (summary.f_n0_error, summary.f_t_max) = (Some(1.5), Some(30.0));
-        let expected = "F_N0 150.000  F_T_max 30.0000  a0 0.200000\nerrors: F_N0 +- 1.0 %; done in 2.0 s, 7 steps\n";
+        let expected = "F_N0 150.000  F_T_max 30.0000  a0 0.200000\nerrors: F_N0 +- 1.0 %\ndone in 2.0 s, 7 steps; ";
         assert_eq!(summary.brief(), expected);
     }
 
