@@ -12,7 +12,6 @@ turns by steps that shrink. --held-out leaves out one material at a time, and sc
 
 import argparse
 import csv
-import json
 import math
 import pathlib
 import re
@@ -116,17 +115,14 @@ def protocol():
 
 
 def more(run, table):
-    """The same of a run; lengths and forces by those of its case, shares of them by the table's."""
-    case = json.loads(pathlib.Path(table).read_text())
+    """The same of a run, over the R and the E of its case. That the line of centres of a pair turns as it is sheared is left out."""
     text = (pathlib.Path(run) / "case.toml").read_text()
     number = lambda key: float(re.search(rf"^{key} = (\S+)", text, re.M).group(1))
     radius, modulus = number("radius"), number("youngs_modulus")
-    # An equal pair: h and delta_T are twice what each centre moves, and the update is told the half.
-    share = 0.5 if re.search(r"^equal = true", text, re.M) else 1.0
     with open(pathlib.Path(run) / "history.csv", newline="") as history:
         rows = [row for row in csv.DictReader(history) if int(row["step"]) > 0]
     found, _ = at_the_limit(rows)
-    units = share / radius, share / radius, 1 / (modulus * radius**2), 1 / (modulus * radius**2)
+    units = 1 / radius, 1 / radius, 1 / (modulus * radius**2), 1 / (modulus * radius**2)
     return pathlib.Path(run).name, table, {"path": [[float(x) * unit for x, unit in zip(row[1:], units)] for row in found]}
 
 
