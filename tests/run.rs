@@ -155,15 +155,13 @@ fn leaves_every_file_of_the_contract() {
     // A person is told in three lines what came out, how well, and where it is.
     let told = stdout(&output);
     assert_eq!(told.lines().count(), 3, "{told}");
-    for word in ["F_N0 ", "a0 ", "F_N_slip ", "F_T_max ", "\nerrors: ", "\ndone in ", &format!("; results in {}\n", dir.display())] {
+    for word in
+        ["F_N0 ", "a0 ", "F_N_slip ", "F_T_max ", "\nerrors: ", "\ndone in ", &format!("; results in {}\n", dir.display())]
+    {
         assert!(told.contains(word), "{word}: {told}");
     }
     // Not a terminal: plain lines.
-    assert!(
-        stderr(&output).contains(" %  segment 0, step 1  h ") && !stderr(&output).contains('\u{1b}'),
-        "{}",
-        stderr(&output)
-    );
+    assert!(stderr(&output).contains(" %  segment 0, step 1  h ") && !stderr(&output).contains('\u{1b}'), "{}", stderr(&output));
 
     // The resolved case runs to the same result.
     let again = program()

@@ -42,7 +42,9 @@ impl NativePicture {
             "svg" => PictureFormat::Svg,
             "pdf" => PictureFormat::Pdf,
             "png" => PictureFormat::Png,
-            _ => return Err(refused(format!("file: is {:?}. Allowed: a name that ends with .svg, .pdf or .png", file.display()))),
+            _ => {
+                return Err(refused(format!("file: is {:?}. Allowed: a name that ends with .svg, .pdf or .png", file.display())));
+            }
         };
         self.picture.write(&file, format).map_err(failed)
     }
@@ -102,7 +104,13 @@ pub fn run_picture(
 }
 
 /// A picture of what a law predicts along the path of a case.
-pub fn law_picture(points: &[PathPoint], case: &Case, name: Option<&str>, width: Option<&str>, title: bool) -> PyResult<NativePicture> {
+pub fn law_picture(
+    points: &[PathPoint],
+    case: &Case,
+    name: Option<&str>,
+    width: Option<&str>,
+    title: bool,
+) -> PyResult<NativePicture> {
     let view = view(case, width, title)?;
     let record = |(step, point): (usize, &PathPoint)| StepRecord {
         step,

@@ -13,8 +13,7 @@ use crate::study::{self, Merged, Study, StudyDirectory};
 /// that is wanted.
 pub fn slurm(study: &Study, arguments: &[String], out: &Path, options: &[String], submit: bool) -> Result<Outcome, CliError> {
     let slurm = Slurm::parse(arguments)?;
-    let program =
-        super::program().map_err(|source| CliError::Out { dir: out.to_owned(), what: "find this program", source })?;
+    let program = super::program().map_err(|source| CliError::Out { dir: out.to_owned(), what: "find this program", source })?;
     slurm::check(out, &program)?;
     study::prepare(study, out)?;
     let scripts = slurm::write(&StudyDirectory::new(out), &slurm, &program, options)?;

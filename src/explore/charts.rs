@@ -66,7 +66,10 @@ impl Drawing {
 pub fn view(case: &Case, axes: &str, width: f64) -> View {
     let units = if axes == "none" { AxisUnits::Normalised } else { AxisUnits::Case };
     let value = if width.is_finite() { width.clamp(WIDTHS.0, WIDTHS.1).round() } else { WIDTHS.1 };
-    View { axes: Axes::of(case, units), sheet: Sheet { width: Some(PictureWidth { value, unit: WidthUnit::Pixel }), untitled: false } }
+    View {
+        axes: Axes::of(case, units),
+        sheet: Sheet { width: Some(PictureWidth { value, unit: WidthUnit::Pixel }), untitled: false },
+    }
 }
 
 /// All diagrams.

@@ -117,7 +117,8 @@ fn symbols_marked(text: &str) -> String {
         let alone = letter.is_ascii_alphabetic()
             && before(1).is_none_or(|c| !c.is_alphanumeric() && !"_^{,&'’.-".contains(c))
             && after(1).is_none_or(|c| !c.is_alphanumeric() && !"';.-".contains(c));
-        let unit = before(1) == Some(' ') && (before(2) == Some('n') && before(3) == Some('i') || before(2).is_some_and(|c| c.is_ascii_digit()));
+        let unit = before(1) == Some(' ')
+            && (before(2) == Some('n') && before(3) == Some('i') || before(2).is_some_and(|c| c.is_ascii_digit()));
         let article = letter == 'a' && after(1) == Some(' ') && after(2).is_some_and(|c| c.is_lowercase());
         if greek || alone && !unit && !article {
             // A bar belongs to its letter.
