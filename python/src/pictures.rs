@@ -131,7 +131,8 @@ pub fn law_picture(
     chosen(pictures, name)
 }
 
-/// The program `asperity`, called with these arguments, the file of the script first; its exit code.
+/// The program `asperity`, called with these arguments, the file of the script first; its exit
+/// code.
 #[pyfunction]
 pub fn program(arguments: Vec<std::ffi::OsString>) -> u8 {
     asperity::internals::cli::main_within(arguments)

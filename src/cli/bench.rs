@@ -16,8 +16,9 @@ use crate::output::write_own;
 
 /// Measure the kernels on a GPU and on the CPU.
 ///
-/// These are return mapping, internal force, tangent, contact and commit. On a GPU also parts of the linear solver by themselves. Needs nothing but this program, and a
-/// driver for the GPU. Takes some minutes.
+/// These are return mapping, internal force, tangent, contact and commit. On a GPU also parts of
+/// the linear solver by themselves. Needs nothing but this program, and a driver for the GPU. Takes
+/// some minutes.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
     /// What to measure beside the CPU; by default what ASPERITY_DEVICE says, and auto where it is

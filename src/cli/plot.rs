@@ -19,7 +19,8 @@ use crate::study::{StudyDirectory, report};
 
 /// Draw the results in a directory.
 ///
-/// Writes DIR/plots, and DIR/report.html for a study. A run may be unfinished; of a study, the finished cases are drawn.
+/// Writes DIR/plots, and DIR/report.html for a study. A run may be unfinished; of a study, the
+/// finished cases are drawn.
 #[derive(Clone, Debug, Args)]
 pub struct PlotArgs {
     /// The directory of a run or of a study.

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::Summary;
 
 impl Summary {
-    /// Lines for forces in the user's units and their errors, if there are any, and the beginning of
-    /// one that says where they are: how the run ended, and what it took.
+    /// Lines for forces in the user's units and their errors, if there are any, and the beginning
+    /// of one that says where they are: how the run ended, and what it took.
     pub fn brief(&self) -> String {
         let named = [
             ("F_N0", self.f_n0, self.f_n0_error),

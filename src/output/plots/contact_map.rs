@@ -4,7 +4,7 @@ use super::super::tables::SlipPanel;
 use super::super::{ContactPoint, ContactStatus, Half, OutputError};
 use super::View;
 use super::axes::{Dimension, Shown};
-use super::canvas::{Anchor, Canvas, Colour, Drawn, Paint, Place, Stroke, Writing};
+use super::canvas::{Anchor, Canvas, Colour, Drawn, NotFinite, Paint, Place, Stroke, Writing};
 use super::chart::nice_step;
 use super::field::{Field, clipped};
 use super::style::{BLUE, INK, ORANGE, Picture, rounded, tick, viridis};
@@ -18,6 +18,22 @@ const BAR: f64 = 74.0;
 /// Room beside a square for the numbers of its axes and their names.
 const MARGIN: f64 = 58.0;
 const FOOT: f64 = 56.0;
+/// Height of the title.
+const TITLE: f64 = 30.0;
+
+/// The title, if pictures have them; the middle of the line that follows.
+fn headed(root: &Canvas, title: &str) -> Result<f64, NotFinite> {
+    if root.untitled {
+        return Ok(54.0 - TITLE);
+    }
+    root.text(title, (MARGIN, 24.0), INK, text(18.0))?;
+    Ok(54.0)
+}
+
+/// What is above the maps, `head` pixels with the title.
+fn below_title(head: f64, view: &View) -> f64 {
+    if view.sheet.untitled { head - TITLE } else { head }
+}
 
 /// The map of one step at current positions: open, stick and slip in the upper half, the pressure
 /// in the lower one. The shear runs to the right.
@@ -28,15 +44,15 @@ pub fn plot_contact(points: &[ContactPoint], view: &View) -> Result<Picture, Out
     let window = Window::of(points);
     let width = view.sheet.width_of(640.0);
     let side = (width - MARGIN - 24.0).min(520.0);
-    let top = 78.0;
+    let top = below_title(78.0, view);
     Picture::draw("contact", caption, view.sheet.size(width, top + side + FOOT + BAR), |root| {
         let map = Map { window, scales: &scales, square: Square { left: MARGIN, top, side } };
         map.draw(root, points)?;
-        root.text("Contact surface", (MARGIN, 24.0), INK, text(18.0))?;
+        let names = headed(root, "Contact surface")?;
         map.axes(root, [true, true])?;
         root.text("status", (MARGIN + 10.0, top + 16.0), INK, text(14.0))?;
         root.text("pressure", (MARGIN + 10.0, top + side - 16.0), INK, text(14.0))?;
-        status_names(root, Some(points), (MARGIN, 54.0))?;
+        status_names(root, Some(points), (MARGIN, names))?;
         pressure_bar(root, &scales, (MARGIN, top + side + FOOT), side)
     })
 }
@@ -54,7 +70,6 @@ pub fn plot_slip_frame(panels: &[SlipPanel], frame: usize, view: &View) -> Resul
 
 /// Maps of the steps that are `shown`, to the scale of all `panels`.
 fn slip_maps(shown: &[SlipPanel], panels: &[SlipPanel], view: &View) -> Result<Picture, OutputError> {
-    const HEAD: f64 = 74.0;
     const NARROWEST: f64 = 170.0;
     /// Narrowest square over which what it shows stands on one line.
     const ONE_LINE: f64 = 200.0;
@@ -69,9 +84,10 @@ fn slip_maps(shown: &[SlipPanel], panels: &[SlipPanel], view: &View) -> Result<P
     let rows = shown.len().div_ceil(columns).max(1);
     // Over a panel's square, for what it shows.
     let title = if side < ONE_LINE { 46.0 } else { 28.0 };
+    let head = below_title(74.0, view);
     // Only the lowest panels name their axis.
     let down = |rows: usize| rows as f64 * (title + side + 32.0);
-    let size = view.sheet.size(width, HEAD + down(rows) + FOOT - 32.0 + BAR);
+    let size = view.sheet.size(width, head + down(rows) + FOOT - 32.0 + BAR);
     let caption = "Stick and slip (upper halves) and pressure (lower halves) at saved steps of the shear, in their order and to one scale; \
                    the shear runs to the right.";
     let all: Vec<ContactPoint> = panels.iter().flat_map(|panel| panel.points.iter().cloned()).collect();
@@ -79,10 +95,10 @@ fn slip_maps(shown: &[SlipPanel], panels: &[SlipPanel], view: &View) -> Result<P
     let farthest = super::curves::greatest(panels.iter().map(|panel| panel.delta_t));
     let delta_t = view.axes.show(Dimension::Length, "", "δ_T", farthest);
     Picture::draw("slip", caption, size, |root| {
-        root.text("Stick and slip during the shear", (MARGIN, 24.0), INK, text(18.0))?;
-        status_names(root, None, (MARGIN, 54.0))?;
+        let names = headed(root, "Stick and slip during the shear")?;
+        status_names(root, None, (MARGIN, names))?;
         for (i, panel) in shown.iter().enumerate() {
-            let corner = ((i % columns) as f64 * across, HEAD + down(i / columns));
+            let corner = ((i % columns) as f64 * across, head + down(i / columns));
             let area = root.panel(corner, (across, title + side + FOOT));
             let map = Map { window, scales: &scales, square: Square { left: MARGIN, top: title, side } };
             map.draw(&area, &panel.points)?;
@@ -100,7 +116,7 @@ fn slip_maps(shown: &[SlipPanel], panels: &[SlipPanel], view: &View) -> Result<P
             map.axes(&area, [i + columns >= shown.len(), i % columns == 0])?;
         }
         let length = (width - MARGIN - 40.0).min(420.0);
-        pressure_bar(root, &scales, (MARGIN, HEAD + down(rows) - 32.0 + FOOT), length)
+        pressure_bar(root, &scales, (MARGIN, head + down(rows) - 32.0 + FOOT), length)
     })
 }
 

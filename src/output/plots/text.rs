@@ -117,8 +117,7 @@ fn symbols_marked(text: &str) -> String {
         let alone = letter.is_ascii_alphabetic()
             && before(1).is_none_or(|c| !c.is_alphanumeric() && !"_^{,&'’.-".contains(c))
             && after(1).is_none_or(|c| !c.is_alphanumeric() && !"';.-".contains(c));
-        let unit = before(1) == Some(' ')
-            && (before(2) == Some('n') && before(3) == Some('i') || before(2).is_some_and(|c| c.is_ascii_digit()));
+        let unit = before(1) == Some(' ') && before(2) == Some('n') && before(3) == Some('i');
         let article = letter == 'a' && after(1) == Some(' ') && after(2).is_some_and(|c| c.is_lowercase());
         if greek || alone && !unit && !article {
             // A bar belongs to its letter.
@@ -190,7 +189,7 @@ mod tests {
             ("closed form of a contact", ""),
             ("Johnson's map", ""),
             ("E/σ_Y = 500, μ = 0.3", "Eσμ"),
-            ("p &lt; 1e-5, 85 m", "p"),
+            ("p &lt; 1e-5, 10^3 F / (E R^2)", "pFER"),
             ("F_N, main", "F"),
         ] {
             assert_eq!(slanted(text), expected, "{text}");

@@ -8,7 +8,7 @@ use svg2pdf::{ConversionOptions, PageOptions};
 
 /// DejaVu Sans, less the letters that no picture has (see `font/README.md`).
 const FONT: &[u8] = include_bytes!("font/DejaVuSans.ttf");
-/// The letters of its slanted sister, for symbols.
+/// Its slanted sister, for symbols.
 const OBLIQUE: &[u8] = include_bytes!("font/DejaVuSans-Oblique.ttf");
 /// Pixels of CSS to the inch, and those of a PNG whose width is a length.
 const CSS: f32 = 96.0;
@@ -129,7 +129,10 @@ mod tests {
             assert!(picture != nothing && picture != unknown, "{letter} is missing");
         }
         assert_ne!(drawn("<tspan text-decoration=\"overline\">H</tspan>"), drawn("H"), "the bar is drawn");
-        assert_ne!(drawn("<tspan font-style=\"italic\">H</tspan>"), drawn("H"), "it is slanted");
-        assert_ne!(drawn("<tspan font-style=\"italic\">δ</tspan>"), drawn("δ"), "and so are Greek letters");
+        for text in ["H", "δ"] {
+            let slanted = format!("<tspan font-style=\"italic\">{text}</tspan>");
+            assert_ne!(drawn(&slanted), drawn(text), "it is slanted");
+            assert_ne!(drawn(&format!("{slanted}, 3 ² ≥ ж")), drawn(&format!("{text}, 3 ² ≥ ж")), "also beside others");
+        }
     }
 }
