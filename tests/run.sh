@@ -131,6 +131,12 @@ code=0
 ASPERITY_PROGRAM="$PWD/target/debug/asperity" timeout 600 bash integrations/lammps/run.sh || code=$?
 [ "$code" -eq 0 ] || { [ "$code" -eq 77 ] && [ "${ASPERITY_REQUIRE_LAMMPS:-}" != 1 ]; }
 
+# What the README tells a newcomer, from the installation to a run in LAMMPS.
+begin "first steps"
+code=0
+bash tests/first_steps.sh || code=$?
+[ "$code" -eq 0 ] || { [ "$code" -eq 77 ] && [ "${ASPERITY_REQUIRE_LAMMPS:-}" != 1 ]; }
+
 # The page of `asperity explore` in a browser. ASPERITY_REQUIRE_CHROMIUM=1 makes a skip a failure.
 begin "explore"
 code=0
