@@ -111,7 +111,7 @@ pub const TABLES: [(&str, &str); 10] = [
 pub const LAWS: [&str; 7] = HardeningLaw::WORDS;
 
 const UNIT_LABEL: &str = "1 to 16 letters";
-const UNIT_OMITTED: &str = "the axes are normalised, or named after the case if another label is there";
+const UNIT_OMITTED: &str = "the axes are normalised, or left in case units if only other labels are given";
 const STRESS: &str = "stress";
 const LENGTH: &str = "length";
 
@@ -134,7 +134,7 @@ pub const KEYS: &[Key] = &[
         ..key("sphere", "radius", Number(AtLeast(1e-75), AtMost(1e75), &[]), Required)
     },
     Key {
-        range: "true, with another sphere as the opponent, or false",
+        range: "true (with a sphere as the opponent) or false",
         meaning: "the body is a flat, not a sphere: half a ball of radius 2 R, pressed on its flat face; R is still the unit of length",
         example: "true",
         ..key("sphere", "flat", Truth, Optional("a sphere"))
@@ -148,7 +148,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "> -1 and < 0.5",
-        meaning: "Poisson's ratio nu; above 0.45 runs take longer, at 0.499 twenty times",
+        meaning: "Poisson's ratio nu; above 0.45 runs take longer, at 0.499 twenty times as long",
         example: "0.3",
         ..key("material", "poissons_ratio", Number(Above(-1.0), Above(0.5), &[]), Required)
     },
@@ -236,22 +236,20 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the \
-                  relative displacements of the two equators, twice what each moves; where the path leaves the x axis or \
-                  turns, both spheres are meshed whole, for seven times the time",
+        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the relative displacements of the two equators, twice what each moves; if the path leaves the x axis or the spheres turn, both are meshed whole, which takes seven times as long",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
     Key {
         range: "true or false, and not beside equal",
-        meaning: "a rigid sphere with the radius of this table; without one, the rigid plane",
+        meaning: "press against a rigid sphere with the radius of this table; without a radius, the rigid plane",
         example: "true",
         ..key("opponent", "rigid", Truth, Optional("a rigid plane"))
     },
     Key {
         unit: LENGTH,
         range: ">= 0.05 R if it is rigid, else 0.1 R to 10 R",
-        meaning: "radius of the sphere that it is pressed against; with R* from 1/R* = 1/R + 1/radius, or of a flat the radius itself, h is below 0.3 R*",
+        meaning: "radius of the sphere that the body is pressed against; h is below 0.3 R*, with 1/R* = 1/R + 1/radius (if the body is a flat, R* is this radius)",
         example: "2.0",
         ..key(
             "opponent",
@@ -261,7 +259,7 @@ pub const KEYS: &[Key] = &[
         )
     },
     Key {
-        range: "true, not beside a radius and with a sphere as the body, or false",
+        range: "true (without a radius, and with a sphere as the body) or false",
         meaning: "the opponent is a flat that deforms, half a ball of radius 2 R; if it is rigid, the plane",
         example: "true",
         ..key("opponent", "flat", Truth, Optional("a sphere if there is a radius or a material, else a rigid plane"))
@@ -270,12 +268,11 @@ pub const KEYS: &[Key] = &[
         range: "a table with the keys of [material]; Young's modulus 1e-6 to 1e6 times that of the body",
         meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative displacements",
         example: "{ youngs_modulus = 400e3, poissons_ratio = 0.3, hardening = { law = \"elastic\" } }",
-        ..key("opponent", "material", Material, Optional("the body's own where there is a radius or a flat that is not rigid"))
+        ..key("opponent", "material", Material, Optional("the body's own, if the opponent has a radius or is a flat and is not rigid"))
     },
     Key {
         range: "4 to 32",
-        meaning: "elements along the contact radius; given alone, at the surface too: 8 is then quick; the time grows as the \
-                  2.5th power",
+        meaning: "elements along the contact radius, also at the surface if given alone (8 is then quick); the time grows as their 2.5th power",
         example: "10",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("10"))
     },
@@ -287,7 +284,7 @@ pub const KEYS: &[Key] = &[
             "mesh",
             "surface_elements_per_contact_radius",
             Whole(4, 64),
-            Optional("20, but as many as inside where these are given"),
+            Optional("20, or as many as inside if those are given"),
         )
     },
     Key {
@@ -299,7 +296,7 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: "0.0005 R to 0.65 R",
-        meaning: "contact radius to mesh for",
+        meaning: "contact radius for which the mesh is made",
         example: "0.2",
         ..key("mesh", "contact_radius", Number(Above(0.0), Free, &[]), Optional("the one that closed forms predict"))
     },
@@ -318,7 +315,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1 to 100000",
-        meaning: "load steps of a press from first touch; a press that goes on from there takes its share and two more",
+        meaning: "load steps of a press from first touch; a later press gets a proportional share of these steps, plus two",
         example: "26",
         ..key("solver", "press_steps", Whole(1, 100_000), Optional("as many as the mesh asks for, 25 on the default one"))
     },
@@ -330,7 +327,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1 to 1000",
-        meaning: "Newton iterations of a step before it is cut in half; from 10 on up to twice as many while it converges fast",
+        meaning: "Newton iterations of a step before it is cut in half; if set to 10 or more, the limit doubles while convergence is fast",
         example: "25",
         ..key("solver", "max_iterations", Whole(1, 1000), Defaults("25"))
     },
@@ -342,21 +339,20 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether a coarse run goes first, for an eighth of the work; it finds how far the contact will reach and \
-                  gives limits and errors. In a study it has to be asked for",
+        meaning: "whether a coarse run goes first, for an eighth of the work; it shows how far the contact will reach, and gives limits and error estimates; in a study only if its base says so",
         example: "true",
         ..key("solver", "error_estimate", Truth, Defaults("true"))
     },
     Key {
         unit: "GiB",
         range: "> 0",
-        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A value that is given is taken as it is; where the system tells nothing, it is 8",
+        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A value given here replaces the limit of the system; if the system reports none, the limit is 8",
         example: "8.0",
         ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Optional(ROOM))
     },
     Key {
         range: "\"none\", \"contact\", \"segments\" or \"all\"",
-        meaning: "steps after which fields/*.vtu and contact/*.csv are written: none; with contact, contact/*.csv alone, after the last of each segment; with segments, both after that, and with either contact/*.csv of up to four steps of the first shear if there are plots, for plots/slip.svg; all. In a study the default is contact",
+        meaning: "when fields/*.vtu and contact/*.csv are written. none: never; contact: contact/*.csv alone, after the last step of each segment; segments: both, after the last step of each segment; all: both, after every step. With contact or segments, and plots, also contact/*.csv of up to four steps of the first shear, for plots/slip.svg. In a study the default is contact",
         example: "\"segments\"",
         ..key("output", "fields", Word(&["none", "contact", "segments", "all"]), Defaults("\"segments\""))
     },
@@ -368,13 +364,13 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"svg\", \"pdf\" or \"png\"",
-        meaning: "format of the pictures; a PNG has 300 pixels to the inch, or as many as plot_width says in px",
+        meaning: "format of the pictures; a PNG has 300 pixels per inch, or the number of pixels of a plot_width in px",
         example: "\"svg\"",
         ..key("output", "plot_format", Word(&["svg", "pdf", "png"]), Optional("svg"))
     },
     Key {
         range: "60 to 10000 px in mm, cm, in, pt or px, as in \"85mm\"",
-        meaning: "width of the pictures; each is laid out anew for it, so that its text is as large in a narrow one",
+        meaning: "width of the pictures; each is laid out anew, so that its text has the same size at any width",
         example: "\"85mm\"",
         ..key("output", "plot_width", Text, Optional("each has a width of its own"))
     },
@@ -386,9 +382,9 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether checkpoint.bin stays when the run is done, about 1 kB for each element, so that run --extend can follow a longer path; in a study it never does",
+        meaning: "whether checkpoint.bin, about 1 kB for each element, is kept after the run, so that run --extend can follow a longer path; a study never keeps it",
         example: "true",
-        ..key("output", "keep_checkpoint", Truth, Optional("it stays"))
+        ..key("output", "keep_checkpoint", Truth, Optional("it is kept"))
     },
     Key {
         range: UNIT_LABEL,
@@ -411,27 +407,26 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0, the greatest >= 2.5e-7 R^2/R*",
-        meaning: "press to this indentation h, a total from first touch, or unload to it if it is smaller than the present one",
+        meaning: "press to this indentation h, a total from first touch, or unload to it if it is smaller than the present h",
         example: "0.02",
         ..key(
             "path",
             "indentation",
             Number(AtLeast(0.0), Free, &[]),
-            Optional("the segment shears, turns or releases; with others beside it all go in proportion"),
+            Optional("the segment shears, turns or releases"),
         )
     },
     Key {
         unit: LENGTH,
         range: "-0.5 R to 0.5 R, [x, y] of such lengths, or \"full-slip\"",
-        meaning: "shear to this delta_T, a total of either sign: along x, or along x and y, for which all of the sphere is meshed \
-                  and not half of it; with \"full-slip\", until every point slips",
+        meaning: "shear to this total delta_T, of either sign: along x, or along x and y, for which the whole sphere is meshed and not half of it; with \"full-slip\", until every point slips",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
     Key {
         unit: "degrees",
         range: "-360 to 360",
-        meaning: "direction of shear, from x towards y: of its length, which is then no total along x, or of full slip",
+        meaning: "direction of shear, as an angle from x towards y; shear is then the total displacement in this direction, or \"full-slip\"",
         example: "30.0",
         ..key(
             "path",
@@ -443,15 +438,14 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "rad",
         range: "-100 to 100",
-        meaning: "twist the sphere about the normal to this angle, a total of either sign; all of the sphere is meshed",
+        meaning: "twist the sphere about the normal to this total angle, of either sign; the whole sphere is meshed",
         example: "0.05",
         ..key("path", "twist", Number(AtLeast(-100.0), AtMost(100.0), &[]), Optional("the sphere does not turn about the normal"))
     },
     Key {
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
-        meaning: "roll the sphere to this angle about y, a total of either sign, or to two angles about x and y; its centre goes \
-                  along, so that delta_T stays as it is",
+        meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y; its centre moves along, so that delta_T does not change",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

@@ -9,18 +9,18 @@ const HEAD: &str = "\
 
 <!-- Made from src/case/keys.rs: ASPERITY_BLESS=1 cargo test --test documents -->
 
-A case file is TOML. `asperity init` writes one with every key explained, `asperity check` prints one with
+A case file is TOML. `asperity init` writes one with every key explained, `asperity check` prints a case with
 every default, `asperity explain KEY` prints an entry of this page, and `asperity schema case` prints a JSON
-Schema for editors. In a study file the same tables stand under `base`; see [Studies](studies.md).
+Schema for editors. A [study file](studies.md) has the same tables under `base`.
 
-Use any one consistent system of units: `radius` sets the unit of length and `youngs_modulus` that of stress;
+Use any consistent system of units: `radius` sets the unit of length and `youngs_modulus` that of stress;
 forces are stress times length squared. With millimetres and MPa, forces are in newtons.
 
-Yield stresses are Kirchhoff stresses, that is true stresses times J, the ratio of present to original volume.
-Plastic strains are logarithmic. They equal the true stress and strain of a tensile test but for the elastic
-change of volume.
+Yield stresses are Kirchhoff stresses (true stress times J, the ratio of present to original volume), and
+plastic strains are logarithmic. Except for the elastic change of volume, both equal the true stress and
+strain of a tensile test.
 
-On the command line, `--set KEY=VALUE` replaces a value by its dotted key. Segments of the path count
+On the command line, `--set KEY=VALUE` replaces a value. The key is dotted, and segments of the path count
 from 0: `--set path.0.indentation=0.01`.
 
 A whole case:
@@ -61,13 +61,13 @@ release = true
 
 const PATH: &str = "\
 The path is an array of tables, one for each segment. A segment has either `release`, or one or several of
-`indentation`, `shear`, `twist` and `roll`, which then move in proportion. `hold` goes with the last three if
-there is no `indentation`. Displacements and angles are totals from first touch, not increments.
+`indentation`, `shear`, `twist` and `roll`, which then move in proportion. `shear`, `twist` and `roll` without
+`indentation` may have a `hold`. Displacements and angles are totals from first touch, not increments.
 
 The equator of the sphere moves as a rigid plate: along the plane in any direction, down, and about all three
-axes ([What the sphere meets](opponents.md)). Its axes are the contact frame of an engine: z is the normal,
-delta_T the tangential displacement of the surfaces that the engine integrates, `twist` the spin about the
-normal; `roll` leaves delta_T unchanged.
+axes ([What the sphere meets](opponents.md)). As in an engine, z is the contact normal, delta_T the integrated
+tangential displacement of the surfaces, and `twist` the spin about the normal. `roll` leaves delta_T
+unchanged.
 
 ```toml
 [[path]]
