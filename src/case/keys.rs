@@ -268,7 +268,12 @@ pub const KEYS: &[Key] = &[
         range: "a table with the keys of [material]; Young's modulus 1e-6 to 1e6 times that of the body",
         meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative displacements",
         example: "{ youngs_modulus = 400e3, poissons_ratio = 0.3, hardening = { law = \"elastic\" } }",
-        ..key("opponent", "material", Material, Optional("the body's own, if the opponent has a radius or is a flat and is not rigid"))
+        ..key(
+            "opponent",
+            "material",
+            Material,
+            Optional("the body's own, if the opponent has a radius or is a flat and is not rigid"),
+        )
     },
     Key {
         range: "4 to 32",
@@ -409,12 +414,7 @@ pub const KEYS: &[Key] = &[
         range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0, the greatest >= 2.5e-7 R^2/R*",
         meaning: "press to this indentation h, a total from first touch, or unload to it if it is smaller than the present h",
         example: "0.02",
-        ..key(
-            "path",
-            "indentation",
-            Number(AtLeast(0.0), Free, &[]),
-            Optional("the segment shears, turns or releases"),
-        )
+        ..key("path", "indentation", Number(AtLeast(0.0), Free, &[]), Optional("the segment shears, turns or releases"))
     },
     Key {
         unit: LENGTH,
