@@ -242,7 +242,7 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false, and not beside equal",
-        meaning: "press against a rigid sphere with the radius of this table; without a radius, the rigid plane",
+        meaning: "Press against a rigid sphere with the radius of this table; without a radius, the rigid plane",
         example: "true",
         ..key("opponent", "rigid", Truth, Optional("a rigid plane"))
     },
