@@ -36,7 +36,7 @@ constexpr int NUMBERS = sizeof(asperity_contact) / sizeof(double);
 static_assert(NUMBERS == 43, "a contact has 43 numbers");
 
 // Version of what the plug-in writes to restart files; raised whenever that changes, or what the numbers of a contact mean.
-constexpr double LAYOUT = 2.0;
+constexpr double LAYOUT = 3.0;
 constexpr char MARK[9] = "ASPERITY";
 
 // A law, and what tells it from others.

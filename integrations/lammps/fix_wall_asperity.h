@@ -1,45 +1,86 @@
-// A rigid plane: fix ID group wall/asperity x y z nx ny nz type T TABLE E [words] [type ...] [velocity vx vy vz]
-// Under the GNU General Public License, version 2.
+// A rigid wall: a plane, a cylinder, a cone or the triangles of an STL file, moved or under a load. Under the GNU General Public
+// License, version 2.
 #ifndef FIX_WALL_ASPERITY_H
 #define FIX_WALL_ASPERITY_H
 
 #include "asperity_common.h"
+#include "asperity_mesh.h"
+#include "asperity_motion.h"
+
+#include "domain.h"
 
 namespace LAMMPS_NS {
 
 class FixWallAsperity : public Fix {
-  static constexpr const char *USAGE = "fix ID group wall/asperity x y z nx ny nz type T TABLE E [restitution e] [tangential f] "
-                                       "[changed] [type ...] [velocity vx vy vz]";
-  static constexpr int LENGTH = 13;
+  static constexpr const char *USAGE =
+      "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [changed] [type ...] [velocity vx vy vz] "
+      "[spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | cylinder x y z ax ay az R inside or outside | "
+      "cone x1 y1 z1 R1 x2 y2 z2 R2 | stl FILE [scale s] [at x y z] [merge DEGREES]";
+  static constexpr int LENGTH = 19, SUMS = 12, COLUMNS = 9;
+  static constexpr double MERGE = 15.0, FOLLOWS = 30.0;    // degrees
+
+  // A contact as its sphere holds it.
+  struct Record {
+    double normal[3];    // in the frame of the wall: by it the memory finds its contact again
+    double stored;       // elastic energy
+    asperity_contact contact;
+  };
+  static constexpr int RECORD = sizeof(Record) / sizeof(double);
+  struct Kept {
+    std::vector<Record> records;
+    double heat[3] = {};    // work dissipated in this sphere by plastic flow, slip and damping at this wall
+  };
+  struct Words {
+    std::string file;
+    double scale = 1.0, merge = MERGE;
+    bool stl = false;
+  };
+
   std::vector<std::shared_ptr<Law>> laws;
   Masses masses;
-  std::vector<asperity_contact> contacts;
-  asperity_wall wall;
+  std::unique_ptr<Shape> shape;
+  Mesh *mesh = nullptr;
+  Motion motion;
+  std::vector<Kept> kept;
   // Sums of this process: force on the wall, work dissipated by plastic flow, slip and damping, elastic energy, contacts, those
-  // out of range; and the work that the wall has done.
-  double sum[9] = {}, all[9] = {}, done = 0.0, before_force[3] = {};
+  // out of range, torque; and the work that the wall has done.
+  double sum[SUMS] = {}, all[SUMS] = {}, done = 0.0, before[6] = {};
+  double margin = 0.0, home[3] = {}, spanned[7] = {};
+  double least_cosine = -1.0;    // of the old and the new normal of a contact
   int extensive[LENGTH];
   double **peratom = nullptr;
   bool known = false;
+  std::vector<Touch> found;
+  std::vector<int> owner;
 
-  void set_velocity(char **arg)
+  double number(const char *word) { return utils::numeric(FLERR, word, false, lmp); }
+  void numbers(char **arg, int count, double *out)
   {
-    for (int k = 0; k < 3; k++) wall.velocity[k] = utils::numeric(FLERR, arg[k], false, lmp);
+    for (int k = 0; k < count; k++) out[k] = number(arg[k]);
   }
 
  public:
-  FixWallAsperity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), laws(atom->ntypes + 1), masses(lmp), wall()
+  FixWallAsperity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), laws(atom->ntypes + 1), masses(lmp)
   {
     require_spheres(lmp, "fix wall/asperity");
-    if (narg < 9) error->all(FLERR, USAGE);
-    for (int k = 0; k < 3; k++) {
-      wall.point[k] = utils::numeric(FLERR, arg[3 + k], false, lmp);
-      wall.normal[k] = utils::numeric(FLERR, arg[6 + k], false, lmp);
+    try {
+      Words words;
+      read_words(read_shape(narg, arg, words), narg, arg, words);
+      std::copy(motion.place, motion.place + 3, home);
+      if (words.stl) {
+        try {
+          mesh = new Mesh(words.file, words.scale, motion.place, words.merge);
+        } catch (const std::runtime_error &problem) {
+          throw std::runtime_error("the file " + words.file + " " + problem.what());
+        }
+        shape.reset(mesh);
+        least_cosine = cos(std::max(FOLLOWS, words.merge) * M_PI / 180.0);
+      }
+    } catch (const std::runtime_error &problem) {
+      error->all(FLERR, "fix wall/asperity {}: {}", id, problem.what());
+    } catch (const std::bad_alloc &) {
+      error->all(FLERR, "fix wall/asperity {}: there is no memory for its facets", id);
     }
-    const double size = sqrt(asperity_dot(wall.normal, wall.normal));
-    if (!(size > 0.0)) error->all(FLERR, "fix wall/asperity: the normal is zero");
-    for (int k = 0; k < 3; k++) wall.normal[k] /= size;
-    read_words(narg, arg);
     set_flags();
     FixWallAsperity::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
@@ -47,29 +88,119 @@ class FixWallAsperity : public Fix {
     for (int i = 0; i < atom->nlocal; i++) FixWallAsperity::set_arrays(i);
   }
 
-  // What stands behind the normal.
-  void read_words(int narg, char **arg)
+  // The wall's place and shape; the number of the word behind.
+  int read_shape(int narg, char **arg, Words &words)
+  {
+    if (narg < 5) error->all(FLERR, USAGE);
+    if (strcmp(arg[3], "stl") == 0) {
+      words.stl = true;
+      words.file = arg[4];
+      return 5;
+    }
+    double v[8];
+    if (strcmp(arg[3], "cylinder") == 0) {
+      const bool inside = narg > 11 && strcmp(arg[11], "inside") == 0;
+      if (narg < 12 || (!inside && strcmp(arg[11], "outside") != 0)) error->all(FLERR, USAGE);
+      numbers(arg + 4, 7, v);
+      std::copy(v, v + 3, motion.place);
+      shape.reset(new Cylinder(v + 3, v[6], inside));
+      return 12;
+    }
+    if (strcmp(arg[3], "cone") == 0) {
+      if (narg < 12) error->all(FLERR, USAGE);
+      numbers(arg + 4, 8, v);
+      std::copy(v, v + 3, motion.place);
+      for (int k = 0; k < 3; k++) v[4 + k] -= v[k];
+      shape.reset(new Cone(v + 4, v[3], v[7]));
+      least_cosine = cos(FOLLOWS * M_PI / 180.0);
+      return 12;
+    }
+    if (narg < 9) error->all(FLERR, USAGE);
+    numbers(arg + 3, 6, v);
+    std::copy(v, v + 3, motion.place);
+    shape.reset(new Plane(v + 3));
+    return 9;
+  }
+
+  // What stands behind the shape.
+  void read_words(int k, int narg, char **arg, Words &words)
   {
     std::shared_ptr<Law> last;
-    for (int k = 9; k < narg;) {
-      if (strcmp(arg[k], "type") == 0 && k + 3 < narg) {
-        int lo, hi;
-        utils::bounds(FLERR, arg[k + 1], 1, atom->ntypes, lo, hi, error);
-        last = make_law(lmp, arg[k + 2], arg[k + 3]);
-        if (!last->table.plane)
-          error->all(FLERR, "fix wall/asperity: {} is the table of two spheres, and a wall needs that of a sphere on a plane",
-                     arg[k + 2]);
-        for (int type = lo; type <= hi; type++) laws[type] = last;
+    while (k < narg) {
+      const int left = narg - k;
+      if (strcmp(arg[k], "type") == 0 && left > 3) {
+        last = read_law(arg + k);
         k += 4;
-      } else if (strcmp(arg[k], "velocity") == 0 && k + 3 < narg) {
-        set_velocity(arg + k + 1);
-        k += 4;
-      } else if (const int taken = last ? law_word(lmp, *last, narg - k, arg + k) : 0) {
+      } else if (const int taken = read_motion(left, arg + k)) {
+        k += taken;
+      } else if (const int taken = words.stl ? read_mesh_word(left, arg + k, words) : 0) {
+        k += taken;
+      } else if (const int taken = last ? law_word(lmp, *last, left, arg + k) : 0) {
         k += taken;
       } else {
         error->all(FLERR, "fix wall/asperity: unknown word {}", arg[k]);
       }
     }
+  }
+
+  std::shared_ptr<Law> read_law(char **arg)
+  {
+    int lo, hi;
+    utils::bounds(FLERR, arg[1], 1, atom->ntypes, lo, hi, error);
+    auto law = make_law(lmp, arg[2], arg[3]);
+    if (!law->table.plane)
+      error->all(FLERR, "fix wall/asperity: {} is the table of two spheres, and a wall needs that of a sphere on a plane", arg[2]);
+    for (int type = lo; type <= hi; type++) laws[type] = law;
+    return law;
+  }
+
+  // velocity, spin, load, mass, damping: how many words were taken.
+  int read_motion(int left, char **arg)
+  {
+    if (strcmp(arg[0], "velocity") == 0 && left > 3) {
+      numbers(arg + 1, 3, motion.velocity);
+      return 4;
+    }
+    if (strcmp(arg[0], "spin") == 0 && left > 3) {
+      numbers(arg + 1, 3, motion.spin);
+      return 4;
+    }
+    if (strcmp(arg[0], "load") == 0 && left > 4) {
+      double v[4];
+      numbers(arg + 1, 4, v);
+      motion.set_load(v);
+      return 5;
+    }
+    if (strcmp(arg[0], "mass") == 0 && left > 1) {
+      motion.mass = number(arg[1]);
+      if (!(motion.mass > 0.0) || !std::isfinite(motion.mass)) throw std::runtime_error("the mass of the wall is not positive");
+      return 2;
+    }
+    if (strcmp(arg[0], "damping") == 0 && left > 1) {
+      motion.damping = number(arg[1]);
+      if (!(motion.damping >= 0.0) || !std::isfinite(motion.damping)) throw std::runtime_error("the wall's damping is not 0 or more");
+      return 2;
+    }
+    return 0;
+  }
+
+  int read_mesh_word(int left, char **arg, Words &words)
+  {
+    if (strcmp(arg[0], "scale") == 0 && left > 1) {
+      words.scale = number(arg[1]);
+      if (!(words.scale > 0.0) || !std::isfinite(words.scale)) throw std::runtime_error("the scale is not positive");
+      return 2;
+    }
+    if (strcmp(arg[0], "at") == 0 && left > 3) {
+      numbers(arg + 1, 3, motion.place);
+      return 4;
+    }
+    if (strcmp(arg[0], "merge") == 0 && left > 1) {
+      words.merge = number(arg[1]);
+      if (!(words.merge >= 1.0 && words.merge <= 60.0)) throw std::runtime_error("merge is not from 1 to 60 degrees");
+      return 2;
+    }
+    return 0;
   }
 
   // What LAMMPS is to know of the fix.
@@ -78,17 +209,18 @@ class FixWallAsperity : public Fix {
     restart_peratom = 1;
     restart_global = 1;
     create_attribute = 1;
-    maxexchange = NUMBERS;
+    maxexchange_dynamic = 1;
+    maxexchange = 4;
     vector_flag = 1;
     size_vector = LENGTH;
     global_freq = 1;
     // Sums are extensive, as those of LAMMPS' own walls: thermo output divides them by the number of atoms where it is told to
-    // normalise (thermo_modify norm yes, the default of units lj). The wall's place is none.
-    for (int k = 0; k < LENGTH; k++) extensive[k] = k < 3 || k >= 6;
+    // normalise (thermo_modify norm yes, the default of units lj). The wall's place and velocity are none.
+    for (int k = 0; k < LENGTH; k++) extensive[k] = k < 3 || (k >= 6 && k < 16);
     extvector = -1;
     extlist = extensive;
     peratom_flag = 1;
-    size_peratom_cols = 6;
+    size_peratom_cols = COLUMNS;
     peratom_freq = 1;
     energy_global_flag = 1;
     scalar_flag = 1;
@@ -103,11 +235,14 @@ class FixWallAsperity : public Fix {
     memory->destroy(peratom);
   }
 
-  int setmask() override { return FixConst::POST_FORCE; }
+  int setmask() override { return FixConst::POST_FORCE | FixConst::PRE_EXCHANGE; }
 
   void init() override
   {
     masses.init();
+    pre_exchange();
+    if (motion.loaded && !(motion.mass > 0.0))
+      error->all(FLERR, "fix wall/asperity {}: a wall under a load needs a mass: load dx dy dz F mass M", id);
     const int *type = atom->type, *mask = atom->mask;
     std::vector<int> mine(atom->ntypes + 1, 0), there(atom->ntypes + 1, 0);
     for (int i = 0; i < atom->nlocal; i++)
@@ -116,6 +251,63 @@ class FixWallAsperity : public Fix {
     for (int t = 1; t <= atom->ntypes; t++)
       if (there[t] && !laws[t])
         error->all(FLERR, "fix wall/asperity {}: there is no table for spheres of type {}: type {} TABLE E", id, t, t);
+    if (!shape->is_plane()) fit_box();
+  }
+
+  // Every command that moves or writes atoms begins with this.
+  void setup_pre_exchange() override { pre_exchange(); }
+  void pre_exchange() override
+  {
+    size_t most = 0;
+    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, kept[i].records.size());
+    maxexchange = 4 + RECORD * static_cast<int>(most);
+  }
+
+  // Whether the wall makes sense in a box that is periodic, and its images there.
+  void fit_box()
+  {
+    const int *periodic = domain->periodicity;
+    if (!(periodic[0] || periodic[1] || periodic[2])) return;
+    if (domain->triclinic) error->all(FLERR, "fix wall/asperity {}: in a periodic box that is tilted walls are planes", id);
+    for (int k = 0; k < 3; k++) {
+      if (!periodic[k]) continue;
+      double e[3] = {}, turned[3];
+      e[k] = 1.0;
+      std::copy(e, e + 3, turned);
+      motion.back(turned);
+      const double w = sqrt(asperity_dot(motion.spin, motion.spin));
+      if (mesh && (!(turned[k] > 1.0 - 1e-12) || std::abs(motion.spin[k]) < (1.0 - 1e-12) * w))
+        error->all(FLERR, "fix wall/asperity {}: facets cannot turn in a box that is periodic, but about its only periodic direction", id);
+      if (!shape->axis()) continue;
+      std::copy(shape->axis(), shape->axis() + 3, turned);
+      motion.back(turned);
+      const double along = std::abs(turned[k]);
+      if ((along > 1e-12 && along < 1.0 - 1e-12) || std::abs(asperity_dot(motion.spin, turned)) < (1.0 - 1e-12) * w)
+        error->all(FLERR, "fix wall/asperity {}: in a periodic direction the axis of a cylinder lies along it or across, and stays", id);
+    }
+    if (mesh) span_mesh();
+  }
+
+  void span_mesh()
+  {
+    if (domain->box_change_size || domain->box_change_shape)
+      error->all(FLERR, "fix wall/asperity {}: facets need a box that keeps its size where it is periodic", id);
+    const std::vector<double> radii = greatest_radii(lmp);
+    double now[7];
+    now[6] = margin = std::max(margin, 2.0 * *std::max_element(radii.begin(), radii.end()));
+    for (int k = 0; k < 3; k++) {
+      now[k] = domain->boxlo[k] - home[k];
+      now[3 + k] = domain->periodicity[k] ? domain->prd[k] : 0.0;
+    }
+    if (std::equal(now, now + 7, spanned)) return;
+    std::copy(now, now + 7, spanned);
+    try {
+      mesh->span(now, now + 3, margin);
+    } catch (const std::runtime_error &problem) {
+      error->all(FLERR, "fix wall/asperity {}: {}", id, problem.what());
+    } catch (const std::bad_alloc &) {
+      error->all(FLERR, "fix wall/asperity {}: there is no memory for the images of its facets", id);
+    }
   }
 
   void setup(int vflag) override { post_force(vflag); }
@@ -124,70 +316,197 @@ class FixWallAsperity : public Fix {
   {
     const bool advance = !update->setupflag;
     const double dt = advance ? update->dt : 0.0;
-    double **x = atom->x, **f = atom->f, **torque = atom->torque;
     v_init(vflag);
     if (neighbor->ago == 0 && masses.any()) masses.look();
-    for (int k = 0; k < 3; k++) wall.point[k] += wall.velocity[k] * dt;
-    sum[0] = sum[1] = sum[2] = sum[6] = sum[7] = sum[8] = 0.0;
+    if (advance) {
+      double force[3] = {};
+      if (motion.loaded) {
+        // From one process to all, so that the wall is at one place.
+        MPI_Reduce(before, force, 3, MPI_DOUBLE, MPI_SUM, 0, world);
+        MPI_Bcast(force, 3, MPI_DOUBLE, 0, world);
+      }
+      motion.advance(dt, force);
+    }
+    std::fill(sum, sum + 3, 0.0);
+    std::fill(sum + 6, sum + SUMS, 0.0);
     for (int i = 0; i < atom->nlocal; i++) {
-      for (int k = 0; k < size_peratom_cols; k++) peratom[i][k] = 0.0;
-      if (!(atom->mask[i] & groupbit)) continue;
-      double distance = 0.0;
-      for (int k = 0; k < 3; k++) distance += (x[i][k] - wall.point[k]) * wall.normal[k];
-      if (distance >= atom->radius[i] && !(contacts[i].state.h_max > 0.0)) continue;
-      asperity_contact after;
-      asperity_forces out;
-      touch(i, dt, after, out);
-      for (int k = 0; k < 3; k++) {
-        f[i][k] += out.force_i[k];
-        torque[i][k] += out.torque_i[k];
-        sum[k] += out.force_j[k];
-      }
-      if (evflag) tally(i, distance, out.force_i);
-      sum[6] += out.stored;
-      sum[7] += (out.flags & ASPERITY_TOUCHES) ? 1.0 : 0.0;
-      sum[8] += (out.flags & ASPERITY_OUT_OF_RANGE) ? 1.0 : 0.0;
-      if (advance) {
-        sum[3] += after.plastic - contacts[i].plastic;
-        sum[4] += after.slip - contacts[i].slip;
-        sum[5] += out.damped;
-        contacts[i] = after;
-        if (asperity_may_forget(&after)) memset(&contacts[i], 0, sizeof after);
-      }
-      peratom[i][0] = out.f_n;
-      peratom[i][1] = out.f_t;
-      peratom[i][2] = out.overlap;
-      peratom[i][3] = after.plastic;
-      peratom[i][4] = after.slip;
-      peratom[i][5] = (out.flags & ASPERITY_OUT_OF_RANGE) ? 1.0 : 0.0;
+      for (int k = 0; k < 6; k++) peratom[i][k] = 0.0;
+      if (atom->mask[i] & groupbit) sphere(i, dt, advance);
+      for (int k = 0; k < 3; k++) peratom[i][6 + k] = kept[i].heat[k];
     }
     // What the wall has done on the spheres, by the mean of its forces before and after.
     if (advance)
-      for (int k = 0; k < 3; k++) done -= 0.5 * (before_force[k] + sum[k]) * wall.velocity[k] * dt;
-    for (int k = 0; k < 3; k++) before_force[k] = sum[k];
+      for (int k = 0; k < 3; k++)
+        done -= 0.5 * ((before[k] + sum[k]) * motion.velocity[k] + (before[3 + k] + sum[9 + k]) * motion.spin[k]) * dt;
+    std::copy(sum, sum + 3, before);
+    std::copy(sum + 9, sum + 12, before + 3);
     known = false;
   }
 
-  // The force of sphere i from its memory.
-  void touch(int i, double dt, asperity_contact &after, asperity_forces &out)
+  // Where sphere i touches, into `found` (in the frame of the box); `place` is its centre less the wall's place.
+  void look(int i, double place[3], double reach)
+  {
+    for (int k = 0; k < 3; k++) place[k] = atom->x[i][k] - motion.place[k];
+    found.clear();
+    const bool turned = motion.turned();
+    try {
+      if (!mesh && !shape->is_plane()) wrap(place);
+      double c[3] = {place[0], place[1], place[2]};
+      if (turned) motion.into(place, c);
+      shape->touches(c, atom->radius[i], reach, found);
+    } catch (const std::runtime_error &problem) {
+      error->one(FLERR, "fix wall/asperity {}: sphere {} {}", id, atom->tag[i], problem.what());
+    }
+  }
+
+  // The image nearest to the wall.
+  void wrap(double place[3])
+  {
+    double middle[3], axis[3] = {};
+    shape->middle(middle);
+    motion.back(middle);
+    if (shape->axis()) {
+      std::copy(shape->axis(), shape->axis() + 3, axis);
+      motion.back(axis);
+    }
+    for (int k = 0; k < 3; k++)
+      if (domain->periodicity[k] && std::abs(axis[k]) < 0.5)
+        place[k] -= domain->prd[k] * floor((place[k] - middle[k]) / domain->prd[k] + 0.5);
+  }
+
+  // Gives each contact the memory whose normal is nearest to its own: owner[contact] is that of the record, or -1.
+  void match(const std::vector<Record> &records)
+  {
+    owner.assign(found.size(), -1);
+    for (size_t turn = 0; turn < records.size(); turn++) {
+      int best_touch = -1, best_record = -1;
+      double best = least_cosine;
+      for (size_t r = 0; r < records.size(); r++) {
+        if (std::find(owner.begin(), owner.end(), static_cast<int>(r)) != owner.end()) continue;
+        for (size_t t = 0; t < found.size(); t++) {
+          const double cosine = asperity_dot(found[t].normal, records[r].normal);
+          if (owner[t] >= 0 || cosine < best) continue;
+          best = cosine;
+          best_touch = static_cast<int>(t);
+          best_record = static_cast<int>(r);
+        }
+      }
+      if (best_touch < 0) return;
+      owner[best_touch] = best_record;
+    }
+  }
+
+  void sphere(int i, double dt, bool advance)
+  {
+    Kept &mine = kept[i];
+    const double radius = atom->radius[i];
+    double deepest = 0.0, place[3];
+    for (const Record &record : mine.records) deepest = std::max(deepest, record.contact.state.h_max);
+    const double reach = radius * (1.0 + deepest);
+    if (mesh && margin > 0.0 && reach > margin)
+      error->one(FLERR, "fix wall/asperity {}: sphere {} has the radius {}, and none as large was known when the run began", id,
+                 atom->tag[i], radius);
+    look(i, place, reach);
+    if (found.empty() && mine.records.empty()) return;
+    match(mine.records);
+    std::vector<Record> after;
+    for (size_t t = 0; t < found.size(); t++) {
+      Record record = {};
+      if (owner[t] >= 0) record = mine.records[owner[t]];
+      else if (found[t].distance >= radius) continue;
+      // Memory goes by the direction in the frame of the wall, forces by that of the box.
+      std::copy(found[t].normal, found[t].normal + 3, record.normal);
+      contact(i, place, found[t], dt, advance, record);
+      if (!asperity_may_forget(&record.contact)) after.push_back(record);
+    }
+    if (!advance) return;
+    for (size_t r = 0; r < mine.records.size(); r++)
+      if (std::find(owner.begin(), owner.end(), static_cast<int>(r)) == owner.end()) lose(i, mine.records[r], after);
+    mine.records.swap(after);
+  }
+
+  // A contact that is none any more, as the sphere has gone off its edge or on to the next facet: what it had stored is lost.
+  void lose(int i, const Record &record, const std::vector<Record> &others)
+  {
+    for (const Record &other : others)
+      if (record.contact.state.h > 0.0 && asperity_dot(record.normal, other.normal) < -0.9)
+        error->one(FLERR, "fix wall/asperity {}: sphere {} has gone through the wall", id, atom->tag[i]);
+    kept[i].heat[2] += record.stored;
+    sum[5] += record.stored;
+  }
+
+  // The forces of one contact, and what they add to the sums.
+  void contact(int i, const double place[3], Touch touch, double dt, bool advance, Record &record)
   {
     const int type = atom->type[i];
     if (!laws[type])
       error->one(FLERR, "fix wall/asperity {}: sphere {} is of type {}, for which there is no table: type {} TABLE E", id,
                  atom->tag[i], type, type);
+    if (motion.turned()) {
+      motion.back(touch.from);
+      motion.back(touch.normal);
+    }
+    // The tangent plane, with the origin in that of its points from which `from` leads to the centre.
     asperity_body body;
+    asperity_wall wall = {};
+    asperity_contact after;
+    asperity_forces out;
+    double lever[3], turning[3], torque[3];
     fill(body, atom, masses, i);
-    asperity_sphere_wall(&laws[type]->law, &body, &wall, dt, &contacts[i], &after, &out);
+    for (int k = 0; k < 3; k++) {
+      body.position[k] = touch.from[k];
+      wall.normal[k] = touch.normal[k];
+      wall.spin[k] = motion.spin[k];
+      lever[k] = place[k] - touch.from[k];
+    }
+    asperity_cross(motion.spin, lever, turning);
+    for (int k = 0; k < 3; k++) wall.velocity[k] = motion.velocity[k] + turning[k];
+    asperity_sphere_wall(&laws[type]->law, &body, &wall, dt, &record.contact, &after, &out);
     if (out.flags & ASPERITY_NO_NUMBER)
       error->one(FLERR, "fix wall/asperity {}: there is no force on sphere {}: its place, its velocity or the memory of the "
                         "contact is no number", id, atom->tag[i]);
+    const double arm = std::min(touch.distance, body.radius);
+    for (int k = 0; k < 3; k++) lever[k] = place[k] - arm * touch.normal[k];
+    asperity_cross(lever, out.force_j, torque);
+    for (int k = 0; k < 3; k++) {
+      atom->f[i][k] += out.force_i[k];
+      atom->torque[i][k] += out.torque_i[k];
+      sum[k] += out.force_j[k];
+      sum[9 + k] += torque[k] + out.torque_j[k];
+    }
+    if (evflag) tally(i, touch, out.force_i);
+    add_up(i, record, after, out, advance);
+    record.contact = after;
+    record.stored = out.stored;
   }
 
-  void tally(int i, double distance, const double *force)
+  void add_up(int i, const Record &record, const asperity_contact &after, const asperity_forces &out, bool advance)
   {
-    const double *n = wall.normal;
+    const double outside = (out.flags & ASPERITY_OUT_OF_RANGE) ? 1.0 : 0.0;
+    sum[6] += out.stored;
+    sum[7] += (out.flags & ASPERITY_TOUCHES) ? 1.0 : 0.0;
+    sum[8] += outside;
+    if (advance) {
+      const double lost[3] = {after.plastic - record.contact.plastic, after.slip - record.contact.slip, out.damped};
+      for (int k = 0; k < 3; k++) {
+        sum[3 + k] += lost[k];
+        kept[i].heat[k] += lost[k];
+      }
+    }
+    double *row = peratom[i];
+    row[0] += out.f_n;
+    row[1] += out.f_t;
+    row[2] = row[2] == 0.0 ? out.overlap : std::max(row[2], out.overlap);
+    row[3] += after.plastic;
+    row[4] += after.slip;
+    row[5] = std::max(row[5], outside);
+  }
+
+  void tally(int i, const Touch &touch, const double *force)
+  {
+    const double *n = touch.normal;
     double v[6] = {n[0] * force[0], n[1] * force[1], n[2] * force[2], n[0] * force[1], n[0] * force[2], n[1] * force[2]};
-    for (double &stress : v) stress *= -distance;
+    for (double &stress : v) stress *= -touch.distance;
     v_tally(1, &i, 1.0, v);
   }
 
@@ -197,86 +516,109 @@ class FixWallAsperity : public Fix {
   double value(int k)
   {
     if (!known) {
-      MPI_Allreduce(sum, all, 9, MPI_DOUBLE, MPI_SUM, world);
+      MPI_Allreduce(sum, all, SUMS, MPI_DOUBLE, MPI_SUM, world);
       known = true;
     }
     return all[k];
   }
 
   // 1 to 3: force on the wall; 4 to 6: its place; 7, 8, 9: work dissipated by plastic flow, slip and damping; 10: elastic energy;
-  // 11: contacts; 12: those out of range; 13: work that the wall has done
+  // 11: contacts; 12: those out of range; 13: work that the wall has done; 14 to 16: torque on the wall about its place; 17 to 19: its
+  // velocity
   double compute_vector(int k) override
   {
     if (k < 3) return value(k);
-    if (k < 6) return wall.point[k - 3];
+    if (k < 6) return motion.place[k - 3];
     if (k < 12) return value(k - 3);
+    if (k >= 16) return motion.velocity[k - 16];
+    if (k >= 13) return value(k - 4);
     double total;
     MPI_Allreduce(&done, &total, 1, MPI_DOUBLE, MPI_SUM, world);
     return total;
   }
 
-  // fix_modify ID velocity vx vy vz
+  // fix_modify ID velocity vx vy vz, spin wx wy wz, load dx dy dz F, mass M, damping C
   int modify_param(int narg, char **arg) override
   {
-    if (strcmp(arg[0], "velocity") != 0) return 0;
-    if (narg < 4) error->all(FLERR, "fix_modify of wall/asperity: velocity vx vy vz");
-    set_velocity(arg + 1);
-    return 4;
+    try {
+      return read_motion(narg, arg);
+    } catch (const std::runtime_error &problem) {
+      error->all(FLERR, "fix wall/asperity {}: {}", id, problem.what());
+    }
+    return 0;
   }
 
   void grow_arrays(int nmax) override
   {
-    if (contacts.size() < static_cast<size_t>(nmax)) contacts.resize(nmax);
+    if (kept.size() < static_cast<size_t>(nmax)) kept.resize(nmax);
     memory->grow(peratom, nmax, size_peratom_cols, "wall/asperity:peratom");
     array_atom = peratom;
   }
   void copy_arrays(int i, int j, int) override
   {
-    contacts[j] = contacts[i];
+    kept[j] = kept[i];
     for (int k = 0; k < size_peratom_cols; k++) peratom[j][k] = peratom[i][k];
   }
   void set_arrays(int i) override
   {
-    memset(&contacts[i], 0, sizeof contacts[i]);
+    kept[i] = Kept();
     for (int k = 0; k < size_peratom_cols; k++) peratom[i][k] = 0.0;
   }
   int pack_exchange(int i, double *buf) override
   {
-    memcpy(buf, &contacts[i], sizeof contacts[i]);
-    return NUMBERS;
+    const auto &records = kept[i].records;
+    buf[0] = static_cast<double>(records.size());
+    std::copy(kept[i].heat, kept[i].heat + 3, buf + 1);
+    if (!records.empty()) memcpy(buf + 4, records.data(), records.size() * sizeof(Record));
+    return 4 + RECORD * static_cast<int>(records.size());
   }
   int unpack_exchange(int i, double *buf) override
   {
     set_arrays(i);
-    memcpy(&contacts[i], buf, sizeof contacts[i]);
-    return NUMBERS;
+    const auto count = static_cast<size_t>(buf[0]);
+    std::copy(buf + 1, buf + 4, kept[i].heat);
+    kept[i].records.resize(count);
+    if (count > 0) memcpy(kept[i].records.data(), buf + 4, count * sizeof(Record));
+    return 4 + RECORD * static_cast<int>(count);
   }
-  int size_restart(int) override { return NUMBERS + 1; }
-  int maxsize_restart() override { return NUMBERS + 1; }
+  int size_restart(int i) override { return 5 + RECORD * static_cast<int>(kept[i].records.size()); }
+  int maxsize_restart() override
+  {
+    int most = 5, all_most;
+    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, size_restart(i));
+    MPI_Allreduce(&most, &all_most, 1, MPI_INT, MPI_MAX, world);
+    return all_most;
+  }
   int pack_restart(int i, double *buf) override
   {
-    buf[0] = NUMBERS + 1;
-    memcpy(buf + 1, &contacts[i], sizeof contacts[i]);
-    return NUMBERS + 1;
+    const int m = 1 + pack_exchange(i, buf + 1);
+    buf[0] = m;
+    return m;
   }
   void unpack_restart(int i, int nth) override
   {
     double *extra = atom->extra[i];
     int m = 0;
     for (int k = 0; k < nth; k++) m += static_cast<int>(extra[m]);
-    set_arrays(i);
-    memcpy(&contacts[i], extra + m + 1, sizeof contacts[i]);
+    if (unpack_exchange(i, extra + m + 1) != static_cast<int>(extra[m]) - 1)
+      error->one(FLERR, "fix wall/asperity {}: the contacts of sphere {} in the restart file are damaged", id, atom->tag[i]);
   }
-  // The wall's place, what its contacts have dissipated, and its laws; its velocity is that of the input.
+
+  // The wall's place, what its contacts have dissipated, its turn, velocity and shape, and its laws.
   void write_restart(FILE *fp) override
   {
-    double mine[4] = {sum[3], sum[4], sum[5], done}, total[4];
+    double mine[4] = {sum[3], sum[4], sum[5], done}, total[4], hash;
     MPI_Allreduce(mine, total, 4, MPI_DOUBLE, MPI_SUM, world);
     if (comm->me != 0) return;
     std::vector<double> buf;
     begin_layout(buf);
-    buf.insert(buf.end(), wall.point, wall.point + 3);
+    buf.insert(buf.end(), motion.place, motion.place + 3);
     buf.insert(buf.end(), total, total + 4);
+    buf.insert(buf.end(), motion.turn, motion.turn + 4);
+    buf.insert(buf.end(), motion.velocity, motion.velocity + 3);
+    const uint64_t fingerprint = shape->fingerprint();
+    memcpy(&hash, &fingerprint, sizeof hash);
+    buf.push_back(hash);
     for (int type = 1; type <= atom->ntypes; type++) {
       double packed[2];
       (laws[type] ? Identity(*laws[type]) : Identity()).pack(packed);
@@ -284,21 +626,31 @@ class FixWallAsperity : public Fix {
     }
     write_buffer(fp, buf);
   }
+  // A wall under a load goes on with its velocity; that of another is the input's.
   void restart(char *buf) override
   {
+    constexpr int LAWS = 18;
     const std::string who = std::string("fix wall/asperity ") + id;
     require_layout(lmp, buf, who.c_str());
-    std::vector<double> kept(10 + 2 * atom->ntypes);
-    memcpy(kept.data(), buf, kept.size() * sizeof(double));
-    std::copy(kept.begin() + 3, kept.begin() + 6, wall.point);
+    std::vector<double> file(LAWS + 2 * atom->ntypes);
+    memcpy(file.data(), buf, file.size() * sizeof(double));
+    bool changed = false;
     for (int type = 1; type <= atom->ntypes; type++) {
-      Identity before;
-      before.unpack(kept.data() + 8 + 2 * type);
-      if (laws[type]) before.hold(lmp, *laws[type], "in " + who + " for type " + std::to_string(type));
+      Identity earlier;
+      earlier.unpack(file.data() + LAWS + 2 * (type - 1));
+      if (!laws[type]) continue;
+      earlier.hold(lmp, *laws[type], "in " + who + " for type " + std::to_string(type));
+      changed = changed || laws[type]->changed;
     }
+    const uint64_t fingerprint = shape->fingerprint();
+    if (memcmp(&fingerprint, &file[17], sizeof fingerprint) != 0 && !changed)
+      error->all(FLERR, "{}: the wall has another shape than when the restart file was written. Give that one, or say `changed`", who);
+    std::copy(file.begin() + 3, file.begin() + 6, motion.place);
+    std::copy(file.begin() + 10, file.begin() + 14, motion.turn);
+    if (motion.loaded) std::copy(file.begin() + 14, file.begin() + 17, motion.velocity);
     if (comm->me != 0) return;
-    std::copy(kept.begin() + 6, kept.begin() + 9, sum + 3);
-    done = kept[9];
+    std::copy(file.begin() + 6, file.begin() + 9, sum + 3);
+    done = file[9];
   }
 };
 

@@ -11,59 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from lammps import lammps
-
-PLUGIN, METAL, ELASTIC = (Path(word).resolve() for word in sys.argv[1:4])
-PAIR, WALL = METAL / "equal.asperity", METAL / "equal-wall.asperity"
-ELASTIC_PAIR, ELASTIC_WALL = ELASTIC / "elastic.asperity", ELASTIC / "elastic-wall.asperity"
-E = 1000.0
-failures = 0
-
-HEAD = f"""plugin load {PLUGIN}
-units lj
-atom_style sphere
-comm_modify vel yes
-"""
-
-
-def expect(good, what, value):
-    global failures
-    failures += not good
-    print(f"{what:<78} {value}{'' if good else '   FAILED'}", flush=True)
-
-
-def quiet():
-    return lammps(cmdargs=["-screen", "none", "-log", "none"])
-
-
-def refuses(commands, words):
-    lmp = quiet()
-    try:
-        lmp.commands_string(HEAD + commands)
-        said = "nothing"
-    except Exception as error:  # the wheel raises its own class
-        said = str(error)
-    lmp.close()
-    expect(words in said, f"refused: {words[:68]}", "yes" if words in said else said)
-
-
-def told(script, ranks=1):
-    """Runs an input in a process of its own, or in several; its output."""
-    with tempfile.TemporaryDirectory() as name:
-        Path(name, "in").write_text(HEAD + script)
-        command = [str(Path(sys.prefix, "bin", "lmp")), "-in", "in", "-log", "none"]
-        if ranks > 1:
-            command = [str(Path(sys.prefix, "bin", "mpiexec")), "-n", str(ranks), *command]
-        run = subprocess.run(command, cwd=name, capture_output=True, text=True, timeout=600)
-        assert run.returncode == 0, run.stdout[-3000:] + run.stderr[-1000:]
-        dumps = {path.name: [[float(word) for word in line.split()] for line in path.read_text().split("ITEM: ATOMS")[1].splitlines()[1:]]
-                 for path in Path(name).glob("*.dump")}
-    return run.stdout, dumps
-
-
-def dump(name, sort=True):
-    """Writes places and forces with all digits."""
-    return (f"write_dump all custom {name}.dump id x y z fx fy fz vx vy vz modify {'sort id' if sort else 'sort off'} format float %.17g\n")
+from host import E, ELASTIC, ELASTIC_PAIR, ELASTIC_WALL, HEAD, METAL, PAIR, PLUGIN, WALL, dump, expect, failures, quiet, refuses, told
 
 
 def by_place(rows):
@@ -359,10 +307,10 @@ def restarted():
         refuses(again(pair=f"{ELASTIC_PAIR} {E}"), "is another table than the one with which the restart file was written, for spheres")
         refuses(again(floor=f"{1000 * E}"), "was written with 1000, in fix wall/asperity floor for type 1")
         data = file.read_bytes()
-        mark = b"ASPERITY" + struct.pack("d", 2.0)
+        mark = b"ASPERITY" + struct.pack("d", 3.0)
         assert data.count(mark) == 2
         old = Path(name, "old.restart")
-        old.write_bytes(data.replace(mark, b"ASPERITY" + struct.pack("d", 1.0)))
+        old.write_bytes(data.replace(mark, b"ASPERITY" + struct.pack("d", 2.0)))
         refuses(again(kept=old), "contacts are of another version of the plug-in")
         old.write_bytes(data.replace(mark + struct.pack("d", 43.0), mark + struct.pack("d", 44.0)))
         refuses(again(kept=old), "contacts are of another version of the plug-in")
