@@ -29,7 +29,7 @@ class Mesh : public Shape {
   // Triangles whose corners are this near, over the sphere's radius, belong together.
   static constexpr double JOINED = 1e-6;
 
-  std::vector<Corners> given;    // as the file has them, less the wall's place
+  std::vector<Corners> given;    // in the frame of the wall
   std::vector<Triangle> triangles;
   std::vector<Node> nodes;
   double merge;                  // cosine of the angle within which minima are one contact
@@ -165,13 +165,13 @@ class Mesh : public Shape {
   }
 
  public:
-  // `place` is the wall's, in the coordinates of the file times `scale`.
-  Mesh(const std::string &file, double scale, const double place[3], double merge_degrees) :
+  // Coordinates are those of the file times `scale`, plus `shift`.
+  Mesh(const std::string &file, double scale, const double shift[3], double merge_degrees) :
       given(Stl::read(file, scale)), merge(cos(merge_degrees * M_PI / 180.0))
   {
     for (auto &corners : given)
       for (auto &corner : corners)
-        for (int d = 0; d < 3; d++) corner[d] -= place[d];
+        for (int d = 0; d < 3; d++) corner[d] += shift[d];
     const double none[3] = {0.0, 0.0, 0.0};
     span(none, none, 0.0);
   }

@@ -60,7 +60,8 @@ class Plane : public Shape {
   explicit Plane(const double n[3])
   {
     std::copy(n, n + 3, normal);
-    if (!(unit(normal) > 0.0)) throw std::runtime_error("the normal is zero");
+    const double size = unit(normal);
+    if (!(size > 0.0) || !std::isfinite(size)) throw std::runtime_error("the normal is zero, or no direction");
   }
   void touches(const double c[3], double, double, std::vector<Touch> &out) const override
   {

@@ -15,7 +15,7 @@ class FixWallAsperity : public Fix {
   static constexpr const char *USAGE =
       "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [changed] [type ...] [velocity vx vy vz] "
       "[spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | cylinder x y z ax ay az R inside or outside | "
-      "cone x1 y1 z1 R1 x2 y2 z2 R2 | stl FILE [scale s] [at x y z] [merge DEGREES]";
+      "cone x1 y1 z1 R1 x2 y2 z2 R2 | stl FILE [scale s] [shift x y z] [at x y z] [merge DEGREES]";
   static constexpr int LENGTH = 19, SUMS = 12, COLUMNS = 9;
   static constexpr double MERGE = 15.0, FOLLOWS = 30.0;    // degrees
 
@@ -32,8 +32,8 @@ class FixWallAsperity : public Fix {
   };
   struct Words {
     std::string file;
-    double scale = 1.0, merge = MERGE;
-    bool stl = false;
+    double scale = 1.0, merge = MERGE, shift[3] = {}, at[3] = {};
+    bool stl = false, placed = false;
   };
 
   std::vector<std::shared_ptr<Law>> laws;
@@ -66,16 +66,8 @@ class FixWallAsperity : public Fix {
     try {
       Words words;
       read_words(read_shape(narg, arg, words), narg, arg, words);
+      if (words.stl) read_mesh(words);
       std::copy(motion.place, motion.place + 3, home);
-      if (words.stl) {
-        try {
-          mesh = new Mesh(words.file, words.scale, motion.place, words.merge);
-        } catch (const std::runtime_error &problem) {
-          throw std::runtime_error("the file " + words.file + " " + problem.what());
-        }
-        shape.reset(mesh);
-        least_cosine = cos(std::max(FOLLOWS, words.merge) * M_PI / 180.0);
-      }
     } catch (const std::runtime_error &problem) {
       error->all(FLERR, "fix wall/asperity {}: {}", id, problem.what());
     } catch (const std::bad_alloc &) {
@@ -184,6 +176,20 @@ class FixWallAsperity : public Fix {
     return 0;
   }
 
+  void read_mesh(const Words &words)
+  {
+    double shift[3];
+    std::copy(words.placed ? words.at : words.shift, (words.placed ? words.at : words.shift) + 3, motion.place);
+    for (int k = 0; k < 3; k++) shift[k] = words.shift[k] - motion.place[k];
+    try {
+      mesh = new Mesh(words.file, words.scale, shift, words.merge);
+    } catch (const std::runtime_error &problem) {
+      throw std::runtime_error("the file " + words.file + " " + problem.what());
+    }
+    shape.reset(mesh);
+    least_cosine = cos(std::max(FOLLOWS, words.merge) * M_PI / 180.0);
+  }
+
   int read_mesh_word(int left, char **arg, Words &words)
   {
     if (strcmp(arg[0], "scale") == 0 && left > 1) {
@@ -192,7 +198,12 @@ class FixWallAsperity : public Fix {
       return 2;
     }
     if (strcmp(arg[0], "at") == 0 && left > 3) {
-      numbers(arg + 1, 3, motion.place);
+      numbers(arg + 1, 3, words.at);
+      words.placed = true;
+      return 4;
+    }
+    if (strcmp(arg[0], "shift") == 0 && left > 3) {
+      numbers(arg + 1, 3, words.shift);
       return 4;
     }
     if (strcmp(arg[0], "merge") == 0 && left > 1) {
