@@ -1,9 +1,9 @@
 // A wall of triangles: where a sphere touches it. Under the GNU General Public License, version 2, as the files that include it.
 //
-// A contact is a local minimum of the distance between the sphere's centre and the surface. The triangle is convex, so that a point is
-// one if and only if it is the nearest point of every triangle that it belongs to. It follows that a flat patch has one contact, however
-// many triangles, edges and corners it is made of; that an edge or a corner counts where the surface falls off from it on all sides,
-// and once; and that a groove has one contact on each side. Of minima seen in nearly the same direction the deepest counts alone.
+// A contact is a local minimum of the distance between the sphere's centre and the surface. As triangles are convex, a point is
+// one if and only if it is the nearest point of every triangle that it belongs to. It follows that a flat patch has one contact,
+// of however many triangles, edges and corners it is made; that an edge or a corner counts where the surface falls off from it on
+// all sides, and once; and that a groove has one contact on each side. Of minima in nearly one direction the deepest counts alone.
 #ifndef ASPERITY_MESH_H
 #define ASPERITY_MESH_H
 
@@ -26,6 +26,7 @@ class Mesh : public Shape {
     bool face;
   };
   static constexpr int LEAF = 4;
+  static constexpr size_t MOST = 100000000;
   // Triangles whose corners are this near, over the sphere's radius, belong together.
   static constexpr double JOINED = 1e-6;
 
@@ -176,8 +177,8 @@ class Mesh : public Shape {
     span(none, none, 0.0);
   }
 
-  // Makes the triangles, with their images across periodic boundaries: of a box from `lo` on, `lengths` long (0: not periodic there), in
-  // the frame of the wall, and `margin` around it.
+  // Makes the triangles, with their images across periodic boundaries: of a box from `lo` on, `lengths` long (0: not periodic
+  // there), in the frame of the wall, and `margin` around it.
   void span(const double lo[3], const double lengths[3], double margin)
   {
     std::copy(lo, lo + 3, low);
@@ -187,7 +188,8 @@ class Mesh : public Shape {
     for (const auto &corners : given) {
       int begin[3], end[3];
       for (int d = 0; d < 3; d++) {
-        const double least = std::min({corners[0][d], corners[1][d], corners[2][d]}), most = std::max({corners[0][d], corners[1][d], corners[2][d]});
+        const double least = std::min({corners[0][d], corners[1][d], corners[2][d]});
+        const double most = std::max({corners[0][d], corners[1][d], corners[2][d]});
         const double first = period[d] > 0.0 ? ceil((low[d] - margin - most) / period[d]) : 0.0;
         const double last = period[d] > 0.0 ? floor((low[d] + period[d] + margin - least) / period[d]) : 0.0;
         if (last - first > 1000.0) throw std::runtime_error("its facets are more than 1000 times as long as the periodic box");
@@ -199,7 +201,7 @@ class Mesh : public Shape {
           for (int k = begin[2]; k <= end[2]; k++) {
             const double shift[3] = {i * period[0], j * period[1], k * period[2]};
             triangles.push_back(make(corners, shift));
-            if (triangles.size() > 100000000) throw std::runtime_error("it has more than 100 million facets with their periodic images");
+            if (triangles.size() > MOST) throw std::runtime_error("it has more than 100 million facets with their periodic images");
           }
     }
     if (!triangles.empty()) build(0, static_cast<int>(triangles.size()));
@@ -224,7 +226,8 @@ class Mesh : public Shape {
     for (const Nearest &candidate : all) {
       Touch touch;
       touch.distance = candidate.distance;
-      for (int d = 0; d < 3; d++) touch.from[d] = c[d] - (candidate.face ? candidate.triangle->corner[0][d] : candidate.point[d]);
+      const double *point = candidate.face ? candidate.triangle->corner[0] : candidate.point;
+      for (int d = 0; d < 3; d++) touch.from[d] = c[d] - point[d];
       if (candidate.face) {
         const double side = asperity_dot(touch.from, candidate.triangle->normal) < 0.0 ? -1.0 : 1.0;
         for (int d = 0; d < 3; d++) touch.normal[d] = side * candidate.triangle->normal[d];

@@ -31,7 +31,8 @@ struct Motion {
   {
     if (loaded) {
       const double v = asperity_dot(velocity, direction), half = 0.5 * damping * dt / mass;
-      const double push = (load + asperity_dot(force, direction)) * dt / mass, faster = (v * (1.0 - half) + push) / (1.0 + half) - v;
+      const double push = (load + asperity_dot(force, direction)) * dt / mass;
+      const double faster = (v * (1.0 - half) + push) / (1.0 + half) - v;
       for (int k = 0; k < 3; k++) velocity[k] += faster * direction[k];
     }
     for (int k = 0; k < 3; k++) place[k] += velocity[k] * dt;

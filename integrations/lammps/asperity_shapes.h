@@ -90,7 +90,8 @@ class Cylinder : public Shape {
   void touches(const double c[3], double sphere, double reach, std::vector<Touch> &out) const override
   {
     if (inside && !(sphere < radius))
-      throw std::runtime_error("with the radius " + std::to_string(sphere) + " is not smaller than the cylinder that it is to be in");
+      throw std::runtime_error("with the radius " + std::to_string(sphere) +
+                               " is not smaller than the cylinder that it is to be in");
     double across[3];
     const double z = asperity_dot(c, along);
     for (int k = 0; k < 3; k++) across[k] = c[k] - z * along[k];
@@ -114,15 +115,16 @@ class Cylinder : public Shape {
   const double *axis() const override { return along; }
 };
 
-// The mantle of a truncated cone, a thin shell with two sides and two rims: from the origin with the radius r1 to the other end with
-// the radius r2. With equal radii it is a tube.
+// The mantle of a truncated cone, a thin shell with two sides and two rims: from the origin with the radius r1 to the other end
+// with the radius r2. With equal radii it is a tube.
 class Cone : public Shape {
   double along[3], length, r1, r2;
 
   // The nearest point (rn, zn) of the shell's trace to (r, z); whether it is within, not on a rim.
   bool nearest(double r, double z, double &rn, double &zn) const
   {
-    const double dr = r2 - r1, t = ((r - r1) * dr + z * length) / (dr * dr + length * length), s = std::min(std::max(t, 0.0), 1.0);
+    const double dr = r2 - r1, t = ((r - r1) * dr + z * length) / (dr * dr + length * length);
+    const double s = std::min(std::max(t, 0.0), 1.0);
     rn = r1 + s * dr;
     zn = s * length;
     return s > 0.0 && s < 1.0;
@@ -150,7 +152,8 @@ class Cone : public Shape {
     if (r < rn) {
       double ro, zo;
       nearest(-r, z, ro, zo);
-      if (hypot(r + ro, z - zo) < sphere) throw std::runtime_error("plugs the cone: it touches all round, and a contact is a spot");
+      if (hypot(r + ro, z - zo) < sphere)
+        throw std::runtime_error("plugs the cone: it touches all round, and a contact is a spot");
     }
     Touch touch;
     // Both parts of the normal: across the axis and along it. On the axis itself there is no direction across.
@@ -167,7 +170,8 @@ class Cone : public Shape {
       nr /= size;
       nz /= size;
     }
-    if (!(r > 0.0) && nr != 0.0) throw std::runtime_error("is on the axis of the cone: it touches all round, and a contact is a spot");
+    if (!(r > 0.0) && nr != 0.0)
+      throw std::runtime_error("is on the axis of the cone: it touches all round, and a contact is a spot");
     for (int k = 0; k < 3; k++) {
       const double outward = r > 0.0 ? across[k] / r : 0.0;
       touch.normal[k] = nr * outward + nz * along[k];

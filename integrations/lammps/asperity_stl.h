@@ -73,7 +73,8 @@ class Stl {
                              e[0][0] * e[1][1] - e[0][1] * e[1][0]};
     const double area = std::sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
     // Below that the direction of its normal is rounding.
-    if (!(area > 1e-9 * longest)) wrong(who + " is degenerate: its corners are on one line. Mend the file, or leave that facet out");
+    if (!(area > 1e-9 * longest))
+      wrong(who + " is degenerate: its corners are on one line. Mend the file, or leave that facet out");
     out.push_back(corners);
     if (out.size() > MOST) wrong("has more than 10 million facets");
   }
@@ -149,7 +150,8 @@ class Stl {
     stl.read_text(file);
     const std::string &text = stl.text;
     const uint64_t size = text.size(), count = size >= HEAD ? stl.told_facets() : 0;
-    const bool starts = lower(text.substr(0, 5)) == "solid", has_zeros = memchr(text.data(), 0, std::min<uint64_t>(size, 1024)) != nullptr;
+    const bool starts = lower(text.substr(0, 5)) == "solid";
+    const bool has_zeros = memchr(text.data(), 0, std::min<uint64_t>(size, 1024)) != nullptr;
     std::vector<Corners> out;
     if (size >= HEAD && size == HEAD + FACET * count) {
       if (count > MOST) wrong("has " + std::to_string(count) + " facets, and 10 million are the most");
@@ -157,8 +159,8 @@ class Stl {
     } else if (starts && !has_zeros) {
       stl.read_ascii(out, scale);
     } else if (size >= HEAD) {
-      wrong("is damaged: its head tells of " + std::to_string(count) + " facets, which take " + std::to_string(HEAD + FACET * count) +
-            " bytes, and it has " + std::to_string(size));
+      wrong("is damaged: its head tells of " + std::to_string(count) + " facets, which take " +
+            std::to_string(HEAD + FACET * count) + " bytes, and it has " + std::to_string(size));
     } else {
       wrong("is no STL file: it is too short for one");
     }

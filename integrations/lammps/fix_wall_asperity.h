@@ -4,20 +4,14 @@
 #define FIX_WALL_ASPERITY_H
 
 #include "asperity_common.h"
-#include "asperity_mesh.h"
-#include "asperity_motion.h"
+#include "asperity_wall_input.h"
 
 #include "domain.h"
 
 namespace LAMMPS_NS {
 
 class FixWallAsperity : public Fix {
-  static constexpr const char *USAGE =
-      "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [changed] [type ...] [velocity vx vy vz] "
-      "[spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | cylinder x y z ax ay az R inside or outside | "
-      "cone x1 y1 z1 R1 x2 y2 z2 R2 | stl FILE [scale s] [shift x y z] [at x y z] [merge DEGREES]";
   static constexpr int LENGTH = 19, SUMS = 12, COLUMNS = 9;
-  static constexpr double MERGE = 15.0, FOLLOWS = 30.0;    // degrees
 
   // A contact as its sphere holds it.
   struct Record {
@@ -30,12 +24,6 @@ class FixWallAsperity : public Fix {
     std::vector<Record> records;
     double heat[3] = {};    // work dissipated in this sphere by plastic flow, slip and damping at this wall
   };
-  struct Words {
-    std::string file;
-    double scale = 1.0, merge = MERGE, shift[3] = {}, at[3] = {};
-    bool stl = false, placed = false;
-  };
-
   std::vector<std::shared_ptr<Law>> laws;
   Masses masses;
   std::unique_ptr<Shape> shape;
@@ -53,20 +41,16 @@ class FixWallAsperity : public Fix {
   std::vector<Touch> found;
   std::vector<int> owner;
 
-  double number(const char *word) { return utils::numeric(FLERR, word, false, lmp); }
-  void numbers(char **arg, int count, double *out)
-  {
-    for (int k = 0; k < count; k++) out[k] = number(arg[k]);
-  }
-
  public:
   FixWallAsperity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), laws(atom->ntypes + 1), masses(lmp)
   {
     require_spheres(lmp, "fix wall/asperity");
     try {
-      Words words;
-      read_words(read_shape(narg, arg, words), narg, arg, words);
-      if (words.stl) read_mesh(words);
+      WallInput input(lmp, laws, motion);
+      input.read(narg, arg);
+      shape = std::move(input.shape);
+      mesh = dynamic_cast<Mesh *>(shape.get());
+      least_cosine = input.least_cosine;
       std::copy(motion.place, motion.place + 3, home);
     } catch (const std::runtime_error &problem) {
       error->all(FLERR, "fix wall/asperity {}: {}", id, problem.what());
@@ -78,140 +62,6 @@ class FixWallAsperity : public Fix {
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
     for (int i = 0; i < atom->nlocal; i++) FixWallAsperity::set_arrays(i);
-  }
-
-  // The wall's place and shape; the number of the word behind.
-  int read_shape(int narg, char **arg, Words &words)
-  {
-    if (narg < 5) error->all(FLERR, USAGE);
-    if (strcmp(arg[3], "stl") == 0) {
-      words.stl = true;
-      words.file = arg[4];
-      return 5;
-    }
-    double v[8];
-    if (strcmp(arg[3], "cylinder") == 0) {
-      const bool inside = narg > 11 && strcmp(arg[11], "inside") == 0;
-      if (narg < 12 || (!inside && strcmp(arg[11], "outside") != 0)) error->all(FLERR, USAGE);
-      numbers(arg + 4, 7, v);
-      std::copy(v, v + 3, motion.place);
-      shape.reset(new Cylinder(v + 3, v[6], inside));
-      return 12;
-    }
-    if (strcmp(arg[3], "cone") == 0) {
-      if (narg < 12) error->all(FLERR, USAGE);
-      numbers(arg + 4, 8, v);
-      std::copy(v, v + 3, motion.place);
-      for (int k = 0; k < 3; k++) v[4 + k] -= v[k];
-      shape.reset(new Cone(v + 4, v[3], v[7]));
-      least_cosine = cos(FOLLOWS * M_PI / 180.0);
-      return 12;
-    }
-    if (narg < 9) error->all(FLERR, USAGE);
-    numbers(arg + 3, 6, v);
-    std::copy(v, v + 3, motion.place);
-    shape.reset(new Plane(v + 3));
-    return 9;
-  }
-
-  // What stands behind the shape.
-  void read_words(int k, int narg, char **arg, Words &words)
-  {
-    std::shared_ptr<Law> last;
-    while (k < narg) {
-      const int left = narg - k;
-      if (strcmp(arg[k], "type") == 0 && left > 3) {
-        last = read_law(arg + k);
-        k += 4;
-      } else if (const int taken = read_motion(left, arg + k)) {
-        k += taken;
-      } else if (const int taken = words.stl ? read_mesh_word(left, arg + k, words) : 0) {
-        k += taken;
-      } else if (const int taken = last ? law_word(lmp, *last, left, arg + k) : 0) {
-        k += taken;
-      } else {
-        error->all(FLERR, "fix wall/asperity: unknown word {}", arg[k]);
-      }
-    }
-  }
-
-  std::shared_ptr<Law> read_law(char **arg)
-  {
-    int lo, hi;
-    utils::bounds(FLERR, arg[1], 1, atom->ntypes, lo, hi, error);
-    auto law = make_law(lmp, arg[2], arg[3]);
-    if (!law->table.plane)
-      error->all(FLERR, "fix wall/asperity: {} is the table of two spheres, and a wall needs that of a sphere on a plane", arg[2]);
-    for (int type = lo; type <= hi; type++) laws[type] = law;
-    return law;
-  }
-
-  // velocity, spin, load, mass, damping: how many words were taken.
-  int read_motion(int left, char **arg)
-  {
-    if (strcmp(arg[0], "velocity") == 0 && left > 3) {
-      numbers(arg + 1, 3, motion.velocity);
-      return 4;
-    }
-    if (strcmp(arg[0], "spin") == 0 && left > 3) {
-      numbers(arg + 1, 3, motion.spin);
-      return 4;
-    }
-    if (strcmp(arg[0], "load") == 0 && left > 4) {
-      double v[4];
-      numbers(arg + 1, 4, v);
-      motion.set_load(v);
-      return 5;
-    }
-    if (strcmp(arg[0], "mass") == 0 && left > 1) {
-      motion.mass = number(arg[1]);
-      if (!(motion.mass > 0.0) || !std::isfinite(motion.mass)) throw std::runtime_error("the mass of the wall is not positive");
-      return 2;
-    }
-    if (strcmp(arg[0], "damping") == 0 && left > 1) {
-      motion.damping = number(arg[1]);
-      if (!(motion.damping >= 0.0) || !std::isfinite(motion.damping)) throw std::runtime_error("the wall's damping is not 0 or more");
-      return 2;
-    }
-    return 0;
-  }
-
-  void read_mesh(const Words &words)
-  {
-    double shift[3];
-    std::copy(words.placed ? words.at : words.shift, (words.placed ? words.at : words.shift) + 3, motion.place);
-    for (int k = 0; k < 3; k++) shift[k] = words.shift[k] - motion.place[k];
-    try {
-      mesh = new Mesh(words.file, words.scale, shift, words.merge);
-    } catch (const std::runtime_error &problem) {
-      throw std::runtime_error("the file " + words.file + " " + problem.what());
-    }
-    shape.reset(mesh);
-    least_cosine = cos(std::max(FOLLOWS, words.merge) * M_PI / 180.0);
-  }
-
-  int read_mesh_word(int left, char **arg, Words &words)
-  {
-    if (strcmp(arg[0], "scale") == 0 && left > 1) {
-      words.scale = number(arg[1]);
-      if (!(words.scale > 0.0) || !std::isfinite(words.scale)) throw std::runtime_error("the scale is not positive");
-      return 2;
-    }
-    if (strcmp(arg[0], "at") == 0 && left > 3) {
-      numbers(arg + 1, 3, words.at);
-      words.placed = true;
-      return 4;
-    }
-    if (strcmp(arg[0], "shift") == 0 && left > 3) {
-      numbers(arg + 1, 3, words.shift);
-      return 4;
-    }
-    if (strcmp(arg[0], "merge") == 0 && left > 1) {
-      words.merge = number(arg[1]);
-      if (!(words.merge >= 1.0 && words.merge <= 60.0)) throw std::runtime_error("merge is not from 1 to 60 degrees");
-      return 2;
-    }
-    return 0;
   }
 
   // What LAMMPS is to know of the fix.
@@ -288,13 +138,15 @@ class FixWallAsperity : public Fix {
       motion.back(turned);
       const double w = sqrt(asperity_dot(motion.spin, motion.spin));
       if (mesh && (!(turned[k] > 1.0 - 1e-12) || std::abs(motion.spin[k]) < (1.0 - 1e-12) * w))
-        error->all(FLERR, "fix wall/asperity {}: facets cannot turn in a box that is periodic, but about its only periodic direction", id);
+        error->all(FLERR, "fix wall/asperity {}: facets cannot turn in a box that is periodic, but about its only periodic "
+                          "direction", id);
       if (!shape->axis()) continue;
       std::copy(shape->axis(), shape->axis() + 3, turned);
       motion.back(turned);
       const double along = std::abs(turned[k]);
       if ((along > 1e-12 && along < 1.0 - 1e-12) || std::abs(asperity_dot(motion.spin, turned)) < (1.0 - 1e-12) * w)
-        error->all(FLERR, "fix wall/asperity {}: in a periodic direction the axis of a cylinder lies along it or across, and stays", id);
+        error->all(FLERR, "fix wall/asperity {}: in a periodic direction the axis of a cylinder lies along it or across, and "
+                          "stays", id);
     }
     if (mesh) span_mesh();
   }
@@ -534,8 +386,8 @@ class FixWallAsperity : public Fix {
   }
 
   // 1 to 3: force on the wall; 4 to 6: its place; 7, 8, 9: work dissipated by plastic flow, slip and damping; 10: elastic energy;
-  // 11: contacts; 12: those out of range; 13: work that the wall has done; 14 to 16: torque on the wall about its place; 17 to 19: its
-  // velocity
+  // 11: contacts; 12: those out of range; 13: work that the wall has done; 14 to 16: torque on the wall about its place; 17 to 19:
+  // its velocity
   double compute_vector(int k) override
   {
     if (k < 3) return value(k);
@@ -552,7 +404,7 @@ class FixWallAsperity : public Fix {
   int modify_param(int narg, char **arg) override
   {
     try {
-      return read_motion(narg, arg);
+      return WallInput(lmp, laws, motion).read_motion(narg, arg);
     } catch (const std::runtime_error &problem) {
       error->all(FLERR, "fix wall/asperity {}: {}", id, problem.what());
     }
@@ -655,7 +507,8 @@ class FixWallAsperity : public Fix {
     }
     const uint64_t fingerprint = shape->fingerprint();
     if (memcmp(&fingerprint, &file[17], sizeof fingerprint) != 0 && !changed)
-      error->all(FLERR, "{}: the wall has another shape than when the restart file was written. Give that one, or say `changed`", who);
+      error->all(FLERR, "{}: the wall has another shape than when the restart file was written. Give that one, or say `changed`",
+                 who);
     std::copy(file.begin() + 3, file.begin() + 6, motion.place);
     std::copy(file.begin() + 10, file.begin() + 14, motion.turn);
     if (motion.loaded) std::copy(file.begin() + 14, file.begin() + 17, motion.velocity);

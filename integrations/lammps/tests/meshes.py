@@ -1,5 +1,6 @@
 """STL files for the tests."""
 
+import math
 import struct
 from pathlib import Path
 
@@ -39,3 +40,9 @@ def box_faces(lo, hi, open_top=True):
     if not open_top:
         faces.append((p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)))
     return [facet for face in faces for facet in quad(*face)]
+
+
+def tube(count, radius=3.0, half=2.0):
+    """A tube about y, of flat faces."""
+    at = lambda k, y: (radius * math.cos(2 * math.pi * k / count), y, radius * math.sin(2 * math.pi * k / count))
+    return [facet for k in range(count) for facet in quad(at(k, -half), at(k + 1, -half), at(k + 1, half), at(k, half))]

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from host import E, ELASTIC_PAIR, ELASTIC_WALL, HEAD, PAIR, WALL, dump, expect, failures, quiet, told
-from meshes import ascii_stl, binary_stl, box_faces, grid
+from meshes import ascii_stl, binary_stl, box_faces, grid, tube
 from test_walls import EMPTY, LAW, STEP, along, apart
 
 ELASTIC_LAW = f"type 1 {ELASTIC_WALL} {E}"
@@ -49,6 +49,35 @@ def round_a_cylinder():
     expect(worst < 2e-3 and lost > 0.1 * start and abs(angle) > 2 * math.pi, f"round a cylinder by {abs(angle):.1f}: energy balance, share slip took", f"{worst:.1e} {lost / start:.2f}")
     expect(abs(rolling - 5 / 7) < 0.01 and slip < 0.01, "    it rolls in the end: speed over the first (5/7), slip", f"{rolling:.4f} {slip:.1e}")
     expect(torque < 2e-3, "    torque on the wall against force times lever", f"{torque:.1e}")
+
+
+def faceted():
+    """Tubes of flat faces: one contact all the way round, and balanced energy, of a sphere that is thrown round and of a tube that is turned against one."""
+    with tempfile.TemporaryDirectory() as name:
+        for faces in (24, 36, 180):
+            file, lmp, counts, worst = binary_stl(f"{name}/{faces}.stl", tube(faces)), quiet(), set(), 0.0
+            lmp.commands_string(HEAD + EMPTY + ACCOUNT + f"create_atoms 1 single {3 * math.cos(math.pi / faces) - 0.5005} 0.3 0 units box\nset group all diameter 1 density 1\n"
+                                f"velocity all set 0 0 0.3\nfix wall all wall/asperity stl {file} {ELASTIC_LAW}\nfix move all nve/sphere\nrun 0\n")
+            start = account(lmp, ["wall"])
+            for _ in range(500):
+                lmp.command("run 40 post no")
+                worst = max(worst, abs(account(lmp, ["wall"]) / start - 1))
+                counts.add(lmp.extract_fix("wall", 0, 1, 10))
+            lmp.close()
+            expect(worst < 1e-4 and counts <= {0.0, 1.0}, f"thrown round a tube of {faces} faces: energy balance, most contacts", f"{worst:.1e} {max(counts):g}")
+        for faces in (24, 36, 180):
+            lmp, counts, depth, steps = quiet(), set(), 0.01, 4000
+            lmp.commands_string(HEAD + EMPTY + f"create_atoms 1 single {3 * math.cos(math.pi / faces) - 0.5} 0.3 0 units box\nset group all diameter 1 density 1\n"
+                                f"velocity all set {depth / (20 * STEP)} 0 0\nfix wall all wall/asperity stl {name}/{faces}.stl {LAW}\nfix move all nve/noforce\nrun 20\n"
+                                f"velocity all set 0 0 0\nfix_modify wall spin 0 {0.5 * math.pi / (steps * STEP)} 0\nrun 0\n")
+            energy = lambda: sum(lmp.extract_fix("wall", 0, 1, k) for k in (6, 7, 8, 9)) - lmp.extract_fix("wall", 0, 1, 12)
+            start = energy()
+            for _ in range(steps // 20):
+                lmp.command("run 20 post no")
+                counts.add(lmp.extract_fix("wall", 0, 1, 10))
+            gap, done = abs(energy() - start), lmp.extract_fix("wall", 0, 1, 12)
+            lmp.close()
+            expect(gap < 1e-3 * done and counts <= {0.0, 1.0}, "    that is turned against a pressed sphere: energy balance over the work, contacts", f"{gap / done:.1e} {max(counts):g}")
 
 
 def drum():
@@ -210,7 +239,7 @@ def periodic():
 
 if __name__ == "__main__":
     only = os.environ.get("ASPERITY_ONLY", "").split()
-    for test in (round_a_cylinder, drum, punch, box_of_triangles, restarts, periodic):
+    for test in (round_a_cylinder, faceted, drum, punch, box_of_triangles, restarts, periodic):
         if not only or test.__name__ in only:
             test()
     sys.exit(1 if failures else 0)
