@@ -194,7 +194,8 @@ def box_of_triangles():
 def restarts():
     """To the last bit, with the memory of each contact, a plate under a load, and a wall that turns."""
     with tempfile.TemporaryDirectory() as name:
-        walled = walls(name, True, "load 0 0 -1 40 mass 30 damping 20") + f"fix round all wall/asperity cone 2 2 -1 3.2 2 2 7 3.1 {LAW} spin 0 0 0.5\n"
+        walled = walls(name, True, "load 0 0 -1 40 mass 30 damping 20") + f"fix round all wall/asperity cone 2 2 -1 2.61 2 2 7 2.6 {LAW} spin 0 0 0.5\n"
+        walled += f"fix plate all wall/asperity stl {ascii_stl(f'{name}/plate.stl', grid(1, 1.6))} shift 2 2 0.01 {LAW} spin 0 0 0.5\n"
         file = f"{name}/half.restart"
         whole = press(name, walled, steps=f"300\nwrite_restart {file}\nrun 300")
         again = f"read_restart {file}\ncomm_modify vel yes\npair_style asperity\npair_coeff 1 1 {PAIR} {E}\ntimestep {STEP}\n"
@@ -228,13 +229,16 @@ def periodic():
             worst = differ(plane, told(f"processors 1 1 {ranks}\n" + bed.format(f"stl {file}"), ranks)[1]["end.dump"])
             expect(worst < 1e-6, f"    under a bed, {ranks} rank(s)", f"{worst:.1e}")
         # A post across the boundary: from the other side it is as near.
-        posts = []
-        for x in (3.8, 0.6):
-            lmp = quiet()
-            lmp.commands_string(HEAD + box + f"create_atoms 1 single {x} 2 2 units box\nset group all diameter 1 density 1\nfix post all wall/asperity cylinder {0.2 if x > 1 else 1.0} 2 0 0 0 1 0.1 outside {LAW}\nrun 0\n")
-            posts.append(list(lmp.numpy.extract_atom("f")[0]))
-            lmp.close()
-        expect(posts[0][0] < 0 and abs(posts[0][0] / posts[1][0] - 1) < 1e-9, "    a post, seen across the boundary: force over that within the box less 1", f"{posts[0][0] / posts[1][0] - 1:.1e}")
+        block = binary_stl(f"{name}/block.stl", box_faces((-0.125, -1, 0), (0.125, 1, 4), False))
+        for what, wall in (("round post", "cylinder {} 2 0 0 0 1 0.125 outside"), ("block of triangles", f"stl {block} shift {{}} 2 0"), ("tube", "cone {} 2 0 0.125 {} 2 5 0.125")):
+            forces = []
+            for x, post in ((3.75, 0.35), (0.25, 3.65), (1.0, 1.6), (1.6, 1.0)):
+                lmp = quiet()
+                lmp.commands_string(HEAD + box + f"create_atoms 1 single {x} 2 2 units box\nset group all diameter 1 density 1\nfix post all wall/asperity {wall.format(post, post)} {LAW}\nrun 0\n")
+                forces.append(lmp.numpy.extract_atom("f")[0][0])
+                lmp.close()
+            worst = max(abs(forces[0] / forces[2] - 1), abs(forces[1] / forces[3] - 1))
+            expect(forces[0] < 0 < forces[1] and worst < 1e-9, f"    a {what} across the boundary: force over that within the box less 1", f"{worst:.1e}")
 
 
 if __name__ == "__main__":
