@@ -39,6 +39,10 @@ echo "built $work/asperityplugin.so for LAMMPS of $version"
 [ "${1:-}" != --build ] || exit 0
 gcc -std=c99 -O2 -shared -fPIC -I"$work/law-copper" "$here/tests/bare.c" -o "$work/libbare.so" -lm
 "$work/venv/bin/python" "$here/tests/test_plugin.py" "$work/asperityplugin.so" "$work/libbare.so" "$work/law-copper/law.asperity" "$work/law-steel/law.asperity" "$@"
-for name in starts walls; do
+for name in starts walls presses; do
     "$work/venv/bin/python" "$here/tests/test_$name.py" "$work/asperityplugin.so" "$work/equal" "$work/elastic"
 done
+# The second way in: no plug-in, the header in a library that `fix external` calls.
+g++ -std=c++17 -O3 -march=native -fPIC -shared -Wall -Wextra -I"$work/law-copper" "$here/external/asperity_external.cpp" -o "$work/libasperity_external.so"
+"$work/venv/bin/python" "$here/tests/test_external.py" "$work/asperityplugin.so" "$work/equal" "$work/elastic" "$work/libasperity_external.so"
+"$work/venv/bin/python" "$here/external/collide.py" "$work/libasperity_external.so" "$work/equal/equal.asperity"
