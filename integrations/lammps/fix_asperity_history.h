@@ -18,6 +18,7 @@ class FixAsperityHistory : public Fix {
  public:
   std::vector<std::vector<Record>> rows;
   double total[3] = {0.0, 0.0, 0.0};    // work dissipated by plastic flow, slip and damping, this process's share
+  double **heat = nullptr;              // the same of each sphere, which takes half of what its contacts dissipate
   std::map<std::pair<int, int>, Identity> laws, restarted;    // by types: those of now, those of the restart file
 
   FixAsperityHistory(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
@@ -26,16 +27,21 @@ class FixAsperityHistory : public Fix {
     restart_global = 1;
     create_attribute = 1;
     maxexchange_dynamic = 1;
-    maxexchange = 2;
+    maxexchange = HEAD;
+    peratom_flag = 1;
+    size_peratom_cols = 3;
+    peratom_freq = 1;
     FixAsperityHistory::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
+    for (int i = 0; i < atom->nlocal; i++) FixAsperityHistory::set_arrays(i);
   }
 
   ~FixAsperityHistory() override
   {
     atom->delete_callback(id, Atom::GROW);
     atom->delete_callback(id, Atom::RESTART);
+    memory->destroy(heat);
   }
 
   int setmask() override { return FixConst::PRE_EXCHANGE; }
@@ -51,7 +57,7 @@ class FixAsperityHistory : public Fix {
   {
     size_t most = 0;
     for (int i = 0; i < atom->nlocal; i++) most = std::max(most, rows[i].size());
-    maxexchange = 2 + (NUMBERS + 1) * static_cast<int>(most);
+    maxexchange = HEAD + (NUMBERS + 1) * static_cast<int>(most);
   }
 
   // A sphere that was made in this run is known from now on by the ID that it has.
@@ -88,6 +94,18 @@ class FixAsperityHistory : public Fix {
       }
   }
 
+  // What a contact of spheres i and j has dissipated by plastic flow, slip and damping in a step: half of it is of each. Of a ghost
+  // its owner has it too.
+  void add_heat(int i, int j, const double lost[3])
+  {
+    const double weight = j < atom->nlocal ? 1.0 : 0.5;
+    for (int k = 0; k < 3; k++) {
+      total[k] += weight * lost[k];
+      heat[i][k] += 0.5 * lost[k];
+      if (j < atom->nlocal) heat[j][k] += 0.5 * lost[k];
+    }
+  }
+
   // Forgets the contacts that left the neighbour list.
   void drop_unseen(int i)
   {
@@ -97,6 +115,8 @@ class FixAsperityHistory : public Fix {
 
   void grow_arrays(int nmax) override
   {
+    memory->grow(heat, nmax, 3, "asperity:heat");
+    array_atom = heat;
     if (rows.size() >= static_cast<size_t>(nmax)) return;
     rows.resize(nmax);
     known_as.resize(nmax, 0);
@@ -105,11 +125,13 @@ class FixAsperityHistory : public Fix {
   {
     rows[j] = rows[i];
     known_as[j] = known_as[i];
+    std::copy(heat[i], heat[i] + 3, heat[j]);
   }
   void set_arrays(int i) override
   {
     rows[i].clear();
     known_as[i] = 0;
+    std::fill(heat[i], heat[i] + 3, 0.0);
   }
 
   int pack_exchange(int i, double *buf) override
@@ -119,7 +141,7 @@ class FixAsperityHistory : public Fix {
     return m;
   }
   int unpack_exchange(int i, double *buf) override { return unpack(i, buf); }
-  int size_restart(int i) override { return 3 + (NUMBERS + 1) * static_cast<int>(rows[i].size()); }
+  int size_restart(int i) override { return 1 + HEAD + (NUMBERS + 1) * static_cast<int>(rows[i].size()); }
   int maxsize_restart() override
   {
     int most = 0, all;
@@ -173,6 +195,7 @@ class FixAsperityHistory : public Fix {
   }
 
  private:
+  static constexpr int HEAD = 5;    // numbers of a sphere before those of its contacts
   std::vector<tagint> known_as;    // the ID by which the contacts of others know an owned sphere; 0 of a new one
   bigint spheres = -1;             // how many there were when the IDs were last looked at
 
@@ -181,6 +204,7 @@ class FixAsperityHistory : public Fix {
     int m = 0;
     buf[m++] = static_cast<double>(rows[i].size());
     buf[m++] = ubuf(known_as[i]).d;
+    for (int k = 0; k < 3; k++) buf[m++] = heat[i][k];
     for (const auto &record : rows[i]) {
       buf[m++] = ubuf(record.partner).d;
       memcpy(buf + m, &record.contact, sizeof record.contact);
@@ -193,6 +217,7 @@ class FixAsperityHistory : public Fix {
     int m = 0;
     const int count = static_cast<int>(buf[m++]);
     known_as[i] = static_cast<tagint>(ubuf(buf[m++]).i);
+    for (int k = 0; k < 3; k++) heat[i][k] = buf[m++];
     rows[i].clear();
     for (int k = 0; k < count; k++) {
       Record record;

@@ -70,12 +70,10 @@ class PairAsperity : public Pair {
         torque[j][k] += tj[k];
       }
     }
-    const double weight = j < nlocal ? 1.0 : 0.5;
-    if (out.flags & ASPERITY_OUT_OF_RANGE) outside += weight;
+    if (out.flags & ASPERITY_OUT_OF_RANGE) outside += j < nlocal ? 1.0 : 0.5;
     if (advance) {
-      history->total[0] += weight * (after.plastic - before.plastic);
-      history->total[1] += weight * (after.slip - before.slip);
-      history->total[2] += weight * out.damped;
+      const double lost[3] = {after.plastic - before.plastic, after.slip - before.slip, out.damped};
+      history->add_heat(i, j, lost);
       if (asperity_may_forget(&after)) {
         history->drop(i, tag[j]);
         if (j < nlocal) history->drop(j, tag[i]);
