@@ -154,13 +154,16 @@ class Mesh : public Shape {
     }
   }
 
-  // Whether no triangle that the point belongs to has a nearer one.
-  static bool is_minimum(const Nearest &candidate, const std::vector<Nearest> &all, double joined)
+  // Whether no triangle that the point of all[index] belongs to has a nearer one. They are sorted by distance, and one that has is
+  // more often a neighbour than not: they are asked from the farthest on.
+  static bool is_minimum(size_t index, const std::vector<Nearest> &all, double joined)
   {
+    const Nearest &candidate = all[index];
     if (candidate.face) return true;
-    for (const Nearest &other : all) {
-      if (other.triangle == candidate.triangle || !(other.distance < candidate.distance - 2.0 * joined)) continue;
-      if (nearest(*other.triangle, candidate.point).distance <= joined) return false;
+    while (index-- > 0) {
+      const Nearest &other = all[index];
+      if (other.distance < candidate.distance - 2.0 * joined && nearest(*other.triangle, candidate.point).distance <= joined)
+        return false;
     }
     return true;
   }
@@ -223,7 +226,8 @@ class Mesh : public Shape {
       if (a.distance != b.distance) return a.distance < b.distance;
       return std::lexicographical_compare(a.point, a.point + 3, b.point, b.point + 3);
     });
-    for (const Nearest &candidate : all) {
+    for (size_t index = 0; index < all.size(); index++) {
+      const Nearest &candidate = all[index];
       Touch touch;
       touch.distance = candidate.distance;
       const double *point = candidate.face ? candidate.triangle->corner[0] : candidate.point;
@@ -238,7 +242,7 @@ class Mesh : public Shape {
       touch.set_distance();
       bool seen = false;
       for (const Touch &deeper : out) seen = seen || asperity_dot(deeper.normal, touch.normal) >= merge;
-      if (!seen && is_minimum(candidate, all, JOINED * radius)) out.push_back(touch);
+      if (!seen && is_minimum(index, all, JOINED * radius)) out.push_back(touch);
     }
   }
 

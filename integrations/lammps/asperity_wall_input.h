@@ -142,7 +142,7 @@ class WallInput {
 
   WallInput(LAMMPS *lmp, std::vector<std::shared_ptr<Law>> &laws, Motion &motion) : lmp(lmp), laws(laws), motion(motion) {}
 
-  // velocity, spin, load, mass, damping: how many words were taken.
+  // velocity, spin, load, unloaded, mass, damping: how many words were taken.
   int read_motion(int left, char **arg)
   {
     if (strcmp(arg[0], "velocity") == 0 && left > 3) {
@@ -158,6 +158,10 @@ class WallInput {
       numbers(arg + 1, 4, v);
       motion.set_load(v);
       return 5;
+    }
+    if (strcmp(arg[0], "unloaded") == 0) {
+      motion.loaded = false;
+      return 1;
     }
     if (strcmp(arg[0], "mass") == 0 && left > 1) {
       motion.mass = number(arg[1]);

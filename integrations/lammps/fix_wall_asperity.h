@@ -400,7 +400,7 @@ class FixWallAsperity : public Fix {
     return total;
   }
 
-  // fix_modify ID velocity vx vy vz, spin wx wy wz, load dx dy dz F, mass M, damping C
+  // fix_modify ID velocity vx vy vz, spin wx wy wz, load dx dy dz F, unloaded, mass M, damping C
   int modify_param(int narg, char **arg) override
   {
     try {

@@ -144,11 +144,36 @@ def punch():
         expect(scale > 0 and spread < 5e-3 * scale, "    without damping: energy of spheres, punch and load over the load's work", f"{spread / scale:.1e}")
 
 
-def press(folder, wall, ranks=1, newton="on", steps=600):
+def die():
+    """Spheres in a round die under a punch, pressed with its load and drawn up at a speed: energy, and the load in the end."""
+    lmp, mass, load, worst = quiet(), 20.0, 10.0, 0.0
+    lmp.commands_string(HEAD + EMPTY + ACCOUNT + "lattice sc 1.0 origin 0.5 0.5 0.5\nregion in cylinder z 0 0 2.0 0 4 units box\ncreate_atoms 1 region in\nset group all diameter 0.98 density 1.0\n"
+                        f"displace_atoms all random 0.01 0.01 0.01 8711\nfix floor all wall/asperity 0 0 0 0 0 1 {LAW} restitution 0.5\n"
+                        f"fix die all wall/asperity cylinder 0 0 0 0 0 1 2.1 inside {LAW} restitution 0.5\n"
+                        f"fix punch all wall/asperity 0 0 4 0 0 -1 {LAW} restitution 0.5 load 0 0 -1 {load} mass {mass} damping 20\nfix move all nve/sphere\nrun 0\n")
+    walls = ["floor", "die", "punch"]
+    start = account(lmp, walls)
+    for _ in range(200):
+        lmp.command("run 50 post no")
+        worst = max(worst, abs(account(lmp, walls) - start))
+    done, force, place = lmp.extract_fix("punch", 0, 1, 12), lmp.extract_fix("punch", 0, 1, 2), lmp.extract_fix("punch", 0, 1, 5)
+    around = max(math.hypot(*row[:2]) for row in lmp.numpy.extract_atom("x"))
+    expect(worst < 2e-3 * done and abs(force / load - 1) < 1e-2 and place < 3.9 and around < 2.1 - 0.4, f"a round die, its punch at {place:.3f}: energy balance over the work, force over load less 1",
+           f"{worst / done:.1e} {force / load - 1:.1e}")
+    lmp.command("fix_modify punch unloaded velocity 0 0 0.5")
+    for _ in range(20):
+        lmp.command("run 50 post no")
+        worst = max(worst, abs(account(lmp, walls) - start))
+    moved, left = lmp.extract_fix("punch", 0, 1, 5) - place, lmp.extract_fix("punch", 0, 1, 10)
+    lmp.close()
+    expect(worst < 2e-3 * done and abs(moved / (1000 * STEP * 0.5) - 1) < 1e-12 and left == 0, "    drawn up: energy balance, its way over that of its speed less 1", f"{worst / done:.1e} {moved / (1000 * STEP * 0.5) - 1:.1e}")
+
+
+def press(folder, wall, ranks=1, newton="on", steps=600, words=""):
     """64 spheres in a box, pressed by a plate; the dump."""
     lattice = "lattice sc 1.0 origin 0.5 0.5 0.5\nregion bed block 0 4 0 4 0 4 units box\ncreate_atoms 1 region bed\nset group all diameter 1.0 density 1.0\n"
     script = (f"newton {newton}\nprocessors 1 1 {ranks}\n" + EMPTY.replace("-10 10 -10 10 -10 10", "-1 5 -1 5 -1 7") + lattice + "velocity all create 0.05 87287 loop geom\n" + wall
-              + f"fix move all nve/sphere\nneighbor 0.3 bin\nrun {steps}\n" + dump("end"))
+              + f"fix move all nve/sphere\nneighbor 0.3 bin\n{words}run {steps}\n" + dump("end"))
     return told(script, ranks)[1]["end.dump"]
 
 
@@ -173,6 +198,8 @@ def box_of_triangles():
         for ranks, newton in ((1, "off"), (2, "on"), (2, "off")):
             worst = differ(whole, press(name, walls(name, True), ranks, newton))
             expect(worst < 1e-6, f"    {ranks} rank(s), newton {newton}", f"{worst:.1e}")
+        worst = differ(whole, press(name, walls(name, True), 2, words="fix even all balance 20 1.0 shift z 10 1.02\n"))
+        expect(worst < 1e-6, "    2 ranks, balanced as they run", f"{worst:.1e}")
         loaded = "load 0 0 -1 40 mass 30 damping 20"
         one, two = (press(name, walls(name, True, loaded), ranks) for ranks in (1, 2))
         expect(differ(one, two) < 1e-6, "    under a load, 2 ranks", f"{differ(one, two):.1e}")
@@ -268,7 +295,7 @@ def heat():
 
 if __name__ == "__main__":
     only = os.environ.get("ASPERITY_ONLY", "").split()
-    for test in (round_a_cylinder, faceted, drum, punch, box_of_triangles, restarts, periodic, heat):
+    for test in (round_a_cylinder, faceted, drum, punch, die, box_of_triangles, restarts, periodic, heat):
         if not only or test.__name__ in only:
             test()
     sys.exit(1 if failures else 0)
