@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from host import E, ELASTIC_PAIR, ELASTIC_WALL, HEAD, PAIR, WALL, dump, expect, failures, quiet, told
-from meshes import ascii_stl, binary_stl, box_faces, grid, tube
+from meshes import ascii_stl, binary_stl, box_faces, grid, quad, tube
 from test_walls import EMPTY, LAW, STEP, along, apart
 
 ELASTIC_LAW = f"type 1 {ELASTIC_WALL} {E}"
@@ -80,6 +80,27 @@ def faceted():
             expect(gap < 1e-3 * done and counts <= {0.0, 1.0}, "    that is turned against a pressed sphere: energy balance over the work, contacts", f"{gap / done:.1e} {max(counts):g}")
 
 
+def grooves():
+    """A groove whose faces turn by 20 degrees moved under a pressed sphere: energy closes up to h/R = 1 - cos(20 degrees) = 0.06, and beyond with `merge`."""
+    s, c = math.sin(math.radians(20)), math.cos(math.radians(20))
+    gaps = []
+    with tempfile.TemporaryDirectory() as name:
+        file = ascii_stl(f"{name}/groove.stl", quad((0, -3, 0), (0, 3, 0), (-3, 3, 0), (-3, -3, 0)) + quad((0, -3, 0), (0, 3, 0), (3 * c, 3, 3 * s), (3 * c, -3, 3 * s)))
+        for depth, words in ((0.05, ""), (0.1, ""), (0.1, "merge 25")):
+            lmp, gap = quiet(), 0.0
+            lmp.commands_string(HEAD + EMPTY + f"create_atoms 1 single -0.6 0.1 0.5 units box\nset group all diameter 1 density 1\nvelocity all set 0 0 {-0.5 * depth / (50 * STEP)}\n"
+                                f"fix wall all wall/asperity stl {file} {words} {LAW}\nfix move all nve/noforce\nrun 50\nvelocity all set 0 0 0\nfix_modify wall velocity -0.1 0 0\nrun 0\n")
+            energy = lambda: sum(lmp.extract_fix("wall", 0, 1, k) for k in (6, 7, 8, 9)) - lmp.extract_fix("wall", 0, 1, 12)
+            start = energy()
+            for _ in range(900):
+                lmp.command("run 5 post no")
+                gap = max(gap, abs(energy() - start))
+            gaps.append(gap / lmp.extract_fix("wall", 0, 1, 12))
+            lmp.close()
+    # The second is a known fault: where it goes, docs/dem-lammps.md has to say so.
+    expect(gaps[0] < 1e-4 and 1e-3 < gaps[1] < 0.1 and gaps[2] < 1e-3, "a groove at h/R 0.05, 0.1, and 0.1 with merge: energy over the work", " ".join(f"{gap:.1e}" for gap in gaps))
+
+
 def drum():
     """A cylinder and a box of triangles that turn under gravity: what they do is what the spheres get."""
     with tempfile.TemporaryDirectory() as name:
@@ -142,6 +163,28 @@ def punch():
         lmp.close()
         spread, scale = max(energies) - min(energies), load * (3.1 - place)
         expect(scale > 0 and spread < 5e-3 * scale, "    without damping: energy of spheres, punch and load over the load's work", f"{spread / scale:.1e}")
+
+
+def hopper():
+    """Spheres poured into a hopper, and through its mouth into a bin of triangles: all of them arrive, one after the other."""
+    with tempfile.TemporaryDirectory() as name:
+        bin_ = binary_stl(f"{name}/bin.stl", box_faces((-3, -3, -6), (3, 3, 0)))
+        box = EMPTY.replace("-10 10 -10 10 -10 10", "-6 6 -6 6 -6.5 12")
+        out, dumps = told(box.replace(f"{PAIR} {E}", f"{PAIR} {E} restitution 0.3") + f"""fix hopper all wall/asperity cone 0 0 0 2.0 0 0 5 5.5 {LAW} restitution 0.3
+fix bin all wall/asperity stl {bin_} {LAW} restitution 0.3
+fix down all gravity 0.05 vector 0 0 -1
+fix move all nve/sphere
+region top cylinder z 0 0 3 6 11 units box
+fix in all pour 60 1 4711 region top diam one 1.0 dens 1.0 1.0
+timestep 0.01
+run 2000
+variable held equal bound(all,zmax)
+print "found ${{held}}"
+run 16000
+""" + dump("end"))
+        held, rows = float(out.split("found ")[-1].split()[0]), dumps["end.dump"]
+        inside = all(max(abs(row[1]), abs(row[2])) < 2.6 and -5.75 < row[3] < 0 for row in rows)
+        expect(len(rows) == 60 and inside and held > 0, "60 spheres through a hopper into a bin of triangles: highest on the way and in the end", f"{held:.2f} {max(row[3] for row in rows):.2f}")
 
 
 def die():
@@ -227,6 +270,10 @@ def restarts():
         again = f"read_restart {file}\ncomm_modify vel yes\npair_style asperity\npair_coeff 1 1 {PAIR} {E}\ntimestep {STEP}\n"
         _, dumps = told(again + walled + "fix move all nve/sphere\nneighbor 0.3 bin\nrun 300\n" + dump("end"))
         expect(whole == dumps["end.dump"], "from a restart file: places, velocities and forces are the same to the last bit", "yes" if whole == dumps["end.dump"] else f"{differ(whole, dumps['end.dump']):.1e}")
+        two = f"{name}/two.restart"
+        press(name, walled, ranks=2, steps=f"300\nwrite_restart {two}\nrun 0")
+        _, dumps = told(again.replace(file, two) + walled + "fix move all nve/sphere\nneighbor 0.3 bin\nrun 300\n" + dump("end"))
+        expect(differ(whole, dumps["end.dump"]) < 1e-6, "    one rank from the restart file of two: forces", f"{differ(whole, dumps['end.dump']):.1e}")
         lmp = quiet()
         other = walled.replace(f"{name}/lid.stl", binary_stl(f"{name}/other.stl", [tuple((x + 2, y + 2, z + 4) for x, y, z in facet) for facet in grid(4, 6.0)]))
         said = "nothing"
@@ -295,7 +342,7 @@ def heat():
 
 if __name__ == "__main__":
     only = os.environ.get("ASPERITY_ONLY", "").split()
-    for test in (round_a_cylinder, faceted, drum, punch, die, box_of_triangles, restarts, periodic, heat):
+    for test in (round_a_cylinder, faceted, grooves, drum, punch, hopper, die, box_of_triangles, restarts, periodic, heat):
         if not only or test.__name__ in only:
             test()
     sys.exit(1 if failures else 0)
