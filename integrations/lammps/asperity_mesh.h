@@ -2,8 +2,9 @@
 //
 // A contact is a local minimum of the distance between the sphere's centre and the surface. As triangles are convex, a point is
 // one if and only if it is the nearest point of every triangle that it belongs to. It follows that a flat patch has one contact,
-// of however many triangles, edges and corners it is made; that an edge or a corner counts where the surface falls off from it on
-// all sides, and once; and that a groove has one contact on each side. Of minima in nearly one direction the deepest counts alone.
+// of however many triangles, edges and corners it is made; that an edge or a corner counts where the surface falls off from it
+// on all sides, and once; and that a groove has one contact on each side. Of minima in nearly one direction the deepest counts
+// alone.
 #ifndef ASPERITY_MESH_H
 #define ASPERITY_MESH_H
 
@@ -154,8 +155,8 @@ class Mesh : public Shape {
     }
   }
 
-  // Whether no triangle that the point of all[index] belongs to has a nearer one. They are sorted by distance, and one that has is
-  // more often a neighbour than not: they are asked from the farthest on.
+  // Whether no triangle that the point of all[index] belongs to has a nearer one. They are sorted by distance, and one that has
+  // is more often a neighbour than not: they are asked from the farthest on.
   static bool is_minimum(size_t index, const std::vector<Nearest> &all, double joined)
   {
     const Nearest &candidate = all[index];
@@ -204,7 +205,8 @@ class Mesh : public Shape {
           for (int k = begin[2]; k <= end[2]; k++) {
             const double shift[3] = {i * period[0], j * period[1], k * period[2]};
             triangles.push_back(make(corners, shift));
-            if (triangles.size() > MOST) throw std::runtime_error("it has more than 100 million facets with their periodic images");
+            if (triangles.size() > MOST)
+              throw std::runtime_error("it has more than 100 million facets with their periodic images");
           }
     }
     if (!triangles.empty()) build(0, static_cast<int>(triangles.size()));

@@ -51,6 +51,8 @@ class Shape {
   virtual void middle(double point[3]) const { point[0] = point[1] = point[2] = 0.0; }
   virtual const double *axis() const { return nullptr; }
   virtual bool is_plane() const { return false; }
+  // Whether a sphere there does not touch; false where that is not seen at once.
+  virtual bool is_far(const double[3], double) const { return false; }
 };
 
 class Plane : public Shape {
@@ -73,6 +75,7 @@ class Plane : public Shape {
   }
   uint64_t fingerprint() const override { return hash_numbers(1, normal, 3); }
   bool is_plane() const override { return true; }
+  bool is_far(const double c[3], double radius) const override { return asperity_dot(c, normal) >= radius; }
 };
 
 // A circular cylinder without ends, its axis through the origin.

@@ -12,8 +12,9 @@ namespace LAMMPS_NS {
 class WallInput {
   static constexpr const char *USAGE =
       "fix ID group wall/asperity SHAPE type T TABLE E [restitution e] [tangential f] [changed] [type ...] [velocity vx vy vz] "
-      "[spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | cylinder x y z ax ay az R inside or outside | "
-      "cone x1 y1 z1 R1 x2 y2 z2 R2 | stl FILE [scale s] [shift x y z] [at x y z] [merge DEGREES]";
+      "[spin wx wy wz] [load dx dy dz F mass M [damping C]], SHAPE: x y z nx ny nz | "
+      "cylinder x y z ax ay az R inside or outside | cone x1 y1 z1 R1 x2 y2 z2 R2 | "
+      "stl FILE [scale s] [shift x y z] [at x y z] [merge DEGREES]";
   static constexpr double MERGE = 15.0, FOLLOWS = 30.0;    // degrees
 
   LAMMPS *lmp;
@@ -170,7 +171,8 @@ class WallInput {
     }
     if (strcmp(arg[0], "damping") == 0 && left > 1) {
       motion.damping = number(arg[1]);
-      if (!(motion.damping >= 0.0) || !std::isfinite(motion.damping)) throw std::runtime_error("the wall's damping is not 0 or more");
+      if (!(motion.damping >= 0.0) || !std::isfinite(motion.damping))
+        throw std::runtime_error("the wall's damping is not 0 or more");
       return 2;
     }
     return 0;

@@ -94,8 +94,8 @@ class FixAsperityHistory : public Fix {
       }
   }
 
-  // What a contact of spheres i and j has dissipated by plastic flow, slip and damping in a step: half of it is of each. Of a ghost
-  // its owner has it too.
+  // What a contact of spheres i and j has dissipated by plastic flow, slip and damping in a step: half of it is of each. Of a
+  // ghost its owner has it too.
   void add_heat(int i, int j, const double lost[3])
   {
     const double weight = j < atom->nlocal ? 1.0 : 0.5;

@@ -11,7 +11,7 @@
 namespace LAMMPS_NS {
 
 class FixWallAsperity : public Fix {
-  static constexpr int LENGTH = 19, SUMS = 12, COLUMNS = 9;
+  static constexpr int LENGTH = 19, SUMS = 12, COLUMNS = 9, HEAT = 6;
 
   // A contact as its sphere holds it.
   struct Record {
@@ -20,26 +20,24 @@ class FixWallAsperity : public Fix {
     asperity_contact contact;
   };
   static constexpr int RECORD = sizeof(Record) / sizeof(double);
-  struct Kept {
-    std::vector<Record> records;
-    double heat[3] = {};    // work dissipated in this sphere by plastic flow, slip and damping at this wall
-  };
   std::vector<std::shared_ptr<Law>> laws;
   Masses masses;
   std::unique_ptr<Shape> shape;
   Mesh *mesh = nullptr;
   Motion motion;
-  std::vector<Kept> kept;
+  std::vector<std::vector<Record>> kept;
   // Sums of this process: force on the wall, work dissipated by plastic flow, slip and damping, elastic energy, contacts, those
   // out of range, torque; and the work that the wall has done.
   double sum[SUMS] = {}, all[SUMS] = {}, done = 0.0, before[6] = {};
   double margin = 0.0, home[3] = {}, spanned[7] = {};
   double least_cosine = -1.0;    // of the old and the new normal of a contact
   int extensive[LENGTH];
-  double **peratom = nullptr;
+  double **peratom = nullptr;    // from HEAT on: work dissipated in a sphere by plastic flow, slip and damping at this wall
   bool known = false;
+  // Of the sphere in hand: where it touches, which of its records that has, and its new ones.
   std::vector<Touch> found;
   std::vector<int> owner;
+  std::vector<Record> after;
 
  public:
   FixWallAsperity(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), laws(atom->ntypes + 1), masses(lmp)
@@ -120,7 +118,7 @@ class FixWallAsperity : public Fix {
   void pre_exchange() override
   {
     size_t most = 0;
-    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, kept[i].records.size());
+    for (int i = 0; i < atom->nlocal; i++) most = std::max(most, kept[i].size());
     maxexchange = 4 + RECORD * static_cast<int>(most);
   }
 
@@ -193,9 +191,8 @@ class FixWallAsperity : public Fix {
     std::fill(sum, sum + 3, 0.0);
     std::fill(sum + 6, sum + SUMS, 0.0);
     for (int i = 0; i < atom->nlocal; i++) {
-      for (int k = 0; k < 6; k++) peratom[i][k] = 0.0;
+      for (int k = 0; k < HEAT; k++) peratom[i][k] = 0.0;
       if (atom->mask[i] & groupbit) sphere(i, dt, advance);
-      for (int k = 0; k < 3; k++) peratom[i][6 + k] = kept[i].heat[k];
     }
     // What the wall has done on the spheres, by the mean of its forces before and after.
     if (advance)
@@ -204,6 +201,15 @@ class FixWallAsperity : public Fix {
     std::copy(sum, sum + 3, before);
     std::copy(sum + 9, sum + 12, before + 3);
     known = false;
+  }
+
+  // Most spheres are far from most planes, which does not take long to see.
+  bool is_far(int i, double radius) const
+  {
+    if (motion.turned()) return false;
+    double place[3];
+    for (int k = 0; k < 3; k++) place[k] = atom->x[i][k] - motion.place[k];
+    return shape->is_far(place, radius);
   }
 
   // Where sphere i touches, into `found` (in the frame of the box); `place` is its centre less the wall's place.
@@ -261,21 +267,22 @@ class FixWallAsperity : public Fix {
 
   void sphere(int i, double dt, bool advance)
   {
-    Kept &mine = kept[i];
+    std::vector<Record> &mine = kept[i];
     const double radius = atom->radius[i];
+    if (mine.empty() && is_far(i, radius)) return;
     double deepest = 0.0, place[3];
-    for (const Record &record : mine.records) deepest = std::max(deepest, record.contact.state.h_max);
+    for (const Record &record : mine) deepest = std::max(deepest, record.contact.state.h_max);
     const double reach = radius * (1.0 + deepest);
     if (mesh && margin > 0.0 && reach > margin)
       error->one(FLERR, "fix wall/asperity {}: sphere {} has the radius {}, and none as large was known when the run began", id,
                  atom->tag[i], radius);
     look(i, place, reach);
-    if (found.empty() && mine.records.empty()) return;
-    match(mine.records);
-    std::vector<Record> after;
+    if (found.empty() && mine.empty()) return;
+    match(mine);
+    after.clear();
     for (size_t t = 0; t < found.size(); t++) {
       Record record = {};
-      if (owner[t] >= 0) record = mine.records[owner[t]];
+      if (owner[t] >= 0) record = mine[owner[t]];
       else if (found[t].distance >= radius) continue;
       // Memory goes by the direction in the frame of the wall, forces by that of the box.
       std::copy(found[t].normal, found[t].normal + 3, record.normal);
@@ -283,18 +290,18 @@ class FixWallAsperity : public Fix {
       if (!asperity_may_forget(&record.contact)) after.push_back(record);
     }
     if (!advance) return;
-    for (size_t r = 0; r < mine.records.size(); r++)
-      if (std::find(owner.begin(), owner.end(), static_cast<int>(r)) == owner.end()) lose(i, mine.records[r], after);
-    mine.records.swap(after);
+    for (size_t r = 0; r < mine.size(); r++)
+      if (std::find(owner.begin(), owner.end(), static_cast<int>(r)) == owner.end()) lose(i, mine[r]);
+    mine = after;
   }
 
   // A contact that is none any more, as the sphere has gone off its edge or on to the next facet: what it had stored is lost.
-  void lose(int i, const Record &record, const std::vector<Record> &others)
+  void lose(int i, const Record &record)
   {
-    for (const Record &other : others)
+    for (const Record &other : after)
       if (record.contact.state.h > 0.0 && asperity_dot(record.normal, other.normal) < -0.9)
         error->one(FLERR, "fix wall/asperity {}: sphere {} has gone through the wall", id, atom->tag[i]);
-    kept[i].heat[2] += record.stored;
+    peratom[i][HEAT + 2] += record.stored;
     sum[5] += record.stored;
   }
 
@@ -353,7 +360,7 @@ class FixWallAsperity : public Fix {
       const double lost[3] = {after.plastic - record.contact.plastic, after.slip - record.contact.slip, out.damped};
       for (int k = 0; k < 3; k++) {
         sum[3 + k] += lost[k];
-        kept[i].heat[k] += lost[k];
+        peratom[i][HEAT + k] += lost[k];
       }
     }
     double *row = peratom[i];
@@ -386,8 +393,8 @@ class FixWallAsperity : public Fix {
   }
 
   // 1 to 3: force on the wall; 4 to 6: its place; 7, 8, 9: work dissipated by plastic flow, slip and damping; 10: elastic energy;
-  // 11: contacts; 12: those out of range; 13: work that the wall has done; 14 to 16: torque on the wall about its place; 17 to 19:
-  // its velocity
+  // 11: contacts; 12: those out of range; 13: work that the wall has done; 14 to 16: torque on the wall about its place; 17 to
+  // 19: its velocity
   double compute_vector(int k) override
   {
     if (k < 3) return value(k);
@@ -424,14 +431,14 @@ class FixWallAsperity : public Fix {
   }
   void set_arrays(int i) override
   {
-    kept[i] = Kept();
+    kept[i].clear();
     for (int k = 0; k < size_peratom_cols; k++) peratom[i][k] = 0.0;
   }
   int pack_exchange(int i, double *buf) override
   {
-    const auto &records = kept[i].records;
+    const auto &records = kept[i];
     buf[0] = static_cast<double>(records.size());
-    std::copy(kept[i].heat, kept[i].heat + 3, buf + 1);
+    std::copy(peratom[i] + HEAT, peratom[i] + HEAT + 3, buf + 1);
     if (!records.empty()) memcpy(buf + 4, records.data(), records.size() * sizeof(Record));
     return 4 + RECORD * static_cast<int>(records.size());
   }
@@ -439,12 +446,12 @@ class FixWallAsperity : public Fix {
   {
     set_arrays(i);
     const auto count = static_cast<size_t>(buf[0]);
-    std::copy(buf + 1, buf + 4, kept[i].heat);
-    kept[i].records.resize(count);
-    if (count > 0) memcpy(kept[i].records.data(), buf + 4, count * sizeof(Record));
+    std::copy(buf + 1, buf + 4, peratom[i] + HEAT);
+    kept[i].resize(count);
+    if (count > 0) memcpy(kept[i].data(), buf + 4, count * sizeof(Record));
     return 4 + RECORD * static_cast<int>(count);
   }
-  int size_restart(int i) override { return 5 + RECORD * static_cast<int>(kept[i].records.size()); }
+  int size_restart(int i) override { return 5 + RECORD * static_cast<int>(kept[i].size()); }
   int maxsize_restart() override
   {
     int most = 5, all_most;
