@@ -124,7 +124,7 @@ fn a_law_predicts_a_contact_that_is_given_by_options() {
     }
     assert!(stderr(&predict(&options[..8])).contains("--h"));
     assert!(stderr(&predict(&[])).contains("CASE.toml"));
-    assert!(refused(&predict(&[&options[..9], &["-0.01"]].concat())).contains("path.0.indentation"));
+    assert!(refused(&predict(&[&options[..9], &["-0.01"]].concat())).contains("--h: is -0.01"));
     let both = predict(&[&[text(&scratch.path("case.toml"))], &options[..]].concat());
     assert!(both.status.code() == Some(2) && stderr(&both).contains("cannot be used"), "{}", stderr(&both));
 }

@@ -40,7 +40,7 @@ pub fn starter_case(law: &str, file: &str) -> String {
 /// The same in twenty lines: the keys that a case must have, and an opponent to take.
 pub fn short_case(law: &str, file: &str) -> String {
     let mut text = format!(
-        "# `asperity run {file} --out out` runs it, `asperity explain KEY` says what a key means.\n\
+        "# `asperity run {file}` runs it, `asperity explain KEY` says what a key means.\n\
          # Any consistent units: with mm and MPa forces are in N.\n"
     );
     for (table, _) in TABLES.into_iter().filter(|(table, _)| *table != "path") {

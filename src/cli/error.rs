@@ -144,6 +144,12 @@ pub enum CliError {
         /// What the law says.
         source: Box<LawError>,
     },
+    /// What is wrong with options that stand for a case.
+    #[error("{}", .what.join("\n"))]
+    Options {
+        /// A line each.
+        what: Vec<String>,
+    },
     /// The directory of `plot` holds nothing that can be drawn.
     #[error("{}: {what}. Give the directory that was given to `asperity run --out` or `asperity study --out`", .dir.display())]
     NothingToPlot {

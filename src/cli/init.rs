@@ -47,6 +47,6 @@ pub fn init(args: &InitArgs) -> Result<Outcome, CliError> {
         return Err(CliError::FileThere { file });
     }
     write_atomically(&file, |out| out.write_all(case(&args.material, &name).as_bytes()))?;
-    print(&format!("{} written; `asperity run {name} --out out` runs it\n", file.display()))?;
+    print(&format!("{} written; `asperity run {name}` runs it\n", file.display()))?;
     Ok(Outcome::Done)
 }

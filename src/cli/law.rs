@@ -92,7 +92,7 @@ pub struct PredictArgs {
     /// interpolation that comes with the program.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The case, with any path; `-` for standard input.
+    /// The case, with any path; `-` for standard input. Or the contact by --E and its companions.
     #[arg(value_name = "CASE.toml", required_unless_present = "youngs_modulus")]
     pub case: Option<PathBuf>,
     /// A contact without a case file.
@@ -226,16 +226,18 @@ fn summary(law: &Law, verbose: bool) -> String {
 }
 
 fn predict_case(args: &PredictArgs) -> Result<Outcome, CliError> {
-    let input = match (args.contact.input(), &args.case) {
-        (Some(input), _) => input,
-        // Clap lets nothing pass without one of the two.
-        (None, file) => Input::read(file.as_deref().unwrap_or(Path::new("")))?,
+    let (case, name) = match args.contact.case(&args.set)? {
+        Some(case) => (case, "the contact".to_owned()),
+        None => {
+            // Clap lets nothing pass without options or a file.
+            let input = Input::read(args.case.as_deref().unwrap_or(Path::new("")))?;
+            (input.case(&args.set)?, input.name)
+        }
     };
-    let case = input.case(&args.set)?;
     let law = LawFile::read_or_built_in(&args.law)?;
-    let in_case = |source: LawError| CliError::LawCase { file: input.name.clone().into(), source: Box::new(source) };
+    let in_case = |source: LawError| CliError::LawCase { file: name.clone().into(), source: Box::new(source) };
     let (points, out_of_range) = if args.press { pressed(&law, &case, &args.law) } else { law.follow(&case) }.map_err(in_case)?;
-    warn_out_of_range(Path::new(&input.name), &out_of_range);
+    warn_out_of_range(Path::new(&name), &out_of_range);
     if args.json {
         print_json(&as_json(&points, &out_of_range))?;
         return Ok(Outcome::Done);

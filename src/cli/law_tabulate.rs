@@ -25,8 +25,8 @@ pub struct TabulateArgs {
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Directory for the study and its law.json: new or empty, or one with an earlier table if
-    /// --resume or --force is given. Without it, the name of the case file less its extension, in
-    /// the current directory.
+    /// --resume or --force is given. Without it, the name of the case file with -table in place of
+    /// its extension, in the current directory.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Elements along the contact radius, at every depth; twice as many at the surface.
@@ -56,7 +56,7 @@ pub(super) fn tabulate(args: &TabulateArgs) -> Result<Outcome, CliError> {
     let case = Case::load(&args.case, &args.set)?;
     let in_case = |source: LawError| CliError::LawCase { file: args.case.clone(), source: Box::new(source) };
     let elements = args.elements as usize;
-    let out = out_or_name(args.out.as_ref(), &args.case);
+    let out = out_or_name(args.out.as_ref(), &args.case, "-table");
     let depths = depths(&case).map_err(in_case)?;
     let study = Study::parse(&study_text(&case, elements, &depths), "tabulate")?;
     // Before hours of simulations.

@@ -107,9 +107,15 @@ pub struct Verbosity {
 }
 
 /// Where the results of `file` go: into `out`, and without it into the directory of the file's name
-/// less its extension.
-pub fn out_or_name(out: Option<&PathBuf>, file: &Path) -> PathBuf {
-    out.cloned().unwrap_or_else(|| file.file_stem().map_or_else(PathBuf::new, PathBuf::from))
+/// less its extension, with `kind` behind it.
+pub fn out_or_name(out: Option<&PathBuf>, file: &Path, kind: &str) -> PathBuf {
+    let named = || {
+        let mut name = file.file_stem().unwrap_or_default().to_owned();
+        // A file without an extension stands there already.
+        name.push(if file.extension().is_none() && kind.is_empty() { "-out" } else { kind });
+        PathBuf::from(name)
+    };
+    out.cloned().unwrap_or_else(named)
 }
 
 /// Most threads that are taken for meant, unless the machine has more: beyond it, it is their

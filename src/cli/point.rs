@@ -34,7 +34,7 @@ pub enum Mode {
     Path,
 }
 
-/// Drive one material point: stress, plastic strain and energies as CSV.
+/// Drive one material point; stress, strain and energies as CSV.
 #[derive(Clone, Debug, Args)]
 pub struct PointArgs {
     /// A TOML file with a `[material]` table: a case file, or a material alone.

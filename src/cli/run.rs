@@ -62,7 +62,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, CliError> {
     args.device.start_threads()?;
     let input = Input::read(&args.case)?;
     let case = input.case(&args.set)?;
-    let out = out_or_name(args.out.as_ref(), &args.case);
+    let out = out_or_name(args.out.as_ref(), &args.case, "");
     let written = OutputDirectory::existing(&out).case();
     if input.text != format!("{RESULT_MARKER}\n{}", case.to_toml()) {
         refuse_input(&written, &[&args.case])?;

@@ -71,7 +71,7 @@ pub fn study(args: &StudyArgs) -> Result<Outcome, CliError> {
     args.verbosity.start_log();
     // Clap lets no study pass without its file, and nothing be merged without --out.
     let file = args.study.as_deref().unwrap_or(Path::new(""));
-    let out = out_or_name(args.out.as_ref(), file);
+    let out = out_or_name(args.out.as_ref(), file, "");
     if let Some(sources) = &args.merge {
         return cluster::merge(sources, &out, args.verbosity.quiet);
     }

@@ -2,30 +2,31 @@
 
 use std::fmt::Write;
 
-use super::Summary;
+use super::{Status, Summary};
 
 impl Summary {
     /// Lines for forces in the user's units and their errors, if there are any, and the beginning
     /// of one that says where they are: how the run ended, and what it took.
     pub fn brief(&self) -> String {
+        let limit = self.f_t_max_limit.map_or_else(String::new, |limit| format!(" (limit {})", significant(limit)));
         let named = [
-            ("F_N0", self.f_n0, self.f_n0_error),
-            ("F_N_slip", self.f_n_slip, None),
-            ("F_T_max", self.f_t_max, self.f_t_max_error),
-            ("F_T_max_limit", self.f_t_max_limit, None),
-            ("a0", self.a0, self.a0_error),
+            ("F_N0", self.f_n0, self.f_n0_error, String::new()),
+            ("F_N_slip", self.f_n_slip, None, String::new()),
+            ("F_T_max", self.f_t_max, self.f_t_max_error, limit),
+            ("a0", self.a0, self.a0_error, String::new()),
         ];
-        let there = || named.iter().filter_map(|(name, value, error)| value.map(|value| (name, value, error)));
-        let values: Vec<String> = there().map(|(name, value, _)| format!("{name} {}", significant(value))).collect();
-        let told = |(name, value, error): (&&str, f64, &Option<f64>)| {
+        let there = || named.iter().filter_map(|(name, value, error, more)| value.map(|value| (name, value, error, more)));
+        let values: Vec<String> = there().map(|(name, value, _, more)| format!("{name} {}{more}", significant(value))).collect();
+        let told = |(name, value, error, _): (&&str, f64, &Option<f64>, &String)| {
             let share = error.filter(|_| value != 0.0)? / value.abs();
             Some(format!("{name} +- {:.1} %", 100.0 * share))
         };
         let errors: Vec<String> = there().filter_map(told).collect();
         let errors = if errors.is_empty() { "not estimated".to_owned() } else { errors.join(", ") };
+        let so_far = if self.status == Status::Done { "" } else { "so far: " };
         let mut text = String::new();
         if !values.is_empty() {
-            text += &format!("{}\nerrors: {errors}\n", values.join("  "));
+            text += &format!("{so_far}{}\nerrors: {errors}\n", values.join("  "));
         }
         text + &format!("{} in {:.1} s, {} steps; ", self.status, self.wall_s, self.steps)
     }
@@ -113,9 +114,12 @@ mod tests {
         assert_eq!(summary.brief(), "done in 2.0 s, 7 steps; ");
         (summary.f_n0, summary.a0) = (Some(150.0), Some(0.2));
         assert_eq!(summary.brief(), "F_N0 150.000  a0 0.200000\nerrors: not estimated\ndone in 2.0 s, 7 steps; ");
-        (summary.f_n0_error, summary.f_t_max) = (Some(1.5), Some(30.0));
-        let expected = "F_N0 150.000  F_T_max 30.0000  a0 0.200000\nerrors: F_N0 +- 1.0 %\ndone in 2.0 s, 7 steps; ";
+        (summary.f_n0_error, summary.f_t_max, summary.f_t_max_limit) = (Some(1.5), Some(30.0), Some(29.5));
+        let expected =
+            "F_N0 150.000  F_T_max 30.0000 (limit 29.5000)  a0 0.200000\nerrors: F_N0 +- 1.0 %\ndone in 2.0 s, 7 steps; ";
         assert_eq!(summary.brief(), expected);
+        summary.status = Status::Interrupted;
+        assert!(summary.brief().starts_with("so far: F_N0 150.000 "));
     }
 
     #[test]

@@ -11,9 +11,9 @@ const COST_EXPONENT: f64 = 1.1;
 /// Segments that are named; of a longer path the rest is counted.
 const NAMED: usize = 4;
 
-/// The run in a line: `press to h = 0.02, shear to full slip; mu = 0.3; 16 elements along the
-/// contact radius; on CPU (2 threads) in f64`.
-pub(super) fn plan(case: &Case, computed_on: &Description) -> String {
+/// The run in two lines: `press to h = 0.02, shear to full slip; mu = 0.3` and `16 elements along
+/// the contact radius; on CPU (2 threads) in f64`.
+pub(super) fn plan(case: &Case, computed_on: &Description) -> [String; 2] {
     let mut segments: Vec<String> = case.path.iter().take(NAMED).map(segment).collect();
     if case.path.len() > NAMED {
         segments.push(format!("{} more segments", case.path.len() - NAMED));
@@ -34,12 +34,11 @@ pub(super) fn plan(case: &Case, computed_on: &Description) -> String {
         surface if surface == elements => String::new(),
         surface => format!(" and {surface} at the surface"),
     };
-    format!(
-        "{}{against}; {friction}; {elements} elements along the contact radius{at_surface}; on {} in {}",
-        segments.join(", "),
-        computed_on.device,
-        computed_on.precision
-    )
+    let Description { device, precision } = computed_on;
+    [
+        format!("{}{against}; {friction}", segments.join(", ")),
+        format!("{elements} elements along the contact radius{at_surface}; on {device} in {precision}"),
+    ]
 }
 
 fn held(hold: Hold) -> &'static str {
@@ -102,10 +101,10 @@ mod tests {
         let text = include_str!("../../fixtures/cases/reversal.toml");
         let case = Case::parse(text, "reversal.toml", &[]).expect("a case");
         let device = Description { device: "CPU (2 threads)".to_owned(), precision: "f64" };
-        let said = "press to h = 0.02, shear to 0.002, shear to -0.002, press to h = 0.025, 2 more segments; mu = 0.3; \
-                    10 elements along the contact radius and 20 at the surface; on CPU (2 threads) in f64";
-        assert_eq!(plan(&case, &device), said);
+        let path = "press to h = 0.02, shear to 0.002, shear to -0.002, press to h = 0.025, 2 more segments; mu = 0.3";
+        let mesh = "10 elements along the contact radius and 20 at the surface; on CPU (2 threads) in f64";
+        assert_eq!(plan(&case, &device), [path, mesh]);
         let case = Case::parse(text, "", &["path=[{indentation=0.01},{release=0.5}]".into(), "contact.friction=stick".into()]);
-        assert!(plan(&case.expect("a case"), &device).starts_with("press to h = 0.01, release to 0.5 F_N; full stick; "));
+        assert_eq!(plan(&case.expect("a case"), &device)[0], "press to h = 0.01, release to 0.5 F_N; full stick");
     }
 }

@@ -389,7 +389,7 @@ impl Simulation {
         let case = &self.case;
         let canceller = self.options.canceller.clone();
         let mut progress = self.progress.take().unwrap_or_else(|| Box::new(SilentProgress));
-        progress.message(&plan(case, &computed_on));
+        plan(case, &computed_on).iter().for_each(|line| progress.message(line));
         let begun = std::time::Instant::now();
         let scouts = (checkpoint.is_none() || extends.is_some()) && case.solver.error_estimate;
         let mut scout = if scouts {

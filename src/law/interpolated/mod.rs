@@ -162,9 +162,12 @@ impl Interpolated {
         Ok(Self { pair: Some(Box::new(pair?)), ..plane? })
     }
 
-    /// The law of two equal spheres, for a case of them, if there is one.
+    /// The law of two equal spheres, if there is one, for a case of them and for any two bodies of
+    /// one material: these are in series as two of their equals are, which a plane, that rubs on
+    /// them while they are pressed, is not (`benches/pairs/unlike.py`).
     fn of_equal_spheres(&self, case: &Case) -> Option<&Self> {
-        self.pair.as_deref().filter(|law| law.body == Against::of(case))
+        let alike = matches!(&case.opponent, Some(Opponent::Deforming { material, .. }) if *material == case.material);
+        self.pair.as_deref().filter(|law| alike || law.body == Against::of(case))
     }
 
     /// Reads one and checks it.
@@ -239,8 +242,15 @@ impl Interpolated {
         }
         let mut spare = SPARE;
         loop {
-            let Some([sphere, other]) = table::alone(case, self.body, spare) else { return self.table(case) };
-            match table::compose(case, [&self.table(&sphere)?, &self.table(&other)?]) {
+            let of = |law: &Self| {
+                let Some([sphere, other]) = table::alone(case, law.body, spare) else { return Ok(None) };
+                Ok::<_, LawError>(Some([law.table(&sphere)?, law.table(&other)?]))
+            };
+            let Some([sphere, other]) = of(self)? else { return self.table(case) };
+            // Pressed by its equal a body is held by no friction, as it nearly is by another body.
+            let pressed = self.pair.as_deref().map(of).transpose()?.flatten();
+            let [first, second] = pressed.as_ref().map_or([&sphere, &other], |[first, second]| [first, second]);
+            match table::compose_from(case, [first, second], [&sphere, &other]) {
                 Err(LawError::Shallow { .. }) if spare < DEEPEST => spare *= SPARE,
                 composed => return composed,
             }

@@ -4,7 +4,7 @@ use crate::contact_law::Centres;
 use crate::contact_law::path::follow;
 use crate::law::LawFile;
 use crate::law::data::Point;
-use crate::law::table::Measured;
+use crate::law::table::{Level, Measured};
 
 fn fixture(name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/interpolated").join(name)
@@ -189,6 +189,22 @@ fn the_built_in_law_knows_equal_spheres() {
     let on_a_plane = &cases("")[0];
     assert!(pair.table(on_a_plane).unwrap_err().to_string().contains("rigid plane"));
     assert_eq!(law.compose(on_a_plane).unwrap(), plane().compose(on_a_plane).unwrap());
+}
+
+#[test]
+fn a_sphere_of_the_same_radius_and_material_is_an_equal_one() {
+    let law = Interpolated::built_in().unwrap();
+    let ideal = "{ law = \"ideal\", yield_stress = 0.42 }";
+    let of = |opponent: &str| law.compose(&case(ideal, 0.3, 0.3, 0.04, opponent)).unwrap();
+    let [equal, same, larger] = ["equal = true", "radius = 1.0", "radius = 1.001"].map(|how| of(&format!("[opponent]\n{how}")));
+    for other in [same, larger] {
+        for (a, b) in equal.levels.iter().zip(&other.levels) {
+            let numbers = |level: &Level| [level.f_n0, level.a0, level.slip_share, level.delta_t_end, level.k_t];
+            for (x, y) in numbers(a).into_iter().zip(numbers(b)) {
+                assert!((x / y - 1.0).abs() < 0.02, "{a:?} {b:?}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -34,7 +34,7 @@ pub(super) use checked::check_levels;
 pub(super) use measure::Measured;
 pub use measure::Missing;
 pub(super) use series::alone;
-pub use series::compose;
+pub use series::{compose, compose_from};
 
 /// The first key of a table, by which it is recognised.
 pub const FORMAT: &str = "asperity-law-table";

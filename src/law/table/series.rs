@@ -483,6 +483,15 @@ fn opponent_of(table: &Tabulated) -> Result<Option<Opponent>, LawError> {
 /// [`LawError::OtherMaterial`] where a table is not of its body or of another friction;
 /// [`LawError::Shallow`] where one ends before the pair does.
 pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawError> {
+    compose_from(case, tables, tables)
+}
+
+/// The same of two tables of each body: one that it is pressed by, and one for the shear, whose
+/// force and size are scaled to those of the press.
+///
+/// # Errors
+/// Those of [`compose`].
+pub fn compose_from(case: &Case, tables: [&Tabulated; 2], for_shear: [&Tabulated; 2]) -> Result<Tabulated, LawError> {
     let scaled = case.scaled().0;
     let (Some(Opponent::Deforming { material: other, radius: other_radius }), Friction::Coefficient(friction)) =
         (&scaled.opponent, scaled.contact.friction)
@@ -495,7 +504,7 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
     let materials = [&scaled.material, other];
     let of_sphere = if scaled.sphere.flat { 0.0 } else { 1.0 };
     let curvatures = [of_sphere, other_radius.map_or(0.0, f64::recip)];
-    let body = |i: usize, curvature: Option<f64>| {
+    let body = |i: usize, tables: [&Tabulated; 2], curvature: Option<f64>| {
         let (table, material, name) = (tables[i], materials[i], NAMES[i]);
         let opponent = opponent_of(table)?;
         let alone = Case { sphere: Sphere { radius: 1.0, flat: false }, material: material.clone(), opponent, ..scaled.clone() };
@@ -506,8 +515,8 @@ pub fn compose(case: &Case, tables: [&Tabulated; 2]) -> Result<Tabulated, LawErr
         // Of h in the table this much is one body's.
         Ok::<Body, LawError>(Body::new(table, material, 1.0 / alone.bodies(), curvature))
     };
-    let bodies = [body(0, Some(curvatures[0]))?, body(1, Some(curvatures[1]))?];
-    let sheared = [body(0, None)?, body(1, None)?];
+    let bodies = [body(0, tables, Some(curvatures[0]))?, body(1, tables, Some(curvatures[1]))?];
+    let sheared = [body(0, for_shear, None)?, body(1, for_shear, None)?];
     let radius = scaled.effective_radius();
     let sphere = equivalent(&scaled);
     let level = |h: f64| {

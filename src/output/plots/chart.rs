@@ -476,9 +476,13 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
     }
 }
 
-/// Draws several diagrams in panels of equal size, row by row.
+/// Draws several diagrams in panels of equal size, row by row. Their titles tell them apart, and
+/// stay.
 pub fn draw_charts(root: &Canvas, columns: usize, charts: &[Chart]) -> Drawn {
-    root.grid(charts.len(), columns).iter().zip(charts).try_for_each(|(area, chart)| draw_chart(area, chart))
+    root.grid(charts.len(), columns).into_iter().zip(charts).try_for_each(|(mut area, chart)| {
+        area.untitled &= charts.len() == 1;
+        draw_chart(&area, chart)
+    })
 }
 
 fn draw_bar(root: &Canvas, bar: &ColourBar, left: f64, [top, bottom]: [f64; 2]) -> Drawn {

@@ -7,6 +7,7 @@ use super::axes::Dimension;
 use super::chart::{Axis, Chart, Line, Series, draw_chart, extent};
 use super::curves::{from_zero, greatest};
 use super::style::{GROUPS, Picture};
+use super::text::verbatim;
 
 /// A run beside others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,11 +45,11 @@ pub fn plot_overlay(runs: &[OverlaidRun<'_>], view: &View) -> Result<Picture, Ou
             let point = |record: &StepRecord| (across(record) / run.length * x.factor, force(record) / run.force * y.factor);
             shown(run).iter().map(point).collect()
         };
-        series.push(Series::solid(format!("F_N, {}", run.name), colour, curve(|record| record.f_n)));
+        series.push(Series::solid(format!("F_N, {}", verbatim(run.name)), colour, curve(|record| record.f_n)));
         if sheared {
             let line = Some(Line::Dashed(7.0));
             let points = curve(|record| record.f_t);
-            series.push(Series { line, ..Series::solid(format!("F_T, {}", run.name), colour, points) });
+            series.push(Series { line, ..Series::solid(format!("F_T, {}", verbatim(run.name)), colour, points) });
         }
     }
     let points = || series.iter().flat_map(|series| &series.points);

@@ -24,10 +24,11 @@ const OTHER: u16 = 640;
 pub fn text_width(text: &str, height: f64) -> f64 {
     let size = height / LINE_HEIGHT;
     let (mut width, mut scale) = (0.0, 1.0);
-    let mut braced = false;
+    let (mut braced, mut as_it_stands) = (false, false);
     for letter in text.chars() {
         match letter {
-            '_' | '^' => scale = SMALL,
+            letter if VERBATIM.contains(&letter) => (as_it_stands, scale, braced) = (letter == VERBATIM[0], 1.0, false),
+            '_' | '^' if !as_it_stands => scale = SMALL,
             '{' if scale < 1.0 => braced = true,
             '}' if braced => (braced, scale) = (false, 1.0),
             MACRON => {}
@@ -65,6 +66,15 @@ pub fn wrapped(text: &str, height: f64, width: f64) -> Vec<String> {
 /// fonts place theirs well. `size` is that of the letters, in pixels: sizes in per cent or in ems
 /// are not read alike everywhere. Symbols are slanted.
 pub fn subscripts(text: &str, size: f64) -> String {
+    let mut out = String::new();
+    for (i, part) in text.split(VERBATIM).enumerate() {
+        out += &if i % 2 == 0 { set(part, size) } else { part.to_owned() };
+    }
+    out
+}
+
+/// A part of a text in which `_` and `^` have their meaning.
+fn set(text: &str, size: f64) -> String {
     let mut out = String::new();
     let marked = symbols_marked(text);
     let mut rest = marked.as_str();
@@ -105,18 +115,30 @@ pub fn subscripts(text: &str, size: f64) -> String {
 /// Opens and closes what is slanted, until the text is an SVG: letters for private use.
 const SLANTED: [char; 2] = ['\u{e000}', '\u{e001}'];
 
+/// Opens and closes what is meant as it stands, as a name of the user's is.
+const VERBATIM: [char; 2] = ['\u{e002}', '\u{e003}'];
+
+/// A name that is shown letter by letter, without subscripts and symbols.
+pub fn verbatim(name: &str) -> String {
+    format!("{}{name}{}", VERBATIM[0], VERBATIM[1])
+}
+
 /// Marks the symbols of quantities: Greek letters, and single Latin ones. A unit (`in N`), the
 /// article and what is lowered or raised are upright (ISO 80000-1, 7.1 and 7.2).
 fn symbols_marked(text: &str) -> String {
+    const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻";
+    let is_greek = |letter: char| ('\u{391}'..='\u{3c9}').contains(&letter);
+    // What makes a word of the letter beside it.
+    let joins = |letter: char| letter.is_alphanumeric() && !is_greek(letter) && !RAISED.contains(letter);
     let letters: Vec<char> = text.chars().collect();
     let mut out = String::with_capacity(text.len());
     for (i, &letter) in letters.iter().enumerate() {
         let before = |count: usize| i.checked_sub(count).map(|at| letters[at]);
         let after = |count: usize| letters.get(i + count).copied();
-        let greek = ('\u{391}'..='\u{3c9}').contains(&letter);
+        let greek = is_greek(letter);
         let alone = letter.is_ascii_alphabetic()
-            && before(1).is_none_or(|c| !c.is_alphanumeric() && !"_^{,&'’.-".contains(c))
-            && after(1).is_none_or(|c| !c.is_alphanumeric() && !"';.-".contains(c));
+            && before(1).is_none_or(|c| !joins(c) && !"_^{,&'’.-".contains(c))
+            && after(1).is_none_or(|c| !joins(c) && !"';.-".contains(c));
         let unit = before(1) == Some(' ') && before(2) == Some('n') && before(3) == Some('i');
         let article = letter == 'a' && after(1) == Some(' ') && after(2).is_some_and(|c| c.is_lowercase());
         if greek || alone && !unit && !article {
@@ -191,6 +213,10 @@ mod tests {
             ("E/σ_Y = 500, μ = 0.3", "Eσμ"),
             ("p &lt; 1e-5, 10^3 F / (E R^2)", "pFER"),
             ("F_N, main", "F"),
+            ("1 − F_T/μF_N", "FμF"),
+            ("c² = a² / (2 R h)", "caRh"),
+            ("π a² σ_rep", "πaσ"),
+            ("F_N, \u{e002}runs/h 0.3\u{e003}", "F"),
         ] {
             assert_eq!(slanted(text), expected, "{text}");
         }
