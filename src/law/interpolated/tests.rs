@@ -1,10 +1,10 @@
 use super::*;
 use crate::analytical::hertz;
 use crate::contact_law::Centres;
-use crate::contact_law::path::follow;
+use crate::contact_law::path::{drive, follow};
 use crate::law::LawFile;
 use crate::law::data::Point;
-use crate::law::table::{Level, Measured};
+use crate::law::table::Measured;
 
 fn fixture(name: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/law/interpolated").join(name)
@@ -197,11 +197,15 @@ fn a_sphere_of_the_same_radius_and_material_is_an_equal_one() {
     let ideal = "{ law = \"ideal\", yield_stress = 0.42 }";
     let of = |opponent: &str| law.compose(&case(ideal, 0.3, 0.3, 0.04, opponent)).unwrap();
     let [equal, same, larger] = ["equal = true", "radius = 1.0", "radius = 1.001"].map(|how| of(&format!("[opponent]\n{how}")));
+    let equal = equal.contact_parameters(1.0, 1.0).unwrap();
     for other in [same, larger] {
-        for (a, b) in equal.levels.iter().zip(&other.levels) {
-            let numbers = |level: &Level| [level.f_n0, level.a0, level.slip_share, level.delta_t_end, level.k_t];
-            for (x, y) in numbers(a).into_iter().zip(numbers(b)) {
-                assert!((x / y - 1.0).abs() < 0.02, "{a:?} {b:?}");
+        let other = other.contact_parameters(1.0, 1.0).unwrap();
+        for h in [1e-3, 0.01, 0.039] {
+            let end = 0.5 * equal.virgin(h).point.delta_t_slip;
+            let places = [[h, 0.0], [h, 0.2 * end], [h, 0.5 * end], [h, end]];
+            let [ours, theirs] = [&equal, &other].map(|law| drive(law, &places, 20));
+            for (a, b) in ours.iter().zip(&theirs) {
+                assert!((0..2).all(|i| (a[i] - b[i]).abs() < 0.02 * ours[0][0]), "{h}: {a:?} {b:?}");
             }
         }
     }
