@@ -1,7 +1,8 @@
 use super::*;
 use crate::analytical::hertz;
+use crate::case::{Hold, Segment, ShearTarget};
 use crate::contact_law::Centres;
-use crate::contact_law::path::{drive, follow};
+use crate::contact_law::path::follow;
 use crate::law::LawFile;
 use crate::law::data::Point;
 use crate::law::table::Measured;
@@ -193,20 +194,20 @@ fn the_built_in_law_knows_equal_spheres() {
 
 #[test]
 fn a_sphere_of_the_same_radius_and_material_is_an_equal_one() {
-    let law = Interpolated::built_in().unwrap();
+    let law = LawFile::built_in().unwrap();
     let ideal = "{ law = \"ideal\", yield_stress = 0.42 }";
-    let of = |opponent: &str| law.compose(&case(ideal, 0.3, 0.3, 0.04, opponent)).unwrap();
-    let [equal, same, larger] = ["equal = true", "radius = 1.0", "radius = 1.001"].map(|how| of(&format!("[opponent]\n{how}")));
-    let equal = equal.contact_parameters(1.0, 1.0).unwrap();
+    let along = |opponent: &str| {
+        let mut case = case(ideal, 0.3, 0.3, 0.039, &format!("[opponent]\n{opponent}"));
+        case.path[1] = Segment::Shear { shear: ShearTarget::Displacement(0.015), hold: Hold::Indentation };
+        law.follow(&case).unwrap().0
+    };
+    let [equal, same, larger] = ["equal = true", "radius = 3.0", "radius = 3.003"].map(along);
+    let most = equal.iter().map(|point| point.f_n).fold(0.0, f64::max);
     for other in [same, larger] {
-        let other = other.contact_parameters(1.0, 1.0).unwrap();
-        for h in [1e-3, 0.01, 0.039] {
-            let end = 0.5 * equal.virgin(h).point.delta_t_slip;
-            let places = [[h, 0.0], [h, 0.2 * end], [h, 0.5 * end], [h, end]];
-            let [ours, theirs] = [&equal, &other].map(|law| drive(law, &places, 20));
-            for (a, b) in ours.iter().zip(&theirs) {
-                assert!((0..2).all(|i| (a[i] - b[i]).abs() < 0.02 * ours[0][0]), "{h}: {a:?} {b:?}");
-            }
+        assert_eq!(equal.len(), other.len());
+        for (a, b) in equal.iter().zip(&other) {
+            assert!((a.delta_t - b.delta_t).abs() < 1e-12 && (a.f_n - b.f_n).abs() < 0.005 * most, "{a:?} {b:?}");
+            assert!((a.f_t - b.f_t).abs() < 0.002 * most, "{a:?} {b:?}");
         }
     }
 }
