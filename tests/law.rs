@@ -87,7 +87,13 @@ fn noise_of_a_mesh_does_not_lead_astray() {
 fn fit_and_predict_through_the_program() {
     let folder = tempfile::tempdir().expect("a folder");
     synthetic::write_study(folder.path(), 0.01);
-    let fitted = asperity(&["law", "fit", text(folder.path())]).code(0);
+    let short = asperity(&["law", "fit", text(folder.path())]).code(0);
+    let short = String::from_utf8_lossy(&short.get_output().stdout).into_owned();
+    assert!(
+        short.lines().count() <= 24 && short.contains("F_N_slip/F_N0") && short.contains("predicted from h: F_T "),
+        "{short}"
+    );
+    let fitted = asperity(&["law", "fit", "--verbose", text(folder.path())]).code(0);
     let printed = String::from_utf8_lossy(&fitted.get_output().stdout).into_owned();
     for expected in ["36 cases of 8 materials", "Jaeger-Ciavarella", "the study alone", "F_N_slip/F_N0", "mu 0.2 to 0.4"] {
         assert!(printed.contains(expected), "{expected} is missing in\n{printed}");

@@ -18,8 +18,8 @@ use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgres
 
 /// Simulate every combination of a grid of cases.
 ///
-/// Each has a directory, and a row of study.csv. A case that fails does not stop the others: its row says why. An interrupted study goes on with
-/// --resume.
+/// Each has a directory, and a row of study.csv. A case that fails does not stop the others: its
+/// row says why. An interrupted study goes on with --resume.
 #[derive(Clone, Debug, Args)]
 pub struct StudyArgs {
     /// The study file: a case under `base`, and a `grid` of dotted keys with lists of values.
