@@ -103,7 +103,7 @@ fn leaves_every_file_of_the_contract() {
     let tables: Vec<String> = tables.into_iter().map(|step| format!("step_{step:04}.csv")).collect();
     assert_eq!(names(&dir.join("contact")), tables);
     let slip = fs::read_to_string(dir.join("plots/slip.svg")).expect("a picture");
-    assert_eq!(slip.matches("δ</tspan><tspan").count(), tables.len() - 1, "a panel for each table of the shear");
+    assert_eq!(slip.matches(">δ</tspan>").count(), tables.len() - 1, "a panel for each table of the shear");
     assert_eq!(names(&dir.join("fields")), ["case.pvd".to_owned(), ends[0].clone() + ".vtu", ends[1].clone() + ".vtu"]);
     assert_eq!(
         names(&dir.join("plots")),
@@ -406,7 +406,7 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
     assert!(history.is_empty() && summary.f_n0.is_none() && summary.steps == 0);
     // The time of attempts that led to no step is told all the same.
     assert!(summary.time_by_phase.tangent.seconds > 0.0 && summary.time_by_phase.linear_solve.seconds > 0.0, "{summary:?}");
-    assert!(stdout(&output).contains("not converged: 0 steps"), "{}", stdout(&output));
+    assert!(stdout(&output).contains("not converged in "), "{}", stdout(&output));
 }
 
 #[test]

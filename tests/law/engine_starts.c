@@ -193,7 +193,8 @@ static void tangential(const asperity_table *plane) {
         unaccounted = fmax(unaccounted, fabs(energy / done - 1.0));
         taken[damped] = lost / done;
     }
-    expect(taken[0] == 0.0 && taken[1] > 0.9, "share of a swing along the plane that its damping takes", taken[1]);
+    /* The rest is slip, which begins with the shear. */
+    expect(taken[0] == 0.0 && taken[1] > 0.8, "share of a swing along the plane that its damping takes", taken[1]);
     expect(beyond <= 0.0, "    friction's bound holds", beyond);
     expect(unaccounted < 0.02, "    energy that is unaccounted for", unaccounted);
 }
