@@ -426,7 +426,7 @@ static inline int element_try(const element_table *t, const element_state *s, do
     element_step p;
     element_guess o;
     element_row row;
-    double r[2] = {0.0, 0.0}, e, before, released = s->released, y = 0.0, norm, least = 1e300, from[3], step[3] = {0.0, 0.0, 0.0}, most, right[3];
+    double r[2] = {0.0, 0.0}, start[2], e, before, released = s->released, y = 0.0, norm, least = 1e300, from[3], step[3] = {0.0, 0.0, 0.0}, most, right[3];
     int touches, i, j, tries, back = 0;
     memset(&o, 0, sizeof o);
     memset(out, 0, sizeof *out);
@@ -499,6 +499,7 @@ static inline int element_try(const element_table *t, const element_state *s, do
         p.growing = p.growing > before ? p.growing : before;
     }
     most = e + p.depth;
+    memcpy(start, r, sizeof start);
     from[0] = 0.0;
     from[1] = r[0];
     from[2] = r[1];
@@ -541,29 +542,25 @@ static inline int element_try(const element_table *t, const element_state *s, do
         r[0] = from[1] + step[1];
         r[1] = from[2] + step[2];
     }
-    if (!(norm < 1e-10)) {
+    if (!(norm < 1e-7)) {
         double low = 0.0, high = most;
-        if (!last && !(norm < 1e-7)) {
+        if (!last) {
             return 0;
         }
-        if (!(norm < 1e-7)) { /* the ratio of the start, and the depth that carries it, by halving: F_N over the yield force falls with it */
-            r[0] = from[1] * 0.0;
-            r[1] = 0.0;
-            element_evaluate(&p, 0.0, r, 0, 0, &o);
-            r[0] = o.f_t[0] / o.f_n;
-            r[1] = o.f_t[1] / o.f_n;
-            for (i = 0; i < 60; i++) {
-                y = 0.5 * (low + high);
-                touches = element_evaluate(&p, y, r, 1, 0, &o);
-                if (touches && o.residual[0] > 0.0) {
-                    low = y;
-                } else {
-                    high = y;
-                }
+        /* The depth that carries the force at the ratio of the start, by halving: F_N over the yield force falls with it. No flow but that of the press. */
+        p.growing = 1e9;
+        memcpy(r, start, sizeof r);
+        for (i = 0; i < 60; i++) {
+            y = 0.5 * (low + high);
+            touches = element_evaluate(&p, y, r, 1, 0, &o);
+            if (touches && o.residual[0] > 0.0) {
+                low = y;
+            } else {
+                high = y;
             }
-            y = low;
-            element_evaluate(&p, y, r, 1, 1, &o);
         }
+        y = low;
+        element_evaluate(&p, y, r, 1, 1, &o);
     }
     out->f_n = o.f_n;
     out->f_t[0] = o.f_t[0];

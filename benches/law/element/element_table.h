@@ -10,7 +10,8 @@
 #include "asperity_contact.h"
 #include "asperity_element.h"
 
-#define ELEMENT_WAY 144 /* points along a shear */
+#define ELEMENT_WAY 144          /* points along a shear */
+#define ELEMENT_LEAST_RISE 0.02  /* of the yield factor over r/mu */
 
 /* What is plastic of a contact, 0 to 1: h over what is recovered of it. */
 static inline double element_plastic_share(double depth, double approach) {
@@ -237,7 +238,8 @@ static inline void element_shapes(const asperity_table *law, element_table *t, i
         vertex = r - far[last];
         far[last] = far[last] > far[last - 1] + 1e-6 * mu ? far[last] : far[last - 1] + 1e-6 * mu;
         factor[last] = force / f_n;
-        factor[last] = factor[last] > factor[last - 1] + 1e-7 * x[last] ? factor[last] : factor[last - 1] + 1e-7 * x[last];
+        /* At constant r and F_N there is no place on the curve: it must rise a little. */
+        factor[last] = factor[last] > factor[last - 1] + ELEMENT_LEAST_RISE * (x[last] - x[last - 1]) ? factor[last] : factor[last - 1] + ELEMENT_LEAST_RISE * (x[last] - x[last - 1]);
         dent[last] = now > dent[last - 1] ? now : dent[last - 1];
         along[last] = far[last] / sqrt(far[last] * far[last] + eps * eps);
         left[last] = d - slipped;
@@ -249,7 +251,7 @@ static inline void element_shapes(const asperity_table *law, element_table *t, i
     if (last == 0) {
         last = 1;
         x[1] = 1.0;
-        factor[1] = 1.0 + 1e-7;
+        factor[1] = 1.0 + ELEMENT_LEAST_RISE;
         far[1] = mu;
         dent[1] = dent[0];
         along[1] = 1.0;
@@ -267,7 +269,7 @@ static inline void element_shapes(const asperity_table *law, element_table *t, i
         flow = hardens > 1e-12 * approach ? element_lesser(flow, all / hardens) : flow;
         way -= hardens * (element_at(t, ELEMENT_SUDDEN, h) * direction + flow);
         shape[ELEMENT_FLOW][j] = flow;
-        shape[ELEMENT_MOBILISED][j] = way > 0.0 && direction > 0.0 ? way / (grows > 1e-9 ? grows : 1e-9) / approach / direction : 0.0;
+        shape[ELEMENT_MOBILISED][j] = way > 0.0 && direction > 0.0 ? way / (grows > 1e-6 ? grows : 1e-6) / approach / direction : 0.0;
     }
     shape[ELEMENT_MOBILISED][0] = shape[ELEMENT_MOBILISED][1];
     shape[ELEMENT_MOBILISED][ELEMENT_PLACES] = shape[ELEMENT_MOBILISED][ELEMENT_PLACES - 1];
