@@ -27,11 +27,12 @@ enum { ELEMENT_LN_FORCE, ELEMENT_LN_STIFFNESS, ELEMENT_APPROACH, ELEMENT_DENT, E
 enum { ELEMENT_LOST, ELEMENT_FLOW, ELEMENT_MOBILISED, ELEMENT_VERTEX, ELEMENT_SHAPES };
 
 typedef struct element_table {
-    double friction, first, log_first, per_step; /* first: depth of first yield; rows are even in ln h */
+    double friction, later;                      /* later: n of the sliders after their slip was reversed */
+    double first, log_first, per_step;           /* first: depth of first yield; rows are even in ln h */
     double per_level;                            /* levels too, from the same place to the deepest */
     double rows[ELEMENT_ROWS][ELEMENT_COLUMNS];
     double shapes[ELEMENT_LEVELS][ELEMENT_SHAPES][ELEMENT_PLACES + 1];
-    double reach[ELEMENT_LEVELS];                /* of the vertex: its distance at full slip */
+    double reach[ELEMENT_LEVELS], beyond[ELEMENT_LEVELS]; /* of the vertex: its distance at full slip, and its loss beyond that over the mean slope before */
 } element_table;
 
 typedef struct element_state {
@@ -106,10 +107,10 @@ static inline double element_shape(const element_table *t, const element_row *ro
         a = low[ELEMENT_PLACES];
         b = high[ELEMENT_PLACES];
         if (shape == ELEMENT_VERTEX) {
-            double on = 1.0 + ELEMENT_BEYOND * (x - 1.0);
-            slope[0] = ELEMENT_BEYOND * (a + row->share * (b - a));
-            slope[1] = on * (b - a);
-            return on * (a + row->share * (b - a));
+            double by_a = a * t->beyond[row->level], by_b = b * t->beyond[row->level + 1];
+            slope[0] = by_a + row->share * (by_b - by_a);
+            slope[1] = b - a + (by_b - by_a) * (x - 1.0);
+            return a + row->share * (b - a) + slope[0] * (x - 1.0);
         }
         slope[0] = 0.0;
     } else {
@@ -154,11 +155,11 @@ static inline void element_lost(double n, double lost[ELEMENT_SLIDERS]) {
 }
 
 /* Exponent of the backbone: of a contact that was not sheared, of its first reversal, of those after. */
-static inline double element_exponent(double first, double unsheared, double worn) {
+static inline double element_exponent(double first, double unsheared, double later, double worn) {
     if (worn <= 1.0) {
         return first + unsheared * (1.0 - worn) * sqrt(1.0 - worn);
     }
-    return first > 1.0 + ELEMENT_LATER ? first + (worn - 1.0) * (1.0 + ELEMENT_LATER - first) : first;
+    return first > later ? first + (worn - 1.0) * (later - first) : first;
 }
 
 /* What does not change within a step. */
@@ -166,7 +167,7 @@ typedef struct element_step {
     const element_table *t;
     const element_state *s;
     double h, d[2], depth, dent, approach; /* depth: h_m at its start */
-    double exponent, radial, sudden, growing, rho, rho_slope; /* rho_slope: by h */
+    double exponent, radial, sudden, rho, rho_slope, growing, growing_slope; /* slopes by h */
     double lost[ELEMENT_SLIDERS];
 } element_step;
 
@@ -195,7 +196,7 @@ static inline int element_evaluate(const element_step *p, double y, const double
     element_row row;
     double force, stiff, gap, gamma, hardening, rate, x[2], v[2], q, c, ratio, far, round, part[3], e, level, n[2], sudden, sudden_y = 0.0, flow, flow_y, flow_r, limit[ELEMENT_SLIDERS], sum = 0.0, open = 0.0, eta = 1.0, eta_h = 0.0, scale, move[3];
     double m[3] = {0.0, 0.0, 0.0}, radial[2] = {0.0, 0.0}, stiffer[2] = {0.0, 0.0}, wider[2] = {0.0, 0.0}, opens[2] = {0.0, 0.0};
-    double lost_s[2], flow_s[2], mobile_s[2], mobile, grown, y_of_force, eps = ELEMENT_VERTEX_ROUND * t->friction;
+    double flow_s[2] = {0.0, 0.0}, mobile_s[2] = {0.0, 0.0}, mobile, grown, y_of_force, eps = ELEMENT_VERTEX_ROUND * t->friction;
     int i, j, on;
     element_read(t, p->depth + y, ELEMENT_SOLVED, &row);
     force = row.value[ELEMENT_LN_FORCE];
@@ -227,7 +228,6 @@ static inline int element_evaluate(const element_step *p, double y, const double
     level = log(e / gap);
     o->f_n = force * exp(gamma * level);
     /* Plastic slip. */
-    element_shape(t, &row, ELEMENT_LOST, ratio / t->friction, lost_s);
     n[0] = n[1] = sudden = flow = flow_y = flow_r = grown = mobile = 0.0;
     on = 0;
     if (flows) {
@@ -350,7 +350,7 @@ static inline int element_evaluate(const element_step *p, double y, const double
         dfactor = part[0] * dratio + part[1] * dfar + part[2] * dy;
         dsudden = sudden_y * dy;
         if (on) {
-            dsudden += gap * (dfactor * mobile + grown * mobile_s[0] / t->friction * dratio);
+            dsudden += gap * ((dfactor - (j == 3 ? p->growing_slope : 0.0)) * mobile + grown * mobile_s[0] / t->friction * dratio);
         }
         dflow = flow_y * dy + flow_r * dratio;
         for (i = 0; i < 2; i++) {
@@ -441,8 +441,8 @@ static inline int element_try(const element_table *t, const element_state *s, do
     p.approach = row.value[ELEMENT_APPROACH];
     p.radial = row.value[ELEMENT_RADIAL_SLIP];
     p.sudden = row.value[ELEMENT_SUDDEN];
-    p.growing = p.rho_slope = 0.0;
-    p.exponent = element_exponent(row.value[ELEMENT_FIRST_N], row.value[ELEMENT_UNSHEARED_N], s->worn);
+    p.growing = p.growing_slope = p.rho_slope = 0.0;
+    p.exponent = element_exponent(row.value[ELEMENT_FIRST_N], row.value[ELEMENT_UNSHEARED_N], t->later, s->worn);
     element_lost(p.exponent, p.lost);
     e = h - p.dent;
     before = (1.0 - s->softened) * (1.0 - row.value[ELEMENT_SOFTENING] * s->released * s->released);
@@ -496,7 +496,10 @@ static inline int element_try(const element_table *t, const element_state *s, do
             p.growing = element_factor(t, &row, sqrt(f[0] * f[0] + f[1] * f[1]), sqrt(x[0] * x[0] + x[1] * x[1]), slope);
         }
         before *= row.value[ELEMENT_LN_FORCE] / o.f_n;
-        p.growing = p.growing > before ? p.growing : before;
+        if (before > p.growing) {
+            p.growing = before;
+            p.growing_slope = -before * row.value[ELEMENT_GAMMA] / e;
+        }
     }
     most = e + p.depth;
     memcpy(start, r, sizeof start);
@@ -593,16 +596,12 @@ static inline int element_try(const element_table *t, const element_state *s, do
 
 /* Halves a step that is not found. */
 static inline void element_update(const element_table *t, const element_state *state, double h, const double d[2], element_state *next, element_response *out, element_tangent *tangent) {
-    int left[ELEMENT_HALVINGS + 1], depth = 0;
+    int depth = 1, tries = 0, plastic = 0;
     double d0[2] = {d[0], d[1]}, done = 0.0, from = state->h, flow = 0.0;
     element_state now = *state;
-    int tries = 0, plastic = 0;
     if (element_try(t, state, h, d, 0, next, out, tangent)) {
         return;
     }
-    left[0] = 1;
-    (void)left;
-    depth = 1;
     while (done < 1.0) {
         double part = ldexp(1.0, -depth), end = done + part, move[2] = {d0[0] * part, d0[1] * part};
         element_state after;
@@ -623,7 +622,7 @@ static inline void element_update(const element_table *t, const element_state *s
     *next = now;
     out->tries += tries;
     out->flow = flow;
-    out->plastic = plastic;
+    out->plastic = plastic; /* of the parts together */
 }
 
 #endif

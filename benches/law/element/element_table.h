@@ -11,6 +11,7 @@
 #include "asperity_element.h"
 
 #define ELEMENT_WAY 144          /* points along a shear */
+#define ELEMENT_KEPT 0.6         /* share of F_N0 at full slip from which a table's n is not lessened (src/law/table/build.rs) */
 #define ELEMENT_LEAST_RISE 0.02  /* of the yield factor over r/mu */
 
 /* What is plastic of a contact, 0 to 1: h over what is recovered of it. */
@@ -22,9 +23,9 @@ static inline double element_power(double base, double exponent) {
     return base > 0.0 ? pow(base, exponent) : exponent > 0.0 ? 0.0 : 1.0;
 }
 
-/* A table's exponent, held below a limit. */
-static inline double element_first_exponent(double backbone) {
-    double x = ELEMENT_FIRST * (backbone - 1.0);
+/* n of a first reversal, from a table's, which is between it and those after; where much is lost to shear it is nearer to those. Held below a limit. */
+static inline double element_first_exponent(double backbone, double kept) {
+    double x = ELEMENT_FIRST * (backbone - 1.0) / (kept < ELEMENT_KEPT ? kept / ELEMENT_KEPT : 1.0);
     x /= pow(1.0 + pow(x / ELEMENT_FIRST_MOST, 8.0), 0.125);
     return 1.0 + (x > 0.02 ? x : 0.02);
 }
@@ -97,6 +98,7 @@ static inline void element_columns(const asperity_table *law, element_table *t) 
     double last = -1.0;
     int i;
     t->friction = law->friction > 1e-9 ? law->friction : 1e-9;
+    t->later = 1.0 + ELEMENT_LATER * pow(t->friction / 0.3, ELEMENT_LATER_MU);
     t->first = law->first;
     t->log_first = log(law->first);
     t->per_step = (ELEMENT_ROWS - 1) / log(1.5 * law->deepest / law->first);
@@ -119,7 +121,7 @@ static inline void element_columns(const asperity_table *law, element_table *t) 
         row[ELEMENT_APPROACH] = approach;
         row[ELEMENT_DENT] = dent;
         row[ELEMENT_GAMMA] = v.gamma;
-        row[ELEMENT_FIRST_N] = element_first_exponent(v.backbone);
+        row[ELEMENT_FIRST_N] = element_first_exponent(v.backbone, v.f_n_slip / v.f_n0);
         row[ELEMENT_UNSHEARED_N] = plastic * (ELEMENT_UNSHEARED > row[ELEMENT_FIRST_N] ? ELEMENT_UNSHEARED - row[ELEMENT_FIRST_N] : 0.0);
         row[ELEMENT_RADIAL_SLIP] = ELEMENT_RADIAL * element_power(plastic, ELEMENT_RADIAL_FADES);
         row[ELEMENT_SUDDEN] = ELEMENT_VERTEX_FLOW * element_power(plastic, ELEMENT_VERTEX_FADES);
@@ -160,7 +162,7 @@ static inline void element_coefficients(const asperity_table *law, const element
         force = exp(row[ELEMENT_LN_FORCE]) / (1.0 + loss);
         plastic = row[ELEMENT_DENT] - dents;
         dents = row[ELEMENT_DENT];
-        slipped += element_drive_to(&s, exp(row[ELEMENT_LN_STIFFNESS]), mu * force, element_exponent(row[ELEMENT_FIRST_N], row[ELEMENT_UNSHEARED_N], r / mu),
+        slipped += element_drive_to(&s, exp(row[ELEMENT_LN_STIFFNESS]), mu * force, element_exponent(row[ELEMENT_FIRST_N], row[ELEMENT_UNSHEARED_N], t->later, r / mu),
                                     row[ELEMENT_RADIAL_SLIP] * plastic, r * force, slope * (h - before));
         before = h;
         measured[i] = r;
@@ -230,7 +232,7 @@ static inline void element_shapes(const asperity_table *law, element_table *t, i
         stiff = exp(element_at(t, ELEMENT_LN_STIFFNESS, depth));
         q = (now > dent[last] ? now - dent[last] : 0.0) * stiff / (force * ELEMENT_VERTEX_LENGTH * mu);
         d = at / v.per_slip;
-        slipped += element_drive_to(&s, stiff, mu * f_n, element_exponent(element_at(t, ELEMENT_FIRST_N, depth), element_at(t, ELEMENT_UNSHEARED_N, depth), x[last]), 0.0, r * f_n, d - moved);
+        slipped += element_drive_to(&s, stiff, mu * f_n, element_exponent(element_at(t, ELEMENT_FIRST_N, depth), element_at(t, ELEMENT_UNSHEARED_N, depth), t->later, x[last]), 0.0, r * f_n, d - moved);
         moved = d;
         last++;
         x[last] = r / mu;
@@ -265,6 +267,7 @@ static inline void element_shapes(const asperity_table *law, element_table *t, i
         shape[ELEMENT_LOST][j] = element_lesser(loss, ELEMENT_LOSS_MOST * (element_between(x, factor, last, place * end) - 1.0));
         /* c rises with r where more is elastic, and falls where less is; and a steady press flows no more than this shear. */
         bend = 1.0 + ELEMENT_BEND * (recovered - ELEMENT_BEND_FROM) * ((bend < 2.0 ? bend : 2.0) - 1.0);
+        loss = shape[ELEMENT_LOST][j];
         flow = 2.0 * c * (bend > 0.2 ? bend : 0.2) * r / (loss < 0.98 ? 1.0 - loss : 0.02);
         flow = hardens > 1e-12 * approach ? element_lesser(flow, all / hardens) : flow;
         way -= hardens * (element_at(t, ELEMENT_SUDDEN, h) * direction + flow);
@@ -277,6 +280,7 @@ static inline void element_shapes(const asperity_table *law, element_table *t, i
         shape[ELEMENT_FLOW][ELEMENT_PLACES] = shape[ELEMENT_FLOW][ELEMENT_PLACES - 1];
     }
     t->reach[level] = far[last];
+    t->beyond[level] = ELEMENT_BEYOND * element_power(element_plastic_share(h, approach), ELEMENT_BEYOND_FADES);
     shape[ELEMENT_VERTEX][0] = 0.0;
     for (j = 1; j <= ELEMENT_PLACES; j++) {
         double distance = element_place(j) * far[last], at = element_between(far, x, last, distance), place = at / x[last], u, lost, lost_far;
@@ -308,7 +312,7 @@ static inline int element_make_table(const asperity_table *law, element_table *t
         for (k = 1; k <= 8; k++) { /* the press up to here */
             double h = level > 0 ? before * pow(end / before, k / 8.0) : end * k / 8.0, share = h < law->first ? h / law->first : 1.0, depth = h < law->first ? law->first : h;
             double dent = share < 1.0 ? 0.0 : element_at(t, ELEMENT_DENT, depth), force = exp(element_at(t, ELEMENT_LN_FORCE, depth)) * pow(share, 1.5);
-            element_move(&s, exp(element_at(t, ELEMENT_LN_STIFFNESS, depth)), t->friction * force, element_exponent(element_at(t, ELEMENT_FIRST_N, depth), element_at(t, ELEMENT_UNSHEARED_N, depth), 0.0), 0.0,
+            element_move(&s, exp(element_at(t, ELEMENT_LN_STIFFNESS, depth)), t->friction * force, element_exponent(element_at(t, ELEMENT_FIRST_N, depth), element_at(t, ELEMENT_UNSHEARED_N, depth), t->later, 0.0), 0.0,
                          element_at(t, ELEMENT_RADIAL_SLIP, depth) * (dent - dents), &to);
             s = to;
             dents = dent;
