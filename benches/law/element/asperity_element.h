@@ -12,12 +12,21 @@
 #include <string.h>
 #include "element_constants.h"
 
+#ifdef ASPERITY_CONTACT_H /* its functions are faster than most libraries' */
+#define ELEMENT_EXP asperity_exponential
+#define ELEMENT_LOG asperity_logarithm
+#else
+#define ELEMENT_EXP exp
+#define ELEMENT_LOG log
+#endif
+
 #define ELEMENT_SLIDERS 7
 #define ELEMENT_ROWS 160
 #define ELEMENT_LEVELS 24
 #define ELEMENT_PLACES 24 /* of a shape, at 1 - (1 - j/24)^2: denser at full slip */
 #define ELEMENT_STEPS 40  /* of Newton */
 #define ELEMENT_HALVINGS 10
+#define ELEMENT_TOLERANCE 1e-12 /* of F_N over the yield force and of F_T/F_N */
 
 /* Columns over the hardening depth: those that a step solves with, and those of its start. */
 enum { ELEMENT_LN_FORCE, ELEMENT_LN_STIFFNESS, ELEMENT_APPROACH, ELEMENT_DENT, ELEMENT_GAMMA, ELEMENT_SOLVED,
@@ -64,7 +73,7 @@ typedef struct element_row {
 } element_row;
 
 static inline void element_read(const element_table *t, double depth, int count, element_row *row) {
-    double log_h = log(depth) - t->log_first, x = log_h * t->per_step, u, level = log_h * t->per_level;
+    double log_h = ELEMENT_LOG(depth) - t->log_first, x = log_h * t->per_step, u, level = log_h * t->per_level;
     int i = x > 0.0 ? (int)x : 0, c;
     i = i < ELEMENT_ROWS - 2 ? i : ELEMENT_ROWS - 2;
     u = x > 0.0 ? x - i : 0.0;
@@ -78,7 +87,7 @@ static inline void element_read(const element_table *t, double depth, int count,
         }
     }
     for (c = 0; c <= ELEMENT_LN_STIFFNESS; c++) {
-        row->value[c] = exp(row->value[c]); /* with the slope of its logarithm */
+        row->value[c] = ELEMENT_EXP(row->value[c]); /* with the slope of its logarithm */
     }
     i = level > 0.0 ? (int)level : 0;
     row->level = i < ELEMENT_LEVELS - 2 ? i : ELEMENT_LEVELS - 2;
@@ -134,17 +143,10 @@ static inline const double *element_weights(void) {
 /* Approach, over that of the whole contact, at which each slider's annulus is lost, for the backbone 1 - (1 - x)^n (Jaeger). Cells end at (i/7)^(0.65/(n - 1)). */
 static inline void element_lost(double n, double lost[ELEMENT_SLIDERS]) {
     const double *weight = element_weights();
-    double p = 0.65 / (n - 1.0), two = exp(0.6931471805599453 * p), three = exp(1.0986122886681098 * p), five = exp(1.6094379124341003 * p);
-    double seventh = exp(-1.9459101490553132 * p), inside = 0.0, before = 0.0;
-    double end[ELEMENT_SLIDERS];
+    double p = 0.65 / (n - 1.0), two = ELEMENT_EXP(0.6931471805599453 * p), three = ELEMENT_EXP(1.0986122886681098 * p), five = ELEMENT_EXP(1.6094379124341003 * p);
+    double seventh = ELEMENT_EXP(-1.9459101490553132 * p), inside = 0.0, before = 0.0;
+    double end[ELEMENT_SLIDERS] = {seventh, two * seventh, three * seventh, two * two * seventh, five * seventh, two * three * seventh, 1.0};
     int i;
-    end[0] = seventh;
-    end[1] = two * seventh;
-    end[2] = three * seventh;
-    end[3] = two * two * seventh;
-    end[4] = five * seventh;
-    end[5] = two * three * seventh;
-    end[6] = 1.0;
     for (i = 0; i < ELEMENT_SLIDERS; i++) {
         double above;
         inside += weight[i];
@@ -166,6 +168,7 @@ static inline double element_exponent(double first, double unsheared, double lat
 typedef struct element_step {
     const element_table *t;
     const element_state *s;
+    const element_row *row; /* at its start */
     double h, d[2], depth, dent, approach; /* depth: h_m at its start */
     double exponent, radial, sudden, rho, rho_slope, growing, growing_slope; /* slopes by h */
     double lost[ELEMENT_SLIDERS];
@@ -173,7 +176,7 @@ typedef struct element_step {
 
 /* Everything at a guess of the hardening y and the ratio r, and slopes by y, r, h, d as what they are made of. */
 typedef struct element_guess {
-    double f_n, f_t[2], factor, hardens, vertex[2], slider[3][ELEMENT_SLIDERS], reach, dent, residual[3], slip[2];
+    double f_n, f_t[2], factor, rho, hardens, vertex[2], slider[3][ELEMENT_SLIDERS], reach, dent, residual[3], slip[2];
     double by[6][3]; /* slopes of the residuals */
     double n_by[6], t_by[6][2];
 } element_guess;
@@ -188,17 +191,27 @@ static inline double element_factor(const element_table *t, const element_row *r
     return factor;
 }
 
-/* With `flows` 0 an elastic step, y = 0. Returns 0 where the contact is lost. */
+/* The same at the start of a step. */
+static inline double element_factor_at(const element_step *p, const double r[2]) {
+    double slope[3], x = r[0] - p->s->vertex[0], y = r[1] - p->s->vertex[1];
+    return element_factor(p->t, p->row, sqrt(r[0] * r[0] + r[1] * r[1]), sqrt(x * x + y * y), slope);
+}
+
+/* With `flows` 0 an elastic step, y = 0; with the first 3 or all 6 of its slopes. Returns 0 where the contact is lost. */
 static inline int element_evaluate(const element_step *p, double y, const double r[2], int flows, int slopes, element_guess *o) {
     const element_table *t = p->t;
     const element_state *s = p->s;
     const double *weight = element_weights();
     element_row row;
-    double force, stiff, gap, gamma, hardening, rate, x[2], v[2], q, c, ratio, far, round, part[3], e, level, n[2], sudden, sudden_y = 0.0, flow, flow_y, flow_r, limit[ELEMENT_SLIDERS], sum = 0.0, open = 0.0, eta = 1.0, eta_h = 0.0, scale, move[3];
+    double force, stiff, gap, gamma, hardening, rate, x[2], v[2], q, c, ratio, far, round, part[3], e, level, n[2], sudden, sudden_y = 0.0, flow, flow_y, flow_r, limit[ELEMENT_SLIDERS], opening[ELEMENT_SLIDERS], sum = 0.0, open = 0.0, eta = 1.0, eta_h = 0.0, scale, move[3];
     double m[3] = {0.0, 0.0, 0.0}, radial[2] = {0.0, 0.0}, stiffer[2] = {0.0, 0.0}, wider[2] = {0.0, 0.0}, opens[2] = {0.0, 0.0};
     double flow_s[2] = {0.0, 0.0}, mobile_s[2] = {0.0, 0.0}, mobile, grown, y_of_force, eps = ELEMENT_VERTEX_ROUND * t->friction;
     int i, j, on;
-    element_read(t, p->depth + y, ELEMENT_SOLVED, &row);
+    if (flows) {
+        element_read(t, p->depth + y, ELEMENT_SOLVED, &row);
+    } else {
+        row = *p->row;
+    }
     force = row.value[ELEMENT_LN_FORCE];
     stiff = row.value[ELEMENT_LN_STIFFNESS];
     gamma = row.value[ELEMENT_GAMMA];
@@ -217,7 +230,8 @@ static inline int element_evaluate(const element_step *p, double y, const double
     ratio = sqrt(r[0] * r[0] + r[1] * r[1]);
     far = sqrt(x[0] * x[0] + x[1] * x[1]);
     round = sqrt(far * far + eps * eps);
-    o->factor = element_factor(t, &row, ratio, far, part);
+    part[0] = part[1] = part[2] = 0.0;
+    o->factor = flows ? element_factor(t, &row, ratio, far, part) : 1.0;
     e = p->h - o->dent;
     o->reach = s->reach;
     if (!(e > 0.0)) {
@@ -225,8 +239,8 @@ static inline int element_evaluate(const element_step *p, double y, const double
         memset(o->slider, 0, sizeof o->slider);
         return 0;
     }
-    level = log(e / gap);
-    o->f_n = force * exp(gamma * level);
+    level = ELEMENT_LOG(e / gap);
+    o->f_n = force * ELEMENT_EXP(gamma * level);
     /* Plastic slip. */
     n[0] = n[1] = sudden = flow = flow_y = flow_r = grown = mobile = 0.0;
     on = 0;
@@ -252,28 +266,24 @@ static inline int element_evaluate(const element_step *p, double y, const double
     if (flows || e >= s->reach) {
         o->reach = e;
     } else {
-        eta = exp(gamma / p->exponent * log(e / s->reach));
+        eta = ELEMENT_EXP(gamma / p->exponent * ELEMENT_LOG(e / s->reach));
         eta_h = eta * gamma / (p->exponent * e);
     }
     for (i = 0; i < ELEMENT_SLIDERS; i++) {
-        double opening = eta > p->lost[i] ? 1.0 : 0.0;
-        limit[i] = opening * (eta - p->lost[i]);
+        opening[i] = eta > p->lost[i] ? 1.0 : 0.0;
+        limit[i] = opening[i] * (eta - p->lost[i]);
         if (i == 0 && limit[0] < 0.1 * eta) { /* the innermost carries what little force there is */
             limit[0] = 0.1 * eta;
-            opening = 0.1;
+            opening[0] = 0.1;
         }
         sum += weight[i] * limit[i];
-        open += weight[i] * opening;
+        open += weight[i] * opening[i];
     }
     scale = t->friction * o->f_n / sum;
     o->f_t[0] = o->f_t[1] = 0.0;
     for (i = 0; i < ELEMENT_SLIDERS; i++) {
         double k = stiff * weight[i], most = weight[i] * limit[i] * scale, f[3], size, keep = 1.0, u[3], held = 0.0;
-        double opening = eta > p->lost[i] ? 1.0 : 0.0, most_eta;
-        if (i == 0 && limit[0] <= 0.1 * eta) {
-            opening = 0.1;
-        }
-        most_eta = weight[i] * scale * (opening - limit[i] * open / sum);
+        double most_eta = weight[i] * scale * (opening[i] - limit[i] * open / sum);
         for (j = 0; j < 3; j++) {
             f[j] = s->slider[j][i] + k * move[j];
         }
@@ -281,8 +291,9 @@ static inline int element_evaluate(const element_step *p, double y, const double
             f[2] = ELEMENT_RADIAL_MOST * most;
             held = ELEMENT_RADIAL_MOST;
         }
-        size = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
-        if (size > most) {
+        size = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+        if (size > most * most) {
+            size = sqrt(size);
             keep = most / size;
         }
         for (j = 0; j < 3; j++) {
@@ -319,12 +330,13 @@ static inline int element_evaluate(const element_step *p, double y, const double
     if (flows) {
         double rho = p->rho, rho_rate = 0.0, rho_h = p->rho_slope;
         if (rho < 1.0 - 1e-12) { /* what releases took comes back with flow */
-            double missing = -1.0 / log(rho) + ELEMENT_RECOVERS / p->approach * hardening;
-            rho_h *= exp(-1.0 / missing) / (missing * missing * log(rho) * log(rho) * rho);
-            rho = exp(-1.0 / missing);
+            double missing = -1.0 / ELEMENT_LOG(rho) + ELEMENT_RECOVERS / p->approach * hardening;
+            rho_h *= ELEMENT_EXP(-1.0 / missing) / (missing * missing * ELEMENT_LOG(rho) * ELEMENT_LOG(rho) * rho);
+            rho = ELEMENT_EXP(-1.0 / missing);
             rho_rate = rho / (missing * missing) * (ELEMENT_RECOVERS / p->approach) * rate;
         }
         o->residual[0] = o->f_n * o->factor / force - rho;
+        o->rho = rho;
         o->residual[1] = o->f_t[0] / o->f_n - r[0];
         o->residual[2] = o->f_t[1] / o->f_n - r[1];
         o->by[0][0] = -rho_rate;
@@ -336,7 +348,7 @@ static inline int element_evaluate(const element_step *p, double y, const double
         return 1;
     }
     y_of_force = row.slope[ELEMENT_LN_FORCE] + row.slope[ELEMENT_GAMMA] * level - gamma * (rate / e + row.slope[ELEMENT_APPROACH] / gap);
-    for (j = 0; j < 6; j++) { /* along y, r, h, d */
+    for (j = 0; j < slopes; j++) { /* along y, r, h, d */
         double dy = j == 0, dr[2], dx[2], dn[2], df, dmove[3], dfactor, dround, dsudden, dflow, dfar, dratio, dq;
         dr[0] = j == 1;
         dr[1] = j == 2;
@@ -404,7 +416,7 @@ static inline void element_keep(const element_step *p, const element_guess *o, d
         size = sqrt(r[0] * r[0] + r[1] * r[1]);
         size = size < 1.0 ? size : 1.0;
         if (worn > size && o->hardens > 0.0) {
-            worn = size + (worn - size) * exp(-ELEMENT_FORGETS * o->hardens / p->approach);
+            worn = size + (worn - size) * ELEMENT_EXP(-ELEMENT_FORGETS * o->hardens / p->approach);
         }
         worn = worn > size ? worn : size;
         length = sqrt(to.vertex[0] * to.vertex[0] + to.vertex[1] * to.vertex[1]);
@@ -421,20 +433,26 @@ static inline void element_keep(const element_step *p, const element_guess *o, d
     *next = to;
 }
 
+static inline void element_tell(const element_guess *o, element_response *out) {
+    out->f_n = o->f_n;
+    out->f_t[0] = o->f_t[0];
+    out->f_t[1] = o->f_t[1];
+}
+
 /* One step; 0 where Newton does not find the way and it must be halved; with `last` it takes what it has. */
 static inline int element_try(const element_table *t, const element_state *s, double h, const double d[2], int last, element_state *next, element_response *out, element_tangent *tangent) {
     element_step p;
     element_guess o;
     element_row row;
-    double r[2] = {0.0, 0.0}, start[2], e, before, released = s->released, y = 0.0, norm, least = 1e300, from[3], step[3] = {0.0, 0.0, 0.0}, most, right[3];
+    double r[2] = {0.0, 0.0}, start[2], e, before, released = s->released, y = 0.0, norm, least = 1e300, from[3] = {0.0, 0.0, 0.0}, step[3] = {0.0, 0.0, 0.0}, most, right[3];
     int touches, i, j, tries, back = 0;
     memset(&o, 0, sizeof o);
     memset(out, 0, sizeof *out);
     p.t = t;
     p.s = s;
+    p.row = &row;
     p.h = h;
-    p.d[0] = d[0];
-    p.d[1] = d[1];
+    memcpy(p.d, d, sizeof p.d);
     p.depth = t->first + s->hardened;
     element_read(t, p.depth, ELEMENT_COLUMNS, &row);
     p.dent = row.value[ELEMENT_DENT];
@@ -447,28 +465,23 @@ static inline int element_try(const element_table *t, const element_state *s, do
     e = h - p.dent;
     before = (1.0 - s->softened) * (1.0 - row.value[ELEMENT_SOFTENING] * s->released * s->released);
     if (e < s->reach && s->reach > 0.0) {
-        double share = e > 0.0 ? exp(row.value[ELEMENT_GAMMA] * log(e / s->reach)) : 0.0;
+        double share = e > 0.0 ? ELEMENT_EXP(row.value[ELEMENT_GAMMA] * ELEMENT_LOG(e / s->reach)) : 0.0;
         if (1.0 - share > released) {
             released = 1.0 - share;
             p.rho_slope = e > 0.0 ? (1.0 - s->softened) * 2.0 * row.value[ELEMENT_SOFTENING] * released * row.value[ELEMENT_GAMMA] * share / e : 0.0;
         }
     }
     p.rho = (1.0 - s->softened) * (1.0 - row.value[ELEMENT_SOFTENING] * released * released);
-    touches = element_evaluate(&p, 0.0, r, 0, tangent != NULL, &o);
+    touches = element_evaluate(&p, 0.0, r, 0, tangent ? 6 : 0, &o);
     if (touches) {
-        double slope[3], x[2];
         r[0] = o.f_t[0] / o.f_n;
         r[1] = o.f_t[1] / o.f_n;
-        x[0] = r[0] - s->vertex[0];
-        x[1] = r[1] - s->vertex[1];
-        o.factor = element_factor(t, &row, sqrt(r[0] * r[0] + r[1] * r[1]), sqrt(x[0] * x[0] + x[1] * x[1]), slope);
+        o.factor = element_factor_at(&p, r);
     }
     if (!touches || o.f_n * o.factor <= p.rho * row.value[ELEMENT_LN_FORCE] * (1.0 + 1e-11)) {
         o.hardens = 0.0;
         element_keep(&p, &o, 0.0, s->softened, released, next);
-        out->f_n = o.f_n;
-        out->f_t[0] = o.f_t[0];
-        out->f_t[1] = o.f_t[1];
+        element_tell(&o, out);
         if (tangent) {
             memset(tangent, 0, sizeof *tangent);
             for (j = 0; j < 3 && touches; j++) {
@@ -481,19 +494,15 @@ static inline int element_try(const element_table *t, const element_state *s, do
     }
     out->plastic = 1;
     { /* the yield factor from which it grows */
-        double f[2] = {0.0, 0.0}, e0 = s->h - p.dent, f_n, slope[3], x[2];
+        double f[2] = {0.0, 0.0}, e0 = s->h - p.dent, f_n;
         p.growing = 1.0;
         if (e0 > 0.0) {
-            f_n = row.value[ELEMENT_LN_FORCE] * exp(row.value[ELEMENT_GAMMA] * log(e0 / p.approach));
+            f_n = row.value[ELEMENT_LN_FORCE] * ELEMENT_EXP(row.value[ELEMENT_GAMMA] * ELEMENT_LOG(e0 / p.approach));
             for (i = 0; i < ELEMENT_SLIDERS; i++) {
-                f[0] += s->slider[0][i];
-                f[1] += s->slider[1][i];
+                f[0] += s->slider[0][i] / f_n;
+                f[1] += s->slider[1][i] / f_n;
             }
-            f[0] /= f_n;
-            f[1] /= f_n;
-            x[0] = f[0] - s->vertex[0];
-            x[1] = f[1] - s->vertex[1];
-            p.growing = element_factor(t, &row, sqrt(f[0] * f[0] + f[1] * f[1]), sqrt(x[0] * x[0] + x[1] * x[1]), slope);
+            p.growing = element_factor_at(&p, f);
         }
         before *= row.value[ELEMENT_LN_FORCE] / o.f_n;
         if (before > p.growing) {
@@ -503,15 +512,12 @@ static inline int element_try(const element_table *t, const element_state *s, do
     }
     most = e + p.depth;
     memcpy(start, r, sizeof start);
-    from[0] = 0.0;
-    from[1] = r[0];
-    from[2] = r[1];
     for (tries = 1;; tries++) {
         double size, bound = 0.5 * t->friction + 0.01;
         out->tries++;
-        touches = element_evaluate(&p, y, r, 1, 1, &o);
+        touches = element_evaluate(&p, y, r, 1, 3, &o);
         norm = touches ? fabs(o.residual[0]) + fabs(o.residual[1]) + fabs(o.residual[2]) : 1e300;
-        if (norm < 1e-10) {
+        if (norm < ELEMENT_TOLERANCE) {
             break;
         }
         if (tries > 1 && !(norm <= 1.05 * least) && back < 6) {
@@ -520,17 +526,14 @@ static inline int element_try(const element_table *t, const element_state *s, do
                 step[i] *= 0.4;
             }
         } else {
-            if (!touches || tries >= ELEMENT_STEPS) {
+            for (i = 0; i < 3; i++) {
+                right[i] = -o.residual[i];
+            }
+            if (!touches || tries >= ELEMENT_STEPS || !element_solve(&o, right, step)) {
                 break;
             }
             back = 0;
             least = norm;
-            for (i = 0; i < 3; i++) {
-                right[i] = -o.residual[i];
-            }
-            if (!element_solve(&o, right, step)) {
-                break;
-            }
             from[0] = y;
             from[1] = r[0];
             from[2] = r[1];
@@ -563,34 +566,25 @@ static inline int element_try(const element_table *t, const element_state *s, do
             }
         }
         y = low;
-        element_evaluate(&p, y, r, 1, 1, &o);
+        element_evaluate(&p, y, r, 1, 0, &o);
     }
-    out->f_n = o.f_n;
-    out->f_t[0] = o.f_t[0];
-    out->f_t[1] = o.f_t[1];
+    element_tell(&o, out);
     out->flow = o.f_n * o.hardens + o.f_t[0] * o.slip[0] + o.f_t[1] * o.slip[1];
-    {
-        double rho = p.rho;
-        if (rho < 1.0 - 1e-12) {
-            rho = exp(-1.0 / (-1.0 / log(rho) + ELEMENT_RECOVERS / p.approach * o.hardens));
-        }
-        if (tangent) {
-            for (j = 0; j < 3; j++) {
-                double x[3];
-                for (i = 0; i < 3; i++) {
-                    right[i] = -o.by[3 + j][i];
-                }
-                if (!element_solve(&o, right, x)) {
-                    x[0] = x[1] = x[2] = 0.0;
-                }
-                tangent->f_n[j] = o.n_by[3 + j] + o.n_by[0] * x[0];
-                for (i = 0; i < 2; i++) {
-                    tangent->f_t[i][j] = o.t_by[3 + j][i] + o.t_by[0][i] * x[0] + o.t_by[1][i] * x[1] + o.t_by[2][i] * x[2];
-                }
+    if (tangent) {
+        element_evaluate(&p, y, r, 1, 6, &o);
+        for (j = 0; j < 3; j++) {
+            double x[3] = {0.0, 0.0, 0.0};
+            for (i = 0; i < 3; i++) {
+                right[i] = -o.by[3 + j][i];
+            }
+            element_solve(&o, right, x);
+            tangent->f_n[j] = o.n_by[3 + j] + o.n_by[0] * x[0];
+            for (i = 0; i < 2; i++) {
+                tangent->f_t[i][j] = o.t_by[3 + j][i] + o.t_by[0][i] * x[0] + o.t_by[1][i] * x[1] + o.t_by[2][i] * x[2];
             }
         }
-        element_keep(&p, &o, y, 1.0 - rho, 0.0, next);
     }
+    element_keep(&p, &o, y, 1.0 - o.rho, 0.0, next);
     return 1;
 }
 
