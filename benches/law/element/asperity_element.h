@@ -52,6 +52,7 @@ typedef struct element_state {
     double released;                     /* greatest share of F_N released since the contact last yielded */
     double worn;                         /* 0 to 1 sheared so far, to 2 its slip reversed */
     double vertex[2];                    /* alpha */
+    double stiffened;                    /* g - 1: by what the contact is wider than its F_N, as shear took F_N and left its radius */
     double slider[3][ELEMENT_SLIDERS];   /* forces along the two axes, and radial */
 } element_state;
 
@@ -176,7 +177,7 @@ typedef struct element_step {
 
 /* Everything at a guess of the hardening y and the ratio r, and slopes by y, r, h, d as what they are made of. */
 typedef struct element_guess {
-    double f_n, f_t[2], factor, rho, hardens, vertex[2], slider[3][ELEMENT_SLIDERS], reach, dent, residual[3], slip[2];
+    double f_n, f_t[2], factor, rho, width, hardens, vertex[2], slider[3][ELEMENT_SLIDERS], reach, dent, residual[3], slip[2];
     double by[6][3]; /* slopes of the residuals */
     double n_by[6], t_by[6][2];
 } element_guess;
@@ -203,7 +204,7 @@ static inline int element_evaluate(const element_step *p, double y, const double
     const element_state *s = p->s;
     const double *weight = element_weights();
     element_row row;
-    double force, stiff, gap, gamma, hardening, rate, x[2], v[2], q, c, ratio, far, round, part[3], e, level, n[2], sudden, sudden_y = 0.0, flow, flow_y, flow_r, limit[ELEMENT_SLIDERS], opening[ELEMENT_SLIDERS], sum = 0.0, open = 0.0, eta = 1.0, eta_h = 0.0, scale, move[3];
+    double force, stiff, gap, gamma, width, width_factor, width_y, old = 1.0 + s->stiffened, hardening, rate, x[2], v[2], q, c, ratio, far, round, part[3], e, level, n[2], sudden, sudden_y = 0.0, flow, flow_y, flow_r, limit[ELEMENT_SLIDERS], opening[ELEMENT_SLIDERS], sum = 0.0, open = 0.0, eta = 1.0, eta_h = 0.0, scale, move[3];
     double m[3] = {0.0, 0.0, 0.0}, radial[2] = {0.0, 0.0}, stiffer[2] = {0.0, 0.0}, wider[2] = {0.0, 0.0}, opens[2] = {0.0, 0.0};
     double flow_s[2] = {0.0, 0.0}, mobile_s[2] = {0.0, 0.0}, mobile, grown, y_of_force, eps = ELEMENT_VERTEX_ROUND * t->friction;
     int i, j, on;
@@ -239,8 +240,22 @@ static inline int element_evaluate(const element_step *p, double y, const double
         memset(o->slider, 0, sizeof o->slider);
         return 0;
     }
+    /* g follows the yield factor up at once, and down as the contact hardens. */
+    width = old;
+    width_factor = width_y = 0.0;
+    if (flows) {
+        width = o->factor;
+        width_factor = 1.0;
+        if (o->factor < old) {
+            double kept = ELEMENT_EXP(-hardening / (ELEMENT_NARROWS * p->approach));
+            width += (old - o->factor) * kept;
+            width_factor -= kept;
+            width_y = -(old - o->factor) * kept * rate / (ELEMENT_NARROWS * p->approach);
+        }
+    }
+    o->width = width;
     level = ELEMENT_LOG(e / gap);
-    o->f_n = force * ELEMENT_EXP(gamma * level);
+    o->f_n = force * ELEMENT_EXP(gamma * level + (gamma - 1.0) * ELEMENT_LOG(width));
     /* Plastic slip. */
     n[0] = n[1] = sudden = flow = flow_y = flow_r = grown = mobile = 0.0;
     on = 0;
@@ -347,12 +362,11 @@ static inline int element_evaluate(const element_step *p, double y, const double
     if (!slopes) {
         return 1;
     }
-    y_of_force = row.slope[ELEMENT_LN_FORCE] + row.slope[ELEMENT_GAMMA] * level - gamma * (rate / e + row.slope[ELEMENT_APPROACH] / gap);
+    y_of_force = row.slope[ELEMENT_LN_FORCE] + row.slope[ELEMENT_GAMMA] * (level + ELEMENT_LOG(width)) - gamma * (rate / e + row.slope[ELEMENT_APPROACH] / gap);
     for (j = 0; j < slopes; j++) { /* along y, r, h, d */
         double dy = j == 0, dr[2], dx[2], dn[2], df, dmove[3], dfactor, dround, dsudden, dflow, dfar, dratio, dq;
         dr[0] = j == 1;
         dr[1] = j == 2;
-        df = o->f_n * (j == 0 ? y_of_force : j == 3 ? gamma / e : 0.0);
         dq = dy * (rate * stiff / (force * ELEMENT_VERTEX_LENGTH * t->friction) + q * (row.slope[ELEMENT_LN_STIFFNESS] - row.slope[ELEMENT_LN_FORCE]));
         dx[0] = c * (dr[0] - x[0] * dq);
         dx[1] = c * (dr[1] - x[1] * dq);
@@ -360,6 +374,7 @@ static inline int element_evaluate(const element_step *p, double y, const double
         dfar = far > 0.0 ? dround * round / far : 0.0;
         dratio = ratio > 0.0 ? (r[0] * dr[0] + r[1] * dr[1]) / ratio : 0.0;
         dfactor = part[0] * dratio + part[1] * dfar + part[2] * dy;
+        df = o->f_n * ((j == 0 ? y_of_force : j == 3 ? gamma / e : 0.0) + (gamma - 1.0) / width * (width_factor * dfactor + width_y * dy));
         dsudden = sudden_y * dy;
         if (on) {
             dsudden += gap * ((dfactor - (j == 3 ? p->growing_slope : 0.0)) * mobile + grown * mobile_s[0] / t->friction * dratio);
@@ -405,6 +420,7 @@ static inline void element_keep(const element_step *p, const element_guess *o, d
     to.reach = o->reach;
     to.softened = softened;
     to.released = released;
+    to.stiffened = o->f_n > 0.0 ? o->width - 1.0 : s->stiffened;
     memcpy(to.vertex, s->vertex, sizeof to.vertex);
     memcpy(to.slider, o->slider, sizeof to.slider);
     if (o->f_n > 0.0) {
@@ -497,7 +513,7 @@ static inline int element_try(const element_table *t, const element_state *s, do
         double f[2] = {0.0, 0.0}, e0 = s->h - p.dent, f_n;
         p.growing = 1.0;
         if (e0 > 0.0) {
-            f_n = row.value[ELEMENT_LN_FORCE] * ELEMENT_EXP(row.value[ELEMENT_GAMMA] * ELEMENT_LOG(e0 / p.approach));
+            f_n = row.value[ELEMENT_LN_FORCE] * ELEMENT_EXP(row.value[ELEMENT_GAMMA] * ELEMENT_LOG(e0 / p.approach) + (row.value[ELEMENT_GAMMA] - 1.0) * ELEMENT_LOG(1.0 + s->stiffened));
             for (i = 0; i < ELEMENT_SLIDERS; i++) {
                 f[0] += s->slider[0][i] / f_n;
                 f[1] += s->slider[1][i] / f_n;
@@ -578,7 +594,7 @@ static inline int element_try(const element_table *t, const element_state *s, do
                 right[i] = -o.by[3 + j][i];
             }
             element_solve(&o, right, x);
-            tangent->f_n[j] = o.n_by[3 + j] + o.n_by[0] * x[0];
+            tangent->f_n[j] = o.n_by[3 + j] + o.n_by[0] * x[0] + o.n_by[1] * x[1] + o.n_by[2] * x[2];
             for (i = 0; i < 2; i++) {
                 tangent->f_t[i][j] = o.t_by[3 + j][i] + o.t_by[0][i] * x[0] + o.t_by[1][i] * x[1] + o.t_by[2][i] * x[2];
             }

@@ -124,7 +124,7 @@ static inline void element_columns(const asperity_table *law, element_table *t) 
         row[ELEMENT_FIRST_N] = element_first_exponent(v.backbone, v.f_n_slip / v.f_n0);
         row[ELEMENT_UNSHEARED_N] = plastic * (ELEMENT_UNSHEARED > row[ELEMENT_FIRST_N] ? ELEMENT_UNSHEARED - row[ELEMENT_FIRST_N] : 0.0);
         row[ELEMENT_RADIAL_SLIP] = ELEMENT_RADIAL * element_power(plastic, ELEMENT_RADIAL_FADES);
-        row[ELEMENT_SUDDEN] = ELEMENT_VERTEX_FLOW * element_power(plastic, ELEMENT_VERTEX_FADES);
+        row[ELEMENT_SUDDEN] = ELEMENT_VERTEX_FLOW * exp(-ELEMENT_VERTEX_FADES * (1.0 - plastic) * (1.0 - plastic));
         row[ELEMENT_SOFTENING] = ELEMENT_RELEASED * plastic * plastic * plastic * plastic * law->friction / (law->friction + 0.01);
     }
 }
@@ -157,7 +157,7 @@ static inline void element_coefficients(const asperity_table *law, const element
             r = (sqrt(1.0 + slope * slope / given[i]) - 1.0) / slope;
             r = r < 0.97 * mu ? r : 0.97 * mu;
             loss = element_steady_loss(given[i], r);
-            h = row[ELEMENT_DENT] + row[ELEMENT_APPROACH] * pow(1.0 + loss, -1.0 / row[ELEMENT_GAMMA]);
+            h = row[ELEMENT_DENT] + row[ELEMENT_APPROACH] / (1.0 + loss);
         }
         force = exp(row[ELEMENT_LN_FORCE]) / (1.0 + loss);
         plastic = row[ELEMENT_DENT] - dents;
@@ -219,7 +219,7 @@ static inline void element_shapes(const asperity_table *law, element_table *t, i
         }
         for (j = 0; j < 50; j++) { /* the hardening that leaves this F_N at constant h */
             double middle = 0.5 * (low + high), e = h - element_at(t, ELEMENT_DENT, middle);
-            double here = e > 0.0 ? exp(element_at(t, ELEMENT_LN_FORCE, middle)) * pow(e / element_at(t, ELEMENT_APPROACH, middle), element_at(t, ELEMENT_GAMMA, middle)) : 0.0;
+            double here = exp(element_at(t, ELEMENT_LN_FORCE, middle)) * e / element_at(t, ELEMENT_APPROACH, middle);
             if (here > f_n) {
                 low = middle;
             } else {
