@@ -2,8 +2,8 @@
  *
  * Lengths over R, forces over E R^2. A contact's memory is one element_state, all bytes zero before first contact. Each step:
  *     element_update(&table, &state, h, d, &next, &out, &tangent);
- * h: indentation (negative: a gap), d[2]: tangential displacement since the last call. `state` stays as it is and may be `next`; the answer is a
- * function of it alone. No global data, no allocation, no failure at run time. element_table.h makes the table; README.md has the equations.
+ * h: indentation (negative: a gap), d[2]: tangential displacement since the last call. The answer is a function of `state` alone, which may be `next`.
+ * No global data, no allocation, no failure at run time. element_table.h makes the table; README.md has the equations.
  */
 #ifndef ASPERITY_ELEMENT_H
 #define ASPERITY_ELEMENT_H
@@ -68,7 +68,7 @@ typedef struct element_tangent {
 
 /* A row of the table at a hardening depth, and its slopes. */
 typedef struct element_row {
-    double value[ELEMENT_COLUMNS], slope[ELEMENT_SOLVED];
+    double value[ELEMENT_COLUMNS], slope[ELEMENT_COLUMNS];
     int level;
     double share, share_slope; /* between the levels */
 } element_row;
@@ -83,13 +83,10 @@ static inline void element_read(const element_table *t, double depth, int count,
         /* Beyond the last row only forces, stiffnesses and depths go on. */
         double v = c >= ELEMENT_GAMMA && u > 1.0 ? 1.0 : u;
         row->value[c] = low + v * rise;
-        if (c < ELEMENT_SOLVED) {
-            row->slope[c] = v < u || x <= 0.0 ? 0.0 : rise * t->per_step / depth;
-        }
+        row->slope[c] = v < u || x <= 0.0 ? 0.0 : rise * t->per_step / depth;
     }
-    for (c = 0; c <= ELEMENT_LN_STIFFNESS; c++) {
-        row->value[c] = ELEMENT_EXP(row->value[c]); /* with the slope of its logarithm */
-    }
+    row->value[ELEMENT_LN_FORCE] = ELEMENT_EXP(row->value[ELEMENT_LN_FORCE]); /* with the slopes of their logarithms */
+    row->value[ELEMENT_LN_STIFFNESS] = ELEMENT_EXP(row->value[ELEMENT_LN_STIFFNESS]);
     i = level > 0.0 ? (int)level : 0;
     row->level = i < ELEMENT_LEVELS - 2 ? i : ELEMENT_LEVELS - 2;
     u = level - row->level;
@@ -99,36 +96,33 @@ static inline void element_read(const element_table *t, double depth, int count,
 
 /* Place j of the shapes. */
 static inline double element_place(int j) {
-    double rest = 1.0 - (double)j / ELEMENT_PLACES;
-    return 1.0 - rest * rest;
+    return 1.0 - (1.0 - (double)j / ELEMENT_PLACES) * (1.0 - (double)j / ELEMENT_PLACES);
 }
 
 /* A shape at x: value, and slopes by x and by the share between levels. */
 static inline double element_shape(const element_table *t, const element_row *row, int shape, double x, double slope[2]) {
     const double *low = t->shapes[row->level][shape], *high = t->shapes[row->level + 1][shape];
     int j = x < 1.0 ? (int)(ELEMENT_PLACES * (1.0 - sqrt(1.0 - x))) : ELEMENT_PLACES - 1;
-    double from, width, u, a, b, rise[2];
+    double from, width, u, a, b;
     j = j < ELEMENT_PLACES - 1 ? j : ELEMENT_PLACES - 1;
     from = element_place(j);
     width = element_place(j + 1) - from;
-    u = (x - from) / width;
     if (x >= 1.0) { /* the vertex goes on straight, by a share of its mean slope; the others stay */
-        u = 1.0;
         a = low[ELEMENT_PLACES];
         b = high[ELEMENT_PLACES];
         if (shape == ELEMENT_VERTEX) {
-            double by_a = a * t->beyond[row->level], by_b = b * t->beyond[row->level + 1];
-            slope[0] = by_a + row->share * (by_b - by_a);
-            slope[1] = b - a + (by_b - by_a) * (x - 1.0);
+            double on = a * t->beyond[row->level], rise = b * t->beyond[row->level + 1] - on;
+            slope[0] = on + row->share * rise;
+            slope[1] = b - a + rise * (x - 1.0);
             return a + row->share * (b - a) + slope[0] * (x - 1.0);
         }
         slope[0] = 0.0;
     } else {
-        rise[0] = low[j + 1] - low[j];
-        rise[1] = high[j + 1] - high[j];
-        a = low[j] + u * rise[0];
-        b = high[j] + u * rise[1];
-        slope[0] = (rise[0] + row->share * (rise[1] - rise[0])) / width;
+        double rise = low[j + 1] - low[j], rise_b = high[j + 1] - high[j];
+        u = (x - from) / width;
+        a = low[j] + u * rise;
+        b = high[j] + u * rise_b;
+        slope[0] = (rise + row->share * (rise_b - rise)) / width;
     }
     slope[1] = b - a;
     return a + row->share * (b - a);
@@ -149,9 +143,7 @@ static inline void element_lost(double n, double lost[ELEMENT_SLIDERS]) {
     double end[ELEMENT_SLIDERS] = {seventh, two * seventh, three * seventh, two * two * seventh, five * seventh, two * three * seventh, 1.0};
     int i;
     for (i = 0; i < ELEMENT_SLIDERS; i++) {
-        double above;
-        inside += weight[i];
-        above = inside * end[i];
+        double above = (inside += weight[i]) * end[i];
         lost[i] = (n - 1.0) / n * (above - before) / weight[i];
         before = above;
     }
@@ -159,10 +151,8 @@ static inline void element_lost(double n, double lost[ELEMENT_SLIDERS]) {
 
 /* Exponent of the backbone: of a contact that was not sheared, of its first reversal, of those after. */
 static inline double element_exponent(double first, double unsheared, double later, double worn) {
-    if (worn <= 1.0) {
-        return first + unsheared * (1.0 - worn) * sqrt(1.0 - worn);
-    }
-    return first > later ? first + (worn - 1.0) * (later - first) : first;
+    double rest = worn < 1.0 ? 1.0 - worn : 0.0;
+    return worn <= 1.0 ? first + unsheared * rest * sqrt(rest) : first > later ? first + (worn - 1.0) * (later - first) : first;
 }
 
 /* What does not change within a step. */
@@ -177,7 +167,7 @@ typedef struct element_step {
 
 /* Everything at a guess of the hardening y and the ratio r, and slopes by y, r, h, d as what they are made of. */
 typedef struct element_guess {
-    double f_n, f_t[2], factor, rho, width, hardens, vertex[2], slider[3][ELEMENT_SLIDERS], reach, dent, residual[3], slip[2];
+    double f_n, f_t[2], factor, rho, width, hardens, vertex[2], slider[3][ELEMENT_SLIDERS], reach, residual[3], slip[2];
     double by[6][3]; /* slopes of the residuals */
     double n_by[6], t_by[6][2];
 } element_guess;
@@ -204,10 +194,10 @@ static inline int element_evaluate(const element_step *p, double y, const double
     const element_state *s = p->s;
     const double *weight = element_weights();
     element_row row;
-    double force, stiff, gap, gamma, width, width_factor, width_y, old = 1.0 + s->stiffened, hardening, rate, x[2], v[2], q, c, ratio, far, round, part[3], e, level, n[2], sudden, sudden_y = 0.0, flow, flow_y, flow_r, limit[ELEMENT_SLIDERS], opening[ELEMENT_SLIDERS], sum = 0.0, open = 0.0, eta = 1.0, eta_h = 0.0, scale, move[3];
-    double m[3] = {0.0, 0.0, 0.0}, radial[2] = {0.0, 0.0}, stiffer[2] = {0.0, 0.0}, wider[2] = {0.0, 0.0}, opens[2] = {0.0, 0.0};
+    double force, stiff, gap, gamma, width, width_factor, width_y, old = 1.0 + s->stiffened, hardening, rate, x[2], v[2], q, c, ratio, far, round, part[3], e, level, sudden, sudden_y = 0.0, flow, flow_y, flow_r, limit[ELEMENT_SLIDERS], opening[ELEMENT_SLIDERS], sum = 0.0, open = 0.0, eta = 1.0, eta_h = 0.0, scale, move[3];
+    double rho_by[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, m[3] = {0.0, 0.0, 0.0}, radial[2] = {0.0, 0.0}, stiffer[2] = {0.0, 0.0}, wider[2] = {0.0, 0.0}, opens[2] = {0.0, 0.0};
     double flow_s[2] = {0.0, 0.0}, mobile_s[2] = {0.0, 0.0}, mobile, grown, y_of_force, eps = ELEMENT_VERTEX_ROUND * t->friction;
-    int i, j, on;
+    int i, j, on = 0;
     if (flows) {
         element_read(t, p->depth + y, ELEMENT_SOLVED, &row);
     } else {
@@ -217,10 +207,8 @@ static inline int element_evaluate(const element_step *p, double y, const double
     stiff = row.value[ELEMENT_LN_STIFFNESS];
     gamma = row.value[ELEMENT_GAMMA];
     gap = row.value[ELEMENT_APPROACH];
-    o->dent = row.value[ELEMENT_DENT];
-    hardening = o->dent - p->dent;
+    o->hardens = hardening = row.value[ELEMENT_DENT] - p->dent;
     rate = row.slope[ELEMENT_DENT];
-    o->hardens = hardening;
     /* The vertex follows r. */
     q = hardening * stiff / (force * ELEMENT_VERTEX_LENGTH * t->friction);
     c = 1.0 / (1.0 + q);
@@ -233,11 +221,11 @@ static inline int element_evaluate(const element_step *p, double y, const double
     round = sqrt(far * far + eps * eps);
     part[0] = part[1] = part[2] = 0.0;
     o->factor = flows ? element_factor(t, &row, ratio, far, part) : 1.0;
-    e = p->h - o->dent;
+    e = p->h - row.value[ELEMENT_DENT];
     o->reach = s->reach;
+    o->f_n = o->f_t[0] = o->f_t[1] = 0.0;
+    memset(o->slider, 0, sizeof o->slider);
     if (!(e > 0.0)) {
-        o->f_n = o->f_t[0] = o->f_t[1] = 0.0;
-        memset(o->slider, 0, sizeof o->slider);
         return 0;
     }
     /* g follows the yield factor up at once, and down as the contact hardens. */
@@ -257,8 +245,7 @@ static inline int element_evaluate(const element_step *p, double y, const double
     level = ELEMENT_LOG(e / gap);
     o->f_n = force * ELEMENT_EXP(gamma * level + (gamma - 1.0) * ELEMENT_LOG(width));
     /* Plastic slip. */
-    n[0] = n[1] = sudden = flow = flow_y = flow_r = grown = mobile = 0.0;
-    on = 0;
+    sudden = flow = flow_y = flow_r = grown = mobile = 0.0;
     if (flows) {
         double steady = element_shape(t, &row, ELEMENT_FLOW, ratio / t->friction, flow_s), per = 1.0 / (ratio + 1e-9);
         mobile = element_shape(t, &row, ELEMENT_MOBILISED, ratio / t->friction, mobile_s);
@@ -272,9 +259,8 @@ static inline int element_evaluate(const element_step *p, double y, const double
     }
     for (i = 0; i < 2; i++) {
         v[i] = x[i] / round;
-        n[i] = flow * r[i] + sudden * v[i];
-        move[i] = p->d[i] - n[i];
-        o->slip[i] = n[i];
+        o->slip[i] = flow * r[i] + sudden * v[i];
+        move[i] = p->d[i] - o->slip[i];
     }
     move[2] = p->radial * hardening;
     /* Sliders. */
@@ -295,7 +281,6 @@ static inline int element_evaluate(const element_step *p, double y, const double
         open += weight[i] * opening[i];
     }
     scale = t->friction * o->f_n / sum;
-    o->f_t[0] = o->f_t[1] = 0.0;
     for (i = 0; i < ELEMENT_SLIDERS; i++) {
         double k = stiff * weight[i], most = weight[i] * limit[i] * scale, f[3], size, keep = 1.0, u[3], held = 0.0;
         double most_eta = weight[i] * scale * (opening[i] - limit[i] * open / sum);
@@ -314,16 +299,16 @@ static inline int element_evaluate(const element_step *p, double y, const double
         for (j = 0; j < 3; j++) {
             o->slider[j][i] = keep * f[j];
         }
-        o->f_t[0] += keep * f[0];
-        o->f_t[1] += keep * f[1];
+        o->f_t[0] += o->slider[0][i];
+        o->f_t[1] += o->slider[1][i];
         if (!slopes) {
             continue;
         }
         if (keep < 1.0) {
             double along, moved;
-            for (j = 0; j < 3; j++) {
-                u[j] = f[j] / size;
-            }
+            u[0] = f[0] / size;
+            u[1] = f[1] / size;
+            u[2] = f[2] / size;
             m[0] += keep * k * (1.0 - u[0] * u[0]);
             m[1] -= keep * k * u[0] * u[1];
             m[2] += keep * k * (1.0 - u[1] * u[1]);
@@ -343,24 +328,18 @@ static inline int element_evaluate(const element_step *p, double y, const double
         }
     }
     if (flows) {
-        double rho = p->rho, rho_rate = 0.0, rho_h = p->rho_slope;
+        double rho = p->rho;
+        rho_by[3] = p->rho_slope;
         if (rho < 1.0 - 1e-12) { /* what releases took comes back with flow */
             double missing = -1.0 / ELEMENT_LOG(rho) + ELEMENT_RECOVERS / p->approach * hardening;
-            rho_h *= ELEMENT_EXP(-1.0 / missing) / (missing * missing * ELEMENT_LOG(rho) * ELEMENT_LOG(rho) * rho);
+            rho_by[3] *= ELEMENT_EXP(-1.0 / missing) / (missing * missing * ELEMENT_LOG(rho) * ELEMENT_LOG(rho) * rho);
             rho = ELEMENT_EXP(-1.0 / missing);
-            rho_rate = rho / (missing * missing) * (ELEMENT_RECOVERS / p->approach) * rate;
+            rho_by[0] = rho / (missing * missing) * (ELEMENT_RECOVERS / p->approach) * rate;
         }
         o->residual[0] = o->f_n * o->factor / force - rho;
         o->rho = rho;
         o->residual[1] = o->f_t[0] / o->f_n - r[0];
         o->residual[2] = o->f_t[1] / o->f_n - r[1];
-        o->by[0][0] = -rho_rate;
-        o->by[3][0] = -rho_h;
-    } else {
-        o->by[0][0] = o->by[3][0] = 0.0;
-    }
-    if (!slopes) {
-        return 1;
     }
     y_of_force = row.slope[ELEMENT_LN_FORCE] + row.slope[ELEMENT_GAMMA] * (level + ELEMENT_LOG(width)) - gamma * (rate / e + row.slope[ELEMENT_APPROACH] / gap);
     for (j = 0; j < slopes; j++) { /* along y, r, h, d */
@@ -391,16 +370,16 @@ static inline int element_evaluate(const element_step *p, double y, const double
             o->t_by[j][i] = across + radial[i] * dmove[2] + stiffer[i] * stiff * row.slope[ELEMENT_LN_STIFFNESS] * dy + wider[i] * df / o->f_n + (j == 3 ? opens[i] * eta_h : 0.0);
             o->by[j][1 + i] = (o->t_by[j][i] - o->f_t[i] * df / o->f_n) / o->f_n - dr[i];
         }
-        o->by[j][0] = (j == 0 || j == 3 ? o->by[j][0] : 0.0) + o->f_n * o->factor / force * (df / o->f_n + dfactor / o->factor - row.slope[ELEMENT_LN_FORCE] * dy);
+        o->by[j][0] = -rho_by[j] + o->f_n * o->factor / force * (df / o->f_n + dfactor / o->factor - row.slope[ELEMENT_LN_FORCE] * dy);
     }
     return 1;
 }
 
-/* Solves the three equations with the slopes by y and r as their matrix. */
+/* Moves y and r by x so that the three equations, off by `right`, are met. */
 static inline int element_solve(const element_guess *o, const double right[3], double x[3]) {
     const double *a = o->by[0], *b = o->by[1], *c = o->by[2]; /* columns */
     double bc[3] = {b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]};
-    double whole = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2];
+    double whole = -(a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]);
     if (!(fabs(whole) > 0.0)) {
         return 0;
     }
@@ -410,27 +389,30 @@ static inline int element_solve(const element_guess *o, const double right[3], d
     return 1;
 }
 
+/* Slopes of the forces by h or d, where y and r move by x with it. */
+static inline void element_slopes(const element_guess *o, int j, const double x[3], element_tangent *tangent) {
+    tangent->f_n[j] = o->n_by[3 + j] + o->n_by[0] * x[0] + o->n_by[1] * x[1] + o->n_by[2] * x[2];
+    tangent->f_t[0][j] = o->t_by[3 + j][0] + o->t_by[0][0] * x[0] + o->t_by[1][0] * x[1] + o->t_by[2][0] * x[2];
+    tangent->f_t[1][j] = o->t_by[3 + j][1] + o->t_by[0][1] * x[0] + o->t_by[1][1] * x[1] + o->t_by[2][1] * x[2];
+}
+
 /* The memory after a step. */
 static inline void element_keep(const element_step *p, const element_guess *o, double y, double softened, double released, element_state *next) {
     const element_state *s = p->s;
     double worn = s->worn, mu = p->t->friction, r[2], size, length, back;
-    element_state to;
+    element_state to = *s;
     to.h = p->h;
-    to.hardened = s->hardened + y;
+    to.hardened += y;
     to.reach = o->reach;
     to.softened = softened;
     to.released = released;
     to.stiffened = o->f_n > 0.0 ? o->width - 1.0 : s->stiffened;
-    memcpy(to.vertex, s->vertex, sizeof to.vertex);
     memcpy(to.slider, o->slider, sizeof to.slider);
     if (o->f_n > 0.0) {
-        if (y > 0.0) {
-            memcpy(to.vertex, o->vertex, sizeof to.vertex);
-        }
+        memcpy(to.vertex, y > 0.0 ? o->vertex : s->vertex, sizeof to.vertex);
         r[0] = o->f_t[0] / (o->f_n * mu);
         r[1] = o->f_t[1] / (o->f_n * mu);
-        size = sqrt(r[0] * r[0] + r[1] * r[1]);
-        size = size < 1.0 ? size : 1.0;
+        size = fmin(1.0, sqrt(r[0] * r[0] + r[1] * r[1]));
         if (worn > size && o->hardens > 0.0) {
             worn = size + (worn - size) * ELEMENT_EXP(-ELEMENT_FORGETS * o->hardens / p->approach);
         }
@@ -440,8 +422,7 @@ static inline void element_keep(const element_step *p, const element_guess *o, d
         if (back > 0.0) { /* slip against the vertex of a contact that was sheared */
             double sheared = worn < 1.0 ? worn : 1.0, reversed;
             back = back < 1.0 ? back : 1.0;
-            reversed = sheared * sheared * sheared * sheared * back * back * length / (length + 0.02 * mu);
-            reversed = sheared + (2.0 - sheared) * reversed;
+            reversed = sheared + (2.0 - sheared) * sheared * sheared * sheared * sheared * back * back * length / (length + 0.02 * mu);
             worn = worn > reversed ? worn : reversed;
         }
     }
@@ -451,8 +432,7 @@ static inline void element_keep(const element_step *p, const element_guess *o, d
 
 static inline void element_tell(const element_guess *o, element_response *out) {
     out->f_n = o->f_n;
-    out->f_t[0] = o->f_t[0];
-    out->f_t[1] = o->f_t[1];
+    memcpy(out->f_t, o->f_t, sizeof out->f_t);
 }
 
 /* One step; 0 where Newton does not find the way and it must be halved; with `last` it takes what it has. */
@@ -460,7 +440,7 @@ static inline int element_try(const element_table *t, const element_state *s, do
     element_step p;
     element_guess o;
     element_row row;
-    double r[2] = {0.0, 0.0}, start[2], e, before, released = s->released, y = 0.0, norm, least = 1e300, from[3] = {0.0, 0.0, 0.0}, step[3] = {0.0, 0.0, 0.0}, most, right[3];
+    double r[2] = {0.0, 0.0}, start[2], e, before, released = s->released, y = 0.0, norm, least = 1e300, from[3] = {0.0, 0.0, 0.0}, step[3] = {0.0, 0.0, 0.0}, most, none[3] = {0.0, 0.0, 0.0};
     int touches, i, j, tries, back = 0;
     memset(&o, 0, sizeof o);
     memset(out, 0, sizeof *out);
@@ -498,13 +478,8 @@ static inline int element_try(const element_table *t, const element_state *s, do
         o.hardens = 0.0;
         element_keep(&p, &o, 0.0, s->softened, released, next);
         element_tell(&o, out);
-        if (tangent) {
-            memset(tangent, 0, sizeof *tangent);
-            for (j = 0; j < 3 && touches; j++) {
-                tangent->f_n[j] = o.n_by[3 + j];
-                tangent->f_t[0][j] = o.t_by[3 + j][0];
-                tangent->f_t[1][j] = o.t_by[3 + j][1];
-            }
+        for (j = 0; j < 3 && tangent; j++) {
+            element_slopes(&o, j, none, tangent);
         }
         return 1;
     }
@@ -542,10 +517,7 @@ static inline int element_try(const element_table *t, const element_state *s, do
                 step[i] *= 0.4;
             }
         } else {
-            for (i = 0; i < 3; i++) {
-                right[i] = -o.residual[i];
-            }
-            if (!touches || tries >= ELEMENT_STEPS || !element_solve(&o, right, step)) {
+                if (!touches || tries >= ELEMENT_STEPS || !element_solve(&o, o.residual, step)) {
                 break;
             }
             back = 0;
@@ -555,10 +527,9 @@ static inline int element_try(const element_table *t, const element_state *s, do
             from[2] = r[1];
             step[0] = y + step[0] < 0.0 ? -0.7 * y : y + step[0] > most ? 0.7 * (most - y) : step[0];
             size = fabs(step[1]) > fabs(step[2]) ? fabs(step[1]) : fabs(step[2]);
-            if (size > bound) {
-                step[1] *= bound / size;
-                step[2] *= bound / size;
-            }
+            size = size > bound ? bound / size : 1.0;
+            step[1] *= size;
+            step[2] *= size;
         }
         y = from[0] + step[0];
         r[0] = from[1] + step[1];
@@ -590,14 +561,8 @@ static inline int element_try(const element_table *t, const element_state *s, do
         element_evaluate(&p, y, r, 1, 6, &o);
         for (j = 0; j < 3; j++) {
             double x[3] = {0.0, 0.0, 0.0};
-            for (i = 0; i < 3; i++) {
-                right[i] = -o.by[3 + j][i];
-            }
-            element_solve(&o, right, x);
-            tangent->f_n[j] = o.n_by[3 + j] + o.n_by[0] * x[0] + o.n_by[1] * x[1] + o.n_by[2] * x[2];
-            for (i = 0; i < 2; i++) {
-                tangent->f_t[i][j] = o.t_by[3 + j][i] + o.t_by[0][i] * x[0] + o.t_by[1][i] * x[1] + o.t_by[2][i] * x[2];
-            }
+            element_solve(&o, o.by[3 + j], x);
+            element_slopes(&o, j, x, tangent);
         }
     }
     element_keep(&p, &o, y, 1.0 - o.rho, 0.0, next);
@@ -614,11 +579,8 @@ static inline void element_update(const element_table *t, const element_state *s
     }
     while (done < 1.0) {
         double part = ldexp(1.0, -depth), end = done + part, move[2] = {d0[0] * part, d0[1] * part};
-        element_state after;
-        int whole = end >= 1.0;
         tries += out->tries;
-        if (element_try(t, &now, whole ? h : from + (h - from) * end, move, depth >= ELEMENT_HALVINGS, &after, out, whole ? tangent : NULL)) {
-            now = after;
+        if (element_try(t, &now, end < 1.0 ? from + (h - from) * end : h, move, depth >= ELEMENT_HALVINGS, &now, out, end < 1.0 ? NULL : tangent)) {
             done = end;
             flow += out->flow;
             plastic |= out->plastic;
