@@ -2,7 +2,7 @@
 """Scores the macro-element of benches/law/element, and fits its universal constants to simulated paths.
 
     python3 benches/law/fit_element.py [--program target/release/asperity] [--more RUN TABLE]... [--strict RUN TABLE]...
-        [--fit] [--rounds N] [--held-out] [--write] [--detail]
+        [--vector] [--fit] [--rounds N] [--held-out] [--write] [--detail]
 
 From the paths and tables of fixtures/paths, and runs with a table each besides, to element/element_constants.h in one command: --fit
 --write. What is made small is the mean over all paths of e^8/(1 + e^8), where e = 1 is the aim of `asperity law check`, 5 % rms and
@@ -29,6 +29,8 @@ from make import at_the_limit  # noqa: E402
 
 AIMS = 0.05, 0.12
 STRICT = 1 / 3
+# h, the two of delta_T, F_N, the two of F_T; what has no name is 0.
+ROW = "h", "delta_T", "", "F_N", "F_T", ""
 MESH = 2.5  # per cent
 # What each constant is, and the range in which it means something.
 CONSTANTS = {
@@ -76,7 +78,7 @@ def protocol():
         found = {}
         with open(file, newline="") as table:
             for row in csv.DictReader(table):
-                found.setdefault(row["path"], []).append([float(row[name]) for name in ("h", "delta_T", "F_N", "F_T")])
+                found.setdefault(row["path"], []).append([float(row[name]) if name else 0.0 for name in ROW])
         yield file.stem, file.with_suffix(".json"), found
 
 
@@ -89,7 +91,21 @@ def more(run, table):
         rows = [row for row in csv.DictReader(history) if int(row["step"]) > 0]
     found, _ = at_the_limit(rows)
     units = 1 / radius, 1 / radius, 1 / (modulus * radius**2), 1 / (modulus * radius**2)
-    return pathlib.Path(run).name, table, {"other runs": [[float(x) * unit for x, unit in zip(row[1:], units)] for row in found]}
+    rows = [[float(x) * unit for x, unit in zip(row[1:], units)] for row in found]
+    return pathlib.Path(run).name, table, {"other runs": [[h, d, 0.0, f_n, f_t, 0.0] for h, d, f_n, f_t in rows]}
+
+
+def vectors():
+    """(contact, table, {path: rows}) of fixtures/paths/vector, as far as nothing twists or rolls."""
+    for file in sorted((PATHS / "vector").glob("*-mu-*.csv")):
+        found, turned = {}, set()
+        with open(file, newline="") as table:
+            for row in csv.DictReader(table):
+                if any(abs(float(row[name])) > 1e-12 for name in ("twist", "roll_x", "roll_y")):
+                    turned.add(row["path"])
+                names = "h", "delta_T", "delta_T_y", "F_N", "F_T", "F_T_y"
+                found.setdefault(row["path"], []).append([float(row[name]) for name in names])
+        yield file.stem, (PATHS / file.name).with_suffix(".json"), {k: v for k, v in found.items() if k not in turned}
 
 
 def constants():
@@ -110,6 +126,7 @@ class Driver:
 
     def __init__(self, args, work):
         contacts = [(*contact, 1.0) for contact in protocol()]
+        contacts += [(*contact, 1.0) for contact in vectors()] if args.vector else []
         contacts += [(*more(*pair), 1.0) for pair in args.more] + [(*more(*pair), STRICT) for pair in args.strict]
         mesh = {}
         with open(PATHS / "errors.csv", newline="") as table:
@@ -122,7 +139,7 @@ class Driver:
             for path, rows in paths.items():
                 self.paths.append((name, path, rows, aim, mesh.get((name, path), 0.0) <= MESH))
                 lines.append(f"{number} {len(rows)}")
-                lines.extend(f"{row[0]!r} {row[1]!r}" for row in rows)
+                lines.extend(f"{row[0]!r} {row[1]!r} {row[2]!r}" for row in rows)
         sources = [contact, ELEMENT / "asperity_element.h", ELEMENT / "element_table.h", ELEMENT / "element_drive.c"]
         for source in sources:
             (work / source.name).write_text(source.read_text())
@@ -142,12 +159,12 @@ class Driver:
 
 def score(rows, lines):
     """Errors over the greatest force of the path."""
-    greatest = max(row[2] for row in rows)
-    answers = [[float(word) for word in line.split()] for line in lines]
-    found = []
-    for force, component in ((3, 1), (2, 0)):
-        peak = max(0.01 * greatest, max(abs(row[force]) for row in rows))
-        errors = [abs(answer[component] - row[force]) / peak for row, answer in zip(rows, answers)]
+    greatest = max(row[3] for row in rows)
+    found, answers = [], [[float(word) for word in line.split()] for line in lines]
+    for what in (slice(1, 3), slice(0, 1)):
+        simulated = [row[3:][what] for row in rows]
+        peak = max(0.01 * greatest, max(math.hypot(*force) for force in simulated))
+        errors = [math.dist(answer[what], force) / peak for answer, force in zip(answers, simulated)]
         errors = [error if error < 10 else 10 for error in errors]
         found += [math.sqrt(sum(e * e for e in errors) / len(errors)), max(errors)]
     return found
@@ -207,6 +224,7 @@ def main():
     parser.add_argument("--program", default="target/release/asperity")
     parser.add_argument("--more", nargs=2, action="append", default=[], metavar=("RUN", "TABLE"))
     parser.add_argument("--strict", nargs=2, action="append", default=[], metavar=("RUN", "TABLE"))
+    parser.add_argument("--vector", action="store_true", help="the paths of fixtures/paths/vector too, where nothing twists or rolls")
     parser.add_argument("--increments", type=int, default=8, help="between two simulated places")
     parser.add_argument("--rounds", type=int, default=8)
     parser.add_argument("--fit", action="store_true")

@@ -1,7 +1,7 @@
 /* Drives the element along paths, for fit_element.py: element_drive INCREMENTS LAW.asperity... < paths and sets of constants.
  *
- * First the number of paths, then each as `law places` and its places `h d`. Then, until the end of the input, sets of constants (where it is built with
- * ELEMENT_FIT; one number that is not used otherwise): each answers F_N and F_T at all places. */
+ * First the number of paths, then each as `law places` and its places `h d[0] d[1]`. Then, until the end of the input, sets of constants (where it is built with
+ * ELEMENT_FIT; one number that is not used otherwise): each answers F_N and both of F_T at all places. */
 #include <stdio.h>
 #include <stdlib.h>
 #ifdef ELEMENT_FIT
@@ -14,7 +14,7 @@ static double constants[ELEMENT_FIT];
 
 static asperity_table laws[64];
 static element_table tables[64];
-static double (*places)[2];
+static double (*places)[3];
 static int *of, *counts;
 
 int main(int argc, char **argv) {
@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
             if (all == room) {
                 places = realloc(places, (room *= 2) * sizeof *places);
             }
-            if (!places || scanf("%lf %lf", &places[all][0], &places[all][1]) != 2) {
+            if (!places || scanf("%lf %lf %lf", &places[all][0], &places[all][1], &places[all][2]) != 3) {
                 return 2;
             }
         }
@@ -58,16 +58,16 @@ int main(int argc, char **argv) {
         for (n = 0, all = 0; n < paths; n++) {
             element_state state;
             element_response out;
-            double h0 = 0.0, d0 = 0.0;
+            double at[3] = {0.0, 0.0, 0.0};
             memset(&state, 0, sizeof state);
             for (i = 0; i < counts[n]; i++, all++) {
-                double h = places[all][0], d = places[all][1], step[2] = {(d - d0) / increments, 0.0};
+                const double *to = places[all];
+                double step[2] = {(to[1] - at[1]) / increments, (to[2] - at[2]) / increments};
                 for (k = 1; k <= increments; k++) {
-                    element_update(&tables[of[n]], &state, h0 + (h - h0) * k / increments, step, &state, &out, NULL);
+                    element_update(&tables[of[n]], &state, at[0] + (to[0] - at[0]) * k / increments, step, &state, &out, NULL);
                 }
-                printf("%.9g %.9g\n", out.f_n, out.f_t[0]);
-                h0 = h;
-                d0 = d;
+                printf("%.9g %.9g %.9g\n", out.f_n, out.f_t[0], out.f_t[1]);
+                memcpy(at, to, sizeof at);
             }
         }
         fflush(stdout);
