@@ -28,8 +28,7 @@ bash -euo pipefail commands.sh >printed
 grep -q '^F_N0 ' printed && [ -s out/history.csv ] && [ -s out/plots/forces.svg ]
 told "a curve, a law for an engine, a simulation"
 
-cc -std=c99 -O2 engine/main.c -o collide -lm
-./collide | grep -q restitution
+(cd engine && cc -std=c99 -O2 main.c -o main -lm && ./main) | grep -q restitution
 told "two spheres collide in C"
 
 if ! bash "$root/integrations/lammps/run.sh" --build >lammps.log 2>&1; then

@@ -168,7 +168,7 @@ class Run(Directory):
     def _labelled(self, what: str, dimension: str) -> str:
         """With the unit that the case names."""
         unit = self.case.to_dict().get("units", {}).get(dimension)
-        return what if unit is None else f"{what} in {unit}"
+        return what if unit is None else f"{what} ({unit})"
 
     def plot_press(self, ax: Any = None) -> Any:
         """F_N over h, as far as the sphere is not sheared; gives the axes of matplotlib."""

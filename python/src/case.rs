@@ -48,10 +48,12 @@ impl NativeCase {
                 Err(pyo3::exceptions::PyFileNotFoundError::new_err(format!("{}: {source}", file.display())))
             }
             // All that is wrong with it; what cannot be read twice has been told once.
-            Err(first) => match std::fs::read_to_string(&file).map(|text| Document::parse(&text, &file.display().to_string())) {
-                Ok(Ok(mut document)) if document.set_arguments(&settings).is_ok() => Self::of(&document),
-                _ => Err(refused(first)),
-            },
+            Err(first) => {
+                let again = std::fs::read_to_string(&file).ok();
+                let document = again.and_then(|text| Document::parse(&text, &file.display().to_string()).ok());
+                let set = document.and_then(|mut document| document.set_arguments(&settings).ok().map(|()| document));
+                set.map_or_else(|| Err(refused(first)), |document| Self::of(&document))
+            }
         }
     }
 

@@ -217,6 +217,7 @@ class Fuzz:
             "Law.table": lambda dice: law(dice).table(self.a_case(dice)),
             "Law.formulas": lambda dice: law(dice).formulas(),
             "Law.predict": lambda dice: law(dice).predict(self.a_case(dice), dice.choice([False, False, self.never(dice, (True,))])),
+            "Law.plot": lambda dice: law(dice).plot(self.a_case(dice), **self.some(dice, name="forces", width="85mm", title=False)),
             "Law.export": export,
             "Law.check": lambda dice: law(dice).check(self.a_case(dice), self.never(dice, tuple(range(4, 17)))),
             "Law.contacts": lambda dice: law(dice).contacts(self.a_case(dice), dice.choice([1, 2, 1000, value(dice)])),

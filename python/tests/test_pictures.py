@@ -44,7 +44,7 @@ def run():
 
 def test_a_run_gives_the_pictures_of_the_program(run, tmp_path):
     picture = run.plot()
-    assert picture.name == "forces" and picture.svg.startswith("<svg") and "in mm" in picture.svg
+    assert picture.name == "forces" and picture.svg.startswith("<svg") and "(mm)" in picture.svg
     assert picture._repr_svg_() == picture.svg and picture.caption in repr(picture)
     title = "Forces during the shear"
     assert title in picture.svg and title not in run.plot("forces", title=False).svg
@@ -86,7 +86,7 @@ def test_notebooks_show_results(run):
 def test_axes_of_matplotlib_are_named_as_the_pictures_are(run):
     pytest.importorskip("matplotlib").use("agg")
     axes = run.plot_forces()
-    assert axes.get_xlabel().endswith("in mm") and axes.get_ylabel() == "force in N"
+    assert axes.get_xlabel().endswith(" (mm)") and axes.get_ylabel() == "force (N)"
     assert [line.get_color() for line in axes.lines] == ["#d55e00", "#0072b2"]
 
 

@@ -221,9 +221,9 @@ def test_plots(done: asperity.Run) -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     forces = done.plot_forces()
-    assert [line.get_label() for line in forces.get_lines()] == ["F_T", "F_N"]
+    assert [line.get_label().split(", ")[1] for line in forces.get_lines()] == ["tangential", "normal"]
     assert forces.get_lines()[0].get_xdata()[0] == 0.0
-    assert done.plot_press().get_xlabel() == "h"
+    assert done.plot_press().get_xlabel() == "$h$"
     assert done.plot_pressure().get_aspect() == 1.0
 
 

@@ -28,7 +28,7 @@ def test_a_study_goes_on(study: asperity.Study, case: asperity.Case, tmp_path: P
     small = {"contact.friction": [0.1]}
     base = case.replace({"path.1.shear": 0.001, "output.fields": "none", "output.plots": False})
     first = asperity.study(base, small, out=tmp_path / "study")
-    with pytest.raises(asperity.AsperityError, match="--resume goes on with it"):
+    with pytest.raises(asperity.AsperityError, match="resume=True goes on with it"):
         asperity.study(base, small, out=tmp_path / "study")
     again = asperity.study(tmp_path / "study/study.toml", out=tmp_path / "study", resume=True)
     assert (again.table["F_T_max"] == first.table["F_T_max"]).all()

@@ -123,7 +123,7 @@ pub fn verbatim(name: &str) -> String {
     format!("{}{name}{}", VERBATIM[0], VERBATIM[1])
 }
 
-/// Marks the symbols of quantities: Greek letters, and single Latin ones. A unit (`in N`), the
+/// Marks the symbols of quantities: Greek letters, and single Latin ones. A unit (`in N`, `(N)`), the
 /// article and what is lowered or raised are upright (ISO 80000-1, 7.1 and 7.2).
 fn symbols_marked(text: &str) -> String {
     const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻";
@@ -139,7 +139,8 @@ fn symbols_marked(text: &str) -> String {
         let alone = letter.is_ascii_alphabetic()
             && before(1).is_none_or(|c| !joins(c) && !"_^{,&'’.-".contains(c))
             && after(1).is_none_or(|c| !joins(c) && !"';.-".contains(c));
-        let unit = before(1) == Some(' ') && before(2) == Some('n') && before(3) == Some('i');
+        let unit = before(1) == Some(' ') && before(2) == Some('n') && before(3) == Some('i')
+            || before(1) == Some('(') && after(1) == Some(')');
         let article = letter == 'a' && after(1) == Some(' ') && after(2).is_some_and(|c| c.is_lowercase());
         if greek || alone && !unit && !article {
             // A bar belongs to its letter.
@@ -206,6 +207,7 @@ mod tests {
         for (text, expected) in [
             ("h / R", "hR"),
             ("F_N in N", "F"),
+            ("force F (N)", "F"),
             ("δ_T in m", "δ"),
             ("a / R", "aR"),
             ("closed form of a contact", ""),
