@@ -406,7 +406,7 @@ fn a_step_that_does_not_converge_ends_with_3_and_keeps_what_there_is() {
     assert!(history.is_empty() && summary.f_n0.is_none() && summary.steps == 0);
     // The time of attempts that led to no step is told all the same.
     assert!(summary.time_by_phase.tangent.seconds > 0.0 && summary.time_by_phase.linear_solve.seconds > 0.0, "{summary:?}");
-    assert!(stdout(&output).contains("not converged in "), "{}", stdout(&output));
+    assert!(stdout(&output).contains("not converged in ") && stdout(&output).contains(" s, 0 steps; "), "{}", stdout(&output));
 }
 
 #[test]

@@ -17,6 +17,5 @@ def main() -> None:
     # A layer of Mesa's would complain that there is no display.
     os.environ.setdefault("NODEVICE_SELECT", "1")
     code = program(sys.argv)
-    sys.stdout.flush()
     # Threads of the program may still wait for signals.
     os._exit(code)

@@ -134,7 +134,9 @@ class Run(Directory):
         :param width: as ``"85mm"``, ``"3.3in"`` or ``"640px"``; the picture is laid out for it.
         :param title: whether diagrams have titles.
         """
-        if law is not None and not hasattr(law, "_native"):
+        from .law import Law
+
+        if law is not None and not isinstance(law, Law):
             raise CaseError(f"law: is {described(law)}. Allowed: a Law, None")
         chosen = asked(name, width, title)
         self._file("history.csv")

@@ -49,7 +49,9 @@ impl NativeCase {
             }
             // All that is wrong with it; what cannot be read twice has been told once.
             Err(first) => {
-                let again = std::fs::read_to_string(&file).ok();
+                // A pipe has been read, and what is too long has been refused.
+                let is_short = std::fs::metadata(&file).is_ok_and(|found| found.is_file() && found.len() <= MOST_TEXT);
+                let again = is_short.then(|| std::fs::read_to_string(&file).ok()).flatten();
                 let document = again.and_then(|text| Document::parse(&text, &file.display().to_string()).ok());
                 let set = document.and_then(|mut document| document.set_arguments(&settings).ok().map(|()| document));
                 set.map_or_else(|| Err(refused(first)), |document| Self::of(&document))
@@ -91,6 +93,8 @@ pub fn toml_value(value: &Bound<'_, PyAny>, at: &str) -> PyResult<String> {
     Reading::default().value(value, at).map(|value| value.to_string())
 }
 
+/// Most bytes of a case file that is read once more, for all of its mistakes.
+const MOST_TEXT: u64 = 1 << 20;
 /// Most values of a case, of which the points of a table have the most.
 const MOST: usize = 100_000;
 /// Most bytes of a key.

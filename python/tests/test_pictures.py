@@ -60,6 +60,8 @@ def test_a_run_gives_the_pictures_of_the_program(run, tmp_path):
         run.plot().save(tmp_path / "picture.bmp")
     with pytest.raises(asperity.CaseError, match="law: is"):
         run.plot(law="built-in")
+    with pytest.raises(asperity.CaseError, match="law: is"):
+        run.plot(law=run.case)
     # It is the picture that `asperity plot` draws.
     subprocess.run([PROGRAM, "plot", run.directory], check=True, stdout=subprocess.DEVNULL)
     assert (run.directory / "plots/forces.svg").read_text(encoding="utf-8") == picture.svg
@@ -105,7 +107,12 @@ def test_messages_are_in_the_words_of_python(run, tmp_path):
     (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
     with pytest.raises(asperity.AsperityError) as caught:
         asperity.run(CASE, tmp_path, device="cpu", progress=False)
-    assert "--" not in str(caught.value) and "out=" in str(caught.value)
+    assert "--" not in str(caught.value) and str(caught.value).startswith("out ")
+    named = tmp_path / "q--force"
+    named.mkdir()
+    (named / "mine.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(asperity.AsperityError, match="q--force"):
+        asperity.run(CASE, named, device="cpu", progress=False)
     with pytest.raises(asperity.CaseError) as caught:
         asperity.Case.parse(CASE, set={"contact.friction": -2})
     assert "--set" not in str(caught.value)

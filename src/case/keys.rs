@@ -135,7 +135,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true (with a sphere as the opponent) or false",
-        meaning: "the body is a flat, not a sphere: half a ball of radius 2 R, pressed on its flat face; R is still the unit of length",
+        meaning: "the body is a flat, not a sphere: half a ball of radius 2 R, pressed on its flat face; R is still the unit \
+                  of length",
         example: "true",
         ..key("sphere", "flat", Truth, Optional("a sphere"))
     },
@@ -236,7 +237,9 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the relative displacements of the two equators, twice what each moves; if the path leaves the x axis or the spheres turn, both are meshed whole, which takes seven times as long",
+        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the \
+                  relative displacements of the two equators, twice what each moves; if the path leaves the x axis or the \
+                  spheres turn, both are meshed whole, which takes seven times as long",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
@@ -249,7 +252,8 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: ">= 0.05 R if it is rigid, else 0.1 R to 10 R",
-        meaning: "radius of the sphere that the body is pressed against; h is below 0.3 R*, with 1/R* = 1/R + 1/radius (if the body is a flat, R* is this radius)",
+        meaning: "radius of the sphere that the body is pressed against; h is below 0.3 R*, with 1/R* = 1/R + 1/radius (if \
+                  the body is a flat, R* is this radius)",
         example: "2.0",
         ..key(
             "opponent",
@@ -266,7 +270,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "a table with the keys of [material]; Young's modulus 1e-6 to 1e6 times that of the body",
-        meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative displacements",
+        meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative \
+                  displacements",
         example: "{ youngs_modulus = 400e3, poissons_ratio = 0.3, hardening = { law = \"elastic\" } }",
         ..key(
             "opponent",
@@ -277,7 +282,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "4 to 32",
-        meaning: "elements along the contact radius, also at the surface if given alone (8 is then quick); the time grows as their 2.5th power",
+        meaning: "elements along the contact radius, also at the surface if given alone (8 is then quick); the time grows as \
+                  their 2.5th power",
         example: "10",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("10"))
     },
@@ -332,7 +338,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "1 to 1000",
-        meaning: "Newton iterations of a step before it is cut in half; if set to 10 or more, the limit doubles while convergence is fast",
+        meaning: "Newton iterations of a step before it is cut in half; if set to 10 or more, the limit doubles while \
+                  convergence is fast",
         example: "25",
         ..key("solver", "max_iterations", Whole(1, 1000), Defaults("25"))
     },
@@ -344,20 +351,25 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether a coarse run goes first, for an eighth of the work; it shows how far the contact will reach, and gives limits and error estimates; in a study only if its base says so",
+        meaning: "whether a coarse run goes first, for an eighth of the work; it shows how far the contact will reach, and \
+                  gives limits and error estimates; in a study only if its base says so",
         example: "true",
         ..key("solver", "error_estimate", Truth, Defaults("true"))
     },
     Key {
         unit: "GiB",
         range: "> 0",
-        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A value given here replaces the limit of the system; if the system reports none, the limit is 8",
+        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A \
+                  value given here replaces the limit of the system; if the system reports none, the limit is 8",
         example: "8.0",
         ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Optional(ROOM))
     },
     Key {
         range: "\"none\", \"contact\", \"segments\" or \"all\"",
-        meaning: "when fields/*.vtu and contact/*.csv are written. none: never; contact: contact/*.csv alone, after the last step of each segment; segments: both, after the last step of each segment; all: both, after every step. With contact or segments, and plots, also contact/*.csv of up to four steps of the first shear, for plots/slip.svg. In a study the default is contact",
+        meaning: "when fields/*.vtu and contact/*.csv are written. none: never; contact: contact/*.csv alone, after the last \
+                  step of each segment; segments: both, after the last step of each segment; all: both, after every step. \
+                  With contact or segments, and plots, also contact/*.csv of up to four steps of the first shear, for \
+                  plots/slip.svg. In a study the default is contact",
         example: "\"segments\"",
         ..key("output", "fields", Word(&["none", "contact", "segments", "all"]), Defaults("\"segments\""))
     },
@@ -387,7 +399,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether checkpoint.bin, about 1 kB for each element, is kept after the run, so that run --extend can follow a longer path; a study never keeps it",
+        meaning: "whether checkpoint.bin, about 1 kB for each element, is kept after the run, so that run --extend can \
+                  follow a longer path; a study never keeps it",
         example: "true",
         ..key("output", "keep_checkpoint", Truth, Optional("it is kept"))
     },
@@ -419,14 +432,16 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: "-0.5 R to 0.5 R, [x, y] of such lengths, or \"full-slip\"",
-        meaning: "shear to this total delta_T, of either sign: along x, or along x and y, for which the whole sphere is meshed and not half of it; with \"full-slip\", until every point slips",
+        meaning: "shear to this total delta_T, of either sign: along x, or along x and y, for which the whole sphere is \
+                  meshed and not half of it; with \"full-slip\", until every point slips",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
     Key {
         unit: "degrees",
         range: "-360 to 360",
-        meaning: "direction of shear, as an angle from x towards y; shear is then the total displacement in this direction, or \"full-slip\"",
+        meaning: "direction of shear, as an angle from x towards y; shear is then the total displacement in this direction, \
+                  or \"full-slip\"",
         example: "30.0",
         ..key(
             "path",
@@ -445,7 +460,8 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "rad",
         range: "-0.5 to 0.5, or [about_x, about_y] of such angles",
-        meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y; its centre moves along, so that delta_T does not change",
+        meaning: "roll the sphere to this total angle about y, of either sign, or to two angles about x and y; its centre \
+                  moves along, so that delta_T does not change",
         example: "0.02",
         ..key("path", "roll", Components(&[]), Optional("the sphere does not roll"))
     },

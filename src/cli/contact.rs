@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::CliError;
 use super::input::Input;
-use crate::case::Case;
+use crate::case::{Case, CaseError};
 
 /// What a case of one press and one shear needs. `--E` takes the place of the file.
 #[derive(Clone, Debug, Args)]
@@ -61,16 +61,20 @@ impl ContactArgs {
         let input = Input { text, name: "the options".to_owned() };
         match input.case(settings) {
             Ok(case) => Ok(Some(case)),
-            Err(CliError::Mistakes { errors, .. }) => Err(CliError::Options { what: errors.iter().map(by_option).collect() }),
+            Err(CliError::Mistakes { errors, .. }) => {
+                Err(CliError::Options { what: errors.iter().map(|error| by_option(error, settings)).collect() })
+            }
             Err(error) => Err(error),
         }
     }
 }
 
-/// What is wrong, at the option that says it.
-fn by_option(error: &crate::case::CaseError) -> String {
+/// What is wrong, at the option that says it, unless a setting has replaced that.
+fn by_option(error: &CaseError, settings: &[String]) -> String {
     let text = error.to_string();
-    let found = OPTIONS.iter().find_map(|(key, option)| Some((option, text.split_once(&format!("{key}: "))?.1)));
+    let given = |key: &str| !settings.iter().any(|setting| setting.trim_start().starts_with(key));
+    let known = OPTIONS.iter().filter(|(key, _)| given(key));
+    let found = known.into_iter().find_map(|(key, option)| Some((option, text.split_once(&format!("{key}: "))?.1)));
     found.map_or_else(|| text.clone(), |(option, what)| format!("{option}: {what}"))
 }
 

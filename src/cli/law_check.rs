@@ -125,7 +125,7 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
     Ok(if met { Outcome::Done } else { Outcome::GoalMissed })
 }
 
-/// A material in the words of a case file: `hardening ideal, yield_stress 0.002, E 1`.
+/// A material in the words of a case file: `ideal, yield_stress 0.002, E 1, nu 0.3`.
 fn in_words(material: &Material) -> String {
     // A hardening law is always TOML.
     let hardening = toml::to_string(&material.hardening).unwrap_or_default().replace('"', "").replace(" = ", " ");

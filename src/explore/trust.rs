@@ -34,16 +34,18 @@ impl Trust {
         match law {
             LawFile::Interpolated(law) => {
                 let body = Against::of(case);
-                let own = law.pair.as_deref().filter(|pair| pair.body == body).unwrap_or(law);
+                let own = law.of_equal_spheres(case).unwrap_or(law);
                 let Source { cases, materials, .. } = &own.source;
                 let mut source =
                     format!("interpolated between {cases} simulated contacts of {materials} materials with {}", own.body);
                 let (row, mut over) = near(&own.errors, &wanted);
                 if own.body != body {
                     source += ", of each body by itself, and the two put in series";
-                    over += ", without what putting in series adds (4 % rms of F_T in simulated pairs)";
+                    over += ", without what putting in series adds (docs/law-errors.md has pairs)";
                 }
-                Ok(Self { source, press: own.normal_errors.f_n0, over, ..Self::from_row(row) })
+                // All pairs are pressed by the law of equal spheres.
+                let pressed = law.pair.as_deref().filter(|_| case.opponent.is_some()).unwrap_or(own);
+                Ok(Self { source, press: pressed.normal_errors.f_n0, over, ..Self::from_row(row) })
             }
             LawFile::Formulas(law) => {
                 let p = &law.provenance;

@@ -22,6 +22,8 @@ const SHEAR_POWER: f64 = 1.0 / (1.0 + SHEAR_GROWTH);
 /// F_T/(mu F_N) is 1 - (c/a)^3 where points within c stick (Cattaneo 1938): where full slip comes
 /// is not known before, how much still sticks is.
 const STICK_POWER: i32 = 3;
+/// What is told of such a segment at the most: where it ends is known at its end.
+const NEARLY: f64 = 0.99;
 
 impl PathShare {
     /// At the start of a path.
@@ -60,7 +62,7 @@ impl PathShare {
             }
             Segment::Motion { to, .. } => share_of(&to, &self.start, record),
             Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. } => {
-                1.0 - (record.stick_radius / record.a).powi(STICK_POWER)
+                (1.0 - (record.stick_radius / record.a).powi(STICK_POWER)).min(NEARLY)
             }
         }
     }

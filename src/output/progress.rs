@@ -23,7 +23,8 @@ pub struct Position {
     pub detail: String,
 }
 
-/// Where a step stands and what it has: h, F_N, what it is sheared and turned by, in few digits.
+/// Where a step stands and what it has: h, F_N, F_T of a shear and M_twist of a twist, in few
+/// digits.
 pub fn detail(row: &StepRecord) -> String {
     let number = |value: f64| rounded(value, 4);
     let mut text = format!("h {}  F_N {}", number(row.h), number(row.f_n));

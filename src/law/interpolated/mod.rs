@@ -123,9 +123,8 @@ pub struct Interpolated {
     pub processes: Vec<Process>,
     /// The samples' inputs, less their mean, over their deviation.
     pub samples: Vec<Place>,
-    /// The law of two equal spheres; without it they are put in series from spheres on a plane, as
-    /// two unlike bodies always are (`fixtures/studies/pairs.toml`: F_T 4.0 % off, 5.5 % if they
-    /// are put in series from two equal spheres).
+    /// The law of two equal spheres, for any two bodies of one material and for the press of any
+    /// others; without it all are put in series from spheres on a plane.
     #[serde(skip)]
     pub pair: Option<Box<Interpolated>>,
 }
@@ -165,9 +164,8 @@ impl Interpolated {
     /// The law of two equal spheres, if there is one, for a case of them and for any two bodies of
     /// one material: these are in series as two of their equals are, which a plane, that rubs on
     /// them while they are pressed, is not (`benches/pairs/unlike.py`).
-    fn of_equal_spheres(&self, case: &Case) -> Option<&Self> {
-        let alike = matches!(&case.opponent, Some(Opponent::Deforming { material, .. }) if *material == case.material);
-        self.pair.as_deref().filter(|law| alike || law.body == Against::of(case))
+    pub(crate) fn of_equal_spheres(&self, case: &Case) -> Option<&Self> {
+        self.pair.as_deref().filter(|law| is_of_one_material(case) || law.body == Against::of(case))
     }
 
     /// Reads one and checks it.
@@ -228,8 +226,8 @@ impl Interpolated {
         Tabulated::interpolated(case, levels, self.source.elements_per_contact_radius)
     }
 
-    /// The table of a case's contact, of two bodies that deform too: of these each has its own
-    /// table against what the law is of, and they are put in series.
+    /// The table of a case's contact, of two bodies that deform too: these are put in series from
+    /// a table of each by itself.
     ///
     /// # Errors
     /// Those of [`table`](Self::table) and of [`compose`](table::compose).
@@ -270,9 +268,22 @@ impl Interpolated {
         let equal = Against::of(case) == Against::EqualSphere && self.body == Against::Plane;
         let pair = if equal { &like_itself(case) } else { case };
         if let Some(bodies) = table::alone(pair, self.body, 1.0) {
-            let depth = |body: &Case| h / case.effective_radius() * if body.opponent.is_some() { 2.0 } else { 1.0 };
-            let each = bodies.iter().map(|body| self.out_of_range(body, depth(body))).collect::<Result<Vec<_>, _>>()?;
-            return Ok(each.concat());
+            let place = h / case.effective_radius();
+            if is_of_one_material(pair) {
+                // Each is of the radius 2 R*, and gives way by half of h.
+                return self.out_of_range(&bodies[0], place * if bodies[0].opponent.is_some() { 0.5 } else { 0.25 });
+            }
+            let depth = |body: &Case| place * if body.opponent.is_some() { 2.0 } else { 1.0 };
+            let mut found = Vec::new();
+            for body in &bodies {
+                found.extend(self.out_of_range(body, depth(body))?);
+            }
+            // Of the law that they are pressed by; how deep each goes the other has told.
+            if let Some(law) = &self.pair {
+                let more = law.out_of_range(case, h)?.into_iter().filter(|one| one.quantity != "a/R");
+                found.extend(more.filter(|one| !found.iter().any(|known| known.quantity == one.quantity)).collect::<Vec<_>>());
+            }
+            return Ok(found);
         }
         let (body, sphere) = bodies(case)?;
         let contact = inputs(&body, &sphere, friction(case), h / case.sphere.radius);
@@ -301,6 +312,11 @@ impl Interpolated {
 fn like_itself(case: &Case) -> Case {
     let opponent = Opponent::Deforming { radius: Some(case.sphere.radius), material: case.material.clone() };
     Case { opponent: Some(opponent), ..case.clone() }
+}
+
+/// Whether a case is of two bodies that deform and are of one material.
+fn is_of_one_material(case: &Case) -> bool {
+    matches!(&case.opponent, Some(Opponent::Deforming { material, .. }) if *material == case.material)
 }
 
 /// mu; full stick is refused before anything is asked.

@@ -202,6 +202,14 @@ fn a_sphere_of_the_same_radius_and_material_is_an_equal_one() {
         law.follow(&case).unwrap().0
     };
     let [equal, same, larger] = ["equal = true", "radius = 3.0", "radius = 3.003"].map(along);
+    // What is asked of the law is the same too, however deep.
+    for depth in [0.02, 0.1, 0.25] {
+        let [outside, too] = ["equal = true", "radius = 3.0"].map(|opponent| {
+            let case = case(ideal, 0.3, 0.3, depth, &format!("[opponent]\n{opponent}"));
+            law.out_of_range(&case, case.greatest_indentation()).unwrap()
+        });
+        assert_eq!(outside.len(), too.len(), "{depth}: {outside:?} {too:?}");
+    }
     let most = equal.iter().map(|point| point.f_n).fold(0.0, f64::max);
     for other in [same, larger] {
         assert_eq!(equal.len(), other.len());

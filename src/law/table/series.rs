@@ -315,7 +315,7 @@ struct Series<'a> {
     pressed: [Pressed; 2],
     friction: f64,
     h: f64,
-    /// The two are one body twice, whatever their true radii: each has half of all.
+    /// The two are one body twice: each has half of all.
     alike: bool,
 }
 
