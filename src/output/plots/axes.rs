@@ -1,7 +1,6 @@
 //! In which units the axes are: without units, F/(E R^2) and delta/R, or in those of the case,
 //! under the user's names for them.
 
-use super::text::verbatim;
 use crate::case::Case;
 
 /// What a quantity is a multiple of.
@@ -104,7 +103,6 @@ impl Axes {
         let words = if words.is_empty() { String::new() } else { format!("{words} ") };
         match &scale.unit {
             Unit::Named(name) => {
-                let name = verbatim(name);
                 let label = format!("{words}{symbol} ({name})").replace("  ", " ");
                 Shown { factor: 1.0 / scale.divisor, label, short: format!("{symbol} ({name})") }
             }

@@ -123,8 +123,8 @@ pub fn verbatim(name: &str) -> String {
     format!("{}{name}{}", VERBATIM[0], VERBATIM[1])
 }
 
-/// Marks the symbols of quantities: Greek letters, and single Latin ones. A unit (`in N`, `(N)`), the
-/// article and what is lowered or raised are upright (ISO 80000-1, 7.1 and 7.2).
+/// Marks the symbols of quantities: Greek letters, and single Latin ones. A unit (`in N`, `(N)`),
+/// the article and what is lowered or raised are upright (ISO 80000-1, 7.1 and 7.2).
 fn symbols_marked(text: &str) -> String {
     const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻";
     let is_greek = |letter: char| ('\u{391}'..='\u{3c9}').contains(&letter);
@@ -139,10 +139,13 @@ fn symbols_marked(text: &str) -> String {
         let alone = letter.is_ascii_alphabetic()
             && before(1).is_none_or(|c| !joins(c) && !"_^{,&'’.-".contains(c))
             && after(1).is_none_or(|c| !joins(c) && !"';.-".contains(c));
-        let unit = before(1) == Some(' ') && before(2) == Some('n') && before(3) == Some('i')
-            || before(1) == Some('(') && after(1) == Some(')');
+        // `in N`, and what stands in parentheses by itself: (N), (μm).
+        let opens = (0..i).rev().find(|&at| "( )_^/".contains(letters[at]));
+        let closes = (i + 1..letters.len()).find(|&at| "( )_^/".contains(letters[at]));
+        let enclosed = opens.is_some_and(|at| letters[at] == '(') && closes.is_some_and(|at| letters[at] == ')');
+        let unit = before(1) == Some(' ') && before(2) == Some('n') && before(3) == Some('i') || enclosed;
         let article = letter == 'a' && after(1) == Some(' ') && after(2).is_some_and(|c| c.is_lowercase());
-        if greek || alone && !unit && !article {
+        if !unit && (greek || alone && !article) {
             // A bar belongs to its letter.
             let bar = after(1).filter(|next| *next == MACRON);
             out.extend([SLANTED[0], letter].into_iter().chain(bar).chain([SLANTED[1]]));
@@ -208,6 +211,7 @@ mod tests {
             ("h / R", "hR"),
             ("F_N in N", "F"),
             ("force F (N)", "F"),
+            ("δ_T (μm), p (MPa)", "δp"),
             ("δ_T in m", "δ"),
             ("a / R", "aR"),
             ("closed form of a contact", ""),
