@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 __all__ = ["summary_table", "table"]
@@ -11,7 +11,7 @@ __all__ = ["summary_table", "table"]
 _SHOWN = ("F_N0", "a0", "h0", "F_N_slip", "F_T_max", "F_T_max_limit", "delta_T_slip", "k_T0")
 
 
-def table(rows: list[tuple[str, ...]], head: tuple[str, ...] = ()) -> str:
+def table(rows: Sequence[tuple[str, ...]], head: tuple[str, ...] = ()) -> str:
     """Rows of text as a table."""
 
     def line(row: tuple[str, ...], kind: str) -> str:
