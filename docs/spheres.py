@@ -12,6 +12,12 @@ LEFT, RIGHT, TOP, BOTTOM = 62, 738, 66, 372
 SLIP_AT, MU, NU, G = 0.006, 0.3, 0.3, 200e3 / 2.6
 
 
+
+def symbol(index):
+    """F with an index."""
+    return f'<tspan font-style="italic">F</tspan><tspan dy="3" font-size="9">{index}</tspan>'
+
+
 def shear(path):
     """Rows of the shear, its start included: delta_T, F_N, F_T."""
     with open(path) as file:
@@ -57,8 +63,8 @@ def main(history, summary, law, out):
     for delta, normal, tangential in inside(simulated):
         dot(x(delta), y(normal), BLUE)
         dot(x(delta), y(tangential), RED)
-    text(x(0.0055), y(f_n) - 12, "F_N", "middle", ' font-style="italic"')
-    text(x(0.0055), y(MU * f_n) - 12, "F_T", "middle", ' font-style="italic"')
+    text(x(0.0055), y(f_n) - 12, symbol("N"), "middle")
+    text(x(0.0055), y(MU * f_n) - 12, symbol("T"), "middle")
     text(400, BOTTOM + 38, "tangential displacement of the centres, 10⁻³ R", "middle")
     text(16, 0.5 * (TOP + BOTTOM), "force (E = 200,000, R = 1)", "middle", f' transform="rotate(270, 16, {0.5 * (TOP + BOTTOM)})"')
     for at, colour in ((62, BLUE), (74, RED)):
@@ -68,7 +74,7 @@ def main(history, summary, law, out):
         parts.append(f'<path d="M{at},40h20" stroke="{colour}" stroke-width="2"/>')
     text(254, 40, "built-in law")
     parts.append(f'<path d="M380,40h40" stroke="{GREY}" stroke-width="2"{dashed}/>')
-    text(428, 40, "Mindlin, with the simulated F_N and a of the press")
+    text(428, 40, f"Mindlin, with the simulated {symbol('N')}<tspan dy=\"-3\"> and </tspan><tspan font-style=\"italic\">a</tspan> of the press")
     head = '<svg width="760" height="424" viewBox="0 0 760 424" xmlns="http://www.w3.org/2000/svg">'
     about = "<desc>Forces between two equal spheres over the tangential displacement: simulation, law and Mindlin</desc>"
     background = '<rect width="760" height="424" fill="#FFFFFF"/>'
