@@ -141,7 +141,7 @@ fn commands_that_are_printed_can_be_typed() {
     let output = scratch.asperity(&["init", &name]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let printed = stdout(&output);
-    assert_eq!(words(between(&printed, "written; `", "` runs it")), ["asperity", "run", &name, "--out", "out"]);
+    assert_eq!(words(between(&printed, "written; `", "` runs it")), ["asperity", "run", &name]);
     let text = fs::read_to_string(scratch.root.join(&name)).expect("a case");
     let output = scratch.typed(between(&text, "#     ", "              the case"));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
