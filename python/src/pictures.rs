@@ -5,8 +5,7 @@ use std::str::FromStr;
 
 use asperity::case::{Case, PictureFormat, PictureWidth};
 use asperity::contact_law::path::PathPoint;
-use asperity::law::LawFile;
-use asperity::law::plots::{law_beside_run, table_beside_run};
+use asperity::law::plots::{as_step, beside_run};
 use asperity::output::plots::{Picture, PlotInputs, Sheet, View, plot_forces, plot_indentation, plot_ratio, replot};
 use asperity::output::{OutputDirectory, StepRecord, read_history};
 use pyo3::prelude::*;
@@ -37,15 +36,8 @@ impl NativePicture {
 
     /// Writes a file of the format that its name ends with.
     fn save(&self, file: PathBuf) -> PyResult<()> {
-        let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let format = match ending {
-            "svg" => PictureFormat::Svg,
-            "pdf" => PictureFormat::Pdf,
-            "png" => PictureFormat::Png,
-            _ => {
-                return Err(refused(format!("file: is {:?}. Allowed: a name that ends with .svg, .pdf or .png", file.display())));
-            }
-        };
+        let wrong = || refused(format!("file: is {:?}. Allowed: a name that ends with .svg, .pdf or .png", file.display()));
+        let format = PictureFormat::of_file(&file).ok_or_else(wrong)?;
         self.picture.write(&file, format).map_err(failed)
     }
 }
@@ -92,11 +84,7 @@ pub fn run_picture(
         let history = read_history(&out.history()).map_err(failed)?;
         let mut pictures = replot(&out, &case, &history, &view).map_err(failed)?;
         if let Some(law) = law {
-            let beside = match law.file() {
-                LawFile::Formulas(law) => law_beside_run(law, &case, &history, &view).map(|(picture, _)| picture),
-                law => table_beside_run(law, &case, &history, &view).map(|(picture, _)| picture),
-            };
-            pictures.push(beside.map_err(failed)?);
+            pictures.push(beside_run(law.file(), &case, &history, &view).map_err(failed)?.0);
         }
         Ok(pictures)
     })??;
@@ -112,16 +100,7 @@ pub fn law_picture(
     title: bool,
 ) -> PyResult<NativePicture> {
     let view = view(case, width, title)?;
-    let record = |(step, point): (usize, &PathPoint)| StepRecord {
-        step,
-        segment: point.segment,
-        h: point.h,
-        delta_t: point.delta_t,
-        f_n: point.f_n,
-        f_t: point.f_t,
-        ..StepRecord::default()
-    };
-    let history: Vec<StepRecord> = points.iter().enumerate().map(record).collect();
+    let history: Vec<StepRecord> = points.iter().map(as_step).collect();
     let inputs = PlotInputs::of(case);
     let mut pictures = vec![plot_indentation(&history, &inputs, &view).map_err(failed)?];
     if history.iter().any(|record| record.delta_t != 0.0) {

@@ -2,6 +2,7 @@
 //! units.
 
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
@@ -33,6 +34,12 @@ impl PictureFormat {
             Self::Pdf => "pdf",
             Self::Png => "png",
         }
+    }
+
+    /// What the ending of a file's name stands for, in large letters or small ones.
+    pub fn of_file(file: &Path) -> Option<Self> {
+        let ending = file.extension()?.to_str()?.to_ascii_lowercase();
+        Self::ALL.into_iter().find(|format| format.ending() == ending)
     }
 }
 

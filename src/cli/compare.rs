@@ -111,7 +111,7 @@ pub fn compare(args: &CompareArgs) -> Result<Outcome, CliError> {
     // What is divided already has no unit any more.
     let axes = if unlike { Axes::normalised(1.0, 1.0) } else { Axes::of(first, AxisUnits::Auto) };
     let picture = plot_overlay(&overlaid, &View { axes, sheet: Sheet { width: args.width, untitled: args.no_title } })?;
-    picture.write(&args.out, format_of(&args.out).unwrap_or_default())?;
+    picture.write(&args.out, PictureFormat::of_file(&args.out).unwrap_or_default())?;
     if args.json {
         print_json(&as_json(&runs, unlike))?;
     } else {
@@ -125,16 +125,10 @@ pub fn compare(args: &CompareArgs) -> Result<Outcome, CliError> {
     Ok(Outcome::Done)
 }
 
-/// The format that the ending of a file's name stands for.
-fn format_of(file: &Path) -> Option<PictureFormat> {
-    let ending = file.extension()?.to_str()?.to_ascii_lowercase();
-    PictureFormat::ALL.into_iter().find(|format| format.ending() == ending)
-}
-
 fn picture_file(text: &str) -> Result<PathBuf, String> {
     let file = PathBuf::from(text);
     let refused = || "the name of a picture ends in .svg, .pdf or .png".to_owned();
-    format_of(&file).map(|_| file).ok_or_else(refused)
+    PictureFormat::of_file(&file).map(|_| file).ok_or_else(refused)
 }
 
 /// The values of a quantity, and how far each is from the first, as a share.

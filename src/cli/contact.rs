@@ -17,7 +17,8 @@ pub struct ContactArgs {
     #[arg(long, requires = "youngs_modulus", allow_negative_numbers = true, value_parser = number)]
     pub nu: Option<f64>,
     /// With --E: yield stress, in the unit of E; the sphere is ideally plastic.
-    #[arg(long = "yield", value_name = "STRESS", requires = "youngs_modulus", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long = "yield", value_name = "STRESS", requires = "youngs_modulus", allow_negative_numbers = true,
+          value_parser = number)]
     pub yield_stress: Option<f64>,
     /// With --E: friction coefficient.
     #[arg(long, requires = "youngs_modulus", allow_negative_numbers = true, value_parser = number)]
@@ -73,8 +74,10 @@ impl ContactArgs {
 fn by_option(error: &CaseError, settings: &[String]) -> String {
     let text = error.to_string();
     let given = |key: &str| !settings.iter().any(|setting| setting.trim_start().starts_with(key));
-    let known = OPTIONS.iter().filter(|(key, _)| given(key));
-    let found = known.into_iter().find_map(|(key, option)| Some((option, text.split_once(&format!("{key}: "))?.1)));
+    let found = OPTIONS
+        .iter()
+        .filter(|(key, _)| given(key))
+        .find_map(|(key, option)| Some((option, text.split_once(&format!("{key}: "))?.1)));
     found.map_or_else(|| text.clone(), |(option, what)| format!("{option}: {what}"))
 }
 

@@ -203,7 +203,8 @@ fn summary(law: &Law, verbose: bool) -> String {
                     [errors.f_t_rms, errors.f_t_max, errors.f_n_rms, errors.f_n_max].map(|error| 100.0 * error);
                 let _ = writeln!(
                     text,
-                    "F_N0 and a0 {what}: F_T {f_t:.2} % rms ({most:.1} at worst), F_N {f_n:.2} ({normal_most:.1}), cross-validated"
+                    "F_N0 and a0 {what}: F_T {f_t:.2} % rms ({most:.1} at worst), F_N {f_n:.2} ({normal_most:.1}), \
+                     cross-validated"
                 );
             }
         }

@@ -10,7 +10,7 @@ use clap::Args;
 use super::options::{Format, Units};
 use super::{CliError, Outcome, print};
 use crate::case::{PictureFormat, PictureWidth};
-use crate::law::plots::{law_beside_run, table_beside_run};
+use crate::law::plots::beside_run;
 use crate::law::{LawError, LawFile};
 use crate::output::plots::axes::Axes;
 use crate::output::plots::{Sheet, View, replot};
@@ -98,13 +98,7 @@ fn plot_run(run: &OutputDirectory, args: &PlotArgs) -> Result<Outcome, CliError>
     let mut pictures = replot(run, &case, &history, &view)?;
     if let Some(law) = &law {
         let in_case = |source: LawError| CliError::LawCase { file: run.case(), source: Box::new(source) };
-        let (picture, out_of_range) = match law {
-            LawFile::Formulas(law) => {
-                law_beside_run(law, &case, &history, &view).map(|(picture, prediction)| (picture, prediction.out_of_range))
-            }
-            LawFile::Table(_) | LawFile::Interpolated(_) => table_beside_run(law, &case, &history, &view),
-        }
-        .map_err(in_case)?;
+        let (picture, out_of_range) = beside_run(law, &case, &history, &view).map_err(in_case)?;
         super::law::warn_out_of_range(&run.case(), &out_of_range);
         pictures.push(picture);
     }

@@ -2,8 +2,9 @@
 
 use crate::analytical::{ElasticSphere, cattaneo_mindlin::CattaneoMindlin, hertz};
 use crate::case::{Case, Friction, Hold, Material, Opponent, Segment, ShearTarget};
-use crate::contact_law::path::{PathPoint, follow_centres};
+use crate::contact_law::path::follow_centres;
 use crate::contact_law::{Centres, ContactParameters, ContactState};
+use crate::law::plots::as_step;
 use crate::law::range::OutOfRange;
 use crate::law::report::LAMBDA_BOUNDS;
 use crate::law::table::{equivalent, first_yield};
@@ -53,15 +54,6 @@ pub(super) fn to_slip(h: f64) -> Vec<Segment> {
     vec![Segment::Indentation { indentation: h }, Segment::Shear { shear: ShearTarget::FullSlip, hold: Hold::Indentation }]
 }
 
-/// A place on the law's path as a row of a history, so that law and simulation are reduced to
-/// numbers by the same rules.
-fn record(point: &PathPoint) -> StepRecord {
-    let PathPoint { segment, h, delta_t, f_n, f_t, slips } = *point;
-    // A law knows one point of contact, which slips or does not.
-    let slipping_points = usize::from(slips);
-    StepRecord { segment, h, delta_t, f_n, f_t, contact_points: 1, slipping_points, ..StepRecord::default() }
-}
-
 /// Lambda, H and Lambda at first yield of the body that is nearer to plastic: each body with the
 /// radius with which it alone has the contact's E*/R*, as a sphere on a plane and an equal pair do.
 fn nearest_to_plastic(case: &Case, h: f64, a: f64, f_n0: f64) -> Result<(Variables, f64), LawError> {
@@ -92,7 +84,7 @@ impl Curves {
         };
         let (h, centres) = (case.greatest_indentation(), Centres::of(&case));
         let along =
-            |path: &[Segment]| -> Vec<StepRecord> { follow_centres(parameters, centres, path).iter().map(record).collect() };
+            |path: &[Segment]| -> Vec<StepRecord> { follow_centres(parameters, centres, path).iter().map(as_step).collect() };
         let shear = along(&to_slip(h));
         let cycle = along(&cycle_of(&case, h));
         let a = parameters.update(&ContactState::default(), h, [0.0; 2]).1.a;

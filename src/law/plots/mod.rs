@@ -17,7 +17,7 @@ mod table;
 mod tests;
 
 pub use comparison::greatest_errors;
-pub use run::{law_beside_run, table_beside_run};
+pub use run::{as_step, beside_run, law_beside_run, table_beside_run};
 pub use table::picture as table_picture;
 
 use super::data::StudyData;

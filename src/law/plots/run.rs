@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::contact_law::Centres;
-use crate::contact_law::path::drive_centres;
+use crate::contact_law::path::{PathPoint, drive_centres};
 use crate::law::formulas::normal::NormalState;
 use crate::law::formulas::predict::{NormalSource, Prediction, predict};
 use crate::law::range::OutOfRange;
@@ -10,6 +10,31 @@ use crate::law::variables::Body;
 use crate::law::{Axisymmetric, Law, LawError, LawFile, Parameters};
 use crate::output::plots::{Picture, View, plot_law};
 use crate::output::{StepRecord, Summary, SummaryInputs};
+
+/// A law of any kind beside a run, and what of the case lies outside of the law's range.
+///
+/// # Errors
+/// Those of [`law_beside_run`] and [`table_beside_run`].
+pub fn beside_run(
+    law: &LawFile,
+    case: &Case,
+    history: &[StepRecord],
+    view: &View,
+) -> Result<(Picture, Vec<OutOfRange>), LawError> {
+    match law {
+        LawFile::Formulas(law) => {
+            law_beside_run(law, case, history, view).map(|(picture, prediction)| (picture, prediction.out_of_range))
+        }
+        LawFile::Table(_) | LawFile::Interpolated(_) => table_beside_run(law, case, history, view),
+    }
+}
+
+/// A point of a law's path as a step of a run: a law knows one point of contact, which slips or
+/// does not.
+pub fn as_step(point: &PathPoint) -> StepRecord {
+    let PathPoint { segment, h, delta_t, f_n, f_t, slips } = *point;
+    StepRecord { segment, h, delta_t, f_n, f_t, contact_points: 1, slipping_points: usize::from(slips), ..StepRecord::default() }
+}
 
 /// The forces of a run with those of the contact update along the same places, whatever the path.
 ///

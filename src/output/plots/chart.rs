@@ -387,6 +387,26 @@ fn fitting(text: &str, size: f64, room: f64) -> f64 {
     size * (room / text_width(text, size)).min(1.0)
 }
 
+/// Draws the entries of a legend between `left` and `right`, the first line of them at `first`.
+fn draw_legend(root: &Canvas, legend: &[(&Series, f64, usize)], [left, right]: [f64; 2], first: f64) -> Drawn {
+    for &(entry, x, line) in legend {
+        let (x, y) = (left + x, first + LEGEND_LINE * line as f64);
+        if entry.filled {
+            root.rectangle([(x, y - 6.0), (x + SAMPLE, y + 6.0)], Paint::fill(entry.colour.mix(entry.opacity)))?;
+        }
+        let ink = entry.colour.mix(entry.opacity.max(0.8));
+        if let Some(stroke) = entry.line {
+            draw_line(root, stroke, ink, &[(x, y), (x + SAMPLE, y)])?;
+        }
+        if let Some((mark, size)) = entry.mark {
+            draw_mark(root, (mark, size.max(3.0)), ink, (x + 0.5 * SAMPLE, y))?;
+        }
+        let size = fitting(&entry.label, LEGEND_SIZE, right - x - SAMPLE - 7.0);
+        root.text(&entry.label, (x + SAMPLE + 7.0, y), INK, Writing::new(size, Anchor::Start))?;
+    }
+    Ok(())
+}
+
 /// Draws the diagram over the whole canvas.
 pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
     let high = (root.height - 130.0).max(1.0);
@@ -406,21 +426,7 @@ pub fn draw_chart(root: &Canvas, chart: &Chart) -> Drawn {
         let title = Writing::new(fitting(&chart.title, 18.0, right - left), Anchor::Start);
         root.text(&chart.title, (left, 22.0), INK, title)?;
     }
-    for (entry, x, line) in legend {
-        let (x, y) = (left + x, first + LEGEND_LINE * line as f64);
-        if entry.filled {
-            root.rectangle([(x, y - 6.0), (x + SAMPLE, y + 6.0)], Paint::fill(entry.colour.mix(entry.opacity)))?;
-        }
-        let ink = entry.colour.mix(entry.opacity.max(0.8));
-        if let Some(stroke) = entry.line {
-            draw_line(root, stroke, ink, &[(x, y), (x + SAMPLE, y)])?;
-        }
-        if let Some((mark, size)) = entry.mark {
-            draw_mark(root, (mark, size.max(3.0)), ink, (x + 0.5 * SAMPLE, y))?;
-        }
-        let size = fitting(&entry.label, LEGEND_SIZE, right - x - SAMPLE - 7.0);
-        root.text(&entry.label, (x + SAMPLE + 7.0, y), INK, Writing::new(size, Anchor::Start))?;
-    }
+    draw_legend(root, &legend, [left, right], first)?;
 
     for (value, label) in x_ticks {
         let x = frame.x(value);
