@@ -48,7 +48,7 @@ const STEPS: usize = 3;
 /// Rounds in which the contact radius and the two curvatures settle.
 const ROUNDS: usize = 20;
 /// Steps of F_T/F_N along a shear.
-const RATIOS: usize = 120;
+const RATIOS: usize = 96;
 /// Places of a limit curve.
 const FINE: usize = 4 * POINTS;
 /// A body creeps at most so many times as far as by itself.
