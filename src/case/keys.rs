@@ -237,23 +237,23 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "press against an equal sphere; indentation and shear, and h and delta_T in all results, are then the \
-                  relative displacements of the two equators, twice what each moves; if the path leaves the x axis or the \
-                  spheres turn, both are meshed whole, which takes seven times as long",
+        meaning: "press against an equal sphere. Indentation and shear in the case, and h and delta_T in the results, are \
+                  then the relative displacement of the two equators, twice that of each sphere. Only one sphere is \
+                  meshed; if the path leaves the x axis or the spheres turn, both are, which takes seven times as long",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },
     Key {
         range: "true or false, and not beside equal",
-        meaning: "Press against a rigid sphere with the radius of this table; without a radius, the rigid plane",
+        meaning: "press against a rigid sphere of the given radius; without a radius, against the rigid plane",
         example: "true",
         ..key("opponent", "rigid", Truth, Optional("a rigid plane"))
     },
     Key {
         unit: LENGTH,
         range: ">= 0.05 R if it is rigid, else 0.1 R to 10 R",
-        meaning: "radius of the sphere that the body is pressed against; h is below 0.3 R*, with 1/R* = 1/R + 1/radius (if \
-                  the body is a flat, R* is this radius)",
+        meaning: "radius of the opposing sphere; h must stay below 0.3 R*, with 1/R* = 1/R + 1/radius, or R* = radius if \
+                  the body is a flat",
         example: "2.0",
         ..key(
             "opponent",
@@ -264,13 +264,13 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true (without a radius, and with a sphere as the body) or false",
-        meaning: "the opponent is a flat that deforms, half a ball of radius 2 R; if it is rigid, the plane",
+        meaning: "the opponent is a deformable flat, half a ball of radius 2 R; if it is rigid, it is the plane",
         example: "true",
         ..key("opponent", "flat", Truth, Optional("a sphere if there is a radius or a material, else a rigid plane"))
     },
     Key {
         range: "a table with the keys of [material]; Young's modulus 1e-6 to 1e6 times that of the body",
-        meaning: "what the opponent is made of: it deforms, and is meshed as the body is; h and delta_T are then relative \
+        meaning: "material of the opponent, which then deforms and is meshed like the body; h and delta_T become relative \
                   displacements",
         example: "{ youngs_modulus = 400e3, poissons_ratio = 0.3, hardening = { law = \"elastic\" } }",
         ..key(
@@ -282,32 +282,34 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "4 to 32",
-        meaning: "elements along the contact radius, also at the surface if given alone (8 is then quick); the time grows as \
-                  their 2.5th power",
+        meaning: "number of elements along the contact radius. If only this number is given, it applies at the surface \
+                  too, and 8 makes a quick run. The computing time grows as its 2.5th power",
         example: "10",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("10"))
     },
     Key {
         range: "1, 2, 4 or 8 times elements_per_contact_radius, at most 64",
-        meaning: "the same at the surface, where elements are halved once, twice or three times in all directions",
+        meaning: "number of elements along the contact radius at the surface, where elements are halved in all directions \
+                  up to three times; the accuracy of F_T depends mainly on it",
         example: "20",
         ..key(
             "mesh",
             "surface_elements_per_contact_radius",
             Whole(4, 64),
-            Optional("20, or as many as inside if those are given"),
+            Optional("20, or elements_per_contact_radius if that is given"),
         )
     },
     Key {
         range: "1.1 to 3",
-        meaning: "radius of the finely meshed zone over the contact radius; it is enlarged if the contact leaves it",
+        meaning: "radius of the finely meshed zone as a multiple of contact_radius; if the contact grows beyond the zone, \
+                  the run starts over with a larger one",
         example: "1.3",
         ..key("mesh", "fine_zone", Number(AtLeast(*FINE_ZONES.start()), AtMost(*FINE_ZONES.end()), &[]), Defaults("1.3"))
     },
     Key {
         unit: LENGTH,
         range: "0.0005 R to 0.65 R",
-        meaning: "contact radius for which the mesh is made",
+        meaning: "expected contact radius, for which the mesh is made",
         example: "0.2",
         ..key("mesh", "contact_radius", Number(Above(0.0), Free, &[]), Optional("the one that closed forms predict"))
     },
@@ -320,7 +322,7 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "share of the normal force",
         range: "> 1e-12 and <= 1e-2",
-        meaning: "residual at which a step is accepted; 1e-3 costs 0.8 % in F_T",
+        meaning: "residual at which a step is accepted; at 1e-3, F_T changes by 0.8 %",
         example: "3e-4",
         ..key("solver", "tolerance", Number(Above(1e-12), AtMost(1e-2), &[]), Defaults("3e-4"))
     },
@@ -328,7 +330,7 @@ pub const KEYS: &[Key] = &[
         range: "1 to 100000",
         meaning: "load steps of a press from first touch; a later press gets a proportional share of these steps, plus two",
         example: "26",
-        ..key("solver", "press_steps", Whole(1, 100_000), Optional("as many as the mesh asks for, 25 on the default one"))
+        ..key("solver", "press_steps", Whole(1, 100_000), Optional("set by the mesh, 25 on the default one"))
     },
     Key {
         range: "1 to 100000",
@@ -351,31 +353,32 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether a coarse run goes first, for an eighth of the work; it shows how far the contact will reach, and \
-                  gives limits and error estimates; in a study only if its base says so",
+        meaning: "whether a coarser run is made first, in an eighth of the time. It gives the extrapolated limits and the \
+                  error estimates, and shows how large the contact becomes, so that the mesh fits. A study makes it only \
+                  if its base sets this key",
         example: "true",
         ..key("solver", "error_estimate", Truth, Defaults("true"))
     },
     Key {
         unit: "GiB",
         range: "> 0",
-        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. A \
-                  value given here replaces the limit of the system; if the system reports none, the limit is 8",
+        meaning: "memory that the mesh and the linear systems may take; a case that needs more is refused before it runs. \
+                  A value given here replaces the limit that the system reports. Without either, the limit is 8 GiB",
         example: "8.0",
         ..key("solver", "max_memory_gib", Number(Above(0.0), Free, &[]), Optional(ROOM))
     },
     Key {
         range: "\"none\", \"contact\", \"segments\" or \"all\"",
-        meaning: "when fields/*.vtu and contact/*.csv are written. none: never; contact: contact/*.csv alone, after the last \
-                  step of each segment; segments: both, after the last step of each segment; all: both, after every step. \
-                  With contact or segments, and plots, also contact/*.csv of up to four steps of the first shear, for \
-                  plots/slip.svg. In a study the default is contact",
+        meaning: "which fields (fields/*.vtu) and contact tables (contact/*.csv) are written. none: neither; contact: \
+                  contact tables after the last step of each segment; segments: both, after the last step of each segment; \
+                  all: both, after every step. If plots are on, contact and segments add contact tables of up to four \
+                  steps of the first shear, for plots/slip.svg. In a study the default is contact",
         example: "\"segments\"",
         ..key("output", "fields", Word(&["none", "contact", "segments", "all"]), Defaults("\"segments\""))
     },
     Key {
         range: "true or false",
-        meaning: "whether the pictures in plots are drawn; in a study only if its base says so",
+        meaning: "whether the pictures in plots are drawn; a study draws them only if its base sets this key",
         example: "true",
         ..key("output", "plots", Truth, Defaults("true"))
     },
@@ -399,8 +402,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "true or false",
-        meaning: "whether checkpoint.bin, about 1 kB for each element, is kept after the run, so that run --extend can \
-                  follow a longer path; a study never keeps it",
+        meaning: "whether checkpoint.bin (about 1 kB for each element) is kept after the run, so that run --extend can \
+                  continue along a longer path; a study never keeps it",
         example: "true",
         ..key("output", "keep_checkpoint", Truth, Optional("it is kept"))
     },
@@ -425,15 +428,17 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: LENGTH,
         range: ">= 0 and < 0.3 R, or 0.3 R* against a rigid sphere; the first one > 0, the greatest >= 2.5e-7 R^2/R*",
-        meaning: "press to this indentation h, a total from first touch, or unload to it if it is smaller than the present h",
+        meaning: "press to this indentation h, counted from first touch, or unload to it if it is smaller than the present \
+                  h",
         example: "0.02",
         ..key("path", "indentation", Number(AtLeast(0.0), Free, &[]), Optional("the segment shears, turns or releases"))
     },
     Key {
         unit: LENGTH,
         range: "-0.5 R to 0.5 R, [x, y] of such lengths, or \"full-slip\"",
-        meaning: "shear to this total delta_T, of either sign: along x, or along x and y, for which the whole sphere is \
-                  meshed and not half of it; with \"full-slip\", until every point slips",
+        meaning: "shear to this total delta_T, of either sign. One number is along x. With [x, y] the shear has both \
+                  components, and the whole sphere is meshed instead of half of it. With \"full-slip\" it continues until \
+                  every point slips",
         example: "\"full-slip\"",
         ..key("path", "shear", Components(&["full-slip"]), Optional("the segment presses, turns or releases"))
     },
@@ -453,7 +458,7 @@ pub const KEYS: &[Key] = &[
     Key {
         unit: "rad",
         range: "-100 to 100",
-        meaning: "twist the sphere about the normal to this total angle, of either sign; the whole sphere is meshed",
+        meaning: "twist the sphere about the normal to this total angle, of either sign; the whole sphere is then meshed",
         example: "0.05",
         ..key("path", "twist", Number(AtLeast(-100.0), AtMost(100.0), &[]), Optional("the sphere does not turn about the normal"))
     },
@@ -480,7 +485,7 @@ pub const KEYS: &[Key] = &[
 ];
 
 /// What stands for `solver.max_memory_gib`.
-const ROOM: &str = "what there is for the process (machine, container or job, ulimit -v), less a tenth and 64 MiB";
+const ROOM: &str = "the memory available to the process (machine, container or job, ulimit -v), less a tenth and 64 MiB";
 
 /// The keys that a dotted name may mean: all of it, `path.0.shear` for any segment, a table, or its
 /// last parts.
