@@ -21,16 +21,15 @@ use crate::output::write_own;
 /// some minutes.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
-    /// What to measure beside the CPU; by default what ASPERITY_DEVICE says, and auto where it is
-    /// not set.
+    /// What to measure beside the CPU. The default is ASPERITY_DEVICE if it is set, else auto.
     #[arg(long, value_enum, value_name = "DEVICE")]
     pub device: Option<Device>,
     /// Small meshes, small batches, few repetitions: a minute.
     #[arg(long)]
     pub quick: bool,
-    /// Run whole simulations (the press and shear of ideal plasticity) instead: on one core, on all
-    /// cores, and on the device in batches of 1 to 256, with --quick 1 and 2; then the smallest and
-    /// the largest of these once more, for the time and bytes of each kernel.
+    /// Run whole simulations (press and shear of an ideally plastic sphere) instead: on one core,
+    /// on all cores, and on the device in batches of 1 to 256 (with --quick, 1 and 2). The smallest
+    /// and the largest batch are then repeated to measure the time and bytes of each kernel.
     #[arg(long)]
     pub whole_job: bool,
     /// Elements along the contact radius of the mesh, 2 to 32; by default 8, with --quick 4.

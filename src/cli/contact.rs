@@ -26,7 +26,7 @@ pub struct ContactArgs {
     /// With --E: indentation over R, before the sphere is sheared to full slip.
     #[arg(long, requires = "youngs_modulus", allow_negative_numbers = true, value_parser = number)]
     pub h: Option<f64>,
-    /// With --E: pressed against an equal sphere, and not a rigid plane.
+    /// With --E: against an equal sphere instead of a rigid plane.
     #[arg(long, requires = "youngs_modulus")]
     pub equal: bool,
 }

@@ -10,8 +10,8 @@ use crate::compute::select::{DEVICE_VARIABLE, measured};
 
 /// List GPUs, and say which would be chosen and why.
 ///
-/// With what each can do and what the kernels need of it. A GPU that auto may take is measured for
-/// a twentieth of a second, once a machine; the result is kept in the user's cache folder.
+/// Shows what each can do and what the kernels need. A GPU that auto may choose is timed once on
+/// each machine, in 0.05 s; the result is kept in the user's cache folder.
 #[derive(Clone, Debug, Args)]
 pub struct DevicesArgs {
     /// Print JSON.

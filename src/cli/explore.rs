@@ -20,22 +20,22 @@ use crate::law::file::BUILT_IN;
 
 /// Look at a law in the browser, simulate what is shown, export it.
 ///
-/// Shows forces over displacements at once for any material, friction and depth, with the law's
-/// errors and closed forms beside it. The page is served on this machine alone, ends with Ctrl-C,
-/// and by itself after an hour without a request.
+/// Plots forces over displacements for any material, friction and depth, with the law's errors and
+/// closed forms. The page is served to this machine only. The program ends with Ctrl-C, or after an
+/// hour without a request.
 #[derive(Clone, Debug, Args)]
 pub struct ExploreArgs {
-    /// The case that the page begins with, or the directory of a run, whose results are laid over
+    /// The case that the page begins with, or the directory of a run, whose results are drawn over
     /// the law [default: an ideally plastic sphere].
     #[arg(value_name = "CASE")]
     pub case: Option<PathBuf>,
     /// The law: `built-in`, or a law.json that `law fit`, `law tabulate` or `law compose` wrote.
     #[arg(long, value_name = "LAW.json", default_value = BUILT_IN)]
     pub law: PathBuf,
-    /// The directory of a study, whose cases are laid over the law as points.
+    /// The directory of a study, whose cases are drawn over the law as points.
     #[arg(long, value_name = "DIR")]
     pub study: Option<PathBuf>,
-    /// The port; 0 is any that is free.
+    /// The port; 0 means any free port.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub port: u16,
     /// Print the address and start no browser.

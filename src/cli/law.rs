@@ -38,23 +38,21 @@ pub struct LawArgs {
 /// The subcommands of `asperity law`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum LawCommand {
-    /// Fit a law to a study: writes DIR/law.json and prints the formulas and their errors, or the
-    /// errors of an interpolation.
+    /// Fit a law to a study: writes DIR/law.json, and prints the formulas and the errors of the
+    /// law.
     Fit(FitArgs),
-    /// Tabulate the law of one material and one friction coefficient as curves in h: simulates
-    /// depths up to that of the case as a study, writes DIR/law.json and prints the errors in
-    /// between.
+    /// Make a table of one contact: simulates it at several depths up to that of the case, writes
+    /// DIR/law.json, and prints the errors between the depths.
     Tabulate(TabulateArgs),
-    /// Make the table of a contact without simulating anything: of two bodies, of any sizes, from
-    /// one table of each, or of any contact from a law by interpolation.
+    /// Make a table of one contact without simulating it: from one table of each material, or from
+    /// an interpolated law.
     Compose(ComposeArgs),
     /// Predict F_N and F_T along the path of a case without simulating it; prints CSV.
     Predict(PredictArgs),
-    /// Simulate a protocol of paths and print how far the law is from each.
+    /// Simulate a set of test paths and print the errors of the law along each.
     Check(CheckArgs),
-    /// Export the law for a DEM code: all that an engine starts from, or an incremental contact
-    /// update as C headers with a table or as a Python module, to stdout, or with test vectors to a
-    /// directory.
+    /// Export a law for a DEM code: all files that an engine needs, or the update of one contact as
+    /// C headers or as a Python module.
     Export(ExportArgs),
 }
 
@@ -72,15 +70,15 @@ pub struct FitArgs {
     /// materials, on a plane or of equal spheres.
     #[arg(long, conflicts_with = "prior")]
     pub interpolate: bool,
-    /// With --interpolate: where cases were not sheared back or released, take the stiffness of a
-    /// reversal and of an unloading from this law by interpolation; `built-in` is that on a plane.
+    /// With --interpolate: if the cases have no reversal or release, take the stiffnesses of both
+    /// from this interpolated law. `built-in` is the built-in law of a plane.
     #[arg(long, value_name = "LAW.json", requires = "interpolate")]
     pub reversal: Option<PathBuf>,
     /// Print the law as JSON, as in DIR/law.json, instead of the tables.
     #[arg(long)]
     pub json: bool,
-    /// Print also how every other form does, and the errors of each region of materials and
-    /// friction.
+    /// Also print the errors of the formulas that were tried and not chosen, and those of each
+    /// region of materials and friction.
     #[arg(short, long, conflicts_with = "json")]
     pub verbose: bool,
 }
@@ -88,11 +86,11 @@ pub struct FitArgs {
 /// The arguments of `law predict`.
 #[derive(Clone, Debug, Args)]
 pub struct PredictArgs {
-    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`, the law by
-    /// interpolation that comes with the program.
+    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The case, with any path; `-` for standard input. Or the contact by --E and its companions.
+    /// The case, with any path; `-` for standard input. Instead of a case, --E, --nu, --yield, --mu
+    /// and --h describe a contact.
     #[arg(value_name = "CASE.toml", required_unless_present = "youngs_modulus")]
     pub case: Option<PathBuf>,
     /// A contact without a case file.

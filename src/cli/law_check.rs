@@ -30,9 +30,9 @@ pub struct CheckArgs {
     /// Elements along the contact radius of the simulations; twice as many at the surface.
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16))]
     pub elements: u32,
-    /// Check so many random paths, of the six kinds in turn, in place of the protocol: of the
-    /// contact of the case or the table; without one of contacts that are drawn too, on a plane,
-    /// between equal spheres and between unlike bodies in turn.
+    /// Check this many random paths instead of the set, of six kinds in turn. They are paths of the
+    /// contact that the case or the table describes; without either, the contacts are random too:
+    /// on a plane, between equal spheres and between unlike bodies in turn.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub random: Option<u32>,
     /// Seed of the random paths.

@@ -18,13 +18,12 @@ use crate::output::refuse_input;
 /// The arguments of `law compose`.
 #[derive(Clone, Debug, Args)]
 pub struct ComposeArgs {
-    /// The case: its materials, its friction, its opponent, and its indentation, which is the
-    /// deepest of the table. The rest of its path is not used.
+    /// The case: its materials, friction, opponent, and indentation, which is the greatest depth of
+    /// the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// A law by interpolation, or `built-in`, that which comes with the program; or, for two
-    /// bodies, the table of the sphere's material, of two equal spheres (or of a sphere on a plane,
-    /// which is less near).
+    /// The table of the sphere's material, made with two equal spheres; one made on a plane is less
+    /// accurate. Or an interpolated law, such as `built-in`, that covers both materials.
     #[arg(value_name = "LAW.json")]
     pub sphere: PathBuf,
     /// The table of the opponent's material [default: the sphere's].
@@ -36,7 +35,7 @@ pub struct ComposeArgs {
     /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Replace a law.json that is there.
+    /// Replace an existing law.json.
     #[arg(long)]
     pub force: bool,
 }

@@ -16,36 +16,35 @@ use crate::output::{refuse_foreign, write_own};
 /// The arguments of `law export`.
 #[derive(Clone, Debug, Args)]
 pub struct ExportArgs {
-    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`, the law by
-    /// interpolation that comes with the program.
+    /// A law file that `law fit`, `law tabulate` or `law compose` wrote; or `built-in`.
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
-    /// The material, the friction and the greatest depth. With --for all that it says of an
-    /// opponent is left out. With --format c a law of formulas is written for an engine with it, as
-    /// a table is; without, as one header for all materials. `-` for standard input.
+    /// The material, the friction and the greatest depth; `-` for standard input. With --for, the
+    /// opponent is ignored. With --format c, a fitted law with a case is written like a table, and
+    /// without a case as one header for all materials.
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
     /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
     #[arg(long, value_name = "KEY=VALUE", requires = "case")]
     pub set: Vec<String>,
-    /// Write all that an engine starts from: the tables of two spheres and of a sphere on a rigid
-    /// wall, for lammps in.asperity, an input that pours, presses and shears, for c the headers and
-    /// main.c, which prints collisions. Needs a law by interpolation, a case and --out.
+    /// Write all files that an engine needs: tables of two spheres and of a sphere on a rigid wall;
+    /// for lammps also in.asperity, an input that pours, presses and shears; for c also the headers
+    /// and main.c, which prints collisions. Needs an interpolated law, a case and --out.
     #[arg(long = "for", value_enum, value_name = "ENGINE", requires_all = ["case", "out"], conflicts_with = "format")]
     pub engine: Option<Engine>,
-    /// With --for: another material, from its case; may be repeated. The tables of all pairs are
-    /// written; friction between two materials is the geometric mean of theirs.
+    /// With --for: the case of another material; may be repeated. Tables of all pairs are written;
+    /// the friction between two materials is the geometric mean of their coefficients.
     #[arg(long, value_name = "OTHER.toml", requires = "engine")]
     pub with: Vec<PathBuf>,
     /// The language of one law by itself.
     #[arg(long, value_enum, value_name = "LANGUAGE", required_unless_present = "engine")]
     pub format: Option<Language>,
-    /// Write the files to this directory. With --format, for C of one material: asperity_law.h (the
-    /// table as a constant), law.asperity (the same, read when an engine starts),
-    /// asperity_contact.h (the update), asperity_contact3d.h (spheres and walls) and a program that
-    /// checks them; for C of all materials asperity_law.h and its checking program; for Python
-    /// asperity_law.py; both with asperity_law_vectors.csv. Existing files of these names are
-    /// replaced [default: asperity_law.h or asperity_law.py alone, to stdout].
+    /// Write the files to this directory, replacing files of the same names. With --format c for
+    /// one material: asperity_law.h (the table as a constant), law.asperity (the same, for an
+    /// engine to read at its start), asperity_contact.h (the update), asperity_contact3d.h (spheres
+    /// and walls) and a program that checks them. For all materials: asperity_law.h and a program
+    /// that checks it. With --format python: asperity_law.py. Each comes with
+    /// asperity_law_vectors.csv [default: asperity_law.h or asperity_law.py alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

@@ -20,8 +20,8 @@ use crate::study::{Options, Study, hold};
 /// The arguments of `law tabulate`.
 #[derive(Clone, Debug, Args)]
 pub struct TabulateArgs {
-    /// The case: its material, its friction, its opponent (a plane or any other body), and its
-    /// indentation, which is the deepest of the table. The rest of its path is not used.
+    /// The case: its material, friction, opponent (a plane or any other body), and indentation,
+    /// which is the greatest depth of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
     /// Directory for the study and its law.json: new or empty, or one with an earlier table if
@@ -38,7 +38,7 @@ pub struct TabulateArgs {
     /// Continue a table in DIR; finished depths are kept.
     #[arg(long)]
     pub resume: bool,
-    /// Replace an earlier study in DIR, whatever it is.
+    /// Replace an earlier study in DIR, even another one.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
     /// Device, precision, threads.

@@ -83,7 +83,7 @@ impl From<Units> for AxisUnits {
 /// Where and how precisely to compute.
 #[derive(Clone, Debug, Args)]
 pub struct DeviceArgs {
-    /// Where the kernels run; by default where ASPERITY_DEVICE says, and auto where it is not set.
+    /// Where the kernels run. The default is ASPERITY_DEVICE if it is set, else auto.
     #[arg(long, value_enum, value_name = "DEVICE")]
     pub device: Option<Device>,
     /// Floating-point precision of the kernels.
@@ -100,8 +100,8 @@ pub struct Verbosity {
     /// Print errors only, no progress.
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Print more, at the end every result and the time of each phase; given twice, every Newton
-    /// iteration.
+    /// Print more: at the end every result and the time of each phase; if given twice, every Newton
+    /// iteration too.
     #[arg(short, long, action = ArgAction::Count)]
     pub verbose: u8,
 }

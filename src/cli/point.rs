@@ -49,9 +49,9 @@ pub struct PointArgs {
     /// Number of equal steps [default: 100].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub steps: Option<u32>,
-    /// CSV file of deformation gradients, counted from the undeformed point, a row for each step:
-    /// F11,F12,F13,F21,F22,F23,F31,F32,F33, or in the order of a first row of these names; lines
-    /// that start with # are comments.
+    /// CSV file of deformation gradients relative to the undeformed point, one row a step:
+    /// F11,F12,F13,F21,F22,F23,F31,F32,F33, or in the order that a first row of these names gives.
+    /// Lines that start with # are comments.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["strain", "steps"], required_if_eq("mode", "path"))]
     pub path: Option<PathBuf>,
     /// Replace a value of the file, as in material.hardening.yield_stress=300. May be repeated.

@@ -44,23 +44,23 @@ impl From<ProvedPart> for Part {
     }
 }
 
-/// Prove a GPU against the CPU, and measure what it is worth.
+/// Compare a GPU with the CPU, in results and in speed.
 ///
-/// Compares its limits with what the kernels need, each kernel with the CPU in every precision that
-/// it has, and the cases of fixtures/studies/parity.toml (differences, iterations, bits again and
-/// alone). Measures latency, copies, and whole jobs at 6 and 16 elements in batches of 1 to 256
-/// beside all cores. Writes JSON and, beside it, the same as Markdown; both have no name of a host
-/// or of a user. Ends with exit code 3 if something disagrees, and with 2 without a GPU. Needs
-/// nothing but this program and a driver.
+/// Checks whether its limits suffice for the kernels, compares each kernel with the CPU in every
+/// precision that the GPU has, and computes the cases of fixtures/studies/parity.toml on both
+/// (differences, iterations, and whether a repeated or a single run gives the same bits). Measures
+/// latency, copies, and whole jobs at 6 and 16 elements in batches of 1 to 256, beside all cores of
+/// the CPU. Writes a report as JSON and as Markdown, without the names of host and user. Exit code
+/// 3 means that results disagree, 2 that there is no GPU. Needs only this program and a driver.
 #[derive(Clone, Debug, Args)]
 pub struct ProveArgs {
     /// The file for the report, as JSON; the page beside it ends in .md.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Fewer comparisons and small jobs alone: two minutes on a software driver with two cores.
+    /// Fewer comparisons, and only small jobs: two minutes on a software driver with two cores.
     #[arg(long)]
     pub quick: bool,
-    /// This part alone. May be repeated.
+    /// Only this part. May be repeated.
     #[arg(long, value_enum, value_name = "PART")]
     pub only: Vec<ProvedPart>,
     /// Which device.

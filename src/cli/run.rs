@@ -35,13 +35,13 @@ pub struct RunArgs {
     /// and a finished run is left as it is, so a batch script can always give this option.
     #[arg(long)]
     pub resume: bool,
-    /// Go on from the end of the finished run in DIR along a longer path: the case is that of the
-    /// run with segments added after the last one. The results are those of the longer path from
-    /// the beginning; where that would need another mesh, the extension is refused. One that was
-    /// interrupted goes on, and one that is finished is left as it is.
+    /// Continue the finished run in DIR along a longer path: its case with segments added after the
+    /// last one. The results are those of the longer path from the beginning; if that path needs
+    /// another mesh, the extension is refused. An interrupted extension continues, and a finished
+    /// one is left as it is.
     #[arg(long, conflicts_with = "resume")]
     pub extend: bool,
-    /// Replace earlier results in DIR, of whatever case and however complete.
+    /// Replace earlier results in DIR, even those of another case.
     #[arg(long, conflicts_with_all = ["resume", "extend"])]
     pub force: bool,
     /// Seconds between checkpoints, for tests; 0 is after every step.

@@ -18,8 +18,8 @@ use crate::study::{self, Options, Report, Shard, Study, StudyError, StudyProgres
 
 /// Simulate every combination of a grid of cases.
 ///
-/// Each has a directory, and a row of study.csv. A case that fails does not stop the others: its
-/// row says why. An interrupted study goes on with --resume.
+/// Each case has a directory and a row in study.csv. A case that fails does not stop the others;
+/// its row says why. An interrupted study continues with --resume.
 #[derive(Clone, Debug, Args)]
 pub struct StudyArgs {
     /// The study file: a case under `base`, and a `grid` of dotted keys with lists of values.
@@ -31,31 +31,31 @@ pub struct StudyArgs {
     #[arg(long, value_name = "DIR", required_if_eq("study", "-"), required_unless_present = "study")]
     pub out: Option<PathBuf>,
     /// Compute only the I-th of N shares of about equal size. Several machines may work in one
-    /// directory, a share each; `--resume` without a share then gathers all rows.
+    /// directory, one share each; `--resume` without a share then collects all rows.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
-    /// Continue a study in DIR. Finished cases are kept; interrupted ones go on from their
-    /// checkpoints, or from the beginning if there is none. The grid may have grown; cases that no
-    /// longer belong to it are named and kept.
+    /// Continue a study in DIR. Finished cases are kept; interrupted ones continue from their
+    /// checkpoints, or start again if there are none. The grid may have grown; cases that no longer
+    /// belong to it are listed and kept.
     #[arg(long)]
     pub resume: bool,
-    /// Replace an earlier study in DIR, whatever it is and however complete.
+    /// Replace an earlier study in DIR, even another one.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
     /// With --resume: also repeat cases that did not converge or whose contact outgrew the mesh.
     #[arg(long, requires = "resume")]
     pub retry: bool,
-    /// Compute nothing, but write scripts for Slurm to DIR/slurm: a job array of shares, and a job
-    /// after it that makes the table. tasks=N sets the number of shares (4), at-once=N how many run
-    /// at a time, warning=SECONDS how long before the time limit a task is told to stop (60); other
+    /// Compute nothing; write scripts for Slurm to DIR/slurm: a job array of shares, then a job
+    /// that makes the table. Keys: tasks=N, the number of shares (4); at-once=N, how many run at a
+    /// time; warning=SECONDS, how long before the time limit a task is told to stop (60). Other
     /// keys are options of sbatch, as in time=02:00:00 partition=long mem=4G cpus-per-task=2.
     #[arg(long, value_name = "KEY=VALUE", num_args = 0.., conflicts_with_all = ["shard", "force", "merge"])]
     pub slurm: Option<Vec<String>>,
     /// With --slurm: submit the scripts.
     #[arg(long, requires = "slurm")]
     pub submit: bool,
-    /// Compute nothing, but join these directories, each with shares of one study, in the directory
-    /// of --out, which may be one of them.
+    /// Compute nothing; join these directories, each with shares of one study, in the directory of
+    /// --out, which may be one of them.
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["shard", "force", "resume"])]
     pub merge: Option<Vec<PathBuf>>,
     /// Device, precision, threads.

@@ -19,8 +19,8 @@ use crate::verify::{Check, FAMILIES, Level, Report, Runner, Verdict, VerifyError
 /// if one fails. Every tolerance has its reason, which -v prints and --out writes.
 #[derive(Clone, Debug, Args)]
 pub struct VerifyArgs {
-    /// Use 16 elements along the contact radius where the checks use fewer to be done in a minute
-    /// or two.
+    /// Use 16 elements along the contact radius in all checks; by default some use fewer, to finish
+    /// in a minute or two.
     #[arg(long)]
     pub fine: bool,
     /// Run only this family of checks, or this check of the table. May be repeated.

@@ -14,6 +14,16 @@ standard input. Errors go to standard error and name file, line and key. For exi
 [Results](results.md#exit-codes).
 ";
 
+const SHARED_HEAD: &str = "
+## Shared options
+
+Commands that compute have some or all of these options; each lists those that it has.
+
+";
+
+/// Those options, as `asperity run` has them.
+const SHARED: [&str; 5] = ["device", "precision", "threads", "quiet", "verbose"];
+
 /// Prose is at most this wide.
 const WIDTH: usize = 110;
 
@@ -27,8 +37,12 @@ pub fn text() -> String {
         let about = command.get_about().map(ToString::to_string).unwrap_or_default();
         let _ = writeln!(text, "| [`{name}`](#{}) | {} |", name.replace(' ', "-"), about.replace('|', "\\|"));
     }
+    let (_, run) = listed.iter().find(|(name, _)| name == "asperity run").expect("asperity run");
+    let shared: Vec<String> = run.get_arguments().filter(|arg| SHARED.contains(&arg.get_id().as_str())).map(argument).collect();
+    text += SHARED_HEAD;
+    shared.iter().for_each(|option| text += &item(option));
     for (name, command) in listed {
-        describe(&mut text, &name, command);
+        describe(&mut text, &name, command, &shared);
     }
     text
 }
@@ -48,7 +62,7 @@ fn commands(command: &Command, name: &str) -> Vec<(String, Command)> {
     found
 }
 
-fn describe(text: &mut String, name: &str, mut command: Command) {
+fn describe(text: &mut String, name: &str, mut command: Command, shared: &[String]) {
     let usage = command.render_usage().to_string();
     let about = command.get_long_about().or(command.get_about()).map(ToString::to_string).unwrap_or_default();
     // Writing to a String cannot fail.
@@ -56,9 +70,21 @@ fn describe(text: &mut String, name: &str, mut command: Command) {
     let _ = write!(text, "```text\n{}\n```\n\n", usage.trim_start_matches("Usage: "));
     let shown = |arg: &&Arg| !arg.is_hide_set() && !["help", "version"].contains(&arg.get_id().as_str());
     let options = command.get_arguments().filter(|arg| !arg.is_positional());
+    let mut named = Vec::new();
     for arg in command.get_positionals().chain(options).filter(shown) {
-        let _ = write!(text, "{}", wrapped(&format!("- {}", argument(arg)), "  "));
+        let described = argument(arg);
+        match arg.get_long() {
+            Some(long) if shared.contains(&described) => named.push(format!("`--{long}`")),
+            _ => *text += &item(&described),
+        }
     }
+    if !named.is_empty() {
+        *text += &item(&format!("{}: [shared options](#shared-options).", named.join(", ")));
+    }
+}
+
+fn item(text: &str) -> String {
+    wrapped(&format!("- {text}"), "  ")
 }
 
 fn argument(arg: &Arg) -> String {
