@@ -100,7 +100,8 @@ pub struct PredictArgs {
     /// case with one press and one shear at constant indentation.
     #[arg(long)]
     pub press: bool,
-    /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
+    /// repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Print JSON instead of CSV: the curve, and what lies outside the range of the law.

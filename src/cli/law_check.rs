@@ -38,7 +38,8 @@ pub struct CheckArgs {
     /// Seed of the random paths.
     #[arg(long, default_value_t = 1, value_name = "S", requires = "random")]
     pub seed: u64,
-    /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
+    /// repeated.
     #[arg(long, value_name = "KEY=VALUE", requires = "case")]
     pub set: Vec<String>,
     /// Write the simulated steps and the forces of the law to this directory, a CSV file for each

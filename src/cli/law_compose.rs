@@ -32,7 +32,8 @@ pub struct ComposeArgs {
     /// Directory for the law.json.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
+    /// repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Replace an existing law.json.

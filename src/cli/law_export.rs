@@ -24,7 +24,8 @@ pub struct ExportArgs {
     /// without a case as one header for all materials.
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
-    /// Replace a value of the case, as in contact.friction=0.1; may be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
+    /// repeated.
     #[arg(long, value_name = "KEY=VALUE", requires = "case")]
     pub set: Vec<String>,
     /// Write all files that an engine needs: tables of two spheres and of a sphere on a rigid wall;

@@ -24,15 +24,16 @@ pub struct TabulateArgs {
     /// which is the greatest depth of the table. The rest of its path is not used.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Directory for the study and its law.json: new or empty, or one with an earlier table if
-    /// --resume or --force is given. Without it, the name of the case file with -table in place of
-    /// its extension, in the current directory.
+    /// Directory for the study and its law.json: new or empty, or with an earlier table if --resume
+    /// or --force is given. By default it has the name of the case file, with -table in place of
+    /// its extension.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Elements along the contact radius, at every depth; twice as many at the surface.
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=16))]
     pub elements: u32,
-    /// Replace a value of the case, as in contact.friction=0.1. May be repeated.
+    /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
+    /// repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Continue a table in DIR; finished depths are kept.

@@ -21,9 +21,8 @@ pub struct RunArgs {
     /// The case file; `-` for standard input.
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Directory for the results: new or empty, or one with earlier results if --resume, --extend
-    /// or --force is given. Without it, the name of the case file less its extension, in the
-    /// current directory.
+    /// Directory for the results: new or empty, or with earlier results if --resume, --extend or
+    /// --force is given. By default it has the name of the case file, without its extension.
     #[arg(long, value_name = "DIR", required_if_eq("case", "-"))]
     pub out: Option<PathBuf>,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
@@ -32,7 +31,7 @@ pub struct RunArgs {
     pub set: Vec<String>,
     /// Continue an unfinished run of the same case in DIR from its last checkpoint, with the same
     /// results as if it had never stopped. Without a checkpoint the run starts from the beginning,
-    /// and a finished run is left as it is, so a batch script can always give this option.
+    /// and a finished run is left as it is; a batch script can therefore always give this option.
     #[arg(long)]
     pub resume: bool,
     /// Continue the finished run in DIR along a longer path: its case with segments added after the

@@ -25,9 +25,8 @@ pub struct StudyArgs {
     /// The study file: a case under `base`, and a `grid` of dotted keys with lists of values.
     #[arg(value_name = "STUDY.toml", required_unless_present = "merge", conflicts_with = "merge")]
     pub study: Option<PathBuf>,
-    /// Directory for the results: new or empty, or one with an earlier study if --resume, --shard
-    /// or --force is given. Without it, the name of the study file less its extension, in the
-    /// current directory.
+    /// Directory for the results: new or empty, or with an earlier study if --resume, --shard or
+    /// --force is given. By default it has the name of the study file, without its extension.
     #[arg(long, value_name = "DIR", required_if_eq("study", "-"), required_unless_present = "study")]
     pub out: Option<PathBuf>,
     /// Compute only the I-th of N shares of about equal size. Several machines may work in one

@@ -9,20 +9,19 @@ const HEAD: &str = "\
 
 <!-- Made from the command line: ASPERITY_BLESS=1 cargo test --test documents -->
 
-`asperity COMMAND --help` says on the terminal what is said here. In place of a case file, `-` is
-standard input. Errors go to standard error and name file, line and key. For exit codes, see
-[Results](results.md#exit-codes).
+`asperity COMMAND --help` prints the same on the terminal. In place of a case file, `-` is standard input. For
+exit codes, see [Results](results.md#exit-codes).
 ";
 
 const SHARED_HEAD: &str = "
 ## Shared options
 
-Commands that compute have some or all of these options; each lists those that it has.
+Several commands have some or all of these options; each lists those that it has.
 
 ";
 
 /// Those options, as `asperity run` has them.
-const SHARED: [&str; 5] = ["device", "precision", "threads", "quiet", "verbose"];
+const SHARED: [&str; 6] = ["set", "device", "precision", "threads", "quiet", "verbose"];
 
 /// Prose is at most this wide.
 const WIDTH: usize = 110;
