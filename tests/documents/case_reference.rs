@@ -16,9 +16,8 @@ Schema for editors. A [study file](studies.md) has the same tables under `base`.
 Use any consistent system of units: `radius` sets the unit of length and `youngs_modulus` that of stress;
 forces are stress times length squared. With millimetres and MPa, forces are in newtons.
 
-Yield stresses are Kirchhoff stresses (true stress times J, the ratio of present to original volume), and
-plastic strains are logarithmic. Except for the elastic change of volume, both equal the true stress and
-strain of a tensile test.
+Yield stresses and plastic strains are the true stress and the logarithmic strain of a tensile test. (Strictly,
+the stress is the Kirchhoff stress, true stress times the ratio of present to original volume.)
 
 On the command line, `--set KEY=VALUE` replaces a value. The key is dotted, and segments of the path count
 from 0: `--set path.0.indentation=0.01`.
@@ -60,14 +59,10 @@ release = true
 ";
 
 const PATH: &str = "\
-The path is an array of tables, one for each segment. A segment has either `release`, or one or several of
-`indentation`, `shear`, `twist` and `roll`, which then move in proportion. `shear`, `twist` and `roll` without
-`indentation` may have a `hold`. Displacements and angles are totals from first touch, not increments.
-
-The equator of the sphere moves as a rigid plate: along the plane in any direction, down, and about all three
-axes ([What the sphere meets](opponents.md)). As in an engine, z is the contact normal, delta_T the integrated
-tangential displacement of the surfaces, and `twist` the spin about the normal. `roll` leaves delta_T
-unchanged.
+Each segment has either `release`, or one or several of `indentation`, `shear`, `twist` and `roll`, which then
+move in proportion. In a shear, twist or roll without `indentation`, `hold` says what stays constant.
+Displacements and angles are totals from first touch, not increments. They are those of the
+[equator](opponents.md), which moves as a rigid plate.
 
 ```toml
 [[path]]
