@@ -16,9 +16,8 @@ use crate::output::write_own;
 
 /// Measure the kernels on a GPU and on the CPU.
 ///
-/// These are return mapping, internal force, tangent, contact and commit. On a GPU also parts of
-/// the linear solver by themselves. Needs nothing but this program, and a driver for the GPU. Takes
-/// some minutes.
+/// These are return mapping, internal force, tangent, contact and commit; on a GPU also parts of
+/// the linear solver. Takes some minutes.
 #[derive(Clone, Debug, Args)]
 pub struct BenchArgs {
     /// What to measure beside the CPU. The default is ASPERITY_DEVICE if it is set, else auto.

@@ -41,11 +41,11 @@ pub struct ExportArgs {
     #[arg(long, value_enum, value_name = "LANGUAGE", required_unless_present = "engine")]
     pub format: Option<Language>,
     /// Write the files to this directory, replacing files of the same names. With --format c for
-    /// one material: asperity_law.h (the table as a constant), law.asperity (the same, for an
-    /// engine to read at its start), asperity_contact.h (the update), asperity_contact3d.h (spheres
-    /// and walls) and a program that checks them. For all materials: asperity_law.h and a program
-    /// that checks it. With --format python: asperity_law.py. Each comes with
-    /// asperity_law_vectors.csv [default: asperity_law.h or asperity_law.py alone, to stdout].
+    /// one material: asperity_law.h (the table as a constant), law.asperity (the same, to be read
+    /// at run time), asperity_contact.h (the update) and asperity_contact3d.h (spheres and walls).
+    /// For all materials: asperity_law.h. With --format python: asperity_law.py. Each comes with
+    /// test vectors, for C also with a program that checks them [default: asperity_law.h or
+    /// asperity_law.py alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

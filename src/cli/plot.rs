@@ -30,7 +30,7 @@ pub struct PlotArgs {
     #[arg(long, value_name = "LAW.json")]
     pub law: Option<PathBuf>,
     /// Format of the pictures; by default that of the case, SVG for a study. The report of a study
-    /// has its pictures as SVG.
+    /// always has SVG.
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub format: Option<Format>,
     /// Width of each picture, as in 85mm, 8.5cm, 3.3in, 240pt or 640px; it is laid out anew for it.

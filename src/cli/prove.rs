@@ -46,12 +46,10 @@ impl From<ProvedPart> for Part {
 
 /// Compare a GPU with the CPU, in results and in speed.
 ///
-/// Checks whether its limits suffice for the kernels, compares each kernel with the CPU in every
-/// precision that the GPU has, and computes the cases of fixtures/studies/parity.toml on both
-/// (differences, iterations, and whether a repeated or a single run gives the same bits). Measures
-/// latency, copies, and whole jobs at 6 and 16 elements in batches of 1 to 256, beside all cores of
-/// the CPU. Writes a report as JSON and as Markdown, without the names of host and user. Exit code
-/// 3 means that results disagree, 2 that there is no GPU. Needs only this program and a driver.
+/// Compares the limits of the GPU with what the kernels need, and each kernel and the cases of
+/// fixtures/studies/parity.toml with the CPU. Measures latency, copies, and whole jobs in batches.
+/// Writes a report as JSON and as Markdown, without the names of host and user. Exit code 3 means
+/// that results disagree, 2 that there is no GPU.
 #[derive(Clone, Debug, Args)]
 pub struct ProveArgs {
     /// The file for the report, as JSON; the page beside it ends in .md.

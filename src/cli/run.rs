@@ -36,8 +36,7 @@ pub struct RunArgs {
     pub resume: bool,
     /// Continue the finished run in DIR along a longer path: its case with segments added after the
     /// last one. The results are those of the longer path from the beginning; if that path needs
-    /// another mesh, the extension is refused. An interrupted extension continues, and a finished
-    /// one is left as it is.
+    /// another mesh, the extension is refused.
     #[arg(long, conflicts_with = "resume")]
     pub extend: bool,
     /// Replace earlier results in DIR, even those of another case.

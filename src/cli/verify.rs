@@ -15,8 +15,8 @@ use crate::verify::{Check, FAMILIES, Level, Report, Runner, Verdict, VerifyError
 
 /// Compare this build with closed-form solutions.
 ///
-/// Prints result, reference, error, tolerance and verdict of each check, and ends with exit code 3
-/// if one fails. Every tolerance has its reason, which -v prints and --out writes.
+/// Prints result, reference, error, tolerance and verdict of each check; exit code 3 means that one
+/// failed. The reason of each tolerance is printed by -v and written by --out.
 #[derive(Clone, Debug, Args)]
 pub struct VerifyArgs {
     /// Use 16 elements along the contact radius in all checks; by default some use fewer, to finish
