@@ -40,7 +40,7 @@ pub struct BenchArgs {
     /// Print that JSON instead of the table.
     #[arg(long)]
     pub json: bool,
-    /// Threads of the rows on all cores; by default all of the machine's.
+    /// Number of threads; by default all of the machine's.
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// How much to say.

@@ -64,7 +64,7 @@ pub struct ProveArgs {
     /// Which device.
     #[arg(long, value_enum, default_value_t, value_name = "DEVICE")]
     pub device: Proved,
-    /// Threads of what is computed on the CPU; by default all of the machine's.
+    /// Number of threads; by default all of the machine's.
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// How much to say.
