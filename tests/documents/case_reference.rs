@@ -16,8 +16,8 @@ Schema for editors. A [study file](studies.md) has the same tables under `base`.
 Use any consistent system of units: `radius` sets the unit of length and `youngs_modulus` that of stress;
 forces are stress times length squared. With millimetres and MPa, forces are in newtons.
 
-Yield stresses and plastic strains are the true stress and the logarithmic strain of a tensile test. (Strictly,
-the stress is the Kirchhoff stress, true stress times the ratio of present to original volume.)
+Yield stresses and plastic strains are the true stress and the logarithmic strain of a tensile test (strictly,
+the Kirchhoff stress: true stress times the ratio of present to original volume).
 
 On the command line, `--set KEY=VALUE` replaces a value. The key is dotted, and segments of the path count
 from 0: `--set path.0.indentation=0.01`.
