@@ -5,8 +5,8 @@
         [--deck "--stick-slope 20"] [--finer N] [--kept]
 
 Needs cargo, and `ccx` (Debian and Ubuntu: apt-get install calculix-ccx). Without ccx it leaves the deck, says so and ends with 1.
---deck has further words for the example ccx_deck; --finer runs Asperity with N elements along the contact radius too; --kept runs
-nothing and prints from what lies in DIR.
+--deck has further words for the example ccx_deck, such as --element C3D8I or --solver 'ITERATIVE CHOLESKY'; --finer runs
+Asperity with N elements along the contact radius too; --kept runs nothing and prints from what lies in DIR.
 """
 
 import argparse
@@ -14,6 +14,7 @@ import csv
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -100,7 +101,7 @@ def run(options, out):
     times = {"asperity": ours("asperity")}
     if options.finer:
         times["finer"] = ours("finer", "--set", f"mesh.elements_per_contact_radius={options.finer}")
-    measured([deck, options.case, out / "deck.inp", *sets, *options.deck.split()], out / "deck.log")
+    measured([deck, options.case, out / "deck.inp", *sets, *shlex.split(options.deck)], out / "deck.log")
     if shutil.which("ccx") is None:
         summary = json.loads((out / "asperity" / "summary.json").read_text())
         took = f"{summary['steps']} steps, {summary['newton_iterations']} iterations, {times['asperity'][0]:.1f} CPU s"

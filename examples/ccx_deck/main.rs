@@ -2,7 +2,7 @@
 //! comparison in `benches/against_ccx`.
 //!
 //! `cargo run --release --example ccx_deck -- CASE.toml OUT.inp [--set KEY=VALUE]...
-//! [--overclosure N] [--stick-slope N] [--increment SHARE] [--element NAME]`
+//! [--overclosure N] [--stick-slope N] [--increment SHARE] [--element NAME] [--solver NAME]`
 //!
 //! Contact is what CalculiX has: surface to surface, a linear pressure-overclosure law of slope 100
 //! E/R and a stick slope of 5 E/R, settings with which it is known to finish. The rigid plane is
@@ -12,9 +12,9 @@
 //! softer body is the slave.
 //!
 //! The elements are C3D8, which have Asperity's nodes but lock in plastic flow: their pressure
-//! swings from one integration point to the next. `--element` takes two that do not: C3D8R, the
-//! same with one point (CalculiX stabilises its hourglass modes), and C3D20R, with a node more on
-//! each edge.
+//! swings from one integration point to the next. `--element` takes three that do not: C3D8R, the
+//! same with one point (CalculiX stabilises its hourglass modes), C3D8I, with incompatible modes,
+//! and C3D20R, with a node more on each edge.
 
 mod quadratic;
 #[cfg(test)]
@@ -44,7 +44,12 @@ struct Settings {
     largest_increment: f64,
     /// The bodies' elements.
     element: Element,
+    /// Solver of the linear systems, by CalculiX' name.
+    solver: &'static str,
 }
+
+/// Solvers of linear systems that CalculiX may have been built with.
+const SOLVERS: [&str; 4] = ["SPOOLES", "PARDISO", "ITERATIVE CHOLESKY", "ITERATIVE SCALING"];
 
 /// An element, by CalculiX' name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,17 +58,20 @@ enum Element {
     C3D8,
     /// Eight nodes, one point.
     C3D8R,
+    /// Eight nodes, eight points, incompatible modes.
+    C3D8I,
     /// Twenty nodes, eight points.
     C3D20R,
 }
 
 impl Element {
-    const ALL: [Self; 3] = [Self::C3D8, Self::C3D8R, Self::C3D20R];
+    const ALL: [Self; 4] = [Self::C3D8, Self::C3D8R, Self::C3D8I, Self::C3D20R];
 
     fn name(self) -> &'static str {
         match self {
             Self::C3D8 => "C3D8",
             Self::C3D8R => "C3D8R",
+            Self::C3D8I => "C3D8I",
             Self::C3D20R => "C3D20R",
         }
     }
@@ -71,7 +79,7 @@ impl Element {
 
 /// Those with which CalculiX is known to finish.
 const KNOWN_TO_FINISH: Settings =
-    Settings { overclosure_slope: 100.0, stick_slope: 5.0, largest_increment: 0.1, element: Element::C3D8 };
+    Settings { overclosure_slope: 100.0, stick_slope: 5.0, largest_increment: 0.1, element: Element::C3D8, solver: SOLVERS[0] };
 /// A rigid sphere: facets in y (twice as many in x, along the shear), and its thickness over R.
 const CAP: (usize, f64) = (36, 0.2);
 /// Faces in CalculiX' numbering, S1 to S6, as positions in [`FACES`].
@@ -103,7 +111,8 @@ struct Arguments {
 }
 
 fn arguments() -> Result<Arguments, Failed> {
-    const USAGE: &str = "usage: ccx_deck CASE.toml OUT.inp [--set KEY=VALUE]... [--overclosure N] [--stick-slope N] [--increment SHARE] [--element C3D8|C3D8R|C3D20R]";
+    const USAGE: &str = "usage: ccx_deck CASE.toml OUT.inp [--set KEY=VALUE]... [--overclosure N] [--stick-slope N] \
+                         [--increment SHARE] [--element C3D8|C3D8R|C3D8I|C3D20R] [--solver NAME]";
     let (mut files, mut set, mut settings) = (Vec::new(), Vec::new(), KNOWN_TO_FINISH);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
@@ -111,7 +120,14 @@ fn arguments() -> Result<Arguments, Failed> {
             "--element" => {
                 let name = arguments.next().unwrap_or_default();
                 let known = Element::ALL.into_iter().find(|element| element.name() == name);
-                settings.element = known.ok_or_else(|| format!("--element wants C3D8, C3D8R or C3D20R, not \"{name}\""))?;
+                settings.element =
+                    known.ok_or_else(|| format!("--element wants C3D8, C3D8R, C3D8I or C3D20R, not \"{name}\""))?;
+                continue;
+            }
+            "--solver" => {
+                let name = arguments.next().unwrap_or_default();
+                let known = SOLVERS.into_iter().find(|solver| *solver == name);
+                settings.solver = known.ok_or_else(|| format!("--solver wants one of {SOLVERS:?}, not \"{name}\""))?;
                 continue;
             }
             "--set" => {
@@ -172,7 +188,7 @@ fn deck(case: &Case, problem: &Problem, settings: &Settings) -> Result<String, F
                 return Err("a release has no end known in advance: give an indentation to go back to".into());
             }
         }
-        step(&mut text, h, delta_t, settings.largest_increment)?;
+        step(&mut text, h, delta_t, settings)?;
     }
     Ok(text)
 }
@@ -400,8 +416,9 @@ fn contact(text: &mut String, case: &Case, problem: &Problem, settings: &Setting
 }
 
 /// One segment; the equator's reaction of every increment goes to the .dat file.
-fn step(text: &mut String, h: f64, delta_t: f64, largest: f64) -> Result<(), Failed> {
-    writeln!(text, "*STEP, NLGEOM, INC=1000\n*STATIC\n{largest}, 1., 1e-6, {largest}")?;
+fn step(text: &mut String, h: f64, delta_t: f64, settings: &Settings) -> Result<(), Failed> {
+    let (solver, largest) = (settings.solver, settings.largest_increment);
+    writeln!(text, "*STEP, NLGEOM, INC=1000\n*STATIC, SOLVER={solver}\n{largest}, 1., 1e-6, {largest}")?;
     writeln!(text, "*BOUNDARY\nEQUATOR, 1, 1, {delta_t:.12e}\nEQUATOR, 2, 2\nEQUATOR, 3, 3, {:.12e}", -h)?;
     text.push_str("*NODE PRINT, NSET=EQUATOR, TOTALS=ONLY\nRF\n*END STEP\n");
     Ok(())

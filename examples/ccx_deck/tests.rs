@@ -172,7 +172,13 @@ fn each_body_has_its_material_and_the_softer_one_is_the_slave() {
 #[test]
 fn settings_are_what_was_asked_for() {
     let (case, problem) = case(&[]);
-    let settings = Settings { overclosure_slope: 200.0, stick_slope: 20.0, largest_increment: 0.05, element: Element::C3D8R };
+    let settings = Settings {
+        overclosure_slope: 200.0,
+        stick_slope: 20.0,
+        largest_increment: 0.05,
+        element: Element::C3D8R,
+        solver: "ITERATIVE CHOLESKY",
+    };
     let deck = deck(&case, &problem, &settings).expect("a deck");
     assert_eq!(number(data(&deck, "*SURFACE BEHAVIOR")[0][0]), 200.0 * 200e3);
     assert_eq!(number(data(&deck, "*FRICTION")[0][1]), 20.0 * 200e3);
