@@ -9,6 +9,7 @@ from pathlib import Path
 import matplotlib
 
 matplotlib.use("svg")
+matplotlib.rcParams["svg.hashsalt"] = "dense"
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -70,8 +71,8 @@ def picture(results, cells, file):
     a.plot(d, isolated(d), color="0.4", linewidth=1, label="Helle, Easterling & Ashby 1985: isolated contacts")
     a.plot(d[d > 0.9], voids(d[d > 0.9]), ":", color="0.4", linewidth=1.4, label="the same: isolated pores")
     a.axvline(0.8, color="0.8", linewidth=1, zorder=0)
-    a.text(0.803, 2.42, "pairwise DEM's limit after\nHarthong et al. 2009", fontsize=7, color="0.4", va="top")
-    a.set_title(f"{packed[0]['spheres']} spheres, mu = 0.1", fontsize=10)
+    a.text(0.806, 0.05, "limit of pairwise DEM after\nHarthong et al. 2009", fontsize=7, color="0.4")
+    a.set_title(f"{packed[0]['spheres'] if packed else 0} spheres, mu = 0.1", fontsize=10)
     shades = {"sc": "C2", "bcc": "C4", "fcc": "C5"}
     for packing, shade in shades.items():
         fe = cells.get(("metal", packing))
@@ -123,10 +124,10 @@ def main():
     print("Cubic packings: pressure of the finite elements over sigma_Y, errors of the laws in per cent\n")
     rows, fails = [], []
     for (material, packing), fe in cells.items():
-        if packing not in CELLS:
-            continue
         laws = {e["law"]: np.array(e["rows"]) for e in results if e["material"] == material and e["shape"] == packing}
-        simple = next(np.array(e["rows"]) for e in results if e["material"] == material and e["shape"] == "sc" and e["law"] == "asperity")
+        simple = next((np.array(e["rows"]) for e in results if e["material"] == material and e["shape"] == "sc" and e["law"] == "asperity"), None)
+        if packing not in CELLS or simple is None or not set(NAMES) <= set(laws):
+            continue
         marks = [d for d in (0.60, 0.65, 0.70, 0.75, 0.80, 0.85, 0.90, 0.95) if fe[0, 0] + 0.01 < d <= fe[-1, 0]]
         for d in marks:
             truth = float(np.interp(d, fe[:, 0], fe[:, 1]))

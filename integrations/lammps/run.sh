@@ -42,6 +42,9 @@ gcc -std=c99 -O2 -shared -fPIC -I"$work/law-copper" "$here/tests/bare.c" -o "$wo
 for name in starts walls presses; do
     "$work/venv/bin/python" "$here/tests/test_$name.py" "$work/asperityplugin.so" "$work/equal" "$work/elastic"
 done
+# Dense compaction: 16 spheres to a relative density of 0.95.
+"$program" law export built-in "$root/benches/compaction/metal.toml" --for lammps --out "$work/dense/metal" >/dev/null
+"$work/venv/bin/python" "$root/benches/compaction/press.py" "$work/asperityplugin.so" "$work/dense" "$work/dense" --quick
 # The second way in: no plug-in, the header in a library that `fix external` calls.
 g++ -std=c++17 -O3 -march=native -fPIC -shared -Wall -Wextra -I"$work/law-copper" "$here/external/asperity_external.cpp" -o "$work/libasperity_external.so"
 "$work/venv/bin/python" "$here/tests/test_external.py" "$work/asperityplugin.so" "$work/equal" "$work/elastic" "$work/libasperity_external.so"
