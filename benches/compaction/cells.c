@@ -3,7 +3,7 @@
  *     cells PACKING N Y SPEED DENSITY
  *
  * PACKING: sc, bcc, fcc, or pair for one contact alone. N: elements along an edge of each of the four blocks. Y: yield stress over E. SPEED: of the planes, over
- * sqrt(E/rho). Runs to the relative density DENSITY; of a pair, to h/R = 1 - DENSITY. Prints h/R, relative density, pressure over Y, share of the planes in contact.
+ * sqrt(E/rho). Runs to the relative density DENSITY; of a pair, to h/R = 1 - DENSITY. Prints h/R, relative density, pressure over Y, nodes that the planes push.
  *
  * R = E = rho = 1, nu = 0.3. Hex8 with mean dilatation; multiplicative plasticity, radial return of the isochoric elastic left Cauchy-Green tensor (Simo 1988). Contact
  * without friction: a node that would pass a plane is put onto it. All neighbours are alike, so that a plane that moves is what a neighbour is.

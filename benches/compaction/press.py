@@ -199,12 +199,12 @@ def press(law, material, shape, start, args):
             if mark not in told and d >= mark - 1e-3:
                 told[mark] = run.contacts()
     run.lmp.close()
-    rows = np.array(rows)
+    rows = np.array(rows or [(first, 0.0, 0.0)])
     # Of walls on all sides the mean of the three directions; in a die that on the lid.
     mean = rows[:, 1] if shape == "die" else (rows[:, 1] + 2 * rows[:, 2]) / 3
     loaded = np.where(mean > 0.01)[0]
     at = lambda values: {f"{d:.2f}": float(np.interp(d, rows[:, 0], values)) for d in TOLD if d <= rows[-1, 0] + 1e-3}
-    return {"law": law, "material": material, "shape": shape, "spheres": len(start[1]), "first": float(rows[loaded[0], 0]), "last": float(rows[-1, 0]), "failed": failed,
+    return {"law": law, "material": material, "shape": shape, "spheres": len(start[1]), "first": float(rows[loaded[0], 0]) if len(loaded) else None, "last": float(rows[-1, 0]), "failed": failed,
             "steps": run.steps, "pressure": at(mean), "radial": at(rows[:, 2]), "contacts": {f"{d:.2f}": told[d] for d in told}, "energy": gap / top if top else None,
             "seconds": time.process_time() - began, "rows": np.column_stack([rows[:, 0], mean, rows[:, 2]]).tolist()}
 
