@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Scores the macro-element of benches/law/element, and fits its universal constants to simulated paths.
+"""Scores the contact update, and fits its universal constants to simulated paths.
 
-    python3 benches/law/fit_element.py [--program target/release/asperity] [--more RUN TABLE]... [--strict RUN TABLE]...
-        [--vector] [--fit] [--rounds N] [--held-out] [--write] [--detail]
+    python3 benches/law/fit_element.py [--more RUN TABLE]... [--strict RUN TABLE]... [--vector] [--fit] [--rounds N] [--held-out]
+        [--write] [--detail]
 
-From the paths and tables of fixtures/paths, and runs with a table each besides, to element/element_constants.h in one command: --fit
---write. What is made small is the mean over all paths of e^8/(1 + e^8), where e = 1 is the aim of `asperity law check`, 5 % rms and
+From the paths and tables of fixtures/paths, and runs with a table each besides, to src/contact_law/constants.rs in one command:
+--fit --write. What is made small is the mean over all paths of e^8/(1 + e^8), where e = 1 is the aim of `asperity law check`, 5 % rms and
 12 % at worst in F_T and F_N, of a --strict run a third of it: a path far outside of it pulls no more than one that may come in.
 Paths with a mesh error above 2.5 % (fixtures/paths/errors.csv) are told and not counted. Constants move in turns by steps that
-shrink. --held-out leaves out one material at a time, and scores it by the constants of the others. Needs gcc.
+shrink. --held-out leaves out one material at a time, and scores it by the constants of the others. Builds benches/law_element.rs.
 """
 
 import argparse
@@ -19,11 +19,11 @@ import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-ELEMENT = HERE / "element"
-PATHS = HERE.parent.parent / "fixtures" / "paths"
+ROOT = HERE.parent.parent
+SOURCE = ROOT / "src" / "contact_law" / "constants.rs"
+PATHS = ROOT / "fixtures" / "paths"
 sys.path.insert(0, str(PATHS))
 from make import at_the_limit  # noqa: E402
 
@@ -32,44 +32,37 @@ STRICT = 1 / 3
 # h, the two of delta_T, F_N, the two of F_T; what has no name is 0.
 ROW = "h", "delta_T", "", "F_N", "F_T", ""
 MESH = 2.5  # per cent
-# What each constant is, and the range in which it means something.
+# The range in which each constant means something, in the order of the source.
 CONSTANTS = {
-    "LOSS": (0.1, 3.0, "A = this c r^3/(r + the next): share of the yield force that a steady press loses at r = F_T/F_N"),
-    "LOSS_SMALL": (0.0, 1.0, "the r below which it loses less than with r^2"),
-    "LOSS_MOST": (0.1, 1.0, "greatest A over what the table's shear loses at the same r"),
-    "VERTEX_FLOW": (0.0, 3.0, "slip at the vertex over dh_p, of a contact that is all plastic"),
-    "VERTEX_FADES": (0.0, 40.0, "it fades with exp(-this (D/h)^2)"),
-    "VERTEX_LENGTH": (0.2, 8.0, "dh_p over mu P/k_T in which the vertex follows r"),
-    "VERTEX_ROUND": (0.05, 0.6, "distance over mu within which its direction is rounded"),
-    "BEYOND": (0.0, 2.0, "slope of its loss beyond the shear's end, over the mean slope before"),
-    "BEYOND_FADES": (0.0, 4.0, "its power of 1 - D/h"),
-    "RADIAL": (0.0, 0.5, "radial slip of a press over dh_p, of a contact that is all plastic"),
-    "RADIAL_FADES": (0.0, 4.0, "its power of 1 - D/h"),
-    "RADIAL_MOST": (0.0, 1.0, "greatest radial force of a slider over its limit"),
-    "FIRST": (0.3, 2.0, "n - 1 of a first reversal over that of the table"),
-    "FIRST_MOST": (0.1, 0.6, "the greatest such n - 1"),
-    "LATER": (0.05, 0.5, "n - 1 of reversals after the first, at most, at mu = 0.3"),
-    "LATER_MU": (0.0, 1.5, "its power of mu"),
-    "UNSHEARED": (1.0, 5.0, "n of a contact that is not sheared and all plastic"),
-    "FORGETS": (0.0, 10.0, "how fast a press takes back how far it was sheared, over dh_p/D"),
-    "RELEASED": (0.0, 0.4, "share of the yield force that a whole release takes, of a contact that is all plastic"),
-    "RECOVERS": (10.0, 3000.0, "how fast a press gives it back"),
-    "WIDENS": (0.0, 0.5, "growth of the contact radius over delta_T_end/a0 that is in a table's unloading"),
-    "STIFFENS": (0.0, 3.0, "power of that growth that is in its k_T"),
-    "NARROWS": (0.02, 10.0, "dh_p/D in which a press makes the contact as wide as F_N has it"),
-    "COARSE": (-0.2, 0.5, "power of (h/D over the next) by which the c of a table on a coarse mesh is too small, times 1 - 0.1/mu"),
-    "COARSE_FROM": (2.0, 12.0, "the h/D at which it is right"),
-    "BEND": (0.0, 3.0, "how c changes with r, over what is recovered of h"),
-    "BEND_FROM": (0.0, 0.4, "the recovered share at which it does not"),
+    "loss": (0.1, 3.0),
+    "loss_small": (0.0, 1.0),
+    "loss_most": (0.1, 1.0),
+    "vertex_flow": (0.0, 3.0),
+    "vertex_fades": (0.0, 40.0),
+    "vertex_length": (0.2, 8.0),
+    "vertex_round": (0.05, 0.6),
+    "beyond": (0.0, 2.0),
+    "beyond_fades": (0.0, 4.0),
+    "radial": (0.0, 0.5),
+    "radial_fades": (0.0, 4.0),
+    "radial_most": (0.0, 1.0),
+    "first": (0.3, 2.0),
+    "first_most": (0.1, 0.6),
+    "later": (0.05, 0.5),
+    "later_mu": (0.0, 1.5),
+    "unsheared": (1.0, 5.0),
+    "forgets": (0.0, 10.0),
+    "follows": (0.02, 0.02),
+    "released": (0.0, 0.4),
+    "recovers": (10.0, 3000.0),
+    "widens": (0.0, 0.5),
+    "stiffens": (0.0, 3.0),
+    "narrows": (0.02, 10.0),
+    "coarse": (-0.2, 0.5),
+    "coarse_from": (2.0, 12.0),
+    "bend": (0.0, 3.0),
+    "bend_from": (0.0, 0.4),
 }
-
-
-def exported(args, law, folder):
-    """The table's file that `law export` writes of a law, and the header beside it."""
-    folder.mkdir()
-    command = [args.program, "law", "export", law, "--format", "c", "--out", folder]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    return folder / "law.asperity", folder / "asperity_contact.h"
 
 
 def protocol():
@@ -109,22 +102,32 @@ def vectors():
 
 
 def constants():
-    text = (ELEMENT / "element_constants.h").read_text()
-    return {name: float(re.search(rf"#define ELEMENT_{name} (\S+)", text).group(1)) for name in CONSTANTS}
+    """Those of the program."""
+    text = SOURCE.read_text()
+    fitted = text[text.index("pub const FITTED") :]
+    return {name: float(re.search(rf"^ +{name}: ([-0-9.e]+),", fitted, re.M).group(1)) for name in CONSTANTS}
 
 
-def header(values):
-    """element_constants.h, of numbers or of C expressions."""
-    lines = ["/* Universal constants of the element, as benches/law/fit_element.py --fit --write has made them. */"]
-    lines += ["#ifndef ASPERITY_ELEMENT_CONSTANTS_H", "#define ASPERITY_ELEMENT_CONSTANTS_H", ""]
-    lines += [f"#define ELEMENT_{name} {values[name]} /* {CONSTANTS[name][2]} */" for name in CONSTANTS]
-    return "\n".join([*lines, "", "#endif", ""])
+def write(values):
+    """Puts constants into the source."""
+    head, fitted = SOURCE.read_text().split("pub const FITTED", 1)
+    for name, value in values.items():
+        fitted = re.sub(rf"^( +{name}: )[-0-9.e]+,", rf"\g<1>{value!r},", fitted, count=1, flags=re.M)
+    SOURCE.write_text(f"{head}pub const FITTED{fitted}")
+
+
+def program():
+    """The program that drives the update, built."""
+    command = ["cargo", "build", "--bench", "law_element", "--message-format", "json"]
+    built = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
+    found = [json.loads(line) for line in built if '"law_element"' in line]
+    return next(one["executable"] for one in found if one.get("executable"))
 
 
 class Driver:
-    """The element with its constants as variables, and all paths in it."""
+    """The update with its constants as variables, and all paths in it."""
 
-    def __init__(self, args, work):
+    def __init__(self, args):
         contacts = [(*contact, 1.0) for contact in protocol()]
         contacts += [(*contact, 1.0) for contact in vectors()] if args.vector else []
         contacts += [(*more(*pair), 1.0) for pair in args.more] + [(*more(*pair), STRICT) for pair in args.strict]
@@ -134,20 +137,13 @@ class Driver:
                 mesh[row["contact"], row["path"]] = max(float(row["F_N"]), float(row["F_T"]))
         self.paths, tables, lines = [], [], []
         for number, (name, law, paths, aim) in enumerate(contacts):
-            table, contact = exported(args, law, work / f"contact-{number}")
-            tables.append(table)
+            tables.append(law)
             for path, rows in paths.items():
                 self.paths.append((name, path, rows, aim, mesh.get((name, path), 0.0) <= MESH))
                 lines.append(f"{number} {len(rows)}")
                 lines.extend(f"{row[0]!r} {row[1]!r} {row[2]!r}" for row in rows)
-        sources = [contact, ELEMENT / "asperity_element.h", ELEMENT / "element_table.h", ELEMENT / "element_drive.c"]
-        for source in sources:
-            (work / source.name).write_text(source.read_text())
-        (work / "element_constants.h").write_text(header({name: f"constants[{i}]" for i, name in enumerate(CONSTANTS)}))
-        command = ["gcc", "-std=c99", "-O2", "-march=native", f"-DELEMENT_FIT={len(CONSTANTS)}", work / "element_drive.c"]
-        subprocess.run([*command, "-o", work / "drive", "-lm"], check=True)
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-        self.driver = subprocess.Popen([work / "drive", str(args.increments), *tables], **pipes)
+        self.driver = subprocess.Popen([program(), str(args.increments), *tables], **pipes)
         self.driver.stdin.write(f"{len(self.paths)}\n" + "\n".join(lines) + "\n")
 
     def scores(self, values):
@@ -185,7 +181,7 @@ def fit(driver, start, taken, rounds):
     best, least = dict(start), cost(driver, driver.scores(start), taken)
     steps = {name: 0.12 * max(abs(value), 0.1) for name, value in start.items()}
     for number in range(rounds):
-        for name, (low, high, _) in CONSTANTS.items():
+        for name, (low, high) in CONSTANTS.items():
             for sign in (1, -1):
                 trial = dict(best)
                 trial[name] = float(f"{min(max(best[name] + sign * steps[name], low), high):.5g}")
@@ -221,7 +217,6 @@ def told(driver, scores, detail):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default="target/release/asperity")
     parser.add_argument("--more", nargs=2, action="append", default=[], metavar=("RUN", "TABLE"))
     parser.add_argument("--strict", nargs=2, action="append", default=[], metavar=("RUN", "TABLE"))
     parser.add_argument("--vector", action="store_true", help="the paths of fixtures/paths/vector too, where nothing twists or rolls")
@@ -229,33 +224,32 @@ def main():
     parser.add_argument("--rounds", type=int, default=8)
     parser.add_argument("--fit", action="store_true")
     parser.add_argument("--held-out", action="store_true")
-    parser.add_argument("--write", action="store_true", help="the fitted constants into element_constants.h")
+    parser.add_argument("--write", action="store_true", help="the fitted constants into the source")
     parser.add_argument("--detail", action="store_true", help="each path: F_T rms, worst, F_N rms, worst in per cent")
     args = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        driver = Driver(args, pathlib.Path(folder))
-        start, everything = constants(), [True] * len(driver.paths)
-        scores = driver.scores(start)
-        print(f"as it is, cost {cost(driver, scores, everything):.4f}")
-        told(driver, scores, args.detail)
-        if args.held_out:
-            held = [None] * len(driver.paths)
-            group = lambda name: name.split("-mu-")[0] if "-mu-" in name else "other"
-            for material in sorted({group(path[0]) for path in driver.paths}):
-                taken = [group(path[0]) != material for path in driver.paths]
-                values, _ = fit(driver, start, taken, args.rounds)
-                for index, one in enumerate(driver.scores(values)):
-                    held[index] = held[index] if taken[index] else one
-            print("each material by the constants of the others")
-            told(driver, held, args.detail)
-        if args.fit:
-            values, least = fit(driver, start, everything, args.rounds)
-            print(f"fitted, cost {least:.4f}")
-            told(driver, driver.scores(values), args.detail)
-            for name, value in values.items():
-                print(f"{name:14} {start[name]:9.4g} -> {value:.4g}")
-            if args.write:
-                (ELEMENT / "element_constants.h").write_text(header(values))
+    driver = Driver(args)
+    start, everything = constants(), [True] * len(driver.paths)
+    scores = driver.scores(start)
+    print(f"as it is, cost {cost(driver, scores, everything):.4f}")
+    told(driver, scores, args.detail)
+    if args.held_out:
+        held = [None] * len(driver.paths)
+        group = lambda name: name.split("-mu-")[0] if "-mu-" in name else "other"
+        for material in sorted({group(path[0]) for path in driver.paths}):
+            taken = [group(path[0]) != material for path in driver.paths]
+            values, _ = fit(driver, start, taken, args.rounds)
+            for index, one in enumerate(driver.scores(values)):
+                held[index] = held[index] if taken[index] else one
+        print("each material by the constants of the others")
+        told(driver, held, args.detail)
+    if args.fit:
+        values, least = fit(driver, start, everything, args.rounds)
+        print(f"fitted, cost {least:.4f}")
+        told(driver, driver.scores(values), args.detail)
+        for name, value in values.items():
+            print(f"{name:14} {start[name]:9.4g} -> {value:.4g}")
+        if args.write:
+            write(values)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@
 namespace LAMMPS_NS {
 
 constexpr int NUMBERS = sizeof(asperity_contact) / sizeof(double);
-static_assert(NUMBERS == 43, "a contact has 43 numbers");
+static_assert(NUMBERS == 36, "a contact has 36 numbers");
 
 // Version of what the plug-in writes to restart files; raised whenever that changes, or what the numbers of a contact mean.
 constexpr double LAYOUT = 3.0;

@@ -76,9 +76,10 @@ class Contacts:
 
     @property
     def array(self) -> np.ndarray:
-        """A copy of the memory, a row a contact: h, the greatest h, the elastic approach and the one it is released from, lengths; x and the place of
-        hardening, on the virgin curves; how far its slip was reversed; the deflections of the sliders, lengths. What is assigned here is put back; all of
-        it must be finite."""
+        """A copy of the memory, a row a contact: h, the greatest h, the elastic approach, the hardening and the approach at which the sliders are whole,
+        lengths; the share of the yield force that releases took, the share of F_N released last, how far it was sheared (to 1) and its slip reversed (to 2),
+        by what share it is wider than its F_N; the vertex (2); the forces of the sliders along x, along y and radial. What is assigned here is put back; all
+        of it must be finite."""
         return self._native.to_array()
 
     @array.setter
@@ -237,8 +238,8 @@ class Law:
         out: str | os.PathLike[str] | None = None,
         case: Case | Mapping[str, Any] | str | os.PathLike[str] | None = None,
     ) -> str | list[Path]:
-        """The law for other programs, ``"c"`` (of the material and the friction of ``case``) or ``"python"``: its source, or with ``out`` the files that were written
-        there, with test vectors."""
+        """The law of the material and the friction of ``case`` for other programs, ``"c"`` or ``"python"``: its source, or with ``out`` the files that were written
+        there, with test vectors. A table needs no case."""
         native = None if case is None else as_case(case)._native
         if out is None:
             return self._native.source(text("format", format), native)
@@ -262,14 +263,14 @@ class Law:
         return Contacts(self._native.contacts(as_case(case)._native, number))
 
     def update(self, state: Contacts, h: ArrayLike, delta: ArrayLike) -> Table:
-        """Moves every contact to the indentation ``h`` and then along the plane by the increment ``delta``, lengths, and keeps that in ``state``.
+        """Moves every contact to the indentation ``h`` and along the plane by the increment ``delta``, lengths, and keeps that in ``state``.
 
         Contacts are independent of each other and computed side by side, with the material, the friction and the law that ``state`` was made for.
 
         :param h: one number for all contacts, or one a contact, (n,).
         :param delta: the two components (x, y) for all contacts, or those of each, (n, 2). A single number is refused: an increment along x alone is (x, 0).
         :returns: ``F_N`` (n,), compression positive; ``F_T`` (n, 2), along the displacement; the contact radius ``a`` (n,); and the tangents ``dF_N_dh`` (n,),
-            ``dF_N_ddelta`` (n, 2), ``dF_T_ddelta`` (n, 2, 2). Where ``h`` or ``delta`` is infinite or NaN, or so large that the forces
+            ``dF_T_dh`` (n, 2), ``dF_N_ddelta`` (n, 2), ``dF_T_ddelta`` (n, 2, 2). Where ``h`` or ``delta`` is infinite or NaN, or so large that the forces
             overflow, the whole answer of that contact is NaN, and it stays as it was.
         :raises CaseError: another shape, or what is not a number (masked, ``None``, text, complex, a boolean), with the argument and the first index; nothing has
             moved. So it is with the ``MemoryError`` of an answer that does not fit, and where another thread moves these contacts.

@@ -25,7 +25,7 @@ pub struct Contacts {
 /// Contacts that a thread takes at a time: some hundred microseconds of work.
 const CHUNK: usize = 256;
 /// Bytes of the answer for a contact.
-const ANSWER: usize = 11 * size_of::<f64>();
+const ANSWER: usize = 13 * size_of::<f64>();
 
 impl Contacts {
     /// So many contacts before first touch, if there is memory for them.
@@ -61,7 +61,7 @@ impl Contacts {
         memory::check("copy", self.number, memory::CONTACT)?;
         let mut copied = memory::reserved("copy", self.number)?;
         copied.extend_from_slice(&states);
-        Ok(Self::new(*self.parameters, copied))
+        Ok(Self::new(self.parameters.as_ref().clone(), copied))
     }
 
     /// Numbers that a contact keeps.
@@ -72,7 +72,7 @@ impl Contacts {
 
     /// What the update knows of the pair of materials, as numbers.
     fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, numbers_of(&self.parameters))
+        PyArray1::from_vec(py, self.parameters.to_numbers())
     }
 
     /// Contacts with the parameters and the memory that others had.
@@ -80,7 +80,7 @@ impl Contacts {
     fn restore(parameters: PyReadonlyArray1<'_, f64>, memory: PyReadonlyArray2<'_, f64>) -> PyResult<Self> {
         let numbers: Vec<f64> = parameters.as_array().to_vec();
         let other = || failed("these contacts were pickled by a version of asperity that keeps them otherwise. Make them anew");
-        let parameters = parameters_of(&numbers).ok_or_else(other)?;
+        let parameters = ContactParameters::from_numbers(&numbers).ok_or_else(other)?;
         let contacts = Self::new(parameters, Self::room(memory.as_array().nrows())?);
         contacts.set_array(memory).map_err(|_| other())?;
         Ok(contacts)
@@ -91,7 +91,7 @@ impl Contacts {
         let states = self.states()?;
         memory::check("array", self.number, memory::CONTACT)?;
         let mut numbers = memory::reserved("array", self.number * Self::width())?;
-        numbers.extend(states.iter().flat_map(row));
+        numbers.extend(states.iter().flat_map(|state| state.to_numbers()));
         PyArray1::from_vec(py, numbers).reshape([self.number, Self::width()])
     }
 
@@ -103,7 +103,7 @@ impl Contacts {
             return Err(refused(format!("state: has the shape {found:?}. Allowed: ({rows}, {width})")));
         }
         for (state, row) in self.states()?.iter_mut().zip(memory.rows()) {
-            *state = of_row(&row.to_vec());
+            *state = ContactState::from_numbers(std::array::from_fn(|i| row[i]));
         }
         Ok(())
     }
@@ -136,19 +136,22 @@ impl Contacts {
         memory::check("update", number, ANSWER)?;
         let room = |components: usize| memory::filled("update", number * components, 0.0_f64);
         let (mut f_n, mut f_t, mut a) = (room(1)?, room(2)?, room(1)?);
-        let (mut df_n_dh, mut df_n_ddelta, mut df_t_ddelta) = (room(1)?, room(2)?, room(4)?);
+        let (mut df_n_dh, mut df_n_ddelta, mut df_t_ddelta, mut df_t_dh) = (room(1)?, room(2)?, room(4)?, room(2)?);
         let mut states = self.states()?;
         let (parameters, states) = (&self.parameters, states.as_mut_slice());
-        let answers = (&mut f_n[..], &mut f_t[..], &mut a[..], &mut df_n_dh[..], &mut df_n_ddelta[..], &mut df_t_ddelta[..]);
+        let forces = (&mut f_n[..], &mut f_t[..], &mut a[..]);
+        let slopes = (&mut df_n_dh[..], &mut df_n_ddelta[..], &mut df_t_ddelta[..], &mut df_t_dh[..]);
         let work = move || {
-            let (f_n, f_t, a, df_n_dh, df_n_ddelta, df_t_ddelta) = answers;
+            let ((f_n, f_t, a), (df_n_dh, df_n_ddelta, df_t_ddelta, df_t_dh)) = (forces, slopes);
             let normal = (f_n.par_iter_mut(), df_n_dh.par_iter_mut(), df_n_ddelta.par_chunks_exact_mut(2));
             let tangential = (f_t.par_chunks_exact_mut(2), df_t_ddelta.par_chunks_exact_mut(4), a.par_iter_mut());
-            let all = (states.par_iter_mut(), normal.into_par_iter(), tangential.into_par_iter()).into_par_iter();
-            all.enumerate().with_min_len(CHUNK).for_each(|(i, (state, normal, tangential))| {
+            let normal = (normal.into_par_iter(), df_t_dh.par_chunks_exact_mut(2)).into_par_iter();
+            let all = (states.par_iter_mut(), normal, tangential.into_par_iter()).into_par_iter();
+            all.enumerate().with_min_len(CHUNK).for_each(|(i, (state, (normal, df_t_dh), tangential))| {
                 let response = moved(parameters, state, h[i], [delta[[i, 0]], delta[[i, 1]]]);
                 (*normal.0, *normal.1, *tangential.2) = (response.f_n, response.df_n_dh, response.a);
                 normal.2.copy_from_slice(&response.df_n_ddelta);
+                df_t_dh.copy_from_slice(&response.df_t_dh);
                 tangential.0.copy_from_slice(&response.f_t);
                 tangential.1.copy_from_slice(response.df_t_ddelta.as_flattened());
             });
@@ -161,6 +164,7 @@ impl Contacts {
         out.set_item("a", flat(a))?;
         out.set_item("dF_N_dh", flat(df_n_dh))?;
         out.set_item("dF_N_ddelta", flat(df_n_ddelta).reshape([number, 2])?)?;
+        out.set_item("dF_T_dh", flat(df_t_dh).reshape([number, 2])?)?;
         out.set_item("dF_T_ddelta", flat(df_t_ddelta).reshape([number, 2, 2])?)?;
         Ok(out)
     }
@@ -171,7 +175,7 @@ impl Contacts {
 fn moved(parameters: &ContactParameters, state: &mut ContactState, h: f64, delta: [f64; 2]) -> ContactResponse {
     let (next, response) = parameters.update(state, h, delta);
     let answer = [response.f_n, response.f_t[0], response.f_t[1], response.a];
-    if row(&next).chain(answer).all(f64::is_finite) {
+    if next.to_numbers().into_iter().chain(answer).all(f64::is_finite) {
         *state = next;
         return response;
     }
@@ -180,58 +184,4 @@ fn moved(parameters: &ContactParameters, state: &mut ContactState, h: f64, delta
 
 fn check_length(name: &str, found: usize, wanted: usize) -> PyResult<()> {
     if found == wanted { Ok(()) } else { Err(refused(format!("{name}: has {found} numbers. Allowed: {wanted}, one a contact"))) }
-}
-
-/// The numbers of a state in a row, as they lie in memory.
-fn row(state: &ContactState) -> impl Iterator<Item = f64> {
-    let ContactState { h, h_max, approach, reach, x, sheared, reversed, deflection } = *state;
-    [h, h_max, approach, reach, x, sheared, reversed].into_iter().chain(deflection.into_iter().flatten())
-}
-
-/// The state of a row, which is long enough.
-fn of_row(row: &[f64]) -> ContactState {
-    let mut state = ContactState {
-        h: row[0],
-        h_max: row[1],
-        approach: row[2],
-        reach: row[3],
-        x: row[4],
-        sheared: row[5],
-        reversed: row[6],
-        ..ContactState::default()
-    };
-    state.deflection.iter_mut().flatten().zip(&row[7..]).for_each(|(to, from)| *to = *from);
-    state
-}
-
-fn numbers_of(parameters: &ContactParameters) -> Vec<f64> {
-    let ContactParameters { radius, effective_modulus, friction, form, log_first, log_step, gentle, table, shapes } = parameters;
-    let alone = [*radius, *effective_modulus, *friction, *form, *log_first, *log_step, *gentle];
-    let table = table.as_flattened().iter();
-    alone.iter().chain(table).chain(shapes.as_flattened().as_flattened()).copied().collect()
-}
-
-/// `None` if there are not as many numbers as [`numbers_of`] gives, or one is not finite.
-fn parameters_of(numbers: &[f64]) -> Option<ContactParameters> {
-    let (&[radius, effective_modulus, friction, form, log_first, log_step, gentle], rest) = numbers.split_first_chunk()?;
-    let mut parameters = ContactParameters {
-        radius,
-        effective_modulus,
-        friction,
-        form,
-        log_first,
-        log_step,
-        gentle,
-        table: [[0.0; _]; _],
-        shapes: [[[0.0; _]; _]; _],
-    };
-    let table = parameters.table.as_flattened_mut();
-    let (of_table, of_shapes) = rest.split_at_checked(table.len())?;
-    table.copy_from_slice(of_table);
-    let shapes = parameters.shapes.as_flattened_mut().as_flattened_mut();
-    if of_shapes.len() != shapes.len() || numbers.iter().any(|number| !number.is_finite()) {
-        return None;
-    }
-    shapes.copy_from_slice(of_shapes);
-    Some(parameters)
 }

@@ -172,20 +172,20 @@ def test_an_export_is_the_programs(law: asperity.Law, case: asperity.Case, tmp_p
     include = '#include "asperity_contact.h"\n'
     contact = (tmp_path / "asperity_contact.h").read_text()
     assert files[0].read_text().replace(include, contact, 1) == law.export("c", case=case)
-    assert "asperity_setup" in law.export("c"), "without a case one header for all materials"
+    with pytest.raises(asperity.AsperityError, match="of one material and one friction"):
+        law.export("c")
     with pytest.raises(asperity.CaseError, match='format: is "fortran"'):
         law.export("fortran")
 
 
 def test_contacts_are_those_of_the_exported_module(law: asperity.Law, case: asperity.Case, tmp_path: Path) -> None:
     file = tmp_path / "asperity_law.py"
-    file.write_text(str(law.export("python")))
+    file.write_text(str(law.export("python", case=case)))
     spec = importlib.util.spec_from_file_location("asperity_law", file)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    steel = module.Material(200e3, 0.3, module.IDEAL, (400.0, 0.0, 0.0))
-    pair = module.setup(steel, 1.0, 0.3)
+    pair = module.setup(200e3, 1.0)
     depth = np.array([0.005, 0.01, 0.02])
     ours, theirs = law.contacts(case, 3), [module.State() for _ in depth]
     for h, delta in [(1.0, (0.0, 0.0)), (1.0, (5e-4, 1e-4)), (0.9, (-2e-4, 3e-4)), (1.1, (0.0, -1e-4))]:

@@ -485,7 +485,7 @@ pub const KEYS: &[Key] = &[
 ];
 
 /// What stands for `solver.max_memory_gib`.
-const ROOM: &str = "the memory available to the process (machine, container or job, ulimit -v), less a tenth and 64 MiB";
+const ROOM: &str = "what the process may use (machine, container, job, ulimit -v), less a tenth and 64 MiB";
 
 /// The keys that a dotted name may mean: all of it, `path.0.shear` for any segment, a table, or its
 /// last parts.

@@ -20,8 +20,7 @@ pub struct ExportArgs {
     #[arg(value_name = "LAW.json")]
     pub law: PathBuf,
     /// The material, the friction and the greatest depth; `-` for standard input. With --for, the
-    /// opponent is ignored. With --format c, a fitted law with a case is written like a table, and
-    /// without a case as one header for all materials.
+    /// opponent is ignored. A table needs no case.
     #[arg(value_name = "CASE.toml")]
     pub case: Option<PathBuf>,
     /// Replace a value of the case, as in contact.friction=0.1 or path.0.indentation=0.01. May be
@@ -40,12 +39,11 @@ pub struct ExportArgs {
     /// The language of one law by itself.
     #[arg(long, value_enum, value_name = "LANGUAGE", required_unless_present = "engine")]
     pub format: Option<Language>,
-    /// Write the files to this directory, replacing files of the same names. With --format c for
-    /// one material: asperity_law.h (the table as a constant), law.asperity (the same, to be read
-    /// at run time), asperity_contact.h (the update) and asperity_contact3d.h (spheres and walls).
-    /// For all materials: asperity_law.h. With --format python: asperity_law.py. Each comes with
-    /// test vectors, for C also with a program that checks them [default: asperity_law.h or
-    /// asperity_law.py alone, to stdout].
+    /// Write the files to this directory, replacing files of the same names. With --format c:
+    /// asperity_law.h (the table as a constant), law.asperity (the same, to be read at run time),
+    /// asperity_contact.h (the update), asperity_contact3d.h (spheres and walls) and a program that
+    /// checks them. With --format python: asperity_law.py. Both with test vectors [default:
+    /// asperity_law.h or asperity_law.py alone, to stdout].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -58,7 +56,9 @@ impl ValueEnum for Language {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(match self {
             Self::C => PossibleValue::new("c").help("Headers and a table, C99, C++17 and CUDA"),
-            Self::Python => PossibleValue::new("python").help("One module, Python 3.8 or later"),
+            Self::Python => {
+                PossibleValue::new("python").help("One module, Python 3.8 or later, which compiles the update with cc")
+            }
         })
     }
 }
@@ -152,12 +152,7 @@ fn export_one(args: &ExportArgs, law: &LawFile, language: Language) -> Result<Ou
     };
     write_files(dir, law_files(law, language, case.as_ref()).map_err(in_case)?)?;
     let dir = dir.display();
-    let whole_law = case.is_none() && matches!(law, LawFile::Formulas(_));
     let (using, checking) = match language {
-        Language::C if whole_law => (
-            format!("#include \"asperity_law.h\", and compile with: cc -std=c99 -I {dir} YOURS.c -lm (or c++ -std=c++17)"),
-            "cc -std=c99 -O2 asperity_law_check.c -lm -o check && ./check asperity_law_vectors.csv",
-        ),
         Language::C => (
             format!(
                 "#include \"asperity_contact3d.h\" and \"asperity_law.h\", and compile with: cc -std=c99 -I {dir} YOURS.c -lm \

@@ -1,8 +1,8 @@
 //! Follows the path of a case with the contact update.
 
+use super::ContactParameters;
 use super::centres::Centres;
 use super::update::{ContactResponse, ContactState};
-use super::virgin::ContactParameters;
 use crate::case::{Hold, Segment, ShearTarget};
 
 /// A place on a path, in the units of the parameters.

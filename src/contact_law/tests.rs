@@ -1,4 +1,4 @@
-use super::NormalCurve::{ComplementOfPower, PowerOfComplement};
+use super::table::WEIGHTS;
 use super::*;
 use crate::analytical::cattaneo_mindlin::CattaneoMindlin;
 use crate::analytical::olsson_larsson::{Hardening, OlssonLarsson};
@@ -9,112 +9,110 @@ use rand_chacha::ChaCha8Rng;
 const SPHERE: ElasticSphere = ElasticSphere { radius: 2.0, youngs_modulus: 200e3, poissons_ratio: 0.3 };
 const FRICTION: f64 = 0.3;
 
+/// f_T = 1 - (1 - x)^n and f_N = [1 - (1 - x)^M]^N as numbers; f_T with a bump before its end.
+fn shapes([n, m, big_n]: [f64; 3], kept: f64, peak: f64) -> Shapes {
+    let x = |j: usize| ((j + 1) as f64 / POINTS as f64).powi(2);
+    let normal: [f64; POINTS] = std::array::from_fn(|j| (1.0 - (1.0 - x(j)).powf(m)).powf(big_n));
+    let tangential = std::array::from_fn(|j| {
+        let x = x(j);
+        // Coulomb's bound.
+        let most = (1.0 - (1.0 - kept) * normal[j]) / kept;
+        (1.0 - (1.0 - x).powf(n) + peak * x * x * (1.0 - x)).min((1.0 - 1e-4) * most)
+    });
+    [tangential, normal]
+}
+
 /// A made-up law with the features of a fitted one: elastic below Lambda = 4, and from there on
 /// gradually another.
-fn law(yield_stress: f64, form: NormalCurve, h: f64) -> VirginPoint {
+fn law(yield_stress: f64, peak: f64, h: f64) -> Given {
     let model = OlssonLarsson { sphere: SPHERE, hardening: Hardening::Ideal { yield_stress } };
     let a = model.contact_radius(h);
     let f_n0 = model.force(h);
-    let k_t0 = 8.0 * SPHERE.shear_modulus() * a / (2.0 - SPHERE.poissons_ratio);
+    let k_t = 8.0 * SPHERE.shear_modulus() * a / (2.0 - SPHERE.poissons_ratio);
     let s = 1.0 - 1.0 / (1.0 + 0.02 * (model.lambda(a) - 4.0).max(0.0));
     let n = 1.5 + 1.8 * s;
-    let f_n_slip = f_n0 * (1.0 - 0.45 * s);
-    let delta_t_slip = 1.5 * FRICTION * f_n0 / k_t0 * (1.0 + 2.5 * s);
-    let (m_exponent, n_exponent) = form.exponents(1.6 + s, 1.4);
-    VirginPoint { a, f_n0, f_n_slip, delta_t_slip, k_t: k_t0, n, m_exponent, n_exponent }
+    let kept = 1.0 - 0.45 * s;
+    let delta_t_slip = 1.5 * FRICTION * f_n0 / k_t * (1.0 + 2.5 * s);
+    let k_t = k_t.max(n * FRICTION * kept * f_n0 / delta_t_slip);
+    Given {
+        point: VirginPoint { a, f_n0, f_n_slip: kept * f_n0, delta_t_slip, k_t, c: 0.0 },
+        unloading_radius: None,
+        backbone: 1.5 - 0.3 * s,
+        coefficient: None,
+        shapes: shapes([n, 1.6 + s, 1.4], kept, peak),
+    }
 }
 
-fn pair(yield_stress: f64, form: NormalCurve) -> ContactParameters {
+pub(super) fn pair(yield_stress: f64, peak: f64) -> ContactParameters {
     let a = 3.0 * yield_stress * SPHERE.radius / SPHERE.effective_modulus();
     let range = [(a * a / SPHERE.radius).min(0.01 * SPHERE.radius), 0.1 * SPHERE.radius];
-    ContactParameters::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, Some(form), range, |h| {
-        law(yield_stress, form, h)
-    })
-    .unwrap()
+    let law = |h: f64| law(yield_stress, peak, h);
+    ContactParameters::new(FirstLoading::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, range, law).unwrap())
 }
 
+/// Of three yield stresses, the last of which is hardly reached, and one whose F_T passes a peak
+/// before full slip.
 fn pairs() -> [ContactParameters; 4] {
-    [
-        pair(400.0, PowerOfComplement),
-        pair(400.0, ComplementOfPower),
-        pair(2000.0, PowerOfComplement),
-        pair(1e5, PowerOfComplement),
-    ]
-}
-
-/// One whose shapes are given by numbers: those of the form, and one that passes a peak before full
-/// slip.
-fn by_numbers(peak: f64) -> ContactParameters {
-    let p = pair(400.0, PowerOfComplement);
-    let mut shapes = [[[0.0; POINTS]; 2]; LEVELS];
-    for (i, shape) in shapes.iter_mut().enumerate() {
-        let position = i as f64 * (KNOTS as f64 - 1.0) / (LEVELS as f64 - 1.0);
-        let v = p.virgin((p.log_first + position * p.log_step).exp()).point;
-        for j in 0..POINTS {
-            let x = ((j + 1) as f64 / POINTS as f64).powi(2);
-            let bump = peak * x * x * (1.0 - x);
-            shape[1][j] = (1.0 - (1.0 - x).powf(v.m_exponent)).powf(v.n_exponent);
-            // Coulomb's bound.
-            let most = (v.f_n0 - (v.f_n0 - v.f_n_slip) * shape[1][j]) / v.f_n_slip;
-            shape[0][j] = (1.0 - (1.0 - x).powf(v.n) + bump).min((1.0 - 1e-4) * most);
-        }
-    }
-    let given = p.with_shapes(shapes, |h| p.virgin(h).point.a, |_| None);
-    // The exponent of the sliders' backbone.
-    ContactParameters { table: given.table.map(|[a, b, c, d, e, f, _, h]| [a, b, c, d, e, f, 1.2, h]), ..given }
-}
-
-/// Those of [`pairs`] and of numbers.
-fn all_pairs() -> Vec<ContactParameters> {
-    pairs().into_iter().chain([by_numbers(0.0), by_numbers(0.3)]).collect()
+    [pair(400.0, 0.0), pair(400.0, 0.3), pair(2000.0, 0.0), pair(1e5, 0.0)]
 }
 
 #[test]
-fn shapes_by_numbers_are_followed_on_first_loading() {
-    let p = by_numbers(0.3);
-    let h = 0.04;
-    let v = p.virgin(h);
-    let (mut state, _) = pressed(&p, h, 10);
-    let mut fallen = f64::INFINITY;
-    for i in 1..=500 {
-        let x = 1.5 * f64::from(i) / 500.0;
-        let d = 1.5 * v.point.delta_t_slip / 500.0;
-        let (next, out) = p.update(&state, h, [d, 0.0]);
-        state = next;
-        let j = ((POINTS as f64) * x.min(1.0).sqrt()).floor();
-        // On the points of the shape it is the shape itself, but for sliders that are softer.
-        if (x.min(1.0) - (j / POINTS as f64).powi(2)).abs() < 1e-9 && j > 0.0 && x < 1.0 {
-            let expected = FRICTION * v.point.f_n_slip * v.shapes[0][j as usize - 1];
-            assert!((out.f_t[0] / expected.min(FRICTION * out.f_n) - 1.0).abs() < 1e-2, "{x}: {} {expected}", out.f_t[0]);
+fn the_shear_at_constant_h_is_the_law_in_any_direction() {
+    for (number, p) in pairs().iter().enumerate() {
+        for (h, steps, angle) in [(0.04, 30, 0.0), (0.04, 400, 0.6), (0.002, 50, 2.0), (1e-4, 60, -2.5), (0.12, 33, 4.0)] {
+            let (mut state, _) = pressed(p, h, 50);
+            let v = p.virgin(h);
+            let mut out = ContactResponse::default();
+            let (mut worst, mut worst_n): (f64, f64) = (0.0, 0.0);
+            for i in 1..=steps {
+                let x: f64 = 1.2 * i as f64 / steps as f64;
+                let d = 1.2 * v.point.delta_t_slip / steps as f64;
+                (state, out) = p.update(&state, h, [d * f64::cos(angle), d * f64::sin(angle)]);
+                let [f_n, f_t] = v.sheared(FRICTION, x.min(1.0));
+                let force = out.f_t[0].hypot(out.f_t[1]);
+                worst = worst.max((force - f_t).abs() / (FRICTION * v.point.f_n_slip));
+                worst_n = worst_n.max((out.f_n - f_n).abs() / v.point.f_n0);
+                assert!((out.f_t[0] - force * f64::cos(angle)).abs() < 1e-9 * FRICTION * out.f_n);
+            }
+            assert!(worst < 0.06 && worst_n < 0.035, "{number}, h {h}: F_T {worst}, F_N {worst_n}");
+            let ratio = out.f_t[0].hypot(out.f_t[1]) / (FRICTION * out.f_n);
+            assert!(ratio <= 1.0 + 1e-12 && ratio > 0.985, "{number}, h {h}: {ratio}");
         }
-        assert!(out.f_n <= fallen && out.f_t[0] <= FRICTION * out.f_n * (1.0 + 1e-12));
-        fallen = out.f_n;
     }
-    assert!((fallen / v.point.f_n_slip - 1.0).abs() < 1e-9);
 }
 
 #[test]
-fn an_oblique_press_that_is_cut_in_ten_is_the_same() {
-    for p in all_pairs() {
+fn an_oblique_press_and_two_shears_in_100_increments_are_as_in_10_000() {
+    for (number, p) in pairs().iter().enumerate() {
         for (h, slope) in [(0.04, 0.3), (0.04, 2.0), (0.005, 1.0)] {
-            let obliquely = |steps: i32| {
-                let mut now = pressed(&p, 0.5 * h, 5);
-                for _ in 0..steps {
-                    let step = 0.5 * h / f64::from(steps);
-                    now = p.update(&now.0, now.0.h + step, [slope * step, 0.0]);
-                }
-                now.1
+            let v = p.virgin(h).point;
+            let follow = |steps: i32| {
+                let (mut now, mut found) = (pressed(p, 0.5 * h, 5), vec![]);
+                let mut go = |to: f64, d: f64| {
+                    let from = now.0.h;
+                    for k in 1..=steps {
+                        let at = from + (to - from) * f64::from(k) / f64::from(steps);
+                        now = p.update(&now.0, at, [d / f64::from(steps), 0.0]);
+                        if k % (steps / 10) == 0 {
+                            found.push(now.1);
+                        }
+                    }
+                };
+                go(h, slope * 0.5 * h);
+                go(h, -1.2 * v.delta_t_slip);
+                go(h, 1.2 * v.delta_t_slip);
+                found
             };
-            // Of the first order in the step: 250 steps are 1.5 % off where the shear is steep.
-            let (coarse, fine) = (obliquely(500), obliquely(5000));
-            let scale = p.virgin(h).point.f_n0;
-            assert!((coarse.f_n - fine.f_n).abs() < 0.01 * scale, "{h} {slope}: {} {}", coarse.f_n, fine.f_n);
-            assert!((coarse.f_t[0] - fine.f_t[0]).abs() < 0.01 * scale, "{h} {slope}: {} {}", coarse.f_t[0], fine.f_t[0]);
+            let worst = follow(100).iter().zip(&follow(10_000)).fold([0.0_f64; 2], |worst, (coarse, fine)| {
+                let error = [(coarse.f_n - fine.f_n) / v.f_n0, (coarse.f_t[0] - fine.f_t[0]) / (FRICTION * v.f_n0)];
+                [0, 1].map(|i| worst[i].max(error[i].abs()))
+            });
+            assert!(worst[0] < 0.01 && worst[1] < 0.02, "{number}, {h} {slope}: {worst:?}");
         }
     }
 }
 
-fn pressed(p: &ContactParameters, h: f64, steps: usize) -> (ContactState, ContactResponse) {
+pub(super) fn pressed(p: &ContactParameters, h: f64, steps: usize) -> (ContactState, ContactResponse) {
     let mut now = (ContactState::default(), ContactResponse::default());
     for i in 1..=steps {
         now = p.update(&now.0, h * i as f64 / steps as f64, [0.0, 0.0]);
@@ -123,22 +121,26 @@ fn pressed(p: &ContactParameters, h: f64, steps: usize) -> (ContactState, Contac
 }
 
 #[test]
-fn the_table_gives_back_the_normal_model_it_was_made_from() {
-    for (yield_stress, p) in [(400.0, pair(400.0, PowerOfComplement)), (1e5, pair(1e5, PowerOfComplement))] {
+fn first_loading_is_the_normal_model_it_was_made_from() {
+    for yield_stress in [400.0, 1e5] {
+        let p = pair(yield_stress, 0.0);
+        let modulus = p.first_loading().effective_modulus;
         for i in 0..500 {
             let h = SPHERE.radius * 10f64.powf(-6.5 + 5.4 * i as f64 / 500.0);
-            let expected = law(yield_stress, PowerOfComplement, h);
-            let a = expected.a;
+            let expected = law(yield_stress, 0.0, h).point;
             let v = p.virgin(h);
             assert!((v.point.f_n0 / expected.f_n0 - 1.0).abs() < 6e-3, "{h}: {} {}", v.point.f_n0, expected.f_n0);
-            assert!((v.point.a / a - 1.0).abs() < 4e-3);
+            assert!((v.point.a / expected.a - 1.0).abs() < 4e-3);
             assert!((v.point.delta_t_slip / expected.delta_t_slip - 1.0).abs() < 5e-3);
             let step = 1e-5 * h;
             let difference = (p.virgin(h + step).point.f_n0 - p.virgin(h - step).point.f_n0) / (2.0 * step);
             assert!((v.slope / difference - 1.0).abs() < 1e-5);
             assert!(v.depth <= h * (1.0 + 1e-3), "{h}: {}", v.depth);
             // Pressing further is never stiffer than the elastic response of the contact there is.
-            assert!(v.slope <= 2.0 * p.effective_modulus * a * 1.02, "{h}: {}", v.slope / (2.0 * p.effective_modulus * a));
+            assert!(v.slope <= 2.0 * modulus * expected.a * 1.02, "{h}: {}", v.slope / (2.0 * modulus * expected.a));
+            // And the update follows it.
+            let (_, out) = pressed(&p, h, 3);
+            assert!((out.f_n / v.point.f_n0 - 1.0).abs() < 3e-3, "{h}: {} {}", out.f_n, v.point.f_n0);
         }
     }
 }
@@ -146,50 +148,21 @@ fn the_table_gives_back_the_normal_model_it_was_made_from() {
 #[test]
 fn sliders_lie_on_the_backbone_and_never_below_it() {
     for backbone in [1.5, 4.0 / std::f64::consts::PI] {
-        let (weight, lost) = virgin::sliders(backbone);
-        assert!((weight.iter().sum::<f64>() - 1.0).abs() < 1e-14);
-        let at = |x: f64| backbone * (0..SLIDERS).map(|i| weight[i] * x.min(1.0 - lost[i])).sum::<f64>();
+        let lost = table::lost(backbone);
+        assert!((WEIGHTS.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        let at = |x: f64| backbone * (0..SLIDERS).map(|i| WEIGHTS[i] * x.min(1.0 - lost[i])).sum::<f64>();
         assert!((at(1.0) - 1.0).abs() < 1e-14);
         for i in 0..=1000 {
             let x = i as f64 / 1000.0;
             let error = at(x) - (1.0 - (1.0 - x).powf(backbone));
-            assert!((-1e-14..3e-3).contains(&error), "{backbone} {x} {error}");
-        }
-    }
-}
-
-#[test]
-fn first_loading_is_the_law_for_any_step_and_direction() {
-    for p in pairs() {
-        for (h, steps, angle) in [(0.04, 7, 0.0), (0.04, 400, 0.6), (0.002, 50, 2.0), (1e-4, 60, -2.5), (0.12, 33, 4.0)] {
-            let (mut state, _) = pressed(&p, h, 10);
-            let v = p.virgin(h);
-            let mut out = ContactResponse::default();
-            for i in 1..=steps {
-                let x: f64 = 1.2 * i as f64 / steps as f64;
-                let d = 1.2 * v.point.delta_t_slip / steps as f64;
-                (state, out) = p.update(&state, h, [d * f64::cos(angle), d * f64::sin(angle)]);
-                let x = x.min(1.0);
-                let (f, m, n) = (1.0 - (1.0 - x).powf(v.point.n), v.point.m_exponent, v.point.n_exponent);
-                let f_n = if p.form == 0.0 { (1.0 - (1.0 - x).powf(m)).powf(n) } else { 1.0 - (1.0 - x.powf(m)).powf(n) };
-                let size = FRICTION * v.point.f_n_slip * f;
-                let force = out.f_t[0].hypot(out.f_t[1]);
-                // Where the law is the elastic curve itself, the sliders' broken line may run below
-                // it.
-                let tolerance = if h > 0.01 && p.virgin(h).gamma < 1.4 { 1e-10 * size } else { 6e-3 * FRICTION * out.f_n };
-                assert!((force - size).abs() < tolerance, "h {h} steps {steps} x {x}: {force} for {size}");
-                assert!((out.f_t[0] - force * f64::cos(angle)).abs() < 1e-10 * size);
-                let expected = v.point.f_n0 - (v.point.f_n0 - v.point.f_n_slip) * f_n;
-                assert!((out.f_n / expected - 1.0).abs() < tolerance / size * 1e-2, "{h} {x}: {} for {expected}", out.f_n);
-            }
-            assert!((out.f_t[0].hypot(out.f_t[1]) / (FRICTION * out.f_n) - 1.0).abs() < 1e-12);
+            assert!((-1e-5..1.2e-2).contains(&error), "{backbone} {x} {error}");
         }
     }
 }
 
 #[test]
 fn an_elastic_contact_reverses_as_mindlin_and_deresiewicz_have_it() {
-    let p = pair(1e5, PowerOfComplement);
+    let p = pair(1e5, 0.0);
     let h = 1e-3;
     let reference = CattaneoMindlin::at_indentation(SPHERE, FRICTION, h);
     let slip = reference.slip_displacement();
@@ -205,7 +178,7 @@ fn an_elastic_contact_reverses_as_mindlin_and_deresiewicz_have_it() {
                 (state, out) = p.update(&state, h, [sign * step, 0.0]);
                 let expected = check(d);
                 assert!(
-                    (out.f_t[0] - expected).abs() < 5e-3 * FRICTION * out.f_n,
+                    (out.f_t[0] - expected).abs() < 1.2e-2 * FRICTION * out.f_n,
                     "turn {turn} at {d}: {} {expected}",
                     out.f_t[0]
                 );
@@ -218,15 +191,17 @@ fn an_elastic_contact_reverses_as_mindlin_and_deresiewicz_have_it() {
 
 #[test]
 fn unloading_starts_with_twice_e_star_a_and_reloading_returns() {
-    for (p, h) in
-        [(pair(400.0, PowerOfComplement), 0.04), (pair(2000.0, PowerOfComplement), 0.04), (pair(1e5, PowerOfComplement), 1e-3)]
-    {
+    for (p, h) in [(pair(400.0, 0.0), 0.04), (pair(2000.0, 0.0), 0.04), (pair(1e5, 0.0), 1e-3)] {
         let (state, out) = pressed(&p, h, 9);
         let v = p.virgin(h);
-        assert!((out.f_n / v.point.f_n0 - 1.0).abs() < 1e-12);
+        assert!((out.f_n / v.point.f_n0 - 1.0).abs() < 3e-4);
         let step = 1e-6 * v.depth;
         let (_, less) = p.update(&state, h - step, [0.0, 0.0]);
-        assert!(((out.f_n - less.f_n) / step / (2.0 * p.effective_modulus * out.a) - 1.0).abs() < 1e-5);
+        let stiffness = (out.f_n - less.f_n) / step;
+        assert!((stiffness / less.df_n_dh - 1.0).abs() < 1e-5);
+        // A little less: the curves are of a contact that slid to the end, and was wider then.
+        let half_space = 2.0 * p.first_loading().effective_modulus * out.a;
+        assert!(stiffness < 1.001 * half_space && stiffness > 0.95 * half_space, "{h}: {stiffness} {half_space}");
         let mut down = state;
         let mut forces = vec![];
         for i in 1..=20 {
@@ -235,15 +210,18 @@ fn unloading_starts_with_twice_e_star_a_and_reloading_returns() {
             forces.push(result.1.f_n);
         }
         assert_eq!(forces.last(), Some(&0.0));
+        // Back up the same way, but that a release has softened it: it yields before.
         for i in (1..20).rev() {
             let result = p.update(&down, h - 1.1 * v.depth * i as f64 / 20.0, [0.0, 0.0]);
             down = result.0;
-            assert!((result.1.f_n - forces[i - 1]).abs() < 1e-9 * v.point.f_n0);
+            let (back, there) = (result.1.f_n / v.point.f_n0, forces[i - 1] / v.point.f_n0);
+            assert!(if there < 0.7 { (back - there).abs() < 1e-12 } else { back < there + 1e-12 }, "{h} {i}: {back} {there}");
         }
         let (again, out) = p.update(&down, h, [0.0, 0.0]);
-        assert!((out.f_n / v.point.f_n0 - 1.0).abs() < 1e-9);
+        let kept = out.f_n / v.point.f_n0;
+        assert!(kept > 0.85 && kept < 1.0 + 1e-12, "{h}: {kept}");
         let (_, out) = p.update(&again, 1.5 * h, [0.0, 0.0]);
-        assert!((out.f_n / p.virgin(1.5 * h).point.f_n0 - 1.0).abs() < 1e-9);
+        assert!((out.f_n / p.virgin(1.5 * h).point.f_n0 - 1.0).abs() < 0.02);
     }
 }
 
@@ -271,7 +249,7 @@ fn legs(seed: u64, count: usize, scale: [f64; 2]) -> Vec<[f64; 3]> {
 #[test]
 fn no_path_gives_back_more_than_the_energy_stored() {
     let mut worst: f64 = 0.0;
-    for (number, p) in all_pairs().iter().enumerate() {
+    for (number, p) in pairs().iter().enumerate() {
         for seed in 0..60 {
             let h = [0.06, 2e-3, 0.15][seed as usize % 3];
             let (mut state, mut out) = (ContactState::default(), ContactResponse::default());
@@ -309,7 +287,7 @@ fn no_path_gives_back_more_than_the_energy_stored() {
 fn the_update_is_odd_and_turns_with_its_axes() {
     let (cosine, sine) = (0.3f64.cos(), 0.3f64.sin());
     let turn = |v: [f64; 2]| [cosine * v[0] + sine * v[1], -sine * v[0] + cosine * v[1]];
-    for p in all_pairs() {
+    for p in pairs() {
         let slip = p.virgin(0.04).point.delta_t_slip;
         let mut states = [ContactState::default(); 3];
         let mut at = [0.0; 3];
@@ -326,24 +304,24 @@ fn the_update_is_odd_and_turns_with_its_axes() {
                 assert_eq!((mirrored.df_t_ddelta, mirrored.df_n_dh), (out.df_t_ddelta, out.df_n_dh));
                 assert_eq!(mirrored.df_n_ddelta.map(|f| -f), out.df_n_ddelta);
                 let scale = p.virgin(states[0].h_max.max(at[0]).max(1e-9)).point.f_n0;
-                assert!((rotated.f_n - out.f_n).abs() < 1e-8 * scale);
+                assert!((rotated.f_n - out.f_n).abs() < 1e-10 * scale);
                 let expected = turn(out.f_t);
-                assert!((0..2).all(|i| (rotated.f_t[i] - expected[i]).abs() < 1e-8 * scale));
+                assert!((0..2).all(|i| (rotated.f_t[i] - expected[i]).abs() < 1e-10 * scale));
                 states = [next, odd, turned];
             }
             // Turning the memory itself is the same as having gone the turned way.
             let mut rotated = states[0];
             rotated.rotate(cosine, sine);
-            for i in 0..SLIDERS {
-                assert!((0..2).all(|j| (rotated.deflection[i][j] - states[2].deflection[i][j]).abs() < 1e-7 * slip));
-            }
+            let scale = FRICTION * p.virgin(0.06).point.f_n0;
+            let (ours, theirs) = (rotated.slider.as_flattened(), states[2].slider.as_flattened());
+            assert!(ours.iter().zip(theirs).all(|(ours, theirs)| (ours - theirs).abs() < 1e-9 * scale));
         }
     }
 }
 
 #[test]
 fn the_tangents_are_the_derivatives() {
-    let p = pair(400.0, PowerOfComplement);
+    let p = pair(400.0, 0.0);
     let h = 0.04;
     let v = p.virgin(h);
     let slip = v.point.delta_t_slip;
@@ -471,11 +449,18 @@ fn cycles_of_the_simulation_are_followed() {
         let mindlin = 8.0 * sphere.shear_modulus() * a / 1.7;
         let s = ((model.lambda(a) - 4.0).max(0.0) / 90.0).min(1.0);
         let delta_t_slip = 1.5 * 0.3 * f_n0 / mindlin * (1.0 + 2.2 * s);
-        let (n, f_n_slip) = (1.5 + 2.3 * s, f_n0 * (1.0 - 0.31 * s));
+        let (n, kept) = (1.5 + 2.3 * s, 1.0 - 0.31 * s);
         let k_t = mindlin / (1.0 + 1.9 * a * s);
-        VirginPoint { a, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent: 2.6, n_exponent: 1.5 }
+        Given {
+            point: VirginPoint { a, f_n0, f_n_slip: kept * f_n0, delta_t_slip, k_t, c: 0.0 },
+            unloading_radius: None,
+            backbone: 1.2,
+            coefficient: None,
+            shapes: shapes([n, 2.6, 1.5], kept, 0.0),
+        }
     };
-    let p = ContactParameters::tabulate(1.0, sphere.effective_modulus(), 0.3, Some(PowerOfComplement), [2e-5, 0.1], law).unwrap();
+    let first_loading = FirstLoading::tabulate(1.0, sphere.effective_modulus(), 0.3, [2e-5, 0.1], law).unwrap();
+    let p = ContactParameters::new(first_loading);
     for (name, rows, allowed) in [("small", SMALL_CYCLE, 0.035), ("full", FULL_CYCLE, 0.035), ("pressed on", PRESSED_ON, 0.08)] {
         let (mut state, _) = pressed(&p, 0.02, 10);
         let (mut h, mut d) = (0.02, 0.0);
@@ -523,8 +508,8 @@ fn an_increment_beyond_all_bounds_is_full_slip_in_its_direction() {
         let (_, far) = p.update(&state, 0.02, [3.0, 4.0]);
         for size in [1e100, 1e153, 1e160, 1e200, 3e307] {
             let (next, out) = p.update(&state, 0.02, [0.6 * size, 0.8 * size]);
-            assert!((out.f_n / far.f_n - 1.0).abs() < 1e-9, "{size}: {out:?}, {far:?}");
-            assert!((0..2).all(|i| (out.f_t[i] / far.f_t[i] - 1.0).abs() < 1e-9), "{size}: {out:?}, {far:?}");
+            assert!((out.f_n / far.f_n - 1.0).abs() < 1e-8, "{size}: {out:?}, {far:?}");
+            assert!((0..2).all(|i| (out.f_t[i] / far.f_t[i] - 1.0).abs() < 1e-8), "{size}: {out:?}, {far:?}");
             let size = (out.f_t[0].powi(2) + out.f_t[1].powi(2)).sqrt();
             assert!((size / (FRICTION * out.f_n) - 1.0).abs() < 1e-6);
             assert!(p.update(&next, 0.02, [0.0, 0.0]).1.f_n.is_finite());
@@ -540,18 +525,17 @@ fn a_contact_stiffer_than_hertz_gains_nothing_and_keeps_its_law() {
         let f_n0 = hertz::force(&SPHERE, h) * (0.01 + 0.8 * a / SPHERE.radius).exp();
         let k_t0 = 8.0 * SPHERE.shear_modulus() * a / (2.0 - SPHERE.poissons_ratio);
         let slip = 1.5 * FRICTION * f_n0 / k_t0;
-        VirginPoint { a, f_n0, f_n_slip: f_n0, delta_t_slip: slip, k_t: k_t0, n: 1.5, m_exponent: 1.6, n_exponent: 1.4 }
+        Given {
+            point: VirginPoint { a, f_n0, f_n_slip: f_n0, delta_t_slip: slip, k_t: k_t0, c: 0.0 },
+            unloading_radius: None,
+            backbone: 1.5,
+            coefficient: None,
+            shapes: shapes([1.5, 1.6, 1.4], 1.0, 0.0),
+        }
     };
     let range = [1e-6 * SPHERE.radius, 0.15 * SPHERE.radius];
-    let p = ContactParameters::tabulate(
-        SPHERE.radius,
-        SPHERE.effective_modulus(),
-        FRICTION,
-        Some(PowerOfComplement),
-        range,
-        hertzian,
-    )
-    .unwrap();
+    let first_loading = FirstLoading::tabulate(SPHERE.radius, SPHERE.effective_modulus(), FRICTION, range, hertzian).unwrap();
+    let p = ContactParameters::new(first_loading);
     for end in [1e-5, 1e-3, 0.05, 0.28] {
         let (mut now, mut work) = ((ContactState::default(), ContactResponse::default()), 0.0);
         for i in 1..=4000 {
@@ -562,15 +546,16 @@ fn a_contact_stiffer_than_hertz_gains_nothing_and_keeps_its_law() {
             assert!(p.stored_energy(&now.0) <= work * (1.0 + 2e-4) + 1e-7 * end * now.1.f_n, "{end} {i}");
         }
         let v = p.virgin(end);
-        let expected = hertzian(end);
-        assert!((now.1.f_n / expected.f_n0 - 1.0).abs() < 1e-4 && (now.1.a / expected.a - 1.0).abs() < 1e-4);
-        assert!(v.gamma == 1.5 && v.depth <= end * (1.0 + 1e-12));
+        let expected = hertzian(end).point;
+        let errors = [now.1.f_n / expected.f_n0 - 1.0, now.1.a / expected.a - 1.0];
+        assert!(errors.iter().all(|error| error.abs() < 3e-4), "{end}: {errors:?}");
+        assert!(v.gamma == 1.5 && v.depth <= end * (1.0 + 1e-12), "{end}: {} {}", v.gamma, v.depth / end);
         let mut state = now.0;
         for i in 1..=50 {
             let (next, out) = p.update(&state, end, [0.024 * v.point.delta_t_slip, 0.0]);
             state = next;
             let size = FRICTION * v.point.f_n_slip * (1.0 - (1.0 - (0.024 * f64::from(i)).min(1.0)).powf(1.5));
-            assert!((out.f_t[0] - size).abs() < 3e-3 * FRICTION * out.f_n, "{end} {i}: {} for {size}", out.f_t[0]);
+            assert!((out.f_t[0] - size).abs() < 1.2e-2 * FRICTION * out.f_n, "{end} {i}: {} for {size}", out.f_t[0]);
         }
     }
 }

@@ -1,12 +1,31 @@
-//! One increment of one contact: first the press, then the shear. The C and the Python twin have
-//! the functions of `yielding`, `sliders`, `press`, `shear` and this file, in that order, and do
-//! the same operations.
+//! One increment of one contact. The C header has the functions of `table`, `sliders`, `step` and
+//! this file, in that order, and does the same operations.
 
-use super::press::{press, taken};
-use super::shear::shear;
-use super::sliders::bounded;
-use super::virgin::{ContactParameters, SLIDERS};
-use super::yielding::{MOST, force_at};
+use super::ContactParameters;
+use super::sliders::energy;
+use super::step::{Guess, LESS, Step, Terms};
+use super::table::{
+    COLUMNS, FIRST_N, GAMMA, LN_FORCE, LN_RADIUS, LN_STIFFNESS, RADIAL_SLIP, Row, SLIDERS, SOFTENING, SUDDEN, Table, UNSHEARED_N,
+    exponent, lost,
+};
+
+/// Steps of Newton.
+const STEPS: usize = 20;
+/// Steps of a bracket where Newton does not find the way.
+const BRACKETS: usize = 100;
+/// Steps for the ratio at a hardening, and times that one is halved.
+const RATIOS: usize = 100;
+const BACK: usize = 12;
+/// Hardening of a step over the depth and the elastic approach, at the most.
+const MOST_HARDENING: f64 = 3.0;
+/// Of F_N over the yield force and of F_T/F_N.
+const TOLERANCE: f64 = 1e-12;
+/// What is good enough where rounding leaves no better.
+const ENOUGH: f64 = 1e-7;
+/// Share of mu below which the vertex hardly tells whether slip is against it.
+const HARDLY: f64 = 0.02;
+/// Greatest increment: the square of its force is still finite.
+const MOST: f64 = 1e140;
 
 /// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
 /// file as it is.
@@ -17,23 +36,25 @@ pub struct ContactState {
     pub h: f64,
     /// Greatest h so far, length.
     pub h_max: f64,
-    /// Elastic approach, length: what is recovered until contact is lost; negative is the gap over
-    /// the residual dent.
+    /// Elastic approach, length: h less the dent; negative is the gap over it.
     pub approach: f64,
-    /// Elastic approach from which the contact is released, length: F_N = 2 E* a reach/gamma
-    /// (approach/reach)^gamma. It falls with F_N where shear takes that.
+    /// Hardening: the depth of first loading that has the contact's yield force, less that of the
+    /// table's first row; length.
+    pub hardened: f64,
+    /// Elastic approach at which the sliders are whole, length.
     pub reach: f64,
-    /// x = delta_T/delta_T_end on the virgin curves at which the contact stands: the measure of
-    /// its loss of F_N to shear. Beyond 1, up to 2, of what reversed slip costs besides.
-    pub x: f64,
-    /// x of the virgin curves up to which the contact has hardened in shear: 0 after a press
-    /// without F_T, 1 after full slip. Below it F_T/F_N rises without yielding to shear; the edge
-    /// of a contact that was not sheared slips sooner.
-    pub sheared: f64,
-    /// How far its slip was reversed, 0 to 1: then it turns more sharply.
-    pub reversed: f64,
-    /// Tangential deflections of the sliders, length, innermost (last to slip) first.
-    pub deflection: [[f64; 2]; SLIDERS],
+    /// Share of the yield force that releases took.
+    pub softened: f64,
+    /// Greatest share of F_N released since the contact last yielded.
+    pub released: f64,
+    /// How far it was sheared, 0 to 1, and its slip reversed, to 2.
+    pub worn: f64,
+    /// By what share the contact is wider than its F_N, as shear took F_N and left its radius.
+    pub stiffened: f64,
+    /// The vertex alpha of the yield surface, over F_N.
+    pub vertex: [f64; 2],
+    /// Forces of the sliders along the two axes and radial, innermost (last to slip) first.
+    pub slider: [[f64; SLIDERS]; 3],
 }
 
 /// The answer of an increment.
@@ -47,84 +68,89 @@ pub struct ContactResponse {
     pub f_t: [f64; 2],
     /// d f_t\[i\]/d delta_T\[j\].
     pub df_t_ddelta: [[f64; 2]; 2],
-    /// d f_n/dh at constant delta_T, for the direction in which h last moved.
+    /// d f_n/dh at constant delta_T.
     pub df_n_dh: f64,
-    /// d f_n/d delta_T at constant h, for the direction in which delta_T last moved.
+    /// d f_n/d delta_T at constant h.
     pub df_n_ddelta: [f64; 2],
     /// Radius of the contact, length.
     pub a: f64,
+    /// d f_t/dh at constant delta_T.
+    pub df_t_dh: [f64; 2],
 }
 
 impl ContactState {
+    /// How many numbers it is.
+    pub const NUMBERS: usize = 11 + 3 * SLIDERS;
+
+    /// Its numbers as they lie in memory.
+    pub fn to_numbers(self) -> [f64; Self::NUMBERS] {
+        bytemuck::cast(self)
+    }
+
+    /// The state of such numbers.
+    pub fn from_numbers(numbers: [f64; Self::NUMBERS]) -> Self {
+        bytemuck::cast(numbers)
+    }
+
     /// Whether it is a state that an update may have left: all its numbers finite, and each within
     /// its bounds.
     pub fn is_sound(&self) -> bool {
         let positive = |value: f64| value.is_finite() && value >= 0.0;
         let within = |value: f64, most: f64| (0.0..=most).contains(&value);
-        self.h.is_finite()
-            && self.approach.is_finite()
-            && self.deflection.iter().flatten().all(|q| q.is_finite())
+        let all = |values: &[f64]| values.iter().all(|value| value.is_finite() && value.abs() <= MOST);
+        all(&[self.h, self.approach])
+            && all(&self.vertex)
+            && all(self.slider.as_flattened())
+            && all(&[self.h_max, self.hardened, self.reach, self.stiffened])
             && positive(self.h_max)
+            && positive(self.hardened)
             && positive(self.reach)
-            && within(self.x, MOST)
-            && within(self.sheared, MOST)
-            && within(self.reversed, 1.0)
+            && self.stiffened > -1.0
+            && within(self.softened, 1.0)
+            && within(self.released, 1.0)
+            && within(self.worn, 2.0)
     }
 
     /// Turns the memory into axes that are turned by the angle whose cosine and sine are given: the
     /// new components of a vector v are (c v0 + s v1, -s v0 + c v1). Call it when the tangent frame
     /// follows the contact's normal.
     pub fn rotate(&mut self, cosine: f64, sine: f64) {
-        for q in &mut self.deflection {
-            *q = [cosine * q[0] + sine * q[1], -sine * q[0] + cosine * q[1]];
+        let turned = |x: f64, y: f64| [cosine * x + sine * y, -sine * x + cosine * y];
+        self.vertex = turned(self.vertex[0], self.vertex[1]);
+        let [along, across, _] = &mut self.slider;
+        for (x, y) in along.iter_mut().zip(across) {
+            [*x, *y] = turned(*x, *y);
         }
     }
 }
 
+/// F_N at an elastic approach of a contact that is wider than its F_N by `stiffened`.
+fn elastic_force(row: &Row, e: f64, stiffened: f64) -> f64 {
+    let gamma = row.value[GAMMA];
+    row.value[LN_FORCE] * (gamma * (e / row.approach).ln() + (gamma - 1.0) * stiffened.ln_1p()).exp()
+}
+
 impl ContactParameters {
     /// Moves a contact to the indentation `h` and along the plane by `increment` (two components in
-    /// the tangent frame), the press first. A pure function of the state before. Where `h` or the
-    /// increment is not finite, or the state is not [sound](ContactState::is_sound), nothing in the
-    /// answer is a number and the state stays as it was.
+    /// the tangent frame). A pure function of the state before. Where `h` or the increment is not
+    /// finite, or the state is not [sound](ContactState::is_sound), nothing in the answer is a
+    /// number and the state stays as it was.
     pub fn update(&self, state: &ContactState, h: f64, increment: [f64; 2]) -> (ContactState, ContactResponse) {
-        let mut next = *state;
-        let mut out = ContactResponse::default();
-        if !(h.is_finite() && increment[0].is_finite() && increment[1].is_finite() && state.is_sound()) {
+        if !(h.abs() <= MOST && increment[0].is_finite() && increment[1].is_finite() && state.is_sound()) {
             let nan = f64::NAN;
-            out = ContactResponse {
+            let out = ContactResponse {
                 f_n: nan,
                 f_t: [nan; 2],
                 df_t_ddelta: [[nan; 2]; 2],
                 df_n_dh: nan,
                 df_n_ddelta: [nan; 2],
                 a: nan,
+                df_t_dh: [nan; 2],
             };
-            return (next, out);
+            return (*state, out);
         }
-        let increment = bounded(increment);
-        let greatest = if h > state.h_max { h } else { state.h_max };
-        if !(greatest > 0.0) {
-            next.h = h;
-            return (next, out);
-        }
-        let virgin = self.virgin_sheared(greatest, state.sheared, state.reversed);
-        let pressed = press(self, &mut next, &virgin, h, increment);
-        next.h = h;
-        next.h_max = greatest;
-        next.x = pressed.x;
-        if !(pressed.f_n > 0.0) {
-            next.deflection = [[0.0; 2]; SLIDERS];
-            return (next, out);
-        }
-        out.df_n_dh = pressed.df_n_dh;
-        let share = taken(pressed.flow);
-        shear(self, &mut next, &mut out, &virgin, &pressed, [share * increment[0], share * increment[1]]);
-        for i in 0..2 {
-            out.df_t_ddelta[i] = [share * out.df_t_ddelta[i][0], share * out.df_t_ddelta[i][1]];
-            out.df_n_ddelta[i] *= share;
-        }
-        out.a = virgin.point.a * (next.approach / next.reach).powf(virgin.gamma - 1.0);
-        (next, out)
+        let size = increment[0].abs().max(increment[1].abs());
+        moved(&self.table, state, h, if size > MOST { increment.map(|d| d / size * MOST) } else { increment })
     }
 
     /// Elastic energy that the contact stores, force times length: no path gives back more than it.
@@ -133,15 +159,341 @@ impl ContactParameters {
         if !state.is_sound() {
             return f64::NAN;
         }
-        if !(state.h_max > 0.0) || state.approach <= 0.0 {
+        let e = state.approach;
+        if !(e > 0.0) {
             return 0.0;
         }
-        let virgin = self.virgin(state.h_max);
-        let mut sum = 0.0;
-        for i in 0..SLIDERS {
-            let q = state.deflection[i];
-            sum += virgin.weight[i] * (q[0] * q[0] + q[1] * q[1]);
+        let row = self.table.read(self.table.first + state.hardened, COLUMNS);
+        let f_n = elastic_force(&row, e, state.stiffened);
+        f_n * e / (row.value[GAMMA] + 1.0) + energy(&state.slider, row.value[LN_STIFFNESS])
+    }
+}
+
+/// The contact moved to h and by d.
+pub(super) fn moved(table: &Table, state: &ContactState, h: f64, d: [f64; 2]) -> (ContactState, ContactResponse) {
+    let (mut step, released) = begin(table, state, h, d);
+    let mut o = Guess::default();
+    let elastic = step.elastic(&mut o);
+    let force = step.row.value[LN_FORCE];
+    let mut trial = [0.0; 2];
+    if elastic.is_some() {
+        trial = o.f_t.map(|f_t| f_t / o.f_n);
+        o.factor = step.factor_at(trial);
+    }
+    let load = o.f_n / force;
+    if elastic.is_none() || load * o.factor <= step.rho * (1.0 + 1e-11) {
+        if let Some(terms) = elastic {
+            step.slopes(&terms, &mut o);
         }
-        force_at(&virgin, state.reach, state.approach) * state.approach / (virgin.gamma + 1.0) + 0.5 * virgin.point.k_t * sum
+        let tangent = std::array::from_fn(|j| o.slopes(j, [0.0; 3]));
+        return (step.keep(&o, h, 0.0, state.softened, released), step.answer(&o, 0.0, tangent));
+    }
+    let (r, factor) = step.begin_flow(&o, trial);
+    let guess = step.first_guess(load * factor);
+    let (y, terms) = step.newton(guess, r, &mut o).unwrap_or_else(|| step.bracket(guess, trial, &mut o));
+    if let Some(terms) = terms {
+        step.slopes(&terms, &mut o);
+    }
+    let tangent = std::array::from_fn(|j| o.slopes(j, o.solve(o.by[3 + j]).unwrap_or_default()));
+    let [softened, released] = step.left_released(&o, y);
+    (step.keep(&o, h, y, softened, released), step.answer(&o, y, tangent))
+}
+
+/// F_N and F_T over it that a state holds; none without contact.
+fn held(row: &Row, state: &ContactState) -> Option<(f64, [f64; 2])> {
+    if !(state.approach > 0.0) {
+        return None;
+    }
+    let f_n = elastic_force(row, state.approach, state.stiffened);
+    let sum = |along: &[f64; SLIDERS]| along.iter().sum::<f64>() / f_n;
+    Some((f_n, [sum(&state.slider[0]), sum(&state.slider[1])]))
+}
+
+/// A step before it flows, and the greatest share of F_N released after it.
+fn begin<'a>(table: &'a Table, state: &'a ContactState, h: f64, d: [f64; 2]) -> (Step<'a>, f64) {
+    let depth = table.first + state.hardened;
+    let row = table.read(depth, COLUMNS);
+    let e = state.approach + (h - state.h);
+    let whole = (1.0 - state.softened) * row.value[SOFTENING];
+    let (mut released, mut rho_slope) = (state.released, 0.0);
+    if e < state.reach && state.reach > 0.0 {
+        let gamma = row.value[GAMMA];
+        let share = if e > 0.0 { (gamma * (e / state.reach).ln()).exp() } else { 0.0 };
+        if 1.0 - share > released {
+            released = 1.0 - share;
+            rho_slope = if e > 0.0 { whole * 2.0 * released * gamma * share / e } else { 0.0 };
+        }
+    }
+    let (worn, worn_by) = worn(table, &row, state, e, d);
+    let exponent_at = |worn: f64| exponent(row.value[FIRST_N], row.value[UNSHEARED_N], table.later, worn);
+    let (exponent, exponent_before) = (exponent_at(worn), exponent_at(worn + LESS));
+    let step = Step {
+        table,
+        state,
+        row,
+        approach: e,
+        d,
+        depth,
+        reach: row.approach,
+        radial: row.value[RADIAL_SLIP],
+        sudden: row.value[SUDDEN],
+        rho: 1.0 - state.softened - whole * released * released,
+        rho_slope,
+        rises: false,
+        growing: 0.0,
+        growing_slope: 0.0,
+        worn,
+        worn_by,
+        exponent,
+        lost: lost(exponent),
+        exponent_before,
+        lost_before: lost(exponent_before),
+    };
+    (step, released)
+}
+
+/// How far it was sheared and its slip reversed, as a step goes on from there, with slopes by h and
+/// d. It follows r over a little way of d or F_N, and a press takes it back: a step that goes
+/// nowhere leaves it, and with it the sliders.
+fn worn(table: &Table, row: &Row, state: &ContactState, e: f64, d: [f64; 2]) -> (f64, [f64; 3]) {
+    let (mut worn, mut by) = (state.worn, [0.0; 3]);
+    let Some((f_n, r)) = held(row, state) else { return (worn, by) };
+    let (mu, constants, gamma) = (table.friction, &table.constants, row.value[GAMMA]);
+    let r = r.map(|r| r / mu);
+    let size = (r[0] * r[0] + r[1] * r[1]).sqrt().min(1.0);
+    let mut to = worn.max(size);
+    let vertex = state.vertex;
+    let back = -(r[0] * vertex[0] + r[1] * vertex[1]);
+    if back > 0.0 {
+        // Slip against the vertex of a contact that was sheared.
+        let length = (vertex[0] * vertex[0] + vertex[1] * vertex[1]).sqrt();
+        let (sheared, back) = (to.min(1.0), (back / length).min(1.0));
+        let fourth = sheared * sheared * sheared * sheared;
+        to = to.max(sheared + (2.0 - sheared) * fourth * back * back * length / (length + HARDLY * mu));
+    }
+    if to > worn {
+        let trial = if e > 0.0 { elastic_force(row, e, state.stiffened) } else { 0.0 };
+        let k = 1.0 / (constants.follows * mu * f_n);
+        let (kd, kn) = (row.value[LN_STIFFNESS] * k, if trial < f_n { -k * mu } else { k * mu });
+        let way = (d[0] * d[0] + d[1] * d[1]).sqrt();
+        let slope = (to - worn) * (-kd * way - kn * (trial - f_n)).exp();
+        worn = to - slope;
+        let along = |d: f64| if way > 0.0 { slope * kd * d / way } else { 0.0 };
+        by = [if e > 0.0 { slope * kn * gamma * trial / e } else { 0.0 }, along(d[0]), along(d[1])];
+    }
+    if worn > size && e > state.reach {
+        let per = constants.forgets / row.approach * row.dent_slope / (row.dent_slope + row.approach_slope + 1e-12);
+        let pressed = ((state.reach - e) * per).exp();
+        worn = size + (worn - size) * pressed;
+        by = [by[0] * pressed - (worn - size) * per, by[1] * pressed, by[2] * pressed];
+    }
+    (worn, by)
+}
+
+impl Step<'_> {
+    /// The yield factor at its start, at a ratio.
+    fn factor_at(&self, r: [f64; 2]) -> f64 {
+        let [x, y] = [r[0] - self.state.vertex[0], r[1] - self.state.vertex[1]];
+        self.table.factor(&self.row, (r[0] * r[0] + r[1] * r[1]).sqrt(), (x * x + y * y).sqrt()).0
+    }
+
+    /// Sets the yield factor from which flow begins: that of the start of the step, or that at
+    /// which the elastic answer `o` reaches the yield force. The ratio of the start, which is a
+    /// better guess than that of the `trial`, and its yield factor.
+    fn begin_flow(&mut self, o: &Guess, trial: [f64; 2]) -> ([f64; 2], f64) {
+        let state = self.state;
+        let (mut r, mut factor) = (trial, o.factor);
+        self.growing = 1.0;
+        if let Some((_, start)) = held(&self.row, state) {
+            (r, factor) = (start, self.factor_at(start));
+            self.growing = factor;
+        }
+        self.rises = o.factor > self.growing;
+        let rho = (1.0 - state.softened) * (1.0 - self.row.value[SOFTENING] * state.released * state.released);
+        let before = rho * self.row.value[LN_FORCE] / o.f_n;
+        // Where h stays they are the same, and rounding is not to choose the slope.
+        if before > self.growing * (1.0 + 1e-10) {
+            self.growing = before;
+            self.growing_slope = -before * self.row.value[GAMMA] / self.approach;
+        }
+        (r, factor)
+    }
+
+    /// The hardening that brings F_N to the yield force, where the dent and D go on straight and r
+    /// stays; `load` is F_N G over the yield force.
+    fn first_guess(&self, load: f64) -> f64 {
+        let left = (-(load / self.rho).ln() / self.row.value[GAMMA]).exp();
+        let rate = self.row.dent_slope + left * self.approach / self.reach * self.row.approach_slope;
+        let y = self.approach * (1.0 - left) / rate;
+        if y > 0.0 { y.min(self.most()) } else { 0.0 }
+    }
+
+    /// The hardening by Newton's steps from a guess.
+    fn newton(&self, guess: f64, start: [f64; 2], o: &mut Guess) -> Option<(f64, Option<Terms>)> {
+        let most = self.most();
+        let bound = 0.5 * self.table.friction + 0.01;
+        let (mut y, mut r, mut back, mut known) = (guess, start, 0, false);
+        let (mut from, mut by) = ([0.0; 3], [0.0; 3]);
+        // Squares.
+        let mut least = f64::INFINITY;
+        for tries in 1.. {
+            let terms = self.evaluate(y, r, true, o);
+            let [a, b, c] = o.residual;
+            let norm = if terms.is_some() { a * a + b * b + c * c } else { f64::INFINITY };
+            if norm < TOLERANCE * TOLERANCE {
+                return Some((y, terms));
+            }
+            if tries == 1 && terms.is_none() {
+                y = 0.0;
+                continue;
+            }
+            if tries > 1 && !(norm <= 1.1 * least) && back < 6 {
+                back += 1;
+                by = by.map(|by| 0.4 * by);
+            } else {
+                let terms = terms?;
+                let enough = |terms| (norm < ENOUGH * ENOUGH).then_some((y, Some(terms)));
+                if tries >= STEPS {
+                    return enough(terms);
+                }
+                // Near to it the slopes of before are good enough: what they leave is norm^2/least.
+                if !(known && norm * norm < 1e-26 * least) {
+                    self.slopes_of_root(&terms, o);
+                    known = true;
+                }
+                let Some(x) = o.solve(o.residual) else { return enough(terms) };
+                (back, least, from) = (0, norm, [y, r[0], r[1]]);
+                by = x;
+                if y + x[0] < 0.0 {
+                    by = o.solve_at(-0.7 * y).unwrap_or([-0.7 * y, x[1], x[2]]);
+                } else if y + x[0] > most {
+                    by = o.solve_at(0.7 * (most - y)).unwrap_or([0.7 * (most - y), x[1], x[2]]);
+                }
+                let size = (by[1] * by[1] + by[2] * by[2]).sqrt();
+                let share = if size > bound { bound / size } else { 1.0 };
+                by = [by[0], share * by[1], share * by[2]];
+            }
+            y = from[0] + by[0];
+            r = [from[1] + by[1], from[2] + by[2]];
+        }
+        None
+    }
+
+    /// No contact hardens more in a step.
+    fn most(&self) -> f64 {
+        MOST_HARDENING * (self.approach + self.depth)
+    }
+
+    /// The hardening, where Newton does not find the way: r is solved for at each, and what F_N G
+    /// has over the yield force falls from above zero at 0 to below it.
+    fn bracket(&self, guess: f64, trial: [f64; 2], o: &mut Guess) -> (f64, Option<Terms>) {
+        let (mut r, most) = (trial, self.most());
+        let mut excess = |y: f64, o: &mut Guess| {
+            let terms = self.at_ratio(y, &mut r, o);
+            (if terms.is_some() { o.residual[0] } else { -1.0 }, terms)
+        };
+        let (mut low, mut at_low) = (0.0, excess(0.0, o).0);
+        let (mut high, mut side) = (guess.max(1e-3 * most), 0);
+        let (mut at_high, mut terms) = excess(high, o);
+        while at_high > 0.0 && high < most {
+            (low, at_low) = (high, at_high);
+            high = (4.0 * high).min(most);
+            (at_high, terms) = excess(high, o);
+        }
+        let mut y = high;
+        for _ in 0..BRACKETS {
+            if !(at_low > 0.0 && at_high < 0.0) || high - low <= 1e-15 * self.depth {
+                break;
+            }
+            y = high - at_high * (high - low) / (at_high - at_low);
+            let here;
+            (here, terms) = excess(y, o);
+            if here.abs() < TOLERANCE {
+                break;
+            }
+            if here > 0.0 {
+                (low, at_low) = (y, here);
+                at_high *= if side == 1 { 0.5 } else { 1.0 };
+                side = 1;
+            } else {
+                (high, at_high) = (y, here);
+                at_low *= if side == -1 { 0.5 } else { 1.0 };
+                side = -1;
+            }
+        }
+        (y, terms)
+    }
+
+    /// The answer at a hardening, for the ratio that belongs to it: Newton's steps, halved where
+    /// they do not bring it nearer.
+    fn at_ratio(&self, y: f64, r: &mut [f64; 2], o: &mut Guess) -> Option<Terms> {
+        let bound = 0.5 * self.table.friction + 0.01;
+        let (mut from, mut by, mut least, mut back) = (*r, [0.0; 2], f64::INFINITY, 0);
+        for _ in 0..RATIOS {
+            let terms = self.evaluate(y, *r, true, o)?;
+            let [_, a, b] = o.residual;
+            let norm = a * a + b * b;
+            if norm < TOLERANCE * TOLERANCE {
+                return Some(terms);
+            }
+            if norm > least && back < BACK {
+                (by, back) = (by.map(|by| 0.5 * by), back + 1);
+            } else {
+                self.slopes_of_root(&terms, o);
+                let Some([_, x, y]) = o.solve_at(0.0) else { return Some(terms) };
+                let size = (x * x + y * y).sqrt();
+                let share = if size > bound { bound / size } else { 1.0 };
+                (from, by, least, back) = (*r, [share * x, share * y], norm, 0);
+            }
+            *r = [from[0] + by[0], from[1] + by[1]];
+        }
+        self.evaluate(y, *r, true, o)
+    }
+
+    /// What releases took of the yield force before the one that a step has left over, and the
+    /// share of F_N that is still released: so a next step that goes nowhere finds the same.
+    fn left_released(&self, o: &Guess, y: f64) -> [f64; 2] {
+        if !(o.reach > o.approach) {
+            return [1.0 - o.rho, 0.0];
+        }
+        let row = self.table.read(self.depth + y, COLUMNS);
+        let released = 1.0 - (row.value[GAMMA] * (o.approach / o.reach).ln()).exp();
+        [(1.0 - o.rho / (1.0 - row.value[SOFTENING] * released * released)).max(0.0), released]
+    }
+
+    /// The memory after the step.
+    fn keep(&self, o: &Guess, h: f64, y: f64, softened: f64, released: f64) -> ContactState {
+        let state = self.state;
+        let touches = o.f_n > 0.0;
+        ContactState {
+            h,
+            h_max: state.h_max.max(h),
+            approach: o.approach,
+            hardened: state.hardened + y,
+            reach: o.reach,
+            softened,
+            released,
+            worn: self.worn,
+            stiffened: if touches && y > 0.0 { (o.width - 1.0).max(0.0) } else { state.stiffened },
+            vertex: if touches && y > 0.0 { o.vertex } else { state.vertex },
+            slider: o.forces,
+        }
+    }
+
+    fn answer(&self, o: &Guess, y: f64, [h, d0, d1]: [[f64; 3]; 3]) -> ContactResponse {
+        if !(o.f_n > 0.0) {
+            return ContactResponse::default();
+        }
+        let row = self.table.read(self.depth + y, COLUMNS);
+        let a = row.value[LN_RADIUS].exp() * (o.width * o.approach / row.approach).powf(row.value[GAMMA] - 1.0);
+        ContactResponse {
+            f_n: o.f_n,
+            f_t: o.f_t,
+            df_t_ddelta: [[d0[1], d1[1]], [d0[2], d1[2]]],
+            df_n_dh: h[0],
+            df_n_ddelta: [d0[0], d1[0]],
+            a,
+            df_t_dh: [h[1], h[2]],
+        }
     }
 }

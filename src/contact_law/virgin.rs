@@ -1,78 +1,63 @@
-//! The virgin curves of one pair of materials: everything that the contact update asks of the law,
-//! tabulated over the indentation.
-//!
-//! The table is cubic in ln h through [`KNOTS`] equidistant knots, so that an update costs no root
-//! search. Its last digits differ from the formulas that filled it by some 1e-4; what counts is
-//! that every language fills and reads it by the same operations.
-
-use super::curve::NormalCurve;
-use super::yielding::{is_elastic, virgin_yield_coefficient};
+//! First loading of one pair of materials: everything that the table of the update is made of,
+//! tabulated over the indentation, cubic in ln h through [`KNOTS`] equidistant knots.
 
 /// Number of knots over ln h.
-pub const KNOTS: usize = 128;
+const KNOTS: usize = 128;
 /// Number of tabulated quantities.
-pub const COLUMNS: usize = 8;
-/// Points of a shape that is given by numbers, over x = (j/POINTS)^2, j = 1 and on.
+const COLUMNS: usize = 8;
+/// Points of a shape, over x = (j/POINTS)^2, j = 1 and on.
 pub const POINTS: usize = 24;
-/// Levels of ln h on which they are given.
-pub const LEVELS: usize = 16;
-/// [`ContactParameters::form`] of shapes that are given by numbers.
-pub const BY_NUMBERS: f64 = 2.0;
-/// Number of sliders that stand for the contact's annuli.
-pub const SLIDERS: usize = 16;
-
-/// Exponent of the sliders' backbone of a contact that was never sheared. Of simulated oblique
-/// rebounds; fades with the eighth power of 1 - x.
-const UNSHEARED: f64 = 2.0;
-
-/// Exponent of the sliders' backbone in a first reversal, less 1, over that of a table, which is
-/// between it and those after.
-const FIRST: f64 = 1.5;
-/// The exponent of those after, which turn more sharply, in all materials alike. Of simulated
-/// cycles.
-const LATER: f64 = 1.15;
-/// Share of F_N0 that is lost to shear from which that is so: an elastic contact keeps its
-/// exponent.
-const HARDLY: f64 = 0.02;
+/// Levels of ln h on which the shapes are given.
+const LEVELS: usize = 16;
 
 /// Pieces of a step of the table over which its work is summed.
-pub const PIECES: usize = 4;
+const PIECES: usize = 4;
 
 /// Share of the work of a step that is spared where a contact would store too much, for some of
 /// what the cubics between the knots gain: 2e-4 of the work at the most.
-pub const SPARE: f64 = 5e-5;
+const SPARE: f64 = 5e-5;
+/// Halvings of the stiffness that stores so much.
+const HALVINGS: usize = 40;
 /// By how much a contact must store too much for it to be no rounding.
-pub const ROUNDING: f64 = 1e-9;
+const ROUNDING: f64 = 1e-9;
+
+/// F_N_slip/F_N0 from which a contact counts as elastic.
+const ELASTIC: f64 = 1.0 - 1e-6;
+
+/// Least contact radius over that of the unloading.
+const LEAST_RADII: f64 = 1e-6;
+
+/// Columns of the table.
+const LN_FORCE: usize = 0;
+const LN_UNLOADING_RADIUS: usize = 1;
+const SLIP_SHARE: usize = 2;
+const LN_SLIP: usize = 3;
+const COEFFICIENT: usize = 4;
+const RADII: usize = 5;
+const BACKBONE: usize = 6;
+const LN_STIFFNESS: usize = 7;
 
 /// Powers of h in a Hertz contact of the quantities whose logarithms are tabulated.
 const ELASTIC_POWERS: [f64; COLUMNS] = [1.5, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5];
 
-/// What the update needs to know of a pair of materials. Plain data, shared by all contacts of the
-/// pair; any one consistent system of units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactParameters {
+/// First loading over h, and the shear at constant h. Any one consistent system of units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstLoading {
     /// Radius R, length; of a contact of two equal spheres R* = R/2.
     pub radius: f64,
     /// E* = E/(1 - nu^2), stress; half of it for two equal spheres.
     pub effective_modulus: f64,
     /// Coulomb's coefficient mu.
     pub friction: f64,
-    /// Form of f_N: 0 is \[1 - (1 - x)^M\]^N, 1 is 1 - (1 - x^M)^N; 2: f_T and f_N are `shapes`.
-    pub form: f64,
+    /// Whether the stiffness of an unloading was measured.
+    measured: bool,
     /// ln h of the first knot.
     pub log_first: f64,
     /// Step of ln h from knot to knot.
     pub log_step: f64,
-    /// The gentle exponent of f_N, N of form 0 and M of form 1: the same at every h.
-    pub gentle: f64,
-    /// Per knot: ln F_N0; ln a, the radius with which 2 E* a is the stiffness of an unloading;
-    /// F_N_slip/F_N0; ln delta_T_end; n (with form 2 the coefficient c of the yield curve); the
-    /// contact radius over a; the steep exponent of f_N (with form 2 the exponent of the sliders'
-    /// backbone); ln k_T.
-    pub table: [[f64; COLUMNS]; KNOTS],
-    /// f_T and f_N of form 2 on levels from the first knot to the last, equidistant in ln h; zero
-    /// otherwise.
-    pub shapes: [Shapes; LEVELS],
+    table: [[f64; COLUMNS]; KNOTS],
+    /// f_T and f_N on levels from the first knot to the last, equidistant in ln h.
+    shapes: [Shapes; LEVELS],
 }
 
 /// f_T and f_N at x = (j/POINTS)^2, j = 1 and on.
@@ -103,7 +88,23 @@ pub enum ContactError {
     },
 }
 
-/// The axisymmetric state and the law at one indentation of first loading.
+/// What a law gives of a contact at one indentation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Given {
+    /// The contact; its c is not read.
+    pub point: VirginPoint,
+    /// Radius with which 2 E* a is the stiffness of an unloading, length; of a law that knows none
+    /// it is that of the contact, or as much greater as keeps a press from storing too much.
+    pub unloading_radius: Option<f64>,
+    /// Exponent of the backbone of a reversal, as [`Virgin::backbone`].
+    pub backbone: f64,
+    /// Coefficient c of an oblique press; of none, that of the shear at constant h.
+    pub coefficient: Option<f64>,
+    /// f_T and f_N.
+    pub shapes: Shapes,
+}
+
+/// The contact at one indentation of first loading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VirginPoint {
     /// Contact radius a, length.
@@ -116,16 +117,11 @@ pub struct VirginPoint {
     pub delta_t_slip: f64,
     /// Tangential stiffness without slip and plastic flow, force over length: that of a reversal.
     pub k_t: f64,
-    /// Exponent n of f_T; with form 2 the coefficient c of the yield curve, of which f_T knows
-    /// nothing.
-    pub n: f64,
-    /// Exponent M of f_N.
-    pub m_exponent: f64,
-    /// Exponent N of f_N.
-    pub n_exponent: f64,
+    /// c of an oblique press, d(delta_T)/dh = 2 c r/(1 - c r^2) with r = F_T/F_N.
+    pub c: f64,
 }
 
-/// [`VirginPoint`] as the update uses it.
+/// [`VirginPoint`] and what the table of the update needs beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Virgin {
     /// The law.
@@ -135,18 +131,12 @@ pub struct Virgin {
     /// Exponent gamma of the elastic unloading, F_N = F_N0 eta^gamma: 3/2 for Hertz, 4/pi for a
     /// uniform pressure.
     pub gamma: f64,
-    /// Elastic approach D = gamma F_N0/(2 E* a), length: h less D is the residual indentation.
+    /// Elastic approach D = gamma F_N0/(2 E* a): h less D is the residual indentation, length.
     pub depth: f64,
-    /// Exponent of the sliders' backbone in a first reversal after full slip: of formulas the
-    /// smaller of gamma and n.
-    pub first: f64,
-    /// The same of this contact.
+    /// Exponent of the backbone of a reversal: 3/2 in Cattaneo and Mindlin's contact, near 1 where
+    /// it turns sharply.
     pub backbone: f64,
-    /// Shares of the sliders in k_T; their sum is 1.
-    pub weight: [f64; SLIDERS],
-    /// Approach over D at which each slider's annulus loses contact.
-    pub lost: [f64; SLIDERS],
-    /// f_T and f_N of form 2.
+    /// f_T and f_N.
     pub shapes: Shapes,
 }
 
@@ -162,12 +152,16 @@ pub fn unloading_exponent(radius: f64, effective_modulus: f64, a: f64, f_n0: f64
 /// 4/pi: with it unloading from a uniform pressure starts with 2 E* a and recovers 2 p a/E*.
 const PLASTIC_GAMMA: f64 = 1.2732395447351628;
 
-impl ContactParameters {
+/// delta_T over h of the oblique press by which c is measured: at c = 2 its F_T comes to half of mu
+/// F_N.
+pub fn measured_slope(mu: f64) -> f64 {
+    2.0 * mu / (1.0 + 0.5 * mu * mu)
+}
+
+impl FirstLoading {
     /// Tabulates `law`, which answers for an indentation, over the indentations `range` (both >
     /// 0), from first yield (below it, it must go with Hertz's powers of h) to the greatest that
-    /// will be met. The gentle exponent of f_N must not hang on h. Without a `curve` f_T and f_N
-    /// are to be given [by numbers](Self::with_shapes): then a is the radius whose 2 E* a is the
-    /// stiffness of an unloading, and M the exponent of the sliders' backbone.
+    /// will be met.
     ///
     /// # Errors
     /// [`ContactError::Value`] where a quantity is not positive and finite.
@@ -175,81 +169,80 @@ impl ContactParameters {
         radius: f64,
         effective_modulus: f64,
         friction: f64,
-        curve: Option<NormalCurve>,
         range: [f64; 2],
-        law: impl Fn(f64) -> VirginPoint,
+        law: impl Fn(f64) -> Given,
     ) -> Result<Self, ContactError> {
-        let form = match curve {
-            Some(NormalCurve::PowerOfComplement) => 0.0,
-            Some(NormalCurve::ComplementOfPower) => 1.0,
-            None => BY_NUMBERS,
-        };
         let log_first = range[0].ln();
         let log_step = (range[1].ln() - log_first) / (KNOTS as f64 - 1.0);
         let mut table = [[0.0; COLUMNS]; KNOTS];
-        let mut gentle = 1.0;
-        for i in 0..KNOTS {
+        for (i, row) in table.iter_mut().enumerate() {
             let h = (log_first + log_step * i as f64).exp();
-            let p = law(h);
+            let Given { point: p, unloading_radius, backbone, coefficient, .. } = law(h);
             let positive = [
                 ("a", p.a),
                 ("F_N0", p.f_n0),
                 ("F_N_slip", p.f_n_slip),
                 ("delta_T_end", p.delta_t_slip),
                 ("k_T", p.k_t),
-                ("n", p.n),
-                ("M", p.m_exponent),
-                ("N", p.n_exponent),
+                ("unloading_radius", unloading_radius.unwrap_or(p.a)),
+                ("backbone", backbone),
             ];
             for (what, value) in positive {
                 if !(value > 0.0 && value.is_finite()) {
                     return Err(ContactError::Value { relative_indentation: h / radius, what, value });
                 }
             }
-            let ratio = p.f_n_slip / p.f_n0;
-            let steep = match curve {
-                Some(NormalCurve::ComplementOfPower) => {
-                    gentle = p.m_exponent;
-                    p.n_exponent
-                }
-                Some(NormalCurve::PowerOfComplement) | None => {
-                    gentle = p.n_exponent;
-                    p.m_exponent
-                }
-            };
-            table[i] =
-                [p.f_n0.ln(), p.a.ln(), if ratio < 1.0 { ratio } else { 1.0 }, p.delta_t_slip.ln(), p.n, 1.0, steep, p.k_t.ln()];
+            let share = (p.f_n_slip / p.f_n0).min(1.0);
+            let c = coefficient.unwrap_or(f64::NAN);
+            let (ln_force, ln_slip, ln_stiffness) = (p.f_n0.ln(), p.delta_t_slip.ln(), p.k_t.ln());
+            let unloading = unloading_radius.unwrap_or(p.a);
+            *row = [ln_force, unloading.ln(), share, ln_slip, c, p.a / unloading, backbone, ln_stiffness];
         }
-        let shapes = [[[0.0; POINTS]; 2]; LEVELS];
-        let mut parameters = Self { radius, effective_modulus, friction, form, gentle, log_first, log_step, table, shapes };
-        parameters.conserve();
-        Ok(parameters)
+        let mut shapes = [[[0.0; POINTS]; 2]; LEVELS];
+        for (i, shape) in shapes.iter_mut().enumerate() {
+            let position = i as f64 * (KNOTS as f64 - 1.0) / (LEVELS as f64 - 1.0);
+            *shape = law((log_first + position * log_step).exp()).shapes;
+        }
+        let measured = law(range[1]).unloading_radius.is_some();
+        let mut found = Self { radius, effective_modulus, friction, measured, log_first, log_step, table, shapes };
+        found.conserve();
+        for (i, h) in found.knots().collect::<Vec<_>>().into_iter().enumerate() {
+            if found.table[i][COEFFICIENT].is_nan() {
+                found.table[i][COEFFICIENT] = shear_coefficient(&found.virgin(h), friction);
+            }
+        }
+        Ok(found)
     }
 
-    /// The same with f_T and f_N given by numbers for every level, the first at the first knot;
-    /// with the contact radius that `contact_radius` has for an indentation, and with the
-    /// coefficient c of the yield curve that `yielding` has, or that of the virgin curve where it
-    /// has none.
-    #[must_use]
-    pub fn with_shapes(
-        self,
-        shapes: [Shapes; LEVELS],
-        contact_radius: impl Fn(f64) -> f64,
-        yielding: impl Fn(f64) -> Option<f64>,
-    ) -> Self {
-        let mut given = Self { form: BY_NUMBERS, shapes, ..self };
-        let place = |i: usize| (self.log_first + self.log_step * i as f64).exp();
-        for (i, row) in given.table.iter_mut().enumerate() {
-            row[5] = contact_radius(place(i)) / row[1].exp();
+    /// Indentations of the knots.
+    pub fn knots(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..KNOTS).map(|i| (self.log_first + self.log_step * i as f64).exp())
+    }
+
+    /// Indentations of the first knot and of the last.
+    pub(super) fn range(&self) -> [f64; 2] {
+        [self.log_first.exp(), (self.log_first + self.log_step * (KNOTS as f64 - 1.0)).exp()]
+    }
+
+    /// All that it is, as numbers.
+    pub(super) fn to_numbers(&self) -> Vec<f64> {
+        let measured = if self.measured { 1.0 } else { 0.0 };
+        let alone = [self.radius, self.effective_modulus, self.friction, measured, self.log_first, self.log_step];
+        let shapes = self.shapes.as_flattened().as_flattened();
+        alone.iter().chain(self.table.as_flattened()).chain(shapes).copied().collect()
+    }
+
+    pub(super) fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let (&[radius, effective_modulus, friction, measured, log_first, log_step], rest) = numbers.split_first_chunk()?;
+        let (mut table, mut shapes) = ([[0.0; COLUMNS]; KNOTS], [[[0.0; POINTS]; 2]; LEVELS]);
+        let (of_table, of_shapes) = rest.split_at_checked(KNOTS * COLUMNS)?;
+        if of_shapes.len() != LEVELS * 2 * POINTS || numbers.iter().any(|number| !number.is_finite()) {
+            return None;
         }
-        let coefficients: [f64; KNOTS] = std::array::from_fn(|i| {
-            let h = place(i);
-            yielding(h).unwrap_or_else(|| virgin_yield_coefficient(&given, &given.virgin(h)))
-        });
-        for (row, c) in given.table.iter_mut().zip(coefficients) {
-            row[4] = c;
-        }
-        given
+        table.as_flattened_mut().copy_from_slice(of_table);
+        shapes.as_flattened_mut().as_flattened_mut().copy_from_slice(of_shapes);
+        let measured = measured != 0.0;
+        Some(Self { radius, effective_modulus, friction, measured, log_first, log_step, table, shapes })
     }
 
     /// What belongs to R = 1 and E = 1 for a sphere of this radius and this Young's modulus.
@@ -265,10 +258,10 @@ impl ContactParameters {
             ..self
         };
         for row in &mut scaled.table {
-            row[0] += force;
-            row[1] += length;
-            row[3] += length;
-            row[7] += stiffness;
+            row[LN_FORCE] += force;
+            row[LN_UNLOADING_RADIUS] += length;
+            row[LN_SLIP] += length;
+            row[LN_STIFFNESS] += stiffness;
         }
         scaled
     }
@@ -276,7 +269,7 @@ impl ContactParameters {
     /// f_T and f_N at a place between the levels; straight between them.
     fn shapes_at(&self, position: f64) -> Shapes {
         let mut shapes = self.shapes[0];
-        if self.form != BY_NUMBERS || position <= 0.0 {
+        if position <= 0.0 {
             return shapes;
         }
         let level = position * (LEVELS as f64 - 1.0) / (KNOTS as f64 - 1.0);
@@ -302,14 +295,14 @@ impl ContactParameters {
         self.keep_below(0, self.log_first.exp());
         let mut before = self.stored_at(0);
         for i in 1..KNOTS {
-            if self.form != BY_NUMBERS {
-                // What the body adds stays as the contact yields; a table has measured it.
-                self.stiffen(i, 1.0 / self.table[i - 1][5]);
+            if !self.measured {
+                // What the body adds stays as the contact yields.
+                self.stiffen(i, 1.0 / self.table[i - 1][RADII]);
             }
             let most = before + self.work_between(i);
             let stored = self.stored_at(i);
             if stored > (1.0 + ROUNDING) * most {
-                self.stiffen(i, stored / ((1.0 - SPARE) * most));
+                self.stiffen_to(i, (1.0 - SPARE) * most, stored);
             }
             self.keep_below(i, (self.log_first + self.log_step * i as f64).exp());
             before = self.stored_at(i);
@@ -320,7 +313,7 @@ impl ContactParameters {
     /// [`PIECES`] pieces of the way.
     fn work_between(&self, i: usize) -> f64 {
         let mut work = 0.0;
-        let mut log_f = self.table[i - 1][0];
+        let mut log_f = self.table[i - 1][LN_FORCE];
         for k in 1..=PIECES {
             let u = k as f64 / PIECES as f64;
             let next = self.column(0, (i - 1) as f64 + u)[0];
@@ -334,38 +327,55 @@ impl ContactParameters {
 
     /// Makes the unloading of a knot stiffer by a factor.
     fn stiffen(&mut self, i: usize, factor: f64) {
-        self.table[i][1] += factor.ln();
-        self.table[i][5] /= factor;
+        self.table[i][LN_UNLOADING_RADIUS] += factor.ln();
+        self.table[i][RADII] /= factor;
+    }
+
+    /// Makes the unloading of a knot so much stiffer that it stores `most`. No more: gamma falls
+    /// with it, and what one knot stores too little, all after it would have to.
+    fn stiffen_to(&mut self, i: usize, most: f64, stored: f64) {
+        let (mut least, mut greatest) = (0.0, (stored / most).ln());
+        for _ in 0..HALVINGS {
+            let middle: f64 = 0.5 * (least + greatest);
+            self.stiffen(i, middle.exp());
+            if self.stored_at(i) > most {
+                least = middle
+            } else {
+                greatest = middle
+            }
+            self.stiffen(i, (-middle).exp());
+        }
+        self.stiffen(i, greatest.exp());
     }
 
     /// Lets no more than the indentation `h` be recovered at a knot.
     fn keep_below(&mut self, i: usize, h: f64) {
-        let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
-        let gamma = self.exponent_of(a, self.table[i][5], f_n0);
+        let (f_n0, a) = (self.table[i][LN_FORCE].exp(), self.table[i][LN_UNLOADING_RADIUS].exp());
+        let gamma = self.exponent_of(a, self.table[i][RADII], f_n0);
         let depth = gamma * f_n0 / (2.0 * self.effective_modulus * a);
         if depth > h {
             self.stiffen(i, depth / h);
         }
     }
 
-    /// gamma by the contact radius, which is `radii` times that of the stiffness; of shapes by
-    /// numbers by the latter, which the measured unloadings of a table were read with.
+    /// gamma of a contact whose radius is so many `radii` of its unloading: by that, or by the
+    /// latter where it was measured.
     fn exponent_of(&self, a: f64, radii: f64, f_n0: f64) -> f64 {
-        let a = if self.form == BY_NUMBERS { a } else { radii * a };
+        let a = if self.measured { a } else { radii * a };
         unloading_exponent(self.radius, self.effective_modulus, a, f_n0)
     }
 
     /// Elastic energy of the virgin contact at a knot.
     fn stored_at(&self, i: usize) -> f64 {
-        let (f_n0, a) = (self.table[i][0].exp(), self.table[i][1].exp());
-        let gamma = self.exponent_of(a, self.table[i][5], f_n0);
+        let (f_n0, a) = (self.table[i][LN_FORCE].exp(), self.table[i][LN_UNLOADING_RADIUS].exp());
+        let gamma = self.exponent_of(a, self.table[i][RADII], f_n0);
         gamma / (gamma + 1.0) * f_n0 * f_n0 / (2.0 * self.effective_modulus * a)
     }
 
     /// Slope of a column at a knot, per step. The steeper secant for the force and the flatter one
     /// for the radius: so neither kink at yield makes a virgin contact store more energy than was
     /// put in. The mean for the others.
-    pub(super) fn knot_slope(&self, column: usize, i: usize) -> f64 {
+    fn knot_slope(&self, column: usize, i: usize) -> f64 {
         let value = |i: usize| self.table[i][column];
         if i == 0 {
             return value(1) - value(0);
@@ -376,14 +386,14 @@ impl ContactParameters {
         }
         let above = value(i + 1) - value(i);
         match column {
-            0 => {
+            LN_FORCE => {
                 if above > below {
                     above
                 } else {
                     below
                 }
             }
-            1 => {
+            LN_UNLOADING_RADIUS => {
                 if above < below {
                     above
                 } else {
@@ -420,123 +430,92 @@ impl ContactParameters {
 
     /// First loading at the indentation `h` > 0.
     pub fn virgin(&self, h: f64) -> Virgin {
-        self.virgin_sheared(h, 1.0, 0.0)
-    }
-
-    /// The same with [the sliders](Virgin::sharpen) of a contact that was sheared.
-    pub(super) fn virgin_sheared(&self, h: f64, sheared: f64, reversed: f64) -> Virgin {
         let position = (h.ln() - self.log_first) / self.log_step;
-        let [log_f, log_f_slope] = self.column(0, position);
+        let [log_f, log_f_slope] = self.column(LN_FORCE, position);
+        let value = |column: usize| self.column(column, position)[0];
         let f_n0 = log_f.exp();
-        let a = self.column(1, position)[0].exp();
-        let radii = self.column(5, position)[0];
-        let gamma = self.exponent_of(a, radii, f_n0);
-        let f_n_slip = self.column(2, position)[0] * f_n0;
-        let delta_t_slip = self.column(3, position)[0].exp();
-        let n = self.column(4, position)[0];
-        let contact_radius = radii * a;
-        let steep = self.column(6, position)[0];
-        let (m_exponent, n_exponent) = if self.form == 0.0 { (steep, self.gentle) } else { (self.gentle, steep) };
-        let mut backbone = if gamma < n { gamma } else { n };
-        // The elastic sliders must be able to follow the virgin curve: neither softer at its start,
-        // as a table's are, nor slower to slip.
-        let mut k_t = self.column(7, position)[0].exp();
-        if self.form == BY_NUMBERS {
-            backbone = steep;
-        } else {
-            let start = n * self.friction * f_n_slip / delta_t_slip;
-            if k_t < start {
-                k_t = start;
-            }
-        }
-        let end = backbone * self.friction * f_n0 / delta_t_slip;
-        if k_t < end {
-            k_t = end;
-        }
-        let point = VirginPoint { a: contact_radius, f_n0, f_n_slip, delta_t_slip, k_t, n, m_exponent, n_exponent };
-        if self.form == BY_NUMBERS && !is_elastic(&point) {
-            backbone = 1.0 + FIRST * (backbone - 1.0);
-        }
-        let mut virgin = Virgin {
+        let unloading = value(LN_UNLOADING_RADIUS).exp();
+        // A cubic may undershoot where the law has a step.
+        let radii = value(RADII).max(LEAST_RADII);
+        let gamma = self.exponent_of(unloading, radii, f_n0);
+        let (delta_t_slip, backbone) = (value(LN_SLIP).exp(), value(BACKBONE));
+        // The elastic sliders must not be slower to slip than the curve of the shear.
+        let k_t = value(LN_STIFFNESS).exp().max(backbone * self.friction * f_n0 / delta_t_slip);
+        let point = VirginPoint {
+            a: radii * unloading,
+            f_n0,
+            f_n_slip: value(SLIP_SHARE).min(1.0) * f_n0,
+            delta_t_slip,
+            k_t,
+            c: value(COEFFICIENT).max(0.0),
+        };
+        Virgin {
             point,
             slope: f_n0 * log_f_slope / (self.log_step * h),
             gamma,
-            depth: gamma * f_n0 / (2.0 * self.effective_modulus * a),
-            first: backbone,
+            depth: gamma * f_n0 / (2.0 * self.effective_modulus * unloading),
             backbone,
-            weight: [0.0; SLIDERS],
-            lost: [0.0; SLIDERS],
             shapes: self.shapes_at(position),
-        };
-        virgin.sharpen(sheared, reversed);
-        virgin
+        }
     }
 }
 
 impl Virgin {
-    /// Gives it the sliders of a contact that has yielded to shear at the place `sheared` of the
-    /// virgin curves, and whose slip was reversed so far. Where it was hardly sheared, the
-    /// tractions are lost sooner as it is released.
-    pub(super) fn sharpen(&mut self, sheared: f64, reversed: f64) {
-        self.backbone = self.first;
-        if !is_elastic(&self.point) {
-            let lost = (1.0 - self.point.f_n_slip / self.point.f_n0) / HARDLY;
-            let again = reversed * (if lost < 1.0 { lost } else { 1.0 });
-            if self.backbone > LATER {
-                self.backbone += (LATER - self.backbone) * again;
-            }
-            if self.backbone < UNSHEARED {
-                let rest = if sheared < 1.0 { 1.0 - sheared } else { 0.0 };
-                let rest = rest * rest;
-                let rest = rest * rest;
-                self.backbone += (UNSHEARED - self.backbone) * (rest * rest);
-            }
-        }
-        (self.weight, self.lost) = sliders(self.backbone);
+    /// Whether shear costs no normal force: Cattaneo and Mindlin's contact.
+    pub fn is_elastic(&self) -> bool {
+        self.point.f_n_slip >= ELASTIC * self.point.f_n0
+    }
+
+    /// F_N and F_T at x of the shear at constant h.
+    pub(super) fn sheared(&self, friction: f64, x: f64) -> [f64; 2] {
+        let point = &self.point;
+        let lost = (point.f_n0 - point.f_n_slip) * given(&self.shapes[1], x);
+        [point.f_n0 - lost, friction * point.f_n_slip * given(&self.shapes[0], x)]
     }
 }
 
-/// Power of the sliders' place at which the stiffness inside it grows: with it the broken line of
-/// sixteen is within 2e-3 of a backbone with an exponent from 1.1 to 1.6 (3e-3 from 1.05 on).
-const SPACING: f64 = 0.65;
+/// x at point `j` of a shape.
+fn point_x(j: usize) -> f64 {
+    let share = j as f64 / POINTS as f64;
+    share * share
+}
 
-/// (k/16)^0.65: shares of k_T of the annuli inside the end of cell k.
-const INSIDE: [f64; SLIDERS + 1] = [
-    0.0,
-    0.16493848884661177,
-    0.25881623096034434,
-    0.3368610723585669,
-    0.40612619817811774,
-    0.46951828924049643,
-    0.5285916811459566,
-    0.5842997994985654,
-    0.6372803136596311,
-    0.6879860659818012,
-    0.7367531668195612,
-    0.7838397013217092,
-    0.8294492546152544,
-    0.8737459792985665,
-    0.9168646621816685,
-    0.9589176881122033,
-    1.0,
-];
-
-/// Shares and points of loss of the sliders whose backbone is 1 - (1 - x)^backbone.
-///
-/// Each stands for a cell of the annuli at its centre of gravity, so that the broken line lies on
-/// the curve at the cells' ends, above it between them and at 1 at full slip. The shares are the
-/// same for every backbone: so a contact that grows keeps the forces of all its sliders by one
-/// factor. The places of the cells differ.
-pub(super) fn sliders(backbone: f64) -> ([f64; SLIDERS], [f64; SLIDERS]) {
-    let (mut weight, mut lost) = ([0.0; SLIDERS], [0.0; SLIDERS]);
-    let power = SPACING / (backbone - 1.0);
-    let mut below_moment = 0.0;
-    for i in 0..SLIDERS {
-        let end = if i == SLIDERS - 1 { 1.0 } else { ((i + 1) as f64 / SLIDERS as f64).powf(power) };
-        let above_moment = INSIDE[i + 1] * end;
-        weight[i] = INSIDE[i + 1] - INSIDE[i];
-        lost[i] = (backbone - 1.0) / backbone * (above_moment - below_moment) / weight[i];
-        below_moment = above_moment;
+/// A shape at 0 <= x <= 1, straight from point to point.
+fn given(shape: &[f64; POINTS], x: f64) -> f64 {
+    if x >= 1.0 {
+        return shape[POINTS - 1];
     }
-    (weight, lost)
+    let j = ((POINTS as f64 * x.sqrt()) as usize).min(POINTS - 1);
+    let below = if j == 0 { 0.0 } else { shape[j - 1] };
+    below + (shape[j] - below) / (point_x(j + 1) - point_x(j)) * (x - point_x(j))
+}
+
+/// The least x at which a shape has the value `f`, or that of its peak.
+fn given_inverse(shape: &[f64; POINTS], f: f64) -> f64 {
+    let (mut peak, mut place) = (0.0, 0.0);
+    for (j, &here) in shape.iter().enumerate() {
+        if here >= f {
+            let below = if j == 0 { 0.0 } else { shape[j - 1] };
+            return point_x(j) + (f - below) / (here - below) * (point_x(j + 1) - point_x(j));
+        }
+        if here > peak {
+            (peak, place) = (here, point_x(j + 1));
+        }
+    }
+    place
+}
+
+/// c of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the shear at constant h follows; by its
+/// points at 40 % and all of the slip force. The linear part belongs to a sudden shear alone. Not
+/// less than half of what it is without that part.
+fn shear_coefficient(virgin: &Virgin, friction: f64) -> f64 {
+    if !(friction > 0.0) {
+        return 0.0;
+    }
+    let point = &virgin.point;
+    let at_slip = (point.f_n0 - point.f_n_slip) / (point.f_n_slip * friction);
+    let [f_n, _] = virgin.sheared(friction, given_inverse(&virgin.shapes[0], 0.4));
+    let r = 0.4 * friction * point.f_n_slip / f_n;
+    let before = (point.f_n0 - f_n) / (f_n * r);
+    ((at_slip - before) / (friction - r)).max(0.5 * at_slip / friction).max(0.0)
 }

@@ -69,7 +69,7 @@ fn two_spheres_that_do_not_yield_keep_their_force() {
         for point in points.iter().filter(|point| point.segment == 1) {
             let lost = 1.0 - point.f_n / pressed;
             let passed = 1.5 * point.delta_t.powi(2) / (4.0 * h);
-            assert!(lost < 1.1 * passed + 2e-3, "{hardening}, mu = {friction}: {lost} and {passed} at {}", point.delta_t);
+            assert!(lost < 1.1 * passed + 5e-3, "{hardening}, mu = {friction}: {lost} and {passed} at {}", point.delta_t);
         }
     }
 }

@@ -1,11 +1,12 @@
 /* asperity_contact.h: force-displacement law of an elastic-plastic sphere, as an incremental update of one contact. Written by asperity @VERSION@.
  *
- * C99, C++17, CUDA. No global data, no allocation, no failure at run time. double; with ASPERITY_SINGLE defined before it is included, float.
+ * C99, C++17, CUDA. No global data, no allocation, no failure at run time. double; with ASPERITY_SINGLE defined before it is included, float: then memory, table and answers are
+ * float, and each step is solved in double: forces are within 1e-5 of those in double as a rule, and some 1e-3 where a step is at the edge of yielding.
  *
  * What it needs is an asperity_table: of one hardening curve, one Poisson's ratio and one friction coefficient, for all radii, moduli and units. `asperity law export` writes it
  * as a constant (asperity_law.h) and as a file that asperity_read_table() reads when the program runs (law.asperity).
  *
- * A contact's memory is one asperity_state: all bytes zero before first contact; copy it, write it to a restart file as it is. Its lengths are over R. Each step:
+ * A contact's memory is one asperity_state: all bytes zero before first contact; copy it, write it to a restart file as it is. Lengths are over R, forces over E R^2. Each step:
  *     asperity_update(&table, R, E, &state, h, d, &next, &out, NULL);
  * h: indentation (negative: a gap), d[2]: tangential displacement of the sphere since the last call in two fixed axes, compression and the force along d
  * positive. The answer is a function of `state` alone, which stays as it is: it may be asked twice. For three dimensions, two radii, walls: asperity_contact3d.h.
@@ -14,9 +15,9 @@
  * stand for two equal spheres with a share of 1/2, which is exact without friction only: a plane holds the surface by friction while it is pressed, where two equal spheres
  * move alike.
  *
- * The law: on first loading at constant h, with x = |delta_T|/delta_T_end, F_T = mu F_N_slip f_T(x), F_N = F_N0 - (F_N0 - F_N_slip) f_N(x). Inside that curve the contact is
- * elastic with friction: @SLIDERS@ sliders in parallel (Iwan 1967), which obey Masing's rule on reversal. On it plastic flow follows the law in x. Unloading in h is elastic and
- * ends at the residual dent. No path returns more energy than was stored.
+ * The law is a macro-element. Elastic: F_N = P g^(gamma - 1) (e/D)^gamma, where e = h - dent, and P, D, gamma and the dent go with the depth h_m up to which it has hardened. Along the
+ * plane seven sliders, annuli of the contact, each slipping at mu times its share of F_N. It yields at F_N G = rho P, where G grows with r = F_T/F_N and with the distance of r from
+ * a vertex that follows it; then the contact hardens, and slips by plastic flow along r and away from the vertex. Each step is solved implicitly by Newton's method.
  */
 #ifndef ASPERITY_CONTACT_H
 #define ASPERITY_CONTACT_H
@@ -44,11 +45,11 @@ typedef long long int64_t;
 #define ASPERITY_LANES
 #endif
 
-/* Lanes that straddle lines of the cache cost twice. */
-#if defined(__GNUC__) && !defined(__CUDACC__)
-#define ASPERITY_ALIGNED __attribute__((aligned(64)))
+/* Of a pointer: nothing else points there. */
+#if defined(__GNUC__) || defined(__CUDACC__) || defined(_MSC_VER)
+#define ASPERITY_ALONE __restrict
 #else
-#define ASPERITY_ALIGNED
+#define ASPERITY_ALONE
 #endif
 
 #ifdef __CUDACC__
@@ -60,81 +61,82 @@ typedef long long int64_t;
 #ifdef ASPERITY_SINGLE
 typedef float asperity_real;
 typedef uint32_t asperity_bits;
-#define ASPERITY_EXP expf
 #define ASPERITY_LOG logf
 #define ASPERITY_SQRT sqrtf
 #define ASPERITY_ABS fabsf
 #define ASPERITY_SIN sinf
 #define ASPERITY_COS cosf
 #define ASPERITY_INFINITE_BITS 0x7f800000u
-#define ASPERITY_ROOT_BITS 0x5f375a86u
-#define ASPERITY_MOST 1e15f      /* its square is still finite */
-#define ASPERITY_AT_CAP (1.0f - 1e-6f)
-#define ASPERITY_AT_SLIP (1.0f - 2e-7f)
-#define ASPERITY_AT_BOUND (1.0f + 2.4e-7f) /* two roundings: a wider one lets a contact that begins to slip wait for a step */
+#define ASPERITY_MOST 1e15f /* its square is still finite */
+#define ASPERITY_ROUNDING 1.2e-7
 #else
 typedef double asperity_real;
 typedef uint64_t asperity_bits;
-#define ASPERITY_EXP exp
 #define ASPERITY_LOG log
 #define ASPERITY_SQRT sqrt
 #define ASPERITY_ABS fabs
 #define ASPERITY_SIN sin
 #define ASPERITY_COS cos
 #define ASPERITY_INFINITE_BITS 0x7ff0000000000000ull
-#define ASPERITY_ROOT_BITS 0x5fe6eb50c7b537a9ull
-#define ASPERITY_MOST 1e150
-#define ASPERITY_AT_SLIP (1.0 - 1e-13)
-#define ASPERITY_AT_CAP (1.0 - 1e-9) /* rounding is not taken for unloading */
-#define ASPERITY_AT_BOUND (1.0 + 1e-10)
+#define ASPERITY_MOST 1e140
+#define ASPERITY_ROUNDING 2.3e-16
 #endif
 #define ASPERITY_R(x) ((asperity_real)(x))
 
 /* a b + c, in one operation where the machine has it. */
-#if defined(FP_FAST_FMA) && !defined(ASPERITY_SINGLE)
+#ifdef FP_FAST_FMA
 #define ASPERITY_FMA(a, b, c) fma(a, b, c)
-#elif defined(FP_FAST_FMAF) && defined(ASPERITY_SINGLE)
-#define ASPERITY_FMA(a, b, c) fmaf(a, b, c)
 #else
 #define ASPERITY_FMA(a, b, c) ((a) * (b) + (c))
 #endif
 
-#define ASPERITY_KNOTS @KNOTS@
-#define ASPERITY_COLUMNS @COLUMNS@
-#define ASPERITY_SLIDERS 16 /* asperity_weights() and asperity_sliders() are written for this number */
-#define ASPERITY_POINTS @POINTS@ /* of a shape that is given by numbers, x = (j/points)^2; asperity_given_search() is written for 24 */
+#define ASPERITY_ROWS @ROWS@
 #define ASPERITY_LEVELS @LEVELS@
+#define ASPERITY_PLACES @PLACES@ /* of a shape, at 1 - (1 - j/places)^2: denser at full slip */
+#define ASPERITY_SLIDERS 7
+#define ASPERITY_PADDED 8        /* lanes of the sliders at work */
+#define ASPERITY_ALL_WEIGHTS 0.9999999999999999 /* the sum of their weights */
+
+/* Columns over the hardening depth: those that a step solves with, and those of its start. */
+enum { ASPERITY_LN_FORCE, ASPERITY_LN_STIFFNESS, ASPERITY_RECOVERED, ASPERITY_GAMMA, ASPERITY_SOLVED,
+       ASPERITY_FIRST_N = ASPERITY_SOLVED, ASPERITY_UNSHEARED_N, ASPERITY_RADIAL_SLIP, ASPERITY_SUDDEN, ASPERITY_SOFTENING, ASPERITY_RADIUS, ASPERITY_COLUMNS };
+
+/* Shapes over r/mu, and that of the vertex over its distance: the steady loss A, the steady flow, the flow with a growing yield factor, the loss B at the vertex. */
+enum { ASPERITY_LOST, ASPERITY_FLOW, ASPERITY_MOBILISED, ASPERITY_VERTEX, ASPERITY_SHAPES };
 
 /* A law. Lengths over R, forces over E R^2. */
 typedef struct asperity_table {
-    int plane;                       /* 1: a sphere on a rigid plane; 0: two equal spheres */
-    int form;                        /* of f_N: 0 [1 - (1 - x)^M]^N, 1 1 - (1 - x^M)^N; 2 f_T and f_N by numbers */
+    int plane;                       /* 1: a sphere on a rigid plane; 0: two spheres */
     asperity_real share;             /* h and d over what the centres move */
     asperity_real poissons_ratio;
     asperity_real friction;          /* mu */
     asperity_real effective_modulus; /* E*, over E: 1/(1 - nu^2) on a plane, half of it between two spheres */
     asperity_real effective_radius;  /* of Hertz's contact, over R: 1 on a plane, 1/2 between two spheres */
     asperity_real deepest;           /* h up to which the law was made */
-    asperity_real first;             /* h of the first knot */
-    asperity_real log_step;
-    asperity_real gentle;            /* exponent of f_N: N of form 0, M of form 1 */
-    /* F_N0, 1/a (2 E* a is the stiffness of an unloading), 1/delta_T_end, k_T, F_N_slip/F_N0, n (with form 2 c of the yield curve), the contact radius over a, the
-     * steep exponent of f_N (with form 2 that of the sliders' backbone) at a knot; towards the next, of the logarithms of the first four and of the others, the
-     * coefficients of u, u^2 and u^3, where u is the share of a step. So nothing is lost to the size of a logarithm in float. */
-    asperity_real knots[ASPERITY_KNOTS][4][ASPERITY_COLUMNS];
-    asperity_real shapes[ASPERITY_LEVELS][2][ASPERITY_POINTS];
+    asperity_real later;             /* exponent of the sliders after their slip was reversed */
+    asperity_real first;             /* depth of the first row, where all is elastic; rows are even in ln h, */
+    asperity_real per_step;          /* so many for each e, */
+    asperity_real level_start;       /* from this ln(h/first) on the levels, */
+    asperity_real per_level;         /* so many for each e */
+    asperity_real rows[ASPERITY_ROWS][ASPERITY_COLUMNS];
+    asperity_real shapes[ASPERITY_LEVELS][ASPERITY_SHAPES][ASPERITY_PLACES + 1];
+    asperity_real reach[ASPERITY_LEVELS];  /* of the vertex: its distance at full slip, */
+    asperity_real beyond[ASPERITY_LEVELS]; /* and the slope of its loss beyond that over the mean slope before */
 } asperity_table;
 
 /* The memory of a contact, lengths over R. */
 typedef struct asperity_state {
     asperity_real h;
     asperity_real h_max;
-    asperity_real approach; /* elastic: what is recovered until contact is lost; negative: the gap over the residual dent */
-    asperity_real reach;    /* elastic approach from which it is released: F_N = 2 E* a reach/gamma (approach/reach)^gamma; falls with F_N where shear takes that */
-    asperity_real x;        /* place on the virgin curves: the measure of F_N lost to shear; beyond 1, up to 2, of what reversed slip costs besides */
-    asperity_real sheared;  /* the place up to which the contact has hardened in shear */
-    asperity_real reversed; /* 0 to 1: how far its slip was reversed, after which it turns more sharply */
-    asperity_real deflection[2][ASPERITY_SLIDERS];
+    asperity_real approach;   /* elastic: what is recovered until contact is lost; negative: the gap over the residual dent */
+    asperity_real hardened;   /* h_m less the depth of first yield */
+    asperity_real reach;      /* elastic approach at which the sliders are whole */
+    asperity_real softened;   /* 1 - rho: what releases took of the yield force */
+    asperity_real released;   /* greatest share of F_N released since the contact last yielded */
+    asperity_real worn;       /* 0 to 1 sheared so far, to 2 its slip reversed */
+    asperity_real stiffened;  /* g - 1: by what the contact is wider than its F_N, as shear took F_N and left its radius */
+    asperity_real vertex[2];
+    asperity_real slider[3][ASPERITY_SLIDERS]; /* forces along the two axes, and radial */
 } asperity_state;
 
 /* The answer of an increment. */
@@ -142,7 +144,7 @@ typedef struct asperity_response {
     asperity_real f_n;          /* compression positive */
     asperity_real f_t[2];       /* along the displacement: what drives the sphere; the plane gives it the opposite */
     asperity_real stiffness;    /* of an unloading, dF_N/dh: 2 E* a */
-    asperity_real stored;       /* elastic energy: no path gives back more */
+    asperity_real stored;       /* elastic energy */
     asperity_real plastic;      /* work that this increment dissipated in plastic flow, */
     asperity_real friction;     /* and in slip */
 } asperity_response;
@@ -152,236 +154,111 @@ typedef struct asperity_tangent {
     asperity_real df_t_ddelta[2][2];
     asperity_real df_n_dh;        /* for the direction in which h last moved */
     asperity_real df_n_ddelta[2];
+    asperity_real df_t_dh[2];
     asperity_real a;
 } asperity_tangent;
 
-/* Of simulated oblique presses, rebounds and reversals; asperity's model of the update says what they are. */
-#define ASPERITY_PRESSED ASPERITY_R(0.9)
-#define ASPERITY_LEAST_NORMAL ASPERITY_R(0.25)
-#define ASPERITY_SUDDEN ASPERITY_R(0.2)
-#define ASPERITY_FORGETS ASPERITY_R(4.0)
-#define ASPERITY_GONE ASPERITY_R(1e-5)
-#define ASPERITY_LEAST_TRAVEL ASPERITY_R(0.4)
-#define ASPERITY_RELAXATION ASPERITY_R(0.1)
-#define ASPERITY_REVERSED ASPERITY_R(0.05)
-#define ASPERITY_LEAST_REVERSED ASPERITY_R(1e-6)
-#define ASPERITY_SLIDING ASPERITY_R(0.98)
-#define ASPERITY_GATHERED ASPERITY_R(0.7)
-#define ASPERITY_ALL_LOST ASPERITY_R(2.0) /* x after all of what reversed slip costs */
-#define ASPERITY_UNSHEARED ASPERITY_R(2.0)
-#define ASPERITY_TAKEN_BACK ASPERITY_R(0.9)
-#define ASPERITY_NO_CHANGE ASPERITY_R(0.15)
-#define ASPERITY_FIRST ASPERITY_R(1.5)
-#define ASPERITY_LATER ASPERITY_R(1.15)
-#define ASPERITY_HARDLY ASPERITY_R(0.02)
-
-/* What a virgin contact answers at one indentation. */
-typedef struct asperity_curve {
-    asperity_real first; /* exponent of the sliders' backbone in a first reversal of a contact that was sheared */
-    asperity_real f_n0, f_n_slip, m, big_n, k_t;
-    asperity_real n;             /* of f_T; with form 2 c of the yield curve */
-    asperity_real radii;         /* contact radius over a */
-    asperity_real per_slip;      /* 1/delta_T_end, */
-    asperity_real per_a;         /* 1/a, of F_N0 */
-    asperity_real per_force, per_gamma, per_backbone, per_n; /* and 1/F_N0, ... */
-    asperity_real slope;    /* dF_N0/dh */
-    asperity_real gamma;    /* unloading: F_N = F_N0 (e/depth)^gamma */
-    asperity_real depth;
-    asperity_real backbone; /* exponent of the sliders' */
-    int elastic;            /* whether shear costs no normal force */
-    ASPERITY_ALIGNED asperity_real lost[ASPERITY_SLIDERS]; /* approach over depth at which a slider's annulus loses contact */
-    const asperity_real (*shallow)[ASPERITY_POINTS]; /* shapes by numbers: those of the level above and of the one below, */
-    const asperity_real (*deep)[ASPERITY_POINTS];
-    asperity_real between;                           /* and the place between them */
-} asperity_curve;
-
-/* e^x of several numbers at once, |x| < 700 (80 in float; beyond it what it has there): 2^k e^r with |r| <= ln(2)/2, e^r by its series. No call, no branch: a compiler does it for
- * several lanes. To 2 in the last place. */
-ASPERITY_FN void asperity_exponentials(asperity_real *x, int count) {
-#ifdef ASPERITY_SINGLE
-    const float most = 80.0f;
-#else
-    const double most = 700.0;
-#endif
-    int i;
-    /* Loops of their own: beside what follows, a bound that is a constant becomes a branch. */
-    ASPERITY_LANES
-    for (i = 0; i < count; i++) {
-        asperity_real y = x[i];
-        x[i] = y < most ? y : most;
-    }
-    ASPERITY_LANES
-    for (i = 0; i < count; i++) {
-        asperity_real y = x[i];
-        x[i] = y > -most ? y : -most;
-    }
-#ifdef ASPERITY_SINGLE
-    ASPERITY_LANES
-    for (i = 0; i < count; i++) {
-        float y = x[i], r, p;
-        int k = (int)(y * 1.44269504f + 128.5f) - 128;
-        uint32_t bits;
-        r = ASPERITY_FMA((float)k, 2.12194440e-4f, ASPERITY_FMA((float)k, -0.693359375f, y));
-        p = ASPERITY_FMA(r, 1.984127e-4f, 1.3888889e-3f);
-        p = ASPERITY_FMA(r, ASPERITY_FMA(r, p, 8.3333333e-3f), 4.1666667e-2f);
-        p = ASPERITY_FMA(r, ASPERITY_FMA(r, p, 1.6666667e-1f), 0.5f);
-        p = ASPERITY_FMA(r, ASPERITY_FMA(r, p, 1.0f), 1.0f);
-        memcpy(&bits, &p, sizeof bits);
-        bits += (uint32_t)k << 23;
-        memcpy(&p, &bits, sizeof bits);
-        x[i] = p;
-    }
-#else
-    ASPERITY_LANES
-    for (i = 0; i < count; i++) {
-        double y = x[i], r, r2, r4, p;
-        int k = (int)(y * 1.4426950408889634 + 1024.5) - 1024;
-        uint64_t bits;
-        r = ASPERITY_FMA((double)k, -1.90821492927058770002e-10, ASPERITY_FMA((double)k, -6.93147180369123816490e-01, y));
-        r2 = r * r;
-        r4 = r2 * r2;
-        p = ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 39916800.0, 1.0 / 3628800.0), ASPERITY_FMA(r, 1.0 / 362880.0, 1.0 / 40320.0));
-        p = ASPERITY_FMA(r4, ASPERITY_FMA(r, 1.0 / 6227020800.0, 1.0 / 479001600.0), p);
-        p = ASPERITY_FMA(r4, p, ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 5040.0, 1.0 / 720.0), ASPERITY_FMA(r, 1.0 / 120.0, 1.0 / 24.0)));
-        p = ASPERITY_FMA(r4, p, ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 6.0, 1.0 / 2.0), 1.0 + r));
-        memcpy(&bits, &p, sizeof bits);
-        bits += (uint64_t)(int64_t)k << 52;
-        memcpy(&p, &bits, sizeof bits);
-        x[i] = p;
-    }
-#endif
-}
-
-/* Sum of a[i] b[i] over the sliders, in a fixed order that compilers do in lanes. */
-ASPERITY_FN asperity_real asperity_sum(const asperity_real a[ASPERITY_SLIDERS], const asperity_real b[ASPERITY_SLIDERS]) {
-    asperity_real lane[4];
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < 4; i++) {
-        lane[i] = (a[i] * b[i] + a[i + 4] * b[i + 4]) + (a[i + 8] * b[i + 8] + a[i + 12] * b[i + 12]);
-    }
-    return (lane[0] + lane[2]) + (lane[1] + lane[3]);
-}
+/* The same for all contacts: of simulated paths. */
+#define ASPERITY_VERTEX_LENGTH @VERTEX_LENGTH@ /* dh_p over mu P/k_T in which the vertex follows r */
+#define ASPERITY_VERTEX_ROUND @VERTEX_ROUND@   /* distance over mu within which its direction is rounded */
+#define ASPERITY_RADIAL_MOST @RADIAL_MOST@     /* greatest radial force of a slider over its limit */
+#define ASPERITY_NARROWS @NARROWS@             /* dh_p/D in which a press makes the contact as wide as F_N has it */
+#define ASPERITY_RECOVERS @RECOVERS@           /* how fast a press gives back what a release took */
+#define ASPERITY_FORGETS @FORGETS@             /* how fast a press takes back how far it was sheared, over dh_p/D */
+#define ASPERITY_FOLLOWS @FOLLOWS@             /* way over mu F_N/k_T in which the sliders' exponent follows what was sheared */
+#define ASPERITY_STEPS 20                      /* of Newton */
+#define ASPERITY_BRACKETS 100                  /* where that does not find the way */
+#define ASPERITY_TOLERANCE 1e-12               /* of F_N over the yield force and of F_T/F_N */
 
 /* 1/sqrt(x), x >= 0, finite at 0: a first guess by the exponent's bits and Newton's steps. No call, no division: a compiler does it for several lanes whatever its flags. */
-ASPERITY_FN asperity_real asperity_inverse_root(asperity_real x) {
-    asperity_real half = ASPERITY_R(0.5) * x, y;
-    asperity_bits bits;
+ASPERITY_FN double asperity_inverse_root(double x) {
+    double half = 0.5 * x, y;
+    uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
-    bits = ASPERITY_ROOT_BITS - (bits >> 1);
+    bits = 0x5fe6eb50c7b537a9ull - (bits >> 1);
     memcpy(&y, &bits, sizeof bits);
-    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
-    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
-    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
-#ifndef ASPERITY_SINGLE
-    y *= ASPERITY_FMA(-half * y, y, ASPERITY_R(1.5));
-#endif
+    y *= ASPERITY_FMA(-half * y, y, 1.5);
+    y *= ASPERITY_FMA(-half * y, y, 1.5);
+    y *= ASPERITY_FMA(-half * y, y, 1.5);
+    y *= ASPERITY_FMA(-half * y, y, 1.5);
     return y;
 }
 
 /* ln(1 + r), |r| <= 1/64, by its series. */
-ASPERITY_FN asperity_real asperity_log_series(asperity_real r) {
-    asperity_real r2 = r * r, p, q;
-    p = ASPERITY_FMA(r2, ASPERITY_FMA(r, ASPERITY_R(1.0 / 9.0), ASPERITY_R(-1.0 / 8.0)), ASPERITY_FMA(r, ASPERITY_R(1.0 / 7.0), ASPERITY_R(-1.0 / 6.0)));
-    q = ASPERITY_FMA(r2, ASPERITY_FMA(r, ASPERITY_R(1.0 / 5.0), ASPERITY_R(-1.0 / 4.0)), ASPERITY_FMA(r, ASPERITY_R(1.0 / 3.0), ASPERITY_R(-1.0 / 2.0)));
+ASPERITY_FN double asperity_log_series(double r) {
+    double r2 = r * r, p, q;
+    p = ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 9.0, -1.0 / 8.0), ASPERITY_FMA(r, 1.0 / 7.0, -1.0 / 6.0));
+    q = ASPERITY_FMA(r2, ASPERITY_FMA(r, 1.0 / 5.0, -1.0 / 4.0), ASPERITY_FMA(r, 1.0 / 3.0, -1.0 / 2.0));
     return ASPERITY_FMA(r2, ASPERITY_FMA(r2 * r2, p, q), r);
 }
 
 /* ln x, x > 0, in line: of 2^k c (1 + r), with c from 32 places and |r| <= 1/64. */
-ASPERITY_FN asperity_real asperity_logarithm(asperity_real x) {
-    static const asperity_real inverse[32] = {
-        ASPERITY_R(1.4223978268922088), ASPERITY_R(1.391468746307456), ASPERITY_R(1.3618562535370686), ASPERITY_R(1.3334780249593055),
-        ASPERITY_R(1.3062584608976362), ASPERITY_R(1.2801280128012802), ASPERITY_R(1.2550225896376046), ASPERITY_R(1.2308830328247804),
-        ASPERITY_R(1.207654650645305), ASPERITY_R(1.1852868044242475), ASPERITY_R(1.163732539879329), ASPERITY_R(1.1429482579925057),
-        ASPERITY_R(1.122893420546364), ASPERITY_R(1.1035302861389817), ASPERITY_R(1.084823673058967), ASPERITY_R(1.066740745885131),
-        ASPERITY_R(1.0492508230867432), ASPERITY_R(1.0323252032520325), ASPERITY_R(1.0159370078740158), ASPERITY_R(1.0),
-        ASPERITY_R(0.9699196326061997), ASPERITY_R(0.9413800562405364), ASPERITY_R(0.9144723412941417), ASPERITY_R(0.8890603897356743),
-        ASPERITY_R(0.8650228310502284), ASPERITY_R(0.8422510822510821), ASPERITY_R(0.8206477067236561), ASPERITY_R(0.8001250195343023),
-        ASPERITY_R(0.7806038970697605), ASPERITY_R(0.7620127569099929), ASPERITY_R(0.7442866801893171), ASPERITY_R(0.7273666537517758)};
-    static const asperity_real log_c[32] = {
-        ASPERITY_R(-0.3523440580008923), ASPERITY_R(-0.3303598412985515), ASPERITY_R(-0.3088486614358244), ASPERITY_R(-0.28779058528352974),
-        ASPERITY_R(-0.26716691395221637), ASPERITY_R(-0.2469600829318592), ASPERITY_R(-0.2271535721329931), ASPERITY_R(-0.2077318246738307),
-        ASPERITY_R(-0.18868017341225488), ASPERITY_R(-0.1699847743527869), ASPERITY_R(-0.1516325461705557), ASPERITY_R(-0.1336111151900369),
-        ASPERITY_R(-0.11590876523852209), ASPERITY_R(-0.09851439186497558), ASPERITY_R(-0.08141746047599635), ASPERITY_R(-0.06460796799339279),
-        ASPERITY_R(-0.0480764076837151), ASPERITY_R(-0.03181373684993537), ASPERITY_R(-0.01581134711020277), ASPERITY_R(0.0),
-        ASPERITY_R(0.030542063900505807), ASPERITY_R(0.06040833545244689), ASPERITY_R(0.08940805622954394), ASPERITY_R(0.11759011581397946),
-        ASPERITY_R(0.1449993781208599), ASPERITY_R(0.1716771117439915), ASPERITY_R(0.1976613642714418), ASPERITY_R(0.22298728910590676),
-        ASPERITY_R(0.24768743184511172), ASPERITY_R(0.2717919820839289), ASPERITY_R(0.2953289955317206), ASPERITY_R(0.31832459054884527)};
-#ifdef ASPERITY_SINGLE
-    const asperity_bits from = 0x3f320000u;
-    const int digits = 23;
-    const float least = 1e-30f, greatest = 1e30f;
-    int64_t away;
-#else
-    const asperity_bits from = 0x3fe6400000000000ull;
+ASPERITY_FN double asperity_logarithm(double x) {
+    static const double inverse[32] = {
+        1.4223978268922088, 1.391468746307456, 1.3618562535370686, 1.3334780249593055, 1.3062584608976362, 1.2801280128012802, 1.2550225896376046, 1.2308830328247804,
+        1.207654650645305, 1.1852868044242475, 1.163732539879329, 1.1429482579925057, 1.122893420546364, 1.1035302861389817, 1.084823673058967, 1.066740745885131,
+        1.0492508230867432, 1.0323252032520325, 1.0159370078740158, 1.0, 0.9699196326061997, 0.9413800562405364, 0.9144723412941417, 0.8890603897356743,
+        0.8650228310502284, 0.8422510822510821, 0.8206477067236561, 0.8001250195343023, 0.7806038970697605, 0.7620127569099929, 0.7442866801893171, 0.7273666537517758};
+    static const double log_c[32] = {
+        -0.3523440580008923, -0.3303598412985515, -0.3088486614358244, -0.28779058528352974, -0.26716691395221637, -0.2469600829318592, -0.2271535721329931,
+        -0.2077318246738307, -0.18868017341225488, -0.1699847743527869, -0.1516325461705557, -0.1336111151900369, -0.11590876523852209, -0.09851439186497558,
+        -0.08141746047599635, -0.06460796799339279, -0.0480764076837151, -0.03181373684993537, -0.01581134711020277, 0.0, 0.030542063900505807, 0.06040833545244689,
+        0.08940805622954394, 0.11759011581397946, 0.1449993781208599, 0.1716771117439915, 0.1976613642714418, 0.22298728910590676, 0.24768743184511172,
+        0.2717919820839289, 0.2953289955317206, 0.31832459054884527};
+    const uint64_t from = 0x3fe6400000000000ull;
     const int digits = 52;
     const double least = 1e-300, greatest = 1e300;
     int64_t away;
-#endif
-    asperity_bits bits;
-    asperity_real z, r, k;
+    uint64_t bits;
+    double z, r, k;
     int place;
     if (!(x > least && x < greatest)) {
-        return ASPERITY_LOG(x);
+        return log(x);
     }
     memcpy(&bits, &x, sizeof bits);
     away = (int64_t)bits - (int64_t)from;
     place = (int)(away >> (digits - 5)) & 31;
-    k = ASPERITY_R((int)(away >> digits));
-    bits -= (asperity_bits)((away >> digits) * ((int64_t)1 << digits));
+    k = (double)(int)(away >> digits);
+    bits -= (uint64_t)((away >> digits) * ((int64_t)1 << digits));
     memcpy(&z, &bits, sizeof z);
-    r = ASPERITY_FMA(z, inverse[place], ASPERITY_R(-1.0));
-    return ASPERITY_FMA(k, ASPERITY_R(0.6931471805599453), log_c[place]) + asperity_log_series(r);
+    r = ASPERITY_FMA(z, inverse[place], -1.0);
+    return ASPERITY_FMA(k, 0.6931471805599453, log_c[place]) + asperity_log_series(r);
 }
 
 /* e^x of one number, in the range of the other: 2^(k/32) e^r. */
-ASPERITY_FN asperity_real asperity_exponential(asperity_real x) {
-    static const asperity_real root[32] = {
-        ASPERITY_R(1.0), ASPERITY_R(1.0218971486541166), ASPERITY_R(1.0442737824274138), ASPERITY_R(1.0671404006768237),
-        ASPERITY_R(1.0905077326652577), ASPERITY_R(1.1143867425958924), ASPERITY_R(1.1387886347566916), ASPERITY_R(1.1637248587775775),
-        ASPERITY_R(1.189207115002721), ASPERITY_R(1.215247359980469), ASPERITY_R(1.241857812073484), ASPERITY_R(1.2690509571917332),
-        ASPERITY_R(1.2968395546510096), ASPERITY_R(1.3252366431597413), ASPERITY_R(1.3542555469368927), ASPERITY_R(1.383909881963832),
-        ASPERITY_R(1.4142135623730951), ASPERITY_R(1.4451808069770467), ASPERITY_R(1.4768261459394993), ASPERITY_R(1.5091644275934228),
-        ASPERITY_R(1.5422108254079407), ASPERITY_R(1.5759808451078865), ASPERITY_R(1.6104903319492543), ASPERITY_R(1.645755478153965),
-        ASPERITY_R(1.681792830507429), ASPERITY_R(1.718619298122478), ASPERITY_R(1.7562521603732995), ASPERITY_R(1.7947090750031072),
-        ASPERITY_R(1.8340080864093424), ASPERITY_R(1.8741676341103), ASPERITY_R(1.9152065613971474), ASPERITY_R(1.9571441241754002)};
-#ifdef ASPERITY_SINGLE
-    const asperity_real most = 80.0f, high = 0.02165985107421875f, low = 9.983182795409192e-07f;
-    const int digits = 23;
-#else
-    const asperity_real most = 700.0, high = 0.021660849335603416, low = 5.689487495325457e-11;
+ASPERITY_FN double asperity_exponential(double x) {
+    static const double root[32] = {
+        1.0, 1.0218971486541166, 1.0442737824274138, 1.0671404006768237, 1.0905077326652577, 1.1143867425958924, 1.1387886347566916, 1.1637248587775775,
+        1.189207115002721, 1.215247359980469, 1.241857812073484, 1.2690509571917332, 1.2968395546510096, 1.3252366431597413, 1.3542555469368927, 1.383909881963832,
+        1.4142135623730951, 1.4451808069770467, 1.4768261459394993, 1.5091644275934228, 1.5422108254079407, 1.5759808451078865, 1.6104903319492543, 1.645755478153965,
+        1.681792830507429, 1.718619298122478, 1.7562521603732995, 1.7947090750031072, 1.8340080864093424, 1.8741676341103, 1.9152065613971474, 1.9571441241754002};
+    const double most = 700.0, high = 0.021660849335603416, low = 5.689487495325457e-11;
     const int digits = 52;
-#endif
-    asperity_real r = x, r2, scaled;
-    asperity_bits bits;
+    double r = x, r2, scaled;
+    uint64_t bits;
     int k;
     r = r < most ? r : most;
     r = r > -most ? r : -most;
-    k = (int)(r * ASPERITY_R(46.16624130844683) + ASPERITY_R(32768.5)) - 32768;
-    r = ASPERITY_FMA(ASPERITY_R(k), -low, ASPERITY_FMA(ASPERITY_R(k), -high, r));
+    k = (int)(r * 46.16624130844683 + 32768.5) - 32768;
+    r = ASPERITY_FMA((double)k, -low, ASPERITY_FMA((double)k, -high, r));
     r2 = r * r;
     scaled = root[k & 31];
     memcpy(&bits, &scaled, sizeof bits);
-    bits += (asperity_bits)(k >> 5) << digits;
+    bits += (uint64_t)(k >> 5) << digits;
     memcpy(&scaled, &bits, sizeof bits);
-    x = ASPERITY_FMA(r2, ASPERITY_FMA(r2, ASPERITY_R(1.0 / 720.0), ASPERITY_FMA(r, ASPERITY_R(1.0 / 120.0), ASPERITY_R(1.0 / 24.0))), ASPERITY_FMA(r, ASPERITY_R(1.0 / 6.0), ASPERITY_R(1.0 / 2.0)));
+    x = ASPERITY_FMA(r2, ASPERITY_FMA(r2, 1.0 / 720.0, ASPERITY_FMA(r, 1.0 / 120.0, 1.0 / 24.0)), ASPERITY_FMA(r, 1.0 / 6.0, 1.0 / 2.0));
     return ASPERITY_FMA(scaled, ASPERITY_FMA(r2, x, r), scaled);
 }
 
 /* e^x of a number that is small in most steps of time: then its series. */
-ASPERITY_FN asperity_real asperity_exponential_near(asperity_real x) {
-    asperity_real x2 = x * x, near, far;
-    if (ASPERITY_ABS(x) > ASPERITY_R(0.03125)) {
+ASPERITY_FN double asperity_exponential_near(double x) {
+    double x2 = x * x, near, far;
+    if (fabs(x) > 0.03125) {
         return asperity_exponential(x);
     }
-    near = ASPERITY_FMA(x, ASPERITY_R(1.0 / 6.0), ASPERITY_R(1.0 / 2.0));
-    far = ASPERITY_FMA(x2, ASPERITY_FMA(x, ASPERITY_R(1.0 / 5040.0), ASPERITY_R(1.0 / 720.0)), ASPERITY_FMA(x, ASPERITY_R(1.0 / 120.0), ASPERITY_R(1.0 / 24.0)));
-    return ASPERITY_R(1.0) + ASPERITY_FMA(x2, ASPERITY_FMA(x2, far, near), x);
-}
-
-/* base^exponent, 0 <= base. */
-ASPERITY_FN asperity_real asperity_power(asperity_real base, asperity_real exponent) {
-    return base > ASPERITY_R(0.0) ? asperity_exponential(exponent * asperity_logarithm(base)) : ASPERITY_R(0.0);
+    near = ASPERITY_FMA(x, 1.0 / 6.0, 1.0 / 2.0);
+    far = ASPERITY_FMA(x2, ASPERITY_FMA(x, 1.0 / 5040.0, 1.0 / 720.0), ASPERITY_FMA(x, 1.0 / 120.0, 1.0 / 24.0));
+    return 1.0 + ASPERITY_FMA(x2, ASPERITY_FMA(x2, far, near), x);
 }
 
 /* Whether a number is finite, also where the compiler was told that all are. */
@@ -389,16 +266,6 @@ ASPERITY_FN int asperity_is_finite(asperity_real x) {
     asperity_bits bits;
     memcpy(&bits, &x, sizeof bits);
     return (bits & ASPERITY_INFINITE_BITS) != ASPERITY_INFINITE_BITS;
-}
-
-/* ln(a/b), a, b > 0: by its series where they are near to each other, as from one step of time to the next. */
-ASPERITY_FN asperity_real asperity_log_ratio(asperity_real a, asperity_real b) {
-    asperity_real z = (a - b) / b, ratio;
-    if (ASPERITY_ABS(z) <= ASPERITY_R(0.015625)) {
-        return asperity_log_series(z);
-    }
-    ratio = a / b;
-    return ratio > ASPERITY_R(0.0) && asperity_is_finite(ratio) ? ASPERITY_LOG(ratio) : ASPERITY_LOG(a) - ASPERITY_LOG(b);
 }
 
 /* A NaN that no compiler folds away. */
@@ -409,1127 +276,1111 @@ ASPERITY_FN asperity_real asperity_no_number(void) {
     return x;
 }
 
-/* Shares of the sliders in k_T, the same for every backbone: (k/16)^0.65 is that of the annuli inside the end of cell k. So a contact that grows keeps the forces of all its
- * sliders by one factor. */
-ASPERITY_FN const asperity_real *asperity_weights(void) {
-    static const asperity_real weight[ASPERITY_SLIDERS] = {
-        ASPERITY_R(0.16493848884661177), ASPERITY_R(0.09387774211373257), ASPERITY_R(0.07804484139822254), ASPERITY_R(0.06926512581955085), ASPERITY_R(0.0633920910623787),
-        ASPERITY_R(0.059073391905460126), ASPERITY_R(0.055708118352608804), ASPERITY_R(0.05298051416106575), ASPERITY_R(0.05070575232217012), ASPERITY_R(0.048767100837759925),
-        ASPERITY_R(0.04708653450214806), ASPERITY_R(0.04560955329354521), ASPERITY_R(0.04429672468331203), ASPERITY_R(0.043118682883102055), ASPERITY_R(0.04205302593053484),
-        ASPERITY_R(0.04108231188779665)};
+/* ---- the update ---- */
+
+/* The memory in double, with lanes for the sliders. */
+typedef struct asperity_work {
+    double h, h_max, approach, hardened, reach, softened, released, worn, stiffened, vertex[2];
+    double slider[3][ASPERITY_PADDED];
+} asperity_work;
+
+/* A row of the table at a hardening depth, and its slopes; those of force and stiffness are of their logarithms. */
+typedef struct asperity_row {
+    double value[ASPERITY_SOLVED], slope[ASPERITY_SOLVED];
+    double approach, approach_slope, dent, dent_slope; /* elastic approach D of first loading, and what is left of h */
+    double wide, wide_slope; /* share of a growing yield factor that makes the contact stiffer: one that recovers all of its indentation has no dent that could grow instead */
+    double force, stiff, share, share_slope; /* share: between the levels */
+    int level;
+} asperity_row;
+
+/* Where a shape is read: after place j, and how far. */
+typedef struct asperity_spot {
+    int j;
+    double u, per_width;
+} asperity_spot;
+
+/* What does not change within a step. */
+typedef struct asperity_step {
+    const asperity_table *t;
+    const asperity_work *s;
+    asperity_row row; /* at its start */
+    double friction, per_friction, h, d[2], depth, per_depth, log_h, dent, approach; /* depth: h_m at its start, log_h of it over the first row's; approach: D there */
+    double e, level, f_n, wide, log_wide;                     /* of the elastic trial, level: ln(e/D); wide: g at its start */
+    double worn, worn_by[3], share_worn[ASPERITY_PADDED];     /* how far sheared, slopes by h and d, and by it of a slider's share of what all carry */
+    double radial, sudden, rho, rho_log, rho_slope, growing, growing_slope; /* slopes by h */
+    int rises;                                                /* whether the yield factor of the elastic trial is above the one from which it grows */
+    double old_f_n, old_f_t[2], old_stored[2];                  /* stored across and along the plane */
+    double per_exponent, lost[ASPERITY_PADDED], limit[ASPERITY_PADDED], sum; /* of the sliders; the limits of a contact that is not released */
+} asperity_step;
+
+/* Everything at a guess of the hardening y and the ratio r. */
+typedef struct asperity_guess {
+    asperity_row row;
+    double r[2], f_n, f_t[2], factor, rho, width, reach, hardens, vertex[2], residual[3], slip[2], friction, stored, stiffness;
+    int plastic;
+    double e, level, log_width, scale, move[3];
+    double slider[3][ASPERITY_PADDED];
+    /* Of a slider: its limit, its radial force and the square of all before they give way, whether it does, and the share of its force that it keeps. */
+    double most[ASPERITY_PADDED], radially[ASPERITY_PADDED], squared[ASPERITY_PADDED], over[ASPERITY_PADDED], keep[ASPERITY_PADDED];
+    int slips;
+    /* Of the sliders: how much a contact carries that is released (the share that is whole, as a logarithm times gamma; slopes by y and h), and each one's share of it. */
+    double eta, log_share, eta_y, eta_h, own[ASPERITY_PADDED], sum;
+    const double *limit;
+    /* Of plastic flow, and slopes by y, r and the factor. */
+    double ratio, x[2], per_length, q, c, round, far, part[3], width_factor, width_y, rho_y, rho_h, mobile, mobile_r, grown, flow, flow_y, flow_r, sudden, sudden_y;
+    double m[3], radial[2], stiffer[2], wider[2];
+    double by[6][3], n_by[6], t_by[6][2]; /* of the residuals and the forces, by y, r, h, d */
+    double tangent[3][3];                 /* of F_N and F_T, by h and d */
+} asperity_guess;
+
+/* The row, or the level, before a place; 0 to last. */
+ASPERITY_FN int asperity_before(double x, int last) {
+    int i = x > 0.0 ? (x < (double)last ? (int)x : last) : 0;
+    return i > 0 ? (i < last ? i : last) : 0;
+}
+
+/* The columns that are solved with, between the rows; force and stiffness still as logarithms. Beyond the last row only these two go on. */
+ASPERITY_FN void asperity_read(const asperity_table *t, double depth, double log_h, asperity_row *row) {
+    double x = log_h * (double)t->per_step, level = (log_h - (double)t->level_start) * (double)t->per_level, u, v, per = (double)t->per_step / depth, plastic;
+    int i = asperity_before(x, ASPERITY_ROWS - 2), c;
+    u = x > 0.0 ? x - i : 0.0;
+    v = u < 1.0 ? u : 1.0;
+    for (c = 0; c < ASPERITY_SOLVED; c++) {
+        double low = (double)t->rows[i][c], rise = (double)t->rows[i + 1][c] - low;
+        row->value[c] = low + (c < ASPERITY_RECOVERED ? u : v) * rise;
+        row->slope[c] = c < ASPERITY_RECOVERED || !(v < u) ? rise * per : 0.0;
+    }
+    row->approach = row->value[ASPERITY_RECOVERED] * depth;
+    row->approach_slope = row->value[ASPERITY_RECOVERED] + row->slope[ASPERITY_RECOVERED] * depth;
+    row->dent = depth - row->approach;
+    row->dent_slope = 1.0 - row->approach_slope;
+    plastic = 1.0 - row->value[ASPERITY_RECOVERED];
+    row->wide = 2.0 * plastic < 1.0 ? 2.0 * plastic : 1.0;
+    row->wide_slope = 2.0 * plastic < 1.0 ? -2.0 * row->slope[ASPERITY_RECOVERED] : 0.0;
+    i = asperity_before(level, ASPERITY_LEVELS - 2);
+    row->level = i;
+    u = level - i;
+    row->share = u > 0.0 ? (u < 1.0 ? u : 1.0) : 0.0;
+    row->share_slope = u >= 0.0 && u < 1.0 ? (double)t->per_level / depth : 0.0;
+}
+
+/* One of the other columns. */
+ASPERITY_FN double asperity_column(const asperity_table *t, double log_h, int column) {
+    double x = log_h * (double)t->per_step, u;
+    int i = asperity_before(x, ASPERITY_ROWS - 2);
+    u = x > 0.0 ? x - i : 0.0;
+    return (double)t->rows[i][column] + (u < 1.0 ? u : 1.0) * ((double)t->rows[i + 1][column] - (double)t->rows[i][column]);
+}
+
+/* 1 over what is between the places of a shape. */
+ASPERITY_FN const double *asperity_per_widths(void) {
+    static const double per_width[ASPERITY_PLACES] = {
+        12.25531914893617, 12.8, 13.395348837209303, 14.048780487804878, 14.76923076923077, 15.567567567567568, 16.457142857142856, 17.454545454545453,
+        18.580645161290324, 19.862068965517242, 21.333333333333332, 23.04, 25.043478260869566, 27.428571428571427, 30.31578947368421, 33.88235294117647, 38.4,
+        44.30769230769231, 52.36363636363637, 64.0, 82.28571428571429, 115.2, 192.0, 576.0};
+    return per_width;
+}
+
+/* Where the shapes are read at x. */
+ASPERITY_FN asperity_spot asperity_find(double x) {
+    asperity_spot at;
+    double rest;
+    if (!(x < 1.0)) {
+        at.j = ASPERITY_PLACES - 1;
+        at.u = 1.0;
+        at.per_width = 0.0;
+        return at;
+    }
+    at.j = (int)(ASPERITY_PLACES * (1.0 - sqrt(1.0 - x)));
+    at.j = at.j < ASPERITY_PLACES - 1 ? (at.j > 0 ? at.j : 0) : ASPERITY_PLACES - 1;
+    rest = 1.0 - at.j * (1.0 / ASPERITY_PLACES);
+    at.per_width = asperity_per_widths()[at.j];
+    at.u = (x - (1.0 - rest * rest)) * at.per_width;
+    return at;
+}
+
+/* A shape there: value, and slopes by x and by the share between levels. */
+ASPERITY_FN double asperity_shape(const asperity_table *t, const asperity_row *row, int shape, asperity_spot at, double slope[2]) {
+    const asperity_real *low = t->shapes[row->level][shape] + at.j, *high = t->shapes[row->level + 1][shape] + at.j;
+    double rise = (double)low[1] - (double)low[0], rise_b = (double)high[1] - (double)high[0];
+    double a = (double)low[0] + at.u * rise, b = (double)high[0] + at.u * rise_b;
+    slope[0] = (rise + row->share * (rise_b - rise)) * at.per_width;
+    slope[1] = b - a;
+    return a + row->share * slope[1];
+}
+
+/* Shares of the sliders in k_T: (i/7)^0.65 inside the end of cell i. */
+ASPERITY_FN const double *asperity_weights(void) {
+    static const double weight[ASPERITY_PADDED] = {
+        0.28228007246945605, 0.16067234912498195, 0.1335715962968834, 0.11854658577836137, 0.10849433246541654, 0.10110285024062748, 0.09533221362427317, 0.0};
     return weight;
 }
 
-/* Points of loss of sliders whose backbone is 1 - (1 - x)^backbone: each stands for a cell of the annuli at its centre of gravity. The cells end at (k/16)^(0.65/(backbone - 1)); the
- * powers of k come from those of the primes. */
-ASPERITY_FN void asperity_sliders(asperity_real backbone, asperity_real lost[ASPERITY_SLIDERS]) {
-    /* What is inside the end of a cell, and inside its beginning, over its weight. */
-    static const asperity_real to[ASPERITY_SLIDERS] = {
-        ASPERITY_R(1.0), ASPERITY_R(2.7569498917729547), ASPERITY_R(4.316250328958178), ASPERITY_R(5.86335754642467), ASPERITY_R(7.406575195295008),
-        ASPERITY_R(8.948050282805905), ASPERITY_R(10.488593346488479), ASPERITY_R(12.028579256936597), ASPERITY_R(13.568205469283463), ASPERITY_R(15.10758593730263),
-        ASPERITY_R(16.64679105415904), ASPERITY_R(18.18586665992715), ASPERITY_R(19.724843891849506), ASPERITY_R(21.263744643298974), ASPERITY_R(22.802584758019282),
-        ASPERITY_R(24.34137598514864)};
-    static const asperity_real from[ASPERITY_SLIDERS] = {
-        ASPERITY_R(0.0), ASPERITY_R(1.7569498917729547), ASPERITY_R(3.316250328958178), ASPERITY_R(4.86335754642467), ASPERITY_R(6.406575195295008),
-        ASPERITY_R(7.948050282805905), ASPERITY_R(9.488593346488479), ASPERITY_R(11.028579256936597), ASPERITY_R(12.568205469283463), ASPERITY_R(14.10758593730263),
-        ASPERITY_R(15.646791054159038), ASPERITY_R(17.18586665992715), ASPERITY_R(18.724843891849506), ASPERITY_R(20.263744643298974), ASPERITY_R(21.802584758019282),
-        ASPERITY_R(23.34137598514864)};
-    asperity_real p = ASPERITY_R(0.65) / (backbone - ASPERITY_R(1.0)), end[ASPERITY_SLIDERS + 1], share = (backbone - ASPERITY_R(1.0)) / backbone;
-    /* (1/2)^p, (3/4)^p, (5/8)^p, (7/8)^p, (11/16)^p, (13/16)^p, and two for the lanes */
-    asperity_real prime[8] = {
-        ASPERITY_R(-0.6931471805599453), ASPERITY_R(-0.2876820724517809), ASPERITY_R(-0.4700036292457356), ASPERITY_R(-0.13353139262452263),
-        ASPERITY_R(-0.3746934494414107), ASPERITY_R(-0.2076393647782445), ASPERITY_R(0.0), ASPERITY_R(0.0)};
-    asperity_real half, quarter, three, five, seven;
-    int k;
-    for (k = 0; k < 8; k++) {
-        prime[k] *= p;
-    }
-    asperity_exponentials(prime, 8);
-    half = prime[0];
-    quarter = half * half;
-    three = prime[1];
-    five = prime[2];
-    seven = prime[3];
-    end[0] = ASPERITY_R(0.0);
-    end[1] = quarter * quarter;
-    end[2] = half * quarter;
-    end[3] = three * quarter;
-    end[4] = quarter;
-    end[5] = five * half;
-    end[6] = three * half;
-    end[7] = seven * half;
-    end[8] = half;
-    end[9] = three * three;
-    end[10] = five;
-    end[11] = prime[4];
-    end[12] = three;
-    end[13] = prime[5];
-    end[14] = seven;
-    end[15] = three * five / half;
-    end[16] = ASPERITY_R(1.0);
-    ASPERITY_LANES
-    for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        lost[k] = share * (to[k] * end[k + 1] - from[k] * end[k]);
-    }
+ASPERITY_FN const double *asperity_per_weights(void) {
+    static const double per_weight[ASPERITY_PADDED] = {
+        3.5425809241571757, 6.223846265060402, 7.486621615102558, 8.435502325386521, 9.21707131862172, 9.890917987178138, 10.489633692355417, 0.0};
+    return per_weight;
 }
 
-/* A row of the table: its position, its columns, the slope of the first; and what the first four have grown by from their knot, as logarithms. */
-typedef struct asperity_row {
-    asperity_real position, slope, column[ASPERITY_COLUMNS];
-} asperity_row;
+/* Approach, over that of the whole contact, at which each slider's annulus is lost, for the backbone 1 - (1 - x)^n (Jaeger). Cells end at (i/7)^(0.65/(n - 1)). */
+ASPERITY_FN void asperity_lost(double n, double lost[ASPERITY_PADDED]) {
+    static const double inside[ASPERITY_SLIDERS] = {0.282280072469456, 0.442952421594438, 0.5765240178913213, 0.6950706036696828, 0.8035649361350993, 0.9046677863757268, 0.9999999999999999};
+    const double *per_weight = asperity_per_weights();
+    double p = 0.65 / (n - 1.0), two = asperity_exponential(0.6931471805599453 * p), three = asperity_exponential(1.0986122886681098 * p);
+    double five = asperity_exponential(1.6094379124341003 * p), seventh = asperity_exponential(-1.9459101490553132 * p), share = (n - 1.0) / n;
+    double end[ASPERITY_PADDED];
+    int i;
+    end[0] = seventh * inside[0];
+    end[1] = two * seventh * inside[1];
+    end[2] = three * seventh * inside[2];
+    end[3] = two * two * seventh * inside[3];
+    end[4] = five * seventh * inside[4];
+    end[5] = two * three * seventh * inside[5];
+    end[6] = inside[6];
+    lost[0] = share * end[0] * per_weight[0];
+    for (i = 1; i < ASPERITY_SLIDERS; i++) {
+        lost[i] = share * (end[i] - end[i - 1]) * per_weight[i];
+    }
+    lost[ASPERITY_SLIDERS] = 2.0;
+}
 
-/* The row at ln(h/first). */
-ASPERITY_FN void asperity_read_row(const asperity_table *t, asperity_real log_h, asperity_row *row, asperity_real growth[4]) {
-    /* Powers of h in Hertz's contact, for what lies below the first knot. */
-    static const asperity_real hertz[ASPERITY_COLUMNS] = {
-        ASPERITY_R(1.5), ASPERITY_R(-0.5), ASPERITY_R(-1.0), ASPERITY_R(0.5), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.0), ASPERITY_R(0.0)};
-    asperity_real per_step = ASPERITY_R(1.0) / t->log_step, position = log_h * per_step, last = ASPERITY_R(ASPERITY_KNOTS - 1);
-    asperity_real slope, u, grown[ASPERITY_COLUMNS] ASPERITY_ALIGNED;
-    int c, i = 0;
-    if (position < ASPERITY_R(0.0)) {
-        for (c = 0; c < ASPERITY_COLUMNS; c++) {
-            grown[c] = hertz[c] * log_h;
-        }
-        slope = hertz[0];
-    } else if (!(position < last)) {
-        /* Logarithms go on straight, the others stay. What is no number comes here too. */
-        i = ASPERITY_KNOTS - 1;
-        for (c = 0; c < ASPERITY_COLUMNS; c++) {
-            grown[c] = c < 4 ? t->knots[i][1][c] * (position - last) : ASPERITY_R(0.0);
-        }
-        slope = t->knots[i][1][0] * per_step;
-    } else {
-        const asperity_real *k1, *k2, *k3;
-        i = (int)position;
-        k1 = t->knots[i][1];
-        k2 = t->knots[i][2];
-        k3 = t->knots[i][3];
-        u = position - ASPERITY_R(i);
+/* Exponent of the backbone: of a contact that was not sheared, of its first reversal, of those after. */
+ASPERITY_FN double asperity_exponent(double first, double unsheared, double later, double worn) {
+    double rest = worn < 1.0 ? 1.0 - worn : 0.0;
+    return worn <= 1.0 ? first + unsheared * rest * sqrt(rest) : first > later ? first + (worn - 1.0) * (later - first) : first;
+}
+
+/* The yield factor at a ratio, whose spot is `at`, and a distance from the vertex. */
+ASPERITY_FN double asperity_factor(const asperity_table *t, double per_friction, const asperity_row *row, asperity_spot at, double distance, double slope[3]) {
+    double low = (double)t->reach[row->level], rise = (double)t->reach[row->level + 1] - low, per = 1.0 / (low + row->share * rise), x = distance * per, a[2], b[2];
+    double lost = asperity_shape(t, row, ASPERITY_LOST, at, a), more = asperity_shape(t, row, ASPERITY_VERTEX, asperity_find(x), b);
+    if (x >= 1.0) { /* the vertex goes on straight, by a share of its mean slope; the others stay */
+        double on = (double)t->shapes[row->level][ASPERITY_VERTEX][ASPERITY_PLACES] * (double)t->beyond[row->level];
+        double on_b = (double)t->shapes[row->level + 1][ASPERITY_VERTEX][ASPERITY_PLACES] * (double)t->beyond[row->level + 1];
+        b[0] = on + row->share * (on_b - on);
+        b[1] += (on_b - on) * (x - 1.0);
+        more += b[0] * (x - 1.0);
+    }
+    slope[0] = a[0] * per_friction;
+    slope[1] = b[0] * per;
+    slope[2] = (a[1] + b[1] - b[0] * x * rise * per) * row->share_slope; /* by depth */
+    return 1.0 + lost + more;
+}
+
+/* No less than any yield factor at a row. */
+ASPERITY_FN double asperity_most_factor(const asperity_table *t, const asperity_row *row, double friction) {
+    double most = 0.0;
+    int i;
+    for (i = row->level; i <= row->level + 1; i++) {
+        double over = 2.0 * friction / (double)t->reach[i] - 1.0, bound = (double)t->shapes[i][ASPERITY_VERTEX][ASPERITY_PLACES];
+        bound = 1.0 + (double)t->shapes[i][ASPERITY_LOST][ASPERITY_PLACES] + bound * (1.0 + (over > 0.0 ? over * (double)t->beyond[i] : 0.0));
+        most = most > bound ? most : bound;
+    }
+    return most;
+}
+
+/* The same at the start of a step. */
+ASPERITY_FN double asperity_factor_at(const asperity_step *p, const double r[2]) {
+    double slope[3], x = r[0] - p->s->vertex[0], y = r[1] - p->s->vertex[1];
+    return asperity_factor(p->t, p->per_friction, &p->row, asperity_find(sqrt(r[0] * r[0] + r[1] * r[1]) * p->per_friction), sqrt(x * x + y * y), slope);
+}
+
+ASPERITY_FN double asperity_sum(const double x[ASPERITY_PADDED]) {
+    return ((x[0] + x[2]) + (x[4] + x[6])) + ((x[1] + x[3]) + (x[5] + x[7]));
+}
+
+/* What each slider may carry at eta, over what all carry that are whole: the innermost carries what little force there is. Returns their sum by weight. */
+ASPERITY_FN double asperity_limits(const double *ASPERITY_ALONE lost, double eta, double *ASPERITY_ALONE limit) {
+    const double *weight = asperity_weights();
+    double carried[ASPERITY_PADDED];
+    int i;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        double x = eta - lost[i];
+        limit[i] = x > 0.0 ? x : 0.0;
+    }
+    limit[0] = limit[0] < 0.1 * eta ? 0.1 * eta : limit[0];
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        carried[i] = weight[i] * limit[i];
+    }
+    return asperity_sum(carried);
+}
+
+/* Moves the sliders within their limits. Loops of their own: a compiler makes lanes of short ones. */
+ASPERITY_FN void asperity_slide(const asperity_step *p, double stiff, asperity_guess *ASPERITY_ALONE o) {
+    const double *weight = asperity_weights(), *limit = o->limit;
+    const double *f0 = p->s->slider[0], *f1 = p->s->slider[1], *f2 = p->s->slider[2];
+    double scale = p->friction * o->f_n / o->sum, d0 = stiff * o->move[0], d1 = stiff * o->move[1], d2 = stiff * o->move[2];
+    double *t0 = o->slider[0], *t1 = o->slider[1], *t2 = o->slider[2];
+    int i;
+    o->scale = scale;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        o->most[i] = weight[i] * limit[i] * scale;
+        t0[i] = f0[i] + weight[i] * d0;
+        t1[i] = f1[i] + weight[i] * d1;
+        o->radially[i] = f2[i] + weight[i] * d2;
+    }
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        double bound = ASPERITY_RADIAL_MOST * o->most[i], f = o->radially[i];
+        t2[i] = f < bound ? f : bound;
+    }
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        double squared = t0[i] * t0[i] + t1[i] * t1[i] + t2[i] * t2[i], most = o->most[i];
+        o->squared[i] = squared;
+        o->over[i] = squared > most * most ? 1.0 : 0.0;
+    }
+    o->slips = asperity_sum(o->over) > 0.0;
+    if (o->slips) {
         ASPERITY_LANES
-        for (c = 0; c < ASPERITY_COLUMNS; c++) {
-            grown[c] = u * ASPERITY_FMA(u, ASPERITY_FMA(u, k3[c], k2[c]), k1[c]);
-        }
-        slope = (k1[0] + u * (ASPERITY_R(2.0) * k2[0] + ASPERITY_R(3.0) * u * k3[0])) * per_step;
-    }
-    row->position = position;
-    row->slope = slope;
-    for (c = 0; c < 4; c++) {
-        growth[c] = grown[c];
-        row->column[c] = t->knots[i][0][c];
-        row->column[c + 4] = t->knots[i][0][c + 4] + grown[c + 4];
-    }
-}
-
-/* The sliders of a contact that has yielded to shear at the place `sheared`, and whose slip was reversed: those of the first reversal of a contact that was sheared, where it was hardly
- * sheared those of which tractions are lost sooner as it is released, and where its slip was reversed those that turn more sharply. */
-ASPERITY_FN void asperity_sharpen(asperity_curve *v, asperity_real sheared, asperity_real reversed) {
-    asperity_real rest, lost = (ASPERITY_R(1.0) - v->f_n_slip / v->f_n0) / ASPERITY_HARDLY;
-    v->backbone = v->first;
-    if (!v->elastic) {
-        lost = reversed * (lost < ASPERITY_R(1.0) ? lost : ASPERITY_R(1.0));
-        v->backbone += v->backbone > ASPERITY_LATER ? (ASPERITY_LATER - v->backbone) * lost : ASPERITY_R(0.0);
-        if (v->backbone < ASPERITY_UNSHEARED) {
-            rest = sheared < ASPERITY_R(1.0) ? ASPERITY_R(1.0) - sheared : ASPERITY_R(0.0);
-            rest *= rest;
-            rest *= rest;
-            v->backbone += (ASPERITY_UNSHEARED - v->backbone) * (rest * rest);
+        for (i = 0; i < ASPERITY_PADDED; i++) {
+            double root = asperity_inverse_root(o->squared[i] + 1e-200), keep = o->over[i] > 0.0 ? o->most[i] * root : 1.0; /* no sum: of a large step the share is below a last digit of 1 */
+            o->keep[i] = keep;
+            t0[i] *= keep;
+            t1[i] *= keep;
+            t2[i] *= keep;
         }
     }
-    v->per_backbone = ASPERITY_R(1.0) / v->backbone;
-    asperity_sliders(v->backbone, v->lost);
+    o->f_t[0] = asperity_sum(t0);
+    o->f_t[1] = asperity_sum(t1);
 }
 
-/* First loading at the indentation h > 0, over R, from a row and its exponentials; where it is not to be `whole`, without what only sliding and shapes need. */
-ASPERITY_FN void asperity_make_curve(const asperity_table *t, asperity_real h, const asperity_row *row, const asperity_real exponential[4], int whole, asperity_real sheared, asperity_real reversed, asperity_curve *v) {
-    const asperity_real *column = row->column;
-    asperity_real softness = ASPERITY_R(0.5) / t->effective_modulus, start, end, share, per_contact;
-    v->f_n0 = column[0] * exponential[0];
-    v->per_a = column[1] * exponential[1];
-    v->f_n_slip = column[4] * v->f_n0;
-    v->per_slip = column[2] * exponential[2];
-    v->n = column[5];
-    v->radii = column[6];
-    v->m = t->form == 0 ? column[7] : t->gentle;
-    v->big_n = t->form == 0 ? t->gentle : column[7];
-    v->k_t = column[3] * exponential[3];
-    /* 3/2 for Hertz, 4/pi for a uniform pressure (Mesarovic & Johnson 2000), by how far the force has fallen below Hertz's at that radius. */
-    per_contact = t->form == 2 ? v->per_a : v->per_a / v->radii;
-    share = v->f_n0 * (ASPERITY_R(1.5) * t->effective_radius * softness) * (per_contact * per_contact * per_contact);
-    v->gamma = ASPERITY_R(1.2732395447351628) + ASPERITY_R(1.5 - 1.2732395447351628) * (share < ASPERITY_R(1.0) ? share : ASPERITY_R(1.0));
-    v->depth = v->gamma * (v->f_n0 * v->per_a * softness);
-    v->slope = v->f_n0 * row->slope / h;
-    v->backbone = t->form == 2 ? v->big_n : (v->gamma < v->n ? v->gamma : v->n);
-    v->elastic = v->f_n_slip >= ASPERITY_R(1.0 - 1e-6) * v->f_n0;
-    /* The sliders must be able to follow the virgin curve: neither softer at its start, as a table's are, nor slower to slip. */
-    start = t->form == 2 ? ASPERITY_R(0.0) : t->friction * v->per_slip * v->n * v->f_n_slip;
-    end = t->friction * v->per_slip * v->backbone * v->f_n0;
-    v->k_t = v->k_t < start ? start : v->k_t;
-    v->k_t = v->k_t < end ? end : v->k_t;
-    if (!whole) {
+/* Slopes of their force: by the displacement (m, radial), by the stiffness, by the limit. Those that stick have no direction of slip. */
+ASPERITY_FN void asperity_slide_slopes(double stiff, asperity_guess *ASPERITY_ALONE o) {
+    const double *weight = asperity_weights(), *t0 = o->slider[0], *t1 = o->slider[1], *t2 = o->slider[2];
+    double sums[9][ASPERITY_PADDED], free[ASPERITY_PADDED], d0 = o->move[0], d1 = o->move[1], d2 = o->move[2];
+    int i;
+    o->radial[0] = o->radial[1] = o->wider[0] = o->wider[1] = o->m[1] = 0.0;
+    if (!o->slips) {
+        o->m[0] = o->m[2] = stiff * ASPERITY_ALL_WEIGHTS;
+        o->stiffer[0] = d0 * ASPERITY_ALL_WEIGHTS;
+        o->stiffer[1] = d1 * ASPERITY_ALL_WEIGHTS;
         return;
     }
-    v->first = t->form == 2 && !v->elastic ? ASPERITY_R(1.0) + ASPERITY_FIRST * (v->backbone - ASPERITY_R(1.0)) : v->backbone;
-    asperity_sharpen(v, sheared, reversed);
-    v->per_force = ASPERITY_R(1.0) / v->f_n0;
-    v->per_gamma = ASPERITY_R(1.0) / v->gamma;
-    v->per_n = t->form == 2 ? ASPERITY_R(0.0) : ASPERITY_R(1.0) / v->n;
-    if (t->form == 2) {
-        asperity_real level = row->position * (ASPERITY_R(ASPERITY_LEVELS - 1) / ASPERITY_R(ASPERITY_KNOTS - 1)), most = ASPERITY_R(ASPERITY_LEVELS - 1);
-        int i;
-        level = level < most ? level : most;
-        level = level > ASPERITY_R(0.0) ? level : ASPERITY_R(0.0);
-        i = (int)level < ASPERITY_LEVELS - 2 ? (int)level : ASPERITY_LEVELS - 2;
-        v->between = level - ASPERITY_R(i);
-        v->shallow = t->shapes[i];
-        v->deep = t->shapes[i + 1];
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        double bound = ASPERITY_RADIAL_MOST * o->most[i], f = o->radially[i];
+        free[i] = f > bound ? 0.0 : 1.0;
+    }
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        double keep = o->keep[i], most = o->most[i], per = o->over[i] / (most + 1e-300), k = keep * weight[i];
+        double u0 = per * t0[i], u1 = per * t1[i], u2 = per * t2[i];
+        double along = most * (1.0 - keep * u2 * (1.0 - free[i]) * ASPERITY_RADIAL_MOST), moved = u0 * d0 + u1 * d1 + free[i] * u2 * d2;
+        sums[0][i] = k * (1.0 - u0 * u0);
+        sums[1][i] = k * u0 * u1;
+        sums[2][i] = k * (1.0 - u1 * u1);
+        sums[3][i] = k * free[i] * u0 * u2;
+        sums[4][i] = k * free[i] * u1 * u2;
+        sums[5][i] = k * (d0 - u0 * moved);
+        sums[6][i] = k * (d1 - u1 * moved);
+        sums[7][i] = u0 * along;
+        sums[8][i] = u1 * along;
+    }
+    o->m[0] = stiff * asperity_sum(sums[0]);
+    o->m[1] = -stiff * asperity_sum(sums[1]);
+    o->m[2] = stiff * asperity_sum(sums[2]);
+    for (i = 0; i < 2; i++) {
+        o->radial[i] = -stiff * asperity_sum(sums[3 + i]);
+        o->stiffer[i] = asperity_sum(sums[5 + i]);
+        o->wider[i] = asperity_sum(sums[7 + i]);
     }
 }
 
-/* First loading at the indentation h > 0, over R. */
-ASPERITY_FN void asperity_first_loading(const asperity_table *t, asperity_real h, int whole, asperity_curve *v) {
-    asperity_row row;
-    asperity_real exponential[4];
-    asperity_read_row(t, ASPERITY_LOG(h / t->first), &row, exponential);
-    asperity_exponentials(exponential, 4);
-    asperity_make_curve(t, h, &row, exponential, whole, ASPERITY_R(1.0), ASPERITY_R(0.0), v);
-}
-
-/* Radius of the contact of first loading. */
-ASPERITY_FN asperity_real asperity_radius(const asperity_curve *v) {
-    return v->radii / v->per_a;
-}
-
-/* x at point j of a shape that is given by numbers, */
-ASPERITY_FN asperity_real asperity_point_x(int j) {
-    return ASPERITY_R(j * j) * (ASPERITY_R(1.0) / ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS));
-}
-
-/* and the shape there: 0 is f_T, 1 is f_N. */
-ASPERITY_FN asperity_real asperity_point(const asperity_curve *v, int kind, int j) {
-    asperity_real low;
-    if (j == 0) {
-        return ASPERITY_R(0.0);
+/* An elastic step. Returns 0 where contact is lost. */
+ASPERITY_FN int asperity_elastic(const asperity_step *p, asperity_guess *ASPERITY_ALONE o) {
+    int i;
+    o->slip[0] = o->slip[1] = o->hardens = 0.0;
+    o->move[0] = p->d[0];
+    o->move[1] = p->d[1];
+    o->move[2] = 0.0;
+    o->width = p->wide;
+    if (!(p->e > 0.0)) {
+        o->f_n = o->f_t[0] = o->f_t[1] = 0.0;
+        o->e = p->e;
+        o->reach = p->s->reach;
+        for (i = 0; i < ASPERITY_PADDED; i++) {
+            o->slider[0][i] = o->slider[1][i] = o->slider[2][i] = 0.0;
+        }
+        return 0;
     }
-    low = v->shallow[kind][j - 1];
-    return low + v->between * (v->deep[kind][j - 1] - low);
+    o->reach = p->e > p->s->reach ? p->e : p->s->reach;
+    o->e = p->e;
+    o->f_n = p->f_n;
+    o->sum = asperity_limits(p->lost, o->eta, o->own);
+    o->limit = o->own;
+    asperity_slide(p, p->row.stiff, o);
+    return 1;
 }
 
-/* x at point j > 0, of the last one exactly 1: whether a contact slips as a whole is asked by it. */
-ASPERITY_FN asperity_real asperity_peak_x(int j) {
-    asperity_real share = ASPERITY_R(j) / ASPERITY_R(ASPERITY_POINTS);
-    return share * share;
+/* Slopes of the sliders' force by how far it was sheared. */
+ASPERITY_FN void asperity_worn_slopes(const asperity_step *p, const asperity_guess *o, double by[2]) {
+    int i;
+    by[0] = by[1] = 0.0;
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        if (o->slips && o->over[i] > 0.0 && o->most[i] > 0.0) {
+            double held = o->radially[i] > ASPERITY_RADIAL_MOST * o->most[i] ? ASPERITY_RADIAL_MOST : 0.0;
+            double along = (1.0 - o->keep[i] * o->slider[2][i] / o->most[i] * held) * asperity_weights()[i] * p->friction * o->f_n * p->share_worn[i] / o->most[i];
+            by[0] += o->slider[0][i] * along;
+            by[1] += o->slider[1][i] * along;
+        }
+    }
 }
 
-/* The last point that is not beyond x, of those that have one after them. */
-ASPERITY_FN int asperity_point_before(asperity_real x) {
-    int j = (int)(ASPERITY_R(ASPERITY_POINTS) * ASPERITY_SQRT(x));
-    return j > ASPERITY_POINTS - 1 ? ASPERITY_POINTS - 1 : j;
+/* Slopes of the sliders' force by eta. */
+ASPERITY_FN void asperity_eta_slopes(const asperity_step *p, const asperity_guess *o, double by[2]) {
+    const double *weight = asperity_weights();
+    double opening[ASPERITY_PADDED], open = 0.0;
+    int i;
+    by[0] = by[1] = 0.0;
+    if (!o->slips || !(o->eta < 1.0)) {
+        return;
+    }
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        opening[i] = i == 0 && o->eta - p->lost[0] < 0.1 * o->eta ? 0.1 : o->eta > p->lost[i] ? 1.0 : 0.0;
+        open += weight[i] * opening[i];
+    }
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        if (o->over[i] > 0.0 && o->most[i] > 0.0) {
+            double held = o->radially[i] > ASPERITY_RADIAL_MOST * o->most[i] ? ASPERITY_RADIAL_MOST : 0.0;
+            double along = (1.0 - o->keep[i] * o->slider[2][i] / o->most[i] * held) * weight[i] * o->scale * (opening[i] - o->limit[i] * open / o->sum) / o->most[i];
+            by[0] += o->slider[0][i] * along;
+            by[1] += o->slider[1][i] * along;
+        }
+    }
 }
 
-/* The shape at an x between point j and the next, */
-ASPERITY_FN asperity_real asperity_given(const asperity_curve *v, int kind, asperity_real x, int j) {
-    asperity_real below = asperity_point(v, kind, j), rise = asperity_point(v, kind, j + 1) - below;
-    return below + rise * ((x - asperity_point_x(j)) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1)));
-}
-
-/* its derivative there, */
-ASPERITY_FN asperity_real asperity_given_slope(const asperity_curve *v, int kind, int j) {
-    return (asperity_point(v, kind, j + 1) - asperity_point(v, kind, j)) * (ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS) / ASPERITY_R(2 * j + 1));
-}
-
-/* and the x between point j and the next at which it is f. */
-ASPERITY_FN asperity_real asperity_given_between(const asperity_curve *v, int kind, asperity_real f, int j) {
-    asperity_real below = asperity_point(v, kind, j);
-    return asperity_point_x(j) + (f - below) / (asperity_point(v, kind, j + 1) - below) * (ASPERITY_R(2 * j + 1) * (ASPERITY_R(1.0) / ASPERITY_R(ASPERITY_POINTS * ASPERITY_POINTS)));
-}
-
-/* A place on the virgin curves. */
-typedef struct asperity_place {
-    asperity_real x, f_t, f_n;
-    int after; /* the point of the shapes by numbers before it */
-} asperity_place;
-
-/* The lesser and the greater of two numbers. */
-ASPERITY_FN asperity_real asperity_least(asperity_real a, asperity_real b) {
-    return a < b ? a : b;
-}
-
-ASPERITY_FN asperity_real asperity_most(asperity_real a, asperity_real b) {
-    return a > b ? a : b;
-}
-
-/* The point before the least x at which a shape by numbers has the value f > 0; ASPERITY_POINTS where it stays below. */
-ASPERITY_FN int asperity_given_search(const asperity_curve *v, int kind, asperity_real f) {
-    static const asperity_real ramp[8] = {
-        ASPERITY_R(0.0), ASPERITY_R(1.0), ASPERITY_R(2.0), ASPERITY_R(3.0), ASPERITY_R(4.0), ASPERITY_R(5.0), ASPERITY_R(6.0), ASPERITY_R(7.0)};
-    const asperity_real *shallow = v->shallow[kind], *deep = v->deep[kind];
-    asperity_real between = v->between, lane[8];
+/* Slopes of the forces of an elastic step, by h and d. */
+ASPERITY_FN void asperity_elastic_slopes(const asperity_step *p, asperity_guess *ASPERITY_ALONE o) {
+    double rise = p->row.value[ASPERITY_GAMMA] / p->e, opens[2], by_worn[2];
     int j;
-    ASPERITY_LANES
-    for (j = 0; j < 8; j++) {
-        asperity_real near = shallow[j] + between * (deep[j] - shallow[j]), middle = shallow[j + 8] + between * (deep[j + 8] - shallow[j + 8]);
-        asperity_real far = shallow[j + 16] + between * (deep[j + 16] - shallow[j + 16]), place = ASPERITY_R(ASPERITY_POINTS);
-        place = far >= f ? ramp[j] + ASPERITY_R(16.0) : place;
-        place = middle >= f ? ramp[j] + ASPERITY_R(8.0) : place;
-        lane[j] = near >= f ? ramp[j] : place;
+    asperity_slide_slopes(p->row.stiff, o);
+    asperity_eta_slopes(p, o, opens);
+    asperity_worn_slopes(p, o, by_worn);
+    o->tangent[0][0] = o->f_n * rise;
+    o->tangent[1][0] = o->tangent[2][0] = 0.0;
+    for (j = 0; j < 2; j++) {
+        o->tangent[0][1 + j] = o->wider[j] * rise + opens[j] * o->eta_h + by_worn[j] * p->worn_by[0];
+        o->tangent[1][1 + j] = o->m[j] + by_worn[j] * p->worn_by[1];
+        o->tangent[2][1 + j] = o->m[j + 1] + by_worn[j] * p->worn_by[2];
     }
-    return (int)asperity_least(
-        asperity_least(asperity_least(lane[0], lane[1]), asperity_least(lane[2], lane[3])), asperity_least(asperity_least(lane[4], lane[5]), asperity_least(lane[6], lane[7])));
 }
 
-/* The point before the first peak of a shape by numbers. */
-ASPERITY_FN int asperity_given_peak(const asperity_curve *v, int kind) {
-    asperity_real peak = ASPERITY_R(0.0);
-    int j, place = 0;
-    for (j = 1; j <= ASPERITY_POINTS; j++) {
-        asperity_real here = asperity_point(v, kind, j);
-        if (here > peak) {
-            peak = here;
-            place = j - 1;
+/* Plastic slip at a guess: the steady flow along r and the flow away from the vertex, sudden while the yield factor grows. */
+ASPERITY_FN void asperity_flow(const asperity_step *p, asperity_spot at, double rate, asperity_guess *ASPERITY_ALONE o) {
+    const asperity_row *row = &o->row;
+    double flow_s[2], mobile_s[2], gap = row->approach, per = 1.0 / (o->ratio + 1e-9), per_round = 1.0 / o->round;
+    double steady = asperity_shape(p->t, row, ASPERITY_FLOW, at, flow_s), grown = o->factor - p->growing;
+    int i;
+    o->mobile = asperity_shape(p->t, row, ASPERITY_MOBILISED, at, mobile_s);
+    o->mobile_r = mobile_s[0] * p->per_friction;
+    o->grown = grown > 0.0 ? grown : 0.0;
+    o->sudden = o->hardens * p->sudden + o->grown * gap * o->mobile;
+    o->flow = o->hardens * steady * per;
+    o->flow_y = (rate * steady + o->hardens * flow_s[1] * row->share_slope) * per;
+    o->flow_r = o->hardens * (flow_s[0] * p->per_friction - steady * per) * per;
+    o->sudden_y = rate * p->sudden + o->grown * (row->approach_slope * o->mobile + gap * mobile_s[1] * row->share_slope);
+    for (i = 0; i < 2; i++) {
+        o->slip[i] = o->flow * o->r[i] + o->sudden * o->x[i] * per_round;
+        o->move[i] = p->d[i] - o->slip[i];
+    }
+    o->move[2] = p->radial * o->hardens;
+}
+
+/* The yield factor at a guess, and the elastic force that goes with it. Returns 0 where contact is lost. */
+ASPERITY_FN int asperity_yield(const asperity_step *p, double y, const double r[2], asperity_guess *ASPERITY_ALONE o) {
+    const asperity_table *t = p->t;
+    const asperity_work *s = p->s;
+    asperity_row *row = &o->row;
+    double z = y * p->per_depth, rate, ln_force, ln_stiff, eps = ASPERITY_VERTEX_ROUND * p->friction;
+    asperity_spot at;
+    int i;
+    asperity_read(t, p->depth + y, p->log_h + (fabs(z) < 0.015625 ? asperity_log_series(z) : asperity_logarithm(1.0 + z)), row);
+    ln_force = row->value[ASPERITY_LN_FORCE] - p->row.value[ASPERITY_LN_FORCE];
+    ln_stiff = row->value[ASPERITY_LN_STIFFNESS] - p->row.value[ASPERITY_LN_STIFFNESS];
+    row->force = p->row.force * asperity_exponential_near(ln_force);
+    row->stiff = p->row.stiff * asperity_exponential_near(ln_stiff);
+    o->hardens = row->dent - p->dent;
+    rate = row->dent_slope;
+    /* The vertex follows r. */
+    o->per_length = p->row.stiff / p->row.force * (1.0 / ASPERITY_VERTEX_LENGTH) * p->per_friction * asperity_exponential_near(ln_stiff - ln_force);
+    o->q = o->hardens * o->per_length;
+    o->c = 1.0 / (1.0 + o->q);
+    for (i = 0; i < 2; i++) {
+        o->r[i] = r[i];
+        o->x[i] = (r[i] - s->vertex[i]) * o->c;
+        o->vertex[i] = r[i] - o->x[i];
+    }
+    o->ratio = sqrt(r[0] * r[0] + r[1] * r[1]);
+    o->far = sqrt(o->x[0] * o->x[0] + o->x[1] * o->x[1]);
+    o->round = sqrt(o->far * o->far + eps * eps);
+    at = asperity_find(o->ratio * p->per_friction);
+    o->factor = asperity_factor(t, p->per_friction, row, at, o->far, o->part);
+    o->e = p->e - o->hardens;
+    if (!(o->e > 0.0)) {
+        return 0;
+    }
+    /* g follows the yield factor, by the share that is wide, as the contact hardens: at once, F_N would jump where it yields. */
+    {
+        double per = 1.0 / (ASPERITY_NARROWS * p->approach), kept = asperity_exponential(-o->hardens * per), grown = o->factor - 1.0;
+        double away = (s->stiffened - row->wide * grown) * kept;
+        o->width = 1.0 + row->wide * grown + away;
+        o->width_factor = row->wide * (1.0 - kept);
+        o->width_y = row->wide_slope * grown * (1.0 - kept) - away * rate * per;
+    }
+    z = (o->width - p->wide) / p->wide; /* most steps are small */
+    o->log_width = fabs(z) < 0.015625 ? p->log_wide + asperity_log_series(z) : asperity_logarithm(o->width);
+    o->level = asperity_logarithm(o->e / row->approach);
+    o->f_n = row->force * asperity_exponential_near(row->value[ASPERITY_GAMMA] * o->level + (row->value[ASPERITY_GAMMA] - 1.0) * o->log_width);
+    asperity_flow(p, at, rate, o);
+    return 1;
+}
+
+/* The residuals at a guess. Returns 0 where contact is lost. */
+ASPERITY_FN int asperity_evaluate(const asperity_step *p, double y, const double r[2], asperity_guess *ASPERITY_ALONE o) {
+    double per;
+    if (!asperity_yield(p, y, r, o)) {
+        return 0;
+    }
+    o->reach = o->e;
+    o->limit = p->limit;
+    o->sum = p->sum;
+    o->eta = 1.0;
+    o->log_share = o->eta_y = o->eta_h = 0.0;
+    if (p->e < p->s->reach) { /* the annuli that a release took come back as the contact hardens */
+        double per_length = 1.0 / (ASPERITY_NARROWS * p->approach), away = 1.0 - p->e / p->s->reach, kept = asperity_exponential(-o->hardens * per_length), whole = 1.0 - away * kept;
+        double gamma = o->row.value[ASPERITY_GAMMA], log_whole = asperity_logarithm(whole);
+        o->reach = o->e / whole;
+        o->log_share = gamma * log_whole;
+        o->eta = asperity_exponential(o->log_share * p->per_exponent);
+        o->eta_y = o->eta * p->per_exponent * (gamma * away * kept * o->row.dent_slope * per_length / whole + o->row.slope[ASPERITY_GAMMA] * log_whole);
+        o->eta_h = o->eta * p->per_exponent * gamma * kept / (p->s->reach * whole);
+        o->sum = asperity_limits(p->lost, o->eta, o->own);
+        o->limit = o->own;
+    }
+    asperity_slide(p, o->row.stiff, o);
+    o->rho = p->rho;
+    o->rho_y = 0.0;
+    o->rho_h = p->rho_slope;
+    if (p->rho_log > 0.0) { /* what releases took comes back with flow */
+        double per_dent = ASPERITY_RECOVERS / p->approach, missing = 1.0 / (p->rho_log + per_dent * o->hardens);
+        o->rho = asperity_exponential(-missing);
+        o->rho_y = o->rho * missing * missing * per_dent * o->row.dent_slope;
+        o->rho_h *= o->rho * missing * missing * p->rho_log * p->rho_log / p->rho;
+    }
+    per = 1.0 / o->f_n;
+    o->residual[0] = o->f_n * o->factor / o->row.force - o->rho;
+    o->residual[1] = o->f_t[0] * per - r[0];
+    o->residual[2] = o->f_t[1] * per - r[1];
+    return 1;
+}
+
+/* Slopes of the residuals and forces at the guess that was evaluated last, along y and r and, where all six are asked for, along h and d. */
+ASPERITY_FN void asperity_guess_slopes(const asperity_step *p, int count, asperity_guess *ASPERITY_ALONE o) {
+    const asperity_row *row = &o->row;
+    double gamma = row->value[ASPERITY_GAMMA], gap = row->approach, rate = row->dent_slope, per = 1.0 / o->f_n, per_round = 1.0 / o->round;
+    double y_of_force = row->slope[ASPERITY_LN_FORCE] + row->slope[ASPERITY_GAMMA] * (o->level + o->log_width) - gamma * (rate / o->e + row->approach_slope / gap);
+    double q_y = rate * o->per_length + o->q * (row->slope[ASPERITY_LN_STIFFNESS] - row->slope[ASPERITY_LN_FORCE]);
+    double v[2] = {o->x[0] * per_round, o->x[1] * per_round}, per_ratio = o->ratio > 0.0 ? 1.0 / o->ratio : 0.0, far = o->far > 0.0 ? o->round / o->far : 0.0;
+    double by_worn[2] = {0.0, 0.0}, opens[2], load = o->f_n * o->factor / row->force, by_width = (gamma - 1.0) / o->width;
+    const int grows = o->grown > 0.0 || (count == 3 && p->rises && o->factor > p->growing - 1e-9); /* where it begins to, Newton's first step has to know */
+    int i, j;
+    asperity_slide_slopes(row->stiff, o);
+    asperity_eta_slopes(p, o, opens);
+    if (count > 3) {
+        asperity_worn_slopes(p, o, by_worn);
+    }
+    for (j = 0; j < count; j++) { /* along y, r, h, d */
+        double dy = j == 0 ? 1.0 : 0.0, dr[2] = {j == 1 ? 1.0 : 0.0, j == 2 ? 1.0 : 0.0}, dx[2], dn[2], dmove[3], dround, dfar, dratio, dfactor, df, dsudden, dflow;
+        dx[0] = o->c * (dr[0] - o->x[0] * q_y * dy);
+        dx[1] = o->c * (dr[1] - o->x[1] * q_y * dy);
+        dround = v[0] * dx[0] + v[1] * dx[1];
+        dfar = dround * far;
+        dratio = (o->r[0] * dr[0] + o->r[1] * dr[1]) * per_ratio;
+        dfactor = o->part[0] * dratio + o->part[1] * dfar + o->part[2] * dy;
+        df = (j == 0 ? y_of_force : j == 3 ? gamma / o->e : 0.0) + by_width * (o->width_factor * dfactor + o->width_y * dy); /* over F_N */
+        dsudden = o->sudden_y * dy;
+        if (grows) {
+            dsudden += gap * ((dfactor - (j == 3 ? p->growing_slope : 0.0)) * o->mobile + o->grown * o->mobile_r * dratio);
+        }
+        dflow = o->flow_y * dy + o->flow_r * dratio;
+        for (i = 0; i < 2; i++) {
+            dn[i] = dflow * o->r[i] + o->flow * dr[i] + dsudden * v[i] + o->sudden * (dx[i] - v[i] * dround) * per_round;
+            dmove[i] = (j == 4 + i ? 1.0 : 0.0) - dn[i];
+        }
+        dmove[2] = p->radial * rate * dy;
+        o->n_by[j] = o->f_n * df;
+        for (i = 0; i < 2; i++) {
+            double across = o->m[i] * dmove[0] + o->m[i + 1] * dmove[1];
+            o->t_by[j][i] = across + o->radial[i] * dmove[2] + o->stiffer[i] * row->stiff * row->slope[ASPERITY_LN_STIFFNESS] * dy + o->wider[i] * df + (j > 2 ? by_worn[i] * p->worn_by[j - 3] : 0.0) +
+                            opens[i] * (o->eta_y * dy + (j == 3 ? o->eta_h : 0.0));
+            o->by[j][1 + i] = (o->t_by[j][i] - o->f_t[i] * df) * per - dr[i];
+        }
+        o->by[j][0] = load * (df + dfactor / o->factor - row->slope[ASPERITY_LN_FORCE] * dy) - (j == 0 ? o->rho_y : j == 3 ? o->rho_h : 0.0);
+    }
+}
+
+/* Moves y and r by x so that the three equations, off by `right`, are met. */
+ASPERITY_FN int asperity_solve(const asperity_guess *o, const double right[3], double x[3]) {
+    const double *a = o->by[0], *b = o->by[1], *c = o->by[2]; /* columns */
+    double bc[3] = {b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]};
+    double whole = -(a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]), per;
+    if (!(fabs(whole) > 0.0)) {
+        return 0;
+    }
+    per = 1.0 / whole;
+    x[0] = (right[0] * bc[0] + right[1] * bc[1] + right[2] * bc[2]) * per;
+    x[1] = (a[0] * (right[1] * c[2] - right[2] * c[1]) + a[1] * (right[2] * c[0] - right[0] * c[2]) + a[2] * (right[0] * c[1] - right[1] * c[0])) * per;
+    x[2] = (a[0] * (b[1] * right[2] - b[2] * right[1]) + a[1] * (b[2] * right[0] - b[0] * right[2]) + a[2] * (b[0] * right[1] - b[1] * right[0])) * per;
+    return 1;
+}
+
+/* Moves r by x[1], x[2] so that its two equations are met where y moves by dy, x[0]. */
+ASPERITY_FN void asperity_solve_at(const asperity_guess *o, double dy, double x[3]) {
+    const double *a = o->by[0], *b = o->by[1], *c = o->by[2];
+    double right[2], whole = b[1] * c[2] - c[1] * b[2];
+    right[0] = -o->residual[1] - a[1] * dy;
+    right[1] = -o->residual[2] - a[2] * dy;
+    x[0] = dy;
+    if (fabs(whole) > 0.0) {
+        x[1] = (right[0] * c[2] - c[1] * right[1]) / whole;
+        x[2] = (b[1] * right[1] - right[0] * b[2]) / whole;
+    }
+}
+
+/* Elastic energy of the sliders. */
+ASPERITY_FN double asperity_slider_energy(const double x[ASPERITY_PADDED], const double y[ASPERITY_PADDED], double stiff) {
+    const double *per_weight = asperity_per_weights();
+    double energy[ASPERITY_PADDED];
+    int i;
+    ASPERITY_LANES
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        energy[i] = (x[i] * x[i] + y[i] * y[i]) * per_weight[i];
+    }
+    return 0.5 * asperity_sum(energy) / stiff;
+}
+
+/* What a step starts from: the row, the elastic trial's place, the forces and energy so far. */
+ASPERITY_FN void asperity_prepare(const asperity_table *t, const asperity_work *s, double h, const double d[2], asperity_step *p) {
+    asperity_row *row = &p->row;
+    double e0, gamma, level;
+    p->t = t;
+    p->s = s;
+    p->friction = (double)t->friction > 1e-9 ? (double)t->friction : 1e-9;
+    p->per_friction = 1.0 / p->friction;
+    p->h = h;
+    p->d[0] = d[0];
+    p->d[1] = d[1];
+    p->depth = (double)t->first + s->hardened;
+    p->per_depth = 1.0 / p->depth;
+    p->log_h = s->hardened > 0.0 ? asperity_logarithm(1.0 + s->hardened / (double)t->first) : 0.0;
+    asperity_read(t, p->depth, p->log_h, row);
+    row->force = asperity_exponential(row->value[ASPERITY_LN_FORCE]);
+    row->stiff = asperity_exponential(row->value[ASPERITY_LN_STIFFNESS]);
+    p->approach = row->approach;
+    /* The dent that the memory has, where it has one, and the approach by differences: so float does not lose what hardens less in a step than a last digit. */
+    p->dent = s->h - s->approach;
+    if (s->approach > 0.0 && fabs(p->dent - row->dent) <= 16.0 * ASPERITY_ROUNDING * p->depth) {
+        e0 = s->approach;
+        p->e = e0 + (h - s->h);
+    } else {
+        p->dent = row->dent;
+        e0 = s->approach > 0.0 ? s->h - p->dent : 0.0;
+        p->e = h - p->dent;
+    }
+    p->wide = 1.0 + s->stiffened;
+    p->log_wide = s->stiffened > 0.0 ? asperity_logarithm(p->wide) : 0.0;
+    gamma = row->value[ASPERITY_GAMMA];
+    p->level = p->e > 0.0 ? asperity_logarithm(p->e / p->approach) : 0.0;
+    p->old_f_n = p->old_f_t[0] = p->old_f_t[1] = p->old_stored[0] = p->old_stored[1] = 0.0;
+    if (e0 > 0.0) {
+        double z = p->e > 0.0 ? (e0 - p->e) / p->e : 1.0;
+        level = fabs(z) < 0.015625 ? p->level + asperity_log_series(z) : asperity_logarithm(e0 / p->approach);
+        p->old_f_n = row->force * asperity_exponential(gamma * level + (gamma - 1.0) * p->log_wide);
+        p->old_f_t[0] = asperity_sum(s->slider[0]);
+        p->old_f_t[1] = asperity_sum(s->slider[1]);
+        p->old_stored[0] = p->old_f_n * e0 / (gamma + 1.0);
+        p->old_stored[1] = asperity_slider_energy(s->slider[0], s->slider[1], row->stiff);
+        p->f_n = p->e > 0.0 ? p->old_f_n * asperity_exponential_near(gamma * (p->level - level)) : 0.0;
+    } else {
+        p->f_n = p->e > 0.0 ? row->force * asperity_exponential(gamma * p->level + (gamma - 1.0) * p->log_wide) : 0.0;
+    }
+}
+
+/* The memory after a step. */
+ASPERITY_FN void asperity_keep(const asperity_step *p, const asperity_guess *o, double y, double softened, double released, asperity_work *next) {
+    const asperity_work *s = p->s;
+    int i, j;
+    next->h = p->h;
+    next->h_max = p->h > s->h_max ? p->h : s->h_max;
+    next->approach = o->e;
+    next->hardened = s->hardened + y;
+    next->reach = o->reach;
+    next->softened = softened;
+    next->released = released;
+    next->stiffened = s->stiffened;
+    next->worn = p->worn;
+    next->vertex[0] = s->vertex[0];
+    next->vertex[1] = s->vertex[1];
+    if (o->f_n > 0.0) {
+        if (o->plastic) {
+            next->stiffened = o->width > 1.0 ? o->width - 1.0 : 0.0;
+            next->vertex[0] = o->vertex[0];
+            next->vertex[1] = o->vertex[1];
         }
     }
-    return place;
-}
-
-/* f_N of a law of formulas at x, 0 < x < 1, with the logarithm of 1 - x. */
-ASPERITY_FN asperity_real asperity_complements(int form, const asperity_curve *v, asperity_real x, asperity_real log_rest) {
-    const asperity_real one = ASPERITY_R(1.0);
-    if (form == 0) {
-        return asperity_power(one - asperity_exponential(v->m * log_rest), v->big_n);
-    }
-    return one - asperity_power(one - asperity_power(x, v->m), v->big_n);
-}
-
-/* f_T and f_N at x, 0 <= x <= 1. */
-ASPERITY_FN void asperity_shapes(int form, const asperity_curve *v, asperity_real x, asperity_place *place) {
-    const asperity_real one = ASPERITY_R(1.0);
-    asperity_real log_rest;
-    place->x = x;
-    place->after = 0;
-    place->f_t = place->f_n = ASPERITY_R(0.0);
-    if (x <= ASPERITY_R(0.0)) {
-        return;
-    }
-    if (form == 2) {
-        place->after = asperity_point_before(x);
-        place->f_t = asperity_given(v, 0, x, place->after);
-        place->f_n = x < one ? asperity_given(v, 1, x, place->after) : one;
-        return;
-    }
-    place->f_t = place->f_n = one;
-    if (x >= one) {
-        return;
-    }
-    log_rest = asperity_logarithm(one - x);
-    place->f_t = one - asperity_exponential(v->n * log_rest);
-    place->f_n = asperity_complements(form, v, x, log_rest);
-}
-
-/* The derivatives of f_T and f_N; those of f_N, and at x = 1 both, are 0 at the ends. */
-ASPERITY_FN void asperity_slopes(int form, const asperity_curve *v, asperity_real x, asperity_real slope[2]) {
-    const asperity_real one = ASPERITY_R(1.0), zero = ASPERITY_R(0.0);
-    asperity_real rest, risen;
-    slope[0] = slope[1] = zero;
-    if (x >= one) {
-        return;
-    }
-    if (form == 2) {
-        int j = asperity_point_before(x);
-        slope[0] = asperity_given_slope(v, 0, j);
-        slope[1] = x > zero ? asperity_given_slope(v, 1, j) : zero;
-        return;
-    }
-    slope[0] = v->n * asperity_power(one - x, v->n - one);
-    if (x <= zero) {
-        return;
-    }
-    if (form == 0) {
-        rest = asperity_power(one - x, v->m);
-        slope[1] = v->big_n * asperity_power(one - rest, v->big_n - one) * v->m * rest / (one - x);
-    } else {
-        risen = asperity_power(x, v->m);
-        slope[1] = v->big_n * asperity_power(one - risen, v->big_n - one) * v->m * risen / x;
-    }
-}
-
-/* The least x at which f_T has the value f, or its peak where it stays below. */
-ASPERITY_FN void asperity_place_of(int form, const asperity_curve *v, asperity_real f, asperity_place *place) {
-    const asperity_real one = ASPERITY_R(1.0);
-    place->after = 0;
-    place->f_t = f;
-    if (f <= ASPERITY_R(0.0)) {
-        place->x = place->f_t = place->f_n = ASPERITY_R(0.0);
-    } else if (form == 2) {
-        int j = asperity_given_search(v, 0, f);
-        if (j == ASPERITY_POINTS) {
-            j = asperity_given_peak(v, 0);
-            place->f_t = asperity_point(v, 0, j + 1);
+    for (j = 0; j < 3; j++) {
+        for (i = 0; i < ASPERITY_PADDED; i++) {
+            next->slider[j][i] = o->slider[j][i];
         }
-        place->after = j;
-        place->x = f > place->f_t ? asperity_peak_x(j + 1) : asperity_given_between(v, 0, place->f_t, j);
-        place->f_n = asperity_given(v, 1, place->x, j);
-    } else if (f >= one) {
-        place->x = place->f_t = place->f_n = one;
-    } else {
-        asperity_real log_rest = asperity_logarithm(one - f) * v->per_n;
-        place->x = one - asperity_exponential(log_rest);
-        place->f_n = asperity_complements(form, v, place->x, log_rest);
     }
 }
 
-/* From a place back along the curve to where f_T is f, which is less. */
-ASPERITY_FN void asperity_back(int form, const asperity_curve *v, asperity_real f, asperity_place *place) {
-    if (form == 2 && f > ASPERITY_R(0.0)) {
-        int j = place->after;
-        while (j > 0 && asperity_point(v, 0, j) >= f) {
-            j--;
+/* No contact hardens more in a step. */
+ASPERITY_FN double asperity_most(const asperity_step *p) {
+    return 3.0 * (p->e + p->depth);
+}
+
+/* Newton's method for the hardening y and the ratio r, from a guess. Returns whether they are found, and o is of them. */
+ASPERITY_FN int asperity_newton(const asperity_step *p, double *y, double r[2], asperity_guess *ASPERITY_ALONE o) {
+    double from[3] = {0.0, 0.0, 0.0}, step[3] = {0.0, 0.0, 0.0}, least = 1e300, bound = 0.5 * p->friction + 0.01, most = asperity_most(p);
+    int tries, back = 0, known = 0, i;
+    for (tries = 1;; tries++) {
+        int touches = asperity_evaluate(p, *y, r, o);
+        double norm = touches ? o->residual[0] * o->residual[0] + o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2] : 1e300, size;
+        if (norm < ASPERITY_TOLERANCE * ASPERITY_TOLERANCE) {
+            return 1;
         }
-        place->after = j;
-        place->f_t = f;
-        place->x = asperity_given_between(v, 0, f, j);
-        place->f_n = asperity_given(v, 1, place->x, j);
-    } else {
-        asperity_place_of(form, v, f, place);
-    }
-}
-
-/* The least x at which f_N has the value f. */
-ASPERITY_FN asperity_real asperity_normal_inverse(int form, const asperity_curve *v, asperity_real f) {
-    asperity_real one = ASPERITY_R(1.0), inner;
-    if (f <= ASPERITY_R(0.0)) {
-        return ASPERITY_R(0.0);
-    }
-    if (f >= one) {
-        return one;
-    }
-    if (form == 2) {
-        int j = asperity_given_search(v, 1, f);
-        return j < ASPERITY_POINTS ? asperity_given_between(v, 1, f, j) : asperity_peak_x(asperity_given_peak(v, 1) + 1);
-    }
-    if (form == 0) {
-        inner = one - asperity_power(f, one / v->big_n);
-        return inner > ASPERITY_R(0.0) ? one - asperity_power(inner, one / v->m) : one;
-    }
-    inner = one - asperity_power(one - f, one / v->big_n);
-    return inner > ASPERITY_R(0.0) ? asperity_power(inner, one / v->m) : ASPERITY_R(0.0);
-}
-
-/* Share of F_N_slip that reversals cost: no more than what the slip itself has cost. */
-ASPERITY_FN asperity_real asperity_reversed_share(const asperity_curve *v) {
-    return asperity_most(asperity_least(v->f_n0 / v->f_n_slip - ASPERITY_R(1.0), ASPERITY_REVERSED), ASPERITY_LEAST_REVERSED);
-}
-
-/* The x of the virgin curve that has the normal force f_n. */
-ASPERITY_FN asperity_real asperity_mobilisation(int form, const asperity_curve *v, asperity_real f_n) {
-    if (f_n >= ASPERITY_AT_CAP * v->f_n0) {
-        return ASPERITY_R(0.0);
-    }
-    if (ASPERITY_AT_SLIP * f_n <= v->f_n_slip) {
-        asperity_real x = ASPERITY_R(1.0) + asperity_most(ASPERITY_R(1.0) - f_n / v->f_n_slip, ASPERITY_R(0.0)) / asperity_reversed_share(v);
-        return x < ASPERITY_ALL_LOST ? x : ASPERITY_ALL_LOST;
-    }
-    return asperity_normal_inverse(form, v, (v->f_n0 - f_n) / (v->f_n0 - v->f_n_slip));
-}
-
-/* F_N at x, with what a reversed slip costs. */
-ASPERITY_FN asperity_real asperity_reversed_cap(const asperity_curve *v, asperity_real x, const asperity_place *place) {
-    return x < ASPERITY_R(1.0) ? v->f_n0 - (v->f_n0 - v->f_n_slip) * place->f_n : v->f_n_slip * (ASPERITY_R(1.0) - asperity_reversed_share(v) * (x - ASPERITY_R(1.0)));
-}
-
-/* F_N over the reach of a contact: 2 E* a/gamma. */
-ASPERITY_FN asperity_real asperity_per_reach(const asperity_curve *v) {
-    return v->f_n0 / v->depth;
-}
-
-/* Elastic unloading: F_N at the approach e > 0 of a contact with this reach, from ln(e/reach). It starts with 2 E* a from any F_N: what shear takes of F_N leaves the contact as wide as it was. */
-ASPERITY_FN asperity_real asperity_force_at(const asperity_curve *v, asperity_real reach, asperity_real level) {
-    return asperity_per_reach(v) * reach * (level == ASPERITY_R(0.0) ? ASPERITY_R(1.0) : asperity_exponential(v->gamma * level));
-}
-
-/* Greatest deflection of each slider under the normal force f_n > 0, so that their forces add up to mu F_N; eta is what is left of its extent as it is released. */
-ASPERITY_FN void asperity_limits(asperity_real friction, const asperity_curve *v, asperity_real f_n, asperity_real eta, asperity_real limit[ASPERITY_SLIDERS]) {
-    asperity_real scale;
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        limit[i] = (eta > v->lost[i] ? eta : v->lost[i]) - v->lost[i];
-    }
-    limit[0] = limit[0] < ASPERITY_R(0.1) * eta ? ASPERITY_R(0.1) * eta : limit[0]; /* the innermost carries what little force there is */
-    scale = friction * f_n / (v->k_t * asperity_sum(asperity_weights(), limit));
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        limit[i] *= scale;
-    }
-}
-
-/* The sliders as they would be, were they not held to their limits. */
-typedef struct asperity_moved {
-    ASPERITY_ALIGNED asperity_real q[2][ASPERITY_SLIDERS];
-    asperity_real square[ASPERITY_SLIDERS];                           /* of the deflection's length */
-    asperity_real size[ASPERITY_SLIDERS], per_size[ASPERITY_SLIDERS]; /* it and its inverse, once asked */
-} asperity_moved;
-
-ASPERITY_FN void asperity_move(asperity_real from[2][ASPERITY_SLIDERS], asperity_real d0, asperity_real d1, asperity_moved *moved) {
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real q0 = from[0][i] + d0, q1 = from[1][i] + d1;
-        moved->q[0][i] = q0;
-        moved->q[1][i] = q1;
-        moved->square[i] = q0 * q0 + q1 * q1;
-    }
-}
-
-/* Whether a slider is beyond its limit. */
-ASPERITY_FN int asperity_exceeds(const asperity_moved *moved, const asperity_real limit[ASPERITY_SLIDERS]) {
-    asperity_real lane[4];
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < 4; i++) {
-        asperity_real a = moved->square[i] - limit[i] * limit[i], b = moved->square[i + 4] - limit[i + 4] * limit[i + 4];
-        asperity_real c = moved->square[i + 8] - limit[i + 8] * limit[i + 8], d = moved->square[i + 12] - limit[i + 12] * limit[i + 12];
-        a = a > b ? a : b;
-        c = c > d ? c : d;
-        lane[i] = a > c ? a : c;
-    }
-    return asperity_most(asperity_most(lane[0], lane[2]), asperity_most(lane[1], lane[3])) > ASPERITY_R(0.0);
-}
-
-ASPERITY_FN void asperity_measure(asperity_moved *moved) {
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real inverse = asperity_inverse_root(moved->square[i]);
-        moved->per_size[i] = inverse;
-        moved->size[i] = moved->square[i] * inverse;
-    }
-}
-
-/* Holds each slider to its limit; returns what they dissipate over k_T. */
-ASPERITY_FN asperity_real asperity_hold(const asperity_moved *moved, const asperity_real limit[ASPERITY_SLIDERS], asperity_real to[2][ASPERITY_SLIDERS]) {
-    ASPERITY_ALIGNED asperity_real over[ASPERITY_SLIDERS];
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real most = limit[i], keep = most * moved->per_size[i], beyond = moved->size[i] - most;
-        keep = keep < ASPERITY_R(1.0) ? keep : ASPERITY_R(1.0);
-        over[i] = most * (beyond > ASPERITY_R(0.0) ? beyond : ASPERITY_R(0.0));
-        to[0][i] = keep * moved->q[0][i];
-        to[1][i] = keep * moved->q[1][i];
-    }
-    return asperity_sum(asperity_weights(), over);
-}
-
-/* Tangential force of the sliders. */
-ASPERITY_FN void asperity_slider_force(const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real force[2]) {
-    force[0] = v->k_t * asperity_sum(asperity_weights(), deflection[0]);
-    force[1] = v->k_t * asperity_sum(asperity_weights(), deflection[1]);
-}
-
-/* Their energy. */
-ASPERITY_FN asperity_real asperity_slider_energy(const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS]) {
-    ASPERITY_ALIGNED asperity_real square[ASPERITY_SLIDERS];
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        square[i] = (deflection[0][i] * deflection[0][i] + deflection[1][i] * deflection[1][i]);
-    }
-    return ASPERITY_R(0.5) * v->k_t * asperity_sum(asperity_weights(), square);
-}
-
-/* Their stiffness after an increment: a slider at its limit only turns. */
-ASPERITY_FN void asperity_slider_stiffness(
-    const asperity_curve *v, const asperity_moved *moved, const asperity_real limit[ASPERITY_SLIDERS], asperity_real stiffness[2][2]) {
-    const asperity_real *weight = asperity_weights();
-    asperity_real sum0 = ASPERITY_R(0.0), sum1 = ASPERITY_R(0.0), sum2 = ASPERITY_R(0.0);
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real size = ASPERITY_SQRT(moved->square[i]), k = v->k_t * weight[i];
-        if (size > ASPERITY_AT_BOUND * limit[i]) {
-            asperity_real m0 = moved->q[0][i] / size, m1 = moved->q[1][i] / size;
-            k = k * limit[i] / size;
-            sum0 += k * m1 * m1;
-            sum1 -= k * m0 * m1;
-            sum2 += k * m0 * m0;
+        if (tries == 1 && !touches) {
+            *y = 0.0;
+            continue;
+        }
+        if (tries > 1 && !(norm <= 1.1 * least) && back < 6) {
+            back++;
+            for (i = 0; i < 3; i++) {
+                step[i] *= 0.4;
+            }
         } else {
-            sum0 += k;
-            sum2 += k;
+            if (!touches || tries >= ASPERITY_STEPS) {
+                return norm < 1e-14;
+            }
+            /* Near to it the slopes of before are good enough: what they leave is norm^2/least, of the squares. */
+            if (!(known && norm * norm < 1e-26 * least)) {
+                asperity_guess_slopes(p, 3, o);
+                known = 1;
+            }
+            if (!asperity_solve(o, o->residual, step)) {
+                return norm < 1e-14;
+            }
+            back = 0;
+            least = norm;
+            from[0] = *y;
+            from[1] = r[0];
+            from[2] = r[1];
+            if (*y + step[0] < 0.0) {
+                asperity_solve_at(o, -0.7 * *y, step);
+            } else if (*y + step[0] > most) {
+                asperity_solve_at(o, 0.7 * (most - *y), step);
+            }
+            size = sqrt(step[1] * step[1] + step[2] * step[2]);
+            size = size > bound ? bound / size : 1.0;
+            step[1] *= size;
+            step[2] *= size;
         }
-    }
-    stiffness[0][0] = sum0;
-    stiffness[0][1] = sum1;
-    stiffness[1][0] = sum1;
-    stiffness[1][1] = sum2;
-}
-
-ASPERITY_FN void asperity_scale(asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real keep) {
-    int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        deflection[0][i] *= keep;
-        deflection[1][i] *= keep;
+        *y = from[0] + step[0];
+        r[0] = from[1] + step[1];
+        r[1] = from[2] + step[2];
     }
 }
 
-/* A contact at work: an asperity_state. */
-typedef struct asperity_work {
-    ASPERITY_ALIGNED asperity_real deflection[2][ASPERITY_SLIDERS];
-    asperity_real h, h_max, approach, reach, x, sheared, reversed;
-} asperity_work;
-
-/* What the press leaves for the shear. */
-typedef struct asperity_pressed {
-    asperity_real f_n, x, df_n_dh, slip; /* slip: dissipated by the sliders */
-    asperity_real flow;                  /* by how many e-folds F_T has flowed */
-    asperity_real sudden;                /* displacement that hardens nothing */
-    asperity_real eta;                   /* what is left of the extent: (approach/reach)^(gamma/backbone) */
-    asperity_real approach, reach;       /* elastic, of that F_N */
-    asperity_real force[2], f_t;         /* of the sliders, and its size */
-    asperity_place place;                /* on the virgin curves, of that force */
-    ASPERITY_ALIGNED asperity_real limit[ASPERITY_SLIDERS];
-} asperity_pressed;
-
-/* What the sliders hold, and where that is on the virgin curves. */
-ASPERITY_FN void asperity_stand(const asperity_table *t, const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_pressed *p) {
-    asperity_slider_force(v, deflection, p->force);
-    p->f_t = ASPERITY_SQRT(p->force[0] * p->force[0] + p->force[1] * p->force[1]);
-    asperity_place_of(t->form, v, p->f_t * (ASPERITY_R(1.0) / (t->friction * v->f_n_slip)), &p->place);
-}
-
-/* Share of a displacement that the sliders take where their force meanwhile flows by `flow` e-folds, (1 - e^-flow)/flow. Without it a press under shear would keep more of F_T the longer its steps are. */
-ASPERITY_FN asperity_real asperity_taken(asperity_real flow) {
-    if (flow < ASPERITY_R(0.05)) {
-        return ASPERITY_R(1.0) - flow * (ASPERITY_R(0.5) - flow * (ASPERITY_R(1.0 / 6.0) - flow * (ASPERITY_R(1.0 / 24.0) - flow * ASPERITY_R(1.0 / 120.0))));
-    }
-    return (ASPERITY_R(1.0) - asperity_exponential_near(-flow)) / flow;
-}
-
-/* c of the yield curve: a table's own, or that of F_N0/F_N = 1 + b r + c r^2, r = F_T/F_N, which the virgin curve follows; by its points at 40 % and all of the slip force. */
-ASPERITY_FN asperity_real asperity_yield_coefficient(const asperity_table *t, const asperity_curve *v) {
-    asperity_real loss, lost, at_slip, f_n, r, before, c, least;
-    asperity_place place;
-    if (t->form == 2) {
-        return v->n;
-    }
-    if (!(t->friction > ASPERITY_R(0.0))) {
-        return ASPERITY_R(0.0);
-    }
-    loss = v->f_n0 - v->f_n_slip;
-    at_slip = loss / (v->f_n_slip * t->friction);
-    asperity_place_of(t->form, v, ASPERITY_R(0.4), &place);
-    lost = loss * place.f_n;
-    f_n = v->f_n0 - lost;
-    r = ASPERITY_R(0.4) * t->friction * v->f_n_slip / f_n;
-    before = lost / (f_n * r);
-    c = (at_slip - before) / (t->friction - r);
-    least = ASPERITY_R(0.5) * at_slip / t->friction;
-    return c > least ? c : least;
-}
-
-/* Share of an indentation that unloading recovers. */
-ASPERITY_FN asperity_real asperity_recovered(const asperity_curve *v) {
-    return v->slope * v->depth * (v->per_gamma * v->per_force);
-}
-
-/* s c of the yield curve F_N (1 + s c r^2) = F_N0. */
-ASPERITY_FN asperity_real asperity_yield_share(const asperity_curve *v, asperity_real c) {
-    return ASPERITY_PRESSED * (ASPERITY_R(1.0) - asperity_recovered(v)) * c;
-}
-
-/* c of the flow at the ratio r of F_T to F_N, from the c that was measured where d(delta_T)/dh is mu/(1/2 + mu^2/4). */
-ASPERITY_FN asperity_real asperity_flow_coefficient(const asperity_table *t, const asperity_curve *v, asperity_real c, asperity_real r) {
-    asperity_real slope = ASPERITY_R(2.0) * t->friction / (ASPERITY_R(1.0) + ASPERITY_R(0.5) * t->friction * t->friction);
-    asperity_real measured = (ASPERITY_SQRT(ASPERITY_R(1.0) + slope * slope / c) - ASPERITY_R(1.0)) / slope;
-    asperity_real share = r < ASPERITY_R(2.0) * measured ? r / measured : ASPERITY_R(2.0);
-    return c * (ASPERITY_R(1.0) + (asperity_recovered(v) - ASPERITY_NO_CHANGE) * (share - ASPERITY_R(1.0)));
-}
-
-/* Greatest F_N of a contact that is pressed with the tangential force f_t, on the yield curve of this s c; at its apex F_N0/2. `root`: of the discriminant. */
-ASPERITY_FN asperity_real asperity_pressed_cap(const asperity_curve *v, asperity_real share, asperity_real f_t, asperity_real *root) {
-    asperity_real force = f_t * v->per_force, q = ASPERITY_R(1.0) - ASPERITY_R(4.0) * share * (force * force);
-    *root = q > ASPERITY_R(0.0) ? ASPERITY_SQRT(q) : ASPERITY_R(0.0);
-    return ASPERITY_R(0.5) * v->f_n0 * (ASPERITY_R(1.0) + *root);
-}
-
-/* F_N on that curve at a ratio F_T/F_N. */
-ASPERITY_FN asperity_real asperity_yielding_at(const asperity_curve *v, asperity_real share, asperity_real ratio) {
-    return v->f_n0 / (ASPERITY_R(1.0) + share * (ratio * ratio));
-}
-
-/* F_N falls to f_n without an unloading: approach, reach and the sliders' limits with it. */
-ASPERITY_FN void asperity_lower(const asperity_table *t, const asperity_curve *v, asperity_real f_n, asperity_pressed *p) {
-    asperity_real share = f_n / p->f_n;
-    p->f_n = f_n;
-    p->approach *= share;
-    p->reach *= share;
-    asperity_limits(t->friction, v, f_n, p->eta, p->limit);
-}
-
-/* Moves h with delta_T held, while the displacement (d0, d1) brings some of F_T back. `p` has what asperity_stand() gives, F_N, eta and approach of the elastic response; `trial` is F_N were it not capped by first loading, `stiffness` its
- * slope, and `elastic_stiffness` that of the elastic response. */
-ASPERITY_FN void asperity_press(
-    const asperity_table *t, asperity_work *s, const asperity_curve *v, asperity_real trial, asperity_real stiffness, asperity_real elastic_stiffness, asperity_real h, asperity_real d0, asperity_real d1,
-    int derivatives, asperity_pressed *p) {
-    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    int grown = h > s->h_max;
-    asperity_real dh = h - s->h, elastic, f_t, slip_force, per_slip_force, cap, c, share, highest, r, normal, tangential, across, turn, part, softer, plastic, most, forward, steady, flows, taken_back, all;
-    asperity_real stiff, soft, flow, linear, falls, gain, turns, along, slope[2], raised, pressed, on_curve, root, keep, left, back, change;
-    asperity_place place;
-    asperity_moved moved;
-    p->slip = p->flow = p->sudden = zero;
-    p->df_n_dh = stiffness;
-    asperity_limits(t->friction, v, p->f_n, p->eta, p->limit);
-    if (dh == zero) {
-        p->x = s->x;
-        p->df_n_dh = s->x == zero && s->h == s->h_max ? v->slope : stiffness;
-        return;
-    }
-    if (dh < zero) {
-        elastic = asperity_mobilisation(t->form, v, p->f_n);
-        p->x = elastic > s->x ? elastic : s->x;
-        return;
-    }
-    if (trial >= v->f_n0 && grown) {
-        stiffness = v->slope;
-    }
-    asperity_move(s->deflection, zero, zero, &moved);
-    if (asperity_exceeds(&moved, p->limit)) {
-        asperity_measure(&moved);
-        p->slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
-        if (!v->elastic) {
-            asperity_stand(t, v, s->deflection, p);
+/* What F_N G has over the yield force at a hardening, for the ratio that belongs to it: Newton's steps, halved where they do not bring it nearer. */
+ASPERITY_FN double asperity_excess(const asperity_step *p, double y, double r[2], asperity_guess *ASPERITY_ALONE o) {
+    double bound = 0.5 * p->friction + 0.01, from[2] = {r[0], r[1]}, by[2] = {0.0, 0.0}, x[3] = {0.0, 0.0, 0.0}, least = 1e300, size;
+    int k, back = 0;
+    for (k = 0; k < 100; k++) {
+        double norm;
+        if (!asperity_evaluate(p, y, r, o)) {
+            return -1.0;
+        }
+        norm = o->residual[1] * o->residual[1] + o->residual[2] * o->residual[2];
+        if (norm < ASPERITY_TOLERANCE * ASPERITY_TOLERANCE) {
+            return o->residual[0];
+        }
+        if (norm > least && back < 12) {
+            back++;
+            by[0] *= 0.5;
+            by[1] *= 0.5;
         } else {
-            asperity_slider_force(v, s->deflection, p->force);
+            asperity_guess_slopes(p, 3, o);
+            x[1] = x[2] = 0.0;
+            asperity_solve_at(o, 0.0, x);
+            size = sqrt(x[1] * x[1] + x[2] * x[2]);
+            size = size > bound ? bound / size : 1.0;
+            from[0] = r[0];
+            from[1] = r[1];
+            by[0] = size * x[1];
+            by[1] = size * x[2];
+            least = norm;
+            back = 0;
+        }
+        r[0] = from[0] + by[0];
+        r[1] = from[1] + by[1];
+    }
+    return asperity_evaluate(p, y, r, o) ? o->residual[0] : -1.0;
+}
+
+/* The hardening, where Newton does not find the way: r is solved for at each, and what F_N G has over the yield force falls from above zero at 0 to below it. */
+ASPERITY_FN double asperity_bracket(const asperity_step *p, double guess, double r[2], asperity_guess *ASPERITY_ALONE o) {
+    double most = asperity_most(p), low = 0.0, at_low = asperity_excess(p, 0.0, r, o), high = guess > 1e-3 * most ? guess : 1e-3 * most, at_high = asperity_excess(p, high, r, o), y;
+    int side = 0, k;
+    while (at_high > 0.0 && high < most) {
+        low = high;
+        at_low = at_high;
+        high = 4.0 * high < most ? 4.0 * high : most;
+        at_high = asperity_excess(p, high, r, o);
+    }
+    y = high;
+    for (k = 0; k < ASPERITY_BRACKETS && at_low > 0.0 && at_high < 0.0 && high - low > 1e-15 * p->depth; k++) {
+        double here;
+        y = high - at_high * (high - low) / (at_high - at_low);
+        here = asperity_excess(p, y, r, o);
+        if (fabs(here) < ASPERITY_TOLERANCE) {
+            break;
+        }
+        if (here > 0.0) {
+            low = y;
+            at_low = here;
+            at_high *= side == 1 ? 0.5 : 1.0;
+            side = 1;
+        } else {
+            high = y;
+            at_high = here;
+            at_low *= side == -1 ? 0.5 : 1.0;
+            side = -1;
         }
     }
-    p->df_n_dh = stiffness;
-    if (v->elastic) {
-        p->x = asperity_mobilisation(t->form, v, p->f_n);
-        return; /* pressing leaves F_T as it is */
+    return y;
+}
+
+/* The yield factor from which it grows: that of the start, or the one that F_N and the yield force would have there. The ratio r becomes that of the start, where there is one:
+ * a better guess than the trial's for what flows on. Returns the yield factor there. */
+ASPERITY_FN double asperity_grow_from(asperity_step *p, double softening, double factor, double r[2]) {
+    const asperity_work *s = p->s;
+    double before = (1.0 - s->softened) * (1.0 - softening * s->released * s->released) * p->row.force / p->f_n, at = factor;
+    p->growing = 1.0;
+    p->growing_slope = 0.0;
+    if (p->old_f_n > 0.0) {
+        r[0] = p->old_f_t[0] / p->old_f_n;
+        r[1] = p->old_f_t[1] / p->old_f_n;
+        at = asperity_factor_at(p, r);
+        p->growing = at;
     }
-    place = p->place;
-    f_t = p->f_t;
-    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
-    if (trial <= cap || f_t == zero) {
-        p->x = asperity_mobilisation(t->form, v, p->f_n);
-        s->sheared = p->f_n >= ASPERITY_AT_CAP * v->f_n0 ? zero : s->sheared;
+    p->rises = factor > p->growing;
+    if (before > p->growing * (1.0 + 1e-10)) { /* where h stays they are the same, and rounding is not to choose its slope */
+        p->growing = before;
+        p->growing_slope = -before * p->row.value[ASPERITY_GAMMA] / p->e;
+    }
+    return at;
+}
+
+/* The hardening that brings F_N to the yield force, where the dent and D go on straight and r stays: `load` is F_N G/P, `factor` its G. */
+ASPERITY_FN double asperity_first_guess(const asperity_step *p, double load) {
+    double gamma = p->row.value[ASPERITY_GAMMA], left, y;
+    left = asperity_exponential(-asperity_logarithm(load / p->rho) / gamma);
+    y = p->e * (1.0 - left) / (p->row.dent_slope + left * p->e / p->approach * p->row.approach_slope);
+    return y > 0.0 ? (y < asperity_most(p) ? y : asperity_most(p)) : 0.0;
+}
+
+/* The sliders' exponent when it is sheared so far. */
+ASPERITY_FN double asperity_sliders_n(const asperity_step *p, double worn) {
+    return asperity_exponent(asperity_column(p->t, p->log_h, ASPERITY_FIRST_N), asperity_column(p->t, p->log_h, ASPERITY_UNSHEARED_N), (double)p->t->later, worn);
+}
+
+/* How far it was sheared and its slip reversed, as this step goes on from there: it follows r over a little way of d or F_N, and a press takes it back. A step that goes nowhere
+ * leaves it, and with it the sliders. Slopes by h and d, for the tangent. */
+ASPERITY_FN void asperity_wear(asperity_step *p) {
+    const double *vertex = p->s->vertex;
+    double gamma = p->row.value[ASPERITY_GAMMA], rate = p->row.dent_slope, per, r[2], size, to, length, back, pressed;
+    p->worn = p->s->worn;
+    p->worn_by[0] = p->worn_by[1] = p->worn_by[2] = 0.0;
+    if (!(p->old_f_n > 0.0)) {
         return;
     }
-    slip_force = t->friction * v->f_n_slip;
-    per_slip_force = one / slip_force;
-    c = asperity_yield_coefficient(t, v);
-    share = asperity_yield_share(v, c);
-    highest = asperity_pressed_cap(v, share, f_t, &root);
-    /* The direction of the flow, and the yield curve's normal. */
-    r = f_t / p->f_n;
-    c = asperity_flow_coefficient(t, v, c, r);
-    normal = asperity_most(one - c * (r * r), ASPERITY_LEAST_NORMAL);
-    tangential = ASPERITY_R(2.0) * c * r;
-    across = asperity_most(one - share * (r * r), ASPERITY_LEAST_NORMAL);
-    turn = ASPERITY_R(2.0) * share * r;
-    /* Between the virgin curve and the yield curve the contact yields in part. */
-    part = highest > cap ? asperity_least((trial - cap) / (highest - cap), one) : one;
-    softer = grown ? one - v->slope * p->f_n / (v->f_n0 * elastic_stiffness) : one;
-    plastic = softer > zero ? softer * dh : zero;
-    most = (trial - cap) / elastic_stiffness;
-    plastic = plastic < most ? plastic : most;
-    forward = (p->force[0] * d0 + p->force[1] * d1) / f_t;
-    forward = forward > zero ? forward : zero;
-    /* What of delta_T flows. Where the contact does not move as far, F_T falls, and F_N rises along the yield curve: that takes some of the press. */
-    steady = part * (tangential / normal) * plastic;
-    if (grown && softer > zero) {
-        /* In a steady press the sliders' force grows too, and c is of all of delta_T over all of h. */
-        all = plastic / softer;
-        flows = part * ((tangential / normal - r * v->slope * (p->f_n * v->per_force) / v->k_t) * all);
-        flows = flows < forward ? flows : forward;
-        steady = flows > steady ? flows : steady;
+    per = p->per_friction / p->old_f_n;
+    r[0] = p->old_f_t[0] * per;
+    r[1] = p->old_f_t[1] * per;
+    size = sqrt(r[0] * r[0] + r[1] * r[1]);
+    size = size < 1.0 ? size : 1.0;
+    to = p->worn > size ? p->worn : size;
+    back = -(r[0] * vertex[0] + r[1] * vertex[1]);
+    if (back > 0.0) { /* slip against the vertex of a contact that was sheared */
+        double sheared = to < 1.0 ? to : 1.0, reversed;
+        length = sqrt(vertex[0] * vertex[0] + vertex[1] * vertex[1]);
+        back = back < length ? back / length : 1.0;
+        reversed = sheared + (2.0 - sheared) * sheared * sheared * sheared * sheared * back * back * length / (length + 0.02 * p->friction);
+        to = to > reversed ? to : reversed;
     }
-    flows = steady;
-    taken_back = zero;
-    if (forward < steady) {
-        stiff = normal * across * elastic_stiffness;
-        soft = tangential * turn * v->k_t;
-        flows = forward + ASPERITY_TAKEN_BACK * (steady - forward) * (stiff / (stiff + soft));
-        taken_back = one - forward / steady;
+    if (to > p->worn) {
+        double k = per / ASPERITY_FOLLOWS, d = sqrt(p->d[0] * p->d[0] + p->d[1] * p->d[1]), kd = p->row.stiff * k, kn = (p->f_n < p->old_f_n ? -k : k) * p->friction;
+        double left = asperity_exponential_near(-kd * d - kn * (p->f_n - p->old_f_n)), slope = (to - p->worn) * left;
+        p->worn = to - slope;
+        p->worn_by[0] = p->e > 0.0 ? slope * kn * gamma * p->f_n / p->e : 0.0;
+        p->worn_by[1] = d > 0.0 ? slope * kd * p->d[0] / d : 0.0;
+        p->worn_by[2] = d > 0.0 ? slope * kd * p->d[1] / d : 0.0;
     }
-    flow = v->k_t * flows / f_t;
-    p->flow = flow;
-    /* The linear part of the virgin curve flows too, and what it takes of delta_T does not harden. */
-    linear = (v->f_n0 / v->f_n_slip - one) / t->friction - c * t->friction;
-    p->sudden = asperity_least(linear > zero ? linear / normal * plastic : zero, ASPERITY_SUDDEN * forward);
-    keep = asperity_exponential_near(-flow);
-    left = keep * f_t * per_slip_force;
-    if (left < place.f_t) { /* a force beyond the peak of the virgin curve stays at its place */
-        asperity_back(t->form, v, left, &place);
+    if (p->worn > size && p->e > p->s->reach) {
+        double per_pressed = ASPERITY_FORGETS / p->approach * rate / (rate + p->row.approach_slope + 1e-12);
+        pressed = asperity_exponential_near((p->s->reach - p->e) * per_pressed);
+        p->worn = size + (p->worn - size) * pressed;
+        p->worn_by[0] = p->worn_by[0] * pressed - (p->worn - size) * per_pressed;
+        p->worn_by[1] *= pressed;
+        p->worn_by[2] *= pressed;
     }
-    pressed = asperity_pressed_cap(v, share, keep * f_t, &root);
-    on_curve = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
-    raised = pressed > on_curve ? pressed : on_curve;
-    /* Where F_N is below the curve, it is F_N that tells the place. */
-    p->x = p->f_n < on_curve ? asperity_mobilisation(t->form, v, p->f_n) : place.x;
-    p->x = p->x < s->x ? p->x : s->x;
-    if (derivatives) {
-        if (pressed > on_curve) {
-            turns = root > zero ? ASPERITY_R(0.5) * (one - root * root) / root : zero;
-            along = v->slope * (ASPERITY_R(0.5) * (one + root) + turns) + v->f_n0 * turns * (flow / dh);
-        } else {
-            asperity_slopes(t->form, v, place.x, slope);
-            falls = (v->f_n0 - v->f_n_slip) * slope[1];
-            gain = slope[0] > zero ? falls * keep * f_t / (v->f_n0 * slip_force * slope[0]) : zero;
-            along = v->slope * (raised / v->f_n0 + gain) + v->f_n0 * gain * (flow / dh);
-        }
-        p->df_n_dh = raised < p->f_n && along < stiffness ? along : stiffness;
-    }
-    if (raised < p->f_n) {
-        asperity_lower(t, v, raised, p);
-    }
-    back = (one - keep) / v->k_t;
-    asperity_move(s->deflection, -back * p->force[0], -back * p->force[1], &moved);
-    if (asperity_exceeds(&moved, p->limit)) {
-        asperity_measure(&moved);
-        p->slip += v->k_t * asperity_hold(&moved, p->limit, s->deflection);
-    } else {
-        memcpy(s->deflection, moved.q, sizeof moved.q);
-    }
-    if (taken_back > zero && left < ASPERITY_GONE) {
-        memset(s->deflection, 0, sizeof s->deflection);
-    }
-    asperity_slider_force(v, s->deflection, p->force);
-    /* It forgets with the growth of the contact, and as F_T is taken back. */
-    change = asperity_exponential_near(-plastic / h - ASPERITY_FORGETS * (taken_back * taken_back) * flow);
-    s->sheared = s->sheared > p->x ? p->x + (s->sheared - p->x) * change : p->x;
-    s->reversed *= change;
 }
 
-/* By how much the sliders' force is beyond the curve at x. Where both are near to each other float has too few digits: there it is done in double. */
-ASPERITY_FN asperity_real asperity_excess(
-    int form, const asperity_curve *v, asperity_real deflection[2][ASPERITY_SLIDERS], asperity_real slip_force, asperity_real x, asperity_real plain) {
-#ifdef ASPERITY_SINGLE
-    if (form != 2) {
-        const asperity_real *weight = asperity_weights();
-        double sum[2] = {0.0, 0.0};
-        int i;
-        for (i = 0; i < ASPERITY_SLIDERS; i++) {
-            sum[0] += (double)weight[i] * (double)deflection[0][i];
-            sum[1] += (double)weight[i] * (double)deflection[1][i];
-        }
-        return (float)((double)v->k_t * sqrt(sum[0] * sum[0] + sum[1] * sum[1]) - (double)slip_force * (1.0 - exp((double)v->n * log(1.0 - (double)x))));
-    }
-#else
-    (void)form;
-    (void)v;
-    (void)deflection;
-    (void)slip_force;
-    (void)x;
-#endif
-    return plain;
-}
-
-/* The sliders slip and stick while F_N is at that of full slip or next to it, or the contact was released: it loses what a reversal of the slip costs besides. Returns what the sliders dissipate. */
-ASPERITY_FN asperity_real asperity_reverse(
-    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, asperity_curve *v, asperity_pressed *p, asperity_moved *moved, int measured,
-    asperity_real d0, asperity_real d1, asperity_real slip) {
-    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    asperity_real size = ASPERITY_SQRT(d0 * d0 + d1 * d1), most = ASPERITY_SLIDING * (t->friction * out->f_n), rise[2], risen, stick, above, rate, gain, level, cap, loss, falling, near, stiffer, falls, slope[2];
-    asperity_place place;
-    int i, j, lowers;
-    if (s->x >= ASPERITY_ALL_LOST || !(size > zero) || p->force[0] * p->force[0] + p->force[1] * p->force[1] > most * most) {
-        return slip;
-    }
-    rise[0] = out->f_t[0] - p->force[0];
-    rise[1] = out->f_t[1] - p->force[1];
-    risen = ASPERITY_SQRT(rise[0] * rise[0] + rise[1] * rise[1]);
-    stick = risen / (v->k_t * size);
-    if (!(stick > zero && stick < one)) {
-        return slip;
-    }
-    /* What F_N is above that of its x stays above it. */
-    asperity_shapes(t->form, v, asperity_least(s->x, one), &place);
-    cap = asperity_reversed_cap(v, s->x, &place);
-    above = asperity_most(out->f_n - cap, zero);
-    rate = ASPERITY_R(4.0) * ASPERITY_GATHERED * (v->k_t / (t->friction * v->f_n_slip));
-    falling = asperity_reversed_share(v) * v->f_n_slip;
-    if (s->x < one) {
-        /* Next to full slip alone: F_T/F_N over mu to the power 24. */
-        near = place.f_t * v->f_n_slip / cap;
-        near = near * near * near;
-        near = near * near;
-        near = near * near;
-        rate *= near * near;
-        if (tangent) {
-            asperity_slopes(t->form, v, s->x, slope);
-            falling = (v->f_n0 - v->f_n_slip) * slope[1];
-        }
-    }
-    gain = rate * (stick * (one - stick)) * size;
-    rate *= ASPERITY_ALL_LOST - s->x;
-    s->x = asperity_least(s->x + (ASPERITY_ALL_LOST - s->x) * gain, ASPERITY_ALL_LOST);
-    s->reversed = asperity_least(s->reversed + (one - s->reversed) * gain, one);
-    /* The sliders of a contact at rest are those that it came to rest with. */
-    level = p->eta < one && p->eta > zero ? asperity_logarithm(p->eta) * v->backbone : zero;
-    asperity_sharpen(v, s->sheared, s->reversed);
-    p->eta = level < zero ? asperity_exponential(level * v->per_backbone) : p->eta;
-    if (s->x < one) {
-        asperity_shapes(t->form, v, s->x, &place);
-    }
-    cap = asperity_reversed_cap(v, s->x, &place) + above;
-    lowers = cap < out->f_n;
-    out->f_n = lowers ? cap : out->f_n;
-    asperity_lower(t, v, out->f_n, p);
-    if (!measured) {
-        asperity_measure(moved);
-    }
-    slip = v->k_t * asperity_hold(moved, p->limit, s->deflection);
-    asperity_slider_force(v, s->deflection, out->f_t);
-    if (tangent) {
-        loss = lowers && s->x < ASPERITY_ALL_LOST ? falling * rate : zero;
-        for (j = 0; j < 2; j++) {
-            stiffer = (rise[0] * tangent->df_t_ddelta[0][j] + rise[1] * tangent->df_t_ddelta[1][j]) / (risen * v->k_t);
-            tangent->df_n_ddelta[j] = -loss * ((one - ASPERITY_R(2.0) * stick) * stiffer + stick * stick * (j ? d1 : d0) / size);
-        }
-        asperity_slider_stiffness(v, moved, p->limit, tangent->df_t_ddelta);
-        for (j = 0; j < 2; j++) {
-            falls = (one - stick) * tangent->df_n_ddelta[j] / out->f_n; /* the limits of what slips fall with F_N */
-            for (i = 0; i < 2; i++) {
-                tangent->df_t_ddelta[i][j] += falls * out->f_t[i];
-            }
-        }
-    }
-    return slip;
-}
-
-/* Moves delta_T with h held; returns what the sliders dissipate. */
-ASPERITY_FN asperity_real asperity_shear(
-    const asperity_table *t, asperity_work *s, asperity_response *out, asperity_tangent *tangent, asperity_curve *v, asperity_pressed *p,
-    asperity_real d0, asperity_real d1) {
-    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    asperity_real held[2], stiffness[2][2], direction[2], m[2], slope[2], slip = zero, f_n = p->f_n, root;
-    asperity_real slip_force, bound, over, share, trial, excess, travel, ahead, beyond, forward, hardens, at, dx, cap, before_cap, highest, ratio, steeper, falls, rises, above, lowered, size;
-    asperity_real per_x, loss, keep, rate, radial;
-    asperity_moved moved;
-    asperity_place place, from;
-    int i, j, measured, raised, on_yield;
-    asperity_move(s->deflection, d0, d1, &moved);
-    measured = asperity_exceeds(&moved, p->limit);
-    if (measured) {
-        asperity_measure(&moved);
-        slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
-    } else {
-        memcpy(s->deflection, moved.q, sizeof moved.q);
-    }
-    out->f_n = f_n;
-    asperity_slider_force(v, s->deflection, out->f_t);
-    if (tangent) {
-        asperity_slider_stiffness(v, &moved, p->limit, tangent->df_t_ddelta);
-    }
-    if (v->elastic) {
-        return slip;
-    }
-    if (s->x >= one && !(ASPERITY_AT_CAP * f_n > v->f_n_slip)) {
-        return asperity_reverse(t, s, out, tangent, v, p, &moved, measured, d0, d1, slip);
-    }
-    slip_force = t->friction * v->f_n_slip;
-    at = asperity_least(asperity_most(s->x, s->sheared), one);
-    asperity_shapes(t->form, v, at, &from);
-    before_cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * from.f_n;
-    /* After a press F_N may be above the virgin curve, but not above the yield curve; F_T/F_N is that of the virgin curve there too. */
-    raised = ASPERITY_AT_CAP * f_n > before_cap;
-    share = raised ? asperity_yield_share(v, asperity_yield_coefficient(t, v)) : zero;
-    bound = slip_force * from.f_t;
-    over = one;
-    if (raised && bound > zero) {
-        ratio = bound / before_cap;
-        cap = asperity_most(asperity_least(asperity_yielding_at(v, share, ratio), f_n), before_cap);
-        over = asperity_least(ratio, t->friction) * cap / bound;
-    }
-    bound *= over;
-    trial = ASPERITY_SQRT(out->f_t[0] * out->f_t[0] + out->f_t[1] * out->f_t[1]);
-    /* Where everything slides F_T rises by nothing but rounding; there the displacement tells what is beyond. */
-    forward = trial > zero ? asperity_most((out->f_t[0] * d0 + out->f_t[1] * d1) / trial, zero) : zero;
-    travel = trial > zero ? trial - (out->f_t[0] * p->force[0] + out->f_t[1] * p->force[1]) / trial : zero;
-    ahead = asperity_most(ASPERITY_LEAST_TRAVEL * (v->k_t * forward) - travel, zero);
-    if (trial + ahead <= ASPERITY_AT_BOUND * bound) {
-        highest = asperity_pressed_cap(v, share, trial, &root);
-        if (raised && ASPERITY_AT_CAP * highest < f_n) {
-            cap = asperity_least(asperity_most(highest, before_cap), f_n);
-            if (tangent) {
-                falls = highest > before_cap && root > zero && trial > zero ? ASPERITY_R(2.0) * share * v->per_force / root : zero;
-                for (j = 0; j < 2; j++) {
-                    rises = out->f_t[0] * tangent->df_t_ddelta[0][j] + out->f_t[1] * tangent->df_t_ddelta[1][j];
-                    tangent->df_n_ddelta[j] = -falls * rises;
-                }
-            }
-            out->f_n = cap;
-            asperity_lower(t, v, cap, p);
-            if (measured || asperity_exceeds(&moved, p->limit)) {
-                if (!measured) {
-                    asperity_measure(&moved);
-                }
-                slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
-            }
-            asperity_slider_force(v, s->deflection, out->f_t);
-            if (tangent) {
-                asperity_slider_stiffness(v, &moved, p->limit, tangent->df_t_ddelta);
-            }
-        } else if (s->x >= one || (s->x > zero && !raised)) {
-            slip = asperity_reverse(t, s, out, tangent, v, p, &moved, measured, d0, d1, slip);
-        }
-        return slip;
-    }
-    direction[0] = out->f_t[0] / trial;
-    direction[1] = out->f_t[1] / trial;
-    excess = asperity_excess(t->form, v, s->deflection, slip_force * over, at, trial - bound);
-    excess = asperity_most(excess + ahead, zero);
-    travel += ahead;
-    beyond = excess < travel ? excess / travel : one; /* share of the increment that is beyond the curve */
-    hardens = asperity_most(beyond * forward - p->sudden, ASPERITY_R(0.5) * (beyond * forward)); /* in a long step, half of it at the least */
-    dx = hardens * v->per_slip;
-    asperity_shapes(t->form, v, asperity_least(at + dx, one), &place);
-    cap = v->f_n0 - (v->f_n0 - v->f_n_slip) * place.f_n;
-    ratio = slip_force * place.f_t / cap;
-    above = raised ? (f_n - before_cap) * asperity_exponential_near(-dx / ASPERITY_RELAXATION) : zero;
-    lowered = cap + above;
-    on_yield = 0;
-    if (raised) {
-        highest = asperity_yielding_at(v, share, ratio);
-        if (highest < lowered) {
-            on_yield = highest > cap;
-            above = zero;
-            lowered = on_yield ? highest : cap;
-        }
-    }
-    out->f_n = lowered < f_n ? lowered : f_n;
-    s->x = ASPERITY_AT_SLIP * out->f_n <= v->f_n_slip ? one : place.x;
-    s->sheared = place.x;
-    if (out->f_n != f_n) {
-        asperity_lower(t, v, out->f_n, p);
-        if (measured || asperity_exceeds(&moved, p->limit)) {
-            if (!measured) {
-                asperity_measure(&moved);
-            }
-            slip = v->k_t * asperity_hold(&moved, p->limit, s->deflection);
-        }
-    }
-    asperity_slider_force(v, s->deflection, held);
-    bound = asperity_least(ratio, t->friction) * out->f_n;
-    size = ASPERITY_SQRT(held[0] * held[0] + held[1] * held[1]);
-    out->f_t[0] = held[0];
-    out->f_t[1] = held[1];
-    keep = size > bound ? bound / size : one;
-    if (tangent) {
-        asperity_slopes(t->form, v, place.x, slope);
-        per_x = hardens > zero ? beyond * v->per_slip : zero;
-        falls = (v->f_n0 - v->f_n_slip) * slope[1];
-        steeper = (slip_force * slope[0] + ratio * falls) / cap;
-        loss = on_yield ? ASPERITY_R(2.0) * share * ratio * steeper * out->f_n * (out->f_n * v->per_force) : falls + above / ASPERITY_RELAXATION;
-        asperity_slider_stiffness(v, &moved, p->limit, stiffness);
-        m[0] = held[0] / size;
-        m[1] = held[1] / size;
-        rate = (steeper * out->f_n - ratio * loss) * per_x;
-        for (j = 0; j < 2; j++) {
-            tangent->df_n_ddelta[j] = -loss * per_x * direction[j];
-            radial = m[0] * stiffness[0][j] + m[1] * stiffness[1][j];
-            for (i = 0; i < 2; i++) {
-                tangent->df_t_ddelta[i][j] = ASPERITY_AT_BOUND * size > bound ? rate * m[i] * direction[j] + keep * (stiffness[i][j] - m[i] * radial) : stiffness[i][j];
-            }
-        }
-    }
-    if (size > bound) {
-        asperity_scale(s->deflection, keep);
-        out->f_t[0] = keep * held[0];
-        out->f_t[1] = keep * held[1];
-    }
-    return slip;
-}
-
-/* Turns the memory into axes that are turned by an angle: new components of a vector v are (c v0 + s v1, -s v0 + c v1). */
-ASPERITY_FN void asperity_rotate(asperity_state *state, asperity_real cosine, asperity_real sine) {
+/* Slopes by it of each slider's share of what all carry, for the tangent. */
+ASPERITY_FN void asperity_wear_slopes(asperity_step *p, const asperity_guess *o) {
+    const double less = -1e-6;
+    double lost[ASPERITY_PADDED], limit[ASPERITY_PADDED], n = asperity_sliders_n(p, p->worn + less), sum;
     int i;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        asperity_real q0 = state->deflection[0][i], q1 = state->deflection[1][i];
-        state->deflection[0][i] = cosine * q0 + sine * q1;
-        state->deflection[1][i] = -sine * q0 + cosine * q1;
+    asperity_lost(n, lost);
+    sum = asperity_limits(lost, o->log_share < 0.0 ? asperity_exponential(o->log_share / n) : 1.0, limit);
+    for (i = 0; i < ASPERITY_PADDED; i++) {
+        p->share_worn[i] = (limit[i] / sum - o->limit[i] / o->sum) / less;
     }
 }
 
-/* Energy that a state stores on its curve. */
-ASPERITY_FN asperity_real asperity_energy(const asperity_curve *v, asperity_real f_n, asperity_real approach, asperity_real deflection[2][ASPERITY_SLIDERS]) {
-    return f_n * approach / (v->gamma + ASPERITY_R(1.0)) + asperity_slider_energy(v, deflection);
+/* What is released of F_N: how much the sliders carry (eta, its slope by h), and what that takes of the yield force. Returns the greatest share so far. */
+ASPERITY_FN double asperity_release(asperity_step *p, double softening, asperity_guess *o) {
+    const asperity_work *s = p->s;
+    double gamma = p->row.value[ASPERITY_GAMMA], exponent = asperity_sliders_n(p, p->worn), released = s->released, share = 0.0;
+    asperity_lost(exponent, p->lost);
+    p->per_exponent = 1.0 / exponent;
+    o->eta = 1.0;
+    o->eta_h = o->log_share = p->rho_slope = 0.0;
+    if (p->e < s->reach) {
+        o->log_share = p->e > 0.0 ? gamma * asperity_logarithm(p->e / s->reach) : -1e9;
+        if (p->e > 0.0) {
+            o->eta = asperity_exponential(o->log_share / exponent);
+            o->eta_h = o->eta * gamma / (exponent * p->e);
+        }
+        if (-o->log_share > released) { /* else the share released is less, too */
+            share = p->e > 0.0 ? asperity_exponential(o->log_share) : 0.0;
+            if (1.0 - share > released) {
+                released = 1.0 - share;
+                p->rho_slope = p->e > 0.0 ? (1.0 - s->softened) * 2.0 * softening * released * gamma * share / p->e : 0.0;
+            }
+        }
+    }
+    p->rho = (1.0 - s->softened) * (1.0 - softening * released * released);
+    return released;
 }
 
-/* To work and back, without the string instruction that compilers make of a copy. */
+/* Slopes of the forces by h and d along the solution. */
+ASPERITY_FN void asperity_solution_slopes(const asperity_step *p, asperity_guess *ASPERITY_ALONE o) {
+    int j;
+    asperity_guess_slopes(p, 6, o);
+    for (j = 0; j < 3; j++) {
+        double x[3] = {0.0, 0.0, 0.0};
+        asperity_solve(o, o->by[3 + j], x);
+        o->tangent[j][0] = o->n_by[3 + j] + o->n_by[0] * x[0] + o->n_by[1] * x[1] + o->n_by[2] * x[2];
+        o->tangent[j][1] = o->t_by[3 + j][0] + o->t_by[0][0] * x[0] + o->t_by[1][0] * x[1] + o->t_by[2][0] * x[2];
+        o->tangent[j][2] = o->t_by[3 + j][1] + o->t_by[0][1] * x[0] + o->t_by[1][1] * x[1] + o->t_by[2][1] * x[2];
+    }
+}
+
+/* One step. What was stored and done before is left in p. */
+ASPERITY_FN void asperity_move(
+    const asperity_table *t, const asperity_work *s, double h, const double d[2], int slopes, asperity_step *p, asperity_work *next, asperity_guess *ASPERITY_ALONE o) {
+    double softening, released, r[2] = {0.0, 0.0}, start[2], y, guess, gamma, load = 0.0, factor;
+    int touches;
+    asperity_prepare(t, s, h, d, p);
+    asperity_wear(p);
+    gamma = p->row.value[ASPERITY_GAMMA];
+    softening = asperity_column(t, p->log_h, ASPERITY_SOFTENING);
+    released = asperity_release(p, softening, o);
+    o->plastic = 0;
+    o->friction = o->factor = 0.0;
+    touches = asperity_elastic(p, o);
+    if (touches) {
+        r[0] = o->f_t[0] / o->f_n;
+        r[1] = o->f_t[1] / o->f_n;
+        load = o->f_n / p->row.force;
+        o->factor = load * asperity_most_factor(t, &p->row, p->friction) <= p->rho ? 0.0 : asperity_factor_at(p, r);
+    }
+    if (load * o->factor <= p->rho * (1.0 + 1e-11)) {
+        memset(o->tangent, 0, sizeof o->tangent);
+        if (slopes && touches) {
+            asperity_wear_slopes(p, o);
+            asperity_elastic_slopes(p, o);
+        }
+        o->stored = touches ? o->f_n * o->e / (gamma + 1.0) + asperity_slider_energy(o->slider[0], o->slider[1], p->row.stiff) : 0.0;
+        o->stiffness = touches ? gamma * o->f_n / o->e : 0.0;
+        asperity_keep(p, o, 0.0, s->softened, released, next);
+        return;
+    }
+    o->plastic = 1;
+    p->radial = asperity_column(t, p->log_h, ASPERITY_RADIAL_SLIP);
+    p->sudden = asperity_column(t, p->log_h, ASPERITY_SUDDEN);
+    start[0] = r[0];
+    start[1] = r[1];
+    factor = asperity_grow_from(p, softening, o->factor, r);
+    p->rho_log = p->rho < 1.0 - 1e-12 ? -1.0 / asperity_logarithm(p->rho) : 0.0;
+    p->sum = asperity_limits(p->lost, 1.0, p->limit);
+    y = guess = asperity_first_guess(p, load * factor);
+    if (!asperity_newton(p, &y, r, o)) {
+        y = asperity_bracket(p, guess, start, o);
+    }
+    if (slopes) {
+        asperity_wear_slopes(p, o);
+        asperity_solution_slopes(p, o);
+    }
+    gamma = o->row.value[ASPERITY_GAMMA];
+    load = asperity_slider_energy(o->slider[0], o->slider[1], o->row.stiff);
+    o->stored = o->f_n * o->e / (gamma + 1.0) + load;
+    o->friction = 0.5 * ((p->old_f_t[0] + o->f_t[0]) * o->move[0] + (p->old_f_t[1] + o->f_t[1]) * o->move[1]) - (load - p->old_stored[1]);
+    o->stiffness = gamma * o->f_n / o->e;
+    load = 1.0 - o->rho;
+    released = 0.0;
+    if (o->reach > o->e) { /* what is still released: so a next step that goes nowhere finds the same */
+        softening = asperity_column(t, asperity_logarithm((p->depth + y) / (double)t->first), ASPERITY_SOFTENING);
+        released = 1.0 - asperity_exponential(gamma * asperity_logarithm(o->e / o->reach));
+        load = 1.0 - o->rho / (1.0 - softening * released * released);
+        load = load > 0.0 ? load : 0.0;
+    }
+    asperity_keep(p, o, y, load, released, next);
+}
+
+/* To work and back. */
 ASPERITY_FN void asperity_begin(const asperity_state *from, asperity_work *to) {
-    int i;
-    to->h = from->h;
-    to->h_max = from->h_max;
-    to->approach = from->approach;
-    to->reach = from->reach;
-    to->x = from->x;
-    to->sheared = from->sheared;
-    to->reversed = from->reversed;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        to->deflection[0][i] = from->deflection[0][i];
-        to->deflection[1][i] = from->deflection[1][i];
+    int i, j;
+    to->h = (double)from->h;
+    to->h_max = (double)from->h_max;
+    to->approach = (double)from->approach;
+    to->hardened = (double)from->hardened;
+    to->reach = (double)from->reach;
+    to->softened = (double)from->softened;
+    to->released = (double)from->released;
+    to->worn = (double)from->worn;
+    to->stiffened = (double)from->stiffened;
+    to->vertex[0] = (double)from->vertex[0];
+    to->vertex[1] = (double)from->vertex[1];
+    for (j = 0; j < 3; j++) {
+        ASPERITY_LANES
+        for (i = 0; i < ASPERITY_SLIDERS; i++) {
+            to->slider[j][i] = (double)from->slider[j][i];
+        }
+        to->slider[j][ASPERITY_SLIDERS] = 0.0;
     }
 }
 
 ASPERITY_FN void asperity_end(const asperity_work *from, asperity_state *to) {
-    int i;
-    to->h = from->h;
-    to->h_max = from->h_max;
-    to->approach = from->approach;
-    to->reach = from->reach;
-    to->x = from->x;
-    to->sheared = from->sheared;
-    to->reversed = from->reversed;
-    ASPERITY_LANES
-    for (i = 0; i < ASPERITY_SLIDERS; i++) {
-        to->deflection[0][i] = from->deflection[0][i];
-        to->deflection[1][i] = from->deflection[1][i];
+    asperity_bits bits;
+    int i, j;
+    to->h = ASPERITY_R(from->h);
+    to->h_max = ASPERITY_R(from->h_max);
+    to->approach = ASPERITY_R(from->approach);
+    to->hardened = ASPERITY_R(from->hardened);
+    if ((double)to->hardened > from->hardened) { /* never rounded up: a contact only hardens on */
+        memcpy(&bits, &to->hardened, sizeof bits);
+        bits--;
+        memcpy(&to->hardened, &bits, sizeof bits);
+    }
+    to->reach = ASPERITY_R(from->reach);
+    to->softened = ASPERITY_R(from->softened);
+    to->released = ASPERITY_R(from->released);
+    to->worn = ASPERITY_R(from->worn);
+    to->stiffened = ASPERITY_R(from->stiffened);
+    to->vertex[0] = ASPERITY_R(from->vertex[0]);
+    to->vertex[1] = ASPERITY_R(from->vertex[1]);
+    for (j = 0; j < 3; j++) {
+        ASPERITY_LANES
+        for (i = 0; i < ASPERITY_SLIDERS; i++) {
+            to->slider[j][i] = ASPERITY_R(from->slider[j][i]);
+        }
     }
 }
 
 /* Whether a state is one that the update may have left: all its numbers finite, and each within its bounds. */
 ASPERITY_FN int asperity_is_sound(const asperity_state *s) {
     const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    /* A sum of products is finite only if all of its factors are. */
-    return asperity_is_finite(s->h) && asperity_is_finite(s->approach) && asperity_is_finite(s->h_max + s->reach + s->x + s->sheared + s->reversed) &&
-           asperity_is_finite(asperity_sum(s->deflection[0], s->deflection[1])) && s->h_max >= zero && s->reach >= zero && s->x >= zero &&
-           s->x <= ASPERITY_ALL_LOST && s->sheared >= zero && s->sheared <= ASPERITY_ALL_LOST && s->reversed >= zero && s->reversed <= one;
+    asperity_real sum = zero;
+    int i;
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        sum += s->slider[0][i] + s->slider[1][i] + s->slider[2][i];
+    }
+    /* A sum is finite only if all that it is made of are. */
+    return asperity_is_finite(s->h) && asperity_is_finite(s->approach) && asperity_is_finite(sum + (s->vertex[0] + s->vertex[1])) &&
+           asperity_is_finite(s->h_max + s->hardened + s->reach + s->softened + s->released + s->worn + s->stiffened) && s->h_max >= zero && s->hardened >= zero &&
+           s->reach >= zero && s->softened >= zero && s->softened < one && s->released >= zero && s->released <= one && s->worn >= zero &&
+           s->worn <= ASPERITY_R(2.0) && s->stiffened >= zero;
 }
 
-/* Moves a contact to the indentation h and along the plane by `increment`, the press first. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
+/* Turns the memory into axes that are turned by an angle: new components of a vector v are (c v0 + s v1, -s v0 + c v1). */
+ASPERITY_FN void asperity_rotate(asperity_state *state, asperity_real cosine, asperity_real sine) {
+    asperity_real q0 = state->vertex[0], q1 = state->vertex[1];
+    int i;
+    state->vertex[0] = cosine * q0 + sine * q1;
+    state->vertex[1] = -sine * q0 + cosine * q1;
+    for (i = 0; i < ASPERITY_SLIDERS; i++) {
+        q0 = state->slider[0][i];
+        q1 = state->slider[1][i];
+        state->slider[0][i] = cosine * q0 + sine * q1;
+        state->slider[1][i] = -sine * q0 + cosine * q1;
+    }
+}
+
+/* Nothing in the answer is a number. */
+ASPERITY_FN void asperity_refuse(asperity_response *out, asperity_tangent *tangent) {
+    asperity_real bad = asperity_no_number();
+    out->f_n = out->f_t[0] = out->f_t[1] = out->stiffness = out->stored = out->plastic = out->friction = bad;
+    if (tangent) {
+        tangent->df_t_ddelta[0][0] = tangent->df_t_ddelta[0][1] = tangent->df_t_ddelta[1][0] = tangent->df_t_ddelta[1][1] = bad;
+        tangent->df_n_dh = tangent->df_n_ddelta[0] = tangent->df_n_ddelta[1] = tangent->df_t_dh[0] = tangent->df_t_dh[1] = tangent->a = bad;
+    }
+}
+
+/* The contact radius over R: that of first loading, and narrower as it is released. */
+ASPERITY_FN double asperity_radius(const asperity_table *t, const asperity_work *s) {
+    double depth = (double)t->first + s->hardened, log_h = asperity_logarithm(depth / (double)t->first);
+    asperity_row row;
+    if (!(s->approach > 0.0)) {
+        return 0.0;
+    }
+    asperity_read(t, depth, log_h, &row);
+    return asperity_exponential(asperity_column(t, log_h, ASPERITY_RADIUS) +
+                                (row.value[ASPERITY_GAMMA] - 1.0) * asperity_logarithm((1.0 + s->stiffened) * s->approach / row.approach));
+}
+
+/* Moves a contact to the indentation h and along the plane by `increment`. `next` may be `state`; `tangent` may be NULL. Where h or the increment is not finite,
  * or the state is not sound, nothing in the answer is a number and the state stays as it was. */
 ASPERITY_FN void asperity_update(
     const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state, asperity_real h, const asperity_real increment[2],
     asperity_state *next, asperity_response *out, asperity_tangent *tangent) {
-    const asperity_real zero = ASPERITY_R(0.0), one = ASPERITY_R(1.0);
-    asperity_work s;
-    asperity_row row, old_row;
-    asperity_curve v, old;
-    const asperity_curve *before = &v;
-    asperity_pressed p;
-    asperity_real inverse = one / radius, force = modulus * radius * radius, work = force * radius, d0, d1, size, greatest, dh, e, log_h, exponential[4] ASPERITY_ALIGNED, old_exponential[4] ASPERITY_ALIGNED;
-    asperity_real level, at_trial, began, half, kept, softness, trial, stiffness, elastic_stiffness, old_n, old_t[2], stored, total, slip, keep, share;
-    int grown, touched, first;
+    const asperity_real zero = ASPERITY_R(0.0);
+    asperity_real d0 = increment[0] / radius, d1 = increment[1] / radius, size;
+    double force = (double)modulus * (double)radius * (double)radius, work = force * (double)radius, stiff = (double)modulus * (double)radius, d[2], total, slip;
+    asperity_work s, after;
+    asperity_step first;
+    asperity_guess o;
+    h /= radius;
+    if (!asperity_is_finite(h) || !asperity_is_finite(d0) || !asperity_is_finite(d1) || !asperity_is_sound(state)) {
+        asperity_refuse(out, tangent);
+        *next = *state;
+        return;
+    }
     memset(out, 0, sizeof *out);
     if (tangent) {
         memset(tangent, 0, sizeof *tangent);
     }
-    h /= radius; /* not by its inverse: an unloading takes small differences of it */
-    d0 = increment[0] * inverse;
-    d1 = increment[1] * inverse;
-    if (!asperity_is_finite(h) || !asperity_is_finite(d0) || !asperity_is_finite(d1) || !asperity_is_sound(state)) {
-        asperity_real bad = asperity_no_number();
-        out->f_n = out->f_t[0] = out->f_t[1] = out->stiffness = out->stored = out->plastic = out->friction = bad;
-        if (tangent) {
-            tangent->df_t_ddelta[0][0] = tangent->df_t_ddelta[0][1] = tangent->df_t_ddelta[1][0] = tangent->df_t_ddelta[1][1] = bad;
-            tangent->df_n_dh = tangent->df_n_ddelta[0] = tangent->df_n_ddelta[1] = tangent->a = bad;
-        }
+    if (h <= zero && state->approach <= zero) { /* an open gap: no slider has a force */
+        asperity_real approach = state->approach + (h - state->h);
         *next = *state;
+        next->h = h;
+        next->approach = approach;
         return;
     }
     size = ASPERITY_ABS(d0) > ASPERITY_ABS(d1) ? ASPERITY_ABS(d0) : ASPERITY_ABS(d1);
@@ -1537,161 +1388,55 @@ ASPERITY_FN void asperity_update(
         d0 = d0 / size * ASPERITY_MOST;
         d1 = d1 / size * ASPERITY_MOST;
     }
-    grown = h > state->h_max;
-    greatest = grown ? h : state->h_max;
-    dh = h - state->h;
-    e = state->approach + dh;
-    if (!(greatest > zero) || (!grown && state->approach <= zero && e <= zero)) {
-        /* An open gap, before the first contact or over a dent: no slider is deflected. */
-        asperity_real h_max = state->h_max, approach = state->approach, reach = state->reach, place = state->x;
-        if (greatest > zero) {
-            place = dh == zero ? place : ASPERITY_ALL_LOST;
-            approach += dh;
-        }
-        if (next != state) {
-            memset(next->deflection, 0, sizeof next->deflection);
-        }
-        next->sheared = state->sheared;
-        next->reversed = state->reversed;
-        next->h = h;
-        next->h_max = h_max;
-        next->approach = approach;
-        next->reach = reach;
-        next->x = place;
-        return;
-    }
-    touched = state->h_max > zero;
-    keep = one;
-    log_h = asperity_logarithm(greatest * (one / t->first));
-    asperity_read_row(t, log_h, &row, exponential);
-    if (grown && touched) {
-        asperity_read_row(t, log_h + asperity_log_ratio(state->h_max, h), &old_row, old_exponential);
-        asperity_exponentials(exponential, 4);
-        asperity_exponentials(old_exponential, 4);
-        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, state->reversed, &v);
-        asperity_make_curve(t, state->h_max, &old_row, old_exponential, 0, one, zero, &old);
-        before = &old;
-        /* The sliders keep their forces as the contact grows (Mindlin & Deresiewicz 1953), and never gain energy by it. */
-        keep = old.k_t / v.k_t;
-        keep = keep < one ? keep : one;
-    } else {
-        asperity_exponentials(exponential, 4);
-        asperity_make_curve(t, greatest, &row, exponential, 1, state->sheared, state->reversed, &v);
-    }
+    d[0] = (double)d0;
+    d[1] = (double)d1;
     asperity_begin(state, &s);
-    asperity_slider_force(before, s.deflection, old_t);
-    stored = asperity_slider_energy(before, s.deflection);
-    if (keep < one) {
-        asperity_scale(s.deflection, keep);
-    }
-    /* Early: it does not wait for what comes next. */
-    if (dh > zero && !v.elastic) {
-        asperity_stand(t, &v, s.deflection, &p);
-    } else {
-        asperity_slider_force(&v, s.deflection, p.force);
-    }
-    first = grown && (state->x == zero || !touched);
-    level = zero;
-    old_n = zero;
-    trial = v.f_n0;
-    stiffness = v.slope;
-    elastic_stiffness = v.gamma * v.f_n0 / v.depth;
-    p.eta = one;
-    p.approach = p.reach = v.depth;
-    if (touched && state->approach > zero) {
-        level = state->approach == state->reach ? zero : asperity_logarithm(state->approach / state->reach);
-        old_n = asperity_force_at(before, state->reach, level);
-    }
-    if (!first) {
-        if (e <= state->reach && !grown) {
-            /* Most steps are small: what ln(approach/reach) was is near to what it is. */
-            at_trial = e == state->reach || !(e > zero) ? zero : state->approach > zero ? level + asperity_log_ratio(e, state->approach) : asperity_logarithm(e / state->reach);
-            trial = e > zero ? asperity_force_at(&v, state->reach, at_trial) : zero;
-            stiffness = e > zero ? v.gamma * trial / e : zero;
-            elastic_stiffness = stiffness;
-            if (trial < v.f_n0) {
-                p.approach = e;
-                p.reach = state->reach;
-                p.eta = e < state->reach ? (e > zero ? asperity_exponential(at_trial * v.gamma * v.per_backbone) : zero) : one;
-            }
-        } else {
-            /* Beyond its reach the contact stores the work of the step, with the mean of the forces before and after; the energy is F_N^2/(k (gamma + 1)), k = F_N/reach. Where shear has
-             * made the reach smaller than D, it stores sqrt(reach/D) of the work only. */
-            began = asperity_per_reach(before) * state->reach;
-            half = e > state->reach ? ASPERITY_R(0.5) * (e - state->reach) : zero;
-            softness = one / (asperity_per_reach(&v) * (v.gamma + one));
-            kept = half * ASPERITY_SQRT(state->reach / before->depth);
-            trial = (kept + ASPERITY_SQRT(kept * kept + ASPERITY_R(4.0) * softness * (began * state->reach / (before->gamma + one) + began * kept))) / (ASPERITY_R(2.0) * softness);
-            elastic_stiffness = before->gamma * asperity_per_reach(before);
-            stiffness = half > zero ? ASPERITY_R(0.5) * (trial - began) / half : elastic_stiffness;
-            if (trial < v.f_n0) {
-                p.approach = p.reach = trial / asperity_per_reach(&v);
-            }
-        }
-    }
-    p.f_n = trial < v.f_n0 ? trial : v.f_n0;
-    stored = old_n > zero ? old_n * s.approach / (before->gamma + one) + stored : zero;
-    if (!grown && e <= zero) {
-        /* Contact is lost: what it stored was given back or slipped away. */
-        total = ASPERITY_R(0.5) * (old_n * dh + old_t[0] * d0 + old_t[1] * d1) + stored;
-        out->friction = total > zero ? work * total : zero;
-        next->h = h;
-        next->h_max = s.h_max;
-        next->x = dh == zero ? s.x : ASPERITY_ALL_LOST;
-        next->sheared = s.sheared;
-        next->reversed = s.reversed;
-        next->approach = e;
-        next->reach = s.reach;
-        memset(next->deflection, 0, sizeof next->deflection);
+    asperity_move(t, &s, (double)h, d, tangent != NULL, &first, &after, &o);
+    if (!asperity_is_finite(ASPERITY_R(o.stored)) || !asperity_is_finite(ASPERITY_R(o.f_n + o.f_t[0] + o.f_t[1]))) {
+        asperity_refuse(out, tangent);
+        *next = *state;
         return;
     }
-    asperity_press(t, &s, &v, trial, stiffness, elastic_stiffness, h, d0, d1, tangent != NULL, &p);
-    s.h = h;
-    s.h_max = greatest;
-    s.x = p.x;
-    size = p.f_n;
-    share = asperity_taken(p.flow);
-    slip = p.slip + asperity_shear(t, &s, out, tangent, &v, &p, share * d0, share * d1);
-    if (dh != zero || out->f_n != size) {
-        s.approach = p.approach;
-        s.reach = p.reach;
+    /* What was done (by the mean of the forces before and after) and is not stored. The sliders' share is friction's, all of it in an elastic step; the rest plastic flow's. */
+    total = 0.5 * ((first.old_f_n + o.f_n) * ((double)h - s.h) + (first.old_f_t[0] + o.f_t[0]) * d[0] + (first.old_f_t[1] + o.f_t[1]) * d[1]);
+    total -= o.stored - (first.old_stored[0] + first.old_stored[1]);
+    if (!(o.f_n > 0.0) && total < 0.0) {
+        total = 0.0; /* contact was lost within the step */
     }
+    slip = !o.plastic || total < 0.0 || o.friction > total ? total : o.friction > 0.0 ? o.friction : 0.0;
+    out->f_n = ASPERITY_R(o.f_n * force);
+    out->f_t[0] = ASPERITY_R(o.f_t[0] * force);
+    out->f_t[1] = ASPERITY_R(o.f_t[1] * force);
+    out->stiffness = ASPERITY_R(o.stiffness * stiff);
+    out->stored = ASPERITY_R(o.stored * work);
+    out->friction = ASPERITY_R(slip * work);
+    out->plastic = ASPERITY_R((total - slip) * work);
     if (tangent) {
-        tangent->df_n_dh = p.df_n_dh * modulus * radius;
-        tangent->a = asperity_radius(&v) * asperity_power(s.approach / s.reach, v.gamma - one) * radius;
-        tangent->df_n_ddelta[0] *= share * modulus * radius;
-        tangent->df_n_ddelta[1] *= share * modulus * radius;
-        tangent->df_t_ddelta[0][0] *= share * modulus * radius;
-        tangent->df_t_ddelta[0][1] *= share * modulus * radius;
-        tangent->df_t_ddelta[1][0] *= share * modulus * radius;
-        tangent->df_t_ddelta[1][1] *= share * modulus * radius;
+        tangent->df_n_dh = ASPERITY_R(o.tangent[0][0] * stiff);
+        tangent->df_t_dh[0] = ASPERITY_R(o.tangent[0][1] * stiff);
+        tangent->df_t_dh[1] = ASPERITY_R(o.tangent[0][2] * stiff);
+        tangent->df_n_ddelta[0] = ASPERITY_R(o.tangent[1][0] * stiff);
+        tangent->df_n_ddelta[1] = ASPERITY_R(o.tangent[2][0] * stiff);
+        tangent->df_t_ddelta[0][0] = ASPERITY_R(o.tangent[1][1] * stiff);
+        tangent->df_t_ddelta[0][1] = ASPERITY_R(o.tangent[2][1] * stiff);
+        tangent->df_t_ddelta[1][0] = ASPERITY_R(o.tangent[1][2] * stiff);
+        tangent->df_t_ddelta[1][1] = ASPERITY_R(o.tangent[2][2] * stiff);
+        tangent->a = ASPERITY_R(asperity_radius(t, &after) * (double)radius);
     }
-    out->stored = asperity_energy(&v, out->f_n, s.approach, s.deflection);
-    /* What was done (by the mean of the forces before and after) and is not stored. The sliders' share is friction's, all of it in an elastic contact; the rest plastic flow's. */
-    total = ASPERITY_R(0.5) * ((old_n + out->f_n) * dh + (old_t[0] + out->f_t[0]) * d0 + (old_t[1] + out->f_t[1]) * d1) - (out->stored - stored);
-    slip = v.elastic ? total : slip;
-    out->friction = work * slip;
-    out->plastic = work * (total - slip);
-    out->stiffness = v.gamma * out->f_n / s.approach * modulus * radius;
-    out->stored *= work;
-    out->f_n *= force;
-    out->f_t[0] *= force;
-    out->f_t[1] *= force;
-    asperity_end(&s, next);
+    asperity_end(&after, next);
 }
 
 /* Elastic energy that a contact stores. */
 ASPERITY_FN asperity_real asperity_stored_energy(const asperity_table *t, asperity_real radius, asperity_real modulus, const asperity_state *state) {
-    asperity_curve v;
-    asperity_state s = *state;
+    const double none[2] = {0.0, 0.0};
+    asperity_work s;
+    asperity_step p;
     if (!asperity_is_sound(state)) {
         return asperity_no_number();
     }
-    if (!(s.h_max > ASPERITY_R(0.0)) || s.approach <= ASPERITY_R(0.0)) {
-        return ASPERITY_R(0.0);
-    }
-    asperity_first_loading(t, s.h_max, 0, &v);
-    return modulus * radius * radius * radius * asperity_energy(&v, asperity_force_at(&v, s.reach, asperity_logarithm(s.approach / s.reach)), s.approach, s.deflection);
+    asperity_begin(state, &s);
+    asperity_prepare(t, &s, s.h, none, &p);
+    return ASPERITY_R((p.old_stored[0] + p.old_stored[1]) * (double)modulus * (double)radius * (double)radius * (double)radius);
 }
 
 /* A number by which a table is told from others, for restart files: FNV-1a of the bits of all that it has, plane or pair included. */
@@ -1705,19 +1450,10 @@ ASPERITY_FN uint64_t asperity_mix(uint64_t hash, const void *numbers, size_t byt
 }
 
 ASPERITY_FN uint64_t asperity_fingerprint(const asperity_table *t) {
-    uint64_t hash = asperity_mix(0xcbf29ce484222325ull, &t->plane, sizeof t->plane);
-    hash = asperity_mix(hash, &t->form, sizeof t->form);
-    hash = asperity_mix(hash, &t->share, sizeof t->share);
-    hash = asperity_mix(hash, &t->poissons_ratio, sizeof t->poissons_ratio);
-    hash = asperity_mix(hash, &t->friction, sizeof t->friction);
-    hash = asperity_mix(hash, &t->effective_modulus, sizeof t->effective_modulus);
-    hash = asperity_mix(hash, &t->effective_radius, sizeof t->effective_radius);
-    hash = asperity_mix(hash, &t->deepest, sizeof t->deepest);
-    hash = asperity_mix(hash, &t->first, sizeof t->first);
-    hash = asperity_mix(hash, &t->log_step, sizeof t->log_step);
-    hash = asperity_mix(hash, &t->gentle, sizeof t->gentle);
-    hash = asperity_mix(hash, t->knots, sizeof t->knots);
-    return asperity_mix(hash, t->shapes, sizeof t->shapes);
+    const asperity_real single[11] = {t->share, t->poissons_ratio, t->friction, t->effective_modulus, t->effective_radius, t->deepest, t->later, t->first, t->per_step, t->level_start, t->per_level};
+    uint64_t hash = asperity_mix(asperity_mix(0xcbf29ce484222325ull, &t->plane, sizeof t->plane), single, sizeof single);
+    hash = asperity_mix(asperity_mix(hash, t->rows, sizeof t->rows), t->shapes, sizeof t->shapes);
+    return asperity_mix(asperity_mix(hash, t->reach, sizeof t->reach), t->beyond, sizeof t->beyond);
 }
 
 /* Whether a contact has been deeper than the law was made for. */
@@ -1754,6 +1490,14 @@ static inline int asperity_scan_named(FILE *file, const char *name, asperity_rea
     return fscanf(file, "%31s", found) == 1 && strcmp(found, name) == 0 && asperity_scan_number(file, value);
 }
 
+static inline int asperity_scan_numbers(FILE *file, asperity_real *value, int count) {
+    int i, good = 1;
+    for (i = 0; good && i < count; i++) {
+        good = asperity_scan_number(file, &value[i]);
+    }
+    return good;
+}
+
 static inline int asperity_scan_word(FILE *file, const char *word) {
     char found[32];
     return fscanf(file, "%31s", found) == 1 && strcmp(found, word) == 0;
@@ -1763,27 +1507,28 @@ static inline int asperity_is_within(asperity_real x, double least, double most)
     return asperity_is_finite(x) && (double)x >= least && (double)x <= most;
 }
 
-/* Whether the numbers of a table are such that the update may count on them. */
+/* Whether the numbers of a table are such that the update may count on them: n and gamma above 1, a dent that deepens, no loss below 0. */
 static inline int asperity_is_sound_table(const asperity_table *t) {
+    static const double least[ASPERITY_COLUMNS] = {-150.0, -150.0, 1e-30, 1.0 + 1e-3, 1.0 + 1e-3, 0.0, 0.0, 0.0, 0.0, -100.0};
+    static const double most[ASPERITY_COLUMNS] = {30.0, 30.0, 1.0, 2.0, 100.0, 100.0, 100.0, 100.0, 0.999, 30.0};
     int i, j, k;
-    int good = (t->plane == 0 || t->plane == 1) && t->form >= 0 && t->form <= 2 && asperity_is_within(t->share, 1e-6, 1e6) &&
-               asperity_is_within(t->poissons_ratio, -1.0, 0.5) && asperity_is_within(t->friction, 0.0, 1e9) &&
-               asperity_is_within(t->effective_modulus, 1e-30, 1e30) && asperity_is_within(t->effective_radius, 1e-30, 1e30) &&
-               asperity_is_within(t->deepest, 0.0, 10.0) && asperity_is_within(t->first, 1e-30, 10.0) &&
-               asperity_is_within(t->log_step, 1e-6, 10.0) && asperity_is_within(t->gentle, -1e9, 1e9);
-    for (i = 0; good && i < ASPERITY_KNOTS; i++) {
-        for (j = 0; good && j < 4; j++) {
-            for (k = 0; good && k < ASPERITY_COLUMNS; k++) {
-                good = asperity_is_within(t->knots[i][j][k], -1e15, 1e15);
-            }
+    int good = (t->plane == 0 || t->plane == 1) && asperity_is_within(t->share, 1e-6, 1e6) && asperity_is_within(t->poissons_ratio, -1.0, 0.5) &&
+               asperity_is_within(t->friction, 0.0, 1e9) && asperity_is_within(t->effective_modulus, 1e-30, 1e30) && asperity_is_within(t->effective_radius, 1e-30, 1e30) &&
+               asperity_is_within(t->deepest, 0.0, 10.0) && asperity_is_within(t->later, 1.0 + 1e-3, 100.0) && asperity_is_within(t->first, 1e-30, 10.0) &&
+               asperity_is_within(t->per_step, 1e-3, 1e6) && asperity_is_within(t->level_start, 0.0, 100.0) && asperity_is_within(t->per_level, 1e-4, 1e6);
+    for (i = 0; good && i < ASPERITY_ROWS; i++) {
+        for (k = 0; good && k < ASPERITY_COLUMNS; k++) {
+            good = asperity_is_within(t->rows[i][k], least[k], most[k]);
         }
+        good = good && (i == 0 || t->rows[i][ASPERITY_RECOVERED] <= t->rows[i - 1][ASPERITY_RECOVERED]);
     }
     for (i = 0; good && i < ASPERITY_LEVELS; i++) {
-        for (j = 0; good && j < 2; j++) {
-            for (k = 0; good && k < ASPERITY_POINTS; k++) {
-                good = asperity_is_within(t->shapes[i][j][k], -1e6, 1e6);
+        for (j = 0; good && j < ASPERITY_SHAPES; j++) {
+            for (k = 0; good && k <= ASPERITY_PLACES; k++) {
+                good = asperity_is_within(t->shapes[i][j][k], 0.0, 1e9);
             }
         }
+        good = good && asperity_is_within(t->reach[i], 1e-12, 1e9) && asperity_is_within(t->beyond[i], 0.0, 1e6);
     }
     return good;
 }
@@ -1791,41 +1536,32 @@ static inline int asperity_is_sound_table(const asperity_table *t) {
 /* Reads a file that `asperity law export` wrote. Returns 0; 1: it cannot be opened, 2: it is no such file or of another version, 3: it is cut short, damaged, or has numbers that no law has. */
 static inline int asperity_read_table(const char *path, asperity_table *t) {
     char body[32];
-    asperity_real form;
-    int version, i, j, k, good;
+    int version, i, good;
     FILE *file = fopen(path, "r");
     memset(t, 0, sizeof *t);
     if (!file) {
         return 1;
     }
-    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 4) {
+    if (fscanf(file, "asperity-contact-table %d body %31s", &version, body) != 2 || version != 5) {
         fclose(file);
         return 2;
     }
     t->plane = strcmp(body, "plane") == 0;
     good = asperity_scan_named(file, "share", &t->share) && asperity_scan_named(file, "poissons_ratio", &t->poissons_ratio) &&
            asperity_scan_named(file, "friction", &t->friction) && asperity_scan_named(file, "effective_modulus", &t->effective_modulus) &&
-           asperity_scan_named(file, "effective_radius", &t->effective_radius) &&
-           asperity_scan_named(file, "deepest", &t->deepest) && asperity_scan_named(file, "form", &form) &&
-           asperity_scan_named(file, "first", &t->first) && asperity_scan_named(file, "log_step", &t->log_step) &&
-           asperity_scan_named(file, "gentle", &t->gentle);
-    good = good && (form == ASPERITY_R(0.0) || form == ASPERITY_R(1.0) || form == ASPERITY_R(2.0));
-    t->form = good ? (int)form : 0;
-    good = good && asperity_scan_word(file, "knots");
-    for (i = 0; good && i < ASPERITY_KNOTS; i++) {
-        for (j = 0; good && j < 4; j++) {
-            for (k = 0; good && k < ASPERITY_COLUMNS; k++) {
-                good = asperity_scan_number(file, &t->knots[i][j][k]);
-            }
-        }
+           asperity_scan_named(file, "effective_radius", &t->effective_radius) && asperity_scan_named(file, "deepest", &t->deepest) &&
+           asperity_scan_named(file, "later", &t->later) && asperity_scan_named(file, "first", &t->first) && asperity_scan_named(file, "per_step", &t->per_step) &&
+           asperity_scan_named(file, "level_start", &t->level_start) && asperity_scan_named(file, "per_level", &t->per_level) && asperity_scan_word(file, "rows");
+    for (i = 0; good && i < ASPERITY_ROWS; i++) {
+        good = asperity_scan_numbers(file, t->rows[i], ASPERITY_COLUMNS);
     }
     good = good && asperity_scan_word(file, "shapes");
+    for (i = 0; good && i < ASPERITY_LEVELS * ASPERITY_SHAPES; i++) {
+        good = asperity_scan_numbers(file, t->shapes[i / ASPERITY_SHAPES][i % ASPERITY_SHAPES], ASPERITY_PLACES + 1);
+    }
+    good = good && asperity_scan_word(file, "vertex");
     for (i = 0; good && i < ASPERITY_LEVELS; i++) {
-        for (j = 0; good && j < 2; j++) {
-            for (k = 0; good && k < ASPERITY_POINTS; k++) {
-                good = asperity_scan_number(file, &t->shapes[i][j][k]);
-            }
-        }
+        good = asperity_scan_number(file, &t->reach[i]) && asperity_scan_number(file, &t->beyond[i]);
     }
     good = good && asperity_scan_word(file, "end");
     fclose(file);

@@ -2,7 +2,7 @@
  *
  * Once, for each pair of materials and for each material and wall; what does not fit together is refused here, with a code (ASPERITY_LAW_...):
  *     asperity_pair_law(&law, &table, E, restitution) != 0 || asperity_wall_law(&wall_law, &wall_table, E, restitution) != 0
- * A contact's memory is one asperity_contact: 43 numbers, all zero before first contact; copy it, write it to a restart file as it is, with asperity_fingerprint(&table) beside it.
+ * A contact's memory is one asperity_contact: 36 numbers, all zero before first contact; copy it, write it to a restart file as it is, with asperity_fingerprint(&table) beside it.
  * Each step, for each pair that is kept:
  *     asperity_spheres(&law, &i, &j, dt, &contact, &contact, &out);
  * and add out.force_i, out.torque_i, out.force_j, out.torque_j. With `wall` in place of j: asperity_sphere_wall(). dt = 0 asks for the forces alone, at the same place.
@@ -152,8 +152,9 @@ ASPERITY_FN void asperity_carry(asperity_real axis[2], const asperity_real spin[
 /* The memory as the other particle has it, where an engine has exchanged i and j: n, and with it e2, turns round and so do displacements. */
 ASPERITY_FN void asperity_exchange(asperity_contact *contact) {
     int k;
+    contact->state.vertex[0] = -contact->state.vertex[0];
     for (k = 0; k < ASPERITY_SLIDERS; k++) {
-        contact->state.deflection[0][k] = -contact->state.deflection[0][k];
+        contact->state.slider[0][k] = -contact->state.slider[0][k];
     }
 }
 
@@ -172,12 +173,17 @@ ASPERITY_FN asperity_real asperity_damping(asperity_real restitution) {
 /* The critical time step of a sphere that makes one contact of the indentation h over R (0: as deep as the law goes) with an immovable body: 2 sqrt(m/k), k the greater of the
  * normal stiffness and of the tangential one, which also turns the sphere. A packing has several contacts a sphere: take a tenth. */
 ASPERITY_FN asperity_real asperity_time_step(const asperity_law3d *law, asperity_real radius, asperity_real mass, asperity_real h) {
-    asperity_curve v;
-    asperity_real normal, tangential;
-    asperity_first_loading(law->table, h > ASPERITY_R(0.0) ? h : law->table->deepest, 0, &v);
-    normal = v.gamma * v.f_n0 / v.depth;
-    normal = v.slope > normal ? v.slope : normal;
-    tangential = ASPERITY_R(3.5) * v.k_t;
+    double at = h > ASPERITY_R(0.0) ? (double)h : (double)law->table->deepest, first = (double)law->table->first, depth = at > first ? at : first, force, gamma, gap;
+    asperity_real normal, tangential, pressing;
+    asperity_row row;
+    asperity_read(law->table, depth, asperity_logarithm(depth / first), &row);
+    force = asperity_exponential(row.value[ASPERITY_LN_FORCE]);
+    gamma = row.value[ASPERITY_GAMMA];
+    gap = row.approach;
+    normal = ASPERITY_R(gamma * force / gap * (at < first ? asperity_exponential((gamma - 1.0) * asperity_logarithm(at / first)) : 1.0));
+    pressing = ASPERITY_R(at < first ? 0.0 : force * row.slope[ASPERITY_LN_FORCE]);
+    normal = pressing > normal ? pressing : normal;
+    tangential = ASPERITY_R(3.5 * asperity_exponential(row.value[ASPERITY_LN_STIFFNESS]));
     return ASPERITY_R(2.0) * ASPERITY_SQRT(mass / ((normal > tangential ? normal : tangential) * law->modulus * radius * law->table->share));
 }
 

@@ -1,17 +1,16 @@
-//! The update for other programs: its C headers, its part of the Python module, the table of one
-//! material and one friction, and what the test vectors follow.
+//! The update for other programs: its C headers, the table of one material and one friction, and
+//! what the test vectors follow.
 //!
-//! Headers, module and [`ContactParameters`](super::ContactParameters) are triplets: the same
-//! functions with the same operations. `contact_draft.h` and `contact_conserve.h`, and the three
-//! `contact_*.py`, have their places in the header and in the module of a law for all materials,
-//! which makes its tables itself.
+//! The header and [`ContactParameters`](super::ContactParameters) are twins: the same functions
+//! with the same operations.
 
 mod table;
 pub(crate) mod vectors;
 
 pub(crate) use table::EngineTable;
 
-use super::{COLUMNS, KNOTS, LEVELS, PIECES, POINTS, ROUNDING, SLIDERS, SPARE};
+use super::Constants;
+use super::table::{LEVELS, PLACES, ROWS};
 
 const HEADER: &str = include_str!("asperity_contact.h");
 const HEADER_3D: &str = include_str!("asperity_contact3d.h");
@@ -22,7 +21,19 @@ pub const HEADER_NAME: &str = "asperity_contact.h";
 
 /// The update, which is the same for every law.
 pub fn header() -> String {
-    fill(HEADER, [("VERSION", env!("CARGO_PKG_VERSION").to_owned())].into_iter().chain(sizes()))
+    let constants = Constants::FITTED;
+    let sizes = [("ROWS", ROWS), ("LEVELS", LEVELS), ("PLACES", PLACES)].map(|(name, size)| (name, size.to_string()));
+    let numbers = [
+        ("VERTEX_LENGTH", constants.vertex_length),
+        ("VERTEX_ROUND", constants.vertex_round),
+        ("RADIAL_MOST", constants.radial_most),
+        ("NARROWS", constants.narrows),
+        ("RECOVERS", constants.recovers),
+        ("FORGETS", constants.forgets),
+        ("FOLLOWS", constants.follows),
+    ];
+    let numbers = numbers.map(|(name, value)| (name, format!("{value:?}")));
+    fill(HEADER, [("VERSION", env!("CARGO_PKG_VERSION").to_owned())].into_iter().chain(sizes).chain(numbers))
 }
 
 /// Its use in three dimensions.
@@ -35,37 +46,7 @@ pub fn check_program(name: &str) -> String {
     fill(CHECK, [("NAME", name.to_owned())])
 }
 
-/// What a header that makes tables has of the update, by the names of its places: the table in the
-/// making, and what keeps a press from storing too much.
-pub(crate) fn header_parts() -> impl Iterator<Item = (&'static str, String)> {
-    [("CONTACT_DRAFT", include_str!("contact_draft.h")), ("CONTACT_CONSERVE", include_str!("contact_conserve.h"))]
-        .map(|(name, part)| (name, part.to_owned()))
-        .into_iter()
-        .chain(sizes())
-}
-
-/// What a Python module has of the update, by the names of its places.
-pub(crate) fn module_parts() -> impl Iterator<Item = (&'static str, String)> {
-    [
-        ("CONTACT_TYPES", include_str!("contact_types.py")),
-        ("CONTACT_TABLE", include_str!("contact_table.py")),
-        ("CONTACT_UPDATE", include_str!("contact_update.py")),
-    ]
-    .map(|(name, part)| (name, part.to_owned()))
-    .into_iter()
-    .chain(sizes())
-}
-
-/// The sizes of the tables and what else the languages share.
-fn sizes() -> impl Iterator<Item = (&'static str, String)> {
-    [("KNOTS", KNOTS), ("COLUMNS", COLUMNS), ("SLIDERS", SLIDERS), ("POINTS", POINTS), ("LEVELS", LEVELS), ("PIECES", PIECES)]
-        .map(|(name, size)| (name, size.to_string()))
-        .into_iter()
-        .chain([("SPARE", SPARE), ("ROUNDING", ROUNDING)].map(|(name, value)| (name, format!("{value:?}"))))
-}
-
-/// A template with its places filled, one after the other: what is filled in may have places of
-/// later ones.
+/// A template with its places filled.
 pub(crate) fn fill<'a>(template: &str, values: impl IntoIterator<Item = (&'a str, String)>) -> String {
     values.into_iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), &value))
 }

@@ -3,13 +3,10 @@
 
 use std::fmt::Write as _;
 
-use crate::contact_law::{COLUMNS, ContactParameters, KNOTS};
+use crate::contact_law::ContactParameters;
 
 /// Version of the table's file.
-const VERSION: u32 = 4;
-
-/// Columns of the parameters' table in the order of the header's.
-const ORDER: [usize; COLUMNS] = [0, 1, 3, 7, 2, 4, 5, 6];
+const VERSION: u32 = 5;
 
 /// What an engine's table is made of.
 pub(crate) struct EngineTable {
@@ -30,61 +27,41 @@ pub(crate) struct EngineTable {
 }
 
 impl EngineTable {
-    /// What h and the tangential displacement are of what the two centres move: all of it, whatever
-    /// the sphere meets.
-    fn share(&self) -> f64 {
-        1.0
-    }
-
-    /// The cubics from knot to knot as the update reads them: coefficients of 1, u, u^2, u^3 of all
-    /// columns, the logarithms first. Of those the first coefficient is the quantity itself, and of
-    /// a and delta_T_end all are of the inverse.
-    fn knots(&self) -> Vec<[Vec<f64>; 4]> {
-        let parameters = &self.parameters;
-        let cubic = |i: usize, column: usize| {
-            let (value, slope) = (parameters.table[i][column], parameters.knot_slope(column, i));
-            let [square, cube] = if i + 1 < KNOTS {
-                let (rise, next) = (parameters.table[i + 1][column] - value, parameters.knot_slope(column, i + 1));
-                [3.0 * rise - 2.0 * slope - next, slope + next - 2.0 * rise]
-            } else {
-                [0.0, 0.0]
-            };
-            let sign = if column == 1 || column == 3 { -1.0 } else { 1.0 };
-            let start = if ORDER[..4].contains(&column) { (sign * value).exp() } else { value };
-            [start, sign * slope, sign * square, sign * cube]
-        };
-        (0..KNOTS).map(|i| [0, 1, 2, 3].map(|power| ORDER.iter().map(|&column| cubic(i, column)[power]).collect())).collect()
-    }
-
     /// The single numbers by the names that they have in the file.
-    fn numbers(&self) -> [(&'static str, f64); 10] {
-        let p = &self.parameters;
+    fn numbers(&self) -> [(&'static str, f64); 11] {
+        let (first, table) = (self.parameters.first_loading(), self.parameters.table());
         [
-            ("share", self.share()),
+            // h and the tangential displacement are all of what the two centres move, whatever the
+            // sphere meets.
+            ("share", 1.0),
             ("poissons_ratio", self.poissons_ratio),
-            ("friction", p.friction),
-            ("effective_modulus", p.effective_modulus),
-            ("effective_radius", p.radius),
+            ("friction", table.friction),
+            ("effective_modulus", first.effective_modulus),
+            ("effective_radius", first.radius),
             ("deepest", self.deepest),
-            ("form", p.form),
-            ("first", p.log_first.exp()),
-            ("log_step", p.log_step),
-            ("gentle", p.gentle),
+            ("later", table.later),
+            ("first", table.first),
+            ("per_step", table.per_step),
+            ("level_start", table.level_start),
+            ("per_level", table.per_level),
         ]
     }
 
     /// As a file that `asperity_read_table` reads.
     pub(crate) fn file(&self) -> String {
+        let table = self.parameters.table();
         let mut text = format!("asperity-contact-table {VERSION}\nbody {}\n", self.body);
         // Writing to a String cannot fail.
         for (name, value) in self.numbers() {
             let _ = writeln!(text, "{name} {value:?}");
         }
         let row = |values: &[f64]| values.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ") + "\n";
-        text.push_str("knots\n");
-        self.knots().iter().flatten().for_each(|values| text.push_str(&row(values)));
+        text.push_str("rows\n");
+        table.rows.iter().for_each(|values| text.push_str(&row(values)));
         text.push_str("shapes\n");
-        self.parameters.shapes.iter().flatten().for_each(|values| text.push_str(&row(values)));
+        table.shapes.iter().flatten().for_each(|values| text.push_str(&row(values)));
+        text.push_str("vertex\n");
+        table.reach.iter().zip(&table.beyond).for_each(|(&reach, &beyond)| text.push_str(&row(&[reach, beyond])));
         text.push_str("end\n");
         // What comes after the end is for readers, and for engines that warn.
         let _ =
@@ -97,29 +74,28 @@ impl EngineTable {
 
     /// As a C constant.
     pub(crate) fn header(&self) -> String {
+        let table = self.parameters.table();
         let number = |x: f64| format!("ASPERITY_R({x:?})");
         let row = |values: &[f64]| format!("{{{}}}", values.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "));
-        let numbers = self.numbers().map(|(_, value)| number(value));
-        let [share, nu, friction, modulus, curvature, deepest, _, first, log_step, gentle] = numbers;
+        let numbers = self.numbers().map(|(_, value)| number(value)).join(", ");
         let mut text = format!(
             "/* asperity_law.h: {}, h/R up to {}. Written by asperity {}.{} */\n#ifndef ASPERITY_LAW_H\n#define ASPERITY_LAW_H\n\n\
-             #include \"asperity_contact.h\"\n\nstatic const asperity_table asperity_law = {{\n    {}, {}, {share}, {nu}, {friction}, {modulus}, {curvature}, \
-             {deepest}, {first}, {log_step}, {gentle},\n    {{\n",
+             #include \"asperity_contact.h\"\n\nstatic const asperity_table asperity_law = {{\n    {}, {numbers},\n    {{\n",
             self.source,
             self.deepest,
             env!("CARGO_PKG_VERSION"),
             self.warnings.iter().map(|warning| format!("\n * Warning: {warning}.")).collect::<String>(),
             u8::from(self.plane),
-            self.parameters.form,
         );
-        for cubics in self.knots() {
-            let _ = writeln!(text, "        {{{}}},", cubics.map(|values| row(&values)).join(", "));
+        for values in &table.rows {
+            let _ = writeln!(text, "        {},", row(values));
         }
         text.push_str("    },\n    {\n");
-        for [tangential, normal] in &self.parameters.shapes {
-            let _ = writeln!(text, "        {{{}, {}}},", row(tangential), row(normal));
+        for shapes in &table.shapes {
+            let _ = writeln!(text, "        {{{}}},", shapes.iter().map(|values| row(values)).collect::<Vec<_>>().join(", "));
         }
-        text.push_str("    }};\n\n#endif\n");
+        let _ = writeln!(text, "    }},\n    {},\n    {}", row(&table.reach), row(&table.beyond));
+        text.push_str("};\n\n#endif\n");
         text
     }
 }

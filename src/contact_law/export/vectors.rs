@@ -9,14 +9,14 @@ use crate::random::Seeded;
 /// Legs of a path.
 const LEGS: usize = 10;
 /// Steps of a leg.
-const STEPS: usize = 15;
+const STEPS: usize = 60;
 
 /// The columns: the path (a new number is a new contact), its material with the numbers of the
 /// hardening law in the exports' order, R, mu, the indentation to go to, the tangential increment,
 /// the axes' turn before it; then the answer, and last the state's x for information (near 1 it
 /// hangs on the last digits of F_N, which hangs on x least there).
 pub(crate) const COLUMNS: &str = "path,E,nu,hardening,stress,second,third,R,mu,h,d0,d1,cosine,sine,\
-                           f_n,f_t0,f_t1,k00,k01,k10,k11,kn,kn0,kn1,a,energy,x";
+                           f_n,f_t0,f_t1,k00,k01,k10,k11,kn,kn0,kn1,kh0,kh1,a,energy,worn";
 
 /// What a path is of.
 pub(crate) struct Contact {
@@ -88,9 +88,11 @@ pub(crate) fn write_steps(path: usize, contact: &Contact, deepest: f64, random: 
                 out.df_n_dh,
                 out.df_n_ddelta[0],
                 out.df_n_ddelta[1],
+                out.df_t_dh[0],
+                out.df_t_dh[1],
                 out.a,
                 pair.stored_energy(&state),
-                state.x,
+                state.worn,
             ] {
                 let _ = write!(text, ",{value:?}");
             }

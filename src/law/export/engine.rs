@@ -1,10 +1,10 @@
 //! The law of one material and one friction for engines, beside the update that uses it.
 
 use super::vectors::{SEED, unit_vectors};
-use super::{ExportedFile, plain};
+use super::{ExportedFile, MODULE, plain};
 use crate::case::Case;
-use crate::contact_law::KNOTS;
-use crate::contact_law::export::{EngineTable, HEADER_NAME, check_program, header, header_3d};
+use crate::contact_law::SLIDERS;
+use crate::contact_law::export::{EngineTable, HEADER_NAME, check_program, fill, header, header_3d};
 use crate::law::range::OutOfRange;
 use crate::law::table::{Against, is_on_a_flat};
 use crate::law::{LawError, LawFile};
@@ -38,8 +38,7 @@ impl Unit {
                 let unit = case.scaled().0;
                 let parameters = law.contact_parameters(&unit)?;
                 let mut deepest: f64 = 0.0;
-                for i in 0..KNOTS {
-                    let h = (parameters.log_first + parameters.log_step * i as f64).exp();
+                for h in parameters.first_loading().knots() {
                     if law.out_of_range(&unit, h)?.is_empty() {
                         deepest = deepest.max(h);
                     }
@@ -60,8 +59,8 @@ impl Unit {
             (LawFile::Interpolated(_), None) => return Err(LawFile::without_a_case()),
             (LawFile::Formulas(_), None) => {
                 return Err(LawError::NotCovered {
-                    problem: "an engine takes the law of one material and one friction, and this one is of all",
-                    remedy: "name a case after it: asperity law export LAW.json CASE.toml --format c",
+                    problem: "an export is the law of one material and one friction, and this one is of all",
+                    remedy: "Name a case after it: asperity law export LAW.json CASE.toml --format c",
                 });
             }
         };
@@ -108,6 +107,26 @@ pub fn beyond_the_law(law: &LawFile, case: &Case) -> Result<Vec<OutOfRange>, Law
 /// The law says nothing of the case; no case; a table of another material.
 pub fn engine_source(law: &LawFile, case: Option<&Case>) -> Result<String, LawError> {
     Ok(Unit::new(law, case)?.table.header())
+}
+
+/// All files for Python: the module, which has the update and its table within, and test vectors.
+///
+/// # Errors
+/// As [`engine_source`].
+pub(super) fn python_files(law: &LawFile, case: Option<&Case>) -> Result<Vec<ExportedFile>, LawError> {
+    let Unit { table, case } = Unit::new(law, case)?;
+    let values = [
+        ("SOURCE", table.source.clone()),
+        ("DEEPEST", table.deepest.to_string()),
+        ("VERSION", env!("CARGO_PKG_VERSION").to_owned()),
+        ("SLIDERS", SLIDERS.to_string()),
+        ("HEADER", header()),
+        ("TABLE", table.file()),
+    ];
+    let vectors = unit_vectors(&table.parameters, &case.material, table.deepest.max(1e-3), SEED);
+    Ok([("asperity_law.py", fill(MODULE, values)), ("asperity_law_vectors.csv", vectors)]
+        .map(|(name, content)| ExportedFile { name: name.to_owned(), content })
+        .into())
 }
 
 /// All files for engines: the law as a constant and as a file, the update, its use in three

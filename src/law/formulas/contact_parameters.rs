@@ -1,9 +1,9 @@
 //! Contact parameters from a fitted law and a material.
 
 use super::model::{Axisymmetric, Law, Parameters};
-use super::shear::NORMAL_CURVE;
+use super::shear::{f_n, f_t};
 use crate::analytical::cattaneo_mindlin;
-use crate::contact_law::{ContactError, ContactParameters, VirginPoint};
+use crate::contact_law::{ContactError, ContactParameters, FirstLoading, Given, POINTS, VirginPoint, unloading_exponent};
 use crate::law::variables::{Body, yield_lambda};
 
 /// Greatest tabulated indentation over R.
@@ -40,16 +40,29 @@ impl Law {
             return Err(ContactError::Friction { value: friction });
         }
         let sphere = body.sphere;
+        let (radius, modulus) = (sphere.radius, sphere.effective_modulus());
         let contact = |h: f64| {
             let state = self.normal.state(body, friction, h);
             // Without friction there is no displacement at full slip, and none is asked for.
             let inputs = Axisymmetric::of(body, if friction > 0.0 { friction } else { 1e-6 }, h, state);
-            let compliance = 1.0 + self.constants.slip[0] * (state.a / sphere.radius);
+            let compliance = 1.0 + self.constants.slip[0] * (state.a / radius);
             let k_t = cattaneo_mindlin::initial_stiffness(&sphere, state.a) / compliance;
             let Parameters { f_n0, f_n_slip, delta_t_end, n, m_exponent, n_exponent, .. } = self.contact(&inputs);
-            VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip: delta_t_end, k_t, n, m_exponent, n_exponent }
+            // The sliders must be able to follow the curve of the shear at its start.
+            let k_t = k_t.max(n * friction * f_n_slip / delta_t_end);
+            let x = |j: usize| ((j + 1) as f64 / POINTS as f64).powi(2);
+            let tangential = std::array::from_fn(|j| f_t(x(j), n));
+            let normal = std::array::from_fn(|j| f_n(x(j), m_exponent, n_exponent));
+            Given {
+                point: VirginPoint { a: state.a, f_n0, f_n_slip, delta_t_slip: delta_t_end, k_t, c: 0.0 },
+                unloading_radius: None,
+                // The law has no curve of a reversal: that of an unloading, or of the shear.
+                backbone: unloading_exponent(radius, modulus, state.a, f_n0).min(n),
+                coefficient: None,
+                shapes: [tangential, normal],
+            }
         };
-        let range = [first_indentation(body), LAST * sphere.radius];
-        ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), friction, Some(NORMAL_CURVE), range, contact)
+        let range = [first_indentation(body), LAST * radius];
+        Ok(ContactParameters::new(FirstLoading::tabulate(radius, modulus, friction, range, contact)?))
     }
 }

@@ -19,13 +19,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact_law::NormalCurve;
-
 /// Greatest n - 3/2. Beyond n = 10, f_T is an exponential for all that can be seen, and
 /// delta_T_end would no longer be the displacement at which sliding starts.
 pub const EXPONENT_SPAN: f64 = 8.5;
-/// How f_N is written.
-pub const NORMAL_CURVE: NormalCurve = NormalCurve::ComplementOfPower;
 
 /// f_T(x) = 1 - (1 - x)^n, x clamped to \[0, 1\].
 pub fn f_t(x: f64, n: f64) -> f64 {
@@ -34,7 +30,7 @@ pub fn f_t(x: f64, n: f64) -> f64 {
 
 /// f_N(x) = 1 - (1 - x^M)^N, x clamped to \[0, 1\].
 pub fn f_n(x: f64, m_exponent: f64, n_exponent: f64) -> f64 {
-    NORMAL_CURVE.value(x, m_exponent, n_exponent)
+    1.0 - (1.0 - x.clamp(0.0, 1.0).powf(m_exponent)).powf(n_exponent)
 }
 
 /// What the correlations see of a contact.
@@ -123,5 +119,5 @@ pub fn slip_factor(constants: &[f64; 4], state: &Plasticity, n: f64, slip_share:
 /// (M, N) of f_N, both at least 1, so that F_N leaves its start smoothly.
 pub fn curve_exponents(constants: &[f64; 4], friction: f64, n: f64) -> (f64, f64) {
     let [s, t, u, v] = *constants;
-    NORMAL_CURVE.exponents(1.0 + s + t * (n - 1.5), 1.0 + u * friction.powf(v))
+    (1.0 + u * friction.powf(v), 1.0 + s + t * (n - 1.5))
 }

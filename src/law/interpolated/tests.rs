@@ -70,7 +70,8 @@ fn contacts_of_any_material_have_a_law_that_rises_and_stays_within_coulomb() {
     let law = plane();
     for case in cases("") {
         let table = law.table(&case).unwrap();
-        let mu = friction(&case);
+        // The update has at least this.
+        let mu = friction(&case).max(1e-9);
         for pair in table.levels.windows(2) {
             assert!(pair[1].f_n0 > pair[0].f_n0 && pair[1].a0 > pair[0].a0, "{case:?} at {}", pair[1].h);
         }

@@ -25,7 +25,7 @@ use super::LawError;
 use super::json;
 use super::range::{Interval, OutOfRange};
 use crate::case::{self, Case, Friction, Opponent};
-use crate::contact_law::{Centres, ContactParameters, Frame, KNOTS, LEVELS, POINTS, Shapes, VirginPoint};
+use crate::contact_law::{Centres, ContactParameters, FirstLoading, Frame, Given, POINTS, Shapes, VirginPoint};
 
 pub use against::{Against, equivalent, first_yield, is_on_a_flat};
 pub use build::{Built, build, case_of, depths, study_text};
@@ -269,31 +269,26 @@ impl Tabulated {
         let level_at = |h: f64| curves.at(h.clamp(self.range.from, self.range.to));
         let contact = |h: f64| {
             let level = level_at(h);
-            VirginPoint {
-                a: level.unloading_radius,
+            let mut shapes: Shapes = [[0.0; POINTS]; 2];
+            shapes[0].copy_from_slice(&level.tangential);
+            shapes[1].copy_from_slice(&level.normal);
+            let point = VirginPoint {
+                a: level.a0,
                 f_n0: level.f_n0,
                 f_n_slip: level.slip_share * level.f_n0,
                 delta_t_slip: level.delta_t_end,
                 // The sliders must not be softer than the curve of the shear at its start.
                 k_t: level.k_t.max(steepest(&level.tangential) * mu * level.slip_share * level.f_n0 / level.delta_t_end),
-                // Its place is that of the yield curve's coefficient where the shapes are numbers.
-                n: 1.0,
-                // The steep exponent's place is the backbone's where the shapes are numbers.
-                m_exponent: level.backbone,
-                n_exponent: 1.0,
-            }
+                c: 0.0,
+            };
+            let coefficient = self.yield_coefficient(h);
+            let unloading_radius = Some(level.unloading_radius);
+            Given { point, unloading_radius, backbone: level.backbone, coefficient, shapes }
         };
         let sphere = equivalent(&self.scaled_case()?);
         let range = [self.range.from, self.range.to];
-        let parameters = ContactParameters::tabulate(sphere.radius, sphere.effective_modulus(), mu, None, range, contact)?;
-        let mut shapes: [Shapes; LEVELS] = [[[0.0; POINTS]; 2]; LEVELS];
-        for (i, shape) in shapes.iter_mut().enumerate() {
-            let position = i as f64 * (KNOTS as f64 - 1.0) / (LEVELS as f64 - 1.0);
-            let level = level_at((parameters.log_first + position * parameters.log_step).exp());
-            shape[0].copy_from_slice(&level.tangential);
-            shape[1].copy_from_slice(&level.normal);
-        }
-        Ok(parameters.with_shapes(shapes, |h| level_at(h).a0, |h| self.yield_coefficient(h)))
+        let first_loading = FirstLoading::tabulate(sphere.radius, sphere.effective_modulus(), mu, range, contact)?;
+        Ok(ContactParameters::new(first_loading))
     }
 
     /// c of the yield curve at an indentation, straight over ln h between the levels that have one.

@@ -67,7 +67,9 @@ fn a_table_tells_the_depths_between() {
         let mut places = vec![[h, 0.0]];
         places.extend(exact.curve.iter().map(|point| [h, point.delta_t]));
         for (force, point) in drive(&parameters, &places, 3)[1..].iter().zip(&exact.curve) {
-            assert!((force[1] - point.f_t).abs() < 0.015 * exact.peak(), "{h}: F_T {} {}", force[1], point.f_t);
+            // Next to yield the sliders of its reversal are softer than its shear.
+            let most = if h < 1e-4 { 0.06 } else { 0.03 };
+            assert!((force[1] - point.f_t).abs() < most * exact.peak(), "{h}: F_T {} {}", force[1], point.f_t);
             assert!((force[0] - point.f_n).abs() < 0.01 * exact.f_n0, "{h}: F_N {} {}", force[0], point.f_n);
         }
     }
@@ -145,9 +147,9 @@ fn an_oblique_press_tells_how_the_contact_yields() {
         level.yield_coefficient = straight(&found, level.h.ln());
     }
     let given = table.unit_parameters().unwrap();
-    assert!((given.virgin(0.02).point.n / found[found.len() - 1][1] - 1.0).abs() < 1e-6);
-    assert!((given.virgin(1e-4).point.n / found[0][1] - 1.0).abs() < 1e-6);
-    assert!((virgin.virgin(0.02).point.n / given.virgin(0.02).point.n - 1.0).abs() > 0.05);
+    assert!((given.virgin(0.02).point.c / found[found.len() - 1][1] - 1.0).abs() < 1e-6);
+    assert!((given.virgin(1e-4).point.c / found[0][1] - 1.0).abs() < 1e-6);
+    assert!((virgin.virgin(0.02).point.c / given.virgin(0.02).point.c - 1.0).abs() > 0.05);
     let text = serde_json::to_string(&table).unwrap();
     assert_eq!(serde_json::from_str::<Tabulated>(&text).unwrap(), table);
     assert!(!serde_json::to_string(&made()).unwrap().contains("yield_coefficient"));

@@ -14,7 +14,7 @@ use asperity::output::{ContactPoint, StepRecord, Summary, SummaryInputs};
 /// Some contacts of any depth and any displacement. Those that a contact can have get numbers; the
 /// others no panic.
 fn update(parameters: &ContactParameters) {
-    let radius = parameters.radius;
+    let radius = parameters.first_loading().radius;
     let mut state = ContactState::default();
     let mut go = |h: f64, delta: f64| {
         let (next, response) = parameters.update(&state, h * radius, [delta * radius, 0.3 * delta * radius]);

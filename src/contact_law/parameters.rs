@@ -1,0 +1,85 @@
+//! What the update needs to know of a pair of materials.
+
+use super::constants::Constants;
+use super::prepare::prepare;
+use super::table::{LN_FORCE, LN_RADIUS, LN_STIFFNESS, Table};
+use super::virgin::{FirstLoading, Virgin};
+
+/// What the update needs to know of a pair of materials, shared by all contacts of the pair; any
+/// one consistent system of units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactParameters {
+    /// Coulomb's coefficient mu.
+    pub friction: f64,
+    first_loading: Box<FirstLoading>,
+    /// First loading as it was given, and R and E by which all was scaled.
+    unit: Box<FirstLoading>,
+    scale: [f64; 2],
+    pub(super) table: Box<Table>,
+}
+
+impl ContactParameters {
+    /// Of first loading and the shear at constant h, with the fitted constants. Takes some
+    /// milliseconds.
+    pub fn new(first_loading: FirstLoading) -> Self {
+        Self::with_constants(first_loading, &Constants::FITTED)
+    }
+
+    /// The same with other constants, to fit them.
+    pub fn with_constants(first_loading: FirstLoading, constants: &Constants) -> Self {
+        let table = Box::new(prepare(&first_loading, constants));
+        let (friction, unit) = (first_loading.friction, Box::new(first_loading));
+        Self { friction, first_loading: unit.clone(), unit, scale: [1.0; 2], table }
+    }
+
+    /// The same contact with other constants.
+    #[must_use]
+    pub fn refitted(&self, constants: &Constants) -> Self {
+        Self::with_constants(self.unit.as_ref().clone(), constants).scaled(self.scale[0], self.scale[1])
+    }
+
+    /// First loading and the shear at constant h.
+    pub fn first_loading(&self) -> &FirstLoading {
+        &self.first_loading
+    }
+
+    /// First loading at the indentation `h` > 0.
+    pub fn virgin(&self, h: f64) -> Virgin {
+        self.first_loading.virgin(h)
+    }
+
+    /// The table that the update reads.
+    pub(crate) fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// All that it is, as numbers, to store it.
+    pub fn to_numbers(&self) -> Vec<f64> {
+        let [radius, youngs_modulus] = self.scale;
+        [vec![radius, youngs_modulus], self.unit.to_numbers()].concat()
+    }
+
+    /// What [`to_numbers`](Self::to_numbers) gave; none if there are not as many, or one is not
+    /// finite.
+    pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let (&[radius, youngs_modulus], unit) = numbers.split_first_chunk()?;
+        let unit = FirstLoading::from_numbers(unit).map(Self::new)?;
+        Some(unit.scaled(radius, youngs_modulus))
+    }
+
+    /// What belongs to R = 1 and E = 1 for a sphere of this radius and this Young's modulus.
+    #[must_use]
+    pub fn scaled(self, radius: f64, youngs_modulus: f64) -> Self {
+        let (force, stiffness) = ((youngs_modulus * radius * radius).ln(), (youngs_modulus * radius).ln());
+        let mut table = self.table;
+        table.first *= radius;
+        for row in &mut table.rows {
+            row[LN_FORCE] += force;
+            row[LN_STIFFNESS] += stiffness;
+            row[LN_RADIUS] += radius.ln();
+        }
+        let first_loading = Box::new(self.first_loading.scaled(radius, youngs_modulus));
+        let scale = [self.scale[0] * radius, self.scale[1] * youngs_modulus];
+        Self { first_loading, scale, table, ..self }
+    }
+}
