@@ -111,7 +111,7 @@ pub const TABLES: [(&str, &str); 10] = [
 pub const LAWS: [&str; 7] = HardeningLaw::WORDS;
 
 const UNIT_LABEL: &str = "1 to 16 letters";
-const UNIT_OMITTED: &str = "the axes are normalised, or left in case units if only other labels are given";
+const UNIT_OMITTED: &str = "normalised axes; if only other units are named, axes in case units without a label";
 const STRESS: &str = "stress";
 const LENGTH: &str = "length";
 
@@ -283,7 +283,7 @@ pub const KEYS: &[Key] = &[
     Key {
         range: "4 to 32",
         meaning: "number of elements along the contact radius. If only this number is given, it applies at the surface \
-                  too, and 8 makes a quick run. The computing time grows as its 2.5th power",
+                  too; a value of 8 then makes a quick run. The computing time grows as its 2.5th power",
         example: "10",
         ..key("mesh", "elements_per_contact_radius", Whole(4, 32), Defaults("10"))
     },
