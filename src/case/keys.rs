@@ -277,7 +277,7 @@ pub const KEYS: &[Key] = &[
             "opponent",
             "material",
             Material,
-            Optional("the body's own, if the opponent has a radius or is a flat and is not rigid"),
+            Optional("the body's own, if the opponent is not rigid and either has a radius or is a flat"),
         )
     },
     Key {
@@ -369,10 +369,10 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"none\", \"contact\", \"segments\" or \"all\"",
-        meaning: "which fields (fields/*.vtu) and contact tables (contact/*.csv) are written. none: neither; contact: \
-                  contact tables after the last step of each segment; segments: both, after the last step of each segment; \
-                  all: both, after every step. If plots are on, contact and segments add contact tables of up to four \
-                  steps of the first shear, for plots/slip.svg. In a study the default is contact",
+        meaning: "which fields (fields/*.vtu) and contact tables (contact/*.csv) are written. \"none\": neither; \"contact\": \
+                  contact tables after the last step of each segment; \"segments\": both, after the last step of each \
+                  segment; \"all\": both, after every step. If plots are on, \"contact\" and \"segments\" add contact tables \
+                  of up to four steps of the first shear, for plots/slip.svg. In a study the default is \"contact\"",
         example: "\"segments\"",
         ..key("output", "fields", Word(&["none", "contact", "segments", "all"]), Defaults("\"segments\""))
     },
@@ -384,7 +384,8 @@ pub const KEYS: &[Key] = &[
     },
     Key {
         range: "\"svg\", \"pdf\" or \"png\"",
-        meaning: "format of the pictures; a PNG has 300 pixels per inch, or the number of pixels of a plot_width in px",
+        meaning: "format of the pictures; a PNG has 300 pixels per inch, but if plot_width is in px, it is that many \
+                  pixels wide",
         example: "\"svg\"",
         ..key("output", "plot_format", Word(&["svg", "pdf", "png"]), Optional("svg"))
     },
