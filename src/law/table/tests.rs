@@ -296,7 +296,8 @@ fn two_spheres_are_turned_into_the_frame_of_their_centres() {
     assert!(last.f_t / (MU * last.f_n) < 0.996, "{}", last.f_t / last.f_n);
     let one = Measured::of(&case, &history).unwrap();
     let (end, before) = (one.curve[25], exact.curve[25]);
-    assert!((end.f_t / (MU * end.f_n) - 1.0).abs() < 1e-12, "{end:?}");
+    // To the cube root of round-off, times what is put back.
+    assert!((end.f_t / (MU * end.f_n) - 1.0).abs() < 1e-7, "{end:?}");
     // What the overlap lacks, delta_T^2/2D, is put back by what the elastic approach gives.
     let lacks = before.delta_t * before.delta_t / (2.0 * 1.5);
     let stiffness = end.f_n / exact.f_n0;
