@@ -517,6 +517,23 @@ fn an_increment_beyond_all_bounds_is_full_slip_in_its_direction() {
     }
 }
 
+#[test]
+fn an_overlap_however_small_has_finite_forces() {
+    for p in pairs() {
+        for state in [ContactState::default(), pressed(&p, 0.02, 20).0] {
+            for power in (-320..-10).step_by(5) {
+                let h = 10f64.powi(power);
+                for size in [0.0, h, 1e-43, 1e100] {
+                    let (next, out) = p.update(&state, h, [0.6 * size, 0.8 * size]);
+                    let numbers: &[f64] = bytemuck::cast_slice(std::slice::from_ref(&out));
+                    assert!(numbers.iter().all(|x| x.is_finite()) && out.f_n < 1e-10, "{h}, {size}: {out:?}");
+                    assert!(p.update(&next, 0.03, [0.0, 1e-4]).1.f_n > 0.0);
+                }
+            }
+        }
+    }
+}
+
 /// A law whose F_N0 is above Hertz's, as an elastic sphere's of a finite a/R is.
 #[test]
 fn a_contact_stiffer_than_hertz_gains_nothing_and_keeps_its_law() {

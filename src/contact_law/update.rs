@@ -26,6 +26,8 @@ const ENOUGH: f64 = 1e-7;
 const HARDLY: f64 = 0.02;
 /// Greatest increment: the square of its force is still finite.
 const MOST: f64 = 1e140;
+/// An overlap below this is none: the powers of a smaller one are no numbers any more.
+const LEAST: f64 = 1e-30;
 
 /// The memory of one contact; all zero before first contact. Plain data: copy it, write it to a
 /// file as it is.
@@ -149,6 +151,7 @@ impl ContactParameters {
             };
             return (*state, out);
         }
+        let h = if h.abs() < LEAST { 0.0 } else { h };
         let size = increment[0].abs().max(increment[1].abs());
         moved(&self.table, state, h, if size > MOST { increment.map(|d| d / size * MOST) } else { increment })
     }

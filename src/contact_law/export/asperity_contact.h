@@ -82,6 +82,7 @@ typedef uint64_t asperity_bits;
 #define ASPERITY_ROUNDING 2.3e-16
 #endif
 #define ASPERITY_R(x) ((asperity_real)(x))
+#define ASPERITY_LEAST 1e-30 /* an overlap below this is none: the powers of a smaller one are no numbers any more */
 
 /* a b + c, in one operation where the machine has it. */
 #ifdef FP_FAST_FMA
@@ -1371,6 +1372,9 @@ ASPERITY_FN void asperity_update(
         asperity_refuse(out, tangent);
         *next = *state;
         return;
+    }
+    if (ASPERITY_ABS(h) < ASPERITY_R(ASPERITY_LEAST)) {
+        h = zero;
     }
     memset(out, 0, sizeof *out);
     if (tangent) {
