@@ -43,6 +43,7 @@ mod virgin;
 pub use centres::{Centres, Frame};
 pub use constants::Constants;
 pub use parameters::ContactParameters;
+pub(crate) use prepare::KEPT;
 pub use table::SLIDERS;
 pub use update::{ContactResponse, ContactState};
 pub use virgin::{ContactError, FirstLoading, Given, POINTS, Shapes, Virgin, VirginPoint, measured_slope, unloading_exponent};

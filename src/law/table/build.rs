@@ -11,6 +11,7 @@ use super::{
 use crate::analytical::cattaneo_mindlin::{self, CattaneoMindlin};
 use crate::analytical::{ElasticSphere, hertz};
 use crate::case::{Case, Friction, Hold, Segment, ShearTarget};
+use crate::contact_law::KEPT;
 use crate::contact_law::path::drive;
 use crate::contact_law::{Centres, POINTS, measured_slope, unloading_exponent};
 use crate::law::LawError;
@@ -316,8 +317,6 @@ pub fn unloading_radius(sphere: &ElasticSphere, one: &Measured) -> f64 {
 /// more sharply. Between that of the first and those after it, which a contact that goes to and fro
 /// has.
 const AGAIN: f64 = 0.65;
-/// Share of F_N0 left at full slip below which that share is less, in proportion.
-const KEPT: f64 = 0.6;
 /// Share of F_N0 below which a loss is none: the update takes such a contact for elastic.
 const ELASTIC: f64 = 1e-6;
 /// Share of the way to slip up to which a reversal is fitted.
