@@ -25,8 +25,9 @@ const BEYOND: f64 = 1.5;
 const SHALLOW: f64 = 1e-5;
 /// Least friction coefficient, so that F_T/F_N over mu is a number.
 const LEAST_FRICTION: f64 = 1e-9;
-/// Share of F_N0 left at full slip below which the exponent's excess over 1 of a reversal is less, in
-/// proportion: a table that is fitted to simulations lessens it, the first reversal takes that back.
+/// Share of F_N0 left at full slip below which the exponent's excess over 1 of a reversal is less,
+/// in proportion: a table that is fitted to simulations lessens it, the first reversal takes that
+/// back.
 pub const KEPT: f64 = 0.6;
 /// Share of F_N0 lost to shear below which a contact is elastic the more.
 const HARDLY: f64 = 0.02;
