@@ -223,6 +223,33 @@ fn random_paths_are_checked() {
     asperity(&["law", "check", text(&table), "--seed", "1"]).code(2);
 }
 
+/// Where the direction turns, F_T along y is compared too.
+#[test]
+fn paths_in_turning_directions_are_checked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/paths/ideal-3200-mu-0.1.json");
+    let out = folder.path().join("curves");
+    let args = ["law", "check", text(&table), "--turning", "--elements", "4", "--out", text(&out), "-q"];
+    let said = String::from_utf8_lossy(&asperity(&args).code(0).get_output().stdout).into_owned();
+    assert!(said.contains("figure of eight") && said.contains("flip by 90 degrees"), "{said}");
+    assert!(said.contains("4 of 4 paths within") && !said.contains("unknown"), "{said}");
+    assert_eq!(fs::read_dir(&out).expect("curves").count(), 4);
+    let circle = out.join("the-table-s-material-mu-0.1-circle-90-of-slip.csv");
+    let mut reader = csv::Reader::from_path(&circle).expect("a circle");
+    let columns = reader.headers().expect("columns").clone();
+    let column = |name: &str| columns.iter().position(|column| column == name).expect("a column");
+    let (simulated, law) = (column("F_T_y"), column("law_F_T_y"));
+    let (mut largest, mut apart) = (0.0f64, 0.0f64);
+    for row in reader.records() {
+        let row = row.expect("a row");
+        let [simulated, law] = [simulated, law].map(|i| row[i].parse::<f64>().expect("a number"));
+        largest = largest.max(simulated.abs());
+        apart = apart.max((simulated - law).abs());
+    }
+    assert!(largest > 0.0 && apart > 0.0 && apart < 0.12 * largest, "{apart} of {largest}");
+    asperity(&["law", "check", text(&table), "--turning", "--random", "2"]).code(2);
+}
+
 #[test]
 fn what_is_no_study_and_no_law_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");

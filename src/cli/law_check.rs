@@ -12,7 +12,7 @@ use super::options::{DeviceArgs, Verbosity};
 use super::{CliError, Outcome, print};
 use crate::case::{Case, Friction, Material};
 use crate::law::check::{
-    AIMS, Checked, MOST_MESH_ERROR, Path, Ranges, check, materials, opponent_of, protocol, random_paths, table,
+    AIMS, Checked, MOST_MESH_ERROR, Path, Ranges, check, materials, opponent_of, protocol, random_paths, table, turning_paths,
 };
 use crate::law::{LawError, LawFile};
 use crate::output::write_own;
@@ -35,6 +35,10 @@ pub struct CheckArgs {
     /// on a plane, between equal spheres and between unlike bodies in turn.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub random: Option<u32>,
+    /// Check paths in turning directions instead of the set: circles of half and nine tenths of the
+    /// slip, a figure of eight and a flip by 90 degrees. They take the mesh of the whole sphere.
+    #[arg(long, conflicts_with = "random")]
+    pub turning: bool,
     /// Seed of the random paths.
     #[arg(long, default_value_t = 1, value_name = "S", requires = "random")]
     pub seed: u64,
@@ -101,7 +105,8 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
             (None, LawFile::Formulas(_) | LawFile::Interpolated(_)) => materials(&base),
         };
         for (name, case) in &cases {
-            let paths = protocol(case, &law.contact_parameters(case).map_err(in_case)?, elements);
+            let parameters = law.contact_parameters(case).map_err(in_case)?;
+            let paths = if args.turning { turning_paths } else { protocol }(case, &parameters, elements);
             let friction = match case.contact.friction {
                 Friction::Coefficient(mu) => format!("mu {mu}"),
                 Friction::Stick => "full stick".to_owned(),

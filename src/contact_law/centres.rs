@@ -106,6 +106,60 @@ impl Centres {
         let [cosine, sine] = self.direction(place);
         [n * cosine + t * sine, t * cosine - n * sine]
     }
+
+    /// The overlap where delta_T has a part along y too: at (h, delta_T along x, along y).
+    pub fn overlap_at(self, [h, x, y]: [f64; 3]) -> f64 {
+        self.overlap([h, if y == 0.0 { x } else { x.hypot(y) }])
+    }
+
+    /// The tangential displacement on the straight way from one place (h, delta_T along x, along y)
+    /// to another, along the axes that the line of centres has at the middle, to the second order
+    /// of the step.
+    pub fn slid(self, from: [f64; 3], to: [f64; 3]) -> [f64; 2] {
+        let ([h0, x0, y0], [h1, x1, y1]) = (from, to);
+        if y0 == 0.0 && y1 == 0.0 {
+            return [self.displacement([h0, x0], [h1, x1]), 0.0];
+        }
+        let step = [h0 - h1, x1 - x0, y1 - y0];
+        let middle = [0.5 * (h0 + h1), 0.5 * (x0 + x1), 0.5 * (y0 + y1)];
+        self.axes(middle).map(|axis| dot(axis, step))
+    }
+
+    /// F_N and F_T along the fixed axes from N and T along x and y of the frame, at a place (h,
+    /// delta_T along x, along y).
+    pub fn along_fixed_axes(self, place: [f64; 3], [n, t, across]: [f64; 3]) -> [f64; 3] {
+        let [h, x, y] = place;
+        if y == 0.0 {
+            let [f_n, f_t] = self.along_axes([h, x], [n, t]);
+            return [f_n, f_t, across];
+        }
+        let (line, [along, other]) = (self.line(place), self.axes(place));
+        // A force on the one sphere is against the line to the other: F_N is against z.
+        let sum = |k: usize| t * along[k] + across * other[k];
+        [n * line[0] - sum(0), sum(1) - n * line[1], sum(2) - n * line[2]]
+    }
+
+    /// Unit vector from one centre to the other: along z, x, y.
+    fn line(self, [h, x, y]: [f64; 3]) -> [f64; 3] {
+        match self.distance {
+            Some(distance) => {
+                let length = (distance - h).hypot(x.hypot(y));
+                [(distance - h) / length, x / length, y / length]
+            }
+            None => [1.0, 0.0, 0.0],
+        }
+    }
+
+    /// What x and y become as z is turned into the line of centres: the axes of T.
+    fn axes(self, place: [f64; 3]) -> [[f64; 3]; 2] {
+        let [z, x, y] = self.line(place);
+        let less = 1.0 / (1.0 + z);
+        [[-x, 1.0 - x * x * less, -x * y * less], [-y, -x * y * less, 1.0 - y * y * less]]
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]
@@ -189,5 +243,31 @@ mod tests {
             let [n, t] = pair.turned([0.2, delta_t], [7.0 * theta.cos(), -7.0 * theta.sin()]);
             assert!((n - 7.0).abs() < 1e-14 && t.abs() < 1e-14, "{n} {t}");
         }
+    }
+
+    #[test]
+    fn a_path_in_another_direction_is_that_along_x_turned() {
+        let pair = centres("[opponent]\nequal = true");
+        let flat = centres("");
+        let (cosine, sine) = (28.0 / 53.0, 45.0 / 53.0);
+        let across = |[h, d]: [f64; 2]| [h, cosine * d, sine * d];
+        for centres in [pair, flat] {
+            let (mut along, mut turned) = (0.0, [0.0; 2]);
+            for i in 0..1000 {
+                let at = |i: i32| [0.1 + 1e-4 * f64::from(i), 1e-3 * f64::from(i)];
+                let (from, to) = (at(i), at(i + 1));
+                along += centres.displacement(from, to);
+                let step = centres.slid(across(from), across(to));
+                turned = [turned[0] + step[0], turned[1] + step[1]];
+                assert!((centres.overlap(to) - centres.overlap_at(across(to))).abs() < 1e-15);
+                let [f_n, f_t] = centres.along_axes(to, [2.0, 0.4]);
+                let found = centres.along_fixed_axes(across(to), [2.0, 0.4 * cosine, 0.4 * sine]);
+                let wanted = [f_n, cosine * f_t, sine * f_t];
+                assert!((0..3).all(|k| (found[k] - wanted[k]).abs() < 1e-14), "{found:?} {wanted:?}");
+            }
+            assert!((turned[0] - cosine * along).abs() < 1e-7 && (turned[1] - sine * along).abs() < 1e-7, "{turned:?} {along}");
+        }
+        // Along x it is the same to the bit.
+        assert_eq!(pair.slid([0.1, 0.2, 0.0], [0.2, 0.3, 0.0]), [pair.displacement([0.1, 0.2], [0.2, 0.3]), 0.0]);
     }
 }

@@ -55,24 +55,26 @@ pub fn drive(parameters: &ContactParameters, places: &[[f64; 2]], increments: us
 
 /// The same between two centres: places and forces are along the fixed axes.
 pub fn drive_centres(parameters: &ContactParameters, centres: Centres, places: &[[f64; 2]], increments: usize) -> Vec<[f64; 2]> {
-    let mut follower = Follower::new(parameters, centres);
-    places
-        .iter()
-        .map(|&[h, delta_t]| {
-            follower.towards(h, delta_t, increments, 1.0);
-            follower.force
-        })
-        .collect()
+    let places: Vec<[f64; 3]> = places.iter().map(|&[h, delta_t]| [h, delta_t, 0.0]).collect();
+    let (forces, _) = drive_in_the_plane(parameters, centres, &places, increments);
+    forces.iter().map(|&[f_n, f_t, _]| [f_n, f_t]).collect()
 }
 
-/// Work that the update takes between two centres on its way through `places` and has not stored
-/// at the end.
-pub fn dissipated(parameters: &ContactParameters, centres: Centres, places: &[[f64; 2]], increments: usize) -> f64 {
+/// F_N and F_T along x and y at places (h, delta_T along x and y), between two centres, and the
+/// work that the update takes on the way through them and has not stored at the end.
+pub fn drive_in_the_plane(
+    parameters: &ContactParameters,
+    centres: Centres,
+    places: &[[f64; 3]],
+    increments: usize,
+) -> (Vec<[f64; 3]>, f64) {
     let mut follower = Follower::new(parameters, centres);
-    for &[h, delta_t] in places {
-        follower.towards(h, delta_t, increments, 1.0);
-    }
-    follower.work - parameters.stored_energy(&follower.state)
+    let mut at = |place: &[f64; 3]| {
+        follower.straight_to(*place, increments, 1.0);
+        follower.force
+    };
+    let forces = places.iter().map(&mut at).collect();
+    (forces, follower.work - parameters.stored_energy(&follower.state))
 }
 
 struct Follower<'a> {
@@ -80,10 +82,11 @@ struct Follower<'a> {
     centres: Centres,
     state: ContactState,
     out: ContactResponse,
-    /// The place along the fixed axes, F_N and F_T there.
+    /// The place along the fixed axes, delta_T along y too, and F_N and F_T there.
     h: f64,
     delta_t: f64,
-    force: [f64; 2],
+    across: f64,
+    force: [f64; 3],
     /// Work so far, by the trapezoidal rule.
     work: f64,
     direction: f64,
@@ -100,7 +103,8 @@ impl<'a> Follower<'a> {
             out: ContactResponse::default(),
             h: 0.0,
             delta_t: 0.0,
-            force: [0.0; 2],
+            across: 0.0,
+            force: [0.0; 3],
             work: 0.0,
             direction: 1.0,
             number: 0,
@@ -109,34 +113,47 @@ impl<'a> Follower<'a> {
     }
 
     fn tell(&mut self) {
-        let [f_n, f_t] = self.force;
+        let [f_n, f_t, _] = self.force;
         let limit = self.parameters.friction * self.out.f_n;
         let slips = limit > 0.0 && self.out.f_t[0].abs() >= SLIPPING * limit;
         self.points.push(PathPoint { segment: self.number, h: self.h, delta_t: self.delta_t, f_n, f_t, slips });
     }
 
-    /// The answer at a place, and its F_N and F_T along the fixed axes.
-    fn ask(&self, h: f64, delta_t: f64) -> (ContactState, ContactResponse, [f64; 2]) {
-        let place = [h, delta_t];
-        let slid = self.centres.displacement([self.h, self.delta_t], place);
-        let (state, out) = self.parameters.update(&self.state, self.centres.overlap(place), [slid, 0.0]);
-        (state, out, self.centres.along_axes(place, [out.f_n, out.f_t[0]]))
+    /// The answer at a place of the same delta_T along y, and its F_N and F_T along the fixed axes.
+    fn ask(&self, h: f64, delta_t: f64) -> (ContactState, ContactResponse, [f64; 3]) {
+        self.ask_at([h, delta_t, self.across])
+    }
+
+    fn ask_at(&self, place: [f64; 3]) -> (ContactState, ContactResponse, [f64; 3]) {
+        let slid = self.centres.slid([self.h, self.delta_t, self.across], place);
+        let (state, out) = self.parameters.update(&self.state, self.centres.overlap_at(place), slid);
+        (state, out, self.centres.along_fixed_axes(place, [out.f_n, out.f_t[0], out.f_t[1]]))
     }
 
     fn step(&mut self, h: f64, delta_t: f64) {
+        self.step_to([h, delta_t, self.across]);
+    }
+
+    fn step_to(&mut self, place: [f64; 3]) {
         let before = self.force;
-        (self.state, self.out, self.force) = self.ask(h, delta_t);
+        (self.state, self.out, self.force) = self.ask_at(place);
+        let [h, delta_t, across] = place;
         self.work += 0.5 * ((before[0] + self.force[0]) * (h - self.h) + (before[1] + self.force[1]) * (delta_t - self.delta_t));
-        (self.h, self.delta_t) = (h, delta_t);
+        self.work += 0.5 * (before[2] + self.force[2]) * (across - self.across);
+        (self.h, self.delta_t, self.across) = (h, delta_t, across);
     }
 
     /// Goes straight to a place, in steps that grow with the power `growth`.
     fn towards(&mut self, h: f64, delta_t: f64, steps: usize, growth: f64) {
-        let (from, start) = (self.h, self.delta_t);
+        self.straight_to([h, delta_t, self.across], steps, growth);
+    }
+
+    fn straight_to(&mut self, end: [f64; 3], steps: usize, growth: f64) {
+        let start = [self.h, self.delta_t, self.across];
         for i in 1..=steps {
             let share = (i as f64 / steps as f64).powf(growth);
-            let place = if i == steps { [h, delta_t] } else { [from + share * (h - from), start + share * (delta_t - start)] };
-            self.step(place[0], place[1]);
+            let place = if i == steps { end } else { [0, 1, 2].map(|k| start[k] + share * (end[k] - start[k])) };
+            self.step_to(place);
             self.tell();
         }
     }
@@ -167,7 +184,7 @@ impl<'a> Follower<'a> {
     fn meet(&self, wanted: f64, delta_t: f64, mut low: f64, mut high: f64) -> f64 {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            let (.., [f_n, _]) = self.ask(middle, delta_t);
+            let (.., [f_n, ..]) = self.ask(middle, delta_t);
             if f_n < wanted { low = middle } else { high = middle }
         }
         0.5 * (low + high)

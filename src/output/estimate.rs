@@ -26,7 +26,14 @@ pub struct ErrorEstimate {
     pub f_t_max_limit: Option<f64>,
     /// Of delta_T_90, delta_T_95 and delta_T_slip.
     pub delta_t: [Option<f64>; 3],
+    /// delta_T_90 and delta_T_95 in the limit. That at 0.99 mu has none.
+    pub delta_t_limit: [Option<f64>; 2],
+    /// Of k_T0.
+    pub k_t0: Option<f64>,
 }
+
+/// A point of a shear: displacement, F_T/F_N and its limit.
+type RatioPoint = [f64; 3];
 
 impl ErrorEstimate {
     /// Of a history, in which segments that are `oblique` are no shear.
@@ -38,6 +45,20 @@ impl ErrorEstimate {
             .iter()
             .zip(points.clone())
             .reduce(|largest, point| if point.0.f_t.abs() > largest.0.f_t.abs() { point } else { largest });
+        let curve: Option<Vec<Option<RatioPoint>>> = start_row.map(|start| {
+            let ratio = |f_t: f64, f_n: f64| (f_n > 0.0).then(|| f_t.abs() / f_n);
+            let point = |(row, of): (&StepRecord, StepLimits)| {
+                let limit = of.f_t_limit.zip(of.f_n_limit).and_then(|(f_t, f_n)| ratio(f_t, f_n));
+                Some([(row.delta_t - start.delta_t).abs(), ratio(row.f_t, row.f_n)?, limit?])
+            };
+            shear.iter().zip(points.clone()).map(point).collect()
+        });
+        let over_mu = |of: &dyn Fn(&[Option<RatioPoint>], f64) -> Option<f64>| {
+            curve
+                .as_deref()
+                .zip(limits.friction)
+                .map_or([None; 3], |(curve, mu)| SLIP_DISPLACEMENT_RATIOS.map(|share| of(curve, share * mu)))
+        };
         Self {
             coarse_elements: limits.coarse_elements,
             f_n0: start.and_then(|start| start.f_n_error),
@@ -49,30 +70,40 @@ impl ErrorEstimate {
                 .map(|point| point.f_t_limit.map(f64::abs))
                 .reduce(|most, next| Some(most?.max(next?)))
                 .flatten(),
-            delta_t: start_row.zip(limits.friction).map_or([None; 3], |(start, mu)| {
-                let ratio = |f_t: f64, f_n: f64| (f_n > 0.0).then(|| f_t.abs() / f_n);
-                let point = |(row, of): (&StepRecord, StepLimits)| {
-                    let found = ratio(row.f_t, row.f_n)?;
-                    let limit = of.f_t_limit.zip(of.f_n_limit).and_then(|(f_t, f_n)| ratio(f_t, f_n));
-                    Some([(row.delta_t - start.delta_t).abs(), found, (limit? - found).abs()])
-                };
-                let curve: Vec<Option<[f64; 3]>> = shear.iter().zip(points).map(point).collect();
-                SLIP_DISPLACEMENT_RATIOS.map(|share| displacement_error(&curve, share * mu))
-            }),
+            delta_t: over_mu(&|curve, wanted| displacement_error(curve, wanted)),
+            delta_t_limit: {
+                let [to_90, to_95, _] = over_mu(&|curve, wanted| limit_reaches(curve, wanted));
+                [to_90, to_95]
+            },
+            k_t0: shear.first().and_then(|first| limits.stiffness_error(first)),
         }
     }
 }
 
 /// Error of the displacement at which F_T/F_N reaches `wanted`: what the ratio lacks at the ends of
-/// that step, whichever is more, over the slope of the curve in it. The points are displacement,
-/// ratio, and how far the ratio is from its limit.
-fn displacement_error(curve: &[Option<[f64; 3]>], wanted: f64) -> Option<f64> {
+/// that step, whichever is more, over the slope of the curve in it.
+fn displacement_error(curve: &[Option<RatioPoint>], wanted: f64) -> Option<f64> {
     let mut before = [0.0; 3];
     for point in curve {
         let now = (*point)?;
         if now[1] >= wanted {
             let rise = now[1] - before[1];
-            return Some(if rise > 0.0 { TANGENTIAL_SHARE * before[2].max(now[2]) * (now[0] - before[0]) / rise } else { 0.0 });
+            let missing = |[_, found, limit]: RatioPoint| (limit - found).abs();
+            let most = missing(before).max(missing(now));
+            return Some(if rise > 0.0 { TANGENTIAL_SHARE * most * (now[0] - before[0]) / rise } else { 0.0 });
+        }
+        before = now;
+    }
+    None
+}
+
+/// The displacement at which the limit of F_T/F_N reaches `wanted`, linear in between.
+fn limit_reaches(curve: &[Option<RatioPoint>], wanted: f64) -> Option<f64> {
+    let mut before = [0.0; 3];
+    for point in curve {
+        let now = (*point)?;
+        if now[2] >= wanted {
+            return Some(before[0] + (now[0] - before[0]) * (wanted - before[2]) / (now[2] - before[2]));
         }
         before = now;
     }

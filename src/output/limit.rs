@@ -51,17 +51,20 @@ pub struct Limits {
     pub(super) friction: Option<f64>,
     /// Its curves, segment by segment.
     companion: Vec<Stretch>,
+    /// Its tangents dF_T/d delta_T at the start of shears, segment by segment.
+    stiffness: Vec<Option<f64>>,
     /// Elements along the contact radius that were asked of it.
     pub coarse_elements: usize,
     coarse_spacing: f64,
     spacing: f64,
 }
 
-/// F_N, F_T and a over the place in a segment.
+/// F_N, F_T along x and y, and a over the place in a segment.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Stretch {
     f_n: Curve,
     f_t: Curve,
+    f_t_y: Curve,
     a: Curve,
 }
 
@@ -70,6 +73,7 @@ struct Stretch {
 struct Counterpart {
     f_n: f64,
     f_t: f64,
+    f_t_y: f64,
     a: f64,
 }
 
@@ -79,6 +83,8 @@ struct Counterpart {
 pub struct StepLimits {
     /// See [`StepRecord::f_t_limit`].
     pub f_t_limit: Option<f64>,
+    /// The same along y, of which the history has no column.
+    pub f_t_y_limit: Option<f64>,
     /// See [`StepRecord::f_n_limit`].
     pub f_n_limit: Option<f64>,
     /// See [`StepRecord::f_t_error`].
@@ -117,7 +123,9 @@ impl Limits {
             Friction::Coefficient(mu) => Some(mu),
             Friction::Stick => None,
         };
+        let stiffness = |i: usize| rows.iter().filter(|row| row.segment == i).find_map(|row| row.k_t);
         Some(Self {
+            stiffness: (0..case.path.len()).map(stiffness).collect(),
             companion: case.path.iter().enumerate().map(stretch).collect(),
             path: case.path.clone(),
             units,
@@ -128,6 +136,17 @@ impl Limits {
         })
     }
 
+    /// Estimated error of the tangent dF_T/d delta_T at the start of a shear, of which `first` is the
+    /// first row: what it lacks at first order, and three quarters more, as of F_T/F_N.
+    pub fn stiffness_error(&self, first: &StepRecord) -> Option<f64> {
+        let there = self.stiffness.get(first.segment).copied().flatten()?;
+        self.is_comparable().then_some(TANGENTIAL_SHARE * self.factor() * (first.k_t? - there).abs())
+    }
+
+    fn is_comparable(&self) -> bool {
+        self.coarse_spacing > self.spacing && self.factor() <= MOST_FACTOR
+    }
+
     /// The run has started over on another mesh.
     pub fn meshed(&mut self, spacing: f64) {
         self.spacing = spacing;
@@ -135,12 +154,12 @@ impl Limits {
 
     /// What is known at a row, from it and those before it, all in the user's units.
     pub fn of(&self, before: &[StepRecord], row: &StepRecord) -> StepLimits {
-        let comparable = self.coarse_spacing > self.spacing && self.factor() <= MOST_FACTOR;
-        let Some(here) = self.counterpart(before, row).filter(|_| comparable) else { return StepLimits::default() };
-        let StepLimits { f_t_limit, f_n_limit, f_t_error, f_n_error, a_error } = self.compared(before, row, here);
-        let [f_t_limit, f_n_limit, f_t_error, f_n_error, a_error] =
-            [f_t_limit, f_n_limit, f_t_error, f_n_error, a_error].map(|value| value.filter(|value| value.is_finite()));
-        StepLimits { f_t_limit, f_n_limit, f_t_error, f_n_error, a_error }
+        let Some(here) = self.counterpart(before, row).filter(|_| self.is_comparable()) else { return StepLimits::default() };
+        let StepLimits { f_t_limit, f_t_y_limit, f_n_limit, f_t_error, f_n_error, a_error } = self.compared(before, row, here);
+        let [f_t_limit, f_t_y_limit, f_n_limit, f_t_error, f_n_error, a_error] =
+            [f_t_limit, f_t_y_limit, f_n_limit, f_t_error, f_n_error, a_error]
+                .map(|value| value.filter(|value| value.is_finite()));
+        StepLimits { f_t_limit, f_t_y_limit, f_n_limit, f_t_error, f_n_error, a_error }
     }
 
     fn compared(&self, before: &[StepRecord], row: &StepRecord, here: Counterpart) -> StepLimits {
@@ -151,7 +170,9 @@ impl Limits {
         let f_n_limit = (row.f_n + self.beyond_ripple(before, row, &here)).max(0.0);
         if row.f_n <= 0.0 {
             let f_n_error = Some(NORMAL_SHARE * f_n_usual);
-            return StepLimits { f_t_limit: Some(0.0), f_n_limit: Some(f_n_limit), f_t_error: Some(0.0), f_n_error, a_error };
+            let none = Some(0.0);
+            let f_n_limit = Some(f_n_limit);
+            return StepLimits { f_t_limit: none, f_t_y_limit: none, f_n_limit, f_t_error: none, f_n_error, a_error };
         }
         let Some(difference) = ratio_difference(row, &here) else {
             return StepLimits {
@@ -168,8 +189,12 @@ impl Limits {
         let ratio_error = self.factor() * differences.map(f64::abs).fold(0.0, f64::max);
         let ripple = NORMAL_SHARE * f_n_usual;
         let bound = self.friction.unwrap_or(f64::INFINITY);
+        let across = row.f_t_y / row.f_n;
+        let across = across + self.factor() * (across - here.f_t_y / here.f_n);
+        let [along, across] = within([ratio + added, across], bound);
         StepLimits {
-            f_t_limit: Some((ratio + added).clamp(-bound, bound) * f_n_limit),
+            f_t_limit: Some(along * f_n_limit),
+            f_t_y_limit: Some(across * f_n_limit),
             f_n_limit: Some(f_n_limit),
             f_t_error: Some((TANGENTIAL_SHARE * ratio_error * row.f_n).hypot(ratio * ripple)),
             f_n_error: Some(ripple.hypot(COUPLED_SHARE * ratio * ratio_error * row.f_n)),
@@ -181,7 +206,12 @@ impl Limits {
     /// before the first shear, where all of the difference is ripple and what falls faster than at
     /// first order.
     fn beyond_ripple(&self, before: &[StepRecord], row: &StepRecord, here: &Counterpart) -> f64 {
-        if !matches!(self.path.get(row.segment), Some(Segment::Shear { .. } | Segment::Slip { .. })) {
+        let is_shear = |segment: &Segment| match segment {
+            Segment::Shear { .. } | Segment::Slip { .. } => true,
+            Segment::Motion { to, .. } => to.indentation.is_none(),
+            _ => false,
+        };
+        if !self.path.get(row.segment).is_some_and(is_shear) {
             return 0.0;
         }
         let is_sheared = |segment: &Segment| !matches!(segment, Segment::Indentation { .. } | Segment::Release { .. });
@@ -246,7 +276,7 @@ impl Stretch {
                 points
             }))
         };
-        Self { f_n: curve(|row| row.f_n), f_t: curve(|row| row.f_t), a: curve(|row| row.a) }
+        Self { f_n: curve(|row| row.f_n), f_t: curve(|row| row.f_t), f_t_y: curve(|row| row.f_t_y), a: curve(|row| row.a) }
     }
 
     /// `None` for a segment in which the companion had nothing to do, and beyond the end of one by
@@ -256,7 +286,7 @@ impl Stretch {
         let [end, step] = self.f_n.end()?;
         let full = matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. });
         if full && place > end {
-            let last = Counterpart { f_n: self.f_n.at(end)?, f_t: self.f_t.at(end)?, a: self.a.at(end)? };
+            let last = self.all_at(end)?;
             let most = friction? * last.f_n;
             if last.f_t.abs() >= SLIDES * most {
                 return Some(Counterpart { f_t: last.f_t.signum() * most, ..last });
@@ -265,13 +295,27 @@ impl Stretch {
         let released = matches!(segment, Segment::Release { share } if *share == 0.0);
         if released && place >= end {
             // Nothing touches any more.
-            return Some(Counterpart { f_n: 0.0, f_t: 0.0, a: 0.0 });
+            return Some(Counterpart { f_n: 0.0, f_t: 0.0, f_t_y: 0.0, a: 0.0 });
         }
         if place > end + step {
             return None;
         }
-        Some(Counterpart { f_n: self.f_n.at(place)?, f_t: self.f_t.at(place)?, a: self.a.at(place)? })
+        self.all_at(place)
     }
+
+    fn all_at(&self, place: f64) -> Option<Counterpart> {
+        let (f_n, f_t, f_t_y) = (self.f_n.at(place)?, self.f_t.at(place)?, self.f_t_y.at(place)?);
+        Some(Counterpart { f_n, f_t, f_t_y, a: self.a.at(place)? })
+    }
+}
+
+/// F_T/F_N along x and y within Coulomb's bound.
+fn within([along, across]: [f64; 2], bound: f64) -> [f64; 2] {
+    if across == 0.0 {
+        return [along.clamp(-bound, bound), across];
+    }
+    let size = along.hypot(across);
+    if size <= bound { [along, across] } else { [along, across].map(|part| part / size * bound) }
 }
 
 /// How much larger F_T/F_N is in the run; `None` where the companion has no normal force.

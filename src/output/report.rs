@@ -60,7 +60,7 @@ impl Summary {
         );
         line("delta_T_95", self.delta_t_95, self.delta_t_95_error, "the same at 0.95");
         line("delta_T_slip", self.delta_t_slip, None, "displacement at which F_T/F_N is 0.99 of the friction coefficient");
-        line("k_T0", self.k_t0, None, "initial tangential stiffness");
+        line("k_T0", self.k_t0, self.k_t0_error, "initial tangential stiffness");
         let cutbacks = if self.cutbacks > 0 { format!(", {} cut-backs", self.cutbacks) } else { String::new() };
         let _ = writeln!(
             text,

@@ -140,6 +140,16 @@ pub struct Summary {
     /// That of delta_T_slip.
     #[serde(rename = "delta_T_slip_error")]
     pub delta_t_slip_error: Option<f64>,
+    /// delta_T_90 in the limit of fine meshes and short steps: where F_T/F_N of the limits is 0.90
+    /// mu.
+    #[serde(rename = "delta_T_90_limit")]
+    pub delta_t_90_limit: Option<f64>,
+    /// The same of delta_T_95.
+    #[serde(rename = "delta_T_95_limit")]
+    pub delta_t_95_limit: Option<f64>,
+    /// Estimated error of k_T0.
+    #[serde(rename = "k_T0_error")]
+    pub k_t0_error: Option<f64>,
     /// Root mean square of ln F_N about a smooth curve through the first press: the ripple of nodes
     /// coming into contact.
     #[serde(rename = "F_N_ripple")]
@@ -240,6 +250,7 @@ impl Summary {
     pub fn with_errors(self, estimate: Option<ErrorEstimate>) -> Self {
         let errors = estimate.unwrap_or_default();
         let [delta_t_90_error, delta_t_95_error, delta_t_slip_error] = errors.delta_t;
+        let [delta_t_90_limit, delta_t_95_limit] = errors.delta_t_limit;
         Self {
             f_n0_error: errors.f_n0,
             a0_error: errors.a0,
@@ -248,6 +259,9 @@ impl Summary {
             delta_t_90_error,
             delta_t_95_error,
             delta_t_slip_error,
+            delta_t_90_limit,
+            delta_t_95_limit,
+            k_t0_error: errors.k_t0,
             error_companion_elements: estimate.map(|estimate| estimate.coarse_elements),
             ..self
         }

@@ -5,6 +5,7 @@
 
 mod protocol;
 mod random;
+mod turning;
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -14,11 +15,11 @@ use rayon::prelude::*;
 
 use super::{LawError, LawFile};
 use crate::case::{Case, Fields, check_room};
-use crate::contact_law::path::{dissipated, drive_centres};
+use crate::contact_law::path::drive_in_the_plane;
 use crate::contact_law::{Centres, ContactParameters};
 use crate::law::data::at_the_limit;
 use crate::memory;
-use crate::output::{Limits, Recorder, StepRecord, decimal};
+use crate::output::{Limits, Recorder, StepLimits, StepRecord, decimal};
 use crate::simulation::drive::Ending;
 use crate::simulation::follow::{follow, on_cpu};
 use crate::simulation::problem::Problem;
@@ -26,6 +27,7 @@ use crate::simulation::scout::{first_zone, scout};
 
 pub use protocol::{materials, protocol};
 pub use random::{KINDS, Ranges, drawn, opponent_of, random_paths};
+pub use turning::turning_paths;
 
 /// A path to be checked.
 #[derive(Clone, Debug)]
@@ -61,8 +63,8 @@ pub struct Checked {
     /// What F_T and F_N may lack of the limit, root mean square over the greatest size of each;
     /// `None` where a part of the path has no limit.
     pub mesh: Option<[f64; 2]>,
-    /// F_N and F_T of the update at them.
-    pub law: Vec<[f64; 2]>,
+    /// F_N and F_T along x and y of the update at them.
+    pub law: Vec<[f64; 3]>,
     /// Work that the simulation and the update have dissipated at the end.
     pub dissipated: [f64; 2],
     /// Why the simulation did not come to the end of the path.
@@ -86,9 +88,10 @@ impl Errors {
 }
 
 impl Checked {
-    /// Errors of F_T and of F_N.
+    /// Errors of F_T, as a vector, and of F_N.
     pub fn errors(&self) -> [Errors; 2] {
-        [self.errors_of(|row| row.f_t, 1), self.errors_of(|row| row.f_n, 0)]
+        let tangential = self.errors_of(tangential, |row, law| (law[1] - row.f_t).hypot(law[2] - row.f_t_y));
+        [tangential, self.errors_of(|row| row.f_n, |row, law| (law[0] - row.f_n).abs())]
     }
 
     /// Whether the simulation is good enough to judge by: it came to its end, and its mesh's error
@@ -102,13 +105,12 @@ impl Checked {
         self.errors().iter().all(Errors::within)
     }
 
-    fn errors_of(&self, force: fn(&StepRecord) -> f64, component: usize) -> Errors {
+    fn errors_of(&self, force: fn(&StepRecord) -> f64, error: fn(&StepRecord, &[f64; 3]) -> f64) -> Errors {
         let peak = peak(&self.rows, force);
         if !(peak > 0.0) {
             return Errors::default();
         }
-        let errors: Vec<f64> =
-            self.rows.iter().zip(&self.law).map(|(row, law)| (law[component] - force(row)).abs() / peak).collect();
+        let errors: Vec<f64> = self.rows.iter().zip(&self.law).map(|(row, law)| error(row, law) / peak).collect();
         Errors {
             rms: (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt(),
             worst: errors.iter().copied().fold(0.0, f64::max),
@@ -126,18 +128,25 @@ impl Checked {
 
     /// The simulated steps with the update's forces beside them, as CSV.
     pub fn csv(&self) -> String {
-        let mut text = String::from("segment,h,delta_T,F_N,F_T,law_F_N,law_F_T\n");
+        let mut text = String::from("segment,h,delta_T,F_N,F_T,law_F_N,law_F_T,delta_T_y,F_T_y,law_F_T_y\n");
         for (row, law) in self.rows.iter().zip(&self.law) {
             // Writing to a String cannot fail.
-            let numbers = [row.h, row.delta_t, row.f_n, row.f_t, law[0], law[1]].map(decimal);
+            let along = [row.h, row.delta_t, row.f_n, row.f_t, law[0], law[1]];
+            let numbers = [&along[..], &[row.delta_t_y, row.f_t_y, law[2]]].concat();
+            let numbers: Vec<String> = numbers.into_iter().map(decimal).collect();
             let _ = writeln!(text, "{},{}", row.segment, numbers.join(","));
         }
         text
     }
 }
 
+/// |F_T|.
+fn tangential(row: &StepRecord) -> f64 {
+    if row.f_t_y == 0.0 { row.f_t.abs() } else { row.f_t.hypot(row.f_t_y) }
+}
+
 /// The greatest size of a force. A press alone has no tangential force but that of the tolerance.
-fn peak(rows: &[StepRecord], force: fn(&StepRecord) -> f64) -> f64 {
+fn peak(rows: &[StepRecord], force: impl Fn(&StepRecord) -> f64) -> f64 {
     let normal = rows.iter().map(|row| row.f_n).fold(0.0, f64::max);
     rows.iter().map(|row| force(row).abs()).fold(0.01 * normal, f64::max)
 }
@@ -181,28 +190,40 @@ fn run(path: &Path, parameters: &ContactParameters, stop: &Arc<AtomicBool>) -> R
     };
     let mut rows: Vec<StepRecord> = recorder.rows.into_iter().filter(|row| row.step > 0).collect();
     let spacing = recorder.spacing.unwrap_or(spacing);
+    let mut known = vec![StepLimits::default(); rows.len()];
     if let Some(limits) = companion.and_then(|companion| Limits::new(case, &companion, spacing)) {
         limits.write_into(&mut rows);
+        known = (0..rows.len()).map(|i| limits.of(&rows[..i], &rows[i])).collect();
     }
-    let mesh = mesh_errors(&rows);
-    let rows = at_the_limit(&rows);
-    let places: Vec<[f64; 2]> = rows.iter().map(|row| [row.h, row.delta_t]).collect();
-    let centres = Centres::of(case);
-    let law = drive_centres(parameters, centres, &places, INCREMENTS);
+    let mesh = mesh_errors(&rows, &known);
+    let rows = with_limits_across(&at_the_limit(&rows), &rows, &known);
+    let places: Vec<[f64; 3]> = rows.iter().map(|row| [row.h, row.delta_t, row.delta_t_y]).collect();
+    let (law, taken) = drive_in_the_plane(parameters, Centres::of(case), &places, INCREMENTS);
     let simulated = rows.last().map_or(0.0, |row| row.work_plastic + row.work_friction);
-    let taken = dissipated(parameters, centres, &places, INCREMENTS);
     Ok(Checked { name: path.name, case: case.clone(), dissipated: [simulated, taken], rows, mesh, law, failure })
 }
 
+/// The rows at the limit with F_T along y at its limit too, where the others are.
+fn with_limits_across(limits: &[StepRecord], raw: &[StepRecord], known: &[StepLimits]) -> Vec<StepRecord> {
+    let across = |((row, raw), known): ((&StepRecord, &StepRecord), &StepLimits)| {
+        let is_at_the_limit = Some(row.f_n) == raw.f_n_limit && Some(row.f_t) == raw.f_t_limit;
+        let f_t_y = known.f_t_y_limit.filter(|_| is_at_the_limit).unwrap_or(row.f_t_y);
+        StepRecord { f_t_y, ..*row }
+    };
+    limits.iter().zip(raw).zip(known).map(across).collect()
+}
+
 /// See [`Checked::mesh`].
-fn mesh_errors(rows: &[StepRecord]) -> Option<[f64; 2]> {
-    let of = |force: fn(&StepRecord) -> f64, limit: fn(&StepRecord) -> Option<f64>| {
-        let peak = peak(rows, force);
-        let missing: Option<Vec<f64>> = rows.iter().map(|row| Some(STILL_MISSING * (limit(row)? - force(row)) / peak)).collect();
-        let squares: f64 = missing?.iter().map(|e| e * e).sum();
+fn mesh_errors(rows: &[StepRecord], known: &[StepLimits]) -> Option<[f64; 2]> {
+    let share = |peak: f64, missing: Option<Vec<f64>>| {
+        let squares: f64 = missing?.iter().map(|error| (STILL_MISSING * error / peak).powi(2)).sum();
         Some((squares / rows.len().max(1) as f64).sqrt())
     };
-    Some([of(|row| row.f_t, |row| row.f_t_limit)?, of(|row| row.f_n, |row| row.f_n_limit)?])
+    let tangential_missing =
+        |(row, known): (&StepRecord, &StepLimits)| Some((row.f_t_limit? - row.f_t).hypot(known.f_t_y_limit? - row.f_t_y));
+    let along = share(peak(rows, tangential), rows.iter().zip(known).map(tangential_missing).collect());
+    let normal = share(peak(rows, |row| row.f_n), rows.iter().map(|row| Some(row.f_n_limit? - row.f_n)).collect());
+    Some([along?, normal?])
 }
 
 /// The checked paths as a table, a line each.

@@ -50,7 +50,9 @@ fn scout(rows: &[StepRecord], elements: usize, case: &Case) -> Scout {
     let units = Units::of(case);
     let scaled = |row: &StepRecord| {
         let force = units.force();
-        Scaled(StepRecord { f_n: row.f_n / force, f_t: row.f_t / force, ..*row })
+        let [f_n, f_t, f_t_y] = [row.f_n, row.f_t, row.f_t_y].map(|value| value / force);
+        // With a radius of 1 a stiffness has the unit of a force.
+        Scaled(StepRecord { f_n, f_t, f_t_y, k_t: row.k_t.map(|k_t| k_t / force), ..*row })
     };
     Scout { rows: rows.iter().map(scaled).collect(), spacing: 0.2 / elements as f64, elements, ..Scout::default() }
 }
@@ -126,9 +128,61 @@ fn displacements_of_slip_have_the_errors_of_their_curve() {
         let (off, error) = ((here - exact).abs(), error.expect("an error"));
         assert!(off <= error && error < 5.0 * off, "{here} instead of {exact}, said to be off by {error}");
     }
+    // That of the curve at the limit lacks what is of second order.
+    for ((here, exact), limit) in found(&rows).into_iter().zip(exact).zip(estimate.delta_t_limit) {
+        let (off, left) = ((here - exact).abs(), (limit.expect("a limit") - exact).abs());
+        assert!(left < 0.2 * off, "{limit:?} instead of {exact}, and {here} without the limit");
+    }
     // Where the companion did not slip there is nothing to compare with.
     let short = Limits::new(&case, &scout(&run(8.0, 13, 20, 0.0008), 8, &case), 0.2 / 16.0).expect("limits");
-    assert_eq!(ErrorEstimate::new(&rows, &inputs.oblique, &short).delta_t, [None; 3]);
+    let short = ErrorEstimate::new(&rows, &inputs.oblique, &short);
+    assert_eq!((short.delta_t, short.delta_t_limit), ([None; 3], [None; 2]));
+}
+
+#[test]
+fn a_shear_in_another_direction_has_its_limits_along_it() {
+    let (cosine, sine) = (0.6, 0.8);
+    let along_x = (run(16.0, 26, 20, 0.0025), run(8.0, 13, 10, 0.0027));
+    let turned = |rows: &[StepRecord]| -> Vec<StepRecord> {
+        let turn = |row: &StepRecord| StepRecord {
+            delta_t: cosine * row.delta_t,
+            delta_t_y: sine * row.delta_t,
+            f_t: cosine * row.f_t,
+            f_t_y: sine * row.f_t,
+            ..*row
+        };
+        rows.iter().map(turn).collect()
+    };
+    let path = "{indentation=0.02}, {shear=0.0025}, {shear=-0.0025}";
+    let other = "{indentation=0.02}, {shear=[0.0015, 0.002]}, {shear=[-0.0015, -0.002]}";
+    let limits = |case: &Case, coarse: &[StepRecord]| Limits::new(case, &scout(coarse, 8, case), 0.2 / 16.0).expect("limits");
+    let (first, second) = (case(path), case(other));
+    let (first, second) = (limits(&first, &along_x.1), limits(&second, &turned(&along_x.1)));
+    let (rows, others) = (along_x.0.clone(), turned(&along_x.0));
+    for i in (0..rows.len()).filter(|&i| rows[i].segment < 2) {
+        let (one, other) = (first.of(&rows[..i], &rows[i]), second.of(&others[..i], &others[i]));
+        // A share of the segment here, a length there: the companion is interpolated alike in both.
+        let (Some(along), Some(x), Some(y)) = (one.f_t_limit, other.f_t_limit, other.f_t_y_limit) else { continue };
+        assert!((x - cosine * along).abs() < 1e-9 * along.abs() + 1e-12, "row {i}: {x} of {along}");
+        assert!((y - sine * along).abs() < 1e-9 * along.abs() + 1e-12, "row {i}: {y} of {along}");
+        assert!((one.f_n_limit.unwrap() - other.f_n_limit.unwrap()).abs() < 1e-9 * one.f_n_limit.unwrap());
+    }
+    assert_eq!(within([0.3, 0.0], 0.2), [0.2, 0.0]);
+    let [x, y] = within([0.3, -0.4], 0.25);
+    assert!((x - 0.15).abs() < 1e-15 && (y + 0.2).abs() < 1e-15);
+}
+
+#[test]
+fn the_tangent_of_a_shear_has_an_error() {
+    let case = case(PATH);
+    let stiff = |mut rows: Vec<StepRecord>, n: f64| {
+        rows.iter_mut().filter(|row| row.segment == 1).take(1).for_each(|row| row.k_t = Some(4e4 * (1.0 + 0.8 / n)));
+        rows
+    };
+    let (rows, coarse) = (stiff(run(16.0, 26, 20, 0.0025), 16.0), stiff(run(8.0, 13, 10, 0.0027), 8.0));
+    let limits = Limits::new(&case, &scout(&coarse, 8, &case), 0.2 / 16.0).expect("limits");
+    let error = ErrorEstimate::new(&rows, &[], &limits).k_t0.expect("an error");
+    assert!((error - TANGENTIAL_SHARE * 4e4 * 0.8 / 16.0).abs() < 1e-6, "{error}");
 }
 
 #[test]
