@@ -35,6 +35,7 @@ KINDS = {"longitudinal": 4.12, "lateral": 3.67, "spin": 1.47}
 SHARE = 0.06  # of the force in mu F_N
 AHEAD = 0.8  # of the force, before the roll: without it the transient is three times as long
 BACK, ON = 2.0, 4.0
+ZONE = 1.06  # the contact reaches three radii, and the zone has to be wider, or the mesh is made anew with larger elements
 WAYS = (1, 2, 3, 4)
 
 
@@ -61,7 +62,7 @@ def one_side(args, kind, share, sign):
     """F over G a^2 and the creepage, without its sign."""
     size = creepage(kind, share)
     c = sign * size
-    mesh = f"elements_per_contact_radius = {args.elements}\nfine_zone = 3.0\ncontact_radius = {A}"
+    mesh = f"elements_per_contact_radius = {args.elements}\nfine_zone = 3.0\ncontact_radius = {ZONE * A!r}"
     if args.surface > args.elements:
         mesh += f"\nsurface_elements_per_contact_radius = {args.surface}"
     back, on = -BACK * A, (ON - BACK) * A
