@@ -10,8 +10,8 @@ four, with a creepage of one kind: longitudinal (the shear goes on along the way
 spin (a twist goes on). All are small: the force of the linear theory is 6 % of mu F_N, or another share of it; mu = 1. Pure
 rolling is by about R d phi, and here delta_T is counted from (R - h) d phi: so the shear has h phi in it. About, as it is
 off by a part of h/R, of second order in a/R, and no less than a fifth of these creepages: the longitudinal one is simulated
-to both sides, and half of the difference counts. Kalker (Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer 1990; the coefficients as programs
-for wheels on rails have them), nu = 0.25, a circle:
+to both sides, and half of the difference counts. Kalker (Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer 1990;
+the coefficients as programs for wheels on rails have them), nu = 0.25, a circle:
 
     F_x = C11 G a^2 longitudinal,  F_y = C22 G a^2 lateral,  F_y = C23 G a^3 spin     C11 = 4.12, C22 = 3.67, C23 = 1.47
 
