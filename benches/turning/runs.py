@@ -15,6 +15,7 @@ def arguments(text, out="optional"):
     parser = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path, nargs="?" if out == "optional" else None)
     parser.add_argument("--program", default="target/release/asperity")
+    parser.add_argument("--threads", type=int, help="of a run; results are the same with any number")
     return parser
 
 
@@ -56,7 +57,8 @@ def rows(args, name, text):
     is_there = file.exists() and file.read_text() == text and (out / "summary.json").exists()
     if not (is_there and '"status": "done"' in (out / "summary.json").read_text()):
         file.write_text(text)
-        subprocess.run([args.program, "run", file, "--out", out, "--force", "--device", "cpu", "--quiet"], check=True)
+        threads = ["--threads", str(args.threads)] if args.threads else []
+        subprocess.run([args.program, "run", file, "--out", out, "--force", "--device", "cpu", "--quiet", *threads], check=True)
     with open(out / "history.csv", newline="") as table:
         return [{key: float(value) if value else math.nan for key, value in row.items()} for row in csv.DictReader(table)]
 

@@ -61,8 +61,11 @@ release = true
 const PATH: &str = "\
 Each segment has either `release`, or one or several of `indentation`, `shear`, `twist` and `roll`, which then
 move in proportion. In a shear, twist or roll without `indentation`, `hold` says what stays constant.
-Displacements and angles are totals from first touch, not increments. They are those of the
-[equator](opponents.md), which moves as a rigid plate.
+Displacements and angles are totals from first touch, not increments.
+
+The sphere's [equator](opponents.md) moves by them as a rigid body, and delta_T is the displacement of one
+surface on the other. Here the axes are fixed; an engine gives the same relative displacements in a [frame
+that moves with the contact](laws.md#the-frame-of-the-centres).
 
 ```toml
 [[path]]
