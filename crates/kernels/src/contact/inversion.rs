@@ -4,9 +4,10 @@
 //! Unlike under the half turn (see [`super::mortar`]) no line is its own image: across x = 0 the
 //! interface goes on at -y. Which nodes are slaves is therefore chosen so that slaves and images of
 //! slaves together are spread over the interface as the nodes of one surface are. Where slaves face
-//! nothing but masters their functions are dual (Wohlmuth, SIAM J. Numer. Anal. 38, 2000); between
-//! slaves and images of slaves they are shape functions over the sum of both sides' there, so that
-//! all of them add up to one everywhere.
+//! nothing but masters their functions are dual (Wohlmuth, SIAM J. Numer. Anal. 38, 2000). Between
+//! slaves and images of slaves each side has its share of the interface, by the shape functions of
+//! its slaves there, and functions that are dual on that share; those of nodes that are no slaves
+//! go to the images of slaves that they face. All functions add up to one everywhere.
 
 use super::mortar::{COVERED, Face, Grid, Point, SLIVER, Weights};
 use super::mortar::{add, area, clip, dual_functions, each_point, gauss_rules};
@@ -65,6 +66,23 @@ fn slaves(points: &[Point], size: &[f64]) -> Vec<bool> {
     is_slave
 }
 
+/// The images of slaves around a place and their shares of it, which add up to one; none if there
+/// are none among the images `near`.
+fn heirs(place: Point, near: &[usize], images: &[Face], is_slave: &[bool]) -> Vec<(usize, f64)> {
+    for &m in near {
+        let shape = images[m].shape(place);
+        if shape.iter().any(|n| *n < -1e-6) {
+            continue;
+        }
+        let slaves = || shape.into_iter().zip(images[m].nodes).filter(|(n, node)| is_slave[*node] && *n > 0.0);
+        let sum: f64 = slaves().map(|(n, _)| n).sum();
+        if sum > 0.0 {
+            return slaves().map(|(n, node)| (node, n / sum)).collect();
+        }
+    }
+    Vec::new()
+}
+
 /// The weights of all slave nodes whose faces meet the image; arguments as of
 /// [`super::mortar::self_image_weights`].
 pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f64]) -> Vec<Weights> {
@@ -85,38 +103,48 @@ pub fn inverted_image_weights(points: &[Point], faces: &[[usize; 4]], size: &[f6
         // image's index.
         let mut rule: Vec<(f64, [f64; 4], [f64; 4], usize)> = Vec::new();
         for (m, polygon) in &parts {
-            let point = |x, weight| rule.push((weight, face.shape(x), images[*m].shape(x), *m));
-            if is_plain { each_point(polygon, SLIVER * face.area, point) } else { finely(polygon, SLIVER * face.area, point) }
-        }
-        if is_plain {
-            let is_covered = rule.iter().map(|p| p.0).sum::<f64>() > COVERED * face.area;
-            // By the same points, so that orthogonality holds as they integrate it.
-            let psi = if is_covered {
-                dual_functions(|f| rule.iter().for_each(|p| f(p.1, p.0)))
-            } else {
-                dual_functions(|f| face.integrate(f))
-            };
-            for a in 0..4 {
-                for (weight, n, other, m) in &rule {
-                    let value = weight * (0..4).map(|b| psi[a][b] * n[b]).sum::<f64>();
-                    (0..4).for_each(|b| add(&mut image[face.nodes[a]], images[*m].nodes[b], value * other[b]));
-                }
-                let integral = if is_covered { rule.iter().map(|p| p.0 * p.1[a]).sum() } else { face.shape_integrals()[a] };
-                add(&mut own[face.nodes[a]], face.nodes[a], integral);
+            if is_plain {
+                each_point(polygon, SLIVER * face.area, |x, weight| rule.push((weight, face.shape(x), images[*m].shape(x), *m)));
+                continue;
             }
-            continue;
-        }
-        for (weight, n, other, m) in &rule {
             let of_slaves = |shape: &[f64; 4], nodes: &[usize; 4]| -> f64 {
                 shape.iter().zip(nodes).filter(|(_, n)| is_slave[**n]).map(|(shape, _)| shape).sum()
             };
-            let sum = of_slaves(n, &face.nodes) + of_slaves(other, &images[*m].nodes);
-            for a in (0..4).filter(|&a| taken[a]) {
-                let value = weight * n[a] / sum.max(THIN);
-                for b in 0..4 {
-                    add(&mut own[face.nodes[a]], face.nodes[b], value * n[b]);
-                    add(&mut image[face.nodes[a]], images[*m].nodes[b], value * other[b]);
-                }
+            finely(polygon, SLIVER * face.area, |x, weight| {
+                let (shape, other) = (face.shape(x), images[*m].shape(x));
+                let share = of_slaves(&shape, &face.nodes);
+                let all = share + of_slaves(&other, &images[*m].nodes);
+                rule.push((weight * share / all.max(THIN), shape, other, *m));
+            });
+        }
+        let is_covered = rule.iter().map(|p| p.0).sum::<f64>() > COVERED * face.area;
+        if rule.is_empty() {
+            continue;
+        }
+        // By the same points, so that orthogonality holds as they integrate it.
+        let by_rule = is_covered || !is_plain;
+        let psi = if by_rule {
+            dual_functions(|f| rule.iter().for_each(|p| f(p.1, p.0)))
+        } else {
+            dual_functions(|f| face.integrate(f))
+        };
+        let integrals: [f64; 4] =
+            if by_rule { std::array::from_fn(|a| rule.iter().map(|p| p.0 * p.1[a]).sum()) } else { face.shape_integrals() };
+        for (a, &node) in face.nodes.iter().enumerate() {
+            let mut opposite: Vec<(usize, f64)> = Vec::new();
+            for (weight, n, other, m) in &rule {
+                let value = weight * (0..4).map(|b| psi[a][b] * n[b]).sum::<f64>();
+                (0..4).for_each(|b| add(&mut opposite, images[*m].nodes[b], value * other[b]));
+            }
+            if is_slave[node] {
+                add(&mut own[node], node, integrals[a]);
+                opposite.iter().for_each(|&(m, w)| add(&mut image[node], m, w));
+                continue;
+            }
+            // Seen from the heirs, this face is the image.
+            for (heir, share) in heirs(points[node], &near, &images, &is_slave) {
+                add(&mut image[heir], node, share * integrals[a]);
+                opposite.iter().for_each(|&(m, w)| add(&mut own[heir], m, share * w));
             }
         }
     }
@@ -138,10 +166,10 @@ mod tests {
 
     /// A patch that is its own mirror image in x and in y, its lines bent, moved by `shift`.
     fn patch(shift: Point) -> (Vec<Point>, Vec<[usize; 4]>) {
-        let n = 8;
+        let n = 12;
         let at = |i: usize, j: usize| i + (n + 1) * j;
         let place = |i: usize, j: usize| {
-            let (x, y) = (i as f64 / 4.0 - 1.0, j as f64 / 4.0 - 1.0);
+            let (x, y) = (i as f64 / 4.0 - 1.5, j as f64 / 4.0 - 1.5);
             [x * (1.0 + 0.1 * (1.5 * y).cos()) + shift[0], y * (1.0 + 0.08 * (2.0 * x).cos()) + shift[1]]
         };
         let points = (0..=n).flat_map(|j| (0..=n).map(move |i| place(i, j))).collect();
@@ -167,9 +195,10 @@ mod tests {
         let rows = inverted_image_weights(&points, &faces, &vec![0.25; points.len()]);
         // The middle faces itself.
         assert_eq!(rows.len(), points.len().div_ceil(2));
-        for row in rows.iter().filter(|row| points[row.slave][0] > 0.3) {
+        for row in rows.iter() {
             let facing = |m: usize| (points[m][0] + points[row.slave][0]).hypot(points[m][1] + points[row.slave][1]) < 1e-12;
-            assert_eq!(row.own, [(row.slave, 1.0)]);
+            let is_own = |m: usize| f64::from(u8::from(m == row.slave));
+            assert!(row.own.iter().all(|&(m, w)| (w - is_own(m)).abs() < 1e-10), "{row:?}");
             assert!(row.image.iter().all(|&(m, w)| (w - f64::from(u8::from(facing(m)))).abs() < 1e-10), "{row:?}");
         }
     }
@@ -190,11 +219,12 @@ mod tests {
                 face.shape_integrals().into_iter().zip(face.nodes).for_each(|(s, n)| area[n] += s);
             }
             // Near the rim there are faces without an image.
-            let inner = |p: &Point| p[0].abs() < 0.45 - shift[0].abs() && p[1].abs() < 0.45 - shift[1].abs();
-            assert!(points.iter().filter(|p| inner(p)).count() > 3);
+            let inner = |p: &Point| p[0].abs() < 0.85 - shift[0].abs() && p[1].abs() < 0.85 - shift[1].abs();
+            assert!(points.iter().filter(|p| inner(p)).count() > 15);
             for (n, p) in points.iter().enumerate().filter(|(_, p)| inner(p)) {
                 let off = (force[n] - area[n]) / area[n];
-                assert!(off.abs() < 1e-5, "shift {shift:?}, node {n} at {p:?}: {off:.2e}");
+                // What quotients are integrated to.
+                assert!(off.abs() < 5e-4, "shift {shift:?}, node {n} at {p:?}: {off:.2e}");
             }
         }
     }

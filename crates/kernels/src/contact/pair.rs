@@ -98,7 +98,8 @@ impl PairInterface {
         let mut slave_of = vec![None; nodes.len()];
         rows.iter().enumerate().for_each(|(k, row)| slave_of[row.slave] = Some(k));
         let free_y: Vec<bool> = rows.iter().map(|row| row.at_seam || on_symmetry(row.slave)).collect();
-        let coefficients: Vec<Vec<(usize, [f64; 3])>> = rows.iter().zip(&free_y).map(|(row, &free)| combine(row, signs, free)).collect();
+        let coefficients: Vec<Vec<(usize, [f64; 3])>> =
+            rows.iter().zip(&free_y).map(|(row, &free)| combine(row, signs, free)).collect();
         let mut facing: Vec<Option<(usize, f64)>> = vec![None; nodes.len()];
         for (k, row) in rows.iter().enumerate() {
             facing[row.slave] = Some((k, f64::INFINITY));
@@ -457,13 +458,17 @@ mod tests {
                 let [x, y, z] = mesh.nodes[interface.nodes[interface.slaves[k]]];
                 let size = mesh.contact_size[interface.slaves[k]];
                 if image == Image::Inversion && x < 2.0 * size {
-                    assert!(normal[0].abs() < size && normal[1].abs() < size && w[0].abs() < 1e-2 * size, "{k}: {normal:?} {w:?}");
+                    assert!(
+                        normal[0].abs() < size && normal[1].abs() < size && w[0].abs() < 1e-2 * size,
+                        "{k}: {normal:?} {w:?}"
+                    );
                     continue;
                 }
                 exact += 1;
                 assert!(normal[0].abs() < 1e-9 && normal[1].abs() < 1e-9, "slave {k}: {normal:?}");
                 assert!((t1[0] - 1.0).abs() < 1e-9);
-                let off = (w[2] - 2.0 * z).abs().max(w[0].abs()).max(if interface.free_y[k] { 0.0 } else { w[1].abs() - y.abs() });
+                let off =
+                    (w[2] - 2.0 * z).abs().max(w[0].abs()).max(if interface.free_y[k] { 0.0 } else { w[1].abs() - y.abs() });
                 assert!(off < 1e-9, "slave {k}: {w:?}");
             }
             assert!(exact > 20, "{exact}");
