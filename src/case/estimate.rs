@@ -27,7 +27,12 @@ pub fn estimated_elements(case: &Case) -> usize {
         skin_levels: case.mesh.skin_levels(),
     };
     // Another body counts as much: the ratio of a to its radius hardly matters.
-    let meshed = if matches!(case.opponent, Some(Opponent::Deforming { .. })) { 2 } else { 1 };
+    let is_meshed_too = match case.opponent {
+        Some(Opponent::Deforming { .. }) => true,
+        Some(Opponent::Equal) => case.image().is_none(),
+        None | Some(Opponent::Rigid { .. }) => false,
+    };
+    let meshed = if is_meshed_too { 2 } else { 1 };
     let meshed = if case.is_even() { meshed } else { 2 * meshed };
     // What cannot be meshed is refused before it gets here.
     element_count(&spec).map_or(usize::MAX, |elements| elements.saturating_mul(meshed))

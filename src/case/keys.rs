@@ -238,8 +238,8 @@ pub const KEYS: &[Key] = &[
     Key {
         range: "true or false",
         meaning: "press against an equal sphere. Indentation and shear in the case, and h and delta_T in the results, are \
-                  then the relative displacement of the two equators, twice that of each sphere. Only one sphere is \
-                  meshed; if the path leaves the x axis or the spheres turn, both are, which takes seven times as long",
+                  then the relative displacement of the two equators, twice that of each sphere, as are angles. Only \
+                  one sphere is meshed, unless the path rolls about y, or turns the spheres and leaves the x axis",
         example: "true",
         ..key("opponent", "equal", Truth, Optional("a rigid plane"))
     },

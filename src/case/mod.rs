@@ -48,6 +48,8 @@ pub use starter::{short_case, starter_case};
 
 use serde::Serialize;
 
+use crate::contact::pair::Image;
+
 /// One simulation: a sphere, its material, its friction, and the path it is taken along. Any one
 /// consistent system of units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -133,13 +135,27 @@ pub enum Opponent {
 }
 
 impl Case {
-    /// Number of bodies of which only one is simulated: two in an equal pair, where each has half
-    /// of h and delta_T and of the energies. An image does not serve every motion: where one sphere
-    /// turns or moves across the x axis, both are simulated.
+    /// Number of bodies of which only one is simulated: two in an equal pair that is simulated by
+    /// an image, where each has half of h, of delta_T, of the angles and of the energies.
     pub fn bodies(&self) -> f64 {
-        match self.opponent {
-            Some(Opponent::Equal) if self.moves_along_x() => 2.0,
-            None | Some(Opponent::Equal | Opponent::Rigid { .. } | Opponent::Deforming { .. }) => 1.0,
+        if self.image().is_some() { 2.0 } else { 1.0 }
+    }
+
+    /// Where the other one of an equal pair is, of which one body is simulated; `None` where both
+    /// are, and of everything that is no equal pair.
+    ///
+    /// An image moves and turns as it must (see [`Image`]). The half turn has the relative motions
+    /// of a press, a shear along x, a twist and a roll about x; what is even in y it has on half of
+    /// a mesh. The inversion has any shear, and no turn. A roll about y, or a turn with a shear
+    /// across the x axis, neither has.
+    pub(crate) fn image(&self) -> Option<Image> {
+        if self.opponent != Some(Opponent::Equal) || self.path.iter().any(Segment::rolls_along_x) {
+            return None;
+        }
+        match (self.path.iter().any(Segment::leaves_x), self.turns()) {
+            (false, _) => Some(Image::HalfTurn),
+            (true, false) => Some(Image::Inversion),
+            (true, true) => None,
         }
     }
 

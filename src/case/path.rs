@@ -84,6 +84,20 @@ impl Segment {
         }
     }
 
+    /// Whether the plate is sheared across the x axis in it.
+    pub fn leaves_x(&self) -> bool {
+        match self {
+            Self::Motion { to, .. } => to.shear.is_some_and(|[_, y]| y != 0.0),
+            Self::Slip { direction, .. } => unit(*direction)[1] != 0.0,
+            Self::Indentation { .. } | Self::Shear { .. } | Self::Oblique { .. } | Self::Release { .. } => false,
+        }
+    }
+
+    /// Whether the plate rolls about y in it.
+    pub fn rolls_along_x(&self) -> bool {
+        matches!(self, Self::Motion { to: Motion { roll: Some([_, about_y]), .. }, .. } if *about_y != 0.0)
+    }
+
     /// Whether the plate turns in it.
     pub fn turns(&self) -> bool {
         matches!(self, Self::Motion { to, .. } if to.turns())

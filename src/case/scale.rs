@@ -13,11 +13,12 @@ pub struct Scaled<T>(pub T);
 
 impl Case {
     /// A copy with lengths divided by R and stresses by E: R = 1, E = 1, forces in units of E R^2.
-    /// Indentation and shear are what one body moves: in an equal pair half of the relative
-    /// displacement, so the copy of one is not to be scaled again. The opponent is scaled too.
+    /// Indentation, shear and angles are what one body moves: in an equal pair half of the relative
+    /// motion, so the copy of one is not to be scaled again. The opponent is scaled too.
     pub fn scaled(&self) -> Scaled<Case> {
         let (radius, modulus) = (self.sphere.radius, self.material.youngs_modulus);
-        let travel = radius * self.bodies();
+        let bodies = self.bodies();
+        let travel = radius * bodies;
         let segment = |segment: &Segment| match *segment {
             Segment::Indentation { indentation } => Segment::Indentation { indentation: indentation / travel },
             Segment::Shear { shear: ShearTarget::Displacement(delta), hold } => {
@@ -30,7 +31,8 @@ impl Case {
                 to: Motion {
                     indentation: to.indentation.map(|h| h / travel),
                     shear: to.shear.map(|delta| delta.map(|delta| delta / travel)),
-                    ..to
+                    roll: to.roll.map(|roll| roll.map(|angle| angle / bodies)),
+                    twist: to.twist.map(|twist| twist / bodies),
                 },
                 hold,
             },
@@ -55,7 +57,7 @@ impl Case {
                     },
                 }),
                 // Both are meshed.
-                Some(Opponent::Equal) if !self.moves_along_x() => Some(Opponent::Deforming {
+                Some(Opponent::Equal) if self.image().is_none() => Some(Opponent::Deforming {
                     radius: Some(1.0),
                     material: Material {
                         youngs_modulus: 1.0,

@@ -66,10 +66,13 @@ impl Scaled<StepRecord> {
             f_n_error: scaled.f_n_error.map(|error| error * force),
             delta_t_y: scaled.delta_t_y * travel,
             f_t_y: scaled.f_t_y * force,
+            twist: scaled.twist * units.bodies,
+            roll_x: scaled.roll_x * units.bodies,
+            roll_y: scaled.roll_y * units.bodies,
             m_twist: scaled.m_twist * force * length,
             m_roll_x: scaled.m_roll_x * force * length,
             m_roll_y: scaled.m_roll_y * force * length,
-            // Counts, indices, angles and ratios have no unit.
+            // Counts, indices and ratios have no unit.
             ..*scaled
         }
     }

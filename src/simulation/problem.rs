@@ -299,7 +299,10 @@ impl Problem {
         match &self.case.0.opponent {
             None => Box::new(Plane),
             Some(Opponent::Rigid { radius }) => Box::new(RigidSphere::new(Rigid { curvature: 1.0 / radius })),
-            Some(Opponent::Equal) => Box::new(Joint::new(mesh, EqualPair)),
+            Some(Opponent::Equal) => {
+                let image = self.case.0.image().unwrap_or_default();
+                Box::new(Joint::new(mesh, EqualPair { image }))
+            }
             Some(Opponent::Deforming { material, radius }) => {
                 Box::new(Joint::new(mesh, TwoBodies::new(material.youngs_modulus, *radius, self.slaves_are_exchanged)))
             }

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::joint::{Bodies, Series};
 use crate::contact::couple::CoupleInterface;
+use crate::contact::interface::Symmetry;
 use crate::linalg::LinalgError;
 use crate::mesh::Mesh;
 use crate::mesh::pattern::Pattern;
@@ -72,8 +73,8 @@ impl Bodies for TwoBodies {
         height.abs()
     }
 
-    fn plan(&self, mesh: &Mesh, pattern: &Pattern, mirror: &[u32]) -> Result<Option<Systems>, LinalgError> {
-        Ok(Some(Systems::Couple(Box::new(CoupleSolver::new(mesh, pattern, self.slave, mirror)?))))
+    fn plan(&self, mesh: &Mesh, pattern: &Pattern, symmetry: &Symmetry) -> Result<Option<Systems>, LinalgError> {
+        Ok(Some(Systems::Couple(Box::new(CoupleSolver::new(mesh, pattern, self.slave, symmetry)?))))
     }
 
     fn solver(systems: &mut Systems) -> Option<&mut CoupleSolver> {

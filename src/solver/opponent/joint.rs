@@ -13,7 +13,7 @@ use super::{Opponent, StepTaken, needed};
 use crate::compute::ComputeError;
 use crate::compute::handle::CaseHandle;
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
-use crate::contact::interface::{Interface, leave_even, mirror_nodes};
+use crate::contact::interface::{Interface, Symmetry};
 use crate::linalg::{LinalgError, SolverKind};
 use crate::mesh::Mesh;
 use crate::mesh::pattern::Pattern;
@@ -54,11 +54,16 @@ pub trait Bodies: Debug + Send + Sync {
     /// the undeformed bodies.
     fn gap_of_unfaced(&self, height: f64) -> f64;
 
-    /// Plans the linear systems; `mirror` is the node opposite in x of each node, if there is one.
+    /// As what each body is seen that is pressed alone: its mirror image in x, or another one.
+    fn symmetry(&self, mesh: &Mesh) -> Symmetry {
+        Symmetry::mirror(mesh)
+    }
+
+    /// Plans the linear systems of bodies with this symmetry.
     ///
     /// # Errors
     /// As [`Opponent::systems`].
-    fn plan(&self, mesh: &Mesh, pattern: &Pattern, mirror: &[u32]) -> Result<Option<Systems>, LinalgError>;
+    fn plan(&self, mesh: &Mesh, pattern: &Pattern, symmetry: &Symmetry) -> Result<Option<Systems>, LinalgError>;
 
     /// Their solver, if these are their systems.
     fn solver(systems: &mut Systems) -> Option<&mut Self::Solver>;
@@ -95,21 +100,21 @@ pub struct Joint<B: Bodies> {
     reference: Vec<[f64; 3]>,
     /// Relative displacements at the start of the step.
     start: Vec<[f64; 3]>,
-    /// The node opposite in x of each node; none if the mesh is not its own mirror image.
-    mirror: Vec<u32>,
+    /// See [`Bodies::symmetry`].
+    symmetry: Symmetry,
     symmetric: bool,
 }
 
 impl<B: Bodies> Joint<B> {
     /// The bodies, before any step.
     pub fn new(mesh: &Mesh, bodies: B) -> Self {
-        let mirror = mirror_nodes(mesh).unwrap_or_default();
-        Self { bodies, interface: Arc::default(), reference: Vec::new(), start: Vec::new(), mirror, symmetric: false }
+        let symmetry = bodies.symmetry(mesh);
+        Self { bodies, interface: Arc::default(), reference: Vec::new(), start: Vec::new(), symmetry, symmetric: false }
     }
 
     /// Whether all of the step is even in x.
     fn is_even(&self) -> bool {
-        self.symmetric && !self.mirror.is_empty()
+        self.symmetric && !self.symmetry.nodes.is_empty()
     }
 
     /// What the interface carries at a slave, in its frame, as [`Opponent::forces`] has it.
@@ -166,7 +171,7 @@ impl<B: Bodies> Joint<B> {
 
 impl<B: Bodies> Opponent for Joint<B> {
     fn systems(&self, mesh: &Arc<Mesh>, _kind: SolverKind) -> Result<Option<Systems>, LinalgError> {
-        self.bodies.plan(mesh, &Pattern::from_elements(mesh.nodes.len(), &mesh.elements), &self.mirror)
+        self.bodies.plan(mesh, &Pattern::from_elements(mesh.nodes.len(), &mesh.elements), &self.symmetry)
     }
 
     fn refresh(&self, systems: &mut Systems, trial: &Trial, boundary: &Boundary, fixed: &[bool]) -> Result<(), Halt> {
@@ -210,7 +215,7 @@ impl<B: Bodies> Opponent for Joint<B> {
 
     fn leave_even(&self, x: &mut [f64]) {
         if self.is_even() {
-            leave_even(&self.mirror, x);
+            self.symmetry.leave_even(x);
         }
     }
 

@@ -1,8 +1,9 @@
-//! The body's own image, turned half round y: an equal pair (see [`crate::contact::pair`]). Of the
-//! two bodies one is simulated, whose surface has slaves and masters.
+//! The body's own image: an equal pair (see [`crate::contact::pair`]). Of the two bodies one is
+//! simulated, whose surface has slaves and masters.
 
 use super::joint::{Bodies, Series};
-use crate::contact::pair::PairInterface;
+use crate::contact::interface::Symmetry;
+use crate::contact::pair::{Image, PairInterface};
 use crate::linalg::LinalgError;
 use crate::mesh::Mesh;
 use crate::mesh::pattern::Pattern;
@@ -11,7 +12,10 @@ use crate::solver::systems::pair::PairSolver;
 
 /// Two equal bodies.
 #[derive(Clone, Copy, Debug)]
-pub struct EqualPair;
+pub struct EqualPair {
+    /// Where the other one is.
+    pub image: Image,
+}
 
 impl Bodies for EqualPair {
     type Interface = PairInterface;
@@ -23,25 +27,35 @@ impl Bodies for EqualPair {
     const CORRECTS_EVENLY: bool = false;
 
     fn interface(&self, mesh: &Mesh, u: &[f64]) -> PairInterface {
-        PairInterface::new(mesh, u)
+        PairInterface::new(mesh, u, self.image)
     }
 
     fn series(&self) -> Series {
         Series::new(1.0, 1.0)
     }
 
-    /// The gap to the node's own mirror image.
-    /// Half-way to the image of the centre, which is turned half round y.
+    /// Half-way to the image of the centre.
     fn contact_point(&self, centre: &[f64; 3]) -> [f64; 3] {
-        [0.0, centre[1], 0.0]
+        match self.image {
+            Image::HalfTurn => [0.0, centre[1], 0.0],
+            Image::Inversion => [0.0; 3],
+        }
     }
 
+    /// The gap to the node's own image.
     fn gap_of_unfaced(&self, height: f64) -> f64 {
         2.0 * height
     }
 
-    fn plan(&self, mesh: &Mesh, pattern: &Pattern, mirror: &[u32]) -> Result<Option<Systems>, LinalgError> {
-        Ok(PairSolver::new(mesh, pattern, mirror)?.map(|solver| Systems::Pair(Box::new(solver))))
+    fn symmetry(&self, mesh: &Mesh) -> Symmetry {
+        match self.image {
+            Image::HalfTurn => Symmetry::mirror(mesh),
+            Image::Inversion => Symmetry::turn(mesh),
+        }
+    }
+
+    fn plan(&self, mesh: &Mesh, pattern: &Pattern, symmetry: &Symmetry) -> Result<Option<Systems>, LinalgError> {
+        Ok(PairSolver::new(mesh, pattern, symmetry, self.image)?.map(|solver| Systems::Pair(Box::new(solver))))
     }
 
     fn solver(systems: &mut Systems) -> Option<&mut PairSolver> {

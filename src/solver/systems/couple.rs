@@ -16,7 +16,7 @@ use super::half::HalfCycle;
 use super::tied::{Tie, Tied, clear};
 use crate::contact::coulomb::Status;
 use crate::contact::couple::CoupleInterface;
-use crate::contact::interface::Interface;
+use crate::contact::interface::{Interface, Symmetry};
 use crate::linalg::fgmres::System;
 use crate::linalg::fold::{Fold, Parity};
 use crate::linalg::{BlockMatrix, Hierarchy, LinalgError, Pattern};
@@ -97,16 +97,16 @@ impl Body {
 
 impl CoupleSolver {
     /// Plans a solver for a mesh of two bodies of which `slave` (0 the sphere, 1 the opponent) is
-    /// the slave; `mirror` is the node opposite in x of each node, where there is one.
+    /// the slave; `symmetry` is their mirror in x.
     ///
     /// # Errors
     /// [`LinalgError::Hierarchy`] if prolongations do not fit.
-    pub fn new(mesh: &Mesh, pattern: &Pattern, slave: usize, mirror: &[u32]) -> Result<Self, LinalgError> {
+    pub fn new(mesh: &Mesh, pattern: &Pattern, slave: usize, symmetry: &Symmetry) -> Result<Self, LinalgError> {
         let n = 3 * pattern.rows();
         let zero = || vec![0.0; n];
-        let body = |body| Body::new(mesh, body, pattern, mirror);
+        let body = |body| Body::new(mesh, body, pattern, &symmetry.nodes);
         Ok(Self {
-            tie: Tie::new(mesh, pattern, mirror),
+            tie: Tie::new(mesh, pattern, symmetry),
             slave,
             bodies: [body(0)?, body(1)?],
             work: Work { y: zero(), u: zero(), f: zero(), r: zero() },

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::contact::coulomb::{Rows, Status};
-use crate::contact::interface::{Interface, leave_even};
+use crate::contact::interface::{Interface, Symmetry};
 use crate::linalg::fgmres::{Fgmres, System};
 use crate::linalg::{BlockMatrix, LinalgError, Pattern, SolveReport};
 use crate::mesh::Mesh;
@@ -27,8 +27,8 @@ pub struct Tie<I> {
     pub matrix: BlockMatrix<f32>,
     /// The state and the step are even in x, and so are all corrections.
     pub symmetric: bool,
-    /// The node opposite in x of each node, where there is one.
-    mirror: Vec<u32>,
+    /// Of the bodies and all corrections, where that is.
+    symmetry: Symmetry,
     pub contact_nodes: Vec<u32>,
     pub interface: Arc<I>,
     pub rows: Vec<Rows<f64>>,
@@ -42,12 +42,12 @@ pub struct Tie<I> {
 
 impl<I: Interface> Tie<I> {
     /// For the matrices of a mesh, with none of the unknowns fixed.
-    pub fn new(mesh: &Mesh, pattern: &Pattern, mirror: &[u32]) -> Self {
+    pub fn new(mesh: &Mesh, pattern: &Pattern, symmetry: &Symmetry) -> Self {
         let n = 3 * pattern.rows();
         Self {
             matrix: BlockMatrix::zeros(pattern.clone()),
             symmetric: false,
-            mirror: mirror.to_vec(),
+            symmetry: symmetry.clone(),
             contact_nodes: mesh.contact_nodes.clone(),
             interface: Arc::default(),
             rows: Vec::new(),
@@ -71,7 +71,7 @@ impl<I: Interface> Tie<I> {
     /// makes flow on one side alone, which half of a body cannot take away.
     pub fn carry_over(&self, y: &[f64], f: &mut [f64]) {
         if self.symmetric {
-            leave_even(&self.mirror, f);
+            self.symmetry.leave_even(f);
         }
         self.interface.reduce(f);
         self.impose(y, f);

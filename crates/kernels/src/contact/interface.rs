@@ -56,27 +56,48 @@ pub trait Interface: Debug + Default + Send + Sync {
     }
 }
 
-/// The node opposite in x of each node of a mesh that is its own mirror image; `None` if it is not.
-pub fn mirror_nodes(mesh: &Mesh) -> Option<Vec<u32>> {
-    // + 0: no -0 among the keys.
-    let key = |n: usize, sign: f64| {
-        let x = mesh.nodes[n];
-        (mesh.couple.as_ref().map_or(0, |couple| couple.body_of(n)), [sign * x[0] + 0.0, x[1], x[2]].map(f64::to_bits))
-    };
-    let all = 0..mesh.nodes.len();
-    let nodes: HashMap<(usize, [u64; 3]), u32> = all.clone().zip(0..).map(|(n, i)| (key(n, 1.0), i)).collect();
-    all.map(|n| nodes.get(&key(n, -1.0)).copied()).collect()
+/// What takes a body to itself: the node opposite to each node, and the sign that each component of
+/// a vector has there.
+#[derive(Clone, Debug, Default)]
+pub struct Symmetry {
+    /// Per node, the one opposite to it; none if the mesh is not itself seen so.
+    pub nodes: Vec<u32>,
+    /// Signs by component.
+    pub signs: [f64; 3],
 }
 
-/// Leaves the part of a vector (three a node) that is even in x; `mirror` is the node opposite in x
-/// of each node.
-pub fn leave_even(mirror: &[u32], v: &mut [f64]) {
-    for (n, &opposite) in mirror.iter().enumerate().filter(|(n, opposite)| *n <= **opposite as usize) {
-        for c in 0..3 {
-            let sign = if c == 0 { -1.0 } else { 1.0 };
-            let (i, j) = (3 * n + c, 3 * opposite as usize + c);
-            let even = 0.5 * (v[i] + sign * v[j]);
-            (v[i], v[j]) = (even, sign * even);
+impl Symmetry {
+    /// The mirror in x.
+    pub fn mirror(mesh: &Mesh) -> Self {
+        Self::of(mesh, [-1.0, 1.0, 1.0])
+    }
+
+    /// The half turn round z.
+    pub fn turn(mesh: &Mesh) -> Self {
+        Self::of(mesh, [-1.0, -1.0, 1.0])
+    }
+
+    fn of(mesh: &Mesh, signs: [f64; 3]) -> Self {
+        // + 0: no -0 among the keys.
+        let key = |n: usize, signs: [f64; 3]| {
+            let x = mesh.nodes[n];
+            let at: [u64; 3] = std::array::from_fn(|c| (signs[c] * x[c] + 0.0).to_bits());
+            (mesh.couple.as_ref().map_or(0, |couple| couple.body_of(n)), at)
+        };
+        let all = 0..mesh.nodes.len();
+        let nodes: HashMap<(usize, [u64; 3]), u32> = all.clone().zip(0..).map(|(n, i)| (key(n, [1.0; 3]), i)).collect();
+        let opposite: Option<Vec<u32>> = all.map(|n| nodes.get(&key(n, signs)).copied()).collect();
+        Self { nodes: opposite.unwrap_or_default(), signs }
+    }
+
+    /// Leaves the part of a vector (three a node) that is the same seen so.
+    pub fn leave_even(&self, v: &mut [f64]) {
+        for (n, &opposite) in self.nodes.iter().enumerate().filter(|(n, opposite)| *n <= **opposite as usize) {
+            for (c, sign) in self.signs.into_iter().enumerate() {
+                let (i, j) = (3 * n + c, 3 * opposite as usize + c);
+                let even = 0.5 * (v[i] + sign * v[j]);
+                (v[i], v[j]) = (even, sign * even);
+            }
         }
     }
 }

@@ -10,6 +10,7 @@ pub mod coulomb;
 pub mod couple;
 pub mod frame;
 pub mod interface;
+pub mod inversion;
 pub mod mortar;
 pub mod pair;
 pub mod plane;

@@ -11,7 +11,7 @@
 //! ACM 17, 1974) and integrated triangle by triangle.
 
 /// A point of the plane in which surfaces meet.
-type Point = [f64; 2];
+pub(super) type Point = [f64; 2];
 
 /// What the nodes of both sides contribute to the weighted gap of one slave node. The weights of
 /// each side add up to one.
@@ -30,14 +30,14 @@ pub struct Weights {
 }
 
 /// A face is covered by the image, but for the mesh's rim, from this share of its area on.
-const COVERED: f64 = 0.99;
+pub(super) const COVERED: f64 = 0.99;
 /// A face of which the seam leaves less than this share has no dual functions of its own.
 const NARROW: f64 = 0.6;
 /// A node that is so much of its size beyond the seam is still a slave: its faces reach far enough
 /// to this side.
 const MARGIN: f64 = 0.25;
 /// Triangles and faces of less than this share of a face's area count as nothing.
-const SLIVER: f64 = 1e-9;
+pub(super) const SLIVER: f64 = 1e-9;
 /// A node that faces its own image with more than this weight lies on the seam.
 const OWN_IMAGE: f64 = 0.25;
 /// Degree 5 rule on the triangle (Radon 1948): barycentric coordinates and weight.
@@ -192,7 +192,7 @@ pub fn weights_between(slave: Surface<'_>, master: Surface<'_>) -> Vec<Weights> 
     rows.collect()
 }
 
-fn add(entries: &mut Vec<(usize, f64)>, node: usize, value: f64) {
+pub(super) fn add(entries: &mut Vec<(usize, f64)>, node: usize, value: f64) {
     match entries.iter_mut().find(|e| e.0 == node) {
         Some(entry) => entry.1 += value,
         None => entries.push((node, value)),
@@ -219,14 +219,14 @@ fn seam_functions(face: &Face, is_slave: &impl Fn(usize) -> bool) -> [[f64; 4]; 
 }
 
 /// A quadrilateral of the surface, its corners counter-clockwise.
-struct Face {
-    corners: [Point; 4],
-    nodes: [usize; 4],
-    area: f64,
+pub(super) struct Face {
+    pub corners: [Point; 4],
+    pub nodes: [usize; 4],
+    pub area: f64,
 }
 
 impl Face {
-    fn new(mut corners: [Point; 4], mut nodes: [usize; 4]) -> Self {
+    pub fn new(mut corners: [Point; 4], mut nodes: [usize; 4]) -> Self {
         if area(&corners) < 0.0 {
             corners.swap(1, 3);
             nodes.swap(1, 3);
@@ -242,7 +242,7 @@ impl Face {
     }
 
     /// Shape functions at a point of the plane.
-    fn shape(&self, x: Point) -> [f64; 4] {
+    pub fn shape(&self, x: Point) -> [f64; 4] {
         self.at(self.local(x, [0.0; 2])).0
     }
 
@@ -278,7 +278,7 @@ impl Face {
     }
 
     /// Integrates over the face by Gauss's 3 x 3 rule.
-    fn integrate(&self, f: &mut dyn FnMut([f64; 4], f64)) {
+    pub fn integrate(&self, f: &mut dyn FnMut([f64; 4], f64)) {
         let g = 0.6_f64.sqrt();
         for (xi, wx) in [(-g, 5.0 / 9.0), (0.0, 8.0 / 9.0), (g, 5.0 / 9.0)] {
             for (eta, wy) in [(-g, 5.0 / 9.0), (0.0, 8.0 / 9.0), (g, 5.0 / 9.0)] {
@@ -288,7 +288,7 @@ impl Face {
         }
     }
 
-    fn shape_integrals(&self) -> [f64; 4] {
+    pub fn shape_integrals(&self) -> [f64; 4] {
         let mut sum = [0.0; 4];
         self.integrate(&mut |n, w| (0..4).for_each(|a| sum[a] += w * n[a]));
         sum
@@ -332,7 +332,7 @@ impl Map {
 
 /// Coefficients A of the dual functions psi_a = sum_b A_ab N_b of a face: A = D M^-1 with M the
 /// mass matrix that `integrate` gives and D its row sums.
-fn dual_functions(integrate: impl FnOnce(&mut dyn FnMut([f64; 4], f64))) -> [[f64; 4]; 4] {
+pub(super) fn dual_functions(integrate: impl FnOnce(&mut dyn FnMut([f64; 4], f64))) -> [[f64; 4]; 4] {
     let mut mass = [[0.0; 4]; 4];
     integrate(&mut |n, w| {
         for a in 0..4 {
@@ -361,7 +361,7 @@ fn dual_of(mass: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     std::array::from_fn(|a| std::array::from_fn(|b| d[a] * m[a][4 + b]))
 }
 
-fn area(polygon: &[Point]) -> f64 {
+pub(super) fn area(polygon: &[Point]) -> f64 {
     let n = polygon.len();
     0.5 * (0..n).map(|i| polygon[i][0] * polygon[(i + 1) % n][1] - polygon[(i + 1) % n][0] * polygon[i][1]).sum::<f64>()
 }
@@ -384,7 +384,7 @@ fn cut(polygon: &[Point], from: Point, to: Point) -> Vec<Point> {
     out
 }
 
-fn clip(subject: &[Point; 4], window: &[Point; 4]) -> Vec<Point> {
+pub(super) fn clip(subject: &[Point; 4], window: &[Point; 4]) -> Vec<Point> {
     let mut polygon = subject.to_vec();
     for e in 0..4 {
         polygon = cut(&polygon, window[e], window[(e + 1) % 4]);
@@ -400,7 +400,7 @@ fn clip_at_seam(polygon: Vec<Point>) -> Vec<Point> {
 }
 
 /// Calls `f` with the points and weights of a rule over a convex polygon.
-fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
+pub(super) fn each_point(polygon: &[Point], smallest: f64, mut f: impl FnMut(Point, f64)) {
     if polygon.len() < 3 || area(polygon) <= smallest {
         return;
     }
@@ -464,7 +464,7 @@ fn exactly(polygon: &[Point], smallest: f64, faces: [&Face; 2], mut f: impl FnMu
 }
 
 /// Gauss's rules on (0, 1) by their number of points: place and weight.
-fn gauss_rules() -> &'static [Vec<(f64, f64)>] {
+pub(super) fn gauss_rules() -> &'static [Vec<(f64, f64)>] {
     static RULES: std::sync::OnceLock<Vec<Vec<(f64, f64)>>> = std::sync::OnceLock::new();
     RULES.get_or_init(|| (0..=MOST_POINTS).map(gauss_rule).collect())
 }
@@ -489,7 +489,7 @@ fn gauss_rule(n: usize) -> Vec<(f64, f64)> {
 }
 
 /// Faces by the cells of a regular grid that their bounds touch.
-struct Grid {
+pub(super) struct Grid {
     origin: Point,
     cell: f64,
     size: [usize; 2],
@@ -497,7 +497,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(faces: &[Face]) -> Self {
+    pub fn new(faces: &[Face]) -> Self {
         let bounds: Vec<[Point; 2]> = faces.iter().map(Face::bounds).collect();
         let low = bounds.iter().fold([f64::INFINITY; 2], |m, b| [m[0].min(b[0][0]), m[1].min(b[0][1])]);
         let high = bounds.iter().fold([f64::NEG_INFINITY; 2], |m, b| [m[0].max(b[1][0]), m[1].max(b[1][1])]);
@@ -521,7 +521,7 @@ impl Grid {
     }
 
     /// Faces whose cells the bounds of `face` touch, in increasing order.
-    fn near(&self, face: &Face) -> Vec<usize> {
+    pub fn near(&self, face: &Face) -> Vec<usize> {
         let mut found: Vec<usize> = self.cells(&face.bounds()).into_iter().flat_map(|c| self.faces[c].iter().copied()).collect();
         found.sort_unstable();
         found.dedup();

@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 
 use super::*;
-use crate::contact::interface::mirror_nodes;
+use crate::contact::interface::Symmetry;
 use crate::mesh::quality;
 use crate::mesh::sphere::{SphereSpec, flat_mesh, sphere_mesh};
 use crate::mesh::{Mesh, connectivity::FACES};
@@ -91,7 +91,7 @@ fn what_is_named_is_a_node_and_elements_are_well_shaped() {
         }
         assert!(worst > 0.58, "{spec:?}: scaled Jacobian {worst}");
         assert!(used.iter().all(|used| *used));
-        assert!(mirror_nodes(&mesh).is_some(), "{spec:?}");
+        assert!(!Symmetry::mirror(&mesh).nodes.is_empty(), "{spec:?}");
         assert!(mesh.hanging.iter().any(|hanging| !hanging.is_none()));
         assert!(mesh.contact_nodes.is_sorted() && mesh.plate_nodes.is_sorted());
     }

@@ -1,0 +1,199 @@
+//! An equal pair of which one body is simulated: on paths that an image serves it has the forces of
+//! two bodies, of another image and of other directions, and all that a run leaves.
+#![cfg(unix)]
+
+mod common;
+
+use asperity::case::Case;
+use asperity::internals::simulation::drive::Ending;
+use asperity::internals::simulation::follow::{follow, on_cpu};
+use asperity::internals::simulation::problem::Problem;
+use asperity::output::{Recorder, StepRecord};
+use common::{Scratch, difference, stderr};
+
+const IDEAL: &str = "law = \"ideal\"\nyield_stress = 2.0";
+const ELASTIC: &str = "law = \"elastic\"";
+const IMAGE: &str = "equal = true";
+
+/// The same sphere as one of two bodies.
+fn meshed(law: &str) -> String {
+    format!(
+        "radius = 1.0\n[opponent.material]\nyoungs_modulus = 1000.0\npoissons_ratio = 0.3\n[opponent.material.hardening]\n{law}"
+    )
+}
+
+/// A pair pressed and moved, in the units of E = 1000 and R = 1.
+fn text(law: &str, opponent: &str, path: &[&str]) -> String {
+    let segments: String = path.iter().map(|segment| format!("[[path]]\n{segment}\n")).collect();
+    format!(
+        "[sphere]\nradius = 1.0\n[material]\nyoungs_modulus = 1000.0\npoissons_ratio = 0.3\n[material.hardening]\n{law}\n\
+         [contact]\nfriction = 0.3\n[opponent]\n{opponent}\n[mesh]\nelements_per_contact_radius = 5\n[solver]\n\
+         error_estimate = false\n{segments}"
+    )
+}
+
+fn rows(text: &str, settings: &[&str]) -> Vec<StepRecord> {
+    let settings: Vec<String> = settings.iter().map(|set| (*set).to_owned()).collect();
+    let case = Case::parse(text, "case.toml", &settings).unwrap_or_else(|error| panic!("{error}"));
+    let mut recorder = Recorder::new(&case, None);
+    let followed = follow(Problem::new(&case).expect("a problem"), None, &mut |problem| on_cpu(problem), &mut recorder);
+    assert_eq!(followed.expect("no failure of the program").ending, Ending::Done, "{text}");
+    recorder.rows
+}
+
+fn end(rows: &[StepRecord]) -> &StepRecord {
+    rows.last().expect("rows")
+}
+
+fn pressed(rows: &[StepRecord]) -> &StepRecord {
+    rows.iter().rfind(|row| row.segment == 0).expect("a press")
+}
+
+/// What was put in is stored and dissipated, in both bodies, to half a per cent.
+fn assert_energy(rows: &[StepRecord], what: &str) {
+    let end = end(rows);
+    let found = end.energy_elastic + end.work_plastic + end.work_friction;
+    let most = rows.iter().fold(0.0, |most: f64, row| most.max(row.work_external));
+    assert!((found - end.work_external).abs() < 0.005 * most, "{what}: {found} of {}", end.work_external);
+}
+
+/// Which bodies are meshed, and how much of each.
+#[test]
+fn the_path_decides_what_is_meshed() {
+    let of = |path: &str| {
+        let case = Case::parse(&text(ELASTIC, IMAGE, &["indentation = 0.01", path]), "case.toml", &[]).expect("a case");
+        let mesh = Problem::new(&case).expect("a problem").model.mesh;
+        (mesh.couple.is_some(), mesh.copies)
+    };
+    let paths = [
+        ("shear = 0.001", (false, 2)),
+        ("shear = \"full-slip\"\nshear_direction = 180.0", (false, 2)),
+        ("shear = [0.001, 0.002]", (false, 1)),
+        ("shear = \"full-slip\"\nshear_direction = 30.0", (false, 1)),
+        ("twist = 0.1", (false, 1)),
+        ("roll = [0.01, 0.0]\nshear = [0.001, 0.0]", (false, 1)),
+        ("roll = 0.01", (true, 2)),
+        ("twist = 0.1\nshear = [0.0, 0.001]", (true, 1)),
+    ];
+    paths.iter().for_each(|(path, expected)| assert_eq!(of(path), *expected, "{path}"));
+}
+
+/// F_N of the press alone differs by 0.9 %: the steps of a press count for more between two bodies.
+#[test]
+fn an_image_has_the_forces_of_two_bodies() {
+    for moved in ["shear = [0.002, 0.003]", "twist = 0.04", "twist = 0.03\nshear = [0.001, 0.0]"] {
+        let path = ["indentation = 0.02", moved];
+        let (image, two) = (rows(&text(IDEAL, IMAGE, &path), &[]), rows(&text(IDEAL, &meshed(IDEAL), &path), &[]));
+        assert_energy(&image, moved);
+        let (one, other) = (end(&image), end(&two));
+        let is_there = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert!(is_there(one.twist, other.twist) && is_there(one.delta_t, other.delta_t) && is_there(one.delta_t_y, other.delta_t_y));
+        let (force, moment) = (other.f_n, other.f_n * other.a);
+        let pairs = [
+            (one.f_n / force, other.f_n / force),
+            (one.f_t / force, other.f_t / force),
+            (one.f_t_y / force, other.f_t_y / force),
+            (one.m_twist / moment, other.m_twist / moment),
+            (one.m_roll_x / moment, other.m_roll_x / moment),
+            (one.m_roll_y / moment, other.m_roll_y / moment),
+        ];
+        println!("{moved}: {pairs:.4?}");
+        assert!(pairs.iter().all(|(a, b)| (a - b).abs() < 0.01), "{moved}: {pairs:.4?}");
+    }
+}
+
+/// Of two bodies one rolls on the other, which stays: their centres turn about each other by half
+/// of the angle, and move apart. Turned back by that, with what the one's centre then has to move,
+/// it is the image's roll, in which each turns by half of the angle.
+#[test]
+fn a_roll_about_x_is_that_of_two_bodies_seen_from_their_centres() {
+    let (h, angle) = (0.02, 0.02);
+    let image = rows(&text(IDEAL, IMAGE, &[&format!("indentation = {h:?}"), &format!("roll = [{angle:?}, 0.0]")]), &[]);
+    assert_energy(&image, "roll");
+    // The centre goes by R - h for each rad of a roll; between two bodies it is R - h/2.
+    let beside = -0.5 * h * angle;
+    let apart = (2.0 - h) * (1.0 - (0.5 * angle).cos());
+    let moved = format!("roll = [{angle:?}, 0.0]\nshear = [0.0, {beside:?}]\nindentation = {:?}", h + apart);
+    let two = rows(&text(IDEAL, &meshed(IDEAL), &[&format!("indentation = {h:?}"), &moved]), &[]);
+    let (one, other) = (end(&image), end(&two));
+    let (sin, cos) = (0.5 * angle).sin_cos();
+    let (f_n, across) = (other.f_n * cos + other.f_t_y * sin, other.f_t_y * cos - other.f_n * sin);
+    println!("{} {f_n}, {} {across}, {} {}", one.f_n, one.f_t_y, one.m_roll_x, other.m_roll_x);
+    assert!((one.roll_x - angle).abs() < 1e-12);
+    assert!((one.f_n / f_n - 1.0).abs() < 0.01, "F_N {} for {f_n}", one.f_n);
+    assert!((one.f_t_y - across).abs() < 0.01 * f_n, "F_T,y {} for {across}", one.f_t_y);
+    assert!((one.m_roll_x / other.m_roll_x - 1.0).abs() < 0.02, "{} for {}", one.m_roll_x, other.m_roll_x);
+}
+
+/// On half of the mesh by the half turn, and on all of it by the inversion.
+#[test]
+fn along_x_both_images_say_the_same() {
+    for (law, share) in [(ELASTIC, 2e-3), (IDEAL, 5e-3)] {
+        let of = |shear: &str| rows(&text(law, IMAGE, &["indentation = 0.02", shear]), &["solver.tolerance=1e-6"]);
+        let (half, whole) = (of("shear = 0.003"), of("shear = [0.003, 1e-14]"));
+        assert_energy(&half, law);
+        assert_energy(&whole, law);
+        let press = pressed(&half).f_n;
+        assert!((pressed(&whole).f_n / press - 1.0).abs() < 1e-5, "{} for {press}", pressed(&whole).f_n);
+        let (one, other) = (end(&half), end(&whole));
+        println!("{law}: {press} {} {} {} {}", one.f_n, other.f_n, one.f_t, other.f_t);
+        for (a, b) in [(one.f_n, other.f_n), (one.f_t, other.f_t), (one.f_t_y, other.f_t_y)] {
+            assert!((a - b).abs() < share * press, "{law}: {a} {b} of {press}");
+        }
+    }
+}
+
+/// The mesh's own anisotropy, as on a plane.
+#[test]
+fn turned_axes_have_the_forces_of_the_x_axis() {
+    let of = |direction: f64| {
+        let shear = format!("shear = 0.003\nshear_direction = {direction:?}");
+        rows(&text(IDEAL, IMAGE, &["indentation = 0.02", &shear]), &[])
+    };
+    let along = of(0.0);
+    let press = pressed(&along).f_n;
+    let peak = along.iter().fold(0.0, |most: f64, row| most.max(row.f_t));
+    for direction in [45.0_f64, 90.0] {
+        let turned = of(direction);
+        assert_energy(&turned, "turned");
+        let (sin, cos) = direction.to_radians().sin_cos();
+        let (one, other) = (end(&along), end(&turned));
+        let (f_t, across) = (other.f_t * cos + other.f_t_y * sin, other.f_t_y * cos - other.f_t * sin);
+        println!("{direction}: {} {}, {} {f_t}, {across}", one.f_n, other.f_n, one.f_t);
+        assert!((one.f_n - other.f_n).abs() < 0.01 * press, "{direction}: F_N {} for {}", other.f_n, one.f_n);
+        assert!((one.f_t - f_t).abs() < 0.01 * peak, "{direction}: F_T {f_t} for {}", one.f_t);
+        assert!(across.abs() < 0.01 * peak, "{direction}: {across} across");
+    }
+}
+
+/// A run that was stopped goes on to the bits of one that was not, with tables and fields.
+#[test]
+fn a_stopped_run_goes_on_to_the_same_bits() {
+    for (name, moved) in [("inversion", "shear = [0.001, 0.002]"), ("half-turn", "twist = 0.03")] {
+        let scratch = Scratch::new(&text(IDEAL, IMAGE, &["indentation = 0.01", moved]), &["--device", "cpu"]);
+        let run = |out: &str, options: &[&str]| {
+            let output = scratch.run(out, &[&["-q"], options].concat());
+            assert!(output.status.success(), "{}", stderr(&output));
+        };
+        run("whole", &[]);
+        // Up to the end of the press, and then along the longer path.
+        let case = std::fs::read_to_string(scratch.path("case.toml")).expect("the case");
+        let child = common::program().args(scratch.args("parts", &["-q"])).spawn().expect("it runs");
+        let history = scratch.path("parts").join("history.csv");
+        let steps = || asperity::output::read_history(&history).map_or(0, |rows| rows.len());
+        while steps() < 20 {
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
+        let process = rustix::process::Pid::from_child(&child);
+        rustix::process::kill_process(process, rustix::process::Signal::TERM).expect("a signal is sent");
+        let mut child = child;
+        assert_eq!(child.wait().expect("it ends").code(), Some(75), "{name}: {case}");
+        assert!(asperity::output::read_history(&history).expect("a history").iter().any(|row| row.segment == 1));
+        run("parts", &["--resume"]);
+        assert_eq!(difference(&scratch.path("parts"), &scratch.path("whole")), None, "{name}");
+        for kind in ["contact", "fields"] {
+            let files = std::fs::read_dir(scratch.path("whole").join(kind)).expect("a folder").count();
+            assert!(files >= 2, "{name}: {files} in {kind}");
+        }
+    }
+}
