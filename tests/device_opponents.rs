@@ -1,5 +1,5 @@
-//! An equal pair, a rigid sphere and an unlike sphere that deforms, on a device: the CPU's history
-//! step by step, and the same bits again, alone or in a study.
+//! An equal pair, a rigid sphere, an unlike sphere that deforms and plates that turn, on a device:
+//! the CPU's history step by step, and the same bits again, alone or in a study.
 
 mod device;
 #[path = "common/histories.rs"]
@@ -39,10 +39,11 @@ plots = false
 const EQUAL: &str = "[base.opponent]\nequal = true\n[[base.path]]\nindentation = 0.02\n[[base.path]]\nshear = 0.004\n";
 const RIGID: &str =
     "[base.opponent]\nrigid = true\nradius = 0.8\n[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = 0.002\n";
-/// Over the plane, but not along x: all of the sphere is meshed, and Newton's vectors stay on the
-/// host.
+/// Not along x: all of the sphere is meshed, and of an equal pair both.
 const TURNED: &str =
     "[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = [0.001, 0.0015]\ntwist = 0.01\nroll = [0.0, 0.002]\n";
+const TURNED_RIGID: &str = "[base.opponent]\nrigid = true\nradius = 2.0\n";
+const TURNED_EQUAL: &str = "[base.opponent]\nequal = true\n";
 const UNLIKE: &str = r#"
 [base.opponent]
 radius = 2.0
@@ -60,23 +61,27 @@ indentation = 0.02
 shear = 0.004
 "#;
 
-/// What is told of such a path on a device, and on no CPU.
-const STAYS: &str = "note: the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host";
+/// What is told on a device, and on no CPU: what stays on the host.
+const VECTORS: &str = "note: the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host";
+const SYSTEMS: &str =
+    "note: the sphere is pressed against a body, so the vectors and linear systems of Newton's method stay on the host";
+const DIRECT: &str = "note: solver.linear is \"direct\", so the vectors and linear systems of Newton's method stay on the host";
 
-fn program(verb: &str, file: &Path, out: &Path, device: &str) {
+fn program(verb: &str, file: &Path, out: &Path, options: &[&str]) {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
-    command.arg(verb).arg(file).arg("--out").arg(out).args(["--device", device, "--quiet"]);
+    command.arg(verb).arg(file).arg("--out").arg(out).arg("--quiet").args(options);
     let output = command.output().expect("the program runs");
     assert_eq!(output.status.code(), Some(0), "{verb}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-fn check(test: &str, opponent: &str) {
+/// The study with this end on the CPU and on a device; `told` is what the latter is told of.
+fn check(test: &str, end: &str, told: &[&str]) {
     let Some(context) = device::device(test, Precision::F64) else { return };
     let dir = tempfile::tempdir().expect("a scratch directory");
     let at = |name: &str| dir.path().join(name);
-    fs::write(at("study.toml"), format!("{STUDY}{opponent}")).expect("the study");
+    fs::write(at("study.toml"), format!("{STUDY}{end}")).expect("the study");
     for device in ["cpu", "gpu"] {
-        program("study", &at("study.toml"), &at(device), device);
+        program("study", &at("study.toml"), &at(device), &["--device", device]);
     }
     for case in ["c0001", "c0002"] {
         let [theirs, ours] = ["cpu", "gpu"].map(|device| at(device).join("cases").join(case));
@@ -84,8 +89,9 @@ fn check(test: &str, opponent: &str) {
         let summary = Summary::read(&out.summary()).expect("a summary");
         assert!(summary.device.contains(&context.adapter().name), "{}", summary.device);
         assert_eq!((summary.status, summary.linear_fallbacks), (Status::Done, 0));
-        let told: &[&str] = if opponent == TURNED { &[STAYS] } else { &[] };
         assert!(summary.messages == told && summary.device_traffic.is_some(), "{:?}", summary.messages);
+        let on_cpu = Summary::read(&OutputDirectory::existing(&theirs).summary()).expect("a summary");
+        assert!(on_cpu.messages.is_empty(), "{:?}", on_cpu.messages);
         let rows = [&ours, &theirs].map(|dir| read_history(&OutputDirectory::existing(dir).history()).expect("a history"));
         assert!(rows[0].iter().any(|row| row.slipping_points > 0 && row.f_t > 0.0), "nothing slips");
         let difference = difference(&rows[0], &rows[1]);
@@ -93,7 +99,7 @@ fn check(test: &str, opponent: &str) {
         assert!(difference <= 3e-7, "case {case}: {difference}");
         // The second case alone, twice.
         for again in ["alone", "again"].iter().filter(|_| case == "c0002") {
-            program("run", &out.case(), &at(again), "gpu");
+            program("run", &out.case(), &at(again), &["--device", "gpu"]);
             assert!(history(&at(again)) == history(&ours), "{again}: other bits than in the study");
         }
     }
@@ -101,20 +107,51 @@ fn check(test: &str, opponent: &str) {
 
 #[test]
 fn an_equal_pair_has_the_cpus_history() {
-    check("an_equal_pair_has_the_cpus_history", EQUAL);
+    check("an_equal_pair_has_the_cpus_history", EQUAL, &[SYSTEMS]);
 }
 
 #[test]
 fn a_rigid_sphere_has_the_cpus_history() {
-    check("a_rigid_sphere_has_the_cpus_history", RIGID);
+    check("a_rigid_sphere_has_the_cpus_history", RIGID, &[SYSTEMS]);
 }
 
 #[test]
 fn a_plate_that_turns_has_the_cpus_history() {
-    check("a_plate_that_turns_has_the_cpus_history", TURNED);
+    check("a_plate_that_turns_has_the_cpus_history", TURNED, &[VECTORS]);
+}
+
+#[test]
+fn a_rigid_sphere_under_a_plate_that_turns_has_the_cpus_history() {
+    check("a_rigid_sphere_under_a_plate_that_turns_has_the_cpus_history", &format!("{TURNED_RIGID}{TURNED}"), &[SYSTEMS]);
+}
+
+#[test]
+fn an_equal_pair_that_turns_has_the_cpus_history() {
+    check("an_equal_pair_that_turns_has_the_cpus_history", &format!("{TURNED_EQUAL}{TURNED}"), &[SYSTEMS]);
 }
 
 #[test]
 fn an_unlike_pair_has_the_cpus_history() {
-    check("an_unlike_pair_has_the_cpus_history", UNLIKE);
+    check("an_unlike_pair_has_the_cpus_history", UNLIKE, &[SYSTEMS]);
+}
+
+/// Over a plane along x nothing is told, unless systems are to be solved directly.
+#[test]
+fn what_stays_on_the_host_is_told() {
+    let Some(_) = device::device("what_stays_on_the_host_is_told", Precision::F64) else { return };
+    let dir = tempfile::tempdir().expect("a scratch directory");
+    let file = dir.path().join("case.toml");
+    let base = STUDY.split("[grid]").next().expect("a base").replace("base.", "");
+    fs::write(&file, format!("{base}[contact]\nfriction = 0.3\n[[path]]\nindentation = 0.002\n")).expect("the case");
+    for (options, told) in [
+        (&["--device", "gpu"][..], &[][..]),
+        (&["--device", "gpu", "--set", "solver.linear=direct"], &[DIRECT]),
+        (&["--device", "gpu", "--precision", "mixed", "--set", "opponent={equal=true}"], &[SYSTEMS]),
+        (&["--device", "cpu", "--set", "solver.linear=direct"], &[]),
+    ] {
+        let out = dir.path().join("out");
+        program("run", &file, &out, &[options, &["--force"]].concat());
+        let summary = Summary::read(&OutputDirectory::existing(&out).summary()).expect("a summary");
+        assert_eq!(summary.messages, told, "{options:?}");
+    }
 }

@@ -153,6 +153,56 @@ fn a_run_is_drawn_from_its_directory() {
     assert!(stderr(&refused).contains("history.csv"), "{}", stderr(&refused));
 }
 
+/// The path of F_T in its plane, and moments over angles: a point for each step in contact.
+#[test]
+fn a_run_that_turns_shows_its_force_in_the_plane_and_its_moments() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (case, out) = (folder.path().join("case.toml"), folder.path().join("run"));
+    let moved = "shear = [0.001, 0.0015]\ntwist = 0.01\nroll = [0.0, -0.003]";
+    fs::write(&case, CASE.replace("shear = \"full-slip\"", moved)).expect("the case");
+    asperity(&["run", text(&case), "--out", text(&out), "--device", "cpu", "--quiet"]).code(0);
+    let drawn = asperity(&["plot", text(&out)]).code(0);
+    let names = pictures(&stdout(&drawn));
+    assert!(names.iter().any(|name| name == "plane") && names.iter().any(|name| name == "moments"), "{names:?}");
+    let history = fs::read_to_string(out.join("history.csv")).expect("the history");
+    let column = |name: &str| -> Vec<f64> {
+        let at = history.lines().next().expect("a header").split(',').position(|column| column == name).expect("the column");
+        history.lines().skip(1).map(|row| row.split(',').nth(at).expect("a value").parse().expect("a number")).collect()
+    };
+    let (force, angle) = (column("F_N"), column("twist"));
+    let in_contact = force.iter().filter(|f| **f > 0.0).count();
+    let turning = angle.iter().filter(|angle| **angle != 0.0).count();
+    assert!(in_contact > 8 && turning > 4 && in_contact > turning + 1, "{in_contact}, {turning}");
+
+    let plane = Parsed::of(&out.join("plots/plane.svg"));
+    // F_N falls by more than 2 % while the force turns, so that there are two circles.
+    for label in ["Tangential force in its plane", "103 FT,x / (E R2)", "103 FT,y / (E R2)", "greatest FN (μ = 0.3)", "last FN"]
+    {
+        assert!(plane.words.contains(label), "{label} is missing in {}", plane.words);
+    }
+    // And one in the legend.
+    assert_eq!(plane.count("circle"), in_contact + 1);
+    assert_eq!(plane.attributes.iter().filter(|(key, _)| key == "stroke-dasharray").count(), 4, "two circles, and their samples");
+    // The last point is where the table ends: up and to the right, as far from the middle along y
+    // as along x over the range of the axis.
+    let (x, y) = (*column("F_T").last().expect("a row"), *column("F_T_y").last().expect("a row"));
+    let of = |key: &str| -> Vec<f64> {
+        plane.attributes.iter().filter(|(name, _)| name == key).map(|(_, value)| value.parse().expect("a number")).collect()
+    };
+    let (cx, cy) = (of("cx"), of("cy"));
+    // After the sample of the legend come the steps; the first have no tangential force.
+    let moved = [cx[in_contact] - cx[1], cy[1] - cy[in_contact]];
+    assert!(moved[0] > 30.0 && moved[1] > 30.0 && x > 0.0 && y > 0.0, "{moved:?} for {x}, {y}");
+
+    let moments = Parsed::of(&out.join("plots/moments.svg"));
+    for label in ["Moments", "M / (FN a)", "angle in rad", "twist, Mtwist", "roll about y, Mroll,y"] {
+        assert!(moments.words.contains(label), "{label} is missing in {}", moments.words);
+    }
+    assert!(!moments.words.contains("about x"), "{}", moments.words);
+    // Each angle's steps with the one from which it sets out, and a sample in the legend.
+    assert_eq!(moments.count("circle"), 2 * (turning + 2));
+}
+
 /// PDF and PNG of the asked size, with text, and axes in the units that are asked for.
 fn prints(out: &Path, folder: &Path) {
     let listed = |drawn: &assert_cmd::assert::Assert, ending: &str| {

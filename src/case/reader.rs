@@ -180,7 +180,7 @@ impl<'d> Field<'d> {
     pub fn pair(&self, allowed: &str) -> Result<[Field<'d>; 2], CaseError> {
         let items = self.array(allowed)?;
         let count = items.len();
-        items.try_into().map_err(|_| self.refuse(&format!("has {count} components"), allowed))
+        items.try_into().map_err(|_| self.refuse(&format!("has {count} component{}", if count == 1 { "" } else { "s" }), allowed))
     }
 
     /// The value as a table.

@@ -72,7 +72,7 @@ impl<'a> Follower<'a> {
         seat: &mut dyn FnMut(&Problem) -> Result<Seat<'a>, SimulationError>,
         observer: &mut dyn Observer,
     ) -> Result<Ending, SimulationError> {
-        let note = self.paused.as_ref().and_then(|paused| paused.first_note(self.seat.0.as_mut(), self.seat.1));
+        let note = self.paused.as_ref().and_then(|paused| paused.first_note(self.seat.0.as_ref()));
         note.iter().for_each(|note| observer.note(note));
         loop {
             let paused = match self.paused.take() {

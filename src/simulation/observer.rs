@@ -98,6 +98,12 @@ impl StepView<'_> {
         Ok(self.displacement.u)
     }
 
+    /// Internal forces, three a node, of a step whose vectors are on the host; empty before the
+    /// first.
+    pub fn internal_force(&self) -> &[f64] {
+        &self.newton.accepted().force
+    }
+
     /// What the bodies need at the points of contact (see [`Newton::needed_forces`]).
     pub fn needed_forces(&self) -> Vec<([f64; 3], Status)> {
         self.newton.needed_forces(self.mesh)

@@ -123,9 +123,19 @@ impl Newton {
         if is_known { case.keeps() } else { Keeps::Nothing }
     }
 
-    /// Whether this backend would keep the iterates of the case, if its plate moved along x alone.
-    pub fn is_held_back_on(&self, case: &CaseHandle<'_>) -> bool {
-        self.is_at_home && self.iterates.host.is_over_plane_by_multigrid() && case.keeps() != Keeps::Nothing
+    /// Why vectors stay on the host whatever a device can do, and with them the linear systems,
+    /// where these are not those of one body over a plane; `None` where neither does.
+    pub fn stays_on_host(&self) -> Option<&'static str> {
+        let host = &self.iterates.host;
+        if !host.boundary().opponent.is_plane() {
+            return Some(
+                "the sphere is pressed against a body, so the vectors and linear systems of Newton's method stay on the host",
+            );
+        }
+        if !host.is_over_plane_by_multigrid() {
+            return Some("solver.linear is \"direct\", so the vectors and linear systems of Newton's method stay on the host");
+        }
+        self.is_at_home.then_some("the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host")
     }
 
     /// The last accepted trial, if its vectors are on the host.

@@ -2,7 +2,6 @@
 
 use super::Drive;
 use super::safe::Safe;
-use crate::compute::handle::at;
 use crate::compute::{Compute, ComputeError};
 use crate::simulation::checkpoint::{Committed, Place};
 use crate::simulation::problem::Problem;
@@ -39,9 +38,9 @@ impl Paused {
     }
 
     /// What is told before the first step of a run on this backend, if anything.
-    pub fn first_note(&self, backend: &mut dyn Compute, case: usize) -> Option<&'static str> {
-        let is_held_back = !self.place.begun && self.newton.is_held_back_on(&at(backend, case));
-        is_held_back.then_some("the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host")
+    pub fn first_note(&self, backend: &dyn Compute) -> Option<&'static str> {
+        let is_on_device = backend.about().traffic.is_some();
+        if self.place.begun || !is_on_device { None } else { self.newton.stays_on_host() }
     }
 
     /// Displacement of the last accepted step, three numbers a node, scaled.
