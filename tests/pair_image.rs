@@ -87,7 +87,9 @@ fn an_image_has_the_forces_of_two_bodies() {
         assert_energy(&image, moved);
         let (one, other) = (end(&image), end(&two));
         let is_there = |a: f64, b: f64| (a - b).abs() < 1e-12;
-        assert!(is_there(one.twist, other.twist) && is_there(one.delta_t, other.delta_t) && is_there(one.delta_t_y, other.delta_t_y));
+        assert!(
+            is_there(one.twist, other.twist) && is_there(one.delta_t, other.delta_t) && is_there(one.delta_t_y, other.delta_t_y)
+        );
         let (force, moment) = (other.f_n, other.f_n * other.a);
         let pairs = [
             (one.f_n / force, other.f_n / force),

@@ -1,7 +1,7 @@
 //! The discretisation errors of the numbers of a summary, as its rows and its companion tell them,
 //! and the ripple of the press curve.
 
-use super::limit::TANGENTIAL_SHARE;
+use super::limit::{TANGENTIAL_SHARE, size};
 use super::summary::{SLIP_DISPLACEMENT_RATIOS, first_shear};
 use super::{Limits, StepLimits, StepRecord};
 
@@ -41,15 +41,18 @@ impl ErrorEstimate {
         let at = |row: &StepRecord| limits.of(&rows[..rows.partition_point(|earlier| earlier.step < row.step)], row);
         let (start, shear) = first_shear(rows, oblique);
         let (start_row, start, points) = (start, start.map(at), shear.iter().map(at));
+        let force = |row: &StepRecord| size([row.f_t, row.f_t_y]);
+        let force_limit = |of: &StepLimits| Some(size([of.f_t_limit?, of.f_t_y_limit?]));
         let largest = shear
             .iter()
             .zip(points.clone())
-            .reduce(|largest, point| if point.0.f_t.abs() > largest.0.f_t.abs() { point } else { largest });
+            .reduce(|largest, point| if force(point.0) > force(largest.0) { point } else { largest });
         let curve: Option<Vec<Option<RatioPoint>>> = start_row.map(|start| {
-            let ratio = |f_t: f64, f_n: f64| (f_n > 0.0).then(|| f_t.abs() / f_n);
+            let ratio = |f_t: f64, f_n: f64| (f_n > 0.0).then(|| f_t / f_n);
             let point = |(row, of): (&StepRecord, StepLimits)| {
-                let limit = of.f_t_limit.zip(of.f_n_limit).and_then(|(f_t, f_n)| ratio(f_t, f_n));
-                Some([(row.delta_t - start.delta_t).abs(), ratio(row.f_t, row.f_n)?, limit?])
+                let limit = force_limit(&of).zip(of.f_n_limit).and_then(|(f_t, f_n)| ratio(f_t, f_n));
+                let way = size([row.delta_t - start.delta_t, row.delta_t_y - start.delta_t_y]);
+                Some([way, ratio(force(row), row.f_n)?, limit?])
             };
             shear.iter().zip(points.clone()).map(point).collect()
         });
@@ -65,11 +68,7 @@ impl ErrorEstimate {
             a0: start.and_then(|start| start.a_error),
             f_t_max: largest.and_then(|(_, point)| point.f_t_error),
             // Where a part of the shear has none, the largest may lie there.
-            f_t_max_limit: points
-                .clone()
-                .map(|point| point.f_t_limit.map(f64::abs))
-                .reduce(|most, next| Some(most?.max(next?)))
-                .flatten(),
+            f_t_max_limit: points.clone().map(|point| force_limit(&point)).reduce(|most, next| Some(most?.max(next?))).flatten(),
             delta_t: over_mu(&|curve, wanted| displacement_error(curve, wanted)),
             delta_t_limit: {
                 let [to_90, to_95, _] = over_mu(&|curve, wanted| limit_reaches(curve, wanted));

@@ -140,7 +140,8 @@ impl Limits {
     /// first row: what it lacks at first order, and three quarters more, as of F_T/F_N.
     pub fn stiffness_error(&self, first: &StepRecord) -> Option<f64> {
         let there = self.stiffness.get(first.segment).copied().flatten()?;
-        self.is_comparable().then_some(TANGENTIAL_SHARE * self.factor() * (first.k_t? - there).abs())
+        let error = TANGENTIAL_SHARE * self.factor() * (first.k_t? - there).abs();
+        (self.is_comparable() && error.is_finite()).then_some(error)
     }
 
     fn is_comparable(&self) -> bool {
@@ -174,7 +175,7 @@ impl Limits {
             let f_n_limit = Some(f_n_limit);
             return StepLimits { f_t_limit: none, f_t_y_limit: none, f_n_limit, f_t_error: none, f_n_error, a_error };
         }
-        let Some(difference) = ratio_difference(row, &here) else {
+        let Some([difference, across]) = ratio_difference(row, &here) else {
             return StepLimits {
                 f_n_limit: Some(f_n_limit),
                 f_n_error: Some(NORMAL_SHARE * f_n_usual),
@@ -182,16 +183,15 @@ impl Limits {
                 ..Default::default()
             };
         };
-        let (ratio, added) = (row.f_t / row.f_n, self.factor() * difference);
         // Here or a step ago, whichever is more: it may change its sign on the way.
         let last = window.iter().rev().take(2).filter(|(other, _)| other.segment == row.segment);
         let differences = last.filter_map(|(other, there)| ratio_difference(other, there));
-        let ratio_error = self.factor() * differences.map(f64::abs).fold(0.0, f64::max);
+        let ratio_error = self.factor() * differences.map(size).fold(0.0, f64::max);
+        let ratio = size([row.f_t, row.f_t_y]) / row.f_n;
         let ripple = NORMAL_SHARE * f_n_usual;
         let bound = self.friction.unwrap_or(f64::INFINITY);
-        let across = row.f_t_y / row.f_n;
-        let across = across + self.factor() * (across - here.f_t_y / here.f_n);
-        let [along, across] = within([ratio + added, across], bound);
+        let [along, across] =
+            within([row.f_t / row.f_n + self.factor() * difference, row.f_t_y / row.f_n + self.factor() * across], bound);
         StepLimits {
             f_t_limit: Some(along * f_n_limit),
             f_t_y_limit: Some(across * f_n_limit),
@@ -208,7 +208,7 @@ impl Limits {
     fn beyond_ripple(&self, before: &[StepRecord], row: &StepRecord, here: &Counterpart) -> f64 {
         let is_shear = |segment: &Segment| match segment {
             Segment::Shear { .. } | Segment::Slip { .. } => true,
-            Segment::Motion { to, .. } => to.indentation.is_none(),
+            Segment::Motion { to, .. } => to.indentation.is_none() && to.shear.is_some() && to.roll.is_none(),
             _ => false,
         };
         if !self.path.get(row.segment).is_some_and(is_shear) {
@@ -284,12 +284,14 @@ impl Stretch {
     /// is.
     fn at(&self, segment: &Segment, place: f64, friction: Option<f64>) -> Option<Counterpart> {
         let [end, step] = self.f_n.end()?;
-        let full = matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. });
+        let full = matches!(segment, Segment::Shear { shear: ShearTarget::FullSlip, .. } | Segment::Slip { .. });
         if full && place > end {
             let last = self.all_at(end)?;
             let most = friction? * last.f_n;
-            if last.f_t.abs() >= SLIDES * most {
-                return Some(Counterpart { f_t: last.f_t.signum() * most, ..last });
+            let found = size([last.f_t, last.f_t_y]);
+            if found >= SLIDES * most {
+                let of_most = |part: f64| if part.abs() == found { part.signum() * most } else { part / found * most };
+                return Some(Counterpart { f_t: of_most(last.f_t), f_t_y: of_most(last.f_t_y), ..last });
             }
         }
         let released = matches!(segment, Segment::Release { share } if *share == 0.0);
@@ -314,13 +316,20 @@ fn within([along, across]: [f64; 2], bound: f64) -> [f64; 2] {
     if across == 0.0 {
         return [along.clamp(-bound, bound), across];
     }
-    let size = along.hypot(across);
-    if size <= bound { [along, across] } else { [along, across].map(|part| part / size * bound) }
+    let found = along.hypot(across);
+    if found <= bound { [along, across] } else { [along, across].map(|part| part / found * bound) }
 }
 
-/// How much larger F_T/F_N is in the run; `None` where the companion has no normal force.
-fn ratio_difference(row: &StepRecord, there: &Counterpart) -> Option<f64> {
-    (row.f_n > 0.0 && there.f_n > 0.0).then(|| row.f_t / row.f_n - there.f_t / there.f_n)
+/// How much larger F_T/F_N along x and y is in the run; `None` where the companion has no normal
+/// force.
+fn ratio_difference(row: &StepRecord, there: &Counterpart) -> Option<[f64; 2]> {
+    let difference = |here: f64, other: f64| here / row.f_n - other / there.f_n;
+    (row.f_n > 0.0 && there.f_n > 0.0).then(|| [difference(row.f_t, there.f_t), difference(row.f_t_y, there.f_t_y)])
+}
+
+/// Of a vector; along x it has the bits of the component.
+pub(super) fn size([along, across]: [f64; 2]) -> f64 {
+    if across == 0.0 { along.abs() } else { along.hypot(across) }
 }
 
 /// The state in which a segment begins after these rows.

@@ -95,7 +95,7 @@ pub struct StepRecord {
     /// F_N in that limit.
     #[serde(default, rename = "F_N_limit")]
     pub f_n_limit: Option<f64>,
-    /// Estimated size of what `f_t` lacks.
+    /// Estimated size of what F_T lacks, as a vector.
     #[serde(default, rename = "F_T_error")]
     pub f_t_error: Option<f64>,
     /// Of what `f_n` lacks.

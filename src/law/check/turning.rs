@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::protocol::slip_displacement;
 use super::{Path, meshed};
-use crate::case::{Case, Hold, Motion, Segment, ShearTarget};
+use crate::case::{Case, Friction, Hold, Motion, Segment, ShearTarget};
 use crate::contact_law::ContactParameters;
 
 /// Sides of a circle.
@@ -14,8 +14,11 @@ const STEPS: usize = 4;
 
 /// Circles of half and nine tenths of the slip displacement of the law, a figure of eight and a flip
 /// by 90 degrees, for the material, the friction and the greatest depth of `case`: the paths of
-/// `fixtures/paths/vector` on which nothing twists or rolls.
+/// `fixtures/paths/vector` on which nothing twists or rolls. None where there is no friction.
 pub fn turning_paths(case: &Case, parameters: &ContactParameters, elements: usize) -> Vec<Path> {
+    if case.contact.friction == Friction::Coefficient(0.0) {
+        return Vec::new();
+    }
     let h = case.greatest_indentation();
     let slip = slip_displacement(parameters, h);
     let radius = 0.9 * slip;

@@ -159,14 +159,31 @@ fn a_shear_in_another_direction_has_its_limits_along_it() {
     let (first, second) = (case(path), case(other));
     let (first, second) = (limits(&first, &along_x.1), limits(&second, &turned(&along_x.1)));
     let (rows, others) = (along_x.0.clone(), turned(&along_x.0));
+    let mut compared = 0;
     for i in (0..rows.len()).filter(|&i| rows[i].segment < 2) {
         let (one, other) = (first.of(&rows[..i], &rows[i]), second.of(&others[..i], &others[i]));
         // A share of the segment here, a length there: the companion is interpolated alike in both.
         let (Some(along), Some(x), Some(y)) = (one.f_t_limit, other.f_t_limit, other.f_t_y_limit) else { continue };
+        compared += 1;
+        let errors = [(one.f_t_error, other.f_t_error), (one.f_n_error, other.f_n_error)];
+        for (one, other) in errors.map(|(one, other)| (one.expect("an error"), other.expect("an error"))) {
+            assert!((one - other).abs() < 1e-9 * one + 1e-12, "row {i}: {other} for {one}");
+        }
         assert!((x - cosine * along).abs() < 1e-9 * along.abs() + 1e-12, "row {i}: {x} of {along}");
         assert!((y - sine * along).abs() < 1e-9 * along.abs() + 1e-12, "row {i}: {y} of {along}");
         assert!((one.f_n_limit.unwrap() - other.f_n_limit.unwrap()).abs() < 1e-9 * one.f_n_limit.unwrap());
     }
+    assert!(compared > 30, "{compared} rows compared");
+    let sheared = |rows: &[StepRecord]| rows.iter().copied().filter(|row| row.segment < 2).collect::<Vec<_>>();
+    let [one, other] =
+        [(&first, sheared(&rows)), (&second, sheared(&others))].map(|(limits, rows)| ErrorEstimate::new(&rows, &[], limits));
+    let pairs = [(one.f_t_max, other.f_t_max), (one.f_t_max_limit, other.f_t_max_limit)];
+    let pairs = pairs.into_iter().chain(one.delta_t.into_iter().zip(other.delta_t));
+    for (one, other) in pairs.chain(one.delta_t_limit.into_iter().zip(other.delta_t_limit)) {
+        assert_eq!(one.is_some(), other.is_some());
+        assert!(one.zip(other).is_none_or(|(one, other)| (one - other).abs() < 1e-9 * one), "{other:?} for {one:?}");
+    }
+    assert!(one.f_t_max_limit.is_some());
     assert_eq!(within([0.3, 0.0], 0.2), [0.2, 0.0]);
     let [x, y] = within([0.3, -0.4], 0.25);
     assert!((x - 0.15).abs() < 1e-15 && (y + 0.2).abs() < 1e-15);
