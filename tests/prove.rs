@@ -67,8 +67,8 @@ fn a_sound_device_is_proved_in_two_files() {
 }
 
 /// One kernel of the element, one of the linear solver and one of Newton's iterates; with
-/// `ASPERITY_FAULTS=all` or `ASPERITY_LONG=1` each in turn, and where the comparisons of kernels have not got it, in
-/// whole cases.
+/// `ASPERITY_FAULTS=all` or `ASPERITY_LONG=1` each in turn, and where the comparisons of kernels
+/// have not got it, in whole cases.
 #[test]
 #[cfg_attr(not(debug_assertions), ignore = "only builds with debug assertions make kernels faulty on demand")]
 fn a_faulty_kernel_ends_with_3() {

@@ -259,8 +259,8 @@ pub fn bad_displacements_are_refused<R: Real, B: Backend<R>>(backend: &B, _: &Bo
 }
 
 /// Two bodies in one mesh answer as each by itself, to the bit: forces, tangents, energies, and
-/// which part of the plastic work is the opponent's. On halves of bodies alone: with these numbers a
-/// tangent in f32 of both halves is 1e-3 off in the last step, which nobody has explained.
+/// which part of the plastic work is the opponent's. On halves of bodies alone: with these numbers
+/// a tangent in f32 of both halves is 1e-3 off in the last step, which nobody has explained.
 pub fn two_bodies_answer_as_each_by_itself<R: Real, B: Backend<R>>(backend: &B, bounds: &Bounds) {
     every_mesh(CELLS).into_iter().take(3).for_each(|models| two_bodies_answer_on::<R, B>(backend, bounds, models));
 }
