@@ -1,4 +1,4 @@
-//! A batch on a device, in f64 or held to it, against the CPU: eight cases of every hardening law,
+//! A batch on a device, in f64 or held to it, against the CPU: nine cases of every hardening law,
 //! friction and path have the same history, step by step.
 
 mod device;
@@ -19,6 +19,16 @@ const CPU: (&str, &str) = ("cpu", "auto");
 const GPU: (&str, &str) = ("gpu", "auto");
 const MIXED: (&str, &str) = ("gpu", "mixed");
 
+/// The case whose vectors stay on the host, by its number from 0, and what is told of it.
+const TURNED: usize = 8;
+const STAYS: &str = "note: the sphere leaves the x axis or turns, so the vectors of Newton's method stay on the host";
+
+/// What is told of a case is what is expected, and it has a device's account.
+fn assert_told(number: usize, summary: &Summary) {
+    let told: &[&str] = if number == TURNED { &[STAYS] } else { &[] };
+    assert!(summary.messages == told && summary.device_traffic.is_some(), "{:?}", summary.messages);
+}
+
 /// The histories and summaries of the study's cases.
 fn cases(dir: &Path, tolerance: f64, (device, precision): (&str, &str)) -> Vec<(Vec<StepRecord>, Summary)> {
     let text = std::fs::read_to_string(STUDY).unwrap();
@@ -32,7 +42,7 @@ fn cases(dir: &Path, tolerance: f64, (device, precision): (&str, &str)) -> Vec<(
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let mut directories: Vec<_> = std::fs::read_dir(out.join("cases")).unwrap().map(|entry| entry.unwrap().path()).collect();
     directories.sort();
-    assert_eq!(directories.len(), 8);
+    assert_eq!(directories.len(), 9);
     let read = |path: &std::path::PathBuf| {
         let case = OutputDirectory::existing(path.clone());
         (read_history(&path.join("history.csv")).unwrap(), Summary::read(&case.summary()).unwrap())
@@ -50,7 +60,7 @@ fn a_batch_has_the_cpus_histories() {
         let difference = difference(ours, theirs);
         eprintln!("case {}: {difference:.1e}", number + 1);
         assert_eq!((summary.status, summary.linear_fallbacks), (Status::Done, 0));
-        assert!(summary.messages.is_empty() && summary.device_traffic.is_some(), "{:?}", summary.messages);
+        assert_told(number, summary);
         assert!(difference <= 3e-7, "case {}: {difference}", number + 1);
     }
     assert!(gpu.iter().any(|(_, summary)| summary.cutbacks > 0), "no step was bisected");
@@ -65,6 +75,7 @@ fn a_batch_takes_the_cpus_iterations() {
         let cases = cases(dir.path(), 1e-3, device);
         cases.iter().map(|(_, summary)| summary.newton_iterations).sum::<usize>() as f64
     });
+    eprintln!("{gpu} iterations, {cpu} on the CPU");
     assert!((gpu / cpu - 1.0).abs() <= 0.05, "{gpu} and {cpu}");
 }
 
@@ -82,10 +93,14 @@ fn a_batch_in_f32_is_held_to_f64() {
             let difference = difference(ours, theirs);
             eprintln!("case {}: {difference:.1e}", number + 1);
             assert_eq!((summary.status, summary.precision.as_str()), (Status::Done, "f64"));
-            assert!(summary.messages.is_empty() && summary.device_traffic.is_some(), "{:?}", summary.messages);
+            assert_told(number, summary);
+            // Of the other cases the device makes steps in f32.
+            assert_eq!(summary.confirming_iterations.is_none(), number == TURNED);
             assert!(difference <= most, "case {} at {tolerance}: {difference}", number + 1);
         }
-        let sum = |of: fn(&Summary) -> usize, cases: &[(_, Summary)]| cases.iter().map(|(_, summary)| of(summary)).sum::<usize>();
+        let sum = |of: fn(&Summary) -> usize, cases: &[(_, Summary)]| {
+            cases[..TURNED].iter().map(|(_, summary)| of(summary)).sum::<usize>()
+        };
         let of_all = |summary: &Summary| summary.newton_iterations;
         let confirming = sum(|summary| summary.confirming_iterations.unwrap(), &gpu);
         let (theirs, ours) = (sum(of_all, &cpu) as f64, sum(of_all, &gpu) as f64);

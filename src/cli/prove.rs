@@ -28,7 +28,7 @@ pub enum Proved {
 pub enum ProvedPart {
     /// Each kernel against the CPU.
     Kernels,
-    /// Eight whole cases against the CPU.
+    /// Nine whole cases against the CPU.
     Cases,
     /// Latency, copies and whole jobs.
     Times,

@@ -1,9 +1,9 @@
 //! A batch as a whole: what a case gets depends neither on the others, nor on the run, nor on how
 //! scratch memory cuts the batch up.
 
-use crate::compute::Compute;
 use crate::compute::handle::CaseHandle;
-use crate::conformance::batch::{Backend, commits, displaced, forces, models, random, tangents};
+use crate::compute::{CaseModel, Compute};
+use crate::conformance::batch::{Backend, commits, displaced, forces, models, models_of_whole, random, tangents};
 use crate::real::Real;
 
 /// Nothing is bounded: bits are compared.
@@ -35,20 +35,24 @@ pub fn bits(backend: &mut dyn Compute, steps: &[Vec<(usize, Vec<f64>)>]) -> Vec<
     out
 }
 
-/// Two steps of so many cases.
-pub fn steps<R: Real>(count: usize) -> Vec<Vec<(usize, Vec<f64>)>> {
-    let nodes = models(CELLS)[0].mesh.nodes.len();
+/// Two steps of every case of a batch.
+pub fn steps<R: Real>(models: &[CaseModel]) -> Vec<Vec<(usize, Vec<f64>)>> {
+    let nodes = models[0].mesh.nodes.len();
     let mut rng = random(100);
-    let first: Vec<_> = (0..count).map(|case| (case, displaced::<R>(&vec![0.0; 3 * nodes], 1e-2, &mut rng))).collect();
+    let first: Vec<_> = (0..models.len()).map(|case| (case, displaced::<R>(&vec![0.0; 3 * nodes], 1e-2, &mut rng))).collect();
     let second = first.iter().map(|(case, u)| (*case, displaced::<R>(u, 1e-2, &mut rng))).collect();
     vec![first, second]
 }
 
+/// On boxes, and on both halves of a body.
 pub fn a_batch_has_the_bits_of_its_cases_alone<R: Real, B: Backend<R>>(backend: &B, _: &Bounds) {
-    let models = models(CELLS);
-    let steps = steps::<R>(models.len());
-    let together = bits(backend.start(&models).as_mut(), &steps);
-    let again = bits(backend.start(&models).as_mut(), &steps);
+    [models(CELLS), models_of_whole()].iter().for_each(|models| has_the_bits_of_its_cases_alone::<R, B>(backend, models));
+}
+
+fn has_the_bits_of_its_cases_alone<R: Real, B: Backend<R>>(backend: &B, models: &[CaseModel]) {
+    let steps = steps::<R>(models);
+    let together = bits(backend.start(models).as_mut(), &steps);
+    let again = bits(backend.start(models).as_mut(), &steps);
     assert!(together == again, "another run, other bits");
     for case in [0, 3, 6] {
         let own: Vec<_> = steps.iter().map(|step| vec![(0, step[case].1.clone())]).collect();
@@ -57,6 +61,6 @@ pub fn a_batch_has_the_bits_of_its_cases_alone<R: Real, B: Backend<R>>(backend: 
     }
     // some of the cases, in another order
     let part: Vec<_> = steps.iter().map(|step| [5, 1].map(|case: usize| step[case].clone()).to_vec()).collect();
-    let some = bits(backend.start(&models).as_mut(), &part);
+    let some = bits(backend.start(models).as_mut(), &part);
     assert!(some[0] == together[5] && some[1] == together[1]);
 }

@@ -8,7 +8,7 @@ use crate::contact::coulomb::{Friction, Rows};
 use crate::material::{Elasticity, Hardening, Material};
 use crate::mesh::brick::brick;
 use crate::mesh::couple::{couple, scaled};
-use crate::mesh::{Mesh, SphereSpec, flat_mesh};
+use crate::mesh::{Mesh, SphereSpec, flat_mesh, whole};
 use crate::random::Seeded;
 use crate::real::Real;
 use std::sync::Arc;
@@ -51,11 +51,17 @@ pub fn distorted(cells: [usize; 3], seed: u64) -> Arc<Mesh> {
     Arc::new(mesh)
 }
 
-/// A flat whose elements at the surface are halved so many times again, with corners that hang
+/// Half a flat whose elements at the surface are halved so many times again, with corners that hang
 /// where sizes meet; the smallest elements are about 0.3 wide and all are distorted.
 pub fn with_skin(levels: usize, seed: u64) -> Arc<Mesh> {
-    let spec = SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 3, fine_zone: 1.1, skin_levels: levels };
-    let mesh = flat_mesh(&spec).unwrap();
+    distorted_flat(half_flat(levels), seed)
+}
+
+fn half_flat(skin_levels: usize) -> Mesh {
+    flat_mesh(&SphereSpec { contact_radius: 0.3, elements_per_contact_radius: 3, fine_zone: 1.1, skin_levels }).unwrap()
+}
+
+fn distorted_flat(mesh: Mesh, seed: u64) -> Arc<Mesh> {
     let edge = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
     let edges = (0..mesh.elements.len()).map(|e| mesh.corners(e)).flat_map(|x| [1, 3, 4].map(|b| edge(x[0], x[b])));
     let shortest = edges.fold(f64::INFINITY, f64::min);
@@ -68,11 +74,17 @@ pub fn with_skin(levels: usize, seed: u64) -> Arc<Mesh> {
     Arc::new(mesh)
 }
 
-/// The batches of every test of the element: on boxes, and where corners hang by one level and two.
-pub fn every_mesh(cells: [usize; 3]) -> [Vec<CaseModel>; 3] {
+/// The batches of every test of the element: on boxes, where corners hang by one level and two, and
+/// on both halves of a body, where they hang too.
+pub fn every_mesh(cells: [usize; 3]) -> [Vec<CaseModel>; 4] {
     let skins = [1, 2].map(|levels| models_on([1, 2].map(|seed| with_skin(levels, seed))));
     let [one, two] = skins;
-    [models(cells), one, two]
+    [models(cells), one, two, models_of_whole()]
+}
+
+/// One law of every kind on both halves of a body, without a plane of symmetry.
+pub fn models_of_whole() -> Vec<CaseModel> {
+    models_on([1, 2].map(|seed| distorted_flat(whole(&half_flat(1)), seed)))
 }
 
 /// One law of every kind on boxes.

@@ -2,7 +2,7 @@
 //! correction leaves of its linear system, and what passes on the way.
 
 use super::batch::{random, tangents};
-use super::linear::mesh;
+use super::linear::{mesh, whole_mesh};
 use crate::compute::cpu::Cpu;
 use crate::compute::gpu::{Gpu, GpuContext};
 use crate::compute::handle::CaseHandle;
@@ -12,6 +12,7 @@ use crate::compute::{Answer, Call, CaseModel, Compute, Fault, Outcome};
 use crate::contact::coulomb::{Friction, Status};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, Hardening, Material};
+use crate::mesh::Mesh;
 use crate::solver::iterate::SetOut;
 use crate::solver::newton::Newton;
 use crate::solver::phases::PhaseTimes;
@@ -25,8 +26,7 @@ pub const DEPTH: f64 = 0.004;
 
 /// Spheres that are elastic and slide a little, plastic under full stick, and plastic without
 /// friction.
-fn models() -> Vec<CaseModel> {
-    let mesh = mesh();
+fn models(mesh: &Arc<Mesh>) -> Vec<CaseModel> {
     let cases = [
         (Hardening::Elastic, Friction::Coulomb(0.3)),
         (Hardening::ideal(2e-3).unwrap(), Friction::Stick),
@@ -52,7 +52,12 @@ pub struct Pressed {
 
 /// Presses the cases on a device.
 pub fn pressed(context: &Arc<GpuContext>) -> Pressed {
-    let models = models();
+    pressed_on(context, &mesh())
+}
+
+/// The same on a mesh.
+fn pressed_on(context: &Arc<GpuContext>, mesh: &Arc<Mesh>) -> Pressed {
+    let models = models(mesh);
     let mut gpu = Gpu::<f64>::new(context.clone(), models.clone()).unwrap();
     let mut cpu = Cpu::<f64>::new(models.clone()).unwrap();
     let settings = Settings {
@@ -128,9 +133,13 @@ fn near(what: &str, ours: f64, theirs: f64, scale: f64) {
     assert!((ours - theirs).abs() <= 1e-9 * scale, "{what}: {ours:e}, not {theirs:e}");
 }
 
-/// The same trials on both: every number by which the iteration goes on.
+/// The same trials on both: every number by which the iteration goes on. On half a sphere and on
+/// all of it, whose plate moves along x alone here: a device knows no other.
 pub fn a_trial_reads_as_on_the_cpu(context: &Arc<GpuContext>) {
-    let mut pressed = pressed(context);
+    [mesh(), whole_mesh()].iter().for_each(|mesh| a_trial_reads_so_on(pressed_on(context, mesh)));
+}
+
+fn a_trial_reads_so_on(mut pressed: Pressed) {
     for case in 0..pressed.models.len() {
         for held in [None, Some(1e-4)] {
             let mesh = pressed.models[case].mesh.clone();
@@ -192,9 +201,12 @@ pub fn corrected(answer: &Reply) -> Corrected {
 }
 
 /// A correction solves the system that the host states in f64, to the tolerance that was asked; one
-/// under a held force brings the plate's to it.
+/// under a held force brings the plate's to it. On half a sphere and on all of it.
 pub fn a_correction_solves_the_hosts_system(context: &Arc<GpuContext>) {
-    let mut pressed = pressed(context);
+    [mesh(), whole_mesh()].iter().for_each(|mesh| a_correction_solves_it_on(pressed_on(context, mesh)));
+}
+
+fn a_correction_solves_it_on(mut pressed: Pressed) {
     for case in 0..pressed.models.len() {
         let mesh = pressed.models[case].mesh.clone();
         let start = pressed.displacement[case].clone();

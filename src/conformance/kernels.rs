@@ -2,24 +2,28 @@
 //! and leaves on every level are the CPU's, which are in f32 too; the vectors of FGMRES, which the
 //! CPU makes in another way, are held to the equations that define them, in f64.
 
-use super::linear::{Numbers, System, models, own_numbers, solve, system};
+use super::linear::{Numbers, System, mesh, models, own_numbers, solve, system, whole_mesh};
+use crate::compute::CaseModel;
 use crate::compute::gpu::linear::inspect::OnLevel;
 use crate::compute::gpu::{Gpu, GpuContext};
 use crate::linalg::{BlockMatrix, Hierarchy};
-use crate::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh};
+use crate::mesh::{Mesh, Prolongation, SphereSpec, brick, sphere_mesh, whole};
 use std::sync::Arc;
 
 /// Of the largest number of an array.
 const BOUND: f32 = 1e-5;
 
-/// Two of even elements, and two with smaller ones at the surface, whose levels are the first steps
-/// of the hierarchy.
-fn meshes() -> [Arc<Mesh>; 4] {
-    [(4, 0), (8, 0), (4, 1), (4, 2)].map(|(elements_per_contact_radius, skin_levels)| {
-        Arc::new(
-            sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3, skin_levels }).unwrap(),
-        )
-    })
+/// Two of even elements, two with smaller ones at the surface, whose levels are the first steps of
+/// the hierarchy, and both halves of one of either kind.
+fn meshes() -> [Arc<Mesh>; 6] {
+    let half = |elements_per_contact_radius, skin_levels| {
+        sphere_mesh(&SphereSpec { contact_radius: 0.2, elements_per_contact_radius, fine_zone: 1.3, skin_levels }).unwrap()
+    };
+    let halves = [half(4, 0), half(8, 0), half(4, 1), half(4, 2)];
+    let wholes = [0, 2].map(|i| whole(&halves[i]));
+    let [a, b, c, d] = halves;
+    let [e, f] = wholes;
+    [a, b, c, d, e, f].map(Arc::new)
 }
 
 /// A box whose levels are halved down to a single element.
@@ -152,63 +156,65 @@ fn product(matrix: &BlockMatrix<f64>, fixed: &[bool], x: &[f64]) -> Vec<f64> {
 
 /// The basis is orthonormal and begins with the residual; A z_j lies in the span of the first j + 2
 /// vectors; the answer is the combination of the z_j that leaves the least, and as much is left as
-/// the recurrence says.
+/// the recurrence says. On half a sphere and on all of it.
 pub fn a_krylov_cycle_obeys_its_equations(context: &Arc<GpuContext>) {
-    let [mesh, ..] = meshes();
-    let models = models(&mesh);
-    for case in 0..models.len() {
-        let system = system(own_numbers, case, &models, true);
-        let System { fixed, rhs, matrix, .. } = &system;
-        let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
-        let (_, report) = solve(&mut gpu, &[(0, &system)], 1e-4).remove(0);
-        let cycle = gpu.solver().unwrap().last_cycle(context).unwrap();
-        let steps = cycle.steps;
-        assert!(steps == report.iterations && steps > 2, "{steps} of {}", report.iterations);
-        let n = rhs.len();
-        // Sides go to the device in units of a power of two near their largest number.
-        let unit = rhs.iter().fold(0.0f64, |m, b| m.max(b.abs())).log2().floor().exp2();
-        let rhs: Vec<f64> = rhs.iter().map(|b| b / unit).collect();
-        let vectors = |all: &[f32]| all.chunks_exact(n).map(by_node).collect::<Vec<_>>();
-        let (basis, preconditioned) = (vectors(&cycle.basis), vectors(&cycle.preconditioned));
-        for (i, a) in basis.iter().enumerate() {
-            for (j, b) in basis[..=i].iter().enumerate() {
-                let expected = if i == j { 1.0 } else { 0.0 };
-                assert!((dot(a, b) - expected).abs() <= 1e-5, "vectors {i} and {j}: {}", dot(a, b));
-            }
-        }
-        let solution = by_node(&cycle.solution);
-        let taken_over = product(matrix, fixed, &solution);
-        let start: Vec<f64> = (0..n).map(|i| if fixed[i] { 0.0 } else { rhs[i] - taken_over[i] }).collect();
-        let norm = dot(&start, &start).sqrt();
-        let first = start.iter().zip(&basis[0]).fold(0.0f64, |m, (r, v)| m.max((r / norm - v).abs()));
-        assert!(first <= 1e-5, "the first vector is {first:e} off");
-        let images: Vec<Vec<f64>> = preconditioned.iter().map(|z| product(matrix, fixed, z)).collect();
-        for (j, image) in images.iter().enumerate().take(steps - 1) {
-            let mut left = image.clone();
-            for v in &basis[..j + 2] {
-                let share = dot(&left, v);
-                left.iter_mut().zip(v).for_each(|(l, v)| *l -= share * v);
-            }
-            let share = (dot(&left, &left) / dot(image, image)).sqrt();
-            assert!(share <= 1e-5, "A z of step {j} has {share:e} outside of the basis");
-        }
-        // The residual is orthogonal to what could still be taken from it.
-        let mut answer = solution.clone();
-        for (z, &c) in preconditioned.iter().zip(&cycle.combination) {
-            answer.iter_mut().zip(z).for_each(|(x, z)| *x += f64::from(c) * z);
-        }
-        let size = answer.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let told = by_node(&cycle.answer);
-        assert!(answer.iter().zip(&told).all(|(a, b)| (a - b).abs() <= 1e-5 * size), "the combination");
-        let image = product(matrix, fixed, &told);
-        let left: Vec<f64> = (0..n).map(|i| if fixed[i] { 0.0 } else { rhs[i] - image[i] }).collect();
-        let what_is_left = dot(&left, &left).sqrt();
-        for (j, image) in images.iter().enumerate() {
-            let share = dot(&left, image) / (norm * dot(image, image).sqrt());
-            assert!(share.abs() <= 1e-5, "{share:e} of the first residual could still be taken along A z of step {j}");
-        }
-        let missing = (what_is_left - f64::from(cycle.residual)).abs() / norm;
-        log::debug!("case {case}: {steps} steps, left {what_is_left:.3e} of {norm:.3e}, recurrence {:.3e}", cycle.residual);
-        assert!(missing <= 1e-5, "left {what_is_left:e}, and {:e} by the recurrence, of {norm:e}", cycle.residual);
+    for models in [mesh(), whole_mesh()].map(|mesh| models(&mesh)) {
+        (0..models.len()).for_each(|case| the_cycle_of_a_case_obeys_its_equations(context, &models, case));
     }
+}
+
+fn the_cycle_of_a_case_obeys_its_equations(context: &Arc<GpuContext>, models: &[CaseModel], case: usize) {
+    let system = system(own_numbers, case, models, true);
+    let System { fixed, rhs, matrix, .. } = &system;
+    let mut gpu = Gpu::<f64>::new(context.clone(), vec![models[case].clone()]).unwrap();
+    let (_, report) = solve(&mut gpu, &[(0, &system)], 1e-4).remove(0);
+    let cycle = gpu.solver().unwrap().last_cycle(context).unwrap();
+    let steps = cycle.steps;
+    assert!(steps == report.iterations && steps > 2, "{steps} of {}", report.iterations);
+    let n = rhs.len();
+    // Sides go to the device in units of a power of two near their largest number.
+    let unit = rhs.iter().fold(0.0f64, |m, b| m.max(b.abs())).log2().floor().exp2();
+    let rhs: Vec<f64> = rhs.iter().map(|b| b / unit).collect();
+    let vectors = |all: &[f32]| all.chunks_exact(n).map(by_node).collect::<Vec<_>>();
+    let (basis, preconditioned) = (vectors(&cycle.basis), vectors(&cycle.preconditioned));
+    for (i, a) in basis.iter().enumerate() {
+        for (j, b) in basis[..=i].iter().enumerate() {
+            let expected = if i == j { 1.0 } else { 0.0 };
+            assert!((dot(a, b) - expected).abs() <= 1e-5, "vectors {i} and {j}: {}", dot(a, b));
+        }
+    }
+    let solution = by_node(&cycle.solution);
+    let taken_over = product(matrix, fixed, &solution);
+    let start: Vec<f64> = (0..n).map(|i| if fixed[i] { 0.0 } else { rhs[i] - taken_over[i] }).collect();
+    let norm = dot(&start, &start).sqrt();
+    let first = start.iter().zip(&basis[0]).fold(0.0f64, |m, (r, v)| m.max((r / norm - v).abs()));
+    assert!(first <= 1e-5, "the first vector is {first:e} off");
+    let images: Vec<Vec<f64>> = preconditioned.iter().map(|z| product(matrix, fixed, z)).collect();
+    for (j, image) in images.iter().enumerate().take(steps - 1) {
+        let mut left = image.clone();
+        for v in &basis[..j + 2] {
+            let share = dot(&left, v);
+            left.iter_mut().zip(v).for_each(|(l, v)| *l -= share * v);
+        }
+        let share = (dot(&left, &left) / dot(image, image)).sqrt();
+        assert!(share <= 1e-5, "A z of step {j} has {share:e} outside of the basis");
+    }
+    // The residual is orthogonal to what could still be taken from it.
+    let mut answer = solution.clone();
+    for (z, &c) in preconditioned.iter().zip(&cycle.combination) {
+        answer.iter_mut().zip(z).for_each(|(x, z)| *x += f64::from(c) * z);
+    }
+    let size = answer.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let told = by_node(&cycle.answer);
+    assert!(answer.iter().zip(&told).all(|(a, b)| (a - b).abs() <= 1e-5 * size), "the combination");
+    let image = product(matrix, fixed, &told);
+    let left: Vec<f64> = (0..n).map(|i| if fixed[i] { 0.0 } else { rhs[i] - image[i] }).collect();
+    let what_is_left = dot(&left, &left).sqrt();
+    for (j, image) in images.iter().enumerate() {
+        let share = dot(&left, image) / (norm * dot(image, image).sqrt());
+        assert!(share.abs() <= 1e-5, "{share:e} of the first residual could still be taken along A z of step {j}");
+    }
+    let missing = (what_is_left - f64::from(cycle.residual)).abs() / norm;
+    log::debug!("case {case}: {steps} steps, left {what_is_left:.3e} of {norm:.3e}, recurrence {:.3e}", cycle.residual);
+    assert!(missing <= 1e-5, "left {what_is_left:e}, and {:e} by the recurrence, of {norm:e}", cycle.residual);
 }

@@ -10,26 +10,33 @@ use crate::compute::{Answer, Call, CaseModel, Compute, Outcome};
 use crate::contact::coulomb::{CONTACT_WEIGHT, Friction, Point, Rows, Status, contact_rows};
 use crate::linalg::{BlockMatrix, LinearSolver, Pattern, SolverKind};
 use crate::material::{Elasticity, Hardening, Material};
-use crate::mesh::{Mesh, SphereSpec, sphere_mesh};
+use crate::mesh::{Mesh, SphereSpec, sphere_mesh, whole};
 use crate::solver::system::{Boundary, apply_contact, fixed_unknowns, plate_functional};
 use std::sync::Arc;
 
 /// Cases of a batch.
 pub const CASES: usize = 3;
 
-/// A sphere of even elements.
+/// Half a sphere of even elements.
 pub fn mesh() -> Arc<Mesh> {
     let [mesh, ..] = meshes();
     mesh
 }
 
-/// A sphere of even elements, and with elements at the surface that are halved once and twice
-/// again.
-pub fn meshes() -> [Arc<Mesh>; 3] {
-    [0, 1, 2].map(|skin_levels| {
+/// Half a sphere of even elements, with elements at the surface that are halved once and twice
+/// again, and both halves of the first.
+pub fn meshes() -> [Arc<Mesh>; 4] {
+    let half = |skin_levels| {
         let spec = SphereSpec { contact_radius: 0.2, elements_per_contact_radius: 4, fine_zone: 1.3, skin_levels };
-        Arc::new(sphere_mesh(&spec).unwrap())
-    })
+        sphere_mesh(&spec).unwrap()
+    };
+    [half(0), half(1), half(2), whole(&half(0))].map(Arc::new)
+}
+
+/// Both halves of a sphere of even elements.
+pub fn whole_mesh() -> Arc<Mesh> {
+    let [.., mesh] = meshes();
+    mesh
 }
 
 /// Three spheres: elastic, plastic, nearly incompressible.
@@ -79,12 +86,16 @@ pub fn system(numbers: Numbers, case: usize, models: &[CaseModel], masked: bool)
         .map(|u| u + between(-1e-6, 1e-6))
         .collect();
     let blocks = tangents(&mut Cpu::<f64>::new(models.to_vec()).unwrap(), &[(case, displacement.clone())]).remove(0).1;
+    // Half a body moves along x alone.
+    let is_whole = mesh.copies == 1;
     let rows: Vec<Rows<f64>> = (0..mesh.contact_nodes.len())
         .map(|i| {
+            let mut across = |most: f64| if is_whole { between(-most, most) } else { 0.0 };
+            let (force_y, slip_y) = (across(1e-5), across(1e-4));
             let point = Point {
-                force: [between(-1e-5, 1e-5), 0.0, between(-1e-5, 3e-5)],
+                force: [between(-1e-5, 1e-5), force_y, between(-1e-5, 3e-5)],
                 gap: between(-1e-5, 1e-5),
-                slip: [between(-1e-4, 1e-4), 0.0],
+                slip: [between(-1e-4, 1e-4), slip_y],
                 weight: CONTACT_WEIGHT * mesh.contact_size[i],
                 on_symmetry_plane: mesh.symmetry_nodes.contains(&mesh.contact_nodes[i]),
             };

@@ -1,7 +1,7 @@
 //! A device against the CPU, whole: what `asperity prove` finds on a machine, for people who have
 //! the card at hand and for those who have not.
 //!
-//! [`kernels`] runs each kernel's comparisons, [`parity`] eight whole cases; [`latency`] and
+//! [`kernels`] runs each kernel's comparisons, [`parity`] nine whole cases; [`latency`] and
 //! [`crate::bench`] measure. [`page`] writes what was found as Markdown. A report has no name of a
 //! host, of a user or of a folder.
 
@@ -36,7 +36,7 @@ pub const FORMAT: &str = "asperity-prove/1";
 pub enum Part {
     /// Each kernel against the CPU.
     Kernels,
-    /// Eight whole cases against the CPU.
+    /// Nine whole cases against the CPU.
     Cases,
     /// Latency, copies, whole jobs.
     Times,

@@ -85,10 +85,10 @@ fn write_parity(text: &mut String, report: &Report) -> std::fmt::Result {
     if report.parity.rows.is_empty() {
         return Ok(());
     }
-    writeln!(text, "\n## Eight whole cases\n")?;
+    writeln!(text, "\n## Nine whole cases\n")?;
     writeln!(
         text,
-        "The largest difference of F_N, F_T and a from the CPU's, over the steps; Newton's iterations; the bits again and \
+        "The largest difference of F_N, F_T, moments and a from the CPU's, over the steps; Newton's iterations; the bits again and \
          alone.\n"
     )?;
     writeln!(text, "| precision | tolerance | case | difference | Newton | on the CPU | again | alone |")?;

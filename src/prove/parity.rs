@@ -1,4 +1,4 @@
-//! Eight whole cases, of every hardening law and kind of friction and path, on a device and on the
+//! Nine whole cases, of every hardening law and kind of friction and path, on a device and on the
 //! CPU: `fixtures/studies/parity.toml`, as a study computes it.
 
 use std::fs;
@@ -37,8 +37,8 @@ const ALONE: [usize; 1] = [5];
 pub struct OfCase {
     /// Its number, from 1.
     pub case: usize,
-    /// The largest difference of F_N, F_T and a over the steps; forces by the largest F_N, radii by
-    /// the largest. None where the numbers of steps differ.
+    /// The largest difference of F_N, F_T, moments and a over the steps; forces by the largest F_N,
+    /// radii by the largest, moments by both. None where the numbers of steps differ.
     pub difference: Option<f64>,
     /// Newton iterations on the device.
     pub newton_device: usize,
@@ -109,20 +109,28 @@ impl Parity {
     }
 }
 
-/// The largest difference of F_N, F_T and a over the steps; forces by the largest F_N. Infinite
-/// where the numbers of steps differ.
+/// The largest difference of F_N, F_T, moments and a over the steps; forces by the largest F_N,
+/// moments by that times the largest a. Infinite where the numbers of steps differ.
 pub fn difference(ours: &[StepRecord], theirs: &[StepRecord]) -> f64 {
+    type Of = fn(&StepRecord) -> f64;
     if ours.len() != theirs.len() {
         return f64::INFINITY;
     }
-    let largest = |of: fn(&StepRecord) -> f64| theirs.iter().fold(0.0_f64, |m, row| m.max(of(row).abs()));
+    let largest = |of: Of| theirs.iter().fold(0.0_f64, |m, row| m.max(of(row).abs()));
     let (force, radius) = (largest(|row| row.f_n), largest(|row| row.a));
-    ours.iter().zip(theirs).fold(0.0_f64, |m, (ours, theirs)| {
-        let force = (ours.f_n - theirs.f_n).abs().max((ours.f_t - theirs.f_t).abs()) / force;
-        let radius = (ours.a - theirs.a).abs() / radius;
-        // A number that is none is no small one.
-        if force.is_finite() && radius.is_finite() { m.max(force).max(radius) } else { f64::INFINITY }
-    })
+    let compared: [(Of, f64); 7] = [
+        (|row| row.f_n, force),
+        (|row| row.f_t, force),
+        (|row| row.f_t_y, force),
+        (|row| row.a, radius),
+        (|row| row.m_twist, force * radius),
+        (|row| row.m_roll_x, force * radius),
+        (|row| row.m_roll_y, force * radius),
+    ];
+    let of_step = |(ours, theirs): (&StepRecord, &StepRecord)| compared.map(|(of, scale)| (of(ours) - of(theirs)).abs() / scale);
+    let differences = ours.iter().zip(theirs).flat_map(of_step);
+    // A number that is none is no small one.
+    differences.fold(0.0_f64, |m, found| if found.is_finite() { m.max(found) } else { f64::INFINITY })
 }
 
 /// What a case left.
@@ -179,7 +187,7 @@ pub fn compare(options: &Options, has_double: bool, progress: &mut ProveProgress
     };
     let mut parity = Parity::default();
     for (number, bounds) in BOUNDS.iter().enumerate().take(if options.quick { 1 } else { 2 }) {
-        progress.begins(&format!("eight cases on the CPU, tolerance {:e}", bounds.tolerance), 2.0);
+        progress.begins(&format!("nine cases on the CPU, tolerance {:e}", bounds.tolerance), 2.0);
         let on_cpu = Devices::open(DeviceChoice::Cpu).map_err(StudyError::from).and_then(|devices| {
             let place = Place { device: DeviceChoice::Cpu, precision: PrecisionChoice::Auto, threads: options.threads };
             computed(&devices, place, bounds.tolerance, None)
@@ -218,7 +226,7 @@ fn against(
     // A profile tells which kernels ran.
     let devices = Devices::profiled(place.device).map_err(|error| error.to_string())?;
     let run = |only: Option<usize>| computed(&devices, place, tolerance, only).map_err(|error| error.to_string());
-    progress.begins(&format!("eight cases on the device, tolerance {tolerance:e}"), 6.0);
+    progress.begins(&format!("nine cases on the device, tolerance {tolerance:e}"), 6.0);
     let together = run(None)?;
     let mut cases = Vec::new();
     for (number, (ours, theirs)) in together.iter().zip(on_cpu).enumerate() {
@@ -251,9 +259,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_study_has_eight_cases_and_each_is_one_alone() {
+    fn the_study_has_nine_cases_and_each_is_one_alone() {
         let all = Study::parse(&text_of(1e-3, None), "parity.toml").unwrap();
-        assert_eq!(all.cases.len(), 8);
+        assert_eq!(all.cases.len(), 9);
         for (number, case) in all.cases.iter().enumerate() {
             let alone = Study::parse(&text_of(1e-3, Some(number)), "parity.toml").unwrap();
             assert!(alone.cases.len() == 1 && alone.cases[0].case == case.case, "case {}", number + 1);

@@ -11,7 +11,7 @@ fn short_memory_cuts_a_call_up_and_changes_no_bit() {
     let name = "short_memory_cuts_a_call_up_and_changes_no_bit";
     let Some(context) = device(name, Precision::F32) else { return };
     let models = models(CELLS);
-    let steps = steps::<f32>(models.len());
+    let steps = steps::<f32>(&models);
     let mut whole = Gpu::<f32>::new(context.into(), models.clone()).unwrap();
     let used = whole.context().unwrap().budget().used();
     let expected = bits(&mut whole, &steps);
@@ -28,7 +28,7 @@ fn short_memory_cuts_a_call_up_and_changes_no_bit() {
 fn short_arrays_cut_a_batch_up_and_change_no_bit() {
     let name = "short_arrays_cut_a_batch_up_and_change_no_bit";
     let models = models(CELLS);
-    let steps = steps::<f32>(models.len());
+    let steps = steps::<f32>(&models);
     let with = |bytes: Option<u64>| {
         let context = device(name, Precision::F32)?;
         let context = match bytes {

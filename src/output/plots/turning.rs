@@ -27,7 +27,7 @@ pub fn plot_plane(history: &[StepRecord], friction: Option<f64>, view: &View) ->
     let loaded = || history.iter().filter(|step| step.f_n > 0.0);
     let reached = greatest(loaded().map(|step| step.f_t.hypot(step.f_t_y)));
     let most = greatest(loaded().map(|step| step.f_n));
-    let last = loaded().last().map_or(0.0, |step| step.f_n);
+    let last = loaded().next_back().map_or(0.0, |step| step.f_n);
     let mut circles: Vec<(&str, f64)> = vec![("greatest", most), ("last", last)];
     circles.truncate(if last < FALLEN * most { 2 } else { 1 });
     let limits: Vec<(String, f64)> = friction.map_or_else(Vec::new, |mu| {
