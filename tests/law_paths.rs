@@ -104,8 +104,8 @@ fn the_update_follows_the_simulated_paths() {
     assert!(greatest[0] <= GREATEST[0] && greatest[1] <= GREATEST[1] && all <= GREATEST[2], "{greatest:?} {all}");
 }
 
-/// Paths in turning directions of the 36 that are within both aims, at least; the simulations, on 6
-/// elements with 12 at the surface, are 2 to 4 % off themselves (`fixtures/paths/vector/errors.csv`).
+/// Paths in turning directions of the 36 that are within both aims, at least; the simulations, on
+/// 6 elements with 12 at the surface, are 2 to 4 % off themselves (`errors.csv` beside them).
 const WITHIN_TURNING: usize = 22;
 
 /// Greatest root mean square error of F_T, as a vector, and of F_N of any of them.

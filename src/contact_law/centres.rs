@@ -150,9 +150,9 @@ impl Centres {
         }
     }
 
-    /// What x and y become as z is turned into the line of centres: the axes of T. An engine carries
-    /// its axes along the path; on a closed one they turn by the solid angle of the line, pi
-    /// delta_T^2/D^2 at most, which is left out.
+    /// What x and y become as z is turned into the line of centres: the axes of T. An engine
+    /// carries its axes along the path; on a closed one they turn by the solid angle of the line,
+    /// pi delta_T^2/D^2 at most, which is left out.
     fn axes(self, place: [f64; 3]) -> [[f64; 3]; 2] {
         let [z, x, y] = self.line(place);
         let less = 1.0 / (1.0 + z);

@@ -136,8 +136,8 @@ impl Limits {
         })
     }
 
-    /// Estimated error of the tangent dF_T/d delta_T at the start of a shear, of which `first` is the
-    /// first row: what it lacks at first order, and three quarters more, as of F_T/F_N.
+    /// Estimated error of the tangent dF_T/d delta_T at the start of a shear, of which `first` is
+    /// the first row: what it lacks at first order, and three quarters more, as of F_T/F_N.
     pub fn stiffness_error(&self, first: &StepRecord) -> Option<f64> {
         let there = self.stiffness.get(first.segment).copied().flatten()?;
         let error = TANGENTIAL_SHARE * self.factor() * (first.k_t? - there).abs();

@@ -2,7 +2,7 @@
 //! interface, in their frames (see [`crate::contact::interface`]).
 //!
 //! An equal pair and two bodies differ in the mortar, in what solves their systems, and in what
-//! there is of a step that is even in x; [`Bodies`] is that, and the rest is here.
+//! there is of a step that has the bodies' symmetry; [`Bodies`] is that, and the rest is here.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -31,9 +31,9 @@ pub trait Bodies: Debug + Send + Sync {
 
     /// Sum of the forces on one body's contact nodes, over that of the slaves' forces.
     const SIDES: f64;
-    /// Where all is even in x nothing slips, and friction has nothing to do.
+    /// Where all has the bodies' symmetry nothing slips, and friction has nothing to do.
     const STICKS_IF_EVEN: bool;
-    /// Where all is even in x, corrections are in the unknowns too.
+    /// Where all has the bodies' symmetry, corrections are in the unknowns too.
     const CORRECTS_EVENLY: bool;
 
     /// The interface of a step that is expected to lead to displacement `u`.
@@ -54,7 +54,7 @@ pub trait Bodies: Debug + Send + Sync {
     /// the undeformed bodies.
     fn gap_of_unfaced(&self, height: f64) -> f64;
 
-    /// As what each body is seen that is pressed alone: its mirror image in x, or another one.
+    /// The symmetry that each body keeps while it is only pressed: the mirror in x, or another one.
     fn symmetry(&self, mesh: &Mesh) -> Symmetry {
         Symmetry::mirror(mesh)
     }
@@ -112,7 +112,7 @@ impl<B: Bodies> Joint<B> {
         Self { bodies, interface: Arc::default(), reference: Vec::new(), start: Vec::new(), symmetry, symmetric: false }
     }
 
-    /// Whether all of the step is even in x.
+    /// Whether all of the step has the bodies' symmetry.
     fn is_even(&self) -> bool {
         self.symmetric && !self.symmetry.nodes.is_empty()
     }

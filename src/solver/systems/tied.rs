@@ -25,9 +25,9 @@ const STALLED: f64 = 0.3;
 pub struct Tie<I> {
     /// The tangent along the axes.
     pub matrix: BlockMatrix<f32>,
-    /// The state and the step are even in x, and so are all corrections.
+    /// The state and the step have the bodies' `symmetry`, and so have all corrections.
     pub symmetric: bool,
-    /// Of the bodies and all corrections, where that is.
+    /// What each body keeps while it is only pressed: the mirror in x or the half turn round z.
     symmetry: Symmetry,
     pub contact_nodes: Vec<u32>,
     pub interface: Arc<I>,
@@ -58,7 +58,8 @@ impl<I: Interface> Tie<I> {
         }
     }
 
-    /// Takes over the interface, its rows and which unknowns y are fixed; whether all is even in x.
+    /// Takes over the interface, its rows and which unknowns y are fixed; whether all has the
+    /// bodies' symmetry.
     pub fn take(&mut self, interface: &Arc<I>, rows: &[Rows<f64>], fixed: &[bool], symmetric: bool) {
         self.interface = interface.clone();
         self.rows.clear();
