@@ -78,12 +78,15 @@ fn the_path_decides_what_is_meshed() {
     paths.iter().for_each(|(path, expected)| assert_eq!(of(path), *expected, "{path}"));
 }
 
-/// F_N of the press alone differs by 0.9 %: the steps of a press count for more between two bodies.
+/// F_N of the press alone differs by 0.9 % on 5 elements: the other body's nodes lie elsewhere.
+/// The two have no rolling moment in a shear, by symmetry; of two meshed bodies, one of which has
+/// the slaves, the middle of the pressure is 0.02 a beside the line of centres on 5 elements.
 #[test]
 fn an_image_has_the_forces_of_two_bodies() {
+    let tight = ["solver.tolerance=1e-6"];
     for moved in ["shear = [0.002, 0.003]", "twist = 0.04", "twist = 0.03\nshear = [0.001, 0.0]"] {
         let path = ["indentation = 0.02", moved];
-        let (image, two) = (rows(&text(IDEAL, IMAGE, &path), &[]), rows(&text(IDEAL, &meshed(IDEAL), &path), &[]));
+        let (image, two) = (rows(&text(IDEAL, IMAGE, &path), &tight), rows(&text(IDEAL, &meshed(IDEAL), &path), &tight));
         assert_energy(&image, moved);
         let (one, other) = (end(&image), end(&two));
         let is_there = |a: f64, b: f64| (a - b).abs() < 1e-12;
@@ -99,8 +102,8 @@ fn an_image_has_the_forces_of_two_bodies() {
             (one.m_roll_x / moment, other.m_roll_x / moment),
             (one.m_roll_y / moment, other.m_roll_y / moment),
         ];
-        println!("{moved}: {pairs:.4?}");
-        assert!(pairs.iter().all(|(a, b)| (a - b).abs() < 0.01), "{moved}: {pairs:.4?}");
+        let tolerances = [0.01, 0.01, 0.01, 0.005, 0.025, 0.025];
+        assert!(pairs.iter().zip(tolerances).all(|((a, b), tolerance)| (a - b).abs() < tolerance), "{moved}: {pairs:.4?}");
     }
 }
 
@@ -109,7 +112,7 @@ fn an_image_has_the_forces_of_two_bodies() {
 /// it is the image's roll, in which each turns by half of the angle.
 #[test]
 fn a_roll_about_x_is_that_of_two_bodies_seen_from_their_centres() {
-    let (h, angle) = (0.02, 0.02);
+    let (h, angle) = (0.02_f64, 0.02_f64);
     let image = rows(&text(IDEAL, IMAGE, &[&format!("indentation = {h:?}"), &format!("roll = [{angle:?}, 0.0]")]), &[]);
     assert_energy(&image, "roll");
     // The centre goes by R - h for each rad of a roll; between two bodies it is R - h/2.
@@ -120,17 +123,20 @@ fn a_roll_about_x_is_that_of_two_bodies_seen_from_their_centres() {
     let (one, other) = (end(&image), end(&two));
     let (sin, cos) = (0.5 * angle).sin_cos();
     let (f_n, across) = (other.f_n * cos + other.f_t_y * sin, other.f_t_y * cos - other.f_n * sin);
-    println!("{} {f_n}, {} {across}, {} {}", one.f_n, one.f_t_y, one.m_roll_x, other.m_roll_x);
     assert!((one.roll_x - angle).abs() < 1e-12);
-    assert!((one.f_n / f_n - 1.0).abs() < 0.01, "F_N {} for {f_n}", one.f_n);
-    assert!((one.f_t_y - across).abs() < 0.01 * f_n, "F_T,y {} for {across}", one.f_t_y);
-    assert!((one.m_roll_x / other.m_roll_x - 1.0).abs() < 0.02, "{} for {}", one.m_roll_x, other.m_roll_x);
+    let presses = [pressed(&image).f_n, pressed(&two).f_n];
+    for (what, a, b) in [("F_N", one.f_n, f_n), ("F_T,y", one.f_t_y, across)] {
+        assert!((a / presses[0] - b / presses[1]).abs() < 0.005, "{what} {a} {b} of {presses:?}");
+    }
+    let moments = [one.m_roll_x / presses[0], other.m_roll_x / presses[1]];
+    assert!((moments[0] / moments[1] - 1.0).abs() < 0.01, "{moments:?}");
 }
 
-/// On half of the mesh by the half turn, and on all of it by the inversion.
+/// On half of the mesh by the half turn, and on all of it by the inversion: within 2.5e-4 of the
+/// F_N of the press.
 #[test]
 fn along_x_both_images_say_the_same() {
-    for (law, share) in [(ELASTIC, 2e-3), (IDEAL, 5e-3)] {
+    for law in [ELASTIC, IDEAL] {
         let of = |shear: &str| rows(&text(law, IMAGE, &["indentation = 0.02", shear]), &["solver.tolerance=1e-6"]);
         let (half, whole) = (of("shear = 0.003"), of("shear = [0.003, 1e-14]"));
         assert_energy(&half, law);
@@ -138,14 +144,13 @@ fn along_x_both_images_say_the_same() {
         let press = pressed(&half).f_n;
         assert!((pressed(&whole).f_n / press - 1.0).abs() < 1e-5, "{} for {press}", pressed(&whole).f_n);
         let (one, other) = (end(&half), end(&whole));
-        println!("{law}: {press} {} {} {} {}", one.f_n, other.f_n, one.f_t, other.f_t);
         for (a, b) in [(one.f_n, other.f_n), (one.f_t, other.f_t), (one.f_t_y, other.f_t_y)] {
-            assert!((a - b).abs() < share * press, "{law}: {a} {b} of {press}");
+            assert!((a - b).abs() < 1e-3 * press, "{law}: {a} {b} of {press}");
         }
     }
 }
 
-/// The mesh's own anisotropy, as on a plane.
+/// The mesh's own anisotropy: 0.2 %.
 #[test]
 fn turned_axes_have_the_forces_of_the_x_axis() {
     let of = |direction: f64| {
@@ -161,10 +166,9 @@ fn turned_axes_have_the_forces_of_the_x_axis() {
         let (sin, cos) = direction.to_radians().sin_cos();
         let (one, other) = (end(&along), end(&turned));
         let (f_t, across) = (other.f_t * cos + other.f_t_y * sin, other.f_t_y * cos - other.f_t * sin);
-        println!("{direction}: {} {}, {} {f_t}, {across}", one.f_n, other.f_n, one.f_t);
-        assert!((one.f_n - other.f_n).abs() < 0.01 * press, "{direction}: F_N {} for {}", other.f_n, one.f_n);
-        assert!((one.f_t - f_t).abs() < 0.01 * peak, "{direction}: F_T {f_t} for {}", one.f_t);
-        assert!(across.abs() < 0.01 * peak, "{direction}: {across} across");
+        assert!((one.f_n - other.f_n).abs() < 0.005 * press, "{direction}: F_N {} for {}", other.f_n, one.f_n);
+        assert!((one.f_t - f_t).abs() < 0.005 * peak, "{direction}: F_T {f_t} for {}", one.f_t);
+        assert!(across.abs() < 0.005 * peak, "{direction}: {across} across");
     }
 }
 
