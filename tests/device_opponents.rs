@@ -44,6 +44,9 @@ const TURNED: &str =
     "[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = [0.001, 0.0015]\ntwist = 0.01\nroll = [0.0, 0.002]\n";
 const TURNED_RIGID: &str = "[base.opponent]\nrigid = true\nradius = 2.0\n";
 const TURNED_EQUAL: &str = "[base.opponent]\nequal = true\n";
+/// One of an equal pair and its image by inversion.
+const INVERTED: &str =
+    "[base.opponent]\nequal = true\n[[base.path]]\nindentation = 0.01\n[[base.path]]\nshear = [0.001, 0.0015]\n";
 const UNLIKE: &str = r#"
 [base.opponent]
 radius = 2.0
@@ -128,6 +131,11 @@ fn a_rigid_sphere_under_a_plate_that_turns_has_the_cpus_history() {
 #[test]
 fn an_equal_pair_that_turns_has_the_cpus_history() {
     check("an_equal_pair_that_turns_has_the_cpus_history", &format!("{TURNED_EQUAL}{TURNED}"), &[SYSTEMS]);
+}
+
+#[test]
+fn an_equal_pair_by_inversion_has_the_cpus_history() {
+    check("an_equal_pair_by_inversion_has_the_cpus_history", INVERTED, &[SYSTEMS]);
 }
 
 #[test]

@@ -172,6 +172,32 @@ fn turned_axes_have_the_forces_of_the_x_axis() {
     }
 }
 
+/// A held force, ways back and releases, and full stick, with both images.
+#[test]
+fn images_take_every_kind_of_segment() {
+    let held = |moved: &str| format!("{moved}\nhold = \"normal-force\"");
+    let shears = [held("shear = [0.001, 0.0015]"), "shear = [0.0, 0.0]".to_owned(), "release = 0.5".to_owned()];
+    let turns = [held("twist = 0.02"), "twist = 0.0".to_owned(), "release = 0.5".to_owned()];
+    for moved in [shears, turns] {
+        let path: Vec<&str> = ["indentation = 0.01"].into_iter().chain(moved.iter().map(String::as_str)).collect();
+        let rows = rows(&text(IDEAL, IMAGE, &path), &[]);
+        let press = pressed(&rows).f_n;
+        for row in rows.iter().filter(|row| row.segment == 1) {
+            assert!((row.f_n - press).abs() < 1e-4 * press, "{} of {press} in step {}", row.f_n, row.step);
+        }
+        let before = rows.iter().rfind(|row| row.segment == 2).expect("a way back").f_n;
+        assert!((end(&rows).f_n - 0.5 * before).abs() < 0.01 * before, "{} of {before}", end(&rows).f_n);
+        assert_energy(&rows, &moved[0]);
+    }
+    // Stuck, an elastic contact is as stiff in all directions.
+    let stuck = |moved: &str| rows(&text(ELASTIC, IMAGE, &["indentation = 0.01", moved]), &["contact.friction=\"stick\""]);
+    let (one, other) = (stuck("shear = 0.0005"), stuck("shear = 0.0005\nshear_direction = 60.0"));
+    let (sin, cos) = 60.0_f64.to_radians().sin_cos();
+    let (one, other) = (end(&one), end(&other));
+    assert!((other.f_t * cos + other.f_t_y * sin - one.f_t).abs() < 0.01 * one.f_t, "{other:?} for {one:?}");
+    assert!((other.f_t_y * cos - other.f_t * sin).abs() < 0.01 * one.f_t, "{other:?}");
+}
+
 /// A run that was stopped goes on to the bits of one that was not, with tables and fields.
 #[test]
 fn a_stopped_run_goes_on_to_the_same_bits() {
@@ -182,19 +208,18 @@ fn a_stopped_run_goes_on_to_the_same_bits() {
             assert!(output.status.success(), "{}", stderr(&output));
         };
         run("whole", &[]);
-        // Up to the end of the press, and then along the longer path.
-        let case = std::fs::read_to_string(scratch.path("case.toml")).expect("the case");
-        let child = common::program().args(scratch.args("parts", &["-q"])).spawn().expect("it runs");
+        // Stopped where it has left the press, it has the rest before it.
+        let mut child = common::program().args(scratch.args("parts", &["-q"])).spawn().expect("it runs");
         let history = scratch.path("parts").join("history.csv");
-        let steps = || asperity::output::read_history(&history).map_or(0, |rows| rows.len());
-        while steps() < 20 {
+        let moves = || asperity::output::read_history(&history).is_ok_and(|rows| rows.iter().any(|row| row.segment == 1));
+        while !moves() {
+            let ended = child.try_wait().expect("a child");
+            assert!(ended.is_none(), "{name}: it ended before it was stopped: {ended:?}");
             std::thread::sleep(std::time::Duration::from_millis(2));
         }
         let process = rustix::process::Pid::from_child(&child);
         rustix::process::kill_process(process, rustix::process::Signal::TERM).expect("a signal is sent");
-        let mut child = child;
-        assert_eq!(child.wait().expect("it ends").code(), Some(75), "{name}: {case}");
-        assert!(asperity::output::read_history(&history).expect("a history").iter().any(|row| row.segment == 1));
+        assert_eq!(child.wait().expect("it ends").code(), Some(75), "{name}");
         run("parts", &["--resume"]);
         assert_eq!(difference(&scratch.path("parts"), &scratch.path("whole")), None, "{name}");
         for kind in ["contact", "fields"] {

@@ -3,21 +3,12 @@
 //!
 //! With R the matrix of that (see [`Image`]) the relative position of slave node i is `w_i = sum_k
 //! S_ik x_k - R sum_j M_ij x_j` with the mortar weights S of the body itself and M of its image
-<<<<<<< HEAD
-//! (see [`super::mortar`]). Its conditions are those of a point over a plane, in a frame of its
-//! own: tangents t_1 (in the plane of x and the normal) and t_2, and the normal n, the mean of the
-//! two surfaces'. So the unknowns y of a step are w in these frames at slave nodes and u elsewhere:
-//! `u = T y`. The forces that belong to y are `T^T f`: at a slave node the force that the interface
-//! carries there, at a master node the body's own and what the image exerts on it, which is nothing
-//! together in equilibrium.
-=======
 //! (see [`super::mortar`] and [`super::inversion`]). Its conditions are those of a point over a
 //! plane, in a frame of its own: tangents t_1 (in the plane of x and the normal) and t_2, and the
 //! normal n, the mean of the two surfaces'. So the unknowns y of a step are w in these frames at
 //! slave nodes and u elsewhere: `u = T y`. The forces that belong to y are `T^T f`: at a slave node
 //! the force that the interface carries there, at a master node the body's own and what the image
 //! exerts on it, which is nothing together in equilibrium.
->>>>>>> pair-image
 
 use super::frame::{Frame, frame, from_frame, to_frame};
 use super::interface::{Interface, inward_normals};
@@ -463,13 +454,8 @@ mod tests {
             let mut exact = 0;
             for (k, w) in interface.relative(&positions).iter().enumerate() {
                 let [t1, _, normal] = interface.frames[k];
-<<<<<<< HEAD
-                // Near its seam an inverted surface faces a mean of nodes, of which the steepness
-                // is not their middle's.
-=======
                 // Near its seam an inverted surface faces a mean of nodes, which is not as steep as
                 // their middle.
->>>>>>> pair-image
                 let [x, y, z] = mesh.nodes[interface.nodes[interface.slaves[k]]];
                 let size = mesh.contact_size[interface.slaves[k]];
                 if image == Image::Inversion && x < 2.0 * size {
