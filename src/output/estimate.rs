@@ -32,8 +32,8 @@ pub struct ErrorEstimate {
     pub k_t0: Option<f64>,
 }
 
-/// A point of a shear: displacement, F_T/F_N and its limit.
-type RatioPoint = [f64; 3];
+/// Points of a shear as far as they are known: displacement, F_T/F_N and its limit.
+type RatioCurve = [Option<[f64; 3]>];
 
 impl ErrorEstimate {
     /// Of a history, in which segments that are `oblique` are no shear.
@@ -47,7 +47,7 @@ impl ErrorEstimate {
             .iter()
             .zip(points.clone())
             .reduce(|largest, point| if force(point.0) > force(largest.0) { point } else { largest });
-        let curve: Option<Vec<Option<RatioPoint>>> = start_row.map(|start| {
+        let curve: Option<Vec<Option<[f64; 3]>>> = start_row.map(|start| {
             let ratio = |f_t: f64, f_n: f64| (f_n > 0.0).then(|| f_t / f_n);
             let point = |(row, of): (&StepRecord, StepLimits)| {
                 let limit = force_limit(&of).zip(of.f_n_limit).and_then(|(f_t, f_n)| ratio(f_t, f_n));
@@ -56,7 +56,7 @@ impl ErrorEstimate {
             };
             shear.iter().zip(points.clone()).map(point).collect()
         });
-        let over_mu = |of: &dyn Fn(&[Option<RatioPoint>], f64) -> Option<f64>| {
+        let over_mu = |of: &dyn Fn(&RatioCurve, f64) -> Option<f64>| {
             curve
                 .as_deref()
                 .zip(limits.friction)
@@ -81,13 +81,13 @@ impl ErrorEstimate {
 
 /// Error of the displacement at which F_T/F_N reaches `wanted`: what the ratio lacks at the ends of
 /// that step, whichever is more, over the slope of the curve in it.
-fn displacement_error(curve: &[Option<RatioPoint>], wanted: f64) -> Option<f64> {
+fn displacement_error(curve: &RatioCurve, wanted: f64) -> Option<f64> {
     let mut before = [0.0; 3];
     for point in curve {
         let now = (*point)?;
         if now[1] >= wanted {
             let rise = now[1] - before[1];
-            let missing = |[_, found, limit]: RatioPoint| (limit - found).abs();
+            let missing = |[_, found, limit]: [f64; 3]| (limit - found).abs();
             let most = missing(before).max(missing(now));
             return Some(if rise > 0.0 { TANGENTIAL_SHARE * most * (now[0] - before[0]) / rise } else { 0.0 });
         }
@@ -97,7 +97,7 @@ fn displacement_error(curve: &[Option<RatioPoint>], wanted: f64) -> Option<f64> 
 }
 
 /// The displacement at which the limit of F_T/F_N reaches `wanted`, linear in between.
-fn limit_reaches(curve: &[Option<RatioPoint>], wanted: f64) -> Option<f64> {
+fn limit_reaches(curve: &RatioCurve, wanted: f64) -> Option<f64> {
     let mut before = [0.0; 3];
     for point in curve {
         let now = (*point)?;

@@ -43,7 +43,7 @@ pub fn turning_paths(case: &Case, parameters: &ContactParameters, elements: usiz
         .map(|(name, sheared)| {
             let mut case = meshed(case, elements);
             case.solver.shear_steps = Some(if sheared.len() > SIDES / 2 { STEPS } else { 2 * STEPS });
-            case.path = [vec![press.clone()], sheared].concat();
+            case.path = [vec![press], sheared].concat();
             Path { name, case }
         })
         .collect()

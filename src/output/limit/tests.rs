@@ -158,7 +158,9 @@ fn a_shear_in_another_direction_has_its_limits_along_it() {
     let limits = |case: &Case, coarse: &[StepRecord]| Limits::new(case, &scout(coarse, 8, case), 0.2 / 16.0).expect("limits");
     let (mut first, mut second) = (case(path), case(other));
     // All of it is reached.
-    [&mut first, &mut second].map(|case| case.contact.friction = Friction::Coefficient(0.25));
+    for case in [&mut first, &mut second] {
+        case.contact.friction = Friction::Coefficient(0.25);
+    }
     let (first, second) = (limits(&first, &along_x.1), limits(&second, &turned(&along_x.1)));
     let (rows, others) = (along_x.0.clone(), turned(&along_x.0));
     let mut compared = 0;
