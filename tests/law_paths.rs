@@ -133,6 +133,14 @@ fn turning(name: &str) -> BTreeMap<String, Vec<[f64; 6]>> {
     paths
 }
 
+/// Root mean square and greatest of errors, over the greatest of the sizes beside them.
+fn over_the_greatest(errors_and_sizes: &[[f64; 2]]) -> [f64; 2] {
+    let peak = errors_and_sizes.iter().map(|one| one[1]).fold(0.0, f64::max);
+    let squares: f64 = errors_and_sizes.iter().map(|one| (one[0] / peak).powi(2)).sum();
+    let worst = errors_and_sizes.iter().map(|one| one[0] / peak).fold(0.0, f64::max);
+    [(squares / errors_and_sizes.len() as f64).sqrt(), worst]
+}
+
 #[test]
 fn the_update_follows_paths_in_turning_directions() {
     let (mut count, mut within, mut greatest, mut report) = (0, 0, [0.0f64; 2], String::new());
@@ -142,16 +150,13 @@ fn the_update_follows_paths_in_turning_directions() {
         for (path, rows) in turning(name) {
             let places: Vec<[f64; 3]> = rows.iter().map(|row| [row[0], row[1], row[2]]).collect();
             let (forces, _) = drive_in_the_plane(&parameters, Centres::of(&case), &places, INCREMENTS);
-            let off = |f: &dyn Fn(&[f64; 6], &[f64; 3]) -> [f64; 2]| {
-                let all: Vec<[f64; 2]> = rows.iter().zip(&forces).map(|(row, law)| f(row, law)).collect();
-                let peak = all.iter().map(|one| one[1]).fold(0.0, f64::max);
-                let squares: f64 = all.iter().map(|one| (one[0] / peak).powi(2)).sum();
-                [(squares / all.len() as f64).sqrt(), all.iter().map(|one| one[0] / peak).fold(0.0, f64::max)]
-            };
-            let found = [
-                off(&|row, law| [(law[1] - row[4]).hypot(law[2] - row[5]), row[4].hypot(row[5])]),
-                off(&|row, law| [(law[0] - row[3]).abs(), row[3]]),
-            ];
+            let along: Vec<[f64; 2]> = rows
+                .iter()
+                .zip(&forces)
+                .map(|(row, law)| [(law[1] - row[4]).hypot(law[2] - row[5]), row[4].hypot(row[5])])
+                .collect();
+            let normal: Vec<[f64; 2]> = rows.iter().zip(&forces).map(|(row, law)| [(law[0] - row[3]).abs(), row[3]]).collect();
+            let found = [over_the_greatest(&along), over_the_greatest(&normal)];
             let good = found.iter().all(|error| error[0] <= AIMS[0] && error[1] <= AIMS[1]);
             (count, within) = (count + 1, within + usize::from(good));
             greatest = [0, 1].map(|i| greatest[i].max(found[i][0]));
