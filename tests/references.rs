@@ -72,8 +72,11 @@ fn a_shear_is_that_of_the_limit_of_fine_meshes() {
     assert!(squares.sqrt() <= 0.012 && raw.sqrt() <= 0.02, "{} and {} rms", squares.sqrt(), raw.sqrt());
     close(summary.f_n0.expect("F_N0"), 150.0, 0.005, "F_N0");
     close(summary.f_t_max_limit.expect("a limit"), 30.2, 0.005, "the limit of F_T_max");
-    close(summary.delta_t_90_limit.expect("a limit"), 0.00217, 0.02, "delta_T_90");
-    close(summary.delta_t_95_limit.expect("a limit"), 0.00249, 0.02, "delta_T_95");
+    // Within 1.5 % of what they may be, 0.00217 +- 0.00004 and 0.00249 +- 0.00005.
+    let found = [summary.delta_t_90_limit, summary.delta_t_95_limit].map(|limit| limit.expect("a limit"));
+    for (found, wanted, or) in [(found[0], 0.00217, 0.00004), (found[1], 0.00249, 0.00005)] {
+        assert!((found - wanted).abs() <= or + 0.015 * wanted, "{found} for {wanted}");
+    }
 }
 
 /// Hardening: the same meshes; the order that is seen is 0.5 to 0.7, so it may be a per cent less.

@@ -398,7 +398,9 @@ fn a_run_on_a_device_goes_on_there_to_the_same_bits_and_elsewhere_with_a_note() 
         let read = |dir: &Path| Summary::read(&dir.join("summary.json")).expect("a summary");
         let (here, there) = (read(&out), read(&whole));
         let note = format!("note: computed up to step {at} on {}, from there on {}", there.device, here.device);
-        assert_eq!(here.messages, [note]);
+        // Before it stands what the device left to the host: nothing over a plane.
+        assert_eq!(there.messages.len(), usize::from(name == "pair"), "{:?}", there.messages);
+        assert_eq!(here.messages, [&there.messages[..], &[note]].concat());
         let ratio = here.f_n0.expect("a force") / there.f_n0.expect("a force");
         assert!((ratio - 1.0).abs() < 1e-7, "{name}: {ratio}");
     }
