@@ -165,6 +165,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--mesh", default="default")
     parser.add_argument("--reference", default="16/32")
+    parser.add_argument("--most", type=float, default=600.0, help="seconds that a run may take; of one that takes more nothing is said")
     parser.add_argument("--program", default=ROOT / "target/release/asperity")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
@@ -177,9 +178,12 @@ def main():
         for made in (options.reference, options.mesh):
             place = options.out / f"{options.seed if i >= len(NAMED) else 'named'}-{i}-{made.replace('/', '-')}"
             try:
-                rows, seconds = run(options.program, place, [*settings, *([] if made == "default" else mesh(made))])
+                rows, seconds = run(options.program, place, [*settings, *([] if made == "default" else mesh(made))], options.most)
             except subprocess.CalledProcessError as failed:
                 print(f"| {name} | {made}: exit code {failed.returncode} |", flush=True)
+                break
+            except subprocess.TimeoutExpired:
+                print(f"| {name} | {made}: not done in {options.most:.0f} s, left out |", flush=True)
                 break
             computed.append((rows, summary(place)))
         else:

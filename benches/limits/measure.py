@@ -43,13 +43,13 @@ CASES = {
 }
 
 
-def run(program, out, settings):
+def run(program, out, settings, most=None):
     """The rows of a run, computed unless they are there."""
     if not (out / "summary.json").exists() or json.loads((out / "summary.json").read_text())["status"] != "done":
         common = ["output.plots=false", 'output.fields="none"', "output.keep_checkpoint=false"]
         sets = [word for setting in [*settings, *common] for word in ("--set", setting)]
         case = ROOT / "fixtures/cases/ideal.toml"
-        subprocess.run([program, "run", case, "--out", out, "--force", "-q", "--threads", "1", *sets], check=True)
+        subprocess.run([program, "run", case, "--out", out, "--force", "-q", "--threads", "1", *sets], check=True, timeout=most)
     with (out / "history.csv").open() as file:
         rows = [{key: float(value) if value else None for key, value in row.items()} for row in csv.DictReader(file)]
     return rows, json.loads((out / "summary.json").read_text())["cpu_s"]
