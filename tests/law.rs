@@ -248,6 +248,10 @@ fn paths_in_turning_directions_are_checked() {
     }
     assert!(largest > 0.0 && apart > 0.0 && apart < 0.12 * largest, "{apart} of {largest}");
     asperity(&["law", "check", text(&table), "--turning", "--random", "2"]).code(2);
+    let smooth =
+        asperity(&["law", "check", "built-in", "fixtures/cases/ideal.toml", "--set", "contact.friction=0.0", "--turning"])
+            .code(2);
+    assert!(String::from_utf8_lossy(&smooth.get_output().stderr).contains("without friction no direction matters"));
 }
 
 #[test]

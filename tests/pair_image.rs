@@ -3,13 +3,14 @@
 #![cfg(unix)]
 
 mod common;
+#[path = "common/followed.rs"]
+mod followed;
 
 use asperity::case::Case;
-use asperity::internals::simulation::drive::Ending;
-use asperity::internals::simulation::follow::{follow, on_cpu};
 use asperity::internals::simulation::problem::Problem;
-use asperity::output::{Recorder, StepRecord};
+use asperity::output::StepRecord;
 use common::{Scratch, difference, stderr};
+use followed::rows;
 
 const IDEAL: &str = "law = \"ideal\"\nyield_stress = 2.0";
 const ELASTIC: &str = "law = \"elastic\"";
@@ -30,15 +31,6 @@ fn text(law: &str, opponent: &str, path: &[&str]) -> String {
          [contact]\nfriction = 0.3\n[opponent]\n{opponent}\n[mesh]\nelements_per_contact_radius = 5\n[solver]\n\
          error_estimate = false\n{segments}"
     )
-}
-
-fn rows(text: &str, settings: &[&str]) -> Vec<StepRecord> {
-    let settings: Vec<String> = settings.iter().map(|set| (*set).to_owned()).collect();
-    let case = Case::parse(text, "case.toml", &settings).unwrap_or_else(|error| panic!("{error}"));
-    let mut recorder = Recorder::new(&case, None);
-    let followed = follow(Problem::new(&case).expect("a problem"), None, &mut |problem| on_cpu(problem), &mut recorder);
-    assert_eq!(followed.expect("no failure of the program").ending, Ending::Done, "{text}");
-    recorder.rows
 }
 
 fn end(rows: &[StepRecord]) -> &StepRecord {

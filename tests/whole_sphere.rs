@@ -1,14 +1,16 @@
 //! A sphere that is sheared in any direction, twisted and rolled: turned and mirrored paths against
 //! each other, closed forms, no forces where nothing resists, and the energy of every way to move.
 
+#[path = "common/followed.rs"]
+mod followed;
+
 use asperity::analytical::lubkin::Torsion;
 use asperity::case::{Case, Hold, Motion, Segment};
 use asperity::internals::compute::cpu::Cpu;
 use asperity::internals::contact::coulomb::Status;
 use asperity::internals::simulation::drive::{Drive, Ending, Observer, StepView};
-use asperity::internals::simulation::follow::{follow, on_cpu};
 use asperity::internals::simulation::problem::Problem;
-use asperity::output::{Recorder, StepRecord};
+use asperity::output::StepRecord;
 
 /// A material of this law, pressed and then moved, in the units of E = 1000 and R = 1.
 fn text(law: &str, friction: &str, elements: usize, path: &[&str]) -> String {
@@ -25,13 +27,9 @@ const ELASTIC: &str = "law = \"elastic\"";
 
 /// The rows of a case, which is done.
 fn rows(text: &str, settings: &[&str]) -> Vec<StepRecord> {
-    let settings: Vec<String> = settings.iter().map(|set| (*set).to_owned()).collect();
-    let case = Case::parse(text, "case.toml", &settings).unwrap_or_else(|error| panic!("{error}"));
-    let mut recorder = Recorder::new(&case, None);
-    let followed = follow(Problem::new(&case).expect("a problem"), None, &mut |problem| on_cpu(problem), &mut recorder);
-    assert_eq!(followed.expect("no failure of the program").ending, Ending::Done, "{text}");
-    assert!(recorder.rows.iter().all(|row| row.relaxed == 0));
-    recorder.rows
+    let rows = followed::rows(text, settings);
+    assert!(rows.iter().all(|row| row.relaxed == 0));
+    rows
 }
 
 fn last(rows: &[StepRecord], segment: usize) -> &StepRecord {

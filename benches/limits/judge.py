@@ -2,7 +2,7 @@
 """What a mesh gets wrong, over contacts on which nothing was chosen: goals, and on how many contacts each is met.
 
     cargo build --release && python3 benches/limits/judge.py OUT [--drawn 20] [--seed 1] [--mesh default] [--reference 16/32]
-                                                             [--program PATH]
+                                                             [--most 600] [--program PATH]
 
 The four contacts below and as many as asked, drawn by the seed (E/sigma_Y, mu, nu, h/R and the hardening), pressed and
 sheared to full slip. The truth is the limit that the reference mesh finds with its companion of half as many elements.

@@ -106,6 +106,12 @@ pub(super) fn check_law(args: &CheckArgs) -> Result<Outcome, CliError> {
         };
         for (name, case) in &cases {
             let parameters = law.contact_parameters(case).map_err(in_case)?;
+            if args.turning && case.contact.friction == Friction::Coefficient(0.0) {
+                return Err(in_case(LawError::NotCovered {
+                    problem: "the case has friction = 0, and without friction no direction matters",
+                    remedy: "Give contact.friction a number above 0, or leave --turning out",
+                }));
+            }
             let paths = if args.turning { turning_paths } else { protocol }(case, &parameters, elements);
             let friction = match case.contact.friction {
                 Friction::Coefficient(mu) => format!("mu {mu}"),

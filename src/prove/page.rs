@@ -88,8 +88,8 @@ fn write_parity(text: &mut String, report: &Report) -> std::fmt::Result {
     writeln!(text, "\n## Nine whole cases\n")?;
     writeln!(
         text,
-        "The largest difference of F_N, F_T, moments and a from the CPU's, over the steps; Newton's iterations; the bits again and \
-         alone.\n"
+        "The largest difference of F_N, F_T, moments and a from the CPU's, over the steps; Newton's iterations; the bits again \
+         and alone.\n"
     )?;
     writeln!(text, "| precision | tolerance | case | difference | Newton | on the CPU | again | alone |")?;
     writeln!(text, "|---|---|---|---|---|---|---|---|")?;

@@ -14,7 +14,8 @@ const STEPS: usize = 4;
 
 /// Circles of half and nine tenths of the slip displacement of the law, a figure of eight and a
 /// flip by 90 degrees, for the material, the friction and the greatest depth of `case`: the paths
-/// of `fixtures/paths/vector` on which nothing twists or rolls. None where there is no friction.
+/// of `fixtures/paths/vector` on which nothing twists or rolls. None
+/// where there is no friction.
 pub fn turning_paths(case: &Case, parameters: &ContactParameters, elements: usize) -> Vec<Path> {
     if case.contact.friction == Friction::Coefficient(0.0) {
         return Vec::new();
