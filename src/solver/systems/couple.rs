@@ -73,7 +73,7 @@ impl Body {
         let half = match half {
             Some(half) if !mirror.is_empty() => {
                 let own: Vec<u32> = mirror[nodes.clone()].iter().map(|n| n - nodes.start as u32).collect();
-                match Fold::new(&pattern, &half.node, &own) {
+                match Fold::new(&pattern, &half.node, &own, 0) {
                     Some(fold) => {
                         let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
                         Some((fold, HalfCycle::new(Parity::Even, hierarchy, half.node.len())))

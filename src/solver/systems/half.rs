@@ -23,15 +23,9 @@ impl HalfCycle {
     }
 
     /// Fixes what the whole body has `fixed` on both sides, and what the parity has none of at x =
-    /// 0. What is fixed on one side alone has to be free here for the other.
+    /// 0.
     pub fn fix(&mut self, fold: &Fold, fixed: &[bool]) {
-        for (to_fix, nodes) in self.fixed.as_chunks_mut::<3>().0.iter_mut().zip(fold.nodes()) {
-            let [own, opposite] = nodes.map(|n| 3 * n as usize);
-            for (c, to_fix) in to_fix.iter_mut().enumerate() {
-                let is_none = own == opposite && !self.parity.is_free_at_zero(c);
-                *to_fix = is_none || fixed[own + c] && fixed[opposite + c];
-            }
-        }
+        folded_fixed(fold, self.parity, fixed, &mut self.fixed);
     }
 
     /// Takes over the folded matrix, with what is fixed.
@@ -43,10 +37,21 @@ impl HalfCycle {
     }
 
     /// Adds to the whole body's `u` what a V-cycle makes of its forces `f`.
-    pub fn add(&mut self, fold: &Fold, f: &[f64], u: &mut [f64]) {
+    pub fn add<R: Into<f64> + Copy + Sync>(&mut self, fold: &Fold, f: &[R], u: &mut [f64]) {
         fold.fold(self.parity, f, &mut self.load);
         clear(&self.fixed, &mut self.load);
         self.hierarchy.v_cycle(&self.load, &mut self.z);
         fold.unfold_add(self.parity, &self.z, u);
+    }
+}
+
+/// What is `fixed` of a body that is folded: what is so on both sides, and what the parity has none
+/// of on the mirror. What is fixed on one side alone has to be free for the other.
+pub(super) fn folded_fixed(fold: &Fold, parity: Parity, fixed: &[bool], folded: &mut [bool]) {
+    for ((a, folded), nodes) in folded.as_chunks_mut::<3>().0.iter_mut().enumerate().zip(fold.nodes()) {
+        let [own, opposite] = nodes.map(|n| 3 * n as usize);
+        for (c, folded) in folded.iter_mut().enumerate() {
+            *folded = !fold.is_free(parity, a, c) || fixed[own + c] && fixed[opposite + c];
+        }
     }
 }

@@ -6,10 +6,11 @@
 //! right-hand side is split into its even and odd parts, and each goes through a V-cycle of its
 //! own, on half of the body (see [`crate::linalg::fold`]). Up to the first shear all is even.
 //!
-//! Of an inverted image that holds of what is even or odd when the body is turned half round z, for
-//! which there is no half: each part goes through a V-cycle of the whole body.
+//! Of an inverted image that holds of what is even or odd when the body is turned half round z. Even
+//! then is what is even in both x and y, or odd in both; odd what is even in one of them alone. Each
+//! of the four goes through a V-cycle on a quarter of the body.
 
-use super::half::HalfCycle;
+use super::half::{HalfCycle, folded_fixed};
 use super::tied::{InSingle, Tie, Tied, clear};
 use crate::contact::coulomb::Status;
 use crate::contact::interface::{Interface, Symmetry};
@@ -32,8 +33,8 @@ pub struct PairSolver {
 enum Cycles {
     /// On half of the body, of a half turn.
     Halves(Box<Halves>),
-    /// On all of it, of an inversion.
-    Whole(Box<Whole>),
+    /// On a quarter of it, of an inversion.
+    Quarters(Box<Quarters>),
 }
 
 /// The V-cycles of half of the body for what is even in x, and what is odd.
@@ -44,15 +45,25 @@ struct Halves {
     odd: HalfCycle,
 }
 
-/// The V-cycles of the whole body for what is even and what is odd when it is turned half round z.
+/// The V-cycles of a quarter of the body for what is even or odd in x and in y.
 #[derive(Debug)]
-struct Whole {
-    turn: Symmetry,
-    /// Of the even part, and of the odd one.
-    hierarchies: [Hierarchy; 2],
-    fixed: [Vec<bool>; 2],
-    load: Vec<f32>,
-    z: Vec<f32>,
+struct Quarters {
+    in_x: Fold,
+    in_y: Fold,
+    parts: Vec<Quarter>,
+    /// Of the half at x >= 0.
+    forces: Vec<f32>,
+    displacements: Vec<f64>,
+    fixed: Vec<bool>,
+}
+
+/// What has one parity in x, and one in y, which is its cycle's.
+#[derive(Debug)]
+struct Quarter {
+    in_x: Parity,
+    /// Whether the half turn round z leaves it as it is.
+    is_even: bool,
+    cycle: HalfCycle,
 }
 
 #[derive(Debug, Default)]
@@ -65,7 +76,7 @@ struct Work {
 impl Halves {
     fn new(mesh: &Mesh, pattern: &Pattern, mirror: &[u32]) -> Result<Option<Self>, LinalgError> {
         let Some(half) = mesh.half.as_ref().filter(|_| !mirror.is_empty()) else { return Ok(None) };
-        let Some(fold) = Fold::new(pattern, &half.node, mirror) else { return Ok(None) };
+        let Some(fold) = Fold::new(pattern, &half.node, mirror, 0) else { return Ok(None) };
         let hierarchy = Hierarchy::new(&fold.matrix.pattern, &half.hierarchy)?;
         Ok(Some(Self {
             even: HalfCycle::new(Parity::Even, hierarchy.clone(), half.node.len()),
@@ -107,69 +118,93 @@ impl Halves {
     }
 }
 
-impl Whole {
+impl Quarters {
     fn new(mesh: &Mesh, pattern: &Pattern, turn: &Symmetry) -> Result<Option<Self>, LinalgError> {
-        if turn.nodes.is_empty() {
+        let mirror = Symmetry::mirror(mesh).nodes;
+        let Some((half, quarter)) = mesh.half.as_ref().and_then(|half| Some((half, half.quarter.as_ref()?))) else {
+            return Ok(None);
+        };
+        if turn.nodes.is_empty() || mirror.is_empty() {
             return Ok(None);
         }
-        let hierarchy = Hierarchy::new(pattern, &mesh.hierarchy)?;
-        let n = 3 * pattern.rows();
+        let mut place = vec![u32::MAX; pattern.rows()];
+        (0..).zip(&half.node).for_each(|(a, &n)| place[n as usize] = a);
+        let nodes: Vec<u32> = quarter.node.iter().map(|&n| place[n as usize]).collect();
+        let in_y = |node: u32| turn.nodes[mirror[node as usize] as usize];
+        let across: Vec<u32> = half.node.iter().map(|&n| place[in_y(n) as usize]).collect();
+        let Some(in_x) = Fold::new(pattern, &half.node, &mirror, 0) else { return Ok(None) };
+        let Some(in_y) = Fold::new(&in_x.matrix.pattern, &nodes, &across, 1) else { return Ok(None) };
+        let hierarchy = Hierarchy::new(&in_y.matrix.pattern, &quarter.hierarchy)?;
+        let parts = Parity::ALL.into_iter().flat_map(|x| Parity::ALL.map(|y| (x, y)));
+        let parts = parts.map(|(in_x, in_y)| Quarter {
+            in_x,
+            is_even: in_x == in_y,
+            cycle: HalfCycle::new(in_y, hierarchy.clone(), nodes.len()),
+        });
+        let n = 3 * half.node.len();
         Ok(Some(Self {
-            turn: turn.clone(),
-            hierarchies: [hierarchy.clone(), hierarchy],
-            fixed: [vec![false; n], vec![false; n]],
-            load: vec![0.0; n],
-            z: vec![0.0; n],
+            parts: parts.collect(),
+            forces: vec![0.0; n],
+            displacements: vec![0.0; n],
+            fixed: vec![false; n],
+            in_x,
+            in_y,
         }))
     }
 
-    /// Points that touch are held along the normal in the even part, and those that stick along the
-    /// plane in the odd one.
+    /// Points that touch are held along the normal in what is even, and those that stick along the
+    /// plane in what is odd: where their images in x and y do so as well, as what is held here can
+    /// move nowhere.
     fn refresh(&mut self, tie: &Tie<PairInterface>, prescribed: &[bool]) -> Result<(), LinalgError> {
-        self.fixed.iter_mut().for_each(|fixed| fixed.copy_from_slice(prescribed));
-        let [even, odd] = &mut self.fixed;
-        for (contact, k) in tie.interface.facing().iter().enumerate() {
-            let Some(k) = *k else { continue };
-            let status = tie.rows[tie.interface.slaves[k]].status;
-            let node = tie.contact_nodes[contact];
-            for unknown in [node, self.turn.nodes[node as usize]].map(|n| 3 * n as usize) {
-                even[unknown + 2] |= status != Status::Open;
-                (0..2).for_each(|c| odd[unknown + c] |= status == Status::Stick);
+        self.in_x.update(&tie.matrix);
+        self.in_y.update(&self.in_x.matrix);
+        let status = |node: u32| {
+            let contact = tie.contact_nodes.binary_search(&node).ok()?;
+            Some(tie.rows[tie.interface.slaves[tie.interface.facing()[contact]?]].status)
+        };
+        for part in self.parts.iter_mut().filter(|part| part.is_even || !tie.symmetric) {
+            folded_fixed(&self.in_x, part.in_x, prescribed, &mut self.fixed);
+            part.cycle.fix(&self.in_y, &self.fixed);
+            for (fixed, &[a, b]) in part.cycle.fixed.as_chunks_mut::<3>().0.iter_mut().zip(self.in_y.nodes()) {
+                let [a, b] = [a, b].map(|half| self.in_x.nodes()[half as usize]);
+                let turned = [[a[0], b[1]], [a[1], b[0]]];
+                let held =
+                    |is_held: fn(Status) -> bool| turned.iter().all(|pair| pair.iter().filter_map(|&n| status(n)).any(is_held));
+                if part.is_even {
+                    fixed[2] |= held(|status| status != Status::Open);
+                } else if held(|status| status == Status::Stick) {
+                    fixed[..2].fill(true);
+                }
             }
+            part.cycle.update(&self.in_y)?;
         }
-        let [of_even, of_odd] = &mut self.hierarchies;
-        of_even.update(&tie.matrix, even)?;
-        if tie.symmetric { Ok(()) } else { of_odd.update(&tie.matrix, odd) }
+        Ok(())
     }
 
     /// Adds to `u` what the V-cycles make of the forces `f`.
     fn add(&mut self, is_even: bool, f: &[f64], u: &mut [f64]) {
-        let parts = if is_even { 1 } else { 2 };
-        for (part, hierarchy) in self.hierarchies.iter_mut().enumerate().take(parts) {
-            let parity = if part == 0 { 1.0 } else { -1.0 };
-            for (n, &opposite) in self.turn.nodes.iter().enumerate() {
-                for (c, sign) in self.turn.signs.into_iter().enumerate() {
-                    self.load[3 * n + c] = (0.5 * (f[3 * n + c] + parity * sign * f[3 * opposite as usize + c])) as f32;
-                }
+        for parity in Parity::ALL {
+            self.in_x.fold(parity, f, &mut self.forces);
+            self.displacements.fill(0.0);
+            for part in self.parts.iter_mut().filter(|part| part.in_x == parity && (part.is_even || !is_even)) {
+                part.cycle.add(&self.in_y, &self.forces, &mut self.displacements);
             }
-            clear(&self.fixed[part], &mut self.load);
-            hierarchy.v_cycle(&self.load, &mut self.z);
-            u.iter_mut().zip(&self.z).for_each(|(u, z)| *u += f64::from(*z));
+            self.in_x.unfold_add(parity, &self.displacements, u);
         }
     }
 }
 
 impl PairSolver {
     /// Plans a solver for a mesh with this symmetry, its mirror in x for a half turn and its half
-    /// turn round z for an inversion; `None` if it has none, or if elements cross x = 0 where they
-    /// must not.
+    /// turn round z for an inversion; `None` if it has none, or if elements cross x = 0, or for an
+    /// inversion y = 0.
     ///
     /// # Errors
     /// [`LinalgError::Hierarchy`] if the prolongations do not fit.
     pub fn new(mesh: &Mesh, pattern: &Pattern, symmetry: &Symmetry, image: Image) -> Result<Option<Self>, LinalgError> {
         let cycles = match image {
             Image::HalfTurn => Halves::new(mesh, pattern, &symmetry.nodes)?.map(|halves| Cycles::Halves(Box::new(halves))),
-            Image::Inversion => Whole::new(mesh, pattern, symmetry)?.map(|whole| Cycles::Whole(Box::new(whole))),
+            Image::Inversion => Quarters::new(mesh, pattern, symmetry)?.map(|quarters| Cycles::Quarters(Box::new(quarters))),
         };
         let n = 3 * pattern.rows();
         Ok(cycles.map(|cycles| Self {
@@ -194,7 +229,7 @@ impl Tied for PairSolver {
     fn refresh(&mut self, prescribed: &[bool]) -> Result<(), LinalgError> {
         match &mut self.cycles {
             Cycles::Halves(halves) => halves.refresh(&self.tie, prescribed),
-            Cycles::Whole(whole) => whole.refresh(&self.tie, prescribed),
+            Cycles::Quarters(quarters) => quarters.refresh(&self.tie, prescribed),
         }
     }
 }
@@ -208,7 +243,7 @@ impl System<f32> for PairSolver {
         work.u.fill(0.0);
         match &mut self.cycles {
             Cycles::Halves(halves) => halves.add(self.tie.symmetric, &work.f, &mut work.u),
-            Cycles::Whole(whole) => whole.add(self.tie.symmetric, &work.f, &mut work.u),
+            Cycles::Quarters(quarters) => quarters.add(self.tie.symmetric, &work.f, &mut work.u),
         }
         self.tie.interface.contract(&mut work.u);
         clear(&self.tie.fixed, &mut work.u);

@@ -1,5 +1,5 @@
-//! A body that is its own mirror image in x, folded at x = 0: what moves evenly in x, or oddly, is
-//! known from half of its nodes.
+//! A body that is its own mirror image in x (or in y), folded at x = 0: what moves evenly in x, or
+//! oddly, is known from half of its nodes. A folded body may be folded again, in y.
 //!
 //! An even field has `u(-x) = S u(x)` with S = diag(-1, 1, 1), and no u_x at x = 0; an odd one has
 //! -S, and u_x alone there. If E makes the whole field of the half, the half has the matrix
@@ -19,27 +19,28 @@ pub enum Parity {
 }
 
 impl Parity {
-    /// Sign of each component on the other side.
-    fn signs(self) -> [f32; 3] {
-        match self {
-            Self::Even => [-1.0, 1.0, 1.0],
-            Self::Odd => [1.0, -1.0, -1.0],
-        }
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Even, Self::Odd];
+
+    /// Sign that a component has on the other side of a mirror in `axis`.
+    fn sign(self, axis: usize, component: usize) -> f32 {
+        if (component == axis) == (self == Self::Even) { -1.0 } else { 1.0 }
     }
 
-    /// Whether a component is free at x = 0.
-    pub fn is_free_at_zero(self, component: usize) -> bool {
-        (component != 0) == (self == Self::Even)
+    /// Whether a component is free on the mirror in `axis`.
+    fn is_free_on_mirror(self, axis: usize, component: usize) -> bool {
+        (component != axis) == (self == Self::Even)
     }
 }
 
-/// Sign that a component of a node gets when it is folded, if it is to the `left`. Coupled to a
-/// component of a node at x = 0 it has the parity in which that one is free; else either will do.
-fn sign(left: bool, component: usize, at_zero: Option<usize>) -> f32 {
-    match (left, at_zero) {
+/// Sign that a component of a node gets when it is folded in `axis`, if it is to the `left`.
+/// Coupled to a component of a node on the mirror it has the parity in which that one is free; else
+/// either will do.
+fn sign(axis: usize, left: bool, component: usize, on_mirror: Option<usize>) -> f32 {
+    match (left, on_mirror) {
         (false, _) => 1.0,
-        (true, Some(0)) => Parity::Odd.signs()[component],
-        (true, _) => Parity::Even.signs()[component],
+        (true, Some(c)) if c == axis => Parity::Odd.sign(axis, component),
+        (true, _) => Parity::Even.sign(axis, component),
     }
 }
 
@@ -56,13 +57,15 @@ pub struct Fold {
     nodes: Vec<[u32; 2]>,
     /// Per block of the whole matrix, its place in the row of the half.
     place: Vec<u16>,
+    /// Of the coordinate in which it is folded.
+    axis: usize,
 }
 
 impl Fold {
-    /// Plans the fold of matrices with a `pattern` to the nodes `half` (at x >= 0); `mirror` is the
-    /// node opposite in x of each node. `None` if they do not fit each other, or if blocks couple
-    /// the two sides.
-    pub fn new(pattern: &Pattern, half: &[u32], mirror: &[u32]) -> Option<Self> {
+    /// Plans the fold in coordinate `axis` (0 for x, 1 for y) of matrices with a `pattern` to the
+    /// nodes `half` (at x >= 0); `mirror` is the node opposite in it of each node. `None` if they do
+    /// not fit each other, or if blocks couple the two sides.
+    pub fn new(pattern: &Pattern, half: &[u32], mirror: &[u32], axis: usize) -> Option<Self> {
         let mut folded = vec![u32::MAX; pattern.rows()];
         let mut nodes = Vec::with_capacity(half.len());
         for (a, &node) in half.iter().enumerate() {
@@ -96,7 +99,7 @@ impl Fold {
                 place.push(row.binary_search(&folded[j as usize]).ok()? as u16);
             }
         }
-        Some(Self { matrix, nodes, place })
+        Some(Self { matrix, nodes, place, axis })
     }
 
     /// Nodes of the whole mesh of a node of the half: at x >= 0 and opposite.
@@ -104,9 +107,15 @@ impl Fold {
         &self.nodes
     }
 
+    /// Whether a component of a node of the half is free in fields of a parity.
+    pub fn is_free(&self, parity: Parity, node: usize, component: usize) -> bool {
+        let [own, opposite] = self.nodes[node];
+        own != opposite || parity.is_free_on_mirror(self.axis, component)
+    }
+
     /// Folds a matrix.
     pub fn update(&mut self, whole: &BlockMatrix<f32>) {
-        let (nodes, place) = (&self.nodes, &self.place);
+        let (nodes, place, axis) = (&self.nodes, &self.place, self.axis);
         let BlockMatrix { pattern, blocks } = &mut self.matrix;
         let mut nothing = vec![(); nodes.len()];
         each_row(blocks, &pattern.row_start, &mut nothing, |a, row, ()| {
@@ -122,8 +131,8 @@ impl Fold {
                     let (row_at_zero, column_at_zero) = (own == opposite, pair[0] == pair[1]);
                     for m in 0..9 {
                         let (r, c) = (m / 3, m % 3);
-                        let by_row = sign(left_row, r, column_at_zero.then_some(c));
-                        let by_column = sign(left_column, c, row_at_zero.then_some(r));
+                        let by_row = sign(axis, left_row, r, column_at_zero.then_some(c));
+                        let by_column = sign(axis, left_column, c, row_at_zero.then_some(r));
                         row[b][m] += by_row * by_column * whole.blocks[at][m];
                     }
                 }
@@ -132,31 +141,31 @@ impl Fold {
     }
 
     /// The forces `E^T f` of a whole body's `f` (three a node).
-    pub fn fold(&self, parity: Parity, f: &[f64], folded: &mut [f32]) {
-        let signs = parity.signs();
+    pub fn fold<R: Into<f64> + Copy + Sync>(&self, parity: Parity, f: &[R], folded: &mut [f32]) {
+        let signs = [0, 1, 2].map(|c| f64::from(parity.sign(self.axis, c)));
         each(folded.as_chunks_mut::<3>().0, |a, folded| {
             let [own, opposite] = self.nodes[a].map(|n| 3 * n as usize);
             for c in 0..3 {
                 folded[c] = match own == opposite {
-                    true if parity.is_free_at_zero(c) => f[own + c] as f32,
+                    true if parity.is_free_on_mirror(self.axis, c) => f[own + c].into() as f32,
                     true => 0.0,
-                    false => (f[own + c] + f64::from(signs[c]) * f[opposite + c]) as f32,
+                    false => (f[own + c].into() + signs[c] * f[opposite + c].into()) as f32,
                 };
             }
         });
     }
 
     /// Adds the whole body's displacements `E z` of a half's `z` to `u`.
-    pub fn unfold_add(&self, parity: Parity, z: &[f32], u: &mut [f64]) {
-        let signs = parity.signs();
+    pub fn unfold_add<R: Into<f64> + Copy>(&self, parity: Parity, z: &[R], u: &mut [f64]) {
+        let signs = [0, 1, 2].map(|c| f64::from(parity.sign(self.axis, c)));
         for (z, nodes) in z.as_chunks::<3>().0.iter().zip(&self.nodes) {
             let [own, opposite] = nodes.map(|n| 3 * n as usize);
             for c in 0..3 {
                 if own != opposite {
-                    u[own + c] += f64::from(z[c]);
-                    u[opposite + c] += f64::from(signs[c] * z[c]);
-                } else if parity.is_free_at_zero(c) {
-                    u[own + c] += f64::from(z[c]);
+                    u[own + c] += z[c].into();
+                    u[opposite + c] += signs[c] * z[c].into();
+                } else if parity.is_free_on_mirror(self.axis, c) {
+                    u[own + c] += z[c].into();
                 }
             }
         }
@@ -184,20 +193,19 @@ mod tests {
         let pattern = Pattern::from_elements(mesh.nodes.len(), &mesh.elements);
         let mut whole = BlockMatrix::<f32>::zeros(pattern);
         whole.blocks.as_flattened_mut().iter_mut().enumerate().for_each(|(i, a)| *a = scattered(i) as f32);
-        let mut fold = Fold::new(&whole.pattern, &half.node, &mirror).unwrap();
+        let mut fold = Fold::new(&whole.pattern, &half.node, &mirror, 0).unwrap();
         // Twice: nothing is left of the matrix before.
         for _ in 0..2 {
             fold.update(&whole);
         }
         for parity in [Parity::Even, Parity::Odd] {
-            let is_free = |a: usize, c: usize| fold.nodes[a][0] != fold.nodes[a][1] || parity.is_free_at_zero(c);
-            let free: Vec<bool> = (0..fold.matrix.unknowns()).map(|i| is_free(i / 3, i % 3)).collect();
+            let free: Vec<bool> = (0..fold.matrix.unknowns()).map(|i| fold.is_free(parity, i / 3, i % 3)).collect();
             let z: Vec<f32> = (0..free.len()).map(|i| if free[i] { scattered(7 * i) as f32 } else { 0.0 }).collect();
             let mut u = vec![0.0; whole.unknowns()];
             fold.unfold_add(parity, &z, &mut u);
             for (n, &opposite) in mirror.iter().enumerate() {
                 for c in 0..3 {
-                    assert_eq!(u[3 * n + c], f64::from(parity.signs()[c]) * u[3 * opposite as usize + c]);
+                    assert_eq!(u[3 * n + c], f64::from(parity.sign(0, c)) * u[3 * opposite as usize + c]);
                 }
             }
             let mut f = vec![0.0; u.len()];
@@ -216,6 +224,6 @@ mod tests {
         let right = (0..mirror.len()).find(|&n| mesh.nodes[n][0] > 0.0).unwrap();
         coupled[right].push(mirror[right]);
         coupled[right].sort_unstable();
-        assert!(Fold::new(&Pattern::from_rows(coupled.into_iter()), &half.node, &mirror).is_none());
+        assert!(Fold::new(&Pattern::from_rows(coupled.into_iter()), &half.node, &mirror, 0).is_none());
     }
 }

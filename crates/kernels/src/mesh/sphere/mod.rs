@@ -115,7 +115,7 @@ fn mesh_with(layout: &Layout, finest: &Layout) -> Mesh {
         contact_area,
         contact_size,
         hierarchy: [skin.prolongations(), hierarchy(blocks)].concat(),
-        half: Some(Half { node: half_nodes, hierarchy: [half_levels, hierarchy(blocks.right_half())].concat() }),
+        half: Some(Half { node: half_nodes, hierarchy: [half_levels, hierarchy(blocks.right_half())].concat(), quarter: None }),
         fine_radius: layout.fine_radius,
         couple: None,
     }
